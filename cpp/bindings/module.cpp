@@ -1,0 +1,9 @@
+#include "module.h"
+
+PYBIND11_MODULE(_core, m) {
+    m.doc() = "photograd's C++ core. Use the typed faces in the package photograd instead.";
+    m.attr("__version__") = PHOTOGRAD_VERSION;
+    photograd::bind_errors(m);
+    photograd::bind_core(m);
+    photograd::bind_ops(m);
+}

@@ -1,0 +1,14 @@
+// The parts of the module _core: one bind_<part> function a file. No mathematics in this folder.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+namespace photograd {
+
+namespace py = pybind11;
+
+void bind_errors(py::module_& m);
+void bind_core(py::module_& m);
+void bind_ops(py::module_& m);
+
+}  // namespace photograd

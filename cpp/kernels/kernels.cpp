@@ -1,0 +1,14 @@
+// Compiled once per instruction set (see cpp/CMakeLists.txt): this file and all it includes live in the
+// namespace that PHOTOGRAD_ISA names.
+#include "kernels/kernels.h"
+
+#include "kernels/march_dense.inl"
+
+namespace photograd::PHOTOGRAD_ISA {
+
+#define PHOTOGRAD_TEXT_(x) #x
+#define PHOTOGRAD_TEXT(x) PHOTOGRAD_TEXT_(x)
+extern const Kernels table{PHOTOGRAD_TEXT(PHOTOGRAD_ISA), &march_dense_forward,
+                           &march_dense_backward, &march_dense_gather};
+
+}  // namespace photograd::PHOTOGRAD_ISA

@@ -1,0 +1,20 @@
+// The table of hot loops. One set is chosen when it is first asked for: the widest instruction set that
+// the processor has, or the one that the environment variable PHOTOGRAD_ISA names.
+#pragma once
+
+#include "kernels/march_dense.h"
+
+namespace photograd {
+
+struct Kernels {
+    const char* name;
+    void (*march_dense_forward)(const MarchDenseArgs&, std::int64_t begin, std::int64_t end);
+    std::int64_t (*march_dense_backward)(const MarchDenseArgs&, const MarchDenseBackward&,
+                                         std::int64_t begin, std::int64_t end, BrickRun* runs);
+    void (*march_dense_gather)(const MarchDenseArgs&, const BrickRun* runs, const std::uint32_t* order,
+                               std::int64_t count, const float* d_raw, float* tile);
+};
+
+[[nodiscard]] const Kernels& kernels();
+
+}  // namespace photograd

@@ -1,0 +1,49 @@
+// The fused march through a dense grid (float): what the kernel gets and gives. Plain data only, because
+// every instruction set's translation unit includes it.
+//
+// The staged form, for any field and any Real, is photograd/render/march.h; the two are tested to agree
+// bit for bit.
+#pragma once
+
+#include <cstdint>
+
+namespace photograd {
+
+/// Side of a brick in cells. A brick owns the cells whose lower corner lies in it; the tile of values it
+/// touches is one voxel wider.
+inline constexpr int brick_side = 8;
+inline constexpr int tile_side = brick_side + 1;
+inline constexpr int tile_floats = tile_side * tile_side * tile_side * 4;
+
+struct MarchDenseArgs {
+    const float* values;  // (X, Y, Z, 4): raw colour, raw density
+    int shape[3];
+    float lo[3], scale[3];  // voxel coordinate q = (p - lo) * scale - 0.5
+    int border, density_activation, color_activation, quadrature;
+    float dt;
+    float stop;  // stop behind a sub-block when its transmittance is below this; 0 never stops
+    const float* origins;     // (R, 3)
+    const float* directions;  // (R, 3)
+    const float* t0;          // (R,) sample k lies at t0 + (k + 1/2) dt
+    const std::int32_t* count;  // (R,)
+    float* color;               // (R, 3) without background
+    float* transmittance;       // (R,) behind the last sample
+    float* depth;               // (R,)
+};
+
+struct MarchDenseBackward {
+    const float* d_color;   // (R, 3)
+    const float* d_depth;   // (R,)
+    const float* end_term;  // (R,) (d_opacity - <d_color, background>) * transmittance
+    const std::int64_t* sample_offset;  // (rays of the slab + 1,) first sample of each ray in d_raw
+    std::int64_t first_ray;             // the ray that sample_offset[0] belongs to
+    float* d_raw;                       // (samples of the slab, 4)
+};
+
+/// Consecutive samples of one ray whose cells lie in one brick.
+struct BrickRun {
+    std::uint32_t brick, ray, k, count;
+    std::uint32_t sample;  // of sample k, in d_raw
+};
+
+}  // namespace photograd

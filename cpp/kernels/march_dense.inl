@@ -1,0 +1,239 @@
+// The fused march: position, trilinear lookup, activation and compositing of lane_count consecutive
+// samples of one ray at a time. The corners of one sample are loaded as vectors: (z, z + 1) x (r, g, b,
+// sigma) are eight neighbouring floats, so a lookup is four loads.
+#pragma once
+
+#include "kernels/march_dense.h"
+#include "photograd/ops/activation.h"
+#include "photograd/ops/composite.h"
+#include "photograd/ops/trilinear.h"
+
+namespace photograd::PHOTOGRAD_ISA {
+
+// Unaligned views of four and eight floats; the compiler splits them where registers are narrower.
+using Float4 = float __attribute__((vector_size(16), aligned(4), may_alias));
+using Float8 = float __attribute__((vector_size(32), aligned(4), may_alias));
+
+struct SampleBlock {
+    Lanes<float> t, p[3];
+    Lanes<float> raw[4];  // r, g, b, density before activation
+    Lanes<float> sigma_t, rgb[3];
+    int base[3][lane_count];
+    Lanes<float> w0[3], w1[3];
+};
+
+// Positions of samples k0, k0 + 1, ... and their cells and weights.
+static inline void place_block(const MarchDenseArgs& a, std::int64_t ray, int k0, SampleBlock& b) {
+    const float* o = a.origins + 3 * ray;
+    const float* d = a.directions + 3 * ray;
+    const float t0 = a.t0[ray];
+    for (int i = 0; i < lane_count; ++i)
+        b.t[i] = t0 + (static_cast<float>(k0 + i) + 0.5f) * a.dt;
+    for (int axis = 0; axis < 3; ++axis) {
+        for (int i = 0; i < lane_count; ++i) b.p[axis][i] = o[axis] + b.t[i] * d[axis];
+    }
+}
+
+static inline void weigh_block(const MarchDenseArgs& a, SampleBlock& b) {
+    const Border border = static_cast<Border>(a.border);
+    for (int axis = 0; axis < 3; ++axis) {
+        const float lo = a.lo[axis], scale = a.scale[axis];
+        const int n = a.shape[axis];
+        for (int i = 0; i < lane_count; ++i) {
+            const AxisWeights<float> w =
+                axis_weights((b.p[axis][i] - lo) * scale - 0.5f, n, border);
+            b.base[axis][i] = w.base;
+            b.w0[axis][i] = w.w0;
+            b.w1[axis][i] = w.w1;
+        }
+    }
+}
+
+static inline void look_up_block(const MarchDenseArgs& a, SampleBlock& b) {
+    const long long to_y = static_cast<long long>(a.shape[2]) * 4;
+    const long long to_x = a.shape[1] * to_y;
+    alignas(64) float found[lane_count][4];
+    for (int i = 0; i < lane_count; ++i) {
+        const float* row = a.values + b.base[0][i] * to_x + b.base[1][i] * to_y + b.base[2][i] * 4;
+        const float x0 = b.w0[0][i], x1 = b.w1[0][i], y0 = b.w0[1][i], y1 = b.w1[1][i];
+        const Float8 ends = ((x0 * y0 * *reinterpret_cast<const Float8*>(row) +
+                              x0 * y1 * *reinterpret_cast<const Float8*>(row + to_y)) +
+                             x1 * y0 * *reinterpret_cast<const Float8*>(row + to_x)) +
+                            x1 * y1 * *reinterpret_cast<const Float8*>(row + to_x + to_y);
+        const Float4 near = {ends[0], ends[1], ends[2], ends[3]};
+        const Float4 far = {ends[4], ends[5], ends[6], ends[7]};
+        *reinterpret_cast<Float4*>(found[i]) = near * b.w0[2][i] + far * b.w1[2][i];
+    }
+    for (int c = 0; c < 4; ++c)
+        for (int i = 0; i < lane_count; ++i) b.raw[c][i] = found[i][c];
+}
+
+static inline void activate_lanes(Activation kind, const Lanes<float>& x, Lanes<float>& y) {
+    switch (kind) {  // one loop each, so that each becomes lanes
+        case Activation::relu:
+            for (int i = 0; i < lane_count; ++i) y[i] = relu(x[i]);
+            break;
+        case Activation::softplus:
+            for (int i = 0; i < lane_count; ++i) y[i] = softplus(x[i]);
+            break;
+        case Activation::exp:
+            for (int i = 0; i < lane_count; ++i) y[i] = exponential(x[i]);
+            break;
+        case Activation::sigmoid:
+            for (int i = 0; i < lane_count; ++i) y[i] = sigmoid(x[i]);
+            break;
+        default: y = x;
+    }
+}
+
+static inline void activate_lanes_backward(Activation kind, const Lanes<float>& x,
+                                           const Lanes<float>& d_y, Lanes<float>& d_x) {
+    switch (kind) {
+        case Activation::relu:
+            for (int i = 0; i < lane_count; ++i) relu_backward(x[i], d_y[i], d_x[i]);
+            break;
+        case Activation::softplus:
+            for (int i = 0; i < lane_count; ++i) softplus_backward(x[i], d_y[i], d_x[i]);
+            break;
+        case Activation::exp:
+            for (int i = 0; i < lane_count; ++i) exponential_backward(x[i], d_y[i], d_x[i]);
+            break;
+        case Activation::sigmoid:
+            for (int i = 0; i < lane_count; ++i) sigmoid_backward(x[i], d_y[i], d_x[i]);
+            break;
+        default: d_x = d_y;
+    }
+}
+
+static inline void evaluate_block(const MarchDenseArgs& a, std::int64_t ray, int k0, SampleBlock& b) {
+    place_block(a, ray, k0, b);
+    weigh_block(a, b);
+    look_up_block(a, b);
+    activate_lanes(static_cast<Activation>(a.density_activation), b.raw[3], b.sigma_t);
+    for (int c = 0; c < 3; ++c)
+        activate_lanes(static_cast<Activation>(a.color_activation), b.raw[c], b.rgb[c]);
+    // Lanes behind the last sample take part in every loop, with no extinction.
+    for (int i = 0; i < lane_count; ++i)
+        b.sigma_t[i] = k0 + i < a.count[ray] ? b.sigma_t[i] : 0.0f;
+}
+
+static void march_dense_forward(const MarchDenseArgs& a, std::int64_t begin, std::int64_t end) {
+    const Quadrature form = static_cast<Quadrature>(a.quadrature);
+    for (std::int64_t ray = begin; ray < end; ++ray) {
+        RayTotals<float> totals;
+        SampleBlock b;
+        for (int k = 0; k < a.count[ray]; k += lane_count) {
+            evaluate_block(a, ray, k, b);
+            composite(form, b.sigma_t, b.rgb, b.t, a.dt, totals);
+            if (exp(-totals.tau) < a.stop) break;
+        }
+        for (int c = 0; c < 3; ++c) a.color[3 * ray + c] = sum(totals.color[c]);
+        a.transmittance[ray] = exp(-totals.tau);
+        a.depth[ray] = sum(totals.depth);
+    }
+}
+
+// Writes d_raw of every sample that was passed, and the runs of samples that share a brick.
+static std::int64_t march_dense_backward(const MarchDenseArgs& a, const MarchDenseBackward& back,
+                                         std::int64_t begin, std::int64_t end, BrickRun* runs) {
+    const Quadrature form = static_cast<Quadrature>(a.quadrature);
+    const int bricks_y = (a.shape[1] + brick_side - 1) / brick_side;
+    const int bricks_z = (a.shape[2] + brick_side - 1) / brick_side;
+    BrickRun* next = runs;
+    for (std::int64_t ray = begin; ray < end; ++ray) {
+        RayCotangents<float> cotangents;
+        for (int c = 0; c < 3; ++c) cotangents.d_color[c] = back.d_color[3 * ray + c];
+        cotangents.d_depth = back.d_depth[ray];
+        cotangents.end_term = back.end_term[ray];
+        cotangents.remainder =
+            ((cotangents.d_color[0] * a.color[3 * ray] + cotangents.d_color[1] * a.color[3 * ray + 1]) +
+             cotangents.d_color[2] * a.color[3 * ray + 2]) +
+            cotangents.d_depth * a.depth[ray];
+        const std::int64_t first = back.sample_offset[ray - back.first_ray];
+        std::uint32_t current = ~0u;
+        SampleBlock b;
+        for (int k = 0; k < a.count[ray]; k += lane_count) {
+            evaluate_block(a, ray, k, b);
+            Lanes<float> d_sigma_t = {}, d_rgb[3] = {}, d_raw[4] = {};
+            composite_backward(form, b.sigma_t, b.rgb, b.t, a.dt, cotangents, d_sigma_t, d_rgb);
+            for (int c = 0; c < 3; ++c)
+                activate_lanes_backward(static_cast<Activation>(a.color_activation), b.raw[c],
+                                        d_rgb[c], d_raw[c]);
+            activate_lanes_backward(static_cast<Activation>(a.density_activation), b.raw[3],
+                                    d_sigma_t, d_raw[3]);
+            std::uint32_t brick[lane_count];
+            for (int i = 0; i < lane_count; ++i)
+                brick[i] = static_cast<std::uint32_t>(
+                    ((b.base[0][i] / brick_side) * bricks_y + b.base[1][i] / brick_side) * bricks_z +
+                    b.base[2][i] / brick_side);
+            const int used = smaller(lane_count, a.count[ray] - k);
+            float* out = back.d_raw + 4 * (first + k);
+            for (int i = 0; i < used; ++i)
+                for (int c = 0; c < 4; ++c) out[4 * i + c] = d_raw[c][i];
+            for (int i = 0; i < used; ++i) {
+                if (brick[i] == current) {
+                    ++next[-1].count;
+                    continue;
+                }
+                current = brick[i];
+                *next++ = {current, static_cast<std::uint32_t>(ray),
+                           static_cast<std::uint32_t>(k + i), 1,
+                           static_cast<std::uint32_t>(first + k + i)};
+            }
+            if (exp(-cotangents.tau) < a.stop) break;
+        }
+    }
+    return next - runs;
+}
+
+// Adds the samples gathered in `b` to a brick's tile.
+static inline void add_to_tile(const MarchDenseArgs& a, SampleBlock& b, int used, const int* corner,
+                               const float* const* d_raw, float* tile) {
+    weigh_block(a, b);
+    constexpr int to_y = tile_side * 4, to_x = tile_side * to_y;
+    for (int i = 0; i < used; ++i) {
+        float* row = tile + (b.base[0][i] - corner[0]) * to_x + (b.base[1][i] - corner[1]) * to_y +
+                     (b.base[2][i] - corner[2]) * 4;
+        const Float4 d = *reinterpret_cast<const Float4*>(d_raw[i]);
+        const Float4 near = d * b.w0[2][i], far = d * b.w1[2][i];
+        const float x0 = b.w0[0][i], x1 = b.w1[0][i], y0 = b.w0[1][i], y1 = b.w1[1][i];
+        const float w[4] = {x0 * y0, x0 * y1, x1 * y0, x1 * y1};
+        const int offset[4] = {0, to_y, to_x, to_x + to_y};
+        for (int r = 0; r < 4; ++r) {
+            *reinterpret_cast<Float4*>(row + offset[r]) += w[r] * near;
+            *reinterpret_cast<Float4*>(row + offset[r] + 4) += w[r] * far;
+        }
+    }
+}
+
+// All runs of one brick, in the order given, into its tile (tile_side^3, 4).
+static void march_dense_gather(const MarchDenseArgs& a, const BrickRun* runs,
+                               const std::uint32_t* order, std::int64_t count, const float* d_raw,
+                               float* tile) {
+    const int bricks_y = (a.shape[1] + brick_side - 1) / brick_side;
+    const int bricks_z = (a.shape[2] + brick_side - 1) / brick_side;
+    const int brick = static_cast<int>(runs[order[0]].brick);
+    const int corner[3] = {brick / (bricks_y * bricks_z) * brick_side,
+                           brick / bricks_z % bricks_y * brick_side, brick % bricks_z * brick_side};
+    SampleBlock b = {};
+    const float* source[lane_count];
+    int used = 0;
+    for (std::int64_t j = 0; j < count; ++j) {
+        const BrickRun& run = runs[order[j]];
+        const float* o = a.origins + 3 * static_cast<std::int64_t>(run.ray);
+        const float* d = a.directions + 3 * static_cast<std::int64_t>(run.ray);
+        const float t0 = a.t0[run.ray];
+        for (std::uint32_t i = 0; i < run.count; ++i) {
+            const float t = t0 + (static_cast<float>(static_cast<int>(run.k + i)) + 0.5f) * a.dt;
+            for (int axis = 0; axis < 3; ++axis) b.p[axis][used] = o[axis] + t * d[axis];
+            source[used] = d_raw + 4 * static_cast<std::int64_t>(run.sample + i);
+            if (++used == lane_count) {
+                add_to_tile(a, b, used, corner, source, tile);
+                used = 0;
+            }
+        }
+    }
+    add_to_tile(a, b, used, corner, source, tile);
+}
+
+}  // namespace photograd::PHOTOGRAD_ISA

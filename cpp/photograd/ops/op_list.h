@@ -1,0 +1,172 @@
+// The ops as flat functions R^n -> R^m, for the proofs.
+//
+// An adapter gives an op a fixed, small size, lists its differentiable inputs as named groups, and says
+// where to draw them. Everything in `Ops` is then bound, stubbed and proved (finite differences,
+// Taylor remainder, dot product with dual numbers, accumulation, mutants) without another line. The
+// functions that users call on arrays of any size are in bindings/bind_ops.cpp.
+#pragma once
+
+#include <array>
+
+#include "photograd/core/params.h"
+#include "photograd/ops/composite.h"
+#include "photograd/ops/trilinear.h"
+
+namespace photograd {
+
+struct InputGroup {
+    const char* name;
+    int size;
+    double lo, hi;  // proofs draw inputs from here; kinks lie outside
+};
+
+template <Activation Kind>
+struct ActivationOp {
+    static constexpr const char* name = Kind == Activation::relu       ? "relu"
+                                        : Kind == Activation::softplus ? "softplus"
+                                        : Kind == Activation::exp      ? "exponential"
+                                                                       : "sigmoid";
+    // relu has a kink at 0, where no derivative exists; it is proved on its live side.
+    static constexpr std::array<InputGroup, 1> inputs{
+        {{"x", 3, Kind == Activation::relu ? 0.1 : -6.0, 6.0}}};
+    static constexpr int outputs = 3;
+
+    template <class R>
+    static void forward(const R* x, R* y) {
+        for (int i = 0; i < 3; ++i) y[i] = activate(Kind, x[i]);
+    }
+    template <class R>
+    static void backward(const R* x, const R* d_y, R* d_x) {
+        for (int i = 0; i < 3; ++i) activate_backward(Kind, x[i], d_y[i], d_x[i]);
+    }
+};
+
+/// Values of a 3 x 4 x 2 grid with 2 channels, and the position in voxels.
+struct TrilinearOp {
+    static constexpr const char* name = "trilinear";
+    static constexpr GridShape shape{3, 4, 2};
+    static constexpr int channels = 2;
+    static constexpr int values = 3 * 4 * 2 * channels;
+    // Positions stay inside one cell: at a cell face the slope jumps and differences are meaningless.
+    static constexpr std::array<InputGroup, 2> inputs{{{"values", values, -1, 1}, {"q", 3, 0.1, 0.9}}};
+    static constexpr int outputs = channels;
+
+    template <class R>
+    static void weights(const R* q, AxisWeights<R>* a) {
+        const int n[3] = {shape.x, shape.y, shape.z};
+        for (int k = 0; k < 3; ++k) a[k] = axis_weights(q[k], n[k], Border::clamp);
+    }
+    template <class R>
+    static void forward(const R* in, R* out) {
+        AxisWeights<R> a[3];
+        weights(in + values, a);
+        trilinear<R, channels>(in, shape, a[0], a[1], a[2], out);
+    }
+    template <class R>
+    static void backward(const R* in, const R* d_out, R* d_in) {
+        AxisWeights<R> a[3];
+        weights(in + values, a);
+        trilinear_backward<R, channels>(shape, a[0], a[1], a[2], d_out, d_in);
+        trilinear_position_backward<R, channels>(in, shape, a[0], a[1], a[2], d_out, d_in + values);
+    }
+};
+
+/// The zero border: a position half a voxel outside the grid on every axis.
+struct TrilinearBorderOp : TrilinearOp {
+    static constexpr const char* name = "trilinear_zero_border";
+    static constexpr std::array<InputGroup, 2> inputs{
+        {{"values", values, -1, 1}, {"q", 3, -0.9, -0.1}}};
+
+    template <class R>
+    static void weights(const R* q, AxisWeights<R>* a) {
+        const int n[3] = {shape.x, shape.y, shape.z};
+        for (int k = 0; k < 3; ++k) a[k] = axis_weights(q[k], n[k], Border::zero);
+    }
+    template <class R>
+    static void forward(const R* in, R* out) {
+        AxisWeights<R> a[3];
+        weights(in + values, a);
+        trilinear<R, channels>(in, shape, a[0], a[1], a[2], out);
+    }
+    template <class R>
+    static void backward(const R* in, const R* d_out, R* d_in) {
+        AxisWeights<R> a[3];
+        weights(in + values, a);
+        trilinear_backward<R, channels>(shape, a[0], a[1], a[2], d_out, d_in);
+        trilinear_position_backward<R, channels>(in, shape, a[0], a[1], a[2], d_out, d_in + values);
+    }
+};
+
+/// A ray of two sub-blocks over a background; outputs colour, opacity, depth.
+template <Quadrature Form>
+struct CompositeOp {
+    static constexpr const char* name =
+        Form == Quadrature::alpha ? "composite" : "composite_riemann";
+    static constexpr int blocks = 2;
+    static constexpr int samples = blocks * lane_count;
+    static constexpr std::array<InputGroup, 3> inputs{
+        {{"sigma_t", samples, 0.05, 2.0}, {"rgb", 3 * samples, 0, 1}, {"background", 3, 0, 1}}};
+    static constexpr int outputs = 5;
+    static constexpr double dt = 0.13;
+
+    template <class R>
+    static void load(const R* in, int block, Lanes<R>& sigma_t, Lanes<R>* rgb, Lanes<R>& t) {
+        for (int i = 0; i < lane_count; ++i) {
+            const int k = block * lane_count + i;
+            sigma_t[i] = in[k];
+            for (int c = 0; c < 3; ++c) rgb[c][i] = in[samples + 3 * k + c];
+            t[i] = R((k + 0.5) * dt);
+        }
+    }
+    template <class R>
+    static RayTotals<R> totals(const R* in) {
+        RayTotals<R> totals;
+        for (int b = 0; b < blocks; ++b) {
+            Lanes<R> sigma_t, rgb[3], t;
+            load(in, b, sigma_t, rgb, t);
+            composite(Form, sigma_t, rgb, t, R(dt), totals);
+        }
+        return totals;
+    }
+    template <class R>
+    static void forward(const R* in, R* out) {
+        const RayTotals<R> ray = totals(in);
+        const R end = exp(-ray.tau);
+        for (int c = 0; c < 3; ++c) out[c] = sum(ray.color[c]) + end * in[4 * samples + c];
+        out[3] = -expm1(-ray.tau);
+        out[4] = sum(ray.depth);
+    }
+    template <class R>
+    static void backward(const R* in, const R* d_out, R* d_in) {
+        const RayTotals<R> ray = totals(in);
+        const R* background = in + 4 * samples;
+        const R end = exp(-ray.tau);
+        RayCotangents<R> back{{d_out[0], d_out[1], d_out[2]}, d_out[4], R(0), R(0)};
+        R d_end = d_out[3];
+        back.remainder = d_out[4] * sum(ray.depth);
+        for (int c = 0; c < 3; ++c) {
+            d_end -= d_out[c] * background[c];
+            back.remainder += d_out[c] * sum(ray.color[c]);
+            d_in[4 * samples + c] += d_out[c] * end;
+        }
+        back.end_term = d_end * end;
+        for (int b = 0; b < blocks; ++b) {
+            Lanes<R> sigma_t, rgb[3], t;
+            Lanes<R> d_sigma_t = {}, d_rgb[3] = {};
+            load(in, b, sigma_t, rgb, t);
+            composite_backward(Form, sigma_t, rgb, t, R(dt), back, d_sigma_t, d_rgb);
+            for (int i = 0; i < lane_count; ++i) {
+                const int k = b * lane_count + i;
+                d_in[k] += d_sigma_t[i];
+                for (int c = 0; c < 3; ++c) d_in[samples + 3 * k + c] += d_rgb[c][i];
+            }
+        }
+    }
+};
+
+using Ops = TypeList<ActivationOp<Activation::relu>, ActivationOp<Activation::softplus>,
+                     ActivationOp<Activation::exp>, ActivationOp<Activation::sigmoid>, TrilinearOp,
+                     TrilinearBorderOp, CompositeOp<Quadrature::alpha>,
+                     CompositeOp<Quadrature::riemann>>;
+
+}  // namespace photograd

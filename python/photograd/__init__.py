@@ -1,0 +1,1 @@
+"""Recover scenes from photographs by gradient descent: forward and adjoint renderers, proved."""
