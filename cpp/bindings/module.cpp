@@ -6,4 +6,5 @@ PYBIND11_MODULE(_core, m) {
     photograd::bind_errors(m);
     photograd::bind_core(m);
     photograd::bind_ops(m);
+    photograd::bind_march(m);
 }

@@ -10,5 +10,6 @@ namespace py = pybind11;
 void bind_errors(py::module_& m);
 void bind_core(py::module_& m);
 void bind_ops(py::module_& m);
+void bind_march(py::module_& m);
 
 }  // namespace photograd

@@ -7,19 +7,16 @@
 
 #include <cstdint>
 
-namespace photograd {
+#include "photograd/grid/brick.h"
 
-/// Side of a brick in cells. A brick owns the cells whose lower corner lies in it; the tile of values it
-/// touches is one voxel wider.
-inline constexpr int brick_side = 8;
-inline constexpr int tile_side = brick_side + 1;
-inline constexpr int tile_floats = tile_side * tile_side * tile_side * 4;
+namespace photograd {
 
 struct MarchDenseArgs {
     const float* values;  // (X, Y, Z, 4): raw colour, raw density
     int shape[3];
     float lo[3], scale[3];  // voxel coordinate q = (p - lo) * scale - 0.5
     int border, density_activation, color_activation, quadrature;
+    float density_scale;
     float dt;
     float stop;  // stop behind a sub-block when its transmittance is below this; 0 never stops
     const float* origins;     // (R, 3)
@@ -34,7 +31,7 @@ struct MarchDenseArgs {
 struct MarchDenseBackward {
     const float* d_color;   // (R, 3)
     const float* d_depth;   // (R,)
-    const float* end_term;  // (R,) (d_opacity - <d_color, background>) * transmittance
+    const float* d_transmittance;  // (R,)
     const std::int64_t* sample_offset;  // (rays of the slab + 1,) first sample of each ray in d_raw
     std::int64_t first_ray;             // the ray that sample_offset[0] belongs to
     float* d_raw;                       // (samples of the slab, 4)

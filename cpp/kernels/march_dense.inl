@@ -114,7 +114,7 @@ static inline void evaluate_block(const MarchDenseArgs& a, std::int64_t ray, int
         activate_lanes(static_cast<Activation>(a.color_activation), b.raw[c], b.rgb[c]);
     // Lanes behind the last sample take part in every loop, with no extinction.
     for (int i = 0; i < lane_count; ++i)
-        b.sigma_t[i] = k0 + i < a.count[ray] ? b.sigma_t[i] : 0.0f;
+        b.sigma_t[i] = k0 + i < a.count[ray] ? a.density_scale * b.sigma_t[i] : 0.0f;
 }
 
 static void march_dense_forward(const MarchDenseArgs& a, std::int64_t begin, std::int64_t end) {
@@ -137,14 +137,13 @@ static void march_dense_forward(const MarchDenseArgs& a, std::int64_t begin, std
 static std::int64_t march_dense_backward(const MarchDenseArgs& a, const MarchDenseBackward& back,
                                          std::int64_t begin, std::int64_t end, BrickRun* runs) {
     const Quadrature form = static_cast<Quadrature>(a.quadrature);
-    const int bricks_y = (a.shape[1] + brick_side - 1) / brick_side;
-    const int bricks_z = (a.shape[2] + brick_side - 1) / brick_side;
+    const BrickLayout layout = BrickLayout::of(a.shape);
     BrickRun* next = runs;
     for (std::int64_t ray = begin; ray < end; ++ray) {
         RayCotangents<float> cotangents;
         for (int c = 0; c < 3; ++c) cotangents.d_color[c] = back.d_color[3 * ray + c];
         cotangents.d_depth = back.d_depth[ray];
-        cotangents.end_term = back.end_term[ray];
+        cotangents.end_term = -(back.d_transmittance[ray] * a.transmittance[ray]);
         cotangents.remainder =
             ((cotangents.d_color[0] * a.color[3 * ray] + cotangents.d_color[1] * a.color[3 * ray + 1]) +
              cotangents.d_color[2] * a.color[3 * ray + 2]) +
@@ -159,13 +158,13 @@ static std::int64_t march_dense_backward(const MarchDenseArgs& a, const MarchDen
             for (int c = 0; c < 3; ++c)
                 activate_lanes_backward(static_cast<Activation>(a.color_activation), b.raw[c],
                                         d_rgb[c], d_raw[c]);
+            for (int i = 0; i < lane_count; ++i) d_sigma_t[i] = a.density_scale * d_sigma_t[i];
             activate_lanes_backward(static_cast<Activation>(a.density_activation), b.raw[3],
                                     d_sigma_t, d_raw[3]);
             std::uint32_t brick[lane_count];
             for (int i = 0; i < lane_count; ++i)
                 brick[i] = static_cast<std::uint32_t>(
-                    ((b.base[0][i] / brick_side) * bricks_y + b.base[1][i] / brick_side) * bricks_z +
-                    b.base[2][i] / brick_side);
+                    layout.owner(b.base[0][i], b.base[1][i], b.base[2][i]));
             const int used = smaller(lane_count, a.count[ray] - k);
             float* out = back.d_raw + 4 * (first + k);
             for (int i = 0; i < used; ++i)
@@ -210,11 +209,8 @@ static inline void add_to_tile(const MarchDenseArgs& a, SampleBlock& b, int used
 static void march_dense_gather(const MarchDenseArgs& a, const BrickRun* runs,
                                const std::uint32_t* order, std::int64_t count, const float* d_raw,
                                float* tile) {
-    const int bricks_y = (a.shape[1] + brick_side - 1) / brick_side;
-    const int bricks_z = (a.shape[2] + brick_side - 1) / brick_side;
-    const int brick = static_cast<int>(runs[order[0]].brick);
-    const int corner[3] = {brick / (bricks_y * bricks_z) * brick_side,
-                           brick / bricks_z % bricks_y * brick_side, brick % bricks_z * brick_side};
+    int corner[3];
+    BrickLayout::of(a.shape).corner(static_cast<int>(runs[order[0]].brick), corner);
     SampleBlock b = {};
     const float* source[lane_count];
     int used = 0;

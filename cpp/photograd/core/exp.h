@@ -14,7 +14,7 @@
 namespace photograd {
 inline namespace PHOTOGRAD_ISA {
 
-namespace detail {
+namespace exp_detail {
 
 template <class R>
 struct ScaledExp {
@@ -71,19 +71,19 @@ inline ScaledExp<double> scaled_exp(double x) {
     return {scale.value, q};
 }
 
-}  // namespace detail
+}  // namespace exp_detail
 
 /// e^x, relative error below 2e-7 (float) and 4e-16 (double); saturates instead of overflowing.
 template <class R>
 inline R exp(R x) {
-    const detail::ScaledExp<R> e = detail::scaled_exp(x);
+    const exp_detail::ScaledExp<R> e = exp_detail::scaled_exp(x);
     return e.scale * e.q + e.scale;
 }
 
 /// e^x - 1 without cancellation for small x.
 template <class R>
 inline R expm1(R x) {
-    const detail::ScaledExp<R> e = detail::scaled_exp(x);
+    const exp_detail::ScaledExp<R> e = exp_detail::scaled_exp(x);
     return e.scale * e.q + (e.scale - R(1));
 }
 

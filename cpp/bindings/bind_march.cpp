@@ -1,0 +1,204 @@
+// The sampler and the marcher: staged for every field of the registry, fused for the dense grid.
+#include <pybind11/stl.h>
+
+#include <optional>
+
+#include "array_args.h"
+#include "module.h"
+#include "photograd/field/registry.h"
+#include "photograd/render/lattice.h"
+#include "photograd/render/march.h"
+#include "photograd/render/march_dense.h"
+
+namespace photograd {
+namespace {
+
+using Box = std::array<std::array<double, 3>, 2>;
+
+struct MarchSettings {
+    Box box{{{-1, -1, -1}, {1, 1, 1}}};
+    double dt = 0.01, stop = 0.0;
+    int lattice = 0, quadrature = 0, border = 0, density_activation = 2, color_activation = 4;
+    double density_scale = 1.0;
+
+    [[nodiscard]] FieldOptions field() const {
+        FieldOptions options;
+        for (std::size_t end = 0; end < 2; ++end)
+            std::copy(box[end].begin(), box[end].end(), options.box[end]);
+        options.border = static_cast<Border>(border);
+        options.density_activation = static_cast<Activation>(density_activation);
+        options.color_activation = static_cast<Activation>(color_activation);
+        options.density_scale = density_scale;
+        return options;
+    }
+    [[nodiscard]] MarchOptions march() const {
+        return {dt, stop, static_cast<Quadrature>(quadrature)};
+    }
+};
+
+py::tuple place(const MarchSettings& settings, const py::array& origins, const py::array& directions,
+                const std::optional<py::array>& jitter) {
+    return dispatch_real("place_samples", "origins", origins, [&](auto real) -> py::tuple {
+        using R = decltype(real);
+        ArrayArgs args("place_samples");
+        const R* o = args.in<R>("origins", origins, "R 3");
+        const R* d = args.in<R>("directions", directions, "R 3");
+        const R* u = jitter ? args.in<R>("jitter", *jitter, "R") : nullptr;
+        const std::int64_t count = args.size("R");
+        py::array_t<R> t0(count);
+        py::array_t<std::int32_t> samples(count);
+        R* t0_out = t0.mutable_data();
+        std::int32_t* samples_out = samples.mutable_data();
+        const FieldOptions options = settings.field();
+        {
+            const py::gil_scoped_release release;
+            parallel_for((count + 4095) / 4096, [&](std::int64_t chunk) {
+                for (std::int64_t ray = chunk * 4096; ray < std::min(count, (chunk + 1) * 4096); ++ray) {
+                    const RaySamples<R> placed = place_samples(
+                        clip_to_box(o + 3 * ray, d + 3 * ray, options.box),
+                        static_cast<R>(settings.dt), static_cast<Lattice>(settings.lattice),
+                        u ? u[ray] : R(0.5));
+                    t0_out[ray] = placed.t0;
+                    samples_out[ray] = placed.count;
+                }
+            });
+        }
+        return py::make_tuple(t0, samples);
+    });
+}
+
+template <class R>
+RayBatch<R> ray_batch(ArrayArgs& args, const py::array& origins, const py::array& directions,
+                      const py::array& t0, const py::array& samples) {
+    RayBatch<R> rays{};
+    rays.origins = args.in<R>("origins", origins, "R 3");
+    rays.directions = args.in<R>("directions", directions, "R 3");
+    rays.t0 = args.in<R>("t0", t0, "R");
+    rays.samples = args.in<std::int32_t>("samples", samples, "R");
+    rays.count = args.size("R");
+    return rays;
+}
+
+/// Calls use(field, parameter axes) with the field that `name` stands for, made from `parameters`.
+template <class R, class Use>
+void with_field(ArrayArgs& args, const std::string& name, const py::array& parameters,
+                const MarchSettings& settings, Use&& use) {
+    if (name == DenseGrid<R>::name) {
+        const R* values = args.in<R>("parameters", parameters, "X Y Z 4");
+        const std::array<int, 3> shape{static_cast<int>(args.size("X")),
+                                       static_cast<int>(args.size("Y")),
+                                       static_cast<int>(args.size("Z"))};
+        if (*std::min_element(shape.begin(), shape.end()) < 2)
+            args.range("parameters", "at least two voxels along every axis", "fewer");
+        use(DenseGrid<R>::make(values, shape, settings.field()), "X Y Z 4");
+    } else if (name == TinyNetwork<R>::name) {
+        TinyNetwork<R> field;
+        field.parameters = args.in<R>("parameters", parameters, "P");
+        if (args.size("P") != TinyNetwork<R>::parameter_count)
+            args.range("parameters", std::to_string(TinyNetwork<R>::parameter_count) + " numbers",
+                       std::to_string(args.size("P")));
+        use(field, "P");
+    } else {
+        args.range("field", "dense_grid or tiny_network", name);
+    }
+}
+
+py::tuple march_any(const std::string& name, const py::array& parameters,
+                    const MarchSettings& settings, const py::array& origins,
+                    const py::array& directions, const py::array& t0, const py::array& samples,
+                    bool fused) {
+    return dispatch_real("march", "parameters", parameters, [&](auto real) -> py::tuple {
+        using R = decltype(real);
+        ArrayArgs args("march");
+        const RayBatch<R> rays = ray_batch<R>(args, origins, directions, t0, samples);
+        py::array_t<R> color({rays.count, std::int64_t(3)}), transmittance(rays.count),
+            depth(rays.count);
+        const RayOutputs<R> out{color.mutable_data(), transmittance.mutable_data(),
+                                depth.mutable_data()};
+        with_field<R>(args, name, parameters, settings, [&](const auto& field, const char*) {
+            const py::gil_scoped_release release;
+            if constexpr (std::is_same_v<std::decay_t<decltype(field)>, DenseGrid<float>>)
+                if (fused) return march_dense(field, rays, settings.march(), out);
+            march(field, rays, settings.march(), out);
+        });
+        return py::make_tuple(color, transmittance, depth);
+    });
+}
+
+void march_any_backward(const std::string& name, const py::array& parameters,
+                        const MarchSettings& settings, const py::array& origins,
+                        const py::array& directions, const py::array& t0, const py::array& samples,
+                        py::array color, py::array transmittance, py::array depth,
+                        const py::array& d_color, const py::array& d_transmittance,
+                        const py::array& d_depth, py::array d_parameters,
+                        std::optional<py::array> d_origins, std::optional<py::array> d_directions,
+                        bool fused) {
+    dispatch_real("march_backward", "parameters", parameters, [&](auto real) {
+        using R = decltype(real);
+        ArrayArgs args("march_backward");
+        const RayBatch<R> rays = ray_batch<R>(args, origins, directions, t0, samples);
+        const RayOutputs<R> out{args.out<R>("color", color, "R 3"),
+                                args.out<R>("transmittance", transmittance, "R"),
+                                args.out<R>("depth", depth, "R")};
+        RayAdjoints<R> adjoints{args.in<R>("d_color", d_color, "R 3"),
+                                args.in<R>("d_transmittance", d_transmittance, "R"),
+                                args.in<R>("d_depth", d_depth, "R")};
+        if (d_origins.has_value() != d_directions.has_value())
+            args.range("d_origins, d_directions", "both or neither", "one of them");
+        if (d_origins) {
+            adjoints.d_origins = args.out<R>("d_origins", *d_origins, "R 3");
+            adjoints.d_directions = args.out<R>("d_directions", *d_directions, "R 3");
+        }
+        with_field<R>(args, name, parameters, settings, [&](const auto& field, const char* axes) {
+            using F = std::decay_t<decltype(field)>;
+            R* d = args.out<R>("d_parameters", d_parameters, axes);
+            const py::gil_scoped_release release;
+            if constexpr (std::is_same_v<F, DenseGrid<float>>)
+                if (fused && !adjoints.d_origins)
+                    return march_dense_backward(field, rays, settings.march(), out, adjoints, d);
+            typename F::Sink sink(field, d);
+            march_backward(field, rays, settings.march(), out, adjoints, sink);
+        });
+    });
+}
+
+}  // namespace
+
+void bind_march(py::module_& m) {
+    py::class_<MarchSettings>(m, "MarchSettings", "Box, step and policies of a march.")
+        .def(py::init([](const Box& box, double dt, double stop, int lattice, int quadrature,
+                         int border, int density_activation, int color_activation,
+                         double density_scale) {
+                 if (!(dt > 0))
+                     fail(ErrorKind::range, "MarchSettings", "dt", "a positive step",
+                          std::to_string(dt));
+                 for (std::size_t axis = 0; axis < 3; ++axis)
+                     if (!(box[1][axis] > box[0][axis]))
+                         fail(ErrorKind::range, "MarchSettings", "box",
+                              "a lower corner below the upper one on every axis",
+                              std::to_string(box[0][axis]) + " and " + std::to_string(box[1][axis]));
+                 return MarchSettings{box,        dt,     stop,
+                                      lattice,    quadrature, border,
+                                      density_activation, color_activation, density_scale};
+             }),
+             py::arg("box"), py::arg("dt"), py::arg("stop"), py::arg("lattice"),
+             py::arg("quadrature"), py::arg("border"), py::arg("density_activation"),
+             py::arg("color_activation"),
+             py::arg("density_scale"));
+    m.attr("tiny_network_parameters") = TinyNetwork<float>::parameter_count;
+    m.def("place_samples", &place, py::arg("settings"), py::arg("origins"), py::arg("directions"),
+          py::arg("jitter") = py::none(), "Per ray: t0 (R,) and the number of samples (R,) int32.");
+    m.def("march", &march_any, py::arg("field"), py::arg("parameters"), py::arg("settings"),
+          py::arg("origins"), py::arg("directions"), py::arg("t0"), py::arg("samples"),
+          py::arg("fused") = true,
+          "Colour without background (R, 3), transmittance (R,) and depth (R,).");
+    m.def("march_backward", &march_any_backward, py::arg("field"), py::arg("parameters"),
+          py::arg("settings"), py::arg("origins"), py::arg("directions"), py::arg("t0"),
+          py::arg("samples"), py::arg("color"), py::arg("transmittance"), py::arg("depth"),
+          py::arg("d_color"), py::arg("d_transmittance"), py::arg("d_depth"),
+          py::arg("d_parameters"), py::arg("d_origins") = py::none(),
+          py::arg("d_directions") = py::none(), py::arg("fused") = true,
+          "Adds to d_parameters and, where given, to d_origins and d_directions.");
+}
+
+}  // namespace photograd

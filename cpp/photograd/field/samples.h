@@ -1,0 +1,67 @@
+// Samples as a marcher hands them to a field: groups of lane_count consecutive samples of one ray.
+#pragma once
+
+#include <concepts>
+#include <cstdint>
+#include <vector>
+
+#include "photograd/core/lanes.h"
+#include "photograd/core/real.h"
+#include "photograd/ops/activation.h"
+#include "photograd/ops/trilinear.h"
+
+namespace photograd {
+
+/// One batch of samples. Lanes from used[g] on are padding behind the end of a ray: they are evaluated,
+/// their extinction is then set to zero, and nothing is accumulated for them.
+template <Real R>
+struct SampleBatch {
+    std::vector<Lanes<R>> t;
+    std::vector<Lanes<R>> position[3];
+    std::vector<int> used;
+    std::vector<std::int64_t> first;  // slab-wide number of the group's first sample
+
+    [[nodiscard]] std::size_t groups() const { return t.size(); }
+    void resize(std::size_t groups) {
+        t.resize(groups);
+        for (auto& axis : position) axis.resize(groups);
+        used.resize(groups);
+        first.resize(groups);
+    }
+};
+
+/// What a field says about a batch: extinction (1/m) and radiance.
+template <Real R>
+struct SampleValues {
+    std::vector<Lanes<R>> sigma_t;
+    std::vector<Lanes<R>> rgb[3];
+
+    void assign_zero(std::size_t groups) {
+        sigma_t.assign(groups, Lanes<R>{});
+        for (auto& channel : rgb) channel.assign(groups, Lanes<R>{});
+    }
+};
+
+/// Options that all fields share; a field ignores what does not concern it.
+struct FieldOptions {
+    double box[2][3] = {{-1, -1, -1}, {1, 1, 1}};  // world, metres
+    Border border = Border::clamp;
+    Activation density_activation = Activation::softplus;
+    Activation color_activation = Activation::sigmoid;
+    double density_scale = 1.0;  // 1/m: sigma_t = density_scale * density_activation(raw)
+};
+
+/// A radiance field: batch calls, never virtual per sample. `Cache` is what backward needs of eval, and
+/// `Sink` collects parameter gradients for a slab of rays; the marcher calls sink.finish() after it.
+template <class F>
+concept Field = requires(const F field, const SampleBatch<typename F::Scalar>& batch,
+                         typename F::Cache& cache, SampleValues<typename F::Scalar>& values,
+                         typename F::Sink& sink, int chunk, std::vector<Lanes<typename F::Scalar>>* d) {
+    { F::name } -> std::convertible_to<const char*>;
+    field.eval(batch, cache, values);
+    field.backward(batch, cache, values, sink, chunk, d);
+    sink.begin(std::int64_t{}, int{});
+    sink.finish();
+};
+
+}  // namespace photograd
