@@ -1,0 +1,168 @@
+"""Truth, render and error under each other, one column per view."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.image import AxesImage
+from numpy.typing import NDArray
+
+from ..checks import require_number
+from ..errors import RangeError, ShapeError, message
+from . import style
+from .checks import check_images
+from .scale import nice_limit
+
+LEFT, TOP, GAP, HEADING, PSNR_ROOM, BAR_ROOM = 0.62, 0.08, 0.06, 0.26, 0.28, 0.9  # inches
+ROOM = 6.2  # inches for all columns
+WIDEST, TALLEST = 1.9, 1.9  # inches for one picture
+ROWS = ("truth", "render", "error")
+
+
+def comparison_strips(
+    truths: Sequence[NDArray[np.floating]],
+    renders: Sequence[NDArray[np.floating]],
+    *,
+    names: Sequence[str] | None = None,
+    psnr: Sequence[float] | None = None,
+    error_limit: float | None = None,
+    title: str | None = None,
+    caption: str | None = None,
+) -> Figure:
+    """Truth, render and error map of several views, the PSNR below each.
+
+    The error map is the mean over the channels of |render - truth|, on one scale for all views.
+
+    Args:
+        truths: display-encoded images (H, W, 3) in [0, 1], float32 or float64; all of one size.
+        renders: the same number of images of the same size.
+        names: one heading per view; "view 0", "view 1", ... if None.
+        psnr: numbers to print (dB), so that the figure agrees with a table made by another
+            protocol; by default -10 log10 of the mean squared difference of what is shown.
+        error_limit: upper end of the error scale; by default the 99.5 % quantile, rounded up.
+        title: a line above the pictures.
+        caption: text below the pictures.
+
+    Raises:
+        DtypeError, ShapeError, RangeError: an argument is not as described.
+    """
+    function = "comparison_strips"
+    true, rendered = _pairs(function, truths, renders)
+    labels = [f"view {i}" for i in range(len(true))] if names is None else list(names)
+    numbers = [_psnr(*pair) for pair in zip(true, rendered, strict=True)] if psnr is None else psnr
+    for argument, given in (("names", labels), ("psnr", numbers)):
+        if len(given) != len(true):
+            raise ShapeError(message(function, argument, f"{len(true)} entries", len(given)))
+    errors = [np.abs(r - t).mean(axis=2) for t, r in zip(true, rendered, strict=True)]
+    limit = _limit(function, errors, error_limit)
+
+    with style.house_style():
+        figure, grid = _layout(len(true), true[0].shape[:2], 0.26 if title else 0.0, caption)
+        for column, (pictures, name, number) in enumerate(
+            zip(zip(true, rendered, errors, strict=True), labels, numbers, strict=True)
+        ):
+            shown = [
+                _draw(grid[row][column], picture, limit) for row, picture in enumerate(pictures)
+            ]
+            grid[0][column].set_title(name)
+            grid[2][column].set_xlabel(_decibels(number), labelpad=4.0)
+        for row, word in enumerate(ROWS):
+            grid[row][0].set_ylabel(word, fontsize=style.TITLE_SIZE, labelpad=6.0)
+        clipped = any(float(error.max()) > limit for error in errors)
+        style.colour_bar(
+            figure,
+            _beside(figure, grid[2][-1]),
+            shown[2],
+            "mean |error|",
+            extend="max" if clipped else "neither",
+        )
+        style.write_title(figure, title, left=0.12)
+        style.write_caption(figure, caption, left=0.12, right=0.12)
+    return figure
+
+
+def _pairs(
+    function: str,
+    truths: Sequence[NDArray[np.floating]],
+    renders: Sequence[NDArray[np.floating]],
+) -> tuple[list[NDArray[np.floating]], list[NDArray[np.floating]]]:
+    """Both lists checked against each other: same count, one size."""
+    true = check_images(function, "truths", truths)
+    rendered = check_images(function, "renders", renders)
+    if len(true) != len(rendered):
+        raise ShapeError(message(function, "renders", f"{len(true)} images", len(rendered)))
+    for argument, images in (("truths", true), ("renders", rendered)):
+        for index, image in enumerate(images):
+            if image.shape != true[0].shape:
+                expected = f"shape {true[0].shape} as truths[0] has"
+                raise ShapeError(message(function, f"{argument}[{index}]", expected, image.shape))
+    return true, rendered
+
+
+def _psnr(truth: NDArray[np.floating], render: NDArray[np.floating]) -> float:
+    """Peak signal-to-noise ratio in dB for a peak of 1; infinite for equal images."""
+    squared = float(np.mean((render.astype(np.float64) - truth) ** 2))
+    return float("inf") if squared == 0.0 else float(-10.0 * np.log10(squared))
+
+
+def _decibels(number: float) -> str:
+    return "identical" if number == float("inf") else f"{number:.2f} dB"
+
+
+def _limit(function: str, errors: list[NDArray[np.floating]], given: float | None) -> float:
+    if given is None:
+        quantile = float(np.quantile(np.concatenate([error.ravel() for error in errors]), 0.995))
+        return nice_limit(quantile)
+    if require_number(function, "error_limit", given) <= 0.0:
+        raise RangeError(message(function, "error_limit", "a positive number", given))
+    return float(given)
+
+
+def _layout(
+    count: int, size: tuple[int, int], title: float, caption: str | None
+) -> tuple[Figure, list[list[Axes]]]:
+    """An empty figure with three rows of ``count`` axes for pictures of ``size`` (H, W)."""
+    aspect = size[0] / size[1]
+    width = min((ROOM - (count - 1) * GAP) / count, WIDEST, TALLEST / aspect)
+    height = width * aspect
+    total_width = LEFT + count * width + (count - 1) * GAP + BAR_ROOM
+    top = TOP + title + HEADING
+    total_height = top + 3 * height + 2 * GAP + PSNR_ROOM
+    total_height += style.caption_height(caption, total_width - 0.24)
+    figure = style.new_figure(total_width, total_height)
+    grid = [
+        [
+            style.place_axes(
+                figure, LEFT + column * (width + GAP), top + row * (height + GAP), width, height
+            )
+            for column in range(count)
+        ]
+        for row in range(3)
+    ]
+    return figure, grid
+
+
+def _draw(axes: Axes, picture: NDArray[np.floating], limit: float) -> AxesImage:
+    """A colour image as it is, or an error map in the magnitude colours."""
+    image = axes.imshow(
+        picture,
+        cmap=style.MAGNITUDE_MAP,
+        vmin=0.0,
+        vmax=limit,
+        interpolation="nearest" if picture.ndim == 2 else "auto",  # error is not to be smoothed
+        aspect="auto",  # the axes box already has the right proportions
+    )
+    axes.set_xticks([])
+    axes.set_yticks([])
+    return image
+
+
+def _beside(figure: Figure, axes: Axes) -> tuple[float, float, float, float]:
+    """A colour bar right of ``axes``, as (left, top, width, height) in inches."""
+    total_width, total_height = figure.get_size_inches()
+    place = axes.get_position()
+    top, height = (1.0 - place.y1) * total_height, (place.y1 - place.y0) * total_height
+    return place.x1 * total_width + 0.12, top, 0.12, height
