@@ -1,7 +1,7 @@
 """Build-time metadata: where `photograd` finds `photograd-course`, on which it depends.
 
-Inside a source tree the two are installed together, from the tree. For a wheel that is handed on, set
-PHOTOGRAD_RELEASE=1: the dependency is then named without a place.
+Inside a source tree the two are installed together, from the tree. For a wheel that is handed on,
+set PHOTOGRAD_RELEASE=1: the dependency is then named without a place.
 """
 
 from __future__ import annotations
