@@ -11,6 +11,9 @@
 
 namespace photograd {
 
+/// Rays that advance together through a march; kernels take at most this many.
+inline constexpr std::int64_t march_chunk = 32;
+
 struct MarchDenseArgs {
     const float* values;  // (X, Y, Z, 4): raw colour, raw density
     int shape[3];

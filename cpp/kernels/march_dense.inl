@@ -117,71 +117,103 @@ static inline void evaluate_block(const MarchDenseArgs& a, std::int64_t ray, int
         b.sigma_t[i] = k0 + i < a.count[ray] ? a.density_scale * b.sigma_t[i] : 0.0f;
 }
 
+// Rays of a chunk advance together, lane_count samples a wave: neighbouring rays read the same voxels, which
+// are then still in the first-level cache. visit(i, k0) handles one sub-block of ray begin + i and returns
+// the transmittance behind it.
+template <class Visit>
+static inline void walk_chunk(const MarchDenseArgs& a, std::int64_t begin, std::int64_t end,
+                              Visit&& visit) {
+    int alive[march_chunk];
+    int count = 0;
+    for (int i = 0; i < static_cast<int>(end - begin); ++i)
+        if (a.count[begin + i] > 0) alive[count++] = i;
+    for (int k0 = 0; count > 0; k0 += lane_count) {
+        int left = 0;
+        for (int j = 0; j < count; ++j) {
+            const int i = alive[j];
+            const float transmittance = visit(i, k0);
+            if (a.count[begin + i] > k0 + lane_count && !(transmittance < a.stop)) alive[left++] = i;
+        }
+        count = left;
+    }
+}
+
 static void march_dense_forward(const MarchDenseArgs& a, std::int64_t begin, std::int64_t end) {
     const Quadrature form = static_cast<Quadrature>(a.quadrature);
+    RayTotals<float> totals[march_chunk];
+    SampleBlock b;
+    walk_chunk(a, begin, end, [&](int i, int k0) {
+        evaluate_block(a, begin + i, k0, b);
+        composite(form, b.sigma_t, b.rgb, b.t, a.dt, totals[i]);
+        return exp(-totals[i].tau);
+    });
     for (std::int64_t ray = begin; ray < end; ++ray) {
-        RayTotals<float> totals;
-        SampleBlock b;
-        for (int k = 0; k < a.count[ray]; k += lane_count) {
-            evaluate_block(a, ray, k, b);
-            composite(form, b.sigma_t, b.rgb, b.t, a.dt, totals);
-            if (exp(-totals.tau) < a.stop) break;
-        }
-        for (int c = 0; c < 3; ++c) a.color[3 * ray + c] = sum(totals.color[c]);
-        a.transmittance[ray] = exp(-totals.tau);
-        a.depth[ray] = sum(totals.depth);
+        const RayTotals<float>& total = totals[ray - begin];
+        for (int c = 0; c < 3; ++c) a.color[3 * ray + c] = sum(total.color[c]);
+        a.transmittance[ray] = exp(-total.tau);
+        a.depth[ray] = sum(total.depth);
     }
+}
+
+static inline RayCotangents<float> start_cotangents(const MarchDenseArgs& a,
+                                                    const MarchDenseBackward& back,
+                                                    std::int64_t ray) {
+    RayCotangents<float> c;
+    for (int k = 0; k < 3; ++k) c.d_color[k] = back.d_color[3 * ray + k];
+    c.d_depth = back.d_depth[ray];
+    c.end_term = -(back.d_transmittance[ray] * a.transmittance[ray]);
+    c.remainder = ((c.d_color[0] * a.color[3 * ray] + c.d_color[1] * a.color[3 * ray + 1]) +
+                   c.d_color[2] * a.color[3 * ray + 2]) +
+                  c.d_depth * a.depth[ray];
+    return c;
+}
+
+// d_raw[c][i]: adjoint of the raw values of one sub-block.
+static inline void differentiate_block(const MarchDenseArgs& a, const SampleBlock& b,
+                                       RayCotangents<float>& ray, Lanes<float>* d_raw) {
+    Lanes<float> d_sigma_t = {}, d_rgb[3] = {};
+    composite_backward(static_cast<Quadrature>(a.quadrature), b.sigma_t, b.rgb, b.t, a.dt, ray,
+                       d_sigma_t, d_rgb);
+    for (int c = 0; c < 3; ++c)
+        activate_lanes_backward(static_cast<Activation>(a.color_activation), b.raw[c], d_rgb[c],
+                                d_raw[c]);
+    for (int i = 0; i < lane_count; ++i) d_sigma_t[i] = a.density_scale * d_sigma_t[i];
+    activate_lanes_backward(static_cast<Activation>(a.density_activation), b.raw[3], d_sigma_t,
+                            d_raw[3]);
 }
 
 // Writes d_raw of every sample that was passed, and the runs of samples that share a brick.
 static std::int64_t march_dense_backward(const MarchDenseArgs& a, const MarchDenseBackward& back,
                                          std::int64_t begin, std::int64_t end, BrickRun* runs) {
-    const Quadrature form = static_cast<Quadrature>(a.quadrature);
     const BrickLayout layout = BrickLayout::of(a.shape);
+    RayCotangents<float> cotangents[march_chunk];
+    for (std::int64_t ray = begin; ray < end; ++ray)
+        cotangents[ray - begin] = start_cotangents(a, back, ray);
     BrickRun* next = runs;
-    for (std::int64_t ray = begin; ray < end; ++ray) {
-        RayCotangents<float> cotangents;
-        for (int c = 0; c < 3; ++c) cotangents.d_color[c] = back.d_color[3 * ray + c];
-        cotangents.d_depth = back.d_depth[ray];
-        cotangents.end_term = -(back.d_transmittance[ray] * a.transmittance[ray]);
-        cotangents.remainder =
-            ((cotangents.d_color[0] * a.color[3 * ray] + cotangents.d_color[1] * a.color[3 * ray + 1]) +
-             cotangents.d_color[2] * a.color[3 * ray + 2]) +
-            cotangents.d_depth * a.depth[ray];
-        const std::int64_t first = back.sample_offset[ray - back.first_ray];
-        std::uint32_t current = ~0u;
-        SampleBlock b;
-        for (int k = 0; k < a.count[ray]; k += lane_count) {
-            evaluate_block(a, ray, k, b);
-            Lanes<float> d_sigma_t = {}, d_rgb[3] = {}, d_raw[4] = {};
-            composite_backward(form, b.sigma_t, b.rgb, b.t, a.dt, cotangents, d_sigma_t, d_rgb);
-            for (int c = 0; c < 3; ++c)
-                activate_lanes_backward(static_cast<Activation>(a.color_activation), b.raw[c],
-                                        d_rgb[c], d_raw[c]);
-            for (int i = 0; i < lane_count; ++i) d_sigma_t[i] = a.density_scale * d_sigma_t[i];
-            activate_lanes_backward(static_cast<Activation>(a.density_activation), b.raw[3],
-                                    d_sigma_t, d_raw[3]);
-            std::uint32_t brick[lane_count];
-            for (int i = 0; i < lane_count; ++i)
-                brick[i] = static_cast<std::uint32_t>(
-                    layout.owner(b.base[0][i], b.base[1][i], b.base[2][i]));
-            const int used = smaller(lane_count, a.count[ray] - k);
-            float* out = back.d_raw + 4 * (first + k);
-            for (int i = 0; i < used; ++i)
-                for (int c = 0; c < 4; ++c) out[4 * i + c] = d_raw[c][i];
-            for (int i = 0; i < used; ++i) {
-                if (brick[i] == current) {
-                    ++next[-1].count;
-                    continue;
-                }
-                current = brick[i];
-                *next++ = {current, static_cast<std::uint32_t>(ray),
-                           static_cast<std::uint32_t>(k + i), 1,
-                           static_cast<std::uint32_t>(first + k + i)};
-            }
-            if (exp(-cotangents.tau) < a.stop) break;
+    SampleBlock b;
+    walk_chunk(a, begin, end, [&](int i, int k0) {
+        const std::int64_t ray = begin + i;
+        evaluate_block(a, ray, k0, b);
+        Lanes<float> d_raw[4] = {};
+        differentiate_block(a, b, cotangents[i], d_raw);
+        int brick[lane_count];
+        for (int j = 0; j < lane_count; ++j)
+            brick[j] = layout.owner(b.base[0][j], b.base[1][j], b.base[2][j]);
+        const int used = smaller(lane_count, a.count[ray] - k0);
+        const std::int64_t first = back.sample_offset[ray - back.first_ray] + k0;
+        float* out = back.d_raw + 4 * first;
+        for (int j = 0; j < used; ++j)
+            for (int c = 0; c < 4; ++c) out[4 * j + c] = d_raw[c][j];
+        for (int j = 0, start = 0; j < used; ++j) {
+            if (j + 1 < used && brick[j + 1] == brick[j]) continue;
+            *next++ = {static_cast<std::uint32_t>(brick[j]), static_cast<std::uint32_t>(ray),
+                       static_cast<std::uint32_t>(k0 + start),
+                       static_cast<std::uint32_t>(j + 1 - start),
+                       static_cast<std::uint32_t>(first + start)};
+            start = j + 1;
         }
-    }
+        return exp(-cotangents[i].tau);
+    });
     return next - runs;
 }
 

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <array>
+#include <numeric>
 
 #include "photograd/core/errors.h"
 #include "photograd/core/scatter.h"
@@ -72,30 +73,30 @@ struct DenseGrid {
         }
     }
 
-    /// Contributions of a slab of rays, by sample number; finish() hands them to their owners.
+    /// Contributions of a slab of rays, chunk by chunk in the order of the walk; finish() hands them to
+    /// their owners.
     struct Sink {
         struct Contribution {
             std::uint32_t owner;
             std::array<R, 3> position;
             std::array<R, channels> d_raw;
         };
-        static constexpr std::uint32_t none = ~0u;  // behind an early stop
 
         Sink(const DenseGrid& field, R* d_values) : grid(field), gradient(d_values) {}
 
         const DenseGrid& grid;
         R* gradient;  // (X, Y, Z, 4), added to
-        std::vector<Contribution> samples;
+        std::vector<std::vector<Contribution>> chunks;
 
-        void begin(std::int64_t sample_count, int /*chunks*/) {
-            samples.assign(static_cast<std::size_t>(sample_count), Contribution{none, {}, {}});
+        void begin(int chunk_count) {
+            chunks.assign(static_cast<std::size_t>(chunk_count), {});
         }
         void finish();
     };
 
     /// Adds parameter gradients to `sink` and, where asked, dL/d position to d_position[axis].
     void backward(const SampleBatch<R>& batch, const Cache& cache, const SampleValues<R>& d_out,
-                  Sink& sink, int /*chunk*/, std::vector<Lanes<R>>* d_position) const {
+                  Sink& sink, int chunk, std::vector<Lanes<R>>* d_position) const {
         const int extent[3] = {shape.x, shape.y, shape.z};
         const BrickLayout layout = BrickLayout::of(extent);
         for (std::size_t g = 0; g < batch.groups(); ++g) {
@@ -110,8 +111,8 @@ struct DenseGrid {
                                   density_scale * d_out.sigma_t[g][i], d_raw[3]);
                 const Weights w = weights(at[0], at[1], at[2]);
                 const int owner = layout.owner(w.x.base, w.y.base, w.z.base);
-                sink.samples[static_cast<std::size_t>(batch.first[g] + i)] = {
-                    static_cast<std::uint32_t>(owner), at, d_raw};
+                sink.chunks[static_cast<std::size_t>(chunk)].push_back(
+                    {static_cast<std::uint32_t>(owner), at, d_raw});
                 if (d_position) {
                     R d_q[3] = {R(0), R(0), R(0)};
                     trilinear_position_backward<R, channels>(values, shape, w.x, w.y, w.z,
@@ -128,9 +129,10 @@ template <Real R>
 void DenseGrid<R>::Sink::finish() {
     const int extent[3] = {grid.shape.x, grid.shape.y, grid.shape.z};
     const BrickLayout layout = BrickLayout::of(extent);
-    std::vector<std::uint32_t> items;
-    for (std::uint32_t s = 0; s < samples.size(); ++s)
-        if (samples[s].owner != none) items.push_back(s);
+    std::vector<Contribution> samples;
+    for (const auto& chunk : chunks) samples.insert(samples.end(), chunk.begin(), chunk.end());
+    std::vector<std::uint32_t> items(samples.size());
+    std::iota(items.begin(), items.end(), 0u);
     OwnerBins bins;
     bin_by_owner(items, layout.count(), [&](std::uint32_t s) { return samples[s].owner; }, bins);
     for (int color = 0; color < brick_colors; ++color)

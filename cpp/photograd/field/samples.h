@@ -19,14 +19,12 @@ struct SampleBatch {
     std::vector<Lanes<R>> t;
     std::vector<Lanes<R>> position[3];
     std::vector<int> used;
-    std::vector<std::int64_t> first;  // slab-wide number of the group's first sample
 
     [[nodiscard]] std::size_t groups() const { return t.size(); }
     void resize(std::size_t groups) {
         t.resize(groups);
         for (auto& axis : position) axis.resize(groups);
         used.resize(groups);
-        first.resize(groups);
     }
 };
 
@@ -60,7 +58,7 @@ concept Field = requires(const F field, const SampleBatch<typename F::Scalar>& b
     { F::name } -> std::convertible_to<const char*>;
     field.eval(batch, cache, values);
     field.backward(batch, cache, values, sink, chunk, d);
-    sink.begin(std::int64_t{}, int{});
+    sink.begin(int{});
     sink.finish();
 };
 

@@ -67,7 +67,7 @@ struct TinyNetwork {
         R* gradient;
         std::vector<std::array<double, parameter_count>> partials;
 
-        void begin(std::int64_t /*sample_count*/, int chunks) {
+        void begin(int chunks) {
             partials.assign(static_cast<std::size_t>(chunks), {});
         }
         void finish() {

@@ -11,8 +11,8 @@
 #pragma once
 
 #include <algorithm>
-#include <span>
 
+#include "kernels/march_dense.h"
 #include "photograd/core/parallel.h"
 #include "photograd/field/samples.h"
 #include "photograd/ops/composite.h"
@@ -51,7 +51,6 @@ struct RayAdjoints {
     R* d_directions = nullptr;
 };
 
-inline constexpr std::int64_t march_chunk = 64;             // rays that advance together
 inline constexpr std::int64_t march_slab_samples = 1 << 19;  // samples whose contributions are kept
 
 namespace detail {
@@ -65,8 +64,7 @@ struct Wave {
 };
 
 template <Real R>
-void place_wave(const RayBatch<R>& rays, R dt, std::int32_t k0, std::span<const std::int64_t> offset,
-                std::int64_t first_ray, Wave<R>& wave) {
+void place_wave(const RayBatch<R>& rays, R dt, std::int32_t k0, Wave<R>& wave) {
     wave.batch.resize(wave.rays.size());
     wave.values.assign_zero(wave.rays.size());
     for (std::size_t g = 0; g < wave.rays.size(); ++g) {
@@ -79,8 +77,6 @@ void place_wave(const RayBatch<R>& rays, R dt, std::int32_t k0, std::span<const 
             for (int i = 0; i < lane_count; ++i)
                 wave.batch.position[axis][g][i] = o[axis] + t[i] * d[axis];
         wave.batch.used[g] = std::min(lane_count, rays.samples[ray] - k0);
-        wave.batch.first[g] =
-            offset.empty() ? 0 : offset[static_cast<std::size_t>(ray - first_ray)] + k0;
     }
 }
 
@@ -88,14 +84,14 @@ void place_wave(const RayBatch<R>& rays, R dt, std::int32_t k0, std::span<const 
 /// pass.wave(wave, cache) then sees the whole batch.
 template <Real R, class F, class Pass>
 void walk(const F& field, const RayBatch<R>& rays, const MarchOptions& options, std::int64_t begin,
-          std::int64_t end, std::span<const std::int64_t> offset, std::int64_t first_ray, Pass& pass) {
+          std::int64_t end, Pass& pass) {
     const R dt = static_cast<R>(options.dt), stop = static_cast<R>(options.stop);
     typename F::Cache cache;
     Wave<R> wave;
     for (std::int64_t ray = begin; ray < end; ++ray)
         if (rays.samples[ray] > 0) wave.rays.push_back(ray);
     for (std::int32_t k0 = 0; !wave.rays.empty(); k0 += lane_count) {
-        place_wave(rays, dt, k0, offset, first_ray, wave);
+        place_wave(rays, dt, k0, wave);
         field.eval(wave.batch, cache, wave.values);
         std::vector<std::int64_t> alive;
         for (std::size_t g = 0; g < wave.rays.size(); ++g) {
@@ -185,16 +181,6 @@ inline std::int64_t slab_end(const std::int32_t* samples, std::int64_t begin, st
     return end;
 }
 
-/// offset[i] = first sample of ray begin + i, within the slab.
-inline std::vector<std::int64_t> sample_offsets(const std::int32_t* samples, std::int64_t begin,
-                                                std::int64_t end) {
-    std::vector<std::int64_t> offset(static_cast<std::size_t>(end - begin) + 1, 0);
-    for (std::int64_t ray = begin; ray < end; ++ray)
-        offset[static_cast<std::size_t>(ray - begin) + 1] =
-            offset[static_cast<std::size_t>(ray - begin)] + samples[ray];
-    return offset;
-}
-
 template <Real R>
 RayCotangents<R> start_cotangents(const RayOutputs<R>& out, const RayAdjoints<R>& adjoints,
                                   std::int64_t ray) {
@@ -220,7 +206,7 @@ void march(const F& field, const RayBatch<R>& rays, const MarchOptions& options,
         const std::int64_t end = std::min(begin + march_chunk, rays.count);
         detail::ForwardPass<R> pass{options.quadrature, static_cast<R>(options.dt), begin, {}};
         pass.totals.resize(static_cast<std::size_t>(end - begin));
-        detail::walk(field, rays, options, begin, end, {}, begin, pass);
+        detail::walk(field, rays, options, begin, end, pass);
         for (std::int64_t ray = begin; ray < end; ++ray) {
             const RayTotals<R>& total = pass.totals[static_cast<std::size_t>(ray - begin)];
             for (int c = 0; c < 3; ++c) out.color[3 * ray + c] = sum(total.color[c]);
@@ -237,9 +223,8 @@ void march_backward(const F& field, const RayBatch<R>& rays, const MarchOptions&
                     typename F::Sink& sink) {
     for (std::int64_t first = 0, last; first < rays.count; first = last) {
         last = detail::slab_end(rays.samples, first, rays.count);
-        const std::vector<std::int64_t> offset = detail::sample_offsets(rays.samples, first, last);
         const std::int64_t chunks = (last - first + march_chunk - 1) / march_chunk;
-        sink.begin(offset.back(), static_cast<int>(chunks));
+        sink.begin(static_cast<int>(chunks));
         parallel_for(chunks, [&](std::int64_t chunk) {
             const std::int64_t begin = first + chunk * march_chunk;
             const std::int64_t end = std::min(begin + march_chunk, last);
@@ -247,7 +232,7 @@ void march_backward(const F& field, const RayBatch<R>& rays, const MarchOptions&
                                             begin, static_cast<int>(chunk), sink, adjoints, {}};
             for (std::int64_t ray = begin; ray < end; ++ray)
                 pass.rays.push_back(detail::start_cotangents(out, adjoints, ray));
-            detail::walk(field, rays, options, begin, end, std::span(offset), first, pass);
+            detail::walk(field, rays, options, begin, end, pass);
         });
         sink.finish();
     }

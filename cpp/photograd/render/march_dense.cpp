@@ -6,7 +6,15 @@
 namespace photograd {
 namespace {
 
-constexpr std::int64_t forward_chunk = 256;  // rays a task
+/// offset[i] = first sample of ray begin + i, within the slab.
+std::vector<std::int64_t> sample_offsets(const std::int32_t* samples, std::int64_t begin,
+                                                std::int64_t end) {
+    std::vector<std::int64_t> offset(static_cast<std::size_t>(end - begin) + 1, 0);
+    for (std::int64_t ray = begin; ray < end; ++ray)
+        offset[static_cast<std::size_t>(ray - begin) + 1] =
+            offset[static_cast<std::size_t>(ray - begin)] + samples[ray];
+    return offset;
+}
 
 MarchDenseArgs kernel_args(const DenseGrid<float>& grid, const RayBatch<float>& rays,
                            const MarchOptions& options, const RayOutputs<float>& out) {
@@ -100,9 +108,9 @@ void march_dense(const DenseGrid<float>& grid, const RayBatch<float>& rays,
                  const MarchOptions& options, const RayOutputs<float>& out) {
     const MarchDenseArgs args = kernel_args(grid, rays, options, out);
     const Kernels& kernel = kernels();
-    parallel_for((rays.count + forward_chunk - 1) / forward_chunk, [&](std::int64_t chunk) {
-        const std::int64_t begin = chunk * forward_chunk;
-        kernel.march_dense_forward(args, begin, std::min(begin + forward_chunk, rays.count));
+    parallel_for((rays.count + march_chunk - 1) / march_chunk, [&](std::int64_t chunk) {
+        const std::int64_t begin = chunk * march_chunk;
+        kernel.march_dense_forward(args, begin, std::min(begin + march_chunk, rays.count));
     });
 }
 
@@ -119,7 +127,7 @@ void march_dense_backward(const DenseGrid<float>& grid, const RayBatch<float>& r
     Slab slab;
     for (std::int64_t first = 0, last; first < rays.count; first = last) {
         last = detail::slab_end(rays.samples, first, rays.count);
-        const std::vector<std::int64_t> offset = detail::sample_offsets(rays.samples, first, last);
+        const std::vector<std::int64_t> offset = sample_offsets(rays.samples, first, last);
         if (offset.back() == 0) continue;
         record_slab(kernel, args, back, offset, first, last, slab);
         gather_slab(kernel, args, layout, slab, d_values);
