@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-
 from photograd_course import random
 from photograd_course.errors import DtypeError, RangeError, ShapeError
 
