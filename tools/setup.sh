@@ -140,7 +140,7 @@ ensure_packages() {
     key=$(hash_of pyproject.toml python/photograd_course/pyproject.toml python/dependencies.py \
         tools/setup.sh tools/requirements.py)
     is_fresh "packages-$1" "$key" && return
-    say "Python packages: what building ${groups#build } needs"
+    say "Python packages: $groups requirements"
     # shellcheck disable=SC2046,SC2086
     logged packages .venv/bin/python -m pip install -q $(.venv/bin/python tools/requirements.py $groups)
     rm -f .venv/photograd-core
@@ -149,16 +149,17 @@ ensure_packages() {
     remember packages-demo "$key"  # dev includes it
 }
 
-# Compiles the core where its sources changed, and installs both distributions from this tree.
+# Compiles the core where its sources changed, and installs both distributions from this tree. One
+# after the other, and without naming the place of the first: pip takes two for a conflict.
 ensure_core() {
-    local key dependencies="--no-deps"
-    [ "${1:-}" = with-dependencies ] && dependencies=""
+    local key options=(-q --no-build-isolation)
+    [ "${1:-}" = with-dependencies ] || options+=(--no-deps)
     key="$(core_options) $(hash_of CMakeLists.txt cpp pyproject.toml)"
     is_fresh core "$key" && return
     say "core: compiling (first time about three minutes on two cores, then only what changed)"
-    # shellcheck disable=SC2086
-    SKBUILD_CMAKE_DEFINE=$(core_options) logged core .venv/bin/python -m pip install -q \
-        --no-build-isolation $dependencies -e python/photograd_course -e .
+    logged core .venv/bin/python -m pip install "${options[@]}" -e python/photograd_course
+    PHOTOGRAD_RELEASE=1 SKBUILD_CMAKE_DEFINE=$(core_options) \
+        logged core .venv/bin/python -m pip install "${options[@]}" -e .
     remember core "$key"
 }
 

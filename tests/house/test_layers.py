@@ -1,0 +1,96 @@
+"""Who may include whom, in both languages."""
+
+from __future__ import annotations
+
+import re
+import sys
+import tomllib
+from importlib import import_module
+
+import pytest
+
+from support.layers import cpp_breaches, python_breaches
+from support.tree import ROOT, cpp_texts, python_texts
+
+COURSE = "python/photograd_course/"
+CORE = "python/photograd/"
+# Where the name on the package index is not the name that is imported.
+IMPORT_NAMES = {"pillow": "PIL", "scikit-image": "skimage"}
+
+
+def names(requirements: list[str]) -> set[str]:
+    """What importing these requirements is called."""
+    bare = [re.split(r"[^A-Za-z0-9_.-]", line)[0] for line in requirements]
+    return {IMPORT_NAMES.get(name.lower(), name.replace("-", "_")) for name in bare}
+
+
+def allowed_imports() -> dict[str, set[str]]:
+    course = tomllib.loads((ROOT / COURSE / "pyproject.toml").read_text(encoding="utf-8"))
+    core = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    extras = core["project"]["optional-dependencies"]
+    sys.path.insert(0, str(ROOT / "python"))
+    try:
+        declared: list[str] = import_module("dependencies").dynamic_metadata("dependencies")
+    finally:
+        sys.path.pop(0)
+    optional = [line for name in ("viewer", "sfm", "data") for line in extras[name]]
+    standard = set(sys.stdlib_module_names)
+    return {
+        COURSE: standard | names(course["project"]["dependencies"]) | {"photograd_course"},
+        CORE: standard | names(declared + optional) | {"photograd"},
+    }
+
+
+def test_cpp_keeps_the_include_order() -> None:
+    texts = cpp_texts()
+    assert texts, "no C++ sources found"
+    assert cpp_breaches(texts) == []
+
+
+def test_python_imports_what_it_declares_and_the_course_knows_no_core() -> None:
+    allowed = allowed_imports()
+    texts = python_texts()
+    assert all(any(path.startswith(folder) for path in texts) for folder in allowed)
+    assert "photograd" not in allowed[COURSE]
+    assert python_breaches(texts, allowed) == []
+
+
+@pytest.mark.parametrize(
+    ("path", "include"),
+    [
+        ("photograd/core/real.h", '"photograd/ops/sh.h"'),  # upwards
+        ("photograd/bsdf/ggx.h", '"photograd/medium/hg.h"'),  # sideways
+        ("photograd/render/march.cpp", '"bindings/module.h"'),
+        ("photograd/field/dense.cpp", '"kernels/march_dense.h"'),
+        ("kernels/march_dense.inl", '"photograd/field/samples.h"'),
+        ("photograd/ops/sh.h", "<glm/vec3.hpp>"),  # beside the door
+        ("photograd/core/scatter.h", "<tbb/parallel_for.h>"),
+        ("photograd/geometry/mesh.h", "<embree4/rtcore.h>"),
+        ("photograd/grid/dense_grid.h", "<openvdb/openvdb.h>"),
+        ("photograd/core/errors.h", "<pybind11/pybind11.h>"),
+        ("photograd/ops/sh.h", '"real.h"'),  # not from cpp/
+        ("photograd/shader/x.h", '"photograd/core/real.h"'),  # a folder without a place
+    ],
+)
+def test_a_breach_is_seen(path: str, include: str) -> None:
+    assert len(cpp_breaches({path: f"#pragma once\n#include {include}\n"})) == 1
+
+
+@pytest.mark.parametrize(
+    ("path", "include"),
+    [
+        ("photograd/render/march.cpp", '"kernels/kernels.h"'),
+        ("photograd/field/dense.h", '"photograd/grid/brick.h"'),
+        ("photograd/geometry/bvh.cpp", "<embree3/rtcore.h>"),
+        ("bindings/bind_ops.cpp", '"module.h"'),
+        ("tests/test_bvh.cpp", '"photograd/geometry/bvh.h"'),
+    ],
+)
+def test_what_is_in_order_passes(path: str, include: str) -> None:
+    assert cpp_breaches({path: f"#include {include}\n"}) == []
+
+
+def test_an_import_of_the_core_by_the_course_is_seen() -> None:
+    text = "def late():\n    from photograd import _core\n"
+    path = COURSE + "src/photograd_course/x.py"
+    assert python_breaches({path: text}, allowed_imports()) == [f"{path} imports photograd"]

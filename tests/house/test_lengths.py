@@ -1,0 +1,57 @@
+"""A file holds one idea: 400 lines at most, 300 for a test, and functions of less than 60."""
+
+from __future__ import annotations
+
+import ast
+from pathlib import Path
+
+from support.tree import CPP_SUFFIXES, ROOT, relative, walk
+
+CAPS = {"cpp": 400, "python": 400, "tools": 400, "bench": 400, "tests": 300, "cpp/tests": 300}
+FUNCTION_CAP = 60
+
+
+def cap_of(path: str) -> int:
+    """The cap of the deepest folder that names one."""
+    return CAPS[max((folder for folder in CAPS if path.startswith(folder + "/")), key=len)]
+
+
+def sources() -> list[Path]:
+    folders = [ROOT / name for name in CAPS if "/" not in name and (ROOT / name).is_dir()]
+    return [path for folder in folders for path in walk(folder, CPP_SUFFIXES | {".py", ".sh"})]
+
+
+def long_functions(path: str, text: str) -> list[str]:
+    """Functions of 60 lines or more, docstring not counted: that is reference, not code."""
+    found = []
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+            lines = (node.end_lineno or 0) - node.lineno + 1
+            first = node.body[0]
+            if ast.get_docstring(node) is not None:
+                lines -= (first.end_lineno or 0) - first.lineno + 1
+            if lines >= FUNCTION_CAP:
+                found.append(f"{path}:{node.lineno} {node.name}: {lines} lines")
+    return found
+
+
+def test_files_stay_below_their_cap() -> None:
+    lengths = {relative(path): len(path.read_text("utf-8").splitlines()) for path in sources()}
+    assert len(lengths) > 50
+    assert [f"{path}: {n} lines" for path, n in lengths.items() if n > cap_of(path)] == []
+
+
+def test_python_functions_stay_below_sixty_lines() -> None:
+    found = [
+        line
+        for path in sources()
+        if path.suffix == ".py"
+        for line in long_functions(relative(path), path.read_text(encoding="utf-8"))
+    ]
+    assert found == []
+
+
+def test_a_long_function_is_seen_and_its_docstring_forgiven() -> None:
+    body = "    x = 1\n" * 59
+    assert long_functions("a.py", f"def f():\n{body}") == ["a.py:1 f: 60 lines"]
+    assert long_functions("a.py", f'def f():\n    """Sum.\n\n    More.\n    """\n{body[10:]}') == []
