@@ -18,7 +18,8 @@ _ENCODED_END = 0.04045
 def srgb_encode(linear: FloatArray) -> FloatArray:
     """Display-encode linear values [IEC61966]: 12.92 x up to x = 0.0031308, a power above.
 
-    The power is 1.055 x^(1/2.4) - 0.055. Values below 0 continue the straight part and values above 1 the power; nothing is clipped.
+    The power is 1.055 x^(1/2.4) - 0.055. Values below 0 continue the straight part and values
+    above 1 the power; nothing is clipped.
 
     Args:
         linear: any shape, float32 or float64; 1 is display white.
