@@ -52,50 +52,68 @@ def projection_steps(
     Raises:
         DtypeError, ShapeError, RangeError: an argument is not as described.
     """
-    function = "projection_steps"
-    box, plane = check_bounds(function, bounds), _plane(function, view)
-    if not fields:
-        raise ShapeError(message(function, "fields", "at least one step", "none"))
-    steps = sorted(require_integer(function, "fields", step, least=0) for step in fields)
-    grids = [check_field(function, f"fields[{step}]", fields[step]) for step in steps]
-    views = [signed_projection(grid, plane.normal) for grid in grids]
-    shared = signed_scale(function, views, None)
-    own = [shared if common_scale else signed_scale(function, [view_], None) for view_ in views]
-
+    box, plane = check_bounds("projection_steps", bounds), _plane(view)
+    steps = _steps(fields)
+    views = [_project(step, fields[step], plane) for step in steps]
+    shared = signed_scale("projection_steps", views, None)
+    own = [
+        shared if common_scale else signed_scale("projection_steps", [picture], None)
+        for picture in views
+    ]
     with style.house_style():
         heading_height = 0.3 if common_scale else 0.46
         head = heading_height, 0.26 if title else 0.0
         figure, panels = _layout(box, plane, len(views), head, caption)
         for panel, step, picture, scale in zip(panels, steps, views, own, strict=True):
-            norm = style.symmetric_scale(scale.limit if common_scale else 1.0)
-            shown = picture if common_scale else picture / scale.limit
+            limit = 1.0 if common_scale else scale.limit  # own scales: shown as shares of the limit
             image = draw_plane(
-                panel, plane, shown, box, colour_map=style.signed_colour_map(), norm=norm
+                panel,
+                plane,
+                picture / limit,
+                box,
+                colour_map=style.signed_colour_map(),
+                norm=style.symmetric_scale(scale.limit / limit),
             )
-            heading = f"step {step:,}".replace(",", "\N{THIN SPACE}")
-            if not common_scale:
-                heading += f"\n$\\pm${style.power_text(scale.limit)} {unit}".rstrip()
-            panel.set_title(heading)
+            panel.set_title(_heading(step, None if common_scale else scale.limit, unit))
         _label_outer_axes(panels)
-        extend = shared.extend if common_scale else _joined(own)
-        label = quantity if common_scale else f"{quantity}, each to its own scale"
         style.colour_bar(
             figure,
             _bar_box(figure, panels),
             image,
-            label,
+            quantity if common_scale else f"{quantity}, each to its own scale",
             unit=unit if common_scale else "",
-            extend=extend,
+            extend=shared.extend if common_scale else _joined(own),
         )
         style.write_title(figure, title, left=0.12)
         style.write_caption(figure, caption, left=0.12, right=0.12)
     return figure
 
 
-def _plane(function: str, view: str) -> Plane:
+def _heading(step: int, limit: float | None, unit: str) -> str:
+    """The step, and below it the panel's own scale if it has one."""
+    heading = f"step {step:,}".replace(",", "\N{THIN SPACE}")
+    if limit is None:
+        return heading
+    return f"{heading}\n$\\pm${style.power_text(limit)} {unit}".rstrip()
+
+
+def _steps(fields: Mapping[int, object]) -> list[int]:
+    """The steps in order, at least one."""
+    if not fields:
+        raise ShapeError(message("projection_steps", "fields", "at least one step", "none"))
+    return sorted(require_integer("projection_steps", "fields", step, least=0) for step in fields)
+
+
+def _project(step: int, field: object, plane: Plane) -> NDArray[np.floating]:
+    grid = check_field("projection_steps", f"fields[{step}]", field)
+    return signed_projection(grid, plane.normal)
+
+
+def _plane(view: str) -> Plane:
     named = dict(zip(("front", "side", "top"), PLANES, strict=True))
     if view not in named:
-        raise RangeError(message(function, "view", "one of front, side, top", repr(view)))
+        expected = "one of front, side, top"
+        raise RangeError(message("projection_steps", "view", expected, repr(view)))
     return named[view]
 
 

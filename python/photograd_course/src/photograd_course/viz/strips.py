@@ -53,9 +53,8 @@ def comparison_strips(
     true, rendered = _pairs(function, truths, renders)
     labels = [f"view {i}" for i in range(len(true))] if names is None else list(names)
     numbers = [_psnr(*pair) for pair in zip(true, rendered, strict=True)] if psnr is None else psnr
-    for argument, given in (("names", labels), ("psnr", numbers)):
-        if len(given) != len(true):
-            raise ShapeError(message(function, argument, f"{len(true)} entries", len(given)))
+    _check_count(function, "names", labels, len(true))
+    _check_count(function, "psnr", numbers, len(true))
     errors = [np.abs(r - t).mean(axis=2) for t, r in zip(true, rendered, strict=True)]
     limit = _limit(function, errors, error_limit)
 
@@ -82,6 +81,11 @@ def comparison_strips(
         style.write_title(figure, title, left=0.12)
         style.write_caption(figure, caption, left=0.12, right=0.12)
     return figure
+
+
+def _check_count(function: str, argument: str, given: Sequence[object], count: int) -> None:
+    if len(given) != count:
+        raise ShapeError(message(function, argument, f"{count} entries", len(given)))
 
 
 def _pairs(
