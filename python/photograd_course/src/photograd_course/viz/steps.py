@@ -38,8 +38,7 @@ def projection_steps(
     """One signed projection per step, in order of the steps, up to four in a line.
 
     Args:
-        fields: step -> (X, Y, Z) float32 or float64; the grids may differ in resolution (coarse to
-            fine), but all fill the same box.
+        fields: step -> (X, Y, Z) float32 or float64; resolutions may differ, the box may not.
         bounds: (2, 3) outer faces of the box in metres; world right-handed, +Y up.
         view: from which side the box is seen (+Z, +X or +Y).
         common_scale: one colour bar for all panels. If False every panel has its own scale, which
@@ -56,10 +55,7 @@ def projection_steps(
     steps = _steps(fields)
     views = [_project(step, fields[step], plane) for step in steps]
     shared = signed_scale("projection_steps", views, None)
-    own = [
-        shared if common_scale else signed_scale("projection_steps", [picture], None)
-        for picture in views
-    ]
+    own = [shared if common_scale else _own_scale(picture) for picture in views]
     with style.house_style():
         heading_height = 0.3 if common_scale else 0.46
         head = heading_height, 0.26 if title else 0.0
@@ -107,6 +103,10 @@ def _steps(fields: Mapping[int, object]) -> list[int]:
 def _project(step: int, field: object, plane: Plane) -> NDArray[np.floating]:
     grid = check_field("projection_steps", f"fields[{step}]", field)
     return signed_projection(grid, plane.normal)
+
+
+def _own_scale(picture: NDArray[np.floating]) -> Scale:
+    return signed_scale("projection_steps", [picture], None)
 
 
 def _plane(view: str) -> Plane:
