@@ -1,0 +1,145 @@
+"""Do the poses look like the convention that the format promises, or like another one?
+
+Two mistakes are common: camera axes of the other library (OpenCV where OpenGL is expected, which
+turns every camera around), and camera_from_world where world_from_camera is expected. Both keep
+every matrix rigid, and a fit then merely fails to converge. In a capture that looks inward the
+optical axes nearly meet in one point in front of all cameras; we test whether they do so as
+declared, or only after undoing one of the mistakes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from photograd_course.errors import SceneError, message
+
+from .frames import OPENGL_FROM_OPENCV, FloatArray, invert_rigid, mean_camera_up
+from .view import View
+
+FEWEST_CAMERAS = 4
+"""Fewer axes can meet by accident."""
+
+SMALLEST_SPREAD = 0.02
+"""Mean sin^2 to the common direction below which axes are too parallel to meet anywhere."""
+
+
+@dataclass(frozen=True)
+class Meeting:
+    """Where optical axes meet.
+
+    Attributes:
+        point: (3,) with the least squared distance to all axes.
+        miss: root mean square distance of the axes to it, over the mean distance of the cameras.
+        in_front: fraction of cameras that have it in front of them.
+        distance: mean distance of the cameras to it.
+        spread: how far the axes are from parallel; 0 if they are, up to 2/3.
+    """
+
+    point: FloatArray
+    miss: float
+    in_front: float
+    distance: float
+    spread: float
+
+    @property
+    def inward(self) -> bool:
+        """All cameras look at (nearly) one point."""
+        return self.spread > SMALLEST_SPREAD and self.miss < 0.25 and self.in_front >= 0.9
+
+
+def meeting_of_axes(poses: Sequence[FloatArray]) -> Meeting:
+    """Least-squares meeting point of the optical axes of world_from_camera poses (OpenCV axes).
+
+    The squared distance of a point x to the axis through c along unit d is |(1 - d d^T)(x - c)|^2;
+    the normal equations sum (1 - d d^T) x = sum (1 - d d^T) c are solved with the pseudo-inverse,
+    so parallel axes give the point nearest to the origin of the mean camera.
+    """
+    centres = np.array([pose[:3, 3] for pose in poses])
+    axes = np.array([pose[:3, 2] for pose in poses])
+    normals = np.eye(3) - axes[:, :, None] * axes[:, None, :]
+    mean_centre = centres.mean(axis=0)
+    offsets = np.einsum("nij,nj->ni", normals, centres - mean_centre)
+    matrix = normals.mean(axis=0)
+    spread = float(np.linalg.eigvalsh(matrix)[0])
+    point = np.linalg.pinv(matrix, rcond=1e-9, hermitian=True) @ offsets.mean(axis=0) + mean_centre
+    towards = point - centres
+    missed = np.linalg.norm(np.einsum("nij,nj->ni", normals, towards), axis=1)
+    distance = float(np.linalg.norm(towards, axis=1).mean())
+    miss = float(np.sqrt(np.square(missed).mean())) / distance if distance > 0.0 else np.inf
+    in_front = float((np.einsum("ni,ni->n", towards, axes) > 0.0).mean())
+    return Meeting(point, miss, in_front, distance, spread)
+
+
+def check_convention(
+    function: str, views: Sequence[View], world_from_source: FloatArray, *, up_is_known: bool
+) -> list[str]:
+    """Refuse poses that look like a named other convention; return warnings where it is unsure.
+
+    Args:
+        function: reader on whose behalf the error speaks.
+        views: with their poses in our frame, as declared.
+        world_from_source: the turn from the file's world, which is taken back: an inverse pose has
+            the world on its other side.
+        up_is_known: the format promises which way is up, so that cameras that look outwards but
+            stand upright count as an outward-looking capture and not as a mistake.
+
+    Raises:
+        SceneError: the poses look like those of the other camera axes, or like camera_from_world.
+    """
+    if len(views) < FEWEST_CAMERAS:
+        return []
+    declared = [view.camera.world_from_camera for view in views]
+    meeting = meeting_of_axes(declared)
+    if meeting.inward:
+        return _warn_about_up(declared) if up_is_known else []
+    remedy = "convert the poses, or pass trust_poses=True if the cameras really stood like this"
+    names = ", ".join(view.name for view in views[:3]) + (", ..." if len(views) > 3 else "")
+    suspect = _better_convention(declared, world_from_source)
+    if suspect == "axes":
+        if up_is_known and float(mean_camera_up(declared)[1]) > 0.0:
+            return ["warning: all cameras look away from one point (an outward-looking capture?)"]
+        got = (
+            f"cameras ({names}) that look away from the point where their axes meet: "
+            "these look like OpenCV poses where the format has OpenGL axes, or the reverse"
+        )
+        raise SceneError(message(function, "poses", "the format's camera axes", got, remedy))
+    if suspect == "inverse":
+        got = f"poses ({names}) that look like camera_from_world: their inverses face one point"
+        raise SceneError(message(function, "poses", "world_from_camera", got, remedy))
+    return []
+
+
+def _better_convention(declared: Sequence[FloatArray], world_from_source: FloatArray) -> str:
+    """Which mistake, taken back, makes the axes meet best in front: "axes", "inverse" or "".
+
+    Inverses of cameras that turn about one place stand all in one place, where axes meet as a
+    matter of course; hence the meeting point must be away from the cameras, on the scale of
+    translations, which have the same length before and after inversion.
+    """
+    source_from_world = invert_rigid(world_from_source)
+    stored = [source_from_world @ pose for pose in declared]
+    inverses = [invert_rigid(pose) for pose in stored]
+    scale = float(np.mean([np.linalg.norm(pose[:3, 3]) for pose in stored]))
+    best, smallest = "", np.inf
+    for label, poses in (
+        ("axes", [pose @ OPENGL_FROM_OPENCV for pose in stored]),
+        ("inverse", inverses),
+        ("inverse", [pose @ OPENGL_FROM_OPENCV for pose in inverses]),
+    ):
+        meeting = meeting_of_axes(poses)
+        if meeting.inward and meeting.distance > 0.05 * scale and meeting.miss < smallest:
+            best, smallest = label, meeting.miss
+    return best
+
+
+def _warn_about_up(poses: Sequence[FloatArray]) -> list[str]:
+    up = mean_camera_up(poses)
+    length = float(np.linalg.norm(up))
+    if length < 0.3 or float(up[1]) > 0.5 * length:
+        return []
+    listed = ", ".join(f"{component:.2f}" for component in up / length)
+    return [
+        f"warning: the cameras' mean up is ({listed}), far from +Y: is the file's up axis right?"
+    ]

@@ -1,0 +1,200 @@
+"""Photographs on disk: PNG, JPEG and EXR in, one kind of array out.
+
+8 and 16 bit files hold display-encoded values (sRGB is assumed) with straight alpha; they are
+scaled to 0..1 and not decoded. EXR holds linear radiance with premultiplied alpha, as OpenEXR
+prescribes; it is divided by alpha here, so that every array in memory has straight alpha.
+"""
+
+from __future__ import annotations
+
+import struct
+import zlib
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+from photograd_course.errors import IoError, RangeError, message
+from PIL import Image
+
+from . import exr
+
+ColorSpace: TypeAlias = Literal["display", "linear"]
+ImageArray: TypeAlias = npt.NDArray[np.float32]
+
+IMAGE_SUFFIXES = (".png", ".jpg", ".jpeg", ".exr")
+
+_DECODE_ERRORS = (
+    OSError,
+    SyntaxError,
+    ValueError,
+    EOFError,
+    IndexError,
+    KeyError,
+    TypeError,
+    RuntimeError,
+    MemoryError,
+    struct.error,
+    zlib.error,
+    Image.DecompressionBombError,
+)
+"""What Pillow raises for damaged files, by experience: its plugins do not share an exception."""
+
+_MODES = {"1", "L", "LA", "P", "RGB", "RGBA", "I;16", "I;16B", "I;16L"}
+
+
+@dataclass(frozen=True)
+class ImageHeader:
+    """Width and height in pixels, whether the file carries alpha, and its colour space."""
+
+    width: int
+    height: int
+    has_alpha: bool
+    color_space: ColorSpace
+
+
+def read_header(path: Path) -> ImageHeader:
+    """Size and kind of an image file without decoding its pixels.
+
+    Raises:
+        IoError: missing, not an image, zero-size, or of a mode that is not supported.
+    """
+    _require_file("read_header", path)
+    if path.suffix.lower() == ".exr":
+        width, height, has_alpha = exr.read_exr_header(path)
+        return ImageHeader(width, height, has_alpha, "linear")
+    try:
+        with Image.open(path) as opened:
+            _require_mode("read_header", path, opened)
+            has_alpha = "A" in opened.getbands() or "transparency" in opened.info
+            return ImageHeader(opened.width, opened.height, has_alpha, "display")
+    except IoError:
+        raise
+    except _DECODE_ERRORS as error:
+        raise _unreadable("read_header", path, error) from error
+
+
+def read_image(path: Path) -> ImageArray:
+    """Pixels of an image file as (H, W, 4) float32, straight alpha (1 where the file has none).
+
+    Display-encoded k/255 (or k/65535) for PNG and JPEG, linear radiance for EXR. Grey is repeated
+    in the three colours; a palette is looked up. The orientation tag of JPEG is not applied, since
+    poses refer to the pixels as stored.
+
+    Raises:
+        IoError: missing, truncated, damaged, zero-size, non-finite, or of an unsupported mode.
+    """
+    _require_file("read_image", path)
+    if path.suffix.lower() == ".exr":
+        return _straight(exr.read_exr(path))
+    try:
+        with Image.open(path) as opened:
+            _require_mode("read_image", path, opened)
+            return _pixels(path, opened)
+    except IoError:
+        raise
+    except _DECODE_ERRORS as error:
+        raise _unreadable("read_image", path, error) from error
+
+
+def _pixels(path: Path, opened: Image.Image) -> ImageArray:
+    if opened.mode.startswith("I;16"):
+        grey = np.asarray(opened, dtype=np.float32) / np.float32(65535.0)
+        return _with_channels(grey[..., None])
+    tiles = getattr(opened, "tile", [])
+    layout = tiles[0].args if tiles else None
+    if isinstance(layout, str) and layout.endswith(";16B"):
+        return _with_channels(_sixteen_bits(path, opened))
+    if opened.mode in ("P", "1") or "transparency" in opened.info:
+        opened = opened.convert("RGBA" if "transparency" in opened.info else "RGB")
+    array = np.asarray(opened, dtype=np.float32) / np.float32(255.0)
+    return _with_channels(array if array.ndim == 3 else array[..., None])
+
+
+def _sixteen_bits(path: Path, opened: Image.Image) -> ImageArray:
+    """Pillow keeps the high byte of 16-bit colour. Asked to unpack the same bytes in the other
+    order, it keeps the low byte; both together are the sample.
+    """
+    layout = opened.tile[0].args  # type: ignore[attr-defined]
+    if layout not in ("RGB;16B", "RGBA;16B") or "transparency" in opened.info:
+        raise _unreadable("read_image", path, f"unsupported 16-bit layout {layout}")
+    high = np.asarray(opened, dtype=np.float32)
+    with Image.open(path) as again:
+        swapped = layout.replace("16B", "16L")
+        again.tile = [again.tile[0]._replace(args=swapped)]
+        low = np.asarray(again, dtype=np.float32)
+    return (high * np.float32(256.0) + low) / np.float32(65535.0)
+
+
+def _with_channels(array: ImageArray) -> ImageArray:
+    """1 (grey), 2 (grey, alpha), 3 or 4 channels to RGBA."""
+    channels = array.shape[2]
+    color = array[..., :3] if channels >= 3 else np.repeat(array[..., :1], 3, axis=2)
+    opaque = np.ones((*array.shape[:2], 1), dtype=np.float32)
+    alpha = array[..., -1:] if channels in (2, 4) else opaque
+    return np.ascontiguousarray(np.concatenate([color, alpha], axis=2), dtype=np.float32)
+
+
+def _straight(premultiplied: ImageArray) -> ImageArray:
+    """Divide colour by alpha where alpha is positive; elsewhere leave it as it is."""
+    result = premultiplied.copy()
+    alpha = premultiplied[..., 3:]
+    np.divide(result[..., :3], alpha, out=result[..., :3], where=alpha > 0.0)
+    return result
+
+
+def downscale_image(
+    image: ImageArray, factor: int, valid: npt.NDArray[np.bool_] | None = None
+) -> tuple[ImageArray, npt.NDArray[np.bool_]]:
+    """Box average over factor x factor pixels in premultiplied alpha, back to straight alpha.
+
+    Args:
+        image: (H, W, 4) straight alpha. Rows and columns that do not fill a box are cut off at the
+            bottom and right.
+        valid: (H, W) mask; a box is valid only if all of its pixels are.
+
+    Returns:
+        Image (H // factor, W // factor, 4) and its mask.
+
+    Raises:
+        RangeError: factor below 1 or larger than the image.
+    """
+    height, width = image.shape[:2]
+    if not 1 <= factor <= min(height, width):
+        expected = f"1 to {min(height, width)}"
+        raise RangeError(message("downscale_image", "factor", expected, factor))
+    mask = np.ones((height, width), dtype=np.bool_) if valid is None else valid
+    if factor == 1:
+        return image, mask
+    rows, columns = height // factor, width // factor
+    boxes = (rows, factor, columns, factor)
+    buffer = image[: rows * factor, : columns * factor].astype(np.float64)
+    buffer[..., :3] *= buffer[..., 3:]
+    mean = buffer.reshape(*boxes, 4).mean(axis=(1, 3))
+    whole = np.all(mask[: rows * factor, : columns * factor].reshape(boxes), axis=(1, 3))
+    return _straight(mean.astype(np.float32)), np.asarray(whole)
+
+
+def _require_file(function: str, path: Path) -> None:
+    try:
+        found = path.is_file()
+    except (OSError, ValueError):
+        found = False
+    if not found:
+        raise IoError(message(function, repr(str(path)), "an image file", "no such file"))
+    if path.stat().st_size == 0:
+        raise IoError(message(function, repr(str(path)), "an image file", "an empty file"))
+
+
+def _require_mode(function: str, path: Path, opened: Image.Image) -> None:
+    if opened.mode not in _MODES:
+        got = f"mode {opened.mode}"
+        raise IoError(message(function, str(path), "grey, RGB or RGBA", got, "convert it first"))
+    if opened.width < 1 or opened.height < 1:
+        raise IoError(message(function, str(path), "at least one pixel", opened.size))
+
+
+def _unreadable(function: str, path: Path, error: object) -> IoError:
+    text = " ".join(str(error).split()) or type(error).__name__
+    return IoError(message(function, str(path), "a readable image", f"damaged data: {text}"))
