@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from support.tree import ROOT, cpp_texts, python_texts
 
 BIB = ROOT / "cpp" / "references.bib"
-KEY = r"[A-Z][A-Za-z]*\d{4}[a-z]?"
+KEY = r"[A-Z][A-Za-z]*\d{4,5}[a-z]?"  # five digits: numbers of standards
 # [Key], [Key, Eq. 3], [Key1; Key2], [Key1, Key2]; indices such as [R2000] never look like that.
 CITATION = re.compile(rf"\[({KEY}(?:[;,][^\[\]]*)?)\]")
 REQUIRED = {"author", "title", "year"}

@@ -90,7 +90,7 @@ def imported(text: str) -> set[str]:
 
 
 def python_breaches(texts: Mapping[str, str], allowed: Mapping[str, set[str]]) -> list[str]:
-    """One line for each import, in files below a folder of `allowed`, of what is not listed there."""
+    """One line for each import of what `allowed` does not list for the folder of its file."""
     return [
         f"{path} imports {name}"
         for path, text in texts.items()
