@@ -1,0 +1,96 @@
+"""PSNR and SSIM against hand-written direct forms."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from photograd_course import metrics
+from photograd_course.errors import DtypeError, RangeError, ShapeError
+from photograd_course.gradcheck import draw_like
+
+
+def images(channels: tuple[int, ...] = ()) -> tuple[np.ndarray, np.ndarray]:
+    shape = (16, 14, *channels)
+    x = 0.5 + 0.4 * draw_like(shape, seed=1, stream=0)
+    return np.clip(x + 0.1 * draw_like(shape, seed=1, stream=1), 0, 1), x
+
+
+def direct_ssim(x: np.ndarray, y: np.ndarray, peak: float) -> float:
+    """[Wang2004] window by window with a full 2D kernel and centred moments, for one channel."""
+    kernel = np.array(
+        [[math.exp(-(i * i + j * j) / (2 * 1.5**2)) for j in range(-5, 6)] for i in range(-5, 6)]
+    )
+    kernel /= kernel.sum()
+    c1, c2 = (0.01 * peak) ** 2, (0.03 * peak) ** 2
+    values = []
+    for row in range(x.shape[0] - 10):
+        for column in range(x.shape[1] - 10):
+            a, b = x[row : row + 11, column : column + 11], y[row : row + 11, column : column + 11]
+            mu_a, mu_b = (kernel * a).sum(), (kernel * b).sum()
+            var_a, var_b = (kernel * (a - mu_a) ** 2).sum(), (kernel * (b - mu_b) ** 2).sum()
+            cov = (kernel * (a - mu_a) * (b - mu_b)).sum()
+            top = (2 * mu_a * mu_b + c1) * (2 * cov + c2)
+            values.append(top / ((mu_a**2 + mu_b**2 + c1) * (var_a + var_b + c2)))
+    return float(np.mean(values))
+
+
+def test_psnr_by_hand() -> None:
+    target = np.zeros((4, 5, 3))
+    assert metrics.psnr(target + 0.1, target) == pytest.approx(20.0, abs=1e-12)
+    assert metrics.psnr(target + 25.5, target, peak=255.0) == pytest.approx(20.0, abs=1e-12)
+    assert metrics.psnr(target, target) == math.inf
+    x, y = images((3,))
+    error = sum(float(d) ** 2 for d in (x - y).reshape(-1)) / x.size
+    assert metrics.psnr(x, y) == pytest.approx(-10 * math.log10(error), rel=1e-13)
+
+
+@pytest.mark.parametrize("peak", [1.0, 255.0])
+def test_ssim_against_the_direct_form(peak: float) -> None:
+    x, y = (image * peak for image in images())
+    value = metrics.ssim(x, y, peak=peak)
+    assert 0.5 < value < 0.999
+    # Moments as differences of blurred squares lose about four digits of sixteen.
+    assert value == pytest.approx(direct_ssim(x, y, peak), abs=1e-12)
+
+
+def test_ssim_of_channels_is_their_mean() -> None:
+    x, y = images((3,))
+    alone = [metrics.ssim(x[..., c], y[..., c]) for c in range(3)]
+    assert metrics.ssim(x, y) == pytest.approx(np.mean(alone), abs=1e-15)
+    assert len(set(alone)) == 3
+
+
+def test_ssim_properties() -> None:
+    x, y = images()
+    assert metrics.ssim(x, x) == pytest.approx(1.0, abs=1e-14)
+    assert metrics.ssim(x, y) == metrics.ssim(y, x)
+    # Same mean squared error, other structure: a shift of brightness costs far less than noise.
+    noise = x - y
+    shift = y + math.sqrt(float(np.mean(noise**2)))
+    assert metrics.psnr(shift, y) == pytest.approx(metrics.psnr(x, y), abs=1e-9)
+    assert metrics.ssim(shift, y) > metrics.ssim(x, y)
+
+
+def test_round_to_8_bits() -> None:
+    levels = np.arange(256) / 255.0
+    np.testing.assert_array_equal(metrics.round_to_8_bits(levels), levels)
+    rounded = metrics.round_to_8_bits(np.array([-1.0, 0.5, 0.001, 0.002, 2.0]))
+    np.testing.assert_array_equal(rounded, np.array([0, 128, 0, 1, 255]) / 255.0)
+
+
+@pytest.mark.parametrize("metric", [metrics.psnr, metrics.ssim])
+def test_bad_input_is_refused(metric: object) -> None:
+    x, y = images((3,))
+    with pytest.raises(ShapeError, match="target"):
+        metric(x, y[:1])  # type: ignore[operator]
+    with pytest.raises(DtypeError, match="prediction"):
+        metric((x * 255).astype(np.uint8), y)  # type: ignore[operator]
+    with pytest.raises(RangeError, match="peak"):
+        metric(x, y, peak=0.0)  # type: ignore[operator]
+    y[0, 0, 0] = np.nan
+    with pytest.raises(RangeError, match="1 of 672"):
+        metric(x, y)  # type: ignore[operator]
+    with pytest.raises(ShapeError, match="11 x 11"):
+        metrics.ssim(x[:10], x[:10])
