@@ -100,8 +100,12 @@ def test_an_empty_test_fails() -> None:
 
 def test_sparse_gradient_is_probed_where_it_lives() -> None:
     p = {"grid": draw_like((30, 30, 30), seed=4, stream=1)}
+    start, probed = p["grid"].copy(), set()
 
     def pick(p: Arrays) -> float:
+        moved = np.flatnonzero(p["grid"] != start)
+        if moved.size == 1:
+            probed.add(np.unravel_index(moved[0], start.shape))
         return float(np.sin(p["grid"][3, 4, 5]) + p["grid"][20, 1, 2] ** 2)
 
     def pick_backward(p: Arrays, d_out: float) -> Arrays:
@@ -112,6 +116,8 @@ def test_sparse_gradient_is_probed_where_it_lives() -> None:
 
     report = check_gradient(pick, pick_backward, p, seed=5)
     assert report, str(report)
+    assert {(3, 4, 5), (20, 1, 2)} <= probed
+    assert len(probed) == 32
 
 
 def test_named_outputs_and_parameters_stay_untouched() -> None:

@@ -166,13 +166,15 @@ def test_resumed_run_repeats_every_bit(method: str) -> None:
     go(first, straight, range(3))
     resumed = {"x": straight["x"].copy()}
     saved = first.state()
+    kept = {key: array.copy() for key, array in saved.items()}
     second = METHODS[method]()
     second.load_state(saved)
     go(first, straight, range(3, 7))
     go(second, resumed, range(3, 7))
     np.testing.assert_array_equal(straight["x"], resumed["x"])
     assert int(first.state()["step/x"]) == 7
-    assert int(saved["step/x"]) == 3, "a saved state does not follow later steps"
+    for key, array in kept.items():
+        np.testing.assert_array_equal(saved[key], array, "a saved state follows no later step")
 
 
 def test_row_map_moves_the_moments() -> None:
