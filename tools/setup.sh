@@ -133,6 +133,13 @@ hash_of() { find "$@" -type f ! -name '*.pyc' -print0 | sort -z | xargs -0 sha25
 is_fresh() { [ "$(cat ".venv/photograd-$1" 2>/dev/null)" = "$2" ]; }
 remember() { echo "$2" >".venv/photograd-$1"; }
 
+# Installs groups of tools/requirements.py.
+install_extra() {
+    local lines
+    mapfile -t lines < <(.venv/bin/python tools/requirements.py "$@")
+    logged packages .venv/bin/python -m pip install -q "${lines[@]}"
+}
+
 # Python packages, then both distributions as editable installs. $1 is demo or dev.
 ensure_packages() {
     local groups="build" key
@@ -141,8 +148,8 @@ ensure_packages() {
         tools/setup.sh tools/requirements.py)
     is_fresh "packages-$1" "$key" && return
     say "Python packages: $groups requirements"
-    # shellcheck disable=SC2046,SC2086
-    logged packages .venv/bin/python -m pip install -q $(.venv/bin/python tools/requirements.py $groups)
+    # shellcheck disable=SC2086
+    install_extra $groups
     rm -f .venv/photograd-core
     ensure_core with-dependencies
     remember "packages-$1" "$key"

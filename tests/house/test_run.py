@@ -8,6 +8,7 @@ import tomllib
 from pathlib import Path
 
 import pytest
+
 from support.tree import ROOT
 
 COMMANDS = ["demo", "test", "lint", "bench", "fuzz", "wheel", "docs", "clean", "help"]
