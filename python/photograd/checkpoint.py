@@ -1,0 +1,83 @@
+"""Checkpoints: everything that a fit needs to go on, in one file that is replaced atomically.
+
+A checkpoint is a NumPy archive: `param.NAME`, `optimiser.NAME`, `state.NAME`, `history`, and
+`meta`, a JSON text with the format's version, the step, the options, the policy of the march and
+where the capture lies. A crash or a full disk while saving leaves the previous checkpoint as it
+was.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import zipfile
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from photograd_course.atomic_io import atomic_write
+
+from photograd.errors import IoError, message
+from photograd.representation import Array
+
+VERSION = 1
+FILE_NAME = "model.npz"
+
+
+@dataclass(frozen=True)
+class Checkpoint:
+    """The contents of a checkpoint file."""
+
+    meta: dict[str, Any]
+    params: dict[str, Array]
+    optimiser: dict[str, Array]
+    state: dict[str, Array]
+    history: Array  # (n, 3): step, loss, PSNR of the batch
+
+
+def save_checkpoint(path: Path, checkpoint: Checkpoint) -> None:
+    """Write the file atomically. Raises IoError if that fails; the old file then survives."""
+    arrays: dict[str, Any] = {"history": checkpoint.history}
+    arrays["meta"] = np.array(json.dumps({"version": VERSION, **checkpoint.meta}))
+    for prefix in ("params", "optimiser", "state"):
+        for name, array in getattr(checkpoint, prefix).items():
+            arrays[f"{prefix}.{name}"] = array
+    buffer = io.BytesIO()
+    np.savez(buffer, **arrays)
+    atomic_write(path, buffer.getvalue())
+
+
+def load_checkpoint(path: Path) -> Checkpoint:
+    """Read a checkpoint; `path` may be the file or the folder of a fit.
+
+    Raises IoError if the file is missing, damaged, or of an unknown version.
+    """
+    file = path / FILE_NAME if path.is_dir() else path
+    if not file.is_file():
+        raise IoError(
+            message("load_checkpoint", "path", "a model (DIR/model.npz)", f"{path}, which is none",
+                    "run 'photograd fit' first")
+        )  # fmt: skip
+    try:
+        with np.load(file, allow_pickle=False) as archive:
+            arrays = {name: archive[name] for name in archive.files}
+        meta = json.loads(str(arrays.pop("meta")))
+        history = arrays.pop("history")
+    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as failure:
+        raise IoError(
+            message("load_checkpoint", f"{file}", "a photograd checkpoint", f"{failure}",
+                    "the file is damaged: restore it or fit again")
+        ) from failure  # fmt: skip
+    if not isinstance(meta, dict) or meta.get("version") != VERSION:
+        got = meta.get("version") if isinstance(meta, dict) else meta
+        raise IoError(message("load_checkpoint", f"{file}", f"version {VERSION}", f"{got}"))
+    return Checkpoint(
+        meta, _part(arrays, "params"), _part(arrays, "optimiser"), _part(arrays, "state"), history
+    )
+
+
+def _part(arrays: Mapping[str, Array], prefix: str) -> dict[str, Array]:
+    start = prefix + "."
+    return {name[len(start) :]: a for name, a in arrays.items() if name.startswith(start)}

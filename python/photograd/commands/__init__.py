@@ -1,0 +1,16 @@
+"""The core's commands, one a file.
+
+`register` is the entry point that the `photograd` command finds.
+"""
+
+from __future__ import annotations
+
+import typer
+
+from photograd.commands import capture, demo, evaluate, fit, gradients, info, render
+
+
+def register(app: typer.Typer) -> None:
+    """Add the core's commands to the command line."""
+    for module in (capture, fit, render, evaluate, gradients, demo, info):
+        module.register(app)

@@ -1,0 +1,70 @@
+"""`photograd evaluate`: compare a model with held-out photographs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from photograd_course.cli import (
+    Column,
+    DebugOption,
+    JsonOption,
+    Progress,
+    SeedOption,
+    ThreadsOption,
+    emit,
+)
+from photograd_course.viz import comparison_strips, save_figure
+
+from photograd.commands.shared import CaptureArgument, DownscaleOption, ModelArgument, use_threads
+from photograd.data.load import load_capture
+from photograd.evaluate import Evaluation, as_result
+from photograd.evaluate import evaluate as score
+from photograd.model import load_model
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command."""
+    app.command("evaluate")(evaluate)
+
+
+def evaluate(
+    model: ModelArgument,
+    capture: CaptureArgument,
+    out: Annotated[
+        Path | None, typer.Option("--out", help="Also draw truth, render and error to this PNG.")
+    ] = None,
+    downscale: DownscaleOption = 1,
+    seed: SeedOption = 0,  # noqa: ARG001  an evaluation draws nothing at random
+    threads: ThreadsOption = 0,
+    as_json: JsonOption = False,
+    debug: DebugOption = False,  # noqa: ARG001
+) -> None:
+    """PSNR and SSIM on the test split, with the protocol they hold under.
+
+    Example: photograd evaluate model photos --out comparison.png
+    """
+    use_threads(threads)
+    views = load_capture(capture, downscale=downscale).test
+    loaded = load_model(model)
+    with Progress("evaluate", len(views), [Column("view", "{:.0f}".format)]) as bar:
+        result = score(loaded, views, on_view=lambda n: bar.update(n, view=n))
+    if out is not None:
+        draw_strips(result, out)
+    emit(as_result(result), as_json=as_json, title="evaluate")
+
+
+def draw_strips(result: Evaluation, path: Path, count: int = 3) -> None:
+    """Truth, rendering and error of a few views, the worst among them."""
+    ranked = sorted(result.views, key=lambda view: view.psnr)
+    picked = [
+        ranked[i * (len(ranked) - 1) // max(count - 1, 1)] for i in range(min(count, len(ranked)))
+    ]
+    figure = comparison_strips(
+        [v.truth for v in picked], [v.render for v in picked],
+        names=[v.name for v in picked], psnr=[v.psnr for v in picked],
+        title=f"Held-out views: mean PSNR {result.psnr:.2f} dB",
+        caption=f"Worst, middle and best of {result.protocol}.",
+    )  # fmt: skip
+    save_figure(figure, path)

@@ -1,0 +1,64 @@
+"""`photograd info`: what is this capture or model?"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+import typer
+from photograd_course.cli import DebugOption, JsonOption, SeedOption, ThreadsOption, emit
+
+from photograd.data.bounds import estimate_bounds
+from photograd.data.load import load_capture
+from photograd.model import load_model
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command."""
+    app.command("info")(info)
+
+
+def info(
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="A capture or a model.")],
+    seed: SeedOption = 0,  # noqa: ARG001
+    threads: ThreadsOption = 0,  # noqa: ARG001
+    as_json: JsonOption = False,
+    debug: DebugOption = False,  # noqa: ARG001
+) -> None:
+    """Say what a capture or a model contains.
+
+    Example: photograd info model
+    """
+    is_model = file.suffix == ".npz" or (file / "model.npz").is_file()
+    result = describe_model(file) if is_model else describe_capture(file)
+    emit(result, as_json=as_json, title=str(file))
+
+
+def describe_model(path: Path) -> dict[str, Any]:
+    """Step, size, box and options of a model."""
+    model = load_model(path)
+    values = model.field.params["values"]
+    last = model.history[-100:, 2] if len(model.history) else np.array([np.nan])
+    return {
+        "kind": "model", "representation": model.field.name, "shape": list(values.shape),
+        "megabytes": values.nbytes / 1e6, "box": model.field.box, "dt": model.field.policy.dt,
+        "step": model.meta["step"], "steps": model.options.steps,
+        "batch_psnr": float(last.mean()), "capture": model.meta["capture"],
+        "split": model.meta["split"], "seed": model.options.seed,
+    }  # fmt: skip
+
+
+def describe_capture(path: Path) -> dict[str, Any]:
+    """Views, sizes, colour space, bounds and conversions of a capture."""
+    capture = load_capture(path)
+    bounds = estimate_bounds(capture)
+    sizes = sorted({f"{v.camera.width}x{v.camera.height}" for v in capture.views})
+    return {
+        "kind": "capture", "format": capture.format, "train": len(capture.train),
+        "test": len(capture.test), "val": len(capture.val), "sizes": sizes,
+        "color_space": capture.color_space, "alpha": capture.has_alpha,
+        "points": 0 if capture.points is None else len(capture.points),
+        "box": bounds.box, "box_rule": bounds.rule, "split": capture.split_hash(),
+        "conversions": list(capture.conversions),
+    }  # fmt: skip

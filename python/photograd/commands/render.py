@@ -1,0 +1,61 @@
+"""`photograd render`: look at a model from a circle of cameras."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from photograd_course.cli import (
+    Column,
+    DebugOption,
+    JsonOption,
+    Progress,
+    SeedOption,
+    ThreadsOption,
+    emit,
+)
+from photograd_course.viz import write_frames, write_gif
+
+from photograd.commands.shared import ModelArgument, use_threads
+from photograd.evaluate import display_image
+from photograd.model import load_model
+from photograd.orbit import orbit_cameras
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command."""
+    app.command("render")(render)
+
+
+def render(
+    model: ModelArgument,
+    orbit: Annotated[int, typer.Option("--orbit", min=1, help="Frames on the circle.")] = 60,
+    out: Annotated[
+        Path, typer.Option("--out", help="A .gif file, or a folder for PNG frames.")
+    ] = Path("turntable.gif"),
+    size: Annotated[int, typer.Option("--size", min=8, help="Pixels along an edge.")] = 256,
+    elevation: Annotated[
+        float, typer.Option("--elevation", min=-89.0, max=89.0, help="Degrees above the horizon.")
+    ] = 25.0,
+    seed: SeedOption = 0,  # noqa: ARG001  a rendering draws nothing at random
+    threads: ThreadsOption = 0,
+    as_json: JsonOption = False,
+    debug: DebugOption = False,  # noqa: ARG001
+) -> None:
+    """Render a turntable of a recovered scene.
+
+    Example: photograd render model --orbit 60 --out turntable.gif
+    """
+    use_threads(threads)
+    loaded = load_model(model)
+    frames = []
+    with Progress("render", orbit, [Column("frame", "{:.0f}".format)]) as bar:
+        for camera in orbit_cameras(loaded.field.box, orbit, size=size, elevation=elevation):
+            frames.append(display_image(loaded, camera))
+            bar.update(len(frames), frame=len(frames))
+    if out.suffix.lower() == ".gif":
+        write_gif(frames, out)
+    else:
+        write_frames(frames, out)
+    emit({"out": out, "frames": len(frames)}, as_json=as_json, title="render")

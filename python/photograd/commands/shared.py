@@ -1,0 +1,72 @@
+"""What the core's commands share: threads, stopping politely, and the types of their arguments."""
+
+from __future__ import annotations
+
+import signal
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from types import FrameType
+from typing import Annotated, Any
+
+import typer
+
+from photograd.core import _core
+
+CaptureArgument = Annotated[
+    Path,
+    typer.Argument(
+        help="Folder of a capture: NeRF/Blender, nerfstudio, COLMAP, LLFF or OpenSfM.",
+        metavar="CAPTURE",
+    ),
+]
+ModelArgument = Annotated[
+    Path, typer.Argument(help="Folder that a fit wrote, or its model.npz.", metavar="MODEL")
+]
+DownscaleOption = Annotated[
+    int, typer.Option("--downscale", min=1, metavar="N", help="Reduce images N times first.")
+]
+
+
+def use_threads(threads: int) -> None:
+    """Limit the core's threads; 0 means all cores."""
+    _core.set_thread_count(threads)
+
+
+class StopRequest:
+    """Becomes true when Ctrl-C or SIGTERM arrives, so that a fit can save before it ends."""
+
+    def __init__(self) -> None:
+        self.signal: int | None = None
+
+    def __call__(self) -> bool:
+        """Whether a signal has arrived."""
+        return self.signal is not None
+
+    @property
+    def exit_code(self) -> int:
+        """128 + signal number, as shells expect."""
+        return 0 if self.signal is None else 128 + self.signal
+
+
+@contextmanager
+def stop_on_signals() -> Iterator[StopRequest]:
+    """Catch the first Ctrl-C or SIGTERM as a request; a second one acts as usual."""
+    request = StopRequest()
+
+    def note(number: int, _frame: FrameType | None) -> None:
+        request.signal = number
+        restore()
+
+    previous: dict[int, Any] = {}
+    for number in (signal.SIGINT, signal.SIGTERM):
+        previous[number] = signal.signal(number, note)
+
+    def restore() -> None:
+        for number, handler in previous.items():
+            signal.signal(number, handler)
+
+    try:
+        yield request
+    finally:
+        restore()

@@ -1,0 +1,141 @@
+"""How good a model is: PSNR and SSIM on held-out views, under a protocol that is printed with them.
+
+Rankings move with the background, the resolution and the rounding, so there is one protocol: full
+resolution of the capture, truth and rendering composited over white in display (sRGB) values,
+clipped and rounded to 8 bits, PSNR and SSIM averaged over views.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from photograd_course.color import srgb_encode, unpremultiply
+from photograd_course.metrics import psnr, ssim
+
+from photograd.data.camera import Camera
+from photograd.data.view import View
+from photograd.errors import RangeError, message
+from photograd.model import Model
+from photograd.representation import Array, RayBatch, RenderOptions
+
+RAYS_AT_ONCE = 1 << 16
+
+
+@dataclass(frozen=True)
+class ViewScore:
+    """One view's score and pictures (H, W, 3), display values in multiples of 1/255."""
+
+    name: str
+    psnr: float
+    ssim: float
+    truth: Array
+    render: Array
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """Scores of all views, their means, and the protocol they hold under."""
+
+    views: tuple[ViewScore, ...]
+    protocol: str
+
+    @property
+    def psnr(self) -> float:
+        """Mean PSNR in dB."""
+        return float(np.mean([view.psnr for view in self.views]))
+
+    @property
+    def ssim(self) -> float:
+        """Mean SSIM."""
+        return float(np.mean([view.ssim for view in self.views]))
+
+
+def render_camera(
+    model: Model, camera: Camera, *, stop: float = 1e-4
+) -> tuple[Array, Array, Array]:
+    """Premultiplied linear colour (H, W, 3), opacity (H, W) and depth (H, W) seen by a camera."""
+    parts = []
+    options = RenderOptions(stop=stop)
+    for start in range(0, camera.width * camera.height, RAYS_AT_ONCE):
+        ids = np.arange(start, min(start + RAYS_AT_ONCE, camera.width * camera.height))
+        origins, directions = camera.rays(ids)
+        batch = RayBatch(origins, directions, ids.astype(np.uint32))
+        outputs, _ = model.field.render(batch, seed=0, step=0, options=options)
+        parts.append((outputs.color, outputs.opacity, outputs.depth))
+    size = (camera.height, camera.width)
+    color, opacity, depth = (np.concatenate(part) for part in zip(*parts, strict=True))
+    return color.reshape(*size, 3), opacity.reshape(size), depth.reshape(size)
+
+
+def display_image(model: Model, camera: Camera) -> Array:
+    """The model (H, W, 3) in display values, over white or its learned background."""
+    color, opacity, _ = render_camera(model, camera)
+    if model.background is not None:
+        over = color + (1 - opacity[..., None]) * model.background
+        return round_to_8_bits(srgb_encode(over.astype(np.float64)))
+    straight = unpremultiply(color.astype(np.float64), opacity.astype(np.float64))
+    return over_white(srgb_encode(straight), opacity)
+
+
+def truth_image(view: View) -> Array:
+    """The photograph (H, W, 3) under the same protocol."""
+    rgba = view.rgba().astype(np.float64)
+    color = srgb_encode(rgba[..., :3]) if view.color_space == "linear" else rgba[..., :3]
+    return over_white(color, rgba[..., 3])
+
+
+def over_white(encoded: Array, alpha: Array) -> Array:
+    """Straight display values over white, clipped and rounded to 8 bits."""
+    alpha = alpha[..., None]
+    return round_to_8_bits(np.clip(encoded, 0, 1) * alpha + (1 - alpha))
+
+
+def round_to_8_bits(image: Array) -> Array:
+    """Nearest multiple of 1/255 in [0, 1]."""
+    rounded: Array = np.rint(np.clip(image, 0, 1) * 255) / 255
+    return rounded
+
+
+def evaluate(
+    model: Model, views: Sequence[View], *, on_view: Callable[[int], None] | None = None
+) -> Evaluation:
+    """Score the model on `views`, normally the test split.
+
+    Raises RangeError if there are none.
+    """
+    if not views:
+        raise RangeError(
+            message("evaluate", "views", "at least one held-out view", "none",
+                    "the capture has no test split")
+        )  # fmt: skip
+    scores = []
+    for number, view in enumerate(views):
+        truth, render = truth_image(view), display_image(model, view.camera)
+        scores.append(ViewScore(view.name, psnr(render, truth), ssim(render, truth), truth, render))
+        if on_view:
+            on_view(number + 1)
+    return Evaluation(tuple(scores), protocol(model, views))
+
+
+def protocol(model: Model, views: Sequence[View]) -> str:
+    """The sentence that belongs next to every number."""
+    sizes = sorted({(view.camera.width, view.camera.height) for view in views})
+    size = ", ".join(f"{w}x{h}" for w, h in sizes)
+    behind = "white" if model.background is None else "white, render over its learned background"
+    return (
+        f"{len(views)} held-out views at {size}, composited over {behind} in sRGB, rounded to 8 bits; "
+        "mean of per-view PSNR and SSIM (11x11 Gaussian window)"
+    )
+
+
+def as_result(evaluation: Evaluation) -> dict[str, Any]:
+    """The evaluation for tables and the machine-readable last line."""
+    return {
+        "psnr": evaluation.psnr, "ssim": evaluation.ssim, "protocol": evaluation.protocol,
+        "views": [
+            {"name": v.name, "psnr": v.psnr, "ssim": v.ssim} for v in evaluation.views
+        ],
+    }  # fmt: skip

@@ -1,0 +1,172 @@
+"""Dense RGBA grid: a raw colour and a raw density in every voxel of a box."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any, ClassVar
+
+import numpy as np
+from photograd_course import priors
+from photograd_course.random import uniform
+from photograd_course.resample import upsample_trilinear
+
+from photograd.errors import DtypeError, Error, RangeError, ShapeError, message
+from photograd.fields.march import MarchContext, MarchPolicy, march, march_backward
+from photograd.representation import (
+    Array,
+    Gradients,
+    Outputs,
+    ParamSpec,
+    Prior,
+    RayBatch,
+    RenderOptions,
+    Representation,
+    register,
+)
+
+
+@register
+class DenseGrid(Representation):
+    """A radiance field on X x Y x Z voxels (values at voxel centres, trilinear in between).
+
+    params["values"] (X, Y, Z, 4) holds raw r, g, b and density side by side: a lookup reads all
+    four. `color` and `density` are views of it. What they mean is the policy's business:
+    sigma_t = density_scale * softplus(density) in 1/m, rgb = sigmoid(color), linear Rec. 709.
+    """
+
+    name: ClassVar[str] = "dense_grid"
+    capabilities: ClassVar[frozenset[str]] = frozenset({"rays"})
+
+    def __init__(self, values: Array, policy: MarchPolicy, *, fused: bool = True) -> None:
+        """Raises ShapeError unless values is (X, Y, Z, 4) with X, Y, Z >= 2; Error if not finite."""
+        if values.ndim != 4 or values.shape[3] != 4 or min(values.shape[:3]) < 2:
+            raise ShapeError(
+                message("DenseGrid", "values", "shape (X, Y, Z, 4), X Y Z >= 2", f"{values.shape}")
+            )
+        if values.dtype not in (np.dtype(np.float32), np.dtype(np.float64)):
+            raise DtypeError(
+                message("DenseGrid", "values", "float32 or float64", f"{values.dtype}")
+            )
+        if not np.isfinite(values).all():
+            count = int((~np.isfinite(values)).sum())
+            raise Error(message("DenseGrid", "values", "finite values", f"{count} that are not"))
+        self.params = {"values": np.ascontiguousarray(values)}
+        self.policy = policy
+        self.fused = fused
+
+    @classmethod
+    def empty(
+        cls,
+        box: Array,
+        resolution: int,
+        *,
+        finest: int | None = None,
+        sigma_t: float = 0.1,
+        steps_per_voxel: float = 2.0,
+        dtype: type[np.floating[Any]] = np.float32,
+    ) -> DenseGrid:
+        """A nearly transparent grey grid of cubic voxels over `box` (2, 3), world metres.
+
+        `resolution` counts voxels along the longest edge; the box grows a little so that voxels are
+        cubes. `finest` is the resolution that a coarse-to-fine fit will end with: it fixes the density
+        scale, so that a parameter keeps its meaning from level to level. `sigma_t` (1/m) is the start.
+        """
+        if resolution < 2:
+            raise RangeError(
+                message("DenseGrid.empty", "resolution", "at least 2", f"{resolution}")
+            )
+        box = np.asarray(box, np.float64)
+        extent = box[1] - box[0]
+        if not (np.isfinite(box).all() and (extent > 0).all()):
+            raise RangeError(
+                message("DenseGrid.empty", "box", "finite, lower corner below upper", f"{box}")
+            )
+        voxel = extent.max() / resolution
+        shape = np.maximum(np.ceil(extent / voxel - 1e-6).astype(int), 2)
+        centre = box.mean(axis=0)
+        lo, hi = centre - shape * voxel / 2, centre + shape * voxel / 2
+        scale = (finest or resolution) / extent.max()
+        policy = MarchPolicy(
+            (tuple(lo.tolist()), tuple(hi.tolist())), voxel / steps_per_voxel, density_scale=scale
+        )
+        values = np.zeros((*shape, 4), dtype)
+        values[..., 3] = np.log(np.expm1(sigma_t / scale))
+        return cls(values, policy)
+
+    @property
+    def color(self) -> Array:
+        """View (X, Y, Z, 3) of the raw colour."""
+        return self.params["values"][..., :3]
+
+    @property
+    def density(self) -> Array:
+        """View (X, Y, Z) of the raw density."""
+        return self.params["values"][..., 3]
+
+    @property
+    def box(self) -> Array:
+        """(2, 3) corners of the box in world metres."""
+        return np.array(self.policy.box)
+
+    def refined(self, resolution: int, *, steps_per_voxel: float = 2.0) -> DenseGrid:
+        """The same field on a finer grid over the same box, by trilinear interpolation."""
+        extent = self.box[1] - self.box[0]
+        voxel = extent.max() / resolution
+        x, y, z = np.maximum(np.rint(extent / voxel).astype(int), 2).tolist()
+        values = upsample_trilinear(self.params["values"], (x, y, z))
+        return DenseGrid(values, replace(self.policy, dt=voxel / steps_per_voxel), fused=self.fused)
+
+    @classmethod
+    def example(cls, *, seed: int, dtype: type[np.floating[Any]] = np.float64) -> DenseGrid:
+        """5 x 4 x 6 voxels with random values over a box that is no cube."""
+        index = np.arange(5 * 4 * 6 * 4)
+        values = 2 * uniform(seed, step=0, pixel=index, sample=0, dimension=0) - 1
+        policy = MarchPolicy(((-1.0, -0.8, -1.2), (1.0, 0.8, 1.2)), 0.11)
+        return cls(values.reshape(5, 4, 6, 4).astype(dtype), policy)
+
+    def example_batch(self, *, seed: int) -> RayBatch:
+        """24 rays from a sphere of radius 3 m towards points inside of the box."""
+        count = 24
+        pixel = np.arange(count, dtype=np.uint32)
+        u = np.stack(
+            [uniform(seed, step=1, pixel=pixel, sample=0, dimension=k) for k in range(6)], -1
+        )
+        outward = u[:, :3] - 0.5
+        origins = 3.0 * outward / np.linalg.norm(outward, axis=1, keepdims=True)
+        lo, hi = self.box
+        target = lo + (0.2 + 0.6 * u[:, 3:]) * (hi - lo)
+        directions = target - origins
+        directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+        return RayBatch(origins, directions, pixel)
+
+    def param_groups(self) -> Mapping[str, ParamSpec]:
+        """One group. Adam moves an entry by about its rate: density_scale sets the pace of sigma_t."""
+        shape = self.params["values"].shape
+        return {"values": ParamSpec(shape, "1", (-10.0, 1e4), 0.5, "grid")}
+
+    def render(
+        self, batch: RayBatch, *, seed: int, step: int, options: RenderOptions
+    ) -> tuple[Outputs, MarchContext]:
+        """Colour (R, 3) linear, premultiplied, without background; opacity (R,); depth (R,) in m."""
+        return march(
+            "dense_grid", self.params["values"], self.policy, batch, options,
+            seed=seed, step=step, fused=self.fused,
+        )  # fmt: skip
+
+    def render_backward(self, context: MarchContext, d_outputs: Outputs) -> Gradients:
+        """{"values": (X, Y, Z, 4)}, and "origins", "directions" (R, 3) if the options asked."""
+        gradients = march_backward(context, d_outputs)
+        gradients["values"] = gradients.pop("parameters")
+        return gradients
+
+    def priors(self) -> Sequence[Prior]:
+        """Total variation of the raw values: neighbours should agree."""
+        return (
+            Prior(
+                "total_variation",
+                "values",
+                priors.total_variation_squared,
+                priors.total_variation_squared_backward,
+            ),
+        )

@@ -1,0 +1,159 @@
+"""The ray marcher as representations use it: options as an enum-typed dataclass, context, backward.
+
+The mathematics is in cpp/photograd/ops/composite.h (value and adjoint of a ray) and
+cpp/photograd/render/march.h (the loop).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from photograd_course.random import uniform
+
+from photograd.core import _core
+from photograd.errors import Error, RangeError, message
+from photograd.representation import Array, Outputs, RayBatch, RenderOptions
+
+LATTICES = {"origin": 0, "entry": 1}
+QUADRATURES = {"alpha": 0, "riemann": 1}
+BORDERS = {"clamp": 0, "zero": 1}
+ACTIVATIONS = {"identity": 0, "relu": 1, "softplus": 2, "exp": 3, "sigmoid": 4}
+
+
+@dataclass(frozen=True)
+class MarchPolicy:
+    """How a field is marched through.
+
+    lattice: "origin" puts samples at multiples of `dt` from the ray's origin, "entry" from the
+    point where it enters the box. quadrature: "alpha" (1 - exp(-sigma_t dt), second order) or
+    "riemann" (sigma_t dt, first order, kept for the lesson). border: "clamp" continues the
+    outermost voxels, "zero" fades to nothing over one voxel.
+    """
+
+    box: tuple[tuple[float, float, float], tuple[float, float, float]]  # world, metres
+    dt: float  # step in metres
+    lattice: str = "origin"
+    quadrature: str = "alpha"
+    border: str = "clamp"
+    density_activation: str = "softplus"
+    color_activation: str = "sigmoid"
+    density_scale: float = 1.0  # 1/m
+
+    def settings(self, stop: float) -> Any:
+        """The core's form of this policy."""
+        return _core.MarchSettings(
+            box=[list(corner) for corner in self.box],
+            dt=self.dt,
+            stop=stop,
+            lattice=_code("lattice", self.lattice, LATTICES),
+            quadrature=_code("quadrature", self.quadrature, QUADRATURES),
+            border=_code("border", self.border, BORDERS),
+            density_activation=_code("density_activation", self.density_activation, ACTIVATIONS),
+            color_activation=_code("color_activation", self.color_activation, ACTIVATIONS),
+            density_scale=self.density_scale,
+        )
+
+
+def _code(argument: str, value: str, codes: dict[str, int]) -> int:
+    if value not in codes:
+        raise RangeError(message("MarchPolicy", argument, f"one of {list(codes)}", repr(value)))
+    return codes[value]
+
+
+@dataclass(frozen=True)
+class MarchContext:
+    """What the backward pass needs: O(1) per ray."""
+
+    field: str
+    parameters: Array
+    settings: Any
+    origins: Array
+    directions: Array
+    t0: Array
+    samples: Array
+    color: Array
+    transmittance: Array
+    depth: Array
+    camera_adjoint: bool
+    fused: bool
+
+    @property
+    def sample_count(self) -> int:
+        """Number of samples that were placed on all rays."""
+        return int(self.samples.sum(dtype=np.int64))
+
+
+def march(
+    field: str,
+    parameters: Array,
+    policy: MarchPolicy,
+    batch: RayBatch,
+    options: RenderOptions,
+    *,
+    seed: int,
+    step: int,
+    fused: bool = True,
+) -> tuple[Outputs, MarchContext]:
+    """Render rays through a field of the core. Shapes as in `RayBatch` and `Outputs`.
+
+    `fused=False` forces the staged form, the readable oracle of the dense grid's kernel. Raises
+    Error naming the first ray if an output is not finite.
+    """
+    dtype = parameters.dtype
+    origins = np.ascontiguousarray(batch.origins, dtype)
+    directions = np.ascontiguousarray(batch.directions, dtype)
+    settings = policy.settings(options.stop)
+    jitter = None
+    if options.jitter:
+        jitter = uniform(seed, step=step, pixel=batch.pixel, sample=0, dimension=0).astype(dtype)
+    t0, samples = _core.place_samples(settings, origins, directions, jitter)
+    color, transmittance, depth = _core.march(
+        field, parameters, settings, origins, directions, t0, samples, fused
+    )
+    _check_finite(color, transmittance, batch)
+    context = MarchContext(
+        field, parameters, settings, origins, directions, t0, samples,
+        color, transmittance, depth, options.camera_adjoint, fused,
+    )  # fmt: skip
+    return Outputs(color, 1 - transmittance, depth), context
+
+
+def march_backward(context: MarchContext, d_outputs: Outputs) -> dict[str, Array]:
+    """{"parameters": ..., and with camera_adjoint "origins", "directions"} for a march.
+
+    The camera adjoint is the interior term: where a ray enters and leaves the box is held fixed.
+    """
+    c = context
+    rays = len(c.t0)
+    dtype = c.parameters.dtype
+    d_opacity = np.zeros(rays, dtype) if d_outputs.opacity is None else d_outputs.opacity
+    d_depth = np.zeros(rays, dtype) if d_outputs.depth is None else d_outputs.depth
+    gradients = {"parameters": np.zeros_like(c.parameters)}
+    if c.camera_adjoint:
+        gradients["origins"] = np.zeros_like(c.origins)
+        gradients["directions"] = np.zeros_like(c.directions)
+    _core.march_backward(
+        c.field, c.parameters, c.settings, c.origins, c.directions, c.t0, c.samples,
+        c.color, c.transmittance, c.depth,
+        np.ascontiguousarray(d_outputs.color, dtype),
+        np.ascontiguousarray(-d_opacity, dtype),
+        np.ascontiguousarray(d_depth, dtype),
+        gradients["parameters"], gradients.get("origins"), gradients.get("directions"), c.fused,
+    )  # fmt: skip
+    return gradients
+
+
+def _check_finite(color: Array, transmittance: Array, batch: RayBatch) -> None:
+    if np.isfinite(color.sum()) and np.isfinite(transmittance.sum()):
+        return
+    bad = ~(np.isfinite(color).all(axis=1) & np.isfinite(transmittance))
+    first = int(np.flatnonzero(bad)[0]) if bad.any() else 0
+    raise Error(
+        message(
+            "march", "color", "finite values",
+            f"{int(bad.sum())} rays that are not, the first for pixel {int(batch.pixel[first])}",
+            "a parameter or a ray holds NaN or infinity",
+        )
+    )  # fmt: skip

@@ -1,0 +1,271 @@
+"""The fit: render random rays, compare with the photographs, step downhill.
+
+    rays, truth   = pixels drawn by (seed, step)
+    image         = render(rays), over a background
+    loss          = mean squared error on display-encoded values (linear for linear captures)
+    gradient      = render_backward(d_loss), plus the prior's
+    parameters   -= Adam step
+
+Every random number is a function of (seed, step), and everything else that a step depends on is in
+the checkpoint: a resumed run ends with the same bits as an uninterrupted one.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from photograd_course.color import srgb_decode
+from photograd_course.optim import Adam
+from photograd_course.priors import total_variation_squared_backward
+from photograd_course.random import uniform
+from photograd_course.resample import upsample_trilinear
+from photograd_course.schedules import exponential
+
+from photograd.checkpoint import FILE_NAME, Checkpoint, load_checkpoint, save_checkpoint
+from photograd.data.bounds import estimate_bounds
+from photograd.data.capture import Capture
+from photograd.errors import RangeError, message
+from photograd.fields.dense_grid import DenseGrid
+from photograd.fit_options import FitOptions
+from photograd.imaging import image_loss, image_loss_backward
+from photograd.model import model_of
+from photograd.pixels import TrainingPixels
+from photograd.representation import Array, Gradients, RenderOptions, representation
+from photograd.snapshots import save_snapshot, snapshot_steps
+
+
+@dataclass(frozen=True)
+class Progress:
+    """What a progress display gets after a step."""
+
+    step: int
+    steps: int
+    loss: float
+    psnr: float  # of the batch, on the values the loss is taken on
+    resolution: int
+    rays_per_second: float
+
+
+@dataclass(frozen=True)
+class FitResult:
+    """How a fit ended."""
+
+    path: Path
+    step: int
+    finished: bool
+    seconds: float
+    loss: float
+
+
+class Fit:
+    """A fit in progress: parameters, optimiser, step number.
+
+    `Fit.start` begins one, `Fit.resume` continues from a folder; `run` goes on until the end,
+    saving a checkpoint every `checkpoint_seconds` and whenever `should_stop()` says so.
+    """
+
+    def __init__(
+        self, capture: Capture, options: FitOptions, model: DenseGrid, background: Array | None
+    ) -> None:
+        """Use `start` or `resume`."""
+        self.capture = capture
+        self.options = options
+        self.model = model
+        self.background = background  # raw (3,) if learned: colour = sigmoid
+        self.pixels = TrainingPixels(capture.train, capture.color_space)
+        self.optimiser = Adam()
+        self.bounds_rule = "that of the checkpoint"
+        self.step_number = 0
+        self.history: list[tuple[float, float, float]] = []
+
+    @classmethod
+    def start(cls, capture: Capture, options: FitOptions) -> Fit:
+        """Begin from nearly empty space.
+
+        Raises RangeError for an unknown or unfit representation.
+        """
+        kind = representation(options.representation)
+        if kind is not DenseGrid:
+            raise RangeError(
+                message("Fit", "representation", "one that a capture can start: 'dense_grid'",
+                        repr(options.representation))
+            )  # fmt: skip
+        bounds = estimate_bounds(capture)
+        model = DenseGrid.empty(
+            bounds.box, options.levels()[0], finest=options.resolution, sigma_t=options.sigma_t,
+            steps_per_voxel=options.steps_per_voxel,
+        )  # fmt: skip
+        learned = _background_kind(capture, options) == "learned"
+        fit = cls(capture, options, model, np.zeros(3, np.float32) if learned else None)
+        fit.bounds_rule = bounds.rule
+        return fit
+
+    @classmethod
+    def resume(cls, capture: Capture, folder: Path) -> Fit:
+        """Continue the fit that left a checkpoint in `folder`."""
+        saved = load_checkpoint(folder)
+        if saved.meta["split"] != capture.split_hash():
+            raise RangeError(
+                message("Fit.resume", "capture", f"the split {saved.meta['split']} of the checkpoint",
+                        capture.split_hash(), "resume with the capture that the fit was started on")
+            )  # fmt: skip
+        model = model_of(saved, folder)
+        fit = cls(capture, model.options, model.field, saved.params.get("background"))
+        fit.optimiser.load_state(saved.optimiser)
+        fit.step_number = int(saved.meta["step"])
+        fit.history = [tuple(row) for row in saved.history.tolist()]
+        return fit
+
+    def step(self) -> float:
+        """One step of gradient descent; returns the loss before it."""
+        self._refine()
+        chosen = self.pixels.draw(self.options.rays, seed=self.options.seed, step=self.step_number)
+        loss, gradients = self.loss_and_gradients(chosen)
+        self._add_prior(gradients)
+        rate = self.options.learning_rate * exponential(
+            self.options.final_rate, self.options.steps
+        )(self.step_number)
+        rates = {
+            name: spec.learning_rate * rate for name, spec in self.model.param_groups().items()
+        }
+        params = dict(self.model.params)
+        if self.background is not None:
+            params["background"] = self.background
+            rates["background"] = 0.02 * rate
+        self.optimiser.step(params, gradients, rates)
+        psnr = -10 * np.log10(max(loss, 1e-12))
+        self.history.append((self.step_number, loss, float(psnr)))
+        self.step_number += 1
+        return loss
+
+    def loss_and_gradients(self, chosen: Array) -> tuple[float, Gradients]:
+        """Loss of the chosen pixels and its gradient by parameter group, without the prior."""
+        options = RenderOptions(stop=self.options.stop, jitter=True)
+        outputs, context = self.model.render(
+            self.pixels.rays(chosen), seed=self.options.seed, step=self.step_number, options=options
+        )
+        display = self.pixels.color_space == "display"
+        background = self.background_color(len(chosen))
+        loss = image_loss(outputs, self.pixels.premultiplied[chosen], background, display=display)
+        d_outputs, d_background = image_loss_backward(loss)
+        gradients = self.model.render_backward(context, d_outputs)
+        if self.background is not None:
+            color = 1 / (1 + np.exp(-self.background))
+            gradients["background"] = d_background * color * (1 - color)
+        return loss.value, gradients
+
+    def background_color(self, count: int) -> Array:
+        """Linear background of each ray of a batch, (R, 3) or (3,).
+
+        Random backgrounds keep a fit from painting the background into the scene instead of leaving
+        space empty; they are uniform in display values.
+        """
+        kind = _background_kind(self.capture, self.options)
+        if kind == "learned":
+            assert self.background is not None
+            return 1 / (1 + np.exp(-self.background))
+        if kind == "random":
+            index = np.arange(3 * count)
+            u = uniform(
+                self.options.seed, step=self.step_number, pixel=index, sample=1, dimension=0
+            )
+            return srgb_decode(u.reshape(count, 3)).astype(np.float32)
+        return np.full(3, 1.0 if kind == "white" else 0.0, np.float32)
+
+    def run(
+        self,
+        folder: Path,
+        *,
+        on_step: Callable[[Progress], None] | None = None,
+        should_stop: Callable[[], bool] = lambda: False,
+        checkpoint_seconds: float = 30.0,
+    ) -> FitResult:
+        """Step until the end or until `should_stop`; the folder then holds the checkpoint."""
+        folder.mkdir(parents=True, exist_ok=True)
+        began = saved = time.perf_counter()
+        loss = float("nan")
+        keep = snapshot_steps(self.options)
+        if self.step_number == 0:
+            save_snapshot(folder, self.model, self.options, 0)
+        while self.step_number < self.options.steps and not should_stop():
+            before = time.perf_counter()
+            loss = self.step()
+            if self.step_number in keep:
+                save_snapshot(folder, self.model, self.options, self.step_number)
+            now = time.perf_counter()
+            if on_step:
+                on_step(
+                    Progress(
+                        self.step_number, self.options.steps, loss, self.history[-1][2],
+                        max(self.model.params["values"].shape[:3]),
+                        self.options.rays / max(now - before, 1e-9),
+                    )
+                )  # fmt: skip
+            if now - saved > checkpoint_seconds:
+                self.save(folder)
+                saved = time.perf_counter()
+        self.save(folder)
+        finished = self.step_number >= self.options.steps
+        return FitResult(
+            folder / FILE_NAME, self.step_number, finished, time.perf_counter() - began, loss
+        )
+
+    def save(self, folder: Path) -> None:
+        """Write the checkpoint DIR/model.npz atomically."""
+        params = dict(self.model.params)
+        if self.background is not None:
+            params["background"] = self.background
+        meta = {
+            "step": self.step_number,
+            "options": asdict(self.options),
+            "policy": asdict(self.model.policy),
+            "capture": str(self.capture.source),
+            "split": self.capture.split_hash(),
+            "color_space": self.capture.color_space,
+        }
+        history = np.array(self.history, np.float64).reshape(-1, 3)
+        save_checkpoint(
+            folder / FILE_NAME,
+            Checkpoint(meta, params, self.optimiser.state(), self.model.state(), history),
+        )
+
+    def _refine(self) -> None:
+        """Go to a finer grid where the schedule says so; the optimiser's moments go along."""
+        size = self.options.levels().get(self.step_number)
+        if size is None or size == max(self.model.params["values"].shape[:3]):
+            return
+        self.model = self.model.refined(size, steps_per_voxel=self.options.steps_per_voxel)
+        x, y, z = self.model.params["values"].shape[:3]
+        self.optimiser.resample("values", lambda moment: upsample_trilinear(moment, (x, y, z)))
+
+    def _add_prior(self, gradients: Gradients) -> None:
+        """Total variation on a random slab of an eighth of the grid, which stands for the whole."""
+        weight = self.options.total_variation
+        if weight == 0:
+            return
+        values = self.model.params["values"]
+        planes = max(2, len(values) // 8)
+        u = uniform(self.options.seed, step=self.step_number, pixel=0, sample=2, dimension=0)
+        start = int(u * (len(values) - planes + 1))
+        total_variation_squared_backward(
+            values[start : start + planes], weight, gradients["values"][start : start + planes]
+        )
+
+
+def _background_kind(capture: Capture, options: FitOptions) -> str:
+    if options.background == "auto":
+        return "random" if capture.has_alpha else "learned"
+    return options.background
+
+
+def summary(result: FitResult) -> dict[str, Any]:
+    """A fit's result for the machine-readable last line."""
+    return {
+        "model": str(result.path), "step": result.step, "finished": result.finished,
+        "seconds": round(result.seconds, 3), "loss": result.loss,
+    }  # fmt: skip

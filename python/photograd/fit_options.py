@@ -1,0 +1,76 @@
+"""What a fit is asked to do.
+
+Stored in every checkpoint, so that a run can be resumed and explained.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from photograd.errors import RangeError, message
+
+BACKGROUNDS = ("random", "white", "black", "learned")
+
+
+@dataclass(frozen=True)
+class FitOptions:
+    """Options of `photograd.fit.Fit`. The defaults recover 128^3 voxels from a hundred 200 x 200 views.
+
+    Coarse to fine: the fit starts at `resolution` / 4, and is refined to / 2 and to the whole at the
+    fractions `refine_at` of its steps.
+    """
+
+    representation: str = "dense_grid"
+    resolution: int = 128  # voxels along the longest edge of the box
+    steps: int = 1500
+    rays: int = 8192  # a step
+    seed: int = 0
+    learning_rate: float = 1.0  # factor on the representation's own rates
+    final_rate: float = 0.1  # fraction of the rate that is left at the end (exponential decay)
+    total_variation: float = 3e-5  # weight of the prior, 0 switches it off
+    background: str = "auto"  # random where the capture has alpha, else learned
+    stop: float = 1e-4  # early stop of rays; the discarded light is below this fraction
+    steps_per_voxel: float = 1.5
+    refine_at: tuple[float, float] = (0.15, 0.4)
+    sigma_t: float = 0.1  # 1/m, density of the start
+
+    def __post_init__(self) -> None:
+        """Raises RangeError, naming the option."""
+        positive = (
+            "resolution",
+            "steps",
+            "rays",
+            "learning_rate",
+            "final_rate",
+            "steps_per_voxel",
+            "sigma_t",
+        )
+        for name in positive:
+            if not getattr(self, name) > 0:
+                raise RangeError(
+                    message("FitOptions", name, "a positive number", f"{getattr(self, name)}")
+                )
+        for name in ("total_variation", "stop"):
+            if not getattr(self, name) >= 0:
+                raise RangeError(
+                    message("FitOptions", name, "zero or more", f"{getattr(self, name)}")
+                )
+        if self.background not in (*BACKGROUNDS, "auto"):
+            raise RangeError(
+                message("FitOptions", "background", f"one of {BACKGROUNDS}", repr(self.background))
+            )
+        if not 0 <= self.refine_at[0] <= self.refine_at[1] < 1:
+            raise RangeError(
+                message(
+                    "FitOptions", "refine_at", "two rising fractions below 1", f"{self.refine_at}"
+                )
+            )
+
+    def levels(self) -> dict[int, int]:
+        """{first step: resolution} of the coarse-to-fine schedule; never below 8 voxels."""
+        starts = (0, int(self.refine_at[0] * self.steps), int(self.refine_at[1] * self.steps))
+        sizes = (self.resolution // 4, self.resolution // 2, self.resolution)
+        levels: dict[int, int] = {}
+        for start, size in zip(starts, sizes, strict=True):
+            levels[start] = min(max(size, 8), self.resolution)
+        return levels

@@ -1,0 +1,54 @@
+"""A recovered scene, ready to be rendered: the field, its background, the fit's record."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from photograd.checkpoint import Checkpoint, load_checkpoint
+from photograd.errors import IoError, message
+from photograd.fields.dense_grid import DenseGrid
+from photograd.fields.march import MarchPolicy
+from photograd.fit_options import FitOptions
+from photograd.representation import Array
+
+
+@dataclass(frozen=True)
+class Model:
+    """A field with the linear background (3,) that was learned with it, or None."""
+
+    field: DenseGrid
+    background: Array | None
+    options: FitOptions
+    meta: dict[str, Any]
+    history: Array  # (n, 3): step, loss, PSNR of the batch
+
+
+def load_model(path: Path) -> Model:
+    """Load the model that a fit left in `path` (its folder, or the file). Raises IoError."""
+    return model_of(load_checkpoint(path), path)
+
+
+def model_of(saved: Checkpoint, path: Path) -> Model:
+    """The model in a checkpoint.
+
+    Raises IoError if the checkpoint's contents do not fit together.
+    """
+    try:
+        policy = dict(saved.meta["policy"])
+        policy["box"] = tuple(tuple(corner) for corner in policy["box"])
+        stored = dict(saved.meta["options"])
+        stored["refine_at"] = tuple(stored["refine_at"])
+        field = DenseGrid(saved.params["values"], MarchPolicy(**policy))
+        options = FitOptions(**stored)
+    except (KeyError, TypeError) as failure:
+        raise IoError(
+            message("load_model", f"{path}", "a checkpoint with policy, options and values",
+                    f"one without ({failure})", "the file is from another version or damaged")
+        ) from failure  # fmt: skip
+    raw = saved.params.get("background")
+    background = None if raw is None else 1 / (1 + np.exp(-raw.astype(np.float64)))
+    return Model(field, background, options, saved.meta, saved.history)

@@ -1,0 +1,73 @@
+"""The pixels a fit learns from: all training views, drawn at random, with their rays."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from photograd_course.color import srgb_decode
+from photograd_course.random import uniform_int
+
+from photograd.data.view import View
+from photograd.errors import RangeError, message
+from photograd.representation import Array, RayBatch
+
+
+class TrainingPixels:
+    """Premultiplied linear colour and alpha of every valid pixel, and the cameras they belong to.
+
+    Attributes:
+        premultiplied: (P, 4) float32, linear Rec. 709 times alpha, alpha. color_space: "display" if
+        the files were 8-bit sRGB (the loss is then taken on encoded values).
+    """
+
+    def __init__(self, views: Sequence[View], color_space: str) -> None:
+        """Reads every image once. Raises what reading an image raises."""
+        if not views:
+            raise RangeError(message("TrainingPixels", "views", "at least one view", "none"))
+        self.color_space = color_space
+        self.names = [view.name for view in views]
+        cameras = [view.camera for view in views]
+        self._width = np.array([camera.width for camera in cameras], np.int64)
+        self._intrinsics = np.array([[c.fx, c.fy, c.cx, c.cy] for c in cameras])
+        self._rotation = np.stack([c.world_from_camera[:3, :3] for c in cameras])
+        self._position = np.stack([c.world_from_camera[:3, 3] for c in cameras])
+        colors, owners, ids = [], [], []
+        for index, view in enumerate(views):
+            rgba = view.rgba().reshape(-1, 4)
+            valid = np.flatnonzero(view.valid_mask().ravel())
+            colors.append(_premultiplied_linear(rgba[valid], color_space))
+            owners.append(np.full(len(valid), index, np.int32))
+            ids.append(valid.astype(np.int32))
+        self.premultiplied: NDArray[np.float32] = np.concatenate(colors)
+        self._view: NDArray[np.int32] = np.concatenate(owners)
+        self._pixel: NDArray[np.int32] = np.concatenate(ids)
+
+    def __len__(self) -> int:
+        return len(self._view)
+
+    def draw(self, count: int, *, seed: int, step: int) -> NDArray[np.int64]:
+        """`count` pixel numbers, uniform with replacement: a function of seed and step alone."""
+        draw = np.arange(count)
+        return uniform_int(seed, len(self), step=step, pixel=draw, sample=0, dimension=0)
+
+    def rays(self, chosen: NDArray[np.int64]) -> RayBatch:
+        """The rays through the centres of the chosen pixels."""
+        view = self._view[chosen]
+        pixel = self._pixel[chosen]
+        width = self._width[view]
+        fx, fy, cx, cy = self._intrinsics[view].T
+        local = np.stack(
+            [(pixel % width + 0.5 - cx) / fx, (pixel // width + 0.5 - cy) / fy, np.ones(len(view))],
+            axis=-1,
+        )
+        local /= np.linalg.norm(local, axis=-1, keepdims=True)
+        directions = np.einsum("rij,rj->ri", self._rotation[view], local)
+        return RayBatch(self._position[view], directions, chosen.astype(np.uint32))
+
+
+def _premultiplied_linear(rgba: Array, color_space: str) -> NDArray[np.float32]:
+    color = srgb_decode(rgba[:, :3]) if color_space == "display" else rgba[:, :3]
+    alpha = rgba[:, 3:]
+    return np.concatenate([color * alpha, alpha], axis=1, dtype=np.float32)

@@ -1,0 +1,174 @@
+"""The protocol that every scene representation speaks, and the registry of those that exist.
+
+One optimiser loop (`photograd.fit`), one gradient viewer and one set of proofs serve everything
+that is registered here. Parameters are NumPy arrays; what is expensive to rebuild lives in C++
+objects.
+"""
+
+from __future__ import annotations
+
+import difflib
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, ClassVar, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+from photograd_course.row_map import RowMap
+
+from photograd.errors import RangeError, ShapeError, message
+
+Array: TypeAlias = NDArray[Any]
+Gradients: TypeAlias = dict[str, Array]
+"""dL/d parameter by group: an array of the parameter's shape, or a pair (rows, values)."""
+
+
+@dataclass(frozen=True)
+class ParamSpec:
+    """What an optimiser, a picture and a proof must know about one group of parameters."""
+
+    shape: tuple[int, ...]
+    unit: str  # "1" for pure numbers
+    range: tuple[float, float]  # values that make sense; proofs draw from its inside
+    learning_rate: float  # for Adam
+    frame: str  # where positions live: "world", "grid", "canvas", "none"
+
+
+@dataclass(frozen=True)
+class RayBatch:
+    """Rays: world origins (R, 3) in metres, unit directions (R, 3), pixel numbers (R,).
+
+    `pixel` feeds the random numbers (jitter), so that a ray's numbers do not depend on its batch.
+    """
+
+    origins: Array
+    directions: Array
+    pixel: NDArray[np.uint32]
+
+    def __post_init__(self) -> None:
+        count = len(self.pixel)
+        for name, array in (("origins", self.origins), ("directions", self.directions)):
+            if array.shape != (count, 3):
+                raise ShapeError(message("RayBatch", name, f"shape ({count}, 3)", f"{array.shape}"))
+
+
+@dataclass(frozen=True)
+class CanvasBatch:
+    """Points (N, 2) on a 2D canvas, x to the right and y down, both in [0, 1]."""
+
+    points: Array
+
+
+@dataclass(frozen=True)
+class RenderOptions:
+    """Policies of one rendering. The defaults are those of proofs: no early stop, no jitter."""
+
+    stop: float = 0.0  # transmittance below which a ray ends; 0 is off
+    jitter: bool = False  # move each ray's lattice by a random fraction of a step
+    camera_adjoint: bool = False  # render_backward also returns "origins" and "directions"
+
+
+@dataclass(frozen=True)
+class Outputs:
+    """One rendering. `color` (R, 3) is premultiplied and without background; opacity and depth (R,).
+
+    depth is the sum of weight * distance in metres: divide by opacity for a mean distance.
+    """
+
+    color: Array
+    opacity: Array | None = None
+    depth: Array | None = None
+
+
+class Representation(ABC):
+    """A scene as arrays of parameters, rendered and differentiated."""
+
+    name: ClassVar[str]
+    capabilities: ClassVar[frozenset[str]]  # of "rays", "image", "canvas2d", "path"
+    color_space: ClassVar[str] = "linear"
+    params: dict[str, Array]
+
+    @classmethod
+    @abstractmethod
+    def example(cls, *, seed: int, dtype: type[np.floating[Any]] = np.float64) -> Representation:
+        """A small instance with lively values, for proofs and pictures."""
+
+    @abstractmethod
+    def example_batch(self, *, seed: int) -> Any:
+        """A batch that sees something of `example`."""
+
+    @abstractmethod
+    def param_groups(self) -> Mapping[str, ParamSpec]:
+        """Every group of parameters, by name."""
+
+    @abstractmethod
+    def render(
+        self, batch: Any, *, seed: int, step: int, options: RenderOptions
+    ) -> tuple[Outputs, Any]:
+        """Outputs for the batch, and the context that `render_backward` needs."""
+
+    @abstractmethod
+    def render_backward(self, context: Any, d_outputs: Outputs) -> Gradients:
+        """dL/d parameters for the rendering that left `context`, given dL/d outputs."""
+
+    def priors(self) -> Sequence[Prior]:
+        """Regularisers that make sense for this representation."""
+        return ()
+
+    def refine(self, step: int, statistics: Mapping[str, Array]) -> RowMap | None:
+        """Change the number of rows of the parameters; None if nothing changed.
+
+        The optimiser applies the returned map (rows kept, cloned, split, added) to its own state.
+        """
+        del step, statistics
+        return None
+
+    def state(self) -> dict[str, Array]:
+        """What is neither a parameter nor derived from them, for checkpoints."""
+        return {}
+
+    def load_state(self, state: Mapping[str, Array]) -> None:
+        """Restore what `state` returned."""
+        if state:
+            raise RangeError(
+                message(f"{self.name}.load_state", "state", "no entries", f"{sorted(state)}")
+            )
+
+
+@dataclass(frozen=True)
+class Prior:
+    """A regulariser: `value(params)` and `gradient(params)`, both before the weight is applied."""
+
+    name: str
+    group: str
+    value: Any
+    gradient: Any
+
+
+_REGISTRY: dict[str, type[Representation]] = {}
+
+
+def register(cls: type[Representation]) -> type[Representation]:
+    """Class decorator: makes a representation known to fit, viewers and proofs under `cls.name`."""
+    _REGISTRY[cls.name] = cls
+    return cls
+
+
+def representations() -> dict[str, type[Representation]]:
+    """All registered representations by name."""
+    import photograd.fields  # noqa: F401  registration happens on import
+
+    return dict(_REGISTRY)
+
+
+def representation(name: str) -> type[Representation]:
+    """The representation called `name`; an unknown name is answered with the nearest known one."""
+    known = representations()
+    if name in known:
+        return known[name]
+    near = difflib.get_close_matches(name, known, n=1)
+    remedy = f"did you mean {near[0]!r}?" if near else "choose one of these"
+    raise RangeError(
+        message("representation", "name", f"one of {sorted(known)}", repr(name), remedy)
+    )

@@ -1,0 +1,44 @@
+"""The model at a few chosen steps of a fit, for pictures of how it came about."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from pathlib import Path
+
+import numpy as np
+
+from photograd.checkpoint import Checkpoint, load_checkpoint, save_checkpoint
+from photograd.fields.dense_grid import DenseGrid
+from photograd.fit_options import FitOptions
+from photograd.model import model_of
+
+FRACTIONS = (0.0, 0.03, 0.1, 0.3, 1.0)
+
+
+def snapshot_steps(options: FitOptions) -> set[int]:
+    """The steps after which a fit keeps a snapshot; step 0 is the start."""
+    return {int(fraction * options.steps) for fraction in FRACTIONS}
+
+
+def snapshot_file(folder: Path, step: int) -> Path:
+    """Where the snapshot of a step lies."""
+    return folder / "snapshots" / f"step_{step:06d}.npz"
+
+
+def save_snapshot(folder: Path, field: DenseGrid, options: FitOptions, step: int) -> None:
+    """Write the field as it is now."""
+    meta = {"policy": asdict(field.policy), "options": asdict(options), "step": step}
+    snapshot_file(folder, step).parent.mkdir(parents=True, exist_ok=True)
+    save_checkpoint(
+        snapshot_file(folder, step), Checkpoint(meta, dict(field.params), {}, {}, np.zeros((0, 3)))
+    )
+
+
+def load_snapshots(folder: Path) -> dict[int, DenseGrid]:
+    """{step: field} of all snapshots of a fit, in order; empty if it kept none."""
+    place = folder if folder.is_dir() else folder.parent
+    found = {}
+    for file in sorted((place / "snapshots").glob("step_*.npz")):
+        saved = load_checkpoint(file)
+        found[int(saved.meta["step"])] = model_of(saved, file).field
+    return found
