@@ -186,6 +186,17 @@ def test_colmap_camera_models(
     assert view.distortion == lens
 
 
+def test_images_without_a_pose_are_reported(tmp_path: Path) -> None:
+    for name in ("blender", "nerfstudio", "colmap text", "opensfm"):
+        folder = tmp_path / name.replace(" ", "_")
+        WRITERS[name](folder)
+        assert not any("without a pose" in line for line in load_capture(folder).conversions)
+        images = folder / ("train" if name == "blender" else "images")
+        Image.new("RGBA", (3, 3)).save(images / "extra.png")
+        lines = load_capture(folder).conversions
+        assert "1 images without a pose, not used: extra.png" in lines
+
+
 def test_limit_and_downscale(tmp_path: Path) -> None:
     WRITERS["blender"](tmp_path)
     capture = load_capture(tmp_path, limit=3, downscale=3)

@@ -101,14 +101,18 @@ def make_camera(
         raise type(error)(f"{function}: {frame}: {error}") from error
 
 
-def images_without_pose(folder: Path, used: Sequence[Path]) -> list[str]:
-    """Names of the image files in `folder` that no view uses."""
-    known = {path.resolve() for path in used}
-    return sorted(
-        entry.name
-        for entry in folder.iterdir()
-        if entry.suffix.lower() in IMAGE_SUFFIXES and entry.resolve() not in known
-    )
+def unused_images(photographs: Sequence[Photograph]) -> list[str]:
+    """A sentence for the log if images lie beside the used ones that no pose belongs to.
+
+    Another form of a used image, such as its radiance beside its PNG, does not count.
+    """
+    used = {photograph.file.with_suffix("") for photograph in photographs}
+    folders = sorted({photograph.file.parent for photograph in photographs})
+    left = [x for folder in folders for x in list_images(folder) if x.with_suffix("") not in used]
+    if not left:
+        return []
+    names = ", ".join(path.name for path in left[:4]) + (", ..." if len(left) > 4 else "")
+    return [f"{len(left)} images without a pose, not used: {names}"]
 
 
 def list_images(folder: Path) -> list[Path]:

@@ -18,6 +18,7 @@ from .assemble import (
     common_color,
     find_photograph,
     make_camera,
+    unused_images,
 )
 from .capture import Capture, check_box
 from .convention import check_convention
@@ -57,6 +58,7 @@ def load_blender(
     check_same_size(_NAME, found)
     space, has_alpha, lines = common_color(_NAME, [photograph for _, photograph in found])
     lines = ["OpenGL camera -> OpenCV", "+Z up -> +Y up", *lines]
+    lines.extend(unused_images([photograph for _, photograph in found]))
     if not views.get("test"):
         views["train"], views["test"], line = hold_out(views["train"])
         lines.append(line)

@@ -91,22 +91,17 @@ class Capture:
         """
         if factor == 1:
             return self
-        cut = sorted(
-            {
-                f"{view.camera.width} x {view.camera.height}"
-                for view in self.views
-                if view.camera.width % factor or view.camera.height % factor
-            }
-        )
-        rest = f", rest of {', '.join(cut)} cut off at right and bottom" if cut else ""
-        line = f"images reduced by a {factor} x {factor} box average in premultiplied alpha{rest}"
-        return replace(
+        smaller = replace(
             self,
             train=tuple(view.downscaled(factor) for view in self.train),
             val=tuple(view.downscaled(factor) for view in self.val),
             test=tuple(view.downscaled(factor) for view in self.test),
-            conversions=(*self.conversions, line),
         )
+        sizes = {(view.camera.width, view.camera.height) for view in self.views}
+        cut = sorted(f"{w} x {h}" for w, h in sizes if w % factor or h % factor)
+        rest = f", rest of {', '.join(cut)} cut off at right and bottom" if cut else ""
+        line = f"images reduced by a {factor} x {factor} box average in premultiplied alpha{rest}"
+        return smaller.with_line(line)
 
     def limited(self, count: int) -> Capture:
         """The same capture with at most `count` views in each split, evenly spaced in their order.

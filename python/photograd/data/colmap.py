@@ -13,9 +13,9 @@ from .assemble import (
     check_size,
     common_color,
     find_photograph,
-    images_without_pose,
     make_camera,
     transform_points,
+    unused_images,
 )
 from .camera import Camera
 from .capture import Capture
@@ -76,9 +76,7 @@ def load_colmap(folder: Path, *, trust_poses: bool = False) -> Capture:
     bent = sum(view.distortion is not None for view in views)
     if bent:
         lines.append(f"lens distortion removed on reading from {bent} of {len(views)} images")
-    unused = images_without_pose(image_folder, [photograph.file for photograph in photographs])
-    if unused:
-        lines.append(f"images without a pose, not used: {', '.join(unused[:8])} ({len(unused)})")
+    lines.extend(unused_images(photographs))
     train, test, split_line = hold_out(views)
     points = None
     if model.points is not None and len(model.points.ids):

@@ -23,6 +23,12 @@ from . import exr
 ColorSpace: TypeAlias = Literal["display", "linear"]
 ImageArray: TypeAlias = npt.NDArray[np.float32]
 
+ALPHA_SLACK = 0.01
+"""How far a lossy compression may push alpha out of 0..1."""
+
+LARGEST_RADIANCE = 1e12
+"""A thousand times the sun's disc; beyond it, squares of radiance leave the range of float."""
+
 IMAGE_SUFFIXES = (".png", ".jpg", ".jpeg", ".exr")
 
 _DECODE_ERRORS = (
@@ -87,7 +93,7 @@ def read_image(path: Path) -> ImageArray:
     """
     _require_file("read_image", path)
     if path.suffix.lower() == ".exr":
-        return _straight(exr.read_exr(path))
+        return _straight(_checked(path, exr.read_exr(path)))
     try:
         with Image.open(path) as opened:
             _require_mode("read_image", path, opened)
@@ -96,6 +102,19 @@ def read_image(path: Path) -> ImageArray:
         raise
     except _DECODE_ERRORS as error:
         raise _unreadable("read_image", path, error) from error
+
+
+def _checked(path: Path, stored: ImageArray) -> ImageArray:
+    """Refuse linear pixels that cannot be radiance with coverage; clamp what compression left."""
+    alpha = stored[..., 3]
+    if float(alpha.min()) < -ALPHA_SLACK or float(alpha.max()) > 1.0 + ALPHA_SLACK:
+        got = f"{float(alpha.min()):.6g} to {float(alpha.max()):.6g}"
+        raise IoError(message("read_image", str(path), "alpha in 0..1", got))
+    largest = float(np.abs(stored[..., :3]).max())
+    if largest > LARGEST_RADIANCE:
+        raise IoError(message("read_image", str(path), "radiance below 1e12", f"{largest:.6g}"))
+    stored[..., 3] = alpha.clip(0.0, 1.0)
+    return stored
 
 
 def _pixels(path: Path, opened: Image.Image) -> ImageArray:
@@ -136,11 +155,16 @@ def _with_channels(array: ImageArray) -> ImageArray:
     return np.ascontiguousarray(np.concatenate([color, alpha], axis=2), dtype=np.float32)
 
 
+SMALLEST_ALPHA = 1e-6
+"""Below it a pixel counts as transparent: its colour is left as it is, since division would only
+magnify rounding errors, up to infinity."""
+
+
 def _straight(premultiplied: ImageArray) -> ImageArray:
-    """Divide colour by alpha where alpha is positive; elsewhere leave it as it is."""
+    """Divide colour by alpha where alpha is not negligible."""
     result = premultiplied.copy()
     alpha = premultiplied[..., 3:]
-    np.divide(result[..., :3], alpha, out=result[..., :3], where=alpha > 0.0)
+    np.divide(result[..., :3], alpha, out=result[..., :3], where=alpha > SMALLEST_ALPHA)
     return result
 
 

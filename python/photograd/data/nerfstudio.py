@@ -17,6 +17,7 @@ from .assemble import (
     common_color,
     find_photograph,
     make_camera,
+    unused_images,
 )
 from .capture import Capture
 from .convention import check_convention
@@ -57,6 +58,7 @@ def load_nerfstudio(path: Path, *, trust_poses: bool = False) -> Capture:
     world_from_source, up_line = world_from_estimated_up(poses, declared_z_up=True)
     views = [view.turned(world_from_source) for view in views]
     lines = ["OpenGL camera -> OpenCV", up_line, *_remarks(root, views), *lines]
+    lines.extend(unused_images(photographs))
     if not trust_poses:
         lines.extend(check_convention(_NAME, views, world_from_source, up_is_known=False))
     splits, split_line = _split(root, views)

@@ -18,9 +18,9 @@ from .assemble import (
     background_of,
     common_color,
     find_photograph,
-    images_without_pose,
     make_camera,
     transform_points,
+    unused_images,
 )
 from .capture import Capture
 from .convention import check_convention
@@ -60,9 +60,7 @@ def load_opensfm(path: Path, *, trust_poses: bool = False) -> Capture:
     bent = sum(view.distortion is not None for view in views)
     if bent:
         lines.append(f"lens distortion removed on reading from {bent} of {len(views)} images")
-    unused = images_without_pose(image_folder, [photograph.file for photograph in photographs])
-    if unused:
-        lines.append(f"images without a pose, not used: {', '.join(unused[:8])} ({len(unused)})")
+    lines.extend(unused_images(photographs))
     if not trust_poses:
         lines.extend(check_convention(_NAME, views, Y_UP_FROM_Z_UP, up_is_known=True))
     train, test, split_line = hold_out(views)
