@@ -22,6 +22,17 @@ py::array_t<std::uint32_t> philox(const py::array& counter, const py::array& key
     return words;
 }
 
+py::array_t<double> uniform_numbers(std::uint64_t seed, std::uint32_t step, const py::array& pixel,
+                                    std::uint32_t sample, std::uint32_t dimension) {
+    ArrayArgs args("uniform");
+    const std::uint32_t* pixels = args.in<std::uint32_t>("pixel", pixel, "N");
+    py::array_t<double> u(pixel.shape(0));
+    double* out = u.mutable_data();
+    for (std::int64_t i = 0; i < args.size("N"); ++i)
+        out[i] = uniform<double>({seed, step, pixels[i], sample}, dimension);
+    return u;
+}
+
 template <class Function>
 py::array map_real(const char* name, const py::array& x, Function&& function) {
     return dispatch_real(name, "x", x, [&](auto real) -> py::array {
@@ -45,6 +56,9 @@ void bind_core(py::module_& m) {
           "Name of the kernels in use: baseline, v3 or v4.");
     m.def("philox4x32", &philox, py::arg("counter"), py::arg("key"),
           "Philox4x32-10 words (N, 4) uint32 of counters (N, 4) under keys (N, 2).");
+    m.def("uniform", &uniform_numbers, py::arg("seed"), py::arg("step"), py::arg("pixel"),
+          py::arg("sample"), py::arg("dimension"),
+          "Uniform numbers (N,) in [0, 1) for pixels (N,), as photograd_course.random defines them.");
     m.def("exp", [](const py::array& x) { return map_real("exp", x, [](auto v) { return exp(v); }); },
           py::arg("x"), "The portable exp on a flat array.");
     m.def("expm1",
