@@ -24,7 +24,7 @@ from PIL import Image
 
 from support import capture_files as files
 
-pytestmark = [pytest.mark.fuzz, pytest.mark.filterwarnings("ignore::RuntimeWarning")]
+pytestmark = pytest.mark.fuzz
 
 SECONDS = float(os.environ.get("PHOTOGRAD_FUZZ_SECONDS", "0.8"))
 EXAMPLES_A_ROUND = 12
