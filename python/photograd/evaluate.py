@@ -126,8 +126,8 @@ def protocol(model: Model, views: Sequence[View]) -> str:
     size = ", ".join(f"{w}x{h}" for w, h in sizes)
     behind = "white" if model.background is None else "white, render over its learned background"
     return (
-        f"{len(views)} held-out views at {size}, composited over {behind} in sRGB, rounded to 8 bits; "
-        "mean of per-view PSNR and SSIM (11x11 Gaussian window)"
+        f"{len(views)} held-out views at {size}, composited over {behind} in sRGB, "
+        "rounded to 8 bits; mean of per-view PSNR and SSIM (11x11 Gaussian window)"
     )
 
 

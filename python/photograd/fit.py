@@ -111,7 +111,7 @@ class Fit:
         saved = load_checkpoint(folder)
         if saved.meta["split"] != capture.split_hash():
             raise RangeError(
-                message("Fit.resume", "capture", f"the split {saved.meta['split']} of the checkpoint",
+                message("Fit.resume", "capture", f"the checkpoint's split {saved.meta['split']}",
                         capture.split_hash(), "resume with the capture that the fit was started on")
             )  # fmt: skip
         model = model_of(saved, folder)

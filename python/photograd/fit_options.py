@@ -14,10 +14,10 @@ BACKGROUNDS = ("random", "white", "black", "learned")
 
 @dataclass(frozen=True)
 class FitOptions:
-    """Options of `photograd.fit.Fit`. The defaults recover 128^3 voxels from a hundred 200 x 200 views.
+    """Options of `photograd.fit.Fit`; the defaults suit 128^3 voxels and a hundred 200 x 200 views.
 
-    Coarse to fine: the fit starts at `resolution` / 4, and is refined to / 2 and to the whole at the
-    fractions `refine_at` of its steps.
+    Coarse to fine: the fit starts at `resolution` / 4, and is refined to / 2 and to the whole at
+    the fractions `refine_at` of its steps.
     """
 
     representation: str = "dense_grid"

@@ -71,9 +71,10 @@ class RenderOptions:
 
 @dataclass(frozen=True)
 class Outputs:
-    """One rendering. `color` (R, 3) is premultiplied and without background; opacity and depth (R,).
+    """One rendering of R rays or points. `color` (R, 3) is premultiplied, without background.
 
-    depth is the sum of weight * distance in metres: divide by opacity for a mean distance.
+    opacity (R,); depth (R,) is the sum of weight * distance in metres: divide by opacity for a mean
+    distance. Both are None where the representation has no such thing, as on a canvas.
     """
 
     color: Array

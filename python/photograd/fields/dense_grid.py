@@ -39,7 +39,7 @@ class DenseGrid(Representation):
     capabilities: ClassVar[frozenset[str]] = frozenset({"rays"})
 
     def __init__(self, values: Array, policy: MarchPolicy, *, fused: bool = True) -> None:
-        """Raises ShapeError unless values is (X, Y, Z, 4) with X, Y, Z >= 2; Error if not finite."""
+        """Raises ShapeError unless values is (X, Y, Z, 4), X Y Z >= 2; Error if not finite."""
         if values.ndim != 4 or values.shape[3] != 4 or min(values.shape[:3]) < 2:
             raise ShapeError(
                 message("DenseGrid", "values", "shape (X, Y, Z, 4), X Y Z >= 2", f"{values.shape}")
@@ -69,8 +69,9 @@ class DenseGrid(Representation):
         """A nearly transparent grey grid of cubic voxels over `box` (2, 3), world metres.
 
         `resolution` counts voxels along the longest edge; the box grows a little so that voxels are
-        cubes. `finest` is the resolution that a coarse-to-fine fit will end with: it fixes the density
-        scale, so that a parameter keeps its meaning from level to level. `sigma_t` (1/m) is the start.
+        cubes. `finest` is the resolution that a coarse-to-fine fit will end with: it fixes the
+        density scale, so that a parameter keeps its meaning from level to level. `sigma_t` (1/m) is
+        the start. Raises RangeError for a bad box or fewer than 2 voxels.
         """
         if resolution < 2:
             raise RangeError(
@@ -141,14 +142,14 @@ class DenseGrid(Representation):
         return RayBatch(origins, directions, pixel)
 
     def param_groups(self) -> Mapping[str, ParamSpec]:
-        """One group. Adam moves an entry by about its rate: density_scale sets the pace of sigma_t."""
+        """One group. Adam moves an entry by about its rate, sigma_t by density_scale times it."""
         shape = self.params["values"].shape
         return {"values": ParamSpec(shape, "1", (-10.0, 1e4), 0.5, "grid")}
 
     def render(
         self, batch: RayBatch, *, seed: int, step: int, options: RenderOptions
     ) -> tuple[Outputs, MarchContext]:
-        """Colour (R, 3) linear, premultiplied, without background; opacity (R,); depth (R,) in m."""
+        """Colour (R, 3) linear, premultiplied, without background; opacity (R,); depth (R,) m."""
         return march(
             "dense_grid", self.params["values"], self.policy, batch, options,
             seed=seed, step=step, fused=self.fused,
