@@ -19,7 +19,8 @@ struct SampleBlock {
     Lanes<float> raw[4];  // r, g, b, density before activation
     Lanes<float> sigma_t, rgb[3];
     int base[3][lane_count];
-    Lanes<float> w0[3], w1[3];
+    Lanes<float> row[4];     // weights of the four rows (x, y): 00 01 10 11
+    Lanes<float> z0, z1;     // weights of the two ends of a row
 };
 
 // Positions of samples k0, k0 + 1, ... and their cells and weights.
@@ -36,6 +37,7 @@ static inline void place_block(const MarchDenseArgs& a, std::int64_t ray, int k0
 
 static inline void weigh_block(const MarchDenseArgs& a, SampleBlock& b) {
     const Border border = static_cast<Border>(a.border);
+    Lanes<float> w0[3], w1[3];
     for (int axis = 0; axis < 3; ++axis) {
         const float lo = a.lo[axis], scale = a.scale[axis];
         const int n = a.shape[axis];
@@ -43,26 +45,36 @@ static inline void weigh_block(const MarchDenseArgs& a, SampleBlock& b) {
             const AxisWeights<float> w =
                 axis_weights((b.p[axis][i] - lo) * scale - 0.5f, n, border);
             b.base[axis][i] = w.base;
-            b.w0[axis][i] = w.w0;
-            b.w1[axis][i] = w.w1;
+            w0[axis][i] = w.w0;
+            w1[axis][i] = w.w1;
         }
     }
+    for (int i = 0; i < lane_count; ++i) {
+        b.row[0][i] = w0[0][i] * w0[1][i];
+        b.row[1][i] = w0[0][i] * w1[1][i];
+        b.row[2][i] = w1[0][i] * w0[1][i];
+        b.row[3][i] = w1[0][i] * w1[1][i];
+    }
+    b.z0 = w0[2];
+    b.z1 = w1[2];
 }
 
 static inline void look_up_block(const MarchDenseArgs& a, SampleBlock& b) {
     const long long to_y = static_cast<long long>(a.shape[2]) * 4;
     const long long to_x = a.shape[1] * to_y;
+    int voxel[lane_count];
+    for (int i = 0; i < lane_count; ++i)
+        voxel[i] = (b.base[0][i] * a.shape[1] + b.base[1][i]) * a.shape[2] + b.base[2][i];
     alignas(64) float found[lane_count][4];
     for (int i = 0; i < lane_count; ++i) {
-        const float* row = a.values + b.base[0][i] * to_x + b.base[1][i] * to_y + b.base[2][i] * 4;
-        const float x0 = b.w0[0][i], x1 = b.w1[0][i], y0 = b.w0[1][i], y1 = b.w1[1][i];
-        const Float8 ends = ((x0 * y0 * *reinterpret_cast<const Float8*>(row) +
-                              x0 * y1 * *reinterpret_cast<const Float8*>(row + to_y)) +
-                             x1 * y0 * *reinterpret_cast<const Float8*>(row + to_x)) +
-                            x1 * y1 * *reinterpret_cast<const Float8*>(row + to_x + to_y);
+        const float* row = a.values + static_cast<long long>(voxel[i]) * 4;
+        const Float8 ends = ((b.row[0][i] * *reinterpret_cast<const Float8*>(row) +
+                              b.row[1][i] * *reinterpret_cast<const Float8*>(row + to_y)) +
+                             b.row[2][i] * *reinterpret_cast<const Float8*>(row + to_x)) +
+                            b.row[3][i] * *reinterpret_cast<const Float8*>(row + to_x + to_y);
         const Float4 near = {ends[0], ends[1], ends[2], ends[3]};
         const Float4 far = {ends[4], ends[5], ends[6], ends[7]};
-        *reinterpret_cast<Float4*>(found[i]) = near * b.w0[2][i] + far * b.w1[2][i];
+        *reinterpret_cast<Float4*>(found[i]) = near * b.z0[i] + far * b.z1[i];
     }
     for (int c = 0; c < 4; ++c)
         for (int i = 0; i < lane_count; ++i) b.raw[c][i] = found[i][c];
@@ -226,13 +238,11 @@ static inline void add_to_tile(const MarchDenseArgs& a, SampleBlock& b, int used
         float* row = tile + (b.base[0][i] - corner[0]) * to_x + (b.base[1][i] - corner[1]) * to_y +
                      (b.base[2][i] - corner[2]) * 4;
         const Float4 d = *reinterpret_cast<const Float4*>(d_raw[i]);
-        const Float4 near = d * b.w0[2][i], far = d * b.w1[2][i];
-        const float x0 = b.w0[0][i], x1 = b.w1[0][i], y0 = b.w0[1][i], y1 = b.w1[1][i];
-        const float w[4] = {x0 * y0, x0 * y1, x1 * y0, x1 * y1};
+        const Float4 near = d * b.z0[i], far = d * b.z1[i];
         const int offset[4] = {0, to_y, to_x, to_x + to_y};
         for (int r = 0; r < 4; ++r) {
-            *reinterpret_cast<Float4*>(row + offset[r]) += w[r] * near;
-            *reinterpret_cast<Float4*>(row + offset[r] + 4) += w[r] * far;
+            *reinterpret_cast<Float4*>(row + offset[r]) += b.row[r][i] * near;
+            *reinterpret_cast<Float4*>(row + offset[r] + 4) += b.row[r][i] * far;
         }
     }
 }

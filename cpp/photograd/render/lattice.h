@@ -21,15 +21,20 @@ struct Span {
     R near, far;  // far <= near: the ray misses
 };
 
-/// Clips o + t d, t >= 0, to the box. Slabs of Kay and Kajiya [Kay1986]; a zero direction component
-/// gives infinite bounds of the right sign, or NaN on the face itself, which min and max then ignore.
+/// Clips o + t d, t >= 0, to the box, slab by slab [Kay1986]. A ray parallel to a slab is inside of it,
+/// its faces included, or misses; dividing by its zero would give NaN for a ray that runs in a face.
 template <Real R>
 Span<R> clip_to_box(const R* origin, const R* direction, const double (*box)[3]) {
     R near = R(0), far = std::numeric_limits<R>::infinity();
     for (int axis = 0; axis < 3; ++axis) {
+        const R lo = static_cast<R>(box[0][axis]), hi = static_cast<R>(box[1][axis]);
+        if (direction[axis] == R(0)) {
+            if (origin[axis] < lo || origin[axis] > hi) return {R(0), R(0)};
+            continue;
+        }
         const R inverse = R(1) / direction[axis];
-        const R a = (static_cast<R>(box[0][axis]) - origin[axis]) * inverse;
-        const R b = (static_cast<R>(box[1][axis]) - origin[axis]) * inverse;
+        const R a = (lo - origin[axis]) * inverse;
+        const R b = (hi - origin[axis]) * inverse;
         near = std::fmax(near, std::fmin(a, b));
         far = std::fmin(far, std::fmax(a, b));
     }
