@@ -189,14 +189,15 @@ ensure_installed() {
 
 # The way for who may not install libraries: a wheel that carries them.
 ensure_wheel() {
-    local wheels
-    wheels=$(compgen -G 'dist/photograd-*.whl') && find_python >/dev/null && python_has venv || return 1
+    local wheel key
+    wheel=$(compgen -G 'dist/photograd-*.whl' | head -n 1) && python_has venv || return 1
+    key=$(sha256sum dist/*.whl)
     mkdir -p build/log
     ensure_venv || return
-    is_fresh wheel "$wheels" && return
-    say "installing ${wheels%%$'\n'*}"
-    logged wheel .venv/bin/python -m pip install -q --find-links dist photograd || return
-    remember wheel "$wheels"
+    is_fresh wheel "$key" && return
+    say "installing $wheel"
+    logged wheel .venv/bin/python -m pip install -q --force-reinstall --find-links dist "$wheel" || return
+    remember wheel "$key"
 }
 
 # Where the installed core was compiled.
