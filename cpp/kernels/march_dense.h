@@ -21,7 +21,7 @@ struct MarchDenseArgs {
     int border, density_activation, color_activation, quadrature;
     float density_scale;
     float dt;
-    float stop;  // stop behind a sub-block when its transmittance is below this; 0 never stops
+    float tau_stop;  // a ray ends behind the sub-block in which its optical depth exceeds this
     const float* origins;     // (R, 3)
     const float* directions;  // (R, 3)
     const float* t0;          // (R,) sample k lies at t0 + (k + 1/2) dt

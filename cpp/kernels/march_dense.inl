@@ -131,7 +131,7 @@ static inline void evaluate_block(const MarchDenseArgs& a, std::int64_t ray, int
 
 // Rays of a chunk advance together, lane_count samples a wave: neighbouring rays read the same voxels, which
 // are then still in the first-level cache. visit(i, k0) handles one sub-block of ray begin + i and returns
-// the transmittance behind it.
+// the optical depth behind it.
 template <class Visit>
 static inline void walk_chunk(const MarchDenseArgs& a, std::int64_t begin, std::int64_t end,
                               Visit&& visit) {
@@ -143,8 +143,8 @@ static inline void walk_chunk(const MarchDenseArgs& a, std::int64_t begin, std::
         int left = 0;
         for (int j = 0; j < count; ++j) {
             const int i = alive[j];
-            const float transmittance = visit(i, k0);
-            if (a.count[begin + i] > k0 + lane_count && !(transmittance < a.stop)) alive[left++] = i;
+            const float tau = visit(i, k0);
+            if (a.count[begin + i] > k0 + lane_count && tau <= a.tau_stop) alive[left++] = i;
         }
         count = left;
     }
@@ -157,7 +157,7 @@ static void march_dense_forward(const MarchDenseArgs& a, std::int64_t begin, std
     walk_chunk(a, begin, end, [&](int i, int k0) {
         evaluate_block(a, begin + i, k0, b);
         composite(form, b.sigma_t, b.rgb, b.t, a.dt, totals[i]);
-        return exp(-totals[i].tau);
+        return totals[i].tau;
     });
     for (std::int64_t ray = begin; ray < end; ++ray) {
         const RayTotals<float>& total = totals[ray - begin];
@@ -224,7 +224,7 @@ static std::int64_t march_dense_backward(const MarchDenseArgs& a, const MarchDen
                        static_cast<std::uint32_t>(first + start)};
             start = j + 1;
         }
-        return exp(-cotangents[i].tau);
+        return cotangents[i].tau;
     });
     return next - runs;
 }

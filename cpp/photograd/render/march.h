@@ -11,6 +11,8 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
+#include <vector>
 
 #include "kernels/march_dense.h"
 #include "photograd/core/parallel.h"
@@ -23,6 +25,9 @@ struct MarchOptions {
     double dt = 0.01;    // step in metres
     double stop = 0.0;   // early stop below this transmittance; 0 is off, as gradient proofs need it
     Quadrature quadrature = Quadrature::alpha;
+
+    /// The stop as an optical depth, which needs no exp per sub-block; large and finite when off.
+    [[nodiscard]] double tau_stop() const { return stop > 0 ? -std::log(stop) : 1e30; }
 };
 
 template <Real R>
@@ -80,12 +85,12 @@ void place_wave(const RayBatch<R>& rays, R dt, std::int32_t k0, Wave<R>& wave) {
     }
 }
 
-/// The one loop. pass.ray(ray, wave, g) composites group g and returns the transmittance behind it;
+/// The one loop. pass.ray(ray, wave, g) composites group g and returns the optical depth behind it;
 /// pass.wave(wave, cache) then sees the whole batch.
 template <Real R, class F, class Pass>
 void walk(const F& field, const RayBatch<R>& rays, const MarchOptions& options, std::int64_t begin,
           std::int64_t end, Pass& pass) {
-    const R dt = static_cast<R>(options.dt), stop = static_cast<R>(options.stop);
+    const R dt = static_cast<R>(options.dt), tau_stop = static_cast<R>(options.tau_stop());
     typename F::Cache cache;
     Wave<R> wave;
     for (std::int64_t ray = begin; ray < end; ++ray)
@@ -97,9 +102,8 @@ void walk(const F& field, const RayBatch<R>& rays, const MarchOptions& options, 
         for (std::size_t g = 0; g < wave.rays.size(); ++g) {
             for (int i = wave.batch.used[g]; i < lane_count; ++i) wave.values.sigma_t[g][i] = R(0);
             const std::int64_t ray = wave.rays[g];
-            const R transmittance = pass.ray(ray, wave, g);
-            if (rays.samples[ray] > k0 + lane_count && !(transmittance < stop))
-                alive.push_back(ray);
+            const R tau = pass.ray(ray, wave, g);
+            if (rays.samples[ray] > k0 + lane_count && tau <= tau_stop) alive.push_back(ray);
         }
         pass.wave(wave, cache);
         wave.rays.swap(alive);
@@ -124,7 +128,7 @@ struct ForwardPass {
         RayTotals<R>& total = totals[static_cast<std::size_t>(ray - begin)];
         const Gather<R> in(wave.values, g);
         composite(form, wave.values.sigma_t[g], in.rgb, wave.batch.t[g], dt, total);
-        return exp(-total.tau);
+        return total.tau;
     }
     template <class Cache>
     void wave(const Wave<R>&, const Cache&) {}
@@ -154,7 +158,7 @@ struct BackwardPass {
         composite_backward(form, wave.values.sigma_t[g], in.rgb, wave.batch.t[g], dt, cotangents,
                            d_values.sigma_t[g], d_rgb);
         for (int c = 0; c < 3; ++c) d_values.rgb[c][g] = d_rgb[c];
-        return exp(-cotangents.tau);
+        return cotangents.tau;
     }
     template <class Cache>
     void wave(const Wave<R>& wave, const Cache& cache) {

@@ -31,7 +31,7 @@ MarchDenseArgs kernel_args(const DenseGrid<float>& grid, const RayBatch<float>& 
     a.density_scale = grid.density_scale;
     a.quadrature = static_cast<int>(options.quadrature);
     a.dt = static_cast<float>(options.dt);
-    a.stop = static_cast<float>(options.stop);
+    a.tau_stop = static_cast<float>(options.tau_stop());
     a.origins = rays.origins;
     a.directions = rays.directions;
     a.t0 = rays.t0;
