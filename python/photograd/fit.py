@@ -35,7 +35,7 @@ from photograd.fit_options import FitOptions
 from photograd.imaging import image_loss, image_loss_backward
 from photograd.model import model_of
 from photograd.pixels import TrainingPixels
-from photograd.representation import Array, Gradients, RenderOptions, representation
+from photograd.representation import Array, RenderOptions, representation
 from photograd.snapshots import save_snapshot, snapshot_steps
 
 
@@ -89,12 +89,7 @@ class Fit:
 
         Raises RangeError for an unknown or unfit representation.
         """
-        kind = representation(options.representation)
-        if kind is not DenseGrid:
-            raise RangeError(
-                message("Fit", "representation", "one that a capture can start: 'dense_grid'",
-                        repr(options.representation))
-            )  # fmt: skip
+        _require_startable(options.representation)
         bounds = estimate_bounds(capture)
         model = DenseGrid.empty(
             bounds.box, options.levels()[0], finest=options.resolution, sigma_t=options.sigma_t,
@@ -143,7 +138,7 @@ class Fit:
         self.step_number += 1
         return loss
 
-    def loss_and_gradients(self, chosen: Array) -> tuple[float, Gradients]:
+    def loss_and_gradients(self, chosen: Array) -> tuple[float, dict[str, Array]]:
         """Loss of the chosen pixels and its gradient by parameter group, without the prior."""
         options = RenderOptions(stop=self.options.stop, jitter=True)
         outputs, context = self.model.render(
@@ -243,7 +238,7 @@ class Fit:
         x, y, z = self.model.params["values"].shape[:3]
         self.optimiser.resample("values", lambda moment: upsample_trilinear(moment, (x, y, z)))
 
-    def _add_prior(self, gradients: Gradients) -> None:
+    def _add_prior(self, gradients: dict[str, Array]) -> None:
         """Total variation on a random slab of an eighth of the grid, which stands for the whole."""
         weight = self.options.total_variation
         if weight == 0:
@@ -255,6 +250,21 @@ class Fit:
         total_variation_squared_backward(
             values[start : start + planes], weight, gradients["values"][start : start + planes]
         )
+
+
+def _require_startable(name: str) -> None:
+    """Raise RangeError unless a capture can start the representation called `name`."""
+    kind = representation(name)
+    if "rays" not in kind.capabilities:
+        raise RangeError(
+            message("Fit", "representation", "one that is seen along rays", repr(name),
+                    "it lives on a 2D canvas; a capture can start 'dense_grid'")
+        )  # fmt: skip
+    if kind is not DenseGrid:
+        raise RangeError(
+            message("Fit", "representation", "one that a capture can start: 'dense_grid'",
+                    repr(name), "start it from Python, with parameters of your own")
+        )  # fmt: skip
 
 
 def _background_kind(capture: Capture, options: FitOptions) -> str:

@@ -7,21 +7,33 @@ objects.
 
 from __future__ import annotations
 
-import difflib
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
+from photograd_course.optim import Gradient
 from photograd_course.row_map import RowMap
+from photograd_course.suggest import nearest
 
 from photograd.errors import RangeError, ShapeError, message
 
 Array: TypeAlias = NDArray[Any]
-Gradients: TypeAlias = dict[str, Array]
-"""dL/d parameter by group: an array of the parameter's shape, or a pair (rows, values)."""
+Gradients: TypeAlias = Mapping[str, Gradient]
+"""dL/d parameter by group: an array of the parameter's shape, or (rows, values): rows (M,) int64
+strictly increasing, values (M, ...), for parameters of which only some rows were touched."""
+
+
+def dense_gradient(gradient: Gradient, parameter: Array) -> Array:
+    """A gradient in the shape of its parameter, whichever form it has; untouched rows are 0."""
+    if not isinstance(gradient, tuple):
+        return gradient
+    rows, values = gradient
+    dense = np.zeros_like(parameter)
+    dense[rows] = values
+    return dense
 
 
 @dataclass(frozen=True)
@@ -59,6 +71,12 @@ class CanvasBatch:
 
     points: Array
 
+    def __post_init__(self) -> None:
+        if self.points.ndim != 2 or self.points.shape[1] != 2:
+            raise ShapeError(
+                message("CanvasBatch", "points", "shape (N, 2)", f"{self.points.shape}")
+            )
+
 
 @dataclass(frozen=True)
 class RenderOptions:
@@ -66,7 +84,7 @@ class RenderOptions:
 
     stop: float = 0.0  # transmittance below which a ray ends; 0 is off
     jitter: bool = False  # move each ray's lattice by a random fraction of a step
-    camera_adjoint: bool = False  # render_backward also returns "origins" and "directions"
+    camera_adjoint: bool = False  # also dL/d "origins" and "directions", or "points" of a canvas
 
 
 @dataclass(frozen=True)
@@ -118,9 +136,10 @@ class Representation(ABC):
         return ()
 
     def refine(self, step: int, statistics: Mapping[str, Array]) -> RowMap | None:
-        """Change the number of rows of the parameters; None if nothing changed.
+        """Change the number of rows of `params`; None if nothing changed.
 
         The optimiser applies the returned map (rows kept, cloned, split, added) to its own state.
+        Contexts of earlier renderings keep the parameters that they were made with.
         """
         del step, statistics
         return None
@@ -139,12 +158,15 @@ class Representation(ABC):
 
 @dataclass(frozen=True)
 class Prior:
-    """A regulariser: `value(params)` and `gradient(params)`, both before the weight is applied."""
+    """A regulariser of one group: `value(parameter)` and its derivative.
+
+    `gradient(parameter, d_value)` returns dL/d parameter for dL/d value, the weight of the prior.
+    """
 
     name: str
     group: str
-    value: Any
-    gradient: Any
+    value: Callable[[Array], float]
+    gradient: Callable[..., Array]
 
 
 _REGISTRY: dict[str, type[Representation]] = {}
@@ -168,8 +190,8 @@ def representation(name: str) -> type[Representation]:
     known = representations()
     if name in known:
         return known[name]
-    near = difflib.get_close_matches(name, known, n=1)
-    remedy = f"did you mean {near[0]!r}?" if near else "choose one of these"
+    near = nearest(name, known)
+    remedy = f"did you mean {near!r}?" if near else "choose one of these"
     raise RangeError(
         message("representation", "name", f"one of {sorted(known)}", repr(name), remedy)
     )

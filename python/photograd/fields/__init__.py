@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from photograd.fields.dense_grid import DenseGrid
+from photograd.fields.texture_2d import Texture2D
 from photograd.fields.tiny_network import TinyNetwork
+from photograd.fields.toy_blobs import ToyBlobs
 
-__all__ = ["DenseGrid", "TinyNetwork"]
+__all__ = ["DenseGrid", "Texture2D", "TinyNetwork", "ToyBlobs"]

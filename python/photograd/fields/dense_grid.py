@@ -15,7 +15,6 @@ from photograd.errors import DtypeError, Error, RangeError, ShapeError, message
 from photograd.fields.march import MarchContext, MarchPolicy, march, march_backward
 from photograd.representation import (
     Array,
-    Gradients,
     Outputs,
     ParamSpec,
     Prior,
@@ -155,7 +154,7 @@ class DenseGrid(Representation):
             seed=seed, step=step, fused=self.fused,
         )  # fmt: skip
 
-    def render_backward(self, context: MarchContext, d_outputs: Outputs) -> Gradients:
+    def render_backward(self, context: MarchContext, d_outputs: Outputs) -> dict[str, Array]:
         """{"values": (X, Y, Z, 4)}, and "origins", "directions" (R, 3) if the options asked."""
         gradients = march_backward(context, d_outputs)
         gradients["values"] = gradients.pop("parameters")

@@ -13,7 +13,6 @@ from photograd.errors import ShapeError, message
 from photograd.fields.march import MarchContext, MarchPolicy, march, march_backward
 from photograd.representation import (
     Array,
-    Gradients,
     Outputs,
     ParamSpec,
     RayBatch,
@@ -79,7 +78,7 @@ class TinyNetwork(Representation):
             step=step,
         )
 
-    def render_backward(self, context: MarchContext, d_outputs: Outputs) -> Gradients:
+    def render_backward(self, context: MarchContext, d_outputs: Outputs) -> dict[str, Array]:
         """{"weights": (P,)}, and "origins", "directions" (R, 3) if the options asked."""
         gradients = march_backward(context, d_outputs)
         gradients["weights"] = gradients.pop("parameters")
