@@ -155,3 +155,12 @@ def test_seeing_agrees_with_a_dense_sample() -> None:
 def test_a_camera_inside_sees_its_box() -> None:
     assert sees_box(Camera(4, 4, 4.0, 4.0, 2.0, 2.0, np.eye(4)), UNIT_BOX)
     assert not sees_box(Camera(4, 4, 4.0, 4.0, 2.0, 2.0, np.eye(4)), UNIT_BOX - [0.0, 0.0, 1.001])
+
+
+def test_edges_that_cross_at_a_distance() -> None:
+    """A box that no face of either body separates from the pyramid, only a pair of edges."""
+    pose = look_at(np.array([1.0, -4.0, 4.0]), np.array([3.0, -2.0, 3.0]))
+    camera = Camera(10, 10, 5.0, 5.0, 5.0, 5.0, pose)
+    box = np.array([[-2.0, 0.0, -2.0], [-1.0, 3.0, 1.0]])
+    assert not sees_box(camera, box)
+    assert sees_box(camera, box + np.array([0.5, 0.0, 0.0]))

@@ -102,6 +102,29 @@ def test_an_outward_looking_capture_passes_where_up_is_known(tmp_path: Path) -> 
     assert any("outward-looking" in line for line in load_capture(tmp_path).conversions)
 
 
+def test_an_outward_looking_ring_passes(tmp_path: Path) -> None:
+    """All cameras exactly radial: their inverses stand in one place, which proves nothing."""
+    cameras = []
+    for angle in np.linspace(0.3, 5.9, 8):
+        direction = np.array([np.cos(angle), 0.3, np.sin(angle)])
+        pose = files.look_at(direction, 2.0 * direction)
+        cameras.append(Camera(24, 20, 26.0, 26.0, 12.0, 10.0, pose))
+    files.write_blender(tmp_path, cameras, cameras[:2])
+    assert any("outward-looking" in line for line in load_capture(tmp_path).conversions)
+
+
+def test_a_panorama_passes(tmp_path: Path) -> None:
+    """Cameras that turn about one place away from the origin."""
+    position = np.array([1.0, 2.0, 3.0])
+    cameras = []
+    for angle in np.linspace(0.0, 5.5, 8):
+        target = position + np.array([np.cos(angle), 0.2, np.sin(angle)])
+        pose = files.look_at(position, target)
+        cameras.append(Camera(24, 20, 26.0, 26.0, 12.0, 10.0, pose))
+    files.write_blender(tmp_path, cameras, cameras[:2])
+    assert len(load_capture(tmp_path).train) == 8
+
+
 def test_a_world_lying_on_its_side_is_warned_about(tmp_path: Path) -> None:
     """+Y up written where +Z up is expected: nothing can prove it, but it is said."""
     files.write_blender(tmp_path, files.orbit(9), files.orbit(5))
