@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import struct
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -103,6 +104,13 @@ def write_nerfstudio(
         else:
             frames.append(frame | lens)
     (folder / "transforms.json").write_text(json.dumps(content | {"frames": frames}))
+
+
+def edit_json(path: Path, change: Callable[[Any], None]) -> None:
+    """Change the parsed content of a JSON file in place."""
+    content = json.loads(path.read_text())
+    change(content)
+    path.write_text(json.dumps(content))
 
 
 def quaternion_of(rotation: Array) -> Array:

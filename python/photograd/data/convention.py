@@ -33,14 +33,12 @@ class Meeting:
         point: (3,) with the least squared distance to all axes.
         miss: root mean square distance of the axes to it, over the mean distance of the cameras.
         in_front: fraction of cameras that have it in front of them.
-        distance: mean distance of the cameras to it.
         spread: how far the axes are from parallel; 0 if they are, up to 2/3.
     """
 
     point: FloatArray
     miss: float
     in_front: float
-    distance: float
     spread: float
 
     @property
@@ -69,7 +67,7 @@ def meeting_of_axes(poses: Sequence[FloatArray]) -> Meeting:
     distance = float(np.linalg.norm(towards, axis=1).mean())
     miss = float(np.sqrt(np.square(missed).mean())) / distance if distance > 0.0 else np.inf
     in_front = float((np.einsum("ni,ni->n", towards, axes) > 0.0).mean())
-    return Meeting(point, miss, in_front, distance, spread)
+    return Meeting(point, miss, in_front, spread)
 
 
 def check_convention(
@@ -112,16 +110,10 @@ def check_convention(
 
 
 def _better_convention(declared: Sequence[FloatArray], world_from_source: FloatArray) -> str:
-    """Which mistake, taken back, makes the axes meet best in front: "axes", "inverse" or "".
-
-    Inverses of cameras that turn about one place stand all in one place, where axes meet as a
-    matter of course; hence the meeting point must be away from the cameras, on the scale of
-    translations, which have the same length before and after inversion.
-    """
+    """Which mistake, taken back, makes the axes meet best in front: "axes", "inverse" or ""."""
     source_from_world = invert_rigid(world_from_source)
     stored = [source_from_world @ pose for pose in declared]
     inverses = [invert_rigid(pose) for pose in stored]
-    scale = float(np.mean([np.linalg.norm(pose[:3, 3]) for pose in stored]))
     best, smallest = "", np.inf
     for label, poses in (
         ("axes", [pose @ OPENGL_FROM_OPENCV for pose in stored]),
@@ -129,7 +121,7 @@ def _better_convention(declared: Sequence[FloatArray], world_from_source: FloatA
         ("inverse", [pose @ OPENGL_FROM_OPENCV for pose in inverses]),
     ):
         meeting = meeting_of_axes(poses)
-        if meeting.inward and meeting.distance > 0.05 * scale and meeting.miss < smallest:
+        if meeting.inward and meeting.miss < smallest:
             best, smallest = label, meeting.miss
     return best
 

@@ -68,7 +68,7 @@ def load_llff(folder: Path, *, trust_poses: bool = False) -> Capture:
     world_from_source, up_line = world_from_estimated_up(poses, declared_z_up=False)
     views = [view.turned(world_from_source) for view in views]
     if not trust_poses:
-        lines.extend(check_convention(_NAME, views, world_from_source, up_is_known=True))
+        lines.extend(check_convention(_NAME, views, world_from_source, up_is_known=False))
     train, test, split_line = hold_out(views)
     return Capture(
         train=train,
