@@ -1,0 +1,55 @@
+"""How fast the machine itself could do a workload: counted work divided by a measured rate.
+
+No program reaches these times. They say how far away one is, and which resource sets the limit.
+The rates belong to the machine they were measured on, two threads of a virtual AMD EPYC with
+AVX-512: on another machine they are wrong.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+RATES = {
+    "flop": 514.6e9,  # float32 multiply-adds of 16 lanes, 24 independent chains; counted as two
+    "exp": 18.76e9,  # float32 polynomials of 16 lanes
+    "load_L2": 4.029e9,  # loads of 32 bytes at random places of a 1 MiB table
+    "load_L3": 2.627e9,  # the same in 8 MiB
+    "rmw_L2": 1.7964e9,  # read, add and write 32 bytes at random places of 1 MiB
+}
+
+BOX_TEST = 8 * 12  # flop of a ray against the eight boxes of a node
+LEAF_TEST = 4 * 40  # flop of a ray against the four triangles of a leaf
+
+
+def slowest(work: Mapping[str, float]) -> tuple[float, str]:
+    """(seconds, resource) of the work that takes longest, all others hidden behind it."""
+    return max((amount / RATES[resource], resource) for resource, amount in work.items())
+
+
+def volume_bound(samples: int) -> dict[str, Any]:
+    """W4: a sample does 90 flop and 4 loads of 32 bytes forward.
+
+    Forward and backward together: 250 flop, two exp, 8 loads and 4 additions in place. Neighbouring
+    samples share voxels, so a quarter of the accesses counts.
+    """
+    forward = slowest({"flop": 90 * samples, "load_L2": samples, "exp": samples})
+    both = slowest(
+        {"flop": 250 * samples, "load_L2": 2 * samples, "rmw_L2": samples, "exp": 2 * samples}
+    )
+    return _row(forward, both)
+
+
+def ray_bound(primary: int, bounce: int) -> dict[str, Any]:
+    """W1: 14 nodes and 2 leaves a primary ray; 24 and 3, and 8 cache lines, a bounce ray."""
+    flop = primary * (14 * BOX_TEST + 2 * LEAF_TEST) + bounce * (24 * BOX_TEST + 3 * LEAF_TEST)
+    return _row(slowest({"flop": flop, "load_L3": 8 * bounce}), None)
+
+
+def _row(forward: tuple[float, str], both: tuple[float, str] | None) -> dict[str, Any]:
+    return {
+        "seconds_fwd": forward[0],
+        "fwd_by": forward[1],
+        "seconds_fwdbwd": both[0] if both else None,
+        "fwdbwd_by": both[1] if both else None,
+    }

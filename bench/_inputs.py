@@ -1,0 +1,183 @@
+"""The inputs of the workloads, made from formulas, and their fingerprints.
+
+Other programs that measure the same workloads make the same inputs, bit for bit. `fingerprint` is
+recorded for the usual sizes: a library or processor that rounds a sine differently shows up in the
+"inputs" field of a report instead of as an unexplained digit in its quality row.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[Any]
+
+RECORDED = {
+    "W1 nv=500 res=2048": "5b2b0689c738cf38",
+    "W4 n=128 res=200 views=8": "92a6b833a56f6bc9",
+    "W4 n=16 res=8 views=1": "bbf2719ce201136b",
+}
+
+
+def fingerprint(*arrays: Array) -> str:
+    """First 16 hexadecimal digits of the SHA-256 of types, shapes and contents."""
+    digest = hashlib.sha256()
+    for array in arrays:
+        digest.update(f"{array.dtype.str}{array.shape}".encode())
+        digest.update(np.ascontiguousarray(array).tobytes())
+    return digest.hexdigest()[:16]
+
+
+def inputs_row(name: str, *arrays: Array) -> dict[str, Any]:
+    """Field "inputs" of a report: `agree` is None where nothing is recorded for this size."""
+    found, recorded = fingerprint(*arrays), RECORDED.get(name)
+    return {
+        "name": name,
+        "sha256": found,
+        "recorded": recorded,
+        "agree": None if recorded is None else found == recorded,
+    }
+
+
+def unit(vectors: Array) -> Array:
+    """Vectors (..., 3) divided by their lengths."""
+    lengths: Array = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return vectors / lengths
+
+
+def pixel_centres(count: int) -> Array:
+    """(count,) centres of equal cells of [-1, 1]."""
+    return (np.arange(count) + 0.5) / count * 2 - 1
+
+
+# W4: a dense volume
+
+
+def volume_grid(n: int, phase: float) -> Array:
+    """(n, n, n, 4) float32 r, g, b, sigma_t, index [z, y, x], values at voxel centres of [-1, 1]^3.
+
+    sigma_t is a ball of fog with ripples; each colour varies along one axis. Another phase is
+    another scene.
+    """
+    c = pixel_centres(n).astype(np.float32)
+    x, y, z = c[None, None, :], c[None, :, None], c[:, None, None]
+    ripples = 0.4 * np.sin(9 * x + phase) * np.sin(8 * y - phase) * np.sin(7 * z + 2 * phase)
+    ball = np.exp(-3.0 * (x * x + y * y + z * z))
+    grid = np.empty((n, n, n, 4), np.float32)
+    grid[..., 0] = 0.5 + 0.45 * np.sin(5 * x + phase)
+    grid[..., 1] = 0.5 + 0.45 * np.sin(6 * y + 1 + phase)
+    grid[..., 2] = 0.5 + 0.45 * np.sin(7 * z + 2 + phase)
+    grid[..., 3] = 6.0 * ball * (0.6 + ripples)
+    return grid
+
+
+def orbit_rays(res: int, views: int) -> tuple[Array, Array]:
+    """Origins and unit directions (views res res, 3) float32 of cameras around the y axis.
+
+    Pinholes 3.2 m from the centre, 45 degrees wide, that bob up and down by 0.35 radians.
+    """
+    half = np.tan(np.radians(45.0) / 2)
+    across = pixel_centres(res) * half
+    u, v = across[None, :, None], -across[:, None, None]
+    origins, directions = [], []
+    for view in range(views):
+        azimuth = 2 * np.pi * view / views + 0.1
+        height = 0.35 * np.sin(3 * azimuth)
+        level, rise = np.cos(height), np.sin(height)
+        eye = 3.2 * np.array([level * np.sin(azimuth), rise, level * np.cos(azimuth)])
+        back = unit(eye)
+        right = unit(np.cross([0, 1, 0], back))
+        up = np.cross(back, right)
+        directions.append(unit(u * right + v * up - back).reshape(-1, 3))
+        origins.append(np.broadcast_to(eye, (res * res, 3)))
+    return (
+        np.concatenate(origins).astype(np.float32),
+        np.concatenate(directions).astype(np.float32),
+    )
+
+
+# W1: a mesh of a million triangles, and rays that all start inside
+
+
+def displaced_sphere(nu: int, nv: int) -> tuple[Array, Array]:
+    """Vertices (V, 3) float32 and faces (F, 3) uint32 of a sphere with bumps; F = 2 nu (nv - 1).
+
+    nv - 1 rings of nu vertices from north to south along y, then the two poles. Corners run
+    counter-clockwise as seen from outside.
+    """
+    theta = np.append(np.repeat(np.pi * np.arange(1, nv) / nv, nu), [0.0, np.pi])
+    phi = np.append(np.tile(2.0 * np.pi * np.arange(nu) / nu, nv - 1), [0.0, 0.0])
+    sine = np.sin(theta)
+    fade = sine**4  # no bumps at the poles, where the triangles are thin
+    coarse = 0.10 * fade * np.sin(8 * phi) * np.sin(6 * theta)
+    fine = 0.02 * fade * np.sin(61 * phi) * np.sin(53 * theta)
+    radius = 1.0 + coarse + fine
+    outward = np.stack([sine * np.cos(phi), np.cos(theta), sine * np.sin(phi)], axis=-1)
+    vertices = (outward * radius[:, None]).astype(np.float32)
+
+    here = np.arange(nu)
+    following = (here + 1) % nu
+    ring = nu * np.arange(nv - 2)[:, None]  # first vertex of each ring but the last
+    a, b = ring + here, ring + following
+    c, d = a + nu, b + nu  # below them
+    between = np.stack([a, b, c, b, d, c], axis=-1).reshape(-1, 3)
+    north = np.full(nu, (nv - 1) * nu)
+    last = (nv - 2) * nu
+    top = np.stack([north, following, here], axis=-1)
+    bottom = np.stack([north + 1, last + here, last + following], axis=-1)
+    return vertices, np.concatenate([between, top, bottom]).astype(np.uint32)
+
+
+def primary_directions(res: int) -> Array:
+    """(res res, 3) float64: a pinhole at the centre that looks along -z, 90 degrees wide."""
+    c = pixel_centres(res)
+    u, v = np.broadcast_arrays(c[None, :], -c[:, None])
+    return unit(np.stack([u, v, -np.ones_like(u)], axis=-1).reshape(-1, 3))
+
+
+def face_towards(directions: Array, nu: int, nv: int) -> Array:
+    """(R,) the face of the displaced sphere that directions from the centre point at, roughly."""
+    theta = np.arccos(np.clip(directions[:, 1], -1, 1))
+    phi = np.mod(np.arctan2(directions[:, 2], directions[:, 0]), 2 * np.pi)
+    row = np.clip((theta / np.pi * nv).astype(int) - 1, 0, nv - 3)
+    column = np.clip((phi / (2 * np.pi) * nu).astype(int), 0, nu - 1)
+    face: Array = 2 * (row * nu + column)
+    return face
+
+
+def cosine_directions(normals: Array, seed: int) -> Array:
+    """(R, 3) float64 directions about normals (R, 3), density cos / pi; frames of [Duff2017]."""
+    x, y, z = normals.T
+    sign = np.where(z >= 0, 1.0, -1.0)
+    a = -1.0 / (sign + z)
+    b = x * y * a
+    tangent = np.stack([1 + sign * x**2 * a, sign * b, -sign * x], axis=-1)
+    bitangent = np.stack([b, sign + y**2 * a, -y], axis=-1)
+    u = np.random.default_rng(seed).random((len(normals), 2))
+    radius, angle = np.sqrt(u[:, 0])[:, None], (2 * np.pi * u[:, 1])[:, None]
+    flat = radius * np.cos(angle) * tangent + radius * np.sin(angle) * bitangent
+    return unit(flat + np.sqrt(np.maximum(1 - u[:, 0], 0))[:, None] * normals)
+
+
+def ray_sets(vertices: Array, faces: Array, res: int) -> dict[str, tuple[Array, Array]]:
+    """{"primary", "bounce"}: origins and directions (res res, 3) float32; nu = 2 nv is assumed.
+
+    A bounce ray starts 0.1 mm inside of the middle of the face that its primary ray sees and leaves
+    in a cosine-distributed direction: neighbours start side by side and part at once.
+    """
+    nv = round((1 + (1 + len(faces)) ** 0.5) / 2)
+    forward = primary_directions(res)
+    corners = vertices.astype(np.float64)[faces[face_towards(forward, 2 * nv, nv)]]
+    edge_b, edge_c = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    outward = np.cross(edge_b, edge_c)
+    outward /= np.maximum(np.linalg.norm(outward, axis=1, keepdims=True), 1e-30)
+    inward = -outward
+    start = corners.mean(axis=1) + 1e-4 * inward
+    rays = {
+        "primary": (np.zeros_like(forward), forward),
+        "bounce": (start, cosine_directions(inward, seed=1)),
+    }
+    return {name: (o.astype(np.float32), d.astype(np.float32)) for name, (o, d) in rays.items()}
