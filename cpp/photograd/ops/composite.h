@@ -47,17 +47,15 @@ inline SampleWeights<R> composite_weights(Quadrature form, R tau, const Lanes<R>
     Lanes<R> s;
     for (int i = 0; i < lane_count; ++i) s[i] = sigma_t[i] * dt;
     const Lanes<R> through = running_sum(s);
+    Lanes<R> front;
+    for (int i = 0; i < lane_count; ++i) front[i] = exp(-(tau + (through[i] - s[i])));
     SampleWeights<R> out;
-    for (int i = 0; i < lane_count; ++i) {
-        const R front = exp(-(tau + (through[i] - s[i])));
-        if (form == Quadrature::alpha) {
-            const R alpha = -expm1(-s[i]);
-            out.w[i] = front * alpha;
-            out.slope[i] = front - out.w[i];
-        } else {
-            out.w[i] = front * s[i];
-            out.slope[i] = front;
-        }
+    if (form == Quadrature::alpha) {
+        for (int i = 0; i < lane_count; ++i) out.w[i] = front[i] * -expm1(-s[i]);
+        for (int i = 0; i < lane_count; ++i) out.slope[i] = front[i] - out.w[i];
+    } else {
+        for (int i = 0; i < lane_count; ++i) out.w[i] = front[i] * s[i];
+        out.slope = front;
     }
     out.tau_end = tau + through[lane_count - 1];
     return out;
@@ -99,21 +97,21 @@ inline void composite_backward(Quadrature form, const Lanes<R>& sigma_t, const L
                                const Lanes<R>& t, R dt, RayCotangents<R>& ray,
                                Lanes<R>& d_sigma_t, Lanes<R>* d_rgb) {
     const SampleWeights<R> block = composite_weights(form, ray.tau, sigma_t, dt);
+    const R d_color[3] = {ray.d_color[0], ray.d_color[1], ray.d_color[2]};
+    const R d_depth = ray.d_depth, remainder = ray.remainder, end_term = ray.end_term;
     Lanes<R> v, passed;
-    for (int i = 0; i < lane_count; ++i) {
-        v[i] = ((ray.d_color[0] * rgb[0][i] + ray.d_color[1] * rgb[1][i]) +
-                ray.d_color[2] * rgb[2][i]) +
-               ray.d_depth * t[i];
-        passed[i] = block.w[i] * v[i];
-    }
+    for (int i = 0; i < lane_count; ++i)
+        v[i] = ((d_color[0] * rgb[0][i] + d_color[1] * rgb[1][i]) + d_color[2] * rgb[2][i]) +
+               d_depth * t[i];
+    for (int i = 0; i < lane_count; ++i) passed[i] = block.w[i] * v[i];
     const Lanes<R> through = running_sum(passed);
     for (int i = 0; i < lane_count; ++i) {
-        const R later = ray.remainder - through[i];
-        d_sigma_t[i] = d_sigma_t[i] + dt * ((block.slope[i] * v[i] - later) + ray.end_term);
+        const R later = remainder - through[i];
+        d_sigma_t[i] = d_sigma_t[i] + dt * ((block.slope[i] * v[i] - later) + end_term);
     }
     for (int c = 0; c < 3; ++c)
         for (int i = 0; i < lane_count; ++i)
-            d_rgb[c][i] = d_rgb[c][i] + block.w[i] * ray.d_color[c];
+            d_rgb[c][i] = d_rgb[c][i] + block.w[i] * d_color[c];
     ray.remainder = ray.remainder - through[lane_count - 1];
     ray.tau = block.tau_end;
 }
