@@ -5,8 +5,9 @@ where a ray enters; radiance L = sum of T sigma_t c dt with T = exp(-sum of earl
 loss is the mean of (L - target)^2 over rays and channels.
 
 The arrays come indexed [z, y, x] and stay so: photograd's grids are [x, y, z], so every call gets
-the rays with their coordinates reversed. That reversal, where samples lie, the check for non-finite
-outputs, a cleared gradient, and the loss with its derivative are all inside the timing.
+the rays with their coordinates reversed. That reversal, clearing the gradient, and the loss with
+its derivative are inside the timing. Where a ray enters and how many samples it has belong to the
+inputs, for other programs as for ours.
 """
 
 from __future__ import annotations
@@ -21,8 +22,7 @@ import _inputs
 import numpy as np
 from numpy.typing import NDArray
 from photograd.core import _core
-from photograd.fields.march import MarchContext, MarchPolicy, march, march_backward
-from photograd.representation import Outputs, RayBatch, RenderOptions
+from photograd.fields.march import MarchPolicy
 
 Array = NDArray[Any]
 CUBE = ((-1.0, -1.0, -1.0), (1.0, 1.0, 1.0))
@@ -35,24 +35,31 @@ class Volume:
         self.grid = _inputs.volume_grid(n, 0.0)
         other = _inputs.volume_grid(n, 0.6)
         self.origins, self.directions = _inputs.orbit_rays(res, views)
-        self.pixel = np.arange(len(self.origins), dtype=np.uint32)
-        self.policy = MarchPolicy(
+        policy = MarchPolicy(
             CUBE, 1 / n, lattice="entry", quadrature="riemann", border="clamp",
             density_activation="identity", color_activation="identity",
         )  # fmt: skip
-        self.target = self.render(other)[0].color
+        self.settings = policy.settings(0.0)  # no early stop
+        self.t0, self.samples = _core.place_samples(self.settings, *self.reversed_rays())
+        self.gradient = np.zeros_like(self.grid)
+        self.nothing = np.zeros_like(self.t0)  # cotangent of transmittance and depth
+        self.target = self.march(other, self.rays())[0]
         name = f"W4 n={n} res={res} views={views}"
         self.inputs = _inputs.inputs_row(name, self.grid, other, self.origins, self.directions)
 
-    def batch(self) -> RayBatch:
-        return RayBatch(self.origins[:, ::-1], self.directions[:, ::-1], self.pixel)
+    def reversed_rays(self) -> tuple[Array, Array]:
+        """Origins and directions (R, 3) with z y x as the first, second and third coordinate."""
+        return tuple(np.ascontiguousarray(a[:, ::-1]) for a in (self.origins, self.directions))
 
-    def render(self, grid: Array) -> tuple[Outputs, MarchContext]:
-        return march("dense_grid", grid, self.policy, self.batch(), RenderOptions(), seed=0, step=0)
+    def rays(self) -> tuple[Array, Array, Array, Array]:
+        return (*self.reversed_rays(), self.t0, self.samples)
 
-    def forward(self) -> tuple[Array, MarchContext]:
-        outputs, context = self.render(self.grid)
-        return outputs.color, context
+    def march(self, grid: Array, rays: tuple[Array, ...]) -> tuple[Array, Array, Array]:
+        """Colour (R, 3), transmittance (R,), depth (R,)."""
+        return _core.march("dense_grid", grid, self.settings, *rays)
+
+    def forward(self) -> Array:
+        return self.march(self.grid, self.rays())[0]
 
     def loss(self, color: Array) -> tuple[float, Array]:
         """The loss, summed in double, and its derivative by the colour (R, 3)."""
@@ -60,10 +67,20 @@ class Volume:
         loss = float(np.square(difference).mean(dtype=np.float64))
         return loss, difference * np.float32(2 / difference.size)
 
-    def forward_backward(self) -> tuple[float, Array]:
-        color, context = self.forward()
-        loss, d_color = self.loss(color)
-        return loss, march_backward(context, Outputs(d_color))["parameters"]
+    def backward(self, rays: tuple[Array, ...], outputs: tuple[Array, ...], d_color: Array) -> None:
+        """Adds dL/d grid to the gradient."""
+        _core.march_backward(
+            "dense_grid", self.grid, self.settings, *rays, *outputs,
+            d_color, self.nothing, self.nothing, self.gradient,
+        )  # fmt: skip
+
+    def forward_backward(self) -> float:
+        rays = self.rays()
+        outputs = self.march(self.grid, rays)
+        loss, d_color = self.loss(outputs[0])
+        self.gradient.fill(0)
+        self.backward(rays, outputs, d_color)
+        return loss
 
 
 class Stages:
@@ -88,39 +105,27 @@ def breakdown(volume: Volume, args: argparse.Namespace) -> dict[str, float]:
     shorten is its share, (n t_n - t_1) / (n - 1) from the times of one and of n threads. The
     estimate means something only where "foreign" is near zero.
     """
-    color, c = volume.forward()
-    _, d_color = volume.loss(color)
+    rays = volume.rays()
+    outputs = volume.march(volume.grid, rays)
+    _, d_color = volume.loss(outputs[0])
 
-    def place() -> tuple[Array, Array]:
-        batch = volume.batch()
-        origins = np.ascontiguousarray(batch.origins)
-        return _core.place_samples(c.settings, origins, np.ascontiguousarray(batch.directions))
-
-    def walk() -> Any:
-        return _core.march(
-            c.field, c.parameters, c.settings, c.origins, c.directions, c.t0, c.samples
-        )
-
-    def backward() -> Any:
-        return march_backward(c, Outputs(d_color))
+    def backward() -> None:
+        volume.backward(rays, outputs, d_color)
 
     stages = Stages(args.reps)
-    stages.time("reverse_and_place", place)
-    stages.time("forward", walk)
-    stages.time("loss", lambda: volume.loss(color))
-    stages.time("clear", lambda: np.full_like(volume.grid, 0.0))
+    stages.time("reverse", volume.reversed_rays)
+    stages.time("forward", lambda: volume.march(volume.grid, rays))
+    stages.time("loss", lambda: volume.loss(outputs[0]))
+    stages.time("clear", lambda: volume.gradient.fill(0))
     stages.time("backward", backward)
     if args.threads > 1:
         _core.set_thread_count(1)
         stages.time("backward_one_thread", backward)
         _core.set_thread_count(args.threads)
-        t_n, t_1, n = (
-            stages.seconds["backward"],
-            stages.seconds["backward_one_thread"],
-            args.threads,
-        )
-        stages.seconds["bin_estimate"] = (n * t_n - t_1) / (n - 1)
-        stages.seconds["record_and_gather_estimate"] = t_n - stages.seconds["bin_estimate"]
+        seconds, n = stages.seconds, args.threads
+        serial = (n * seconds["backward"] - seconds["backward_one_thread"]) / (n - 1)
+        seconds["bin_estimate"] = serial
+        seconds["record_and_gather_estimate"] = seconds["backward"] - serial
     return stages.seconds | {"foreign": stages.foreign}
 
 
@@ -130,16 +135,16 @@ def main() -> None:
     args = parser.parse_args()
     _core.set_thread_count(args.threads)
     volume = Volume(args.n, args.res, args.views)
-    forward, (color, context) = _common.measure(volume.forward, args.reps, args.warmup)
-    both, (loss, grad) = _common.measure(volume.forward_backward, args.reps, args.warmup)
-    color, grad = color.astype(np.float64), grad.astype(np.float64)
+    forward, color = _common.measure(volume.forward, args.reps, args.warmup)
+    both, loss = _common.measure(volume.forward_backward, args.reps, args.warmup)
+    grad = volume.gradient.astype(np.float64)
     quality = {
-        "image_mean": float(color.mean()),
+        "image_mean": float(color.mean(dtype=np.float64)),
         "loss": loss,
         "grad_norm_rgb": float(np.linalg.norm(grad[..., :3])),
         "grad_norm_sigma": float(np.linalg.norm(grad[..., 3])),
     }
-    samples = context.sample_count
+    samples = int(volume.samples.sum(dtype=np.int64))
     size = {"n": args.n, "rays": len(color), "samples": samples}
     more: dict[str, Any] = {"bound": _bounds.volume_bound(samples), "inputs": volume.inputs}
     if args.breakdown:
