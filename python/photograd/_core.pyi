@@ -24,6 +24,7 @@ __all__: list[str] = [
     "set_thread_count",
     "thread_count",
     "tiny_network_parameters",
+    "uniform",
 ]
 
 class Op:
@@ -155,6 +156,16 @@ def set_thread_count(threads: typing.SupportsInt | typing.SupportsIndex) -> None
     """
 
 def thread_count() -> int: ...
+def uniform(
+    seed: typing.SupportsInt | typing.SupportsIndex,
+    step: typing.SupportsInt | typing.SupportsIndex,
+    pixel: numpy.ndarray,
+    sample: typing.SupportsInt | typing.SupportsIndex,
+    dimension: typing.SupportsInt | typing.SupportsIndex,
+) -> numpy.typing.NDArray[numpy.float64]:
+    """
+    Uniform numbers (N,) in [0, 1) for pixels (N,), as photograd_course.random defines them.
+    """
 
 __version__: str = "0.1.0"
 ops: dict[str, typing.Any]
