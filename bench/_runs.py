@@ -12,6 +12,7 @@ from typing import Any
 import _agreement
 
 Row = dict[str, Any]
+BUSY = 0.3  # cores used by others, above which a figure must not be quoted
 
 
 @dataclass

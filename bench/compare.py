@@ -18,13 +18,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from _runs import Row, Runs, comparison, group, read_rows
+from _runs import BUSY, Row, Runs, comparison, group, read_rows
 from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
 HERE = Path(__file__).resolve().parent
-BUSY = 0.3  # cores used by others, above which a figure is marked
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from _runs import Row, Runs, comparison, group, read_rows
+from _runs import BUSY, Row, Runs, comparison, group, read_rows
 
 HEAD = "# Measured\n\nHow this was taken, and what it means, is said in `docs/bench.md`."
 UNITS = {"load_L2": "loads from L2", "rmw_L2": "additions in L2", "load_L3": "loads from L3"}
@@ -34,7 +34,8 @@ def program_row(runs: Runs, line: Row | None) -> list[str]:
     for key in ("seconds_fwd", "seconds_fwdbwd"):
         ratio = line["times"].get(key, {}).get("ratio", "-") if line else ""
         cells += [number(runs.seconds(key)), ratio if isinstance(ratio, str) else f"{ratio:.2f}"]
-    return [*cells, f"{runs.foreign():.2f}"]
+    load = runs.foreign()
+    return [*cells, f"{load:.2f}" + (" (too much)" if load > BUSY else "")]
 
 
 def part_table(lines: Sequence[Row]) -> str | None:
