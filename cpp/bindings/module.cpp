@@ -7,4 +7,5 @@ PYBIND11_MODULE(_core, m) {
     photograd::bind_core(m);
     photograd::bind_ops(m);
     photograd::bind_march(m);
+    photograd::bind_geometry(m);
 }

@@ -11,5 +11,6 @@ void bind_errors(py::module_& m);
 void bind_core(py::module_& m);
 void bind_ops(py::module_& m);
 void bind_march(py::module_& m);
+void bind_geometry(py::module_& m);
 
 }  // namespace photograd

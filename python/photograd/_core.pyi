@@ -10,6 +10,7 @@ import numpy.typing
 import typing
 
 __all__: list[str] = [
+    "Bvh",
     "MarchSettings",
     "Op",
     "exp",
@@ -77,6 +78,56 @@ class MarchSettings:
         color_activation: typing.SupportsInt | typing.SupportsIndex,
         density_scale: typing.SupportsFloat | typing.SupportsIndex,
     ) -> None: ...
+
+class Bvh:
+    """
+    Meshes and their instances, ready to be traced.
+    """
+    def __init__(
+        self,
+        meshes: collections.abc.Sequence[tuple[numpy.ndarray, numpy.ndarray, numpy.ndarray | None]],
+        mesh_index: numpy.ndarray,
+        world_from_object: numpy.ndarray,
+    ) -> None:
+        """
+        Meshes as (vertices (V, 3) float32, faces (F, 3) uint32, uv (V, 2) float32 or None);
+        instances as mesh_index (N,) int32 and world_from_object (N, 3, 4) float64.
+        """
+    def occluded(
+        self,
+        origins: numpy.ndarray,
+        directions: numpy.ndarray,
+        t_min: numpy.ndarray,
+        t_max: numpy.ndarray,
+    ) -> numpy.typing.NDArray[numpy.bool]:
+        """
+        Whether anything lies within [t_min, t_max] of each ray: (R,) bool.
+        """
+    def surface_points(
+        self,
+        origins: numpy.ndarray,
+        directions: numpy.ndarray,
+        primitive: numpy.ndarray,
+        instance: numpy.ndarray,
+    ) -> tuple[typing.Any, ...]:
+        """
+        t (R,), barycentrics (R, 2), uv (R, 2), position (R, 3), normal (R, 3) of known hits.
+        """
+    def trace(
+        self,
+        origins: numpy.ndarray,
+        directions: numpy.ndarray,
+        t_min: numpy.ndarray,
+        t_max: numpy.ndarray,
+    ) -> tuple[typing.Any, ...]:
+        """
+        t (R,), primitive (R,), instance (R,), barycentrics (R, 2).
+        """
+    @property
+    def bounds(self) -> numpy.typing.NDArray[numpy.float32]:
+        """
+        Lower and upper corner (2, 3) of everything.
+        """
 
 def exp(x: numpy.ndarray) -> numpy.ndarray:
     """

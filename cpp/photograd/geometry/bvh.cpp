@@ -1,0 +1,260 @@
+#include "photograd/geometry/bvh.h"
+
+// The one switch between Embree's major versions; the build says which was found.
+#if PHOTOGRAD_EMBREE_MAJOR == 3
+#include <embree3/rtcore.h>
+#else
+#include <embree4/rtcore.h>
+#endif
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "photograd/core/errors.h"
+#include "photograd/geometry/ray_batch.h"
+
+namespace photograd {
+namespace {
+
+constexpr int width = RayPacket::width;
+
+// Version 3 takes a context, version 4 optional arguments; both carry the hint about coherence.
+#if PHOTOGRAD_EMBREE_MAJOR == 3
+RTCIntersectContext query(bool side_by_side) {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags =
+        side_by_side ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+    return context;
+}
+void intersect(const int* valid, RTCScene scene, bool side_by_side, RTCRayHit16* rays) {
+    RTCIntersectContext context = query(side_by_side);
+    rtcIntersect16(valid, scene, &context, rays);
+}
+void any_hit(const int* valid, RTCScene scene, bool side_by_side, RTCRay16* rays) {
+    RTCIntersectContext context = query(side_by_side);
+    rtcOccluded16(valid, scene, &context, rays);
+}
+#else
+RTCRayQueryFlags query(bool side_by_side) {
+    return side_by_side ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
+}
+void intersect(const int* valid, RTCScene scene, bool side_by_side, RTCRayHit16* rays) {
+    RTCIntersectArguments arguments;
+    rtcInitIntersectArguments(&arguments);
+    arguments.flags = query(side_by_side);
+    rtcIntersect16(valid, scene, rays, &arguments);
+}
+void any_hit(const int* valid, RTCScene scene, bool side_by_side, RTCRay16* rays) {
+    RTCOccludedArguments arguments;
+    rtcInitOccludedArguments(&arguments);
+    arguments.flags = query(side_by_side);
+    rtcOccluded16(valid, scene, rays, &arguments);
+}
+#endif
+
+void load(const RayPacket& rays, RTCRay16& out, int* valid) {
+    for (int i = 0; i < width; ++i) {
+        valid[i] = rays.active[i] ? -1 : 0;
+        out.org_x[i] = rays.origin[0][i];
+        out.org_y[i] = rays.origin[1][i];
+        out.org_z[i] = rays.origin[2][i];
+        out.dir_x[i] = rays.direction[0][i];
+        out.dir_y[i] = rays.direction[1][i];
+        out.dir_z[i] = rays.direction[2][i];
+        out.tnear[i] = rays.t_min[i];
+        out.tfar[i] = rays.t_max[i];
+        out.time[i] = 0;
+        out.mask[i] = 0xffffffffu;
+        out.id[i] = static_cast<unsigned>(i);
+        out.flags[i] = 0;
+    }
+}
+
+/// Embree's callback must not throw: it keeps the first message for `check` to throw.
+void keep_message(void* message, RTCError, const char* text) {
+    auto& kept = *static_cast<std::string*>(message);
+    if (kept.empty() && text) kept = text;
+}
+
+}  // namespace
+
+struct Bvh::Tree {
+    std::string message;
+    RTCDevice device = nullptr;
+    RTCScene scene = nullptr;
+    std::vector<RTCScene> mesh_scenes;  // of meshes that are placed by a transformation
+    std::vector<RTCGeometry> geometries;
+
+    Tree() : device(rtcNewDevice(nullptr)) {
+        if (!device)
+            fail(ErrorKind::scene, "bvh", "device", "an Embree device",
+                 "error " + std::to_string(static_cast<int>(rtcGetDeviceError(nullptr))));
+        rtcSetDeviceErrorFunction(device, &keep_message, &message);
+        scene = new_scene();
+    }
+    ~Tree() {
+        for (RTCGeometry g : geometries) rtcReleaseGeometry(g);
+        for (RTCScene s : mesh_scenes)
+            if (s) rtcReleaseScene(s);
+        if (scene) rtcReleaseScene(scene);
+        if (device) rtcReleaseDevice(device);
+    }
+    Tree(const Tree&) = delete;
+    Tree& operator=(const Tree&) = delete;
+
+    [[nodiscard]] RTCScene new_scene() const {
+        const RTCScene s = rtcNewScene(device);
+        rtcSetSceneFlags(s, RTC_SCENE_FLAG_ROBUST);
+        return s;
+    }
+    void check(const char* argument) const {
+        const RTCError code = rtcGetDeviceError(device);
+        if (code != RTC_ERROR_NONE || !message.empty())
+            fail(ErrorKind::scene, "bvh", argument, "geometry that Embree accepts",
+                 "error " + std::to_string(static_cast<int>(code)) + ": " + message);
+    }
+    void add_mesh(const Mesh& mesh) {
+        const RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+        geometries.push_back(g);
+        rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                   mesh.vertex_data(), 0, 3 * sizeof(float),
+                                   static_cast<std::size_t>(mesh.vertex_count()));
+        rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.face_data(),
+                                   0, 3 * sizeof(std::uint32_t),
+                                   static_cast<std::size_t>(mesh.face_count()));
+        rtcCommitGeometry(g);
+        check("meshes");
+    }
+    /// Puts mesh `it.mesh` into the scene under the number `id`; without a transformation directly,
+    /// which saves a level of the hierarchy.
+    void add_instance(const Instance& it, unsigned id) {
+        const auto m = static_cast<std::size_t>(it.mesh);
+        if (it.world_from_object.is_identity()) {
+            rtcAttachGeometryByID(scene, geometries[m], id);
+            return;
+        }
+        if (!mesh_scenes[m]) {
+            mesh_scenes[m] = new_scene();
+            rtcAttachGeometry(mesh_scenes[m], geometries[m]);
+            rtcCommitScene(mesh_scenes[m]);
+        }
+        const RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
+        rtcSetGeometryInstancedScene(g, mesh_scenes[m]);
+        float rows[12];
+        for (std::size_t i = 0; i < 12; ++i)
+            rows[i] = static_cast<float>(it.world_from_object.m[i]);
+        rtcSetGeometryTransform(g, 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, rows);
+        rtcCommitGeometry(g);
+        rtcAttachGeometryByID(scene, g, id);
+        rtcReleaseGeometry(g);
+    }
+};
+
+Bvh::Bvh(std::vector<Mesh> meshes, std::vector<Instance> instances)
+    : meshes_(std::move(meshes)),
+      instances_(std::move(instances)),
+      tree_(std::make_unique<Tree>()) {
+    if (instances_.empty()) fail(ErrorKind::scene, "bvh", "instances", "at least one", "none");
+    for (const Mesh& mesh : meshes_) tree_->add_mesh(mesh);
+    tree_->mesh_scenes.resize(meshes_.size(), nullptr);
+    for (std::size_t i = 0; i < instances_.size(); ++i) {
+        const Instance& it = instances_[i];
+        const std::string name = "instance " + std::to_string(i);
+        if (it.mesh < 0 || it.mesh >= static_cast<int>(meshes_.size()))
+            fail(ErrorKind::scene, "bvh", "instances",
+                 "mesh numbers below " + std::to_string(meshes_.size()),
+                 std::to_string(it.mesh) + " in " + name);
+        const double volume = it.world_from_object.determinant();
+        if (!(std::abs(volume) > 0 && std::abs(volume) < std::numeric_limits<double>::infinity()))
+            fail(ErrorKind::scene, "bvh", "world_from_object", "finite, invertible matrices",
+                 "determinant " + std::to_string(volume) + " in " + name);
+        tree_->add_instance(it, static_cast<unsigned>(i));
+    }
+    rtcCommitScene(tree_->scene);
+    tree_->check("instances");
+    RTCBounds b;
+    rtcGetSceneBounds(tree_->scene, &b);
+    bounds_ = {{b.lower_x, b.lower_y, b.lower_z}, {b.upper_x, b.upper_y, b.upper_z}};
+}
+
+Bvh::~Bvh() = default;
+Bvh::Bvh(Bvh&&) noexcept = default;
+
+void Bvh::trace(const RayPacket& rays, bool side_by_side, PacketHits& hits) const {
+    RTCRayHit16 packet;
+    alignas(64) int valid[width];
+    load(rays, packet.ray, valid);
+    for (int i = 0; i < width; ++i) {
+        packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+        packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+    }
+    intersect(valid, tree_->scene, side_by_side, &packet);
+    for (int i = 0; i < width; ++i) {
+        const bool hit = packet.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
+        const bool placed = packet.hit.instID[0][i] != RTC_INVALID_GEOMETRY_ID;
+        hits.t[i] = hit ? packet.ray.tfar[i] : std::numeric_limits<float>::infinity();
+        hits.u[i] = hit ? packet.hit.u[i] : 0;
+        hits.v[i] = hit ? packet.hit.v[i] : 0;
+        hits.primitive[i] = hit ? static_cast<std::int32_t>(packet.hit.primID[i]) : -1;
+        hits.instance[i] =
+            hit ? static_cast<std::int32_t>(placed ? packet.hit.instID[0][i] : packet.hit.geomID[i])
+                : -1;
+    }
+}
+
+void Bvh::occluded(const RayPacket& rays, bool side_by_side, bool* blocked) const {
+    RTCRay16 packet;
+    alignas(64) int valid[width];
+    load(rays, packet, valid);
+    any_hit(valid, tree_->scene, side_by_side, &packet);
+    for (int i = 0; i < width; ++i) blocked[i] = rays.active[i] && packet.tfar[i] < 0;
+}
+
+template <Real R>
+void Bvh::trace(const RaySpan<R>& rays, const RayInterval<R>& interval,
+                const HitSpan<R>& out) const {
+    for_each_packet(rays, interval, bounds_, "trace",
+                    [&](const RayPacket& packet, bool near, const auto& rows) {
+                        PacketHits hits;
+                        trace(packet, near, hits);
+                        for (int k = 0; k < width; ++k) {
+                            if (!packet.active[k]) continue;
+                            const std::int64_t i = rows[k];
+                            out.primitive[i] = hits.primitive[k];
+                            out.instance[i] = hits.instance[k];
+                            out.t[i] = R(hits.t[k]);
+                            out.barycentrics[2 * i] = R(hits.u[k]);
+                            out.barycentrics[2 * i + 1] = R(hits.v[k]);
+                            if constexpr (std::same_as<R, double>) {
+                                if (hits.primitive[k] < 0) continue;
+                                const auto p =
+                                    surface_point(rays.ray(i), hits.instance[k], hits.primitive[k]);
+                                out.t[i] = p.t;
+                                out.barycentrics[2 * i] = p.u;
+                                out.barycentrics[2 * i + 1] = p.v;
+                            }
+                        }
+                    });
+}
+
+template <Real R>
+void Bvh::occluded(const RaySpan<R>& rays, const RayInterval<R>& interval, bool* blocked) const {
+    for_each_packet(rays, interval, bounds_, "occluded",
+                    [&](const RayPacket& packet, bool near, const auto& rows) {
+                        bool hit[width];
+                        occluded(packet, near, hit);
+                        for (int k = 0; k < width; ++k)
+                            if (packet.active[k]) blocked[rows[k]] = hit[k];
+                    });
+}
+
+template void Bvh::trace(const RaySpan<float>&, const RayInterval<float>&,
+                         const HitSpan<float>&) const;
+template void Bvh::trace(const RaySpan<double>&, const RayInterval<double>&,
+                         const HitSpan<double>&) const;
+template void Bvh::occluded(const RaySpan<float>&, const RayInterval<float>&, bool*) const;
+template void Bvh::occluded(const RaySpan<double>&, const RayInterval<double>&, bool*) const;
+
+}  // namespace photograd

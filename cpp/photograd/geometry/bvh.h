@@ -1,0 +1,134 @@
+// Which triangle does a ray meet first? A bounding volume hierarchy over meshes and their instances.
+//
+// Built and traversed by Embree [Wald2014], always in its robust mode: the default mode lets single rays
+// slip through the shared edges of closed meshes. Embree answers in float; `surface_point` recomputes
+// where the ray met the triangle in the caller's number type.
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "photograd/core/real.h"
+#include "photograd/geometry/affine.h"
+#include "photograd/geometry/mesh.h"
+#include "photograd/geometry/ray_order.h"
+#include "photograd/geometry/triangle.h"
+
+namespace photograd {
+
+struct Instance {
+    int mesh;
+    Affine world_from_object;
+};
+
+/// Up to 16 rays side by side, the unit in which renderers trace. Directions need not have unit length:
+/// t counts in lengths of the direction.
+struct alignas(64) RayPacket {
+    static constexpr int width = 16;
+    float origin[3][width], direction[3][width], t_min[width], t_max[width];
+    bool active[width];
+};
+
+/// t is infinite and both numbers are -1 where nothing was hit.
+struct alignas(64) PacketHits {
+    float t[RayPacket::width], u[RayPacket::width], v[RayPacket::width];
+    std::int32_t primitive[RayPacket::width], instance[RayPacket::width];
+};
+
+/// The part of each ray that counts, [t_min, t_max]: arrays (R,), or one number for all with step 0.
+template <class R>
+struct RayInterval {
+    const R *t_min, *t_max;
+    int t_min_step = 0, t_max_step = 0;
+};
+
+/// Where `trace` puts its answers: t (R,), primitive (R,), instance (R,), barycentrics (R, 2).
+template <class R>
+struct HitSpan {
+    R* t;
+    std::int32_t* primitive;
+    std::int32_t* instance;
+    R* barycentrics;
+};
+
+/// Where `surface_points` puts its answers; uv falls back to the barycentrics in a mesh without any.
+template <class R>
+struct SurfaceSpan {
+    R *t, *barycentrics, *uv, *position, *normal;  // (R,), (R, 2), (R, 2), (R, 3), (R, 3)
+};
+
+class Bvh {
+public:
+    Bvh(std::vector<Mesh> meshes, std::vector<Instance> instances);
+    ~Bvh();
+    Bvh(Bvh&&) noexcept;
+
+    /// Nearest hits of a batch, in the order of the input. Rays that run side by side are traced in
+    /// packets; others are reordered first (ray_order.h). The same bits for any number of threads.
+    /// Rays with non-finite numbers or without direction are counted and refused (RangeError).
+    template <Real R>
+    void trace(const RaySpan<R>& rays, const RayInterval<R>& interval,
+               const HitSpan<R>& hits) const;
+
+    /// blocked[i] = anything at all lies within the interval of ray i.
+    template <Real R>
+    void occluded(const RaySpan<R>& rays, const RayInterval<R>& interval, bool* blocked) const;
+
+    /// One packet; `side_by_side` promises that the rays are neighbours, which is faster if true.
+    void trace(const RayPacket& rays, bool side_by_side, PacketHits& hits) const;
+    void occluded(const RayPacket& rays, bool side_by_side, bool* blocked) const;
+
+    /// The world-space corners of a hit triangle.
+    template <class R>
+    void corners(std::int32_t instance, std::int32_t primitive, Vec3<R> out[3]) const {
+        const Instance& it = instances_[static_cast<std::size_t>(instance)];
+        const Mesh& mesh = meshes_[static_cast<std::size_t>(it.mesh)];
+        const std::uint32_t* c = mesh.corners(static_cast<std::uint32_t>(primitive));
+        for (int k = 0; k < 3; ++k) {
+            out[k] = mesh.vertex<R>(c[k]);
+            if (!it.world_from_object.is_identity()) out[k] = it.world_from_object.point(out[k]);
+        }
+    }
+    template <class R>
+    [[nodiscard]] TrianglePoint<R> surface_point(const Ray<R>& ray, std::int32_t instance,
+                                                 std::int32_t primitive) const {
+        Vec3<R> p[3];
+        corners(instance, primitive, p);
+        return triangle_point(ray, p[0], p[1], p[2]);
+    }
+
+    /// Texture coordinates at the barycentrics (u, v) of a hit.
+    template <class R>
+    [[nodiscard]] Vec2<R> texture_point(std::int32_t instance, std::int32_t primitive, R u,
+                                        R v) const {
+        const Mesh& mesh = mesh_of(instance);
+        if (!mesh.has_uv()) return {u, v};
+        const std::uint32_t* c = mesh.corners(static_cast<std::uint32_t>(primitive));
+        const Vec2<R> a = mesh.uv<R>(c[0]);
+        return a + u * (mesh.uv<R>(c[1]) - a) + v * (mesh.uv<R>(c[2]) - a);
+    }
+    /// The same for hits of a whole batch; a row with primitive -1 gets infinite t and zeros.
+    template <Real R>
+    void surface_points(const RaySpan<R>& rays, const std::int32_t* primitive,
+                        const std::int32_t* instance, const SurfaceSpan<R>& out) const;
+    /// Refuses (RangeError, naming the row) numbers that belong to no triangle of this scene.
+    void check_numbers(const char* function, std::span<const std::int32_t> primitive,
+                       const std::int32_t* instance) const;
+
+    [[nodiscard]] const Mesh& mesh_of(std::int32_t instance) const {
+        const Instance& it = instances_[static_cast<std::size_t>(instance)];
+        return meshes_[static_cast<std::size_t>(it.mesh)];
+    }
+    [[nodiscard]] std::span<const Mesh> meshes() const { return meshes_; }
+    [[nodiscard]] std::span<const Instance> instances() const { return instances_; }
+    [[nodiscard]] const Box& bounds() const { return bounds_; }
+
+private:
+    struct Tree;  // Embree's handles
+    std::vector<Mesh> meshes_;
+    std::vector<Instance> instances_;
+    std::unique_ptr<Tree> tree_;
+    Box bounds_;
+};
+
+}  // namespace photograd

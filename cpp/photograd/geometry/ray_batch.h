@@ -1,0 +1,91 @@
+// A batch of rays, cut into packets of sixteen in a good order and handed out to the threads.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+#include "photograd/core/errors.h"
+#include "photograd/core/parallel.h"
+#include "photograd/geometry/bvh.h"
+
+namespace photograd {
+
+/// The rows of the batch that the lanes of a packet hold.
+using PacketRows = std::array<std::int64_t, RayPacket::width>;
+
+/// Fills lane k with ray `row`; returns false, leaving the lane inactive, for a ray that is no ray.
+template <class R>
+bool load_lane(const RaySpan<R>& rays, const RayInterval<R>& interval, std::int64_t row, int k,
+               RayPacket& packet) {
+    const R *o = rays.origins + 3 * row, *d = rays.directions + 3 * row;
+    float finite = 0, squared = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        const float p = float(o[axis]), e = float(d[axis]);
+        packet.origin[axis][k] = p;
+        packet.direction[axis][k] = e;
+        finite += (p - p) + (e - e);  // 0, or NaN if any of them is NaN or infinite
+        squared += e * e;
+    }
+    packet.t_min[k] = float(interval.t_min[row * interval.t_min_step]);
+    packet.t_max[k] = float(interval.t_max[row * interval.t_max_step]);
+    packet.active[k] = finite == 0 && squared > 0;
+    return packet.active[k];
+}
+
+[[noreturn]] inline void refuse_rays(const char* function, std::int64_t count, std::int64_t first) {
+    fail(ErrorKind::range, function, "origins, directions",
+         "finite numbers and directions of some length",
+         std::to_string(count) + " rays that have not, the first in row " + std::to_string(first));
+}
+
+/// visit(packet, side_by_side, rows) for all rays, packets being cut the same way for any number of threads.
+template <class R, class Visit>
+void for_each_packet(const RaySpan<R>& rays, const RayInterval<R>& interval, const Box& scene,
+                     const char* function, Visit&& visit) {
+    constexpr int width = RayPacket::width;
+    constexpr std::int64_t block_size = 4096;    // rays of one task
+    constexpr std::int64_t slab_size = 1 << 22;  // rays ordered at a time: 84 MB of scratch
+    std::vector<std::int64_t> refused, first_refused;
+    for (std::int64_t start = 0; start < rays.count; start += slab_size) {
+        const RaySpan<R> slab{rays.origins + 3 * start, rays.directions + 3 * start,
+                              std::min(slab_size, rays.count - start)};
+        const bool near = runs_side_by_side(slab, scene);
+        const std::vector<std::uint32_t> order =
+            near ? std::vector<std::uint32_t>() : line_order(slab, scene);
+        const std::int64_t blocks = (slab.count + block_size - 1) / block_size;
+        refused.assign(static_cast<std::size_t>(blocks), 0);
+        first_refused.assign(static_cast<std::size_t>(blocks), rays.count);
+        parallel_for(blocks, [&](std::int64_t block) {
+            const std::int64_t end = std::min(slab.count, (block + 1) * block_size);
+            const auto b = static_cast<std::size_t>(block);
+            RayPacket packet;
+            PacketRows rows;
+            for (std::int64_t i = block * block_size; i < end; i += width) {
+                for (int k = 0; k < width; ++k) {
+                    // Lanes behind the end repeat the last ray, switched off.
+                    const std::int64_t at = std::min(i + k, end - 1);
+                    rows[static_cast<std::size_t>(k)] =
+                        start + (near ? at : order[static_cast<std::size_t>(at)]);
+                    const std::int64_t row = rows[static_cast<std::size_t>(k)];
+                    const bool good = load_lane(rays, interval, row, k, packet);
+                    if (i + k >= end) {
+                        packet.active[k] = false;
+                    } else if (!good) {
+                        ++refused[b];
+                        first_refused[b] = std::min(first_refused[b], row);
+                    }
+                }
+                visit(packet, near, rows);
+            }
+        });
+        std::int64_t count = 0, first = rays.count;
+        for (std::size_t b = 0; b < refused.size(); ++b) {
+            count += refused[b];
+            first = std::min(first, first_refused[b]);
+        }
+        if (count > 0) refuse_rays(function, count, first);
+    }
+}
+
+}  // namespace photograd

@@ -1,0 +1,43 @@
+// In which order to trace a batch of rays.
+//
+// Neighbouring camera rays visit the same nodes of a bounding volume hierarchy, so sixteen of them share
+// one traversal. Rays after a bounce do not, and most of their time goes into waiting for nodes that
+// have left the cache. Tracing them in an order in which consecutive rays lie close to each other as
+// *lines* brings the nodes back while they are still there [Pharr1997].
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "photograd/core/ray.h"
+#include "photograd/core/real.h"
+
+namespace photograd {
+
+struct Box {
+    Vec3<float> lo, hi;
+};
+
+/// Rays as flat arrays (R, 3).
+template <class R>
+struct RaySpan {
+    const R* origins;
+    const R* directions;
+    std::int64_t count;
+
+    [[nodiscard]] Ray<R> ray(std::int64_t i) const {
+        const R *o = origins + 3 * i, *d = directions + 3 * i;
+        return {{o[0], o[1], o[2]}, {d[0], d[1], d[2]}};
+    }
+};
+
+/// Do sixteen consecutive rays mostly run side by side? Looks at up to 256 groups spread over the batch.
+template <Real R>
+bool runs_side_by_side(const RaySpan<R>& rays, const Box& scene);
+
+/// A permutation of the rays, a function of the rays alone: the order of a 30-bit key that interleaves,
+/// from coarse to fine, the cell in which a ray starts with the cell in which it leaves the scene's box.
+template <Real R>
+std::vector<std::uint32_t> line_order(const RaySpan<R>& rays, const Box& scene);
+
+}  // namespace photograd
