@@ -59,21 +59,19 @@ struct RayArrays {
     }
 };
 
-py::tuple trace(const Bvh& bvh, const py::array& origins, const py::array& directions,
-                const py::array& t_min, const py::array& t_max) {
-    return dispatch_real("trace", "origins", origins, [&](auto real) -> py::tuple {
+void trace(const Bvh& bvh, const py::array& origins, const py::array& directions,
+           const py::array& t_min, const py::array& t_max, py::array t, py::array primitive,
+           py::array instance, py::array barycentrics) {
+    dispatch_real("trace", "origins", origins, [&](auto real) {
         using R = decltype(real);
         ArrayArgs args("trace");
         const RayArrays<R> in(args, origins, directions, t_min, t_max);
-        py::array_t<R> t(in.rays.count), barycentrics({in.rays.count, std::int64_t(2)});
-        py::array_t<std::int32_t> primitive(in.rays.count), instance(in.rays.count);
-        const HitSpan<R> hits{t.mutable_data(), primitive.mutable_data(), instance.mutable_data(),
-                              barycentrics.mutable_data()};
-        {
-            const py::gil_scoped_release release;
-            bvh.trace(in.rays, in.interval, hits);
-        }
-        return py::make_tuple(t, primitive, instance, barycentrics);
+        const HitSpan<R> hits{args.out<R>("t", t, "R"),
+                              args.out<std::int32_t>("primitive", primitive, "R"),
+                              args.out<std::int32_t>("instance", instance, "R"),
+                              args.out<R>("barycentrics", barycentrics, "R 2")};
+        const py::gil_scoped_release release;
+        bvh.trace(in.rays, in.interval, hits);
     });
 }
 
@@ -127,7 +125,9 @@ void bind_geometry(py::module_& m) {
             "Meshes as (vertices (V, 3) float32, faces (F, 3) uint32, uv (V, 2) float32 or None);\n"
             "instances as mesh_index (N,) int32 and world_from_object (N, 3, 4) float64.")
         .def("trace", &trace, py::arg("origins"), py::arg("directions"), py::arg("t_min"),
-             py::arg("t_max"), "t (R,), primitive (R,), instance (R,), barycentrics (R, 2).")
+             py::arg("t_max"), py::arg("t"), py::arg("primitive"), py::arg("instance"),
+             py::arg("barycentrics"),
+             "Fills t (R,), primitive (R,), instance (R,) int32 and barycentrics (R, 2).")
         .def("occluded", &occluded, py::arg("origins"), py::arg("directions"), py::arg("t_min"),
              py::arg("t_max"),
              "Whether anything lies within [t_min, t_max] of each ray: (R,) bool.")

@@ -119,9 +119,13 @@ class Bvh:
         directions: numpy.ndarray,
         t_min: numpy.ndarray,
         t_max: numpy.ndarray,
-    ) -> tuple[typing.Any, ...]:
+        t: numpy.ndarray,
+        primitive: numpy.ndarray,
+        instance: numpy.ndarray,
+        barycentrics: numpy.ndarray,
+    ) -> None:
         """
-        t (R,), primitive (R,), instance (R,), barycentrics (R, 2).
+        Fills t (R,), primitive (R,), instance (R,) int32 and barycentrics (R, 2).
         """
     @property
     def bounds(self) -> numpy.typing.NDArray[numpy.float32]:

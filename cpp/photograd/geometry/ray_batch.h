@@ -33,6 +33,16 @@ bool load_lane(const RaySpan<R>& rays, const RayInterval<R>& interval, std::int6
     return packet.active[k];
 }
 
+/// Rays in another order than the input lie anywhere in memory; ask for those of a later packet now.
+template <class R>
+void prefetch(const RaySpan<R>& rays, const std::uint32_t* order, std::int64_t first,
+              std::int64_t end) {
+    for (std::int64_t i = first; i < std::min(end, first + RayPacket::width); ++i) {
+        __builtin_prefetch(rays.origins + 3 * static_cast<std::int64_t>(order[i]));
+        __builtin_prefetch(rays.directions + 3 * static_cast<std::int64_t>(order[i]));
+    }
+}
+
 [[noreturn]] inline void refuse_rays(const char* function, std::int64_t count, std::int64_t first) {
     fail(ErrorKind::range, function, "origins, directions",
          "finite numbers and directions of some length",
@@ -45,14 +55,14 @@ void for_each_packet(const RaySpan<R>& rays, const RayInterval<R>& interval, con
                      const char* function, Visit&& visit) {
     constexpr int width = RayPacket::width;
     constexpr std::int64_t block_size = 4096;    // rays of one task
-    constexpr std::int64_t slab_size = 1 << 22;  // rays ordered at a time: 84 MB of scratch
+    constexpr std::int64_t slab_size = 1 << 20;  // rays ordered at a time: 20 MB of scratch
+    LineOrder line_order;
     std::vector<std::int64_t> refused, first_refused;
     for (std::int64_t start = 0; start < rays.count; start += slab_size) {
         const RaySpan<R> slab{rays.origins + 3 * start, rays.directions + 3 * start,
                               std::min(slab_size, rays.count - start)};
         const bool near = runs_side_by_side(slab, scene);
-        const std::vector<std::uint32_t> order =
-            near ? std::vector<std::uint32_t>() : line_order(slab, scene);
+        const std::uint32_t* order = near ? nullptr : line_order.sort(slab, scene);
         const std::int64_t blocks = (slab.count + block_size - 1) / block_size;
         refused.assign(static_cast<std::size_t>(blocks), 0);
         first_refused.assign(static_cast<std::size_t>(blocks), rays.count);
@@ -62,6 +72,7 @@ void for_each_packet(const RaySpan<R>& rays, const RayInterval<R>& interval, con
             RayPacket packet;
             PacketRows rows;
             for (std::int64_t i = block * block_size; i < end; i += width) {
+                if (!near) prefetch(slab, order, i + 2 * width, end);
                 for (int k = 0; k < width; ++k) {
                     // Lanes behind the end repeat the last ray, switched off.
                     const std::int64_t at = std::min(i + k, end - 1);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "photograd/core/parallel.h"
 
@@ -14,10 +15,6 @@ constexpr int levels = 5;  // bits of a cell per axis; 2 x 3 x 5 = 30 bits of ke
 constexpr int digit_bits = 10, digits = 1 << digit_bits;
 constexpr std::int64_t block_size =
     65536;  // of the sort; fixed, so the thread count changes nothing
-
-struct Keyed {
-    std::uint32_t key, ray;
-};
 
 /// Spreads the low 5 bits of x to every sixth place.
 std::uint32_t spread(std::uint32_t x) {
@@ -59,34 +56,6 @@ std::uint32_t line_key(const Vec3<float>& o, const Vec3<float>& d, const Box& bo
     return key;
 }
 
-/// One stable pass of a least-significant-digit radix sort: counts per block, prefix sums over
-/// (digit, block), then every block scatters to places that are its own.
-void radix_pass(const std::vector<Keyed>& in, std::vector<Keyed>& out, int shift) {
-    const auto n = static_cast<std::int64_t>(in.size());
-    const std::int64_t blocks = (n + block_size - 1) / block_size;
-    std::vector<std::uint32_t> place(static_cast<std::size_t>(blocks) * digits, 0);
-    const auto digit = [shift](const Keyed& k) { return (k.key >> shift) & (digits - 1); };
-    const auto each = [&](std::int64_t b, auto&& visit) {
-        std::uint32_t* own = &place[static_cast<std::size_t>(b) * digits];
-        for (std::int64_t i = b * block_size; i < std::min(n, (b + 1) * block_size); ++i)
-            visit(own, in[static_cast<std::size_t>(i)]);
-    };
-    parallel_for(blocks, [&](std::int64_t b) {
-        each(b, [&](std::uint32_t* own, const Keyed& k) { ++own[digit(k)]; });
-    });
-    std::uint32_t total = 0;
-    for (std::size_t d = 0; d < digits; ++d)
-        for (std::size_t b = 0; b < static_cast<std::size_t>(blocks); ++b) {
-            std::uint32_t& p = place[b * digits + d];
-            const std::uint32_t count = p;
-            p = total;
-            total += count;
-        }
-    parallel_for(blocks, [&](std::int64_t b) {
-        each(b, [&](std::uint32_t* own, const Keyed& k) { out[own[digit(k)]++] = k; });
-    });
-}
-
 template <class R>
 Vec3<float> load(const R* p) {
     return {float(p[0]), float(p[1]), float(p[2])};
@@ -107,6 +76,33 @@ bool side_by_side(const RaySpan<R>& rays, std::int64_t first, float reach) {
 
 }  // namespace
 
+/// One stable pass of a least-significant-digit radix sort: counts per block, prefix sums over
+/// (digit, block), then every block scatters to places that are its own. put(place, item) writes.
+template <class Put>
+void LineOrder::radix_pass(const Keyed* in, std::int64_t n, int shift, Put&& put) {
+    const std::int64_t blocks = (n + block_size - 1) / block_size;
+    std::vector<std::uint32_t> place(static_cast<std::size_t>(blocks) * digits, 0);
+    const auto each = [&](std::int64_t b, auto&& visit) {
+        std::uint32_t* own = &place[static_cast<std::size_t>(b) * digits];
+        for (std::int64_t i = b * block_size; i < std::min(n, (b + 1) * block_size); ++i)
+            visit(own[(in[i].key >> shift) & (digits - 1)], in[i]);
+    };
+    parallel_for(blocks, [&](std::int64_t b) {
+        each(b, [](std::uint32_t& count, const Keyed&) { ++count; });
+    });
+    std::uint32_t total = 0;
+    for (std::size_t d = 0; d < digits; ++d)
+        for (std::size_t b = 0; b < static_cast<std::size_t>(blocks); ++b) {
+            std::uint32_t& p = place[b * digits + d];
+            const std::uint32_t count = p;
+            p = total;
+            total += count;
+        }
+    parallel_for(blocks, [&](std::int64_t b) {
+        each(b, [&](std::uint32_t& next, const Keyed& item) { put(next++, item); });
+    });
+}
+
 template <Real R>
 bool runs_side_by_side(const RaySpan<R>& rays, const Box& scene) {
     const std::int64_t groups = rays.count / 16, looks = std::min<std::int64_t>(groups, 256);
@@ -119,36 +115,37 @@ bool runs_side_by_side(const RaySpan<R>& rays, const Box& scene) {
 }
 
 template <Real R>
-std::vector<std::uint32_t> line_order(const RaySpan<R>& rays, const Box& scene) {
-    const auto n = static_cast<std::size_t>(rays.count);
-    std::vector<Keyed> a(n), b(n);
+const std::uint32_t* LineOrder::sort(const RaySpan<R>& rays, const Box& scene) {
+    const std::int64_t n = rays.count;
+    if (n > capacity_) {
+        const auto size = static_cast<std::size_t>(n);
+        first_ = std::make_unique_for_overwrite<Keyed[]>(size);
+        second_ = std::make_unique_for_overwrite<Keyed[]>(size);
+        order_ = std::make_unique_for_overwrite<std::uint32_t[]>(size);
+        capacity_ = n;
+    }
     Vec3<float> scale;
     for (int k = 0; k < 3; ++k)
         scale[k] = float(1 << levels) / std::max(scene.hi[k] - scene.lo[k], 1e-30f);
-    const std::int64_t blocks = (rays.count + block_size - 1) / block_size;
-    parallel_for(blocks, [&](std::int64_t block) {
-        for (std::int64_t i = block * block_size;
-             i < std::min(rays.count, (block + 1) * block_size); ++i)
-            a[static_cast<std::size_t>(i)] = {
+    parallel_for((n + block_size - 1) / block_size, [&](std::int64_t block) {
+        for (std::int64_t i = block * block_size; i < std::min(n, (block + 1) * block_size); ++i)
+            first_[static_cast<std::size_t>(i)] = {
                 line_key(load(rays.origins + 3 * i), load(rays.directions + 3 * i), scene, scale),
                 static_cast<std::uint32_t>(i)};
     });
-    for (int pass = 0; pass < 3; ++pass) {
-        radix_pass(a, b, pass * digit_bits);
-        a.swap(b);
-    }
-    std::vector<std::uint32_t> order(n);
-    parallel_for(blocks, [&](std::int64_t block) {
-        for (std::int64_t i = block * block_size;
-             i < std::min(rays.count, (block + 1) * block_size); ++i)
-            order[static_cast<std::size_t>(i)] = a[static_cast<std::size_t>(i)].ray;
-    });
-    return order;
+    const auto into = [](auto& out) {
+        return [&out](std::uint32_t place, const Keyed& item) { out[place] = item; };
+    };
+    radix_pass(first_.get(), n, 0, into(second_));
+    radix_pass(second_.get(), n, digit_bits, into(first_));
+    radix_pass(first_.get(), n, 2 * digit_bits,
+               [&](std::uint32_t place, const Keyed& item) { order_[place] = item.ray; });
+    return order_.get();
 }
 
 template bool runs_side_by_side(const RaySpan<float>&, const Box&);
 template bool runs_side_by_side(const RaySpan<double>&, const Box&);
-template std::vector<std::uint32_t> line_order(const RaySpan<float>&, const Box&);
-template std::vector<std::uint32_t> line_order(const RaySpan<double>&, const Box&);
+template const std::uint32_t* LineOrder::sort(const RaySpan<float>&, const Box&);
+template const std::uint32_t* LineOrder::sort(const RaySpan<double>&, const Box&);
 
 }  // namespace photograd

@@ -7,7 +7,7 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
+#include <memory>
 
 #include "photograd/core/ray.h"
 #include "photograd/core/real.h"
@@ -35,9 +35,26 @@ struct RaySpan {
 template <Real R>
 bool runs_side_by_side(const RaySpan<R>& rays, const Box& scene);
 
-/// A permutation of the rays, a function of the rays alone: the order of a 30-bit key that interleaves,
-/// from coarse to fine, the cell in which a ray starts with the cell in which it leaves the scene's box.
-template <Real R>
-std::vector<std::uint32_t> line_order(const RaySpan<R>& rays, const Box& scene);
+/// Puts rays into an order; keeps its memory from one batch to the next.
+class LineOrder {
+public:
+    /// A permutation of the rays, a function of the rays alone: the order of a 30-bit key that
+    /// interleaves, from coarse to fine, the cell in which a ray starts with the cell in which it leaves
+    /// the scene's box. Valid until the next call.
+    template <Real R>
+    const std::uint32_t* sort(const RaySpan<R>& rays, const Box& scene);
+
+private:
+    struct Keyed {
+        std::uint32_t key, ray;
+    };
+    template <class Put>
+    static void radix_pass(const Keyed* in, std::int64_t n, int shift, Put&& put);
+
+    // Not vectors, which would write zeros first.
+    std::int64_t capacity_ = 0;
+    std::unique_ptr<Keyed[]> first_, second_;
+    std::unique_ptr<std::uint32_t[]> order_;
+};
 
 }  // namespace photograd
