@@ -1,0 +1,126 @@
+"""Photographing a described scene: cameras all around it, and what a loader will find on disk."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+from photograd_course import random
+from photograd_course.checks import require_integer
+from photograd_course.color import srgb_encode, unpremultiply
+from photograd_course.errors import RangeError, ShapeError, message
+
+from photograd.data.camera import Camera
+from photograd.data.write import Frame
+from photograd.scenes.cameras import capture_cameras
+from photograd.scenes.description import SceneDescription
+
+Picture: TypeAlias = npt.NDArray[np.floating]
+
+RenderView: TypeAlias = Callable[[Camera, int, int], tuple[Picture, Picture]]
+"""(camera, samples a pixel, seed) -> linear radiance (H, W, 3) premultiplied by alpha, and alpha
+(H, W)."""
+
+_SPLITS = {"train": 0, "test": 1}
+
+
+def capture_scene(
+    scene: SceneDescription,
+    render_view: RenderView,
+    *,
+    views: int,
+    test_views: int,
+    size: int,
+    seed: int,
+    spp: int,
+    on_view: Callable[[int, int], None] | None = None,
+) -> dict[str, list[Frame]]:
+    """Splits for `photograd.data.write_blender_capture`; give it `aabb=scene.bounds`.
+
+    Args:
+        scene: what is photographed; its outermost vertex fills 90 % of each picture's half width.
+        render_view: the renderer, with the scene already built into it.
+        views, test_views: numbers of pictures, at least 1 and at least 0.
+        size: width and height in pixels.
+        seed: turns the cameras, and gives every view a seed of its own.
+        spp: samples a pixel.
+        on_view: called with (pictures done, pictures in all) after each.
+
+    Returns:
+        "train", and "test" if there are test views: name, camera, display-encoded RGBA (H, W, 4)
+        float32 with straight alpha in 0..1, and linear radiance premultiplied with alpha
+        (H, W, 4) float32.
+
+    Raises:
+        ShapeError, RangeError, DtypeError: numbers outside their range, or a renderer that returns
+            other shapes, non-finite or negative radiance, or alpha outside 0..1.
+    """
+    require_integer("capture_scene", "spp", spp, least=1, most=1 << 20)
+    radius = content_radius(scene)
+    cameras = capture_cameras(scene.bounds, views, test_views, size=size, seed=seed, radius=radius)
+    total = sum(len(members) for members in cameras.values())
+    done = 0
+    splits: dict[str, list[Frame]] = {}
+    for split, members in cameras.items():
+        splits[split] = []
+        for index, camera in enumerate(members):
+            name = f"r_{index:03d}"
+            radiance, alpha = render_view(camera, spp, view_seed(seed, split, index))
+            where = f"{split} '{name}'"
+            linear = _checked(where, radiance, alpha, (camera.height, camera.width))
+            splits[split].append((name, camera, display_image(linear), linear))
+            done += 1
+            if on_view is not None:
+                on_view(done, total)
+    return splits
+
+
+def content_radius(scene: SceneDescription) -> float:
+    """Radius of the ball around the middle of the bounds that holds all that can be seen.
+
+    That is all vertices; with a density, of which only the box is known, it is the whole box.
+    """
+    centre = scene.bounds.mean(axis=0)
+    if scene.density is not None:
+        return float(np.linalg.norm(scene.bounds[1] - centre))
+    reach = [np.linalg.norm(mesh.vertices - centre, axis=1).max() for mesh in scene.meshes]
+    return float(max(reach))
+
+
+def view_seed(seed: int, split: str, index: int) -> int:
+    """A 32-bit seed for one picture, hashed from the capture's seed, its split and its number."""
+    address = {"step": _SPLITS[split], "pixel": index, "sample": 0, "dimension": 1}
+    return int(random.random_words(seed, **address))
+
+
+def display_image(linear: npt.NDArray[np.float32]) -> npt.NDArray[np.float32]:
+    """Premultiplied linear (H, W, 4) as a picture file has it: straight, sRGB-encoded, 0..1.
+
+    What is brighter than display white is clipped; where alpha is 0 the colour is 0.
+    """
+    straight = unpremultiply(linear[..., :3], linear[..., 3])
+    encoded = srgb_encode(np.clip(straight, 0.0, 1.0))
+    return np.concatenate([encoded, linear[..., 3:]], axis=-1)
+
+
+def _checked(
+    where: str, radiance: Picture, alpha: Picture, shape: tuple[int, int]
+) -> npt.NDArray[np.float32]:
+    """What the renderer returned as (H, W, 4) float32, or why it cannot be that."""
+    for name, array, expected in (
+        ("radiance", radiance, (*shape, 3)),
+        ("alpha", alpha, shape),
+    ):
+        if array.shape != expected:
+            argument = f"render_view: {where}: {name}"
+            raise ShapeError(message("capture_scene", argument, f"shape {expected}", array.shape))
+    linear = np.concatenate([radiance, alpha[..., None]], axis=-1).astype(np.float32)
+    good = np.isfinite(linear).all(axis=-1) & (linear >= 0.0).all(axis=-1) & (linear[..., 3] <= 1.0)
+    if not bool(good.all()):
+        row, column = np.argwhere(~good)[0]
+        got = f"{linear[row, column].tolist()} at pixel ({row}, {column})"
+        expected_text = "finite radiance of at least 0 and alpha in 0..1"
+        raise RangeError(message("capture_scene", f"render_view: {where}", expected_text, got))
+    return linear

@@ -1,0 +1,142 @@
+"""Curves through given points, walked at an even pace, and frames that do not twist along them."""
+
+from __future__ import annotations
+
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+from photograd_course.checks import require_integer
+from photograd_course.errors import RangeError, ShapeError, message
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+
+
+def smooth_curve(points: FloatArray, count: int, *, closed: bool = False) -> FloatArray:
+    """A curve through all points with continuous tangents [Catmull1974], evenly spaced by length.
+
+    Between b and c of four neighbours a, b, c, d it is, for t in 0..1,
+
+        b + t (c - a)/2 + t^2 (a - 5b/2 + 2c - d/2) + t^3 (3b - a - 3c + d)/2.
+
+    Where a point stands twice, the curve has a corner.
+
+    Args:
+        points: (P, D), P >= 2.
+        count: number of points of the result, at least 2.
+        closed: come back to the first point, which is then not repeated at the end.
+
+    Returns:
+        (count, D), float64.
+
+    Raises:
+        ShapeError, RangeError, DtypeError: too few points, or points that are not finite.
+    """
+    points = _check_points("smooth_curve", points)
+    require_integer("smooth_curve", "count", count, least=2)
+    if closed:
+        padded = np.concatenate([points[-1:], points, points[:2]])
+    else:
+        padded = np.concatenate([points[:1], points, points[-1:]])
+    t = np.linspace(0.0, 1.0, 33)[:-1, None]
+    pieces = []
+    for k in range(len(padded) - 3):
+        a, b, c, d = padded[k : k + 4]
+        pieces.append(
+            b + 0.5 * t * (c - a) + t**2 * (a - 2.5 * b + 2 * c - 0.5 * d)
+            + 0.5 * t**3 * (3 * b - a - 3 * c + d)
+        )  # fmt: skip
+    pieces.append(points[:1] if closed else points[-1:])
+    dense = np.concatenate(pieces)
+    return evenly_spaced(dense, count + 1)[:-1] if closed else evenly_spaced(dense, count)
+
+
+def evenly_spaced(points: FloatArray, count: int) -> FloatArray:
+    """`count` points (count, D) along the polyline through `points` (P, D), equal lengths apart.
+
+    Raises:
+        ShapeError, RangeError, DtypeError: too few points, not finite, or all the same.
+    """
+    points = _check_points("evenly_spaced", points)
+    require_integer("evenly_spaced", "count", count, least=2)
+    lengths = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    along = np.concatenate([[0.0], np.cumsum(lengths)])
+    if along[-1] == 0.0:
+        raise RangeError(message("evenly_spaced", "points", "a curve with a length", "one point"))
+    wanted = np.linspace(0.0, along[-1], count)
+    return np.stack([np.interp(wanted, along, column) for column in points.T], axis=1)
+
+
+def untwisted_frames(points: FloatArray, *, closed: bool = False) -> tuple[FloatArray, FloatArray]:
+    """Unit tangents and normals (N, 3) along a curve; the normals turn as little as they can.
+
+    Each frame is the one before, reflected twice: first in the plane halfway between the two
+    points, then so that its tangent becomes the new one [Wang2008]. On a closed curve the angle
+    that is left when it comes back to its start is spread over its length.
+
+    Args:
+        points: (N, 3), neighbours different, N >= 2 (3 if closed).
+        closed: whether the last point is followed by the first.
+
+    Raises:
+        ShapeError, RangeError: not (N, 3), too few, or neighbours that coincide.
+    """
+    points = _check_points("untwisted_frames", points)
+    if points.shape[1] != 3:
+        raise ShapeError(message("untwisted_frames", "points", "shape (N, 3)", points.shape))
+    tangents = _tangents(points, closed)
+    count = len(points)
+    normals = np.empty_like(points)
+    normals[0] = _any_normal(tangents[0])
+    for k in range(count - 1):
+        normals[k + 1] = _carried(points[k : k + 2], tangents[k : k + 2], normals[k])
+    if closed:
+        ends = np.stack([points[-1], points[0]])
+        arrived = _carried(ends, np.stack([tangents[-1], tangents[0]]), normals[-1])
+        side = np.cross(tangents[0], normals[0])
+        missing = -np.arctan2(arrived @ side, arrived @ normals[0])
+        angle = (missing * np.arange(count) / count)[:, None]
+        normals = np.cos(angle) * normals + np.sin(angle) * np.cross(tangents, normals)
+    return tangents, normals
+
+
+def _tangents(points: FloatArray, closed: bool) -> FloatArray:
+    """Unit central differences; one-sided at the ends of an open curve."""
+    if closed:
+        differences = np.roll(points, -1, axis=0) - np.roll(points, 1, axis=0)
+    else:
+        differences = np.gradient(points, axis=0)
+    lengths = np.linalg.norm(differences, axis=1, keepdims=True)
+    if not bool((lengths > 0.0).all()):
+        got = f"a point that stands still, number {int(np.argmin(lengths))}"
+        raise RangeError(message("untwisted_frames", "points", "different neighbours", got))
+    return np.asarray(differences / lengths)
+
+
+def _any_normal(tangent: FloatArray) -> FloatArray:
+    """The unit vector at right angles to the tangent that is nearest to an axis far from it."""
+    axis = np.eye(3)[int(np.argmin(np.abs(tangent)))]
+    normal = axis - (axis @ tangent) * tangent
+    return np.asarray(normal / np.linalg.norm(normal))
+
+
+def _carried(points: FloatArray, tangents: FloatArray, normal: FloatArray) -> FloatArray:
+    """The normal at points[0] brought to points[1] by two reflections [Wang2008, Table I]."""
+    first = points[1] - points[0]
+    scale = 2.0 / (first @ first)
+    reflected = normal - scale * (first @ normal) * first
+    tangent = tangents[0] - scale * (first @ tangents[0]) * first
+    second = tangents[1] - tangent
+    length = float(second @ second)
+    if length > 0.0:
+        reflected = reflected - 2.0 / length * (second @ reflected) * second
+    return np.asarray(reflected)
+
+
+def _check_points(function: str, points: FloatArray) -> FloatArray:
+    points = np.asarray(points, dtype=np.float64)
+    if points.ndim != 2 or len(points) < 2:
+        raise ShapeError(message(function, "points", "shape (P, D) with P >= 2", points.shape))
+    if not bool(np.isfinite(points).all()):
+        raise RangeError(message(function, "points", "finite numbers", "NaN or infinity"))
+    return points

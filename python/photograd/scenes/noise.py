@@ -1,0 +1,136 @@
+"""Gradient noise: smooth random functions of 2D and 3D points, and sums of their octaves.
+
+Every lattice point gets a random gradient; between lattice points the linear functions that these
+gradients define are blended with weights whose first and second derivatives vanish at the ends
+[Perlin1985; Perlin2002]. The noise is 0 at every lattice point, and its mean is 0.
+"""
+
+from __future__ import annotations
+
+from itertools import product
+from typing import Final, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+from photograd_course import random
+from photograd_course.checks import require_float_array, require_integer, require_number
+from photograd_course.errors import RangeError, ShapeError, message
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+
+_TABLE: Final = 256
+"""Length of the table of hashes: without a `period` the noise repeats after 256 units."""
+
+# The middles of a cube's edges, four of them twice to make 16 [Perlin2002, Sec. 3].
+_EDGES: Final = np.array(
+    [
+        [1, 1, 0], [-1, 1, 0], [1, -1, 0], [-1, -1, 0], [1, 0, 1], [-1, 0, 1], [1, 0, -1],
+        [-1, 0, -1], [0, 1, 1], [0, -1, 1], [0, 1, -1], [0, -1, -1],
+        [1, 1, 0], [-1, 1, 0], [0, -1, 1], [0, -1, -1],
+    ],
+    dtype=np.float64,
+)  # fmt: skip
+
+# Eight directions in the plane, of length sqrt(2) as the edges have.
+_COMPASS: Final = np.array(
+    [
+        [1, 1], [-1, 1], [1, -1], [-1, -1],
+        [np.sqrt(2), 0], [-np.sqrt(2), 0], [0, np.sqrt(2)], [0, -np.sqrt(2)],
+    ]
+)  # fmt: skip
+
+_GRADIENTS: Final = {2: _COMPASS, 3: _EDGES}
+
+
+def gradient_noise(
+    points: FloatArray, *, seed: int, octave: int = 0, period: int | None = None
+) -> FloatArray:
+    """Noise with features of about one unit, between -1.04 and 1.04, mean 0.
+
+    Args:
+        points: (..., 2) or (..., 3), in units of the lattice.
+        seed: the table of hashes is a random order of 0..255 drawn from it.
+        octave: another table of the same seed, independent of the first.
+        period: 1..256; the noise then repeats after so many units along each axis.
+
+    Returns:
+        (...), float64.
+
+    Raises:
+        DtypeError, ShapeError: points are no float array, or neither 2D nor 3D.
+        RangeError: non-finite points, a period outside 1..256.
+    """
+    points = _check_points("gradient_noise", points)
+    if period is not None:
+        require_integer("gradient_noise", "period", period, least=1, most=_TABLE)
+    table = random.permutation(seed, _TABLE, step=octave)
+    wrap = _TABLE if period is None else period
+    axes = points.shape[-1]
+    floor = np.floor(points)
+    inside = points - floor
+    cell = np.mod(floor, wrap).astype(np.int64)
+    fade = inside**3 * (inside * (6.0 * inside - 15.0) + 10.0)
+    total = np.zeros(points.shape[:-1])
+    for corner in product((0, 1), repeat=axes):
+        step = np.array(corner)
+        lattice = np.mod(cell + step, wrap)
+        hashed = table[lattice[..., 0]]
+        for axis in range(1, axes):
+            hashed = table[(hashed + lattice[..., axis]) % _TABLE]
+        gradient = _GRADIENTS[axes][hashed % len(_GRADIENTS[axes])]
+        weight = np.prod(np.where(step == 1, fade, 1.0 - fade), axis=-1)
+        total += weight * np.sum(gradient * (inside - step), axis=-1)
+    return total
+
+
+def fractal_noise(
+    points: FloatArray,
+    *,
+    seed: int,
+    octaves: int = 5,
+    gain: float = 0.5,
+    ridged: bool = False,
+    period: int | None = None,
+) -> FloatArray:
+    """Sum of octaves, each twice as fine and `gain` times as strong as the one before.
+
+        sum_k gain^k noise_k(2^k x) / sum_k gain^k
+
+    With `ridged`, each noise n is replaced by 1 - 2 |n|, which makes sharp crests where n = 0.
+
+    Args:
+        points: (..., 2) or (..., 3), in units of the first octave.
+        seed: each octave has a table of its own.
+        octaves: 1..12.
+        gain: 0..1, below 0.5 smooth, above rough.
+        ridged: crests instead of hills.
+        period: of the first octave; 2^(octaves - 1) period is at most 256.
+
+    Returns:
+        (...), within the range of one noise: -1.04..1.04, or -1.08..1 with `ridged`.
+
+    Raises:
+        DtypeError, ShapeError, RangeError: as `gradient_noise`, or numbers outside their range.
+    """
+    points = _check_points("fractal_noise", points)
+    require_integer("fractal_noise", "octaves", octaves, least=1, most=12)
+    require_number("fractal_noise", "gain", gain, least=0.0, most=1.0)
+    if period is not None and (period << (octaves - 1)) > _TABLE:
+        expected = f"at most {_TABLE >> (octaves - 1)} with {octaves} octaves"
+        raise RangeError(message("fractal_noise", "period", expected, period))
+    total = np.zeros(points.shape[:-1])
+    weights = gain ** np.arange(octaves)
+    for k in range(octaves):
+        finer = None if period is None else period << k
+        noise = gradient_noise(points * 2.0**k, seed=seed, octave=k, period=finer)
+        total += weights[k] * (1.0 - 2.0 * np.abs(noise) if ridged else noise)
+    return np.asarray(total / weights.sum())
+
+
+def _check_points(function: str, points: FloatArray) -> FloatArray:
+    points = require_float_array(function, "points", points).astype(np.float64, copy=False)
+    if points.ndim == 0 or points.shape[-1] not in _GRADIENTS:
+        raise ShapeError(message(function, "points", "shape (..., 2) or (..., 3)", points.shape))
+    if not bool(np.isfinite(points).all()):
+        raise RangeError(message(function, "points", "finite numbers", "NaN or infinity"))
+    return points

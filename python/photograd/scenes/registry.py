@@ -1,0 +1,51 @@
+"""The built-in scenes by name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Final, TypeAlias
+
+from photograd_course.checks import require_integer
+from photograd_course.errors import SceneError, message
+from photograd_course.suggest import choose_from
+
+from photograd.scenes.description import SceneDescription
+from photograd.scenes.terrain_clouds import terrain_clouds
+from photograd.scenes.textured import textured
+from photograd.scenes.thin_structures import thin_structures
+from photograd.scenes.toy_table import toy_table
+
+Builder: TypeAlias = Callable[[int], SceneDescription]
+"""seed -> scene; the same seed gives the same bits."""
+
+DEFAULT_SCENE: Final = "toy_table"
+"""What the demo shows."""
+
+
+def scenes() -> dict[str, Builder]:
+    """All scenes, the demo's first."""
+    return {
+        DEFAULT_SCENE: toy_table,
+        "thin_structures": thin_structures,
+        "textured": textured,
+        "terrain_clouds": terrain_clouds,
+    }
+
+
+def scene(name: str = DEFAULT_SCENE, *, seed: int) -> SceneDescription:
+    """Build the scene of this name.
+
+    Args:
+        name: a key of `scenes()`.
+        seed: 0 .. 2^63 - 1; draws the scene's noise and what of it is left to chance.
+
+    Raises:
+        SceneError: no such scene; suggests the nearest.
+        RangeError, DtypeError: a bad seed.
+    """
+    builders = scenes()
+    if name not in builders:
+        remedy = choose_from(name, builders)
+        raise SceneError(message("scene", "name", "a built-in scene", repr(name), remedy))
+    require_integer("scene", "seed", seed, least=0, most=2**63 - 1)
+    return builders[name](seed)
