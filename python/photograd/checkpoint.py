@@ -10,7 +10,9 @@ from __future__ import annotations
 
 import io
 import json
+import struct
 import zipfile
+import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -24,6 +26,13 @@ from photograd.representation import Array
 
 VERSION = 1
 FILE_NAME = "model.npz"
+
+# All that NumPy, zipfile and json raise for files that somebody else has changed.
+_DAMAGE = (
+    OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile, zlib.error, struct.error,
+    NotImplementedError, RuntimeError, MemoryError, TypeError, AttributeError, IndexError,
+    OverflowError, SyntaxError,
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -61,21 +70,33 @@ def load_checkpoint(path: Path) -> Checkpoint:
                     "run 'photograd fit' first")
         )  # fmt: skip
     try:
-        with np.load(file, allow_pickle=False) as archive:
+        # Opened here, since NumPy leaves a file open that turns out to be no archive.
+        with file.open("rb") as stream, np.load(stream, allow_pickle=False) as archive:
             arrays = {name: archive[name] for name in archive.files}
         meta = json.loads(str(arrays.pop("meta")))
         history = arrays.pop("history")
-    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as failure:
+    except _DAMAGE as failure:
+        raise _damaged(file, f"{failure}") from failure
+    if not isinstance(meta, dict):
+        raise _damaged(file, f"meta that is no JSON object but {type(meta).__name__}")
+    if meta.get("version") != VERSION:
         raise IoError(
-            message("load_checkpoint", f"{file}", "a photograd checkpoint", f"{failure}",
-                    "the file is damaged: restore it or fit again")
-        ) from failure  # fmt: skip
-    if not isinstance(meta, dict) or meta.get("version") != VERSION:
-        got = meta.get("version") if isinstance(meta, dict) else meta
-        raise IoError(message("load_checkpoint", f"{file}", f"version {VERSION}", f"{got}"))
+            message("load_checkpoint", f"{file}", f"version {VERSION}", f"{meta.get('version')}",
+                    "it was written by another version of photograd")
+        )  # fmt: skip
+    for name, array in {"history": history, **arrays}.items():
+        if not isinstance(array, np.ndarray) or array.dtype.kind not in "fiub":
+            raise _damaged(file, f"{name} that is no array of numbers")
+    if history.ndim != 2 or history.shape[1] != 3:
+        raise _damaged(file, f"a history of shape {history.shape} instead of (N, 3)")
     return Checkpoint(
         meta, _part(arrays, "params"), _part(arrays, "optimiser"), _part(arrays, "state"), history
     )
+
+
+def _damaged(file: Path, got: str) -> IoError:
+    remedy = "the file is damaged: restore it or fit again"
+    return IoError(message("load_checkpoint", f"{file}", "a photograd checkpoint", got, remedy))
 
 
 def _part(arrays: Mapping[str, Array], prefix: str) -> dict[str, Array]:

@@ -11,9 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from photograd_course.color import srgb_decode
-from photograd_course.random import uniform
 
+from photograd.backgrounds import random_background
 from photograd.data.capture import Capture
 from photograd.data.view import View
 from photograd.errors import RangeError, message
@@ -54,9 +53,7 @@ def density_gradient(
         part = chosen[start : start + RAYS_AT_ONCE]
         behind = background
         if behind is None:
-            index = 3 * start + np.arange(3 * len(part))
-            u = uniform(seed, step=0, pixel=index, sample=1, dimension=0)
-            behind = srgb_decode(u.reshape(-1, 3))
+            behind = random_background(len(part), seed=seed, step=0, first=start)
         outputs, context = field.render(
             pixels.rays(part), seed=seed, step=0, options=RenderOptions(jitter=True)
         )

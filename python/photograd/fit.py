@@ -19,17 +19,27 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from photograd_course.color import srgb_decode
+from photograd_course.atomic_io import remove_leftovers
 from photograd_course.optim import Adam
 from photograd_course.priors import total_variation_squared_backward
 from photograd_course.random import uniform
 from photograd_course.resample import upsample_trilinear
 from photograd_course.schedules import exponential
 
+from photograd.backgrounds import (
+    background_kind,
+    constant_background,
+    first_background,
+    learned_background,
+    learned_background_backward,
+    random_background,
+)
 from photograd.checkpoint import FILE_NAME, Checkpoint, load_checkpoint, save_checkpoint
+from photograd.core import _core
 from photograd.data.bounds import estimate_bounds
 from photograd.data.capture import Capture
-from photograd.errors import RangeError, message
+from photograd.data.visibility import require_views_of
+from photograd.errors import Error, IoError, RangeError, message
 from photograd.fields.dense_grid import DenseGrid
 from photograd.fit_options import FitOptions
 from photograd.imaging import image_loss, image_loss_backward
@@ -76,41 +86,61 @@ class Fit:
         self.capture = capture
         self.options = options
         self.model = model
-        self.background = background  # raw (3,) if learned: colour = sigmoid
+        self.background = background  # raw (3,) if learned, see photograd.backgrounds
         self.pixels = TrainingPixels(capture.train, capture.color_space)
-        self.optimiser = Adam()
+        self.optimiser = Adam(threads=max(1, _core.thread_count()))
         self.bounds_rule = "that of the checkpoint"
         self.step_number = 0
         self.history: list[tuple[float, float, float]] = []
 
     @classmethod
-    def start(cls, capture: Capture, options: FitOptions) -> Fit:
+    def start(cls, capture: Capture, options: FitOptions, *, allow_blind: bool = False) -> Fit:
         """Begin from nearly empty space.
 
-        Raises RangeError for an unknown or unfit representation.
+        Raises RangeError for an unknown or unfit representation, SceneError naming the training
+        cameras that do not see the scene's box (with `allow_blind` only if none does).
         """
         _require_startable(options.representation)
         bounds = estimate_bounds(capture)
+        if not allow_blind:
+            require_views_of(capture.train, bounds.box)
         model = DenseGrid.empty(
             bounds.box, options.levels()[0], finest=options.resolution, sigma_t=options.sigma_t,
             steps_per_voxel=options.steps_per_voxel,
         )  # fmt: skip
-        learned = _background_kind(capture, options) == "learned"
-        fit = cls(capture, options, model, np.zeros(3, np.float32) if learned else None)
+        learned = background_kind(options.background, has_alpha=capture.has_alpha) == "learned"
+        fit = cls(capture, options, model, None)
+        if learned:
+            fit.background = first_background(fit.pixels.premultiplied)
         fit.bounds_rule = bounds.rule
         return fit
 
     @classmethod
     def resume(cls, capture: Capture, folder: Path) -> Fit:
-        """Continue the fit that left a checkpoint in `folder`."""
+        """Continue the fit that left a checkpoint in `folder`, and clear what a crash left there.
+
+        Raises IoError for a missing or damaged checkpoint, RangeError if it belongs to another
+        capture: other names, other images, other cameras or another size.
+        """
         saved = load_checkpoint(folder)
+        model = model_of(saved, folder)
+        missing = {"step", "split", "pixels"} - set(saved.meta)
+        if missing:
+            raise IoError(
+                message("Fit.resume", f"{folder}", "the checkpoint of a fit",
+                        f"one without {sorted(missing)}", "was it saved by another version?")
+            )  # fmt: skip
+        remedy = "resume with the capture, and the --downscale, that the fit was started on"
         if saved.meta["split"] != capture.split_hash():
             raise RangeError(
                 message("Fit.resume", "capture", f"the checkpoint's split {saved.meta['split']}",
-                        capture.split_hash(), "resume with the capture that the fit was started on")
+                        capture.split_hash(), remedy)
             )  # fmt: skip
-        model = model_of(saved, folder)
         fit = cls(capture, model.options, model.field, saved.params.get("background"))
+        if saved.meta["pixels"] != fit.pixels.digest:
+            expected = f"the images and cameras {saved.meta['pixels']} of the checkpoint"
+            raise RangeError(message("Fit.resume", "capture", expected, fit.pixels.digest, remedy))
+        remove_leftovers(folder / FILE_NAME)
         fit.optimiser.load_state(saved.optimiser)
         fit.step_number = int(saved.meta["step"])
         fit.history = [tuple(row) for row in saved.history.tolist()]
@@ -121,6 +151,11 @@ class Fit:
         self._refine()
         chosen = self.pixels.draw(self.options.rays, seed=self.options.seed, step=self.step_number)
         loss, gradients = self.loss_and_gradients(chosen)
+        if not np.isfinite(loss):
+            raise Error(
+                message("Fit.step", "loss", "a finite number", f"{loss} at step {self.step_number}",
+                        "the last checkpoint is as it was; lower the learning rate")
+            )  # fmt: skip
         self._add_prior(gradients)
         rate = self.options.learning_rate * exponential(
             self.options.final_rate, self.options.steps
@@ -150,27 +185,20 @@ class Fit:
         d_outputs, d_background = image_loss_backward(loss)
         gradients = self.model.render_backward(context, d_outputs)
         if self.background is not None:
-            color = 1 / (1 + np.exp(-self.background))
-            gradients["background"] = d_background * color * (1 - color)
+            gradients["background"] = learned_background_backward(self.background, d_background)
         return loss.value, gradients
 
     def background_color(self, count: int) -> Array:
         """Linear background of each ray of a batch, (R, 3) or (3,).
 
-        Random backgrounds keep a fit from painting the background into the scene instead of leaving
-        space empty; they are uniform in display values.
+        Random ones are a function of the seed and the step.
         """
-        kind = _background_kind(self.capture, self.options)
-        if kind == "learned":
-            assert self.background is not None
-            return 1 / (1 + np.exp(-self.background))
+        kind = background_kind(self.options.background, has_alpha=self.capture.has_alpha)
+        if self.background is not None:
+            return learned_background(self.background)
         if kind == "random":
-            index = np.arange(3 * count)
-            u = uniform(
-                self.options.seed, step=self.step_number, pixel=index, sample=1, dimension=0
-            )
-            return srgb_decode(u.reshape(count, 3)).astype(np.float32)
-        return np.full(3, 1.0 if kind == "white" else 0.0, np.float32)
+            return random_background(count, seed=self.options.seed, step=self.step_number)
+        return constant_background(kind)
 
     def run(
         self,
@@ -180,23 +208,26 @@ class Fit:
         should_stop: Callable[[], bool] = lambda: False,
         checkpoint_seconds: float = 30.0,
     ) -> FitResult:
-        """Step until the end or until `should_stop`; the folder then holds the checkpoint."""
-        folder.mkdir(parents=True, exist_ok=True)
+        """Step until the end or until `should_stop`; the folder then holds the checkpoint.
+
+        Raises IoError if it cannot be written, Error if the loss or a gradient is not finite; the
+        last checkpoint then stays as it was.
+        """
+        _make_folder(folder)
         began = saved = time.perf_counter()
-        loss = float("nan")
         keep = snapshot_steps(self.options)
         if self.step_number == 0:
             save_snapshot(folder, self.model, self.options, 0)
         while self.step_number < self.options.steps and not should_stop():
             before = time.perf_counter()
-            loss = self.step()
+            self.step()
             if self.step_number in keep:
                 save_snapshot(folder, self.model, self.options, self.step_number)
             now = time.perf_counter()
             if on_step:
                 on_step(
                     Progress(
-                        self.step_number, self.options.steps, loss, self.history[-1][2],
+                        self.step_number, self.options.steps, *self.history[-1][1:],
                         max(self.model.params["values"].shape[:3]),
                         self.options.rays / max(now - before, 1e-9),
                     )
@@ -206,6 +237,7 @@ class Fit:
                 saved = time.perf_counter()
         self.save(folder)
         finished = self.step_number >= self.options.steps
+        loss = self.history[-1][1] if self.history else float("nan")
         return FitResult(
             folder / FILE_NAME, self.step_number, finished, time.perf_counter() - began, loss
         )
@@ -221,6 +253,7 @@ class Fit:
             "policy": asdict(self.model.policy),
             "capture": str(self.capture.source),
             "split": self.capture.split_hash(),
+            "pixels": self.pixels.digest,
             "color_space": self.capture.color_space,
         }
         history = np.array(self.history, np.float64).reshape(-1, 3)
@@ -267,10 +300,14 @@ def _require_startable(name: str) -> None:
         )  # fmt: skip
 
 
-def _background_kind(capture: Capture, options: FitOptions) -> str:
-    if options.background == "auto":
-        return "random" if capture.has_alpha else "learned"
-    return options.background
+def _make_folder(folder: Path) -> None:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as failure:
+        raise IoError(
+            message("Fit.run", "folder", f"a folder that can be made at {folder}",
+                    failure.strerror or f"{failure}")
+        ) from failure  # fmt: skip
 
 
 def summary(result: FitResult) -> dict[str, Any]:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Sequence
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,7 +12,7 @@ from photograd_course.color import srgb_decode
 from photograd_course.random import uniform_int
 
 from photograd.data.view import View
-from photograd.errors import RangeError, message
+from photograd.errors import IoError, RangeError, message
 from photograd.representation import Array, RayBatch
 
 
@@ -19,7 +21,8 @@ class TrainingPixels:
 
     Attributes:
         premultiplied: (P, 4) float32, linear Rec. 709 times alpha, alpha. color_space: "display" if
-        the files were 8-bit sRGB (the loss is then taken on encoded values).
+        the files were 8-bit sRGB (the loss is then taken on encoded values). digest: twelve
+        hexadecimal digits that change with any image or camera.
     """
 
     def __init__(self, views: Sequence[View], color_space: str) -> None:
@@ -33,6 +36,7 @@ class TrainingPixels:
         self._intrinsics = np.array([[c.fx, c.fy, c.cx, c.cy] for c in cameras])
         self._rotation = np.stack([c.world_from_camera[:3, :3] for c in cameras])
         self._position = np.stack([c.world_from_camera[:3, 3] for c in cameras])
+        self.digest = _digest(views)
         colors, owners, ids = [], [], []
         for index, view in enumerate(views):
             rgba = view.rgba().reshape(-1, 4)
@@ -65,6 +69,33 @@ class TrainingPixels:
         local /= np.linalg.norm(local, axis=-1, keepdims=True)
         directions = np.einsum("rij,rj->ri", self._rotation[view], local)
         return RayBatch(self._position[view], directions, chosen.astype(np.uint32))
+
+
+def _digest(views: Sequence[View]) -> str:
+    """Of stored bytes rather than decoded pixels, so that it is the same on every machine."""
+    total = hashlib.blake2b(digest_size=6)
+    for view in views:
+        camera = view.camera
+        lens = [camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy]
+        numbers = np.concatenate([lens, camera.world_from_camera.ravel()])
+        # Micrometres and millionths of a pixel: loading may round differently in the last bit.
+        total.update(np.rint(numbers * 1e6).astype(np.int64).tobytes())
+        for content in (view.image, view.mask_file):
+            if isinstance(content, Path):
+                total.update(_file_bytes(content))
+            elif content is not None:
+                total.update(np.ascontiguousarray(content).tobytes())
+    return total.hexdigest()
+
+
+def _file_bytes(path: Path) -> bytes:
+    try:
+        return path.read_bytes()
+    except OSError as failure:
+        got = f"{path}: {failure.strerror or failure}"
+        raise IoError(
+            message("TrainingPixels", "views", "files that can be read", got)
+        ) from failure
 
 
 def _premultiplied_linear(rgba: Array, color_space: str) -> NDArray[np.float32]:

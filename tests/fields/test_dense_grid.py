@@ -134,9 +134,30 @@ def test_an_unknown_policy_is_named() -> None:
         grid.render(grid.example_batch(seed=1), seed=0, step=0, options=OPTIONS)
 
 
-def test_a_voxel_that_went_bad_is_reported_with_a_pixel_that_sees_it() -> None:
-    grid = DenseGrid.example(seed=4)
-    grid.params["values"][2, 2, 2] = np.nan
+@pytest.mark.parametrize("channel", [0, 3])
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_a_voxel_that_went_bad_is_reported(dtype: Any, channel: int) -> None:
+    grid = DenseGrid.example(seed=4, dtype=dtype)
     batch = grid.example_batch(seed=4)
-    with pytest.raises(Error, match=r"finite values, got \d+ rays that are not, .* pixel \d+"):
-        grid.render(batch, seed=0, step=0, options=OPTIONS)
+    for bad in (np.nan, np.inf):
+        grid.params["values"][2, 2, 2, channel] = bad
+        with pytest.raises(Error, match="march: parameters: expected finite values, got 1 that"):
+            grid.render(batch, seed=0, step=0, options=OPTIONS)
+    # Large values are not confused with infinite ones, although their sum overflows in float32.
+    grid.params["values"][..., 3] = 3e36 if dtype is np.float32 else 1e3
+    grid.params["values"][2, 2, 2, 0] = 0
+    assert np.isfinite(grid.render(batch, seed=0, step=0, options=OPTIONS)[0].color).all()
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [("origins", np.nan), ("origins", np.inf), ("directions", np.nan), ("directions", 0.0),
+     ("directions", 5.0)],
+)  # fmt: skip
+def test_rays_that_are_no_rays_are_named_by_their_pixel(name: str, value: float) -> None:
+    grid = DenseGrid.example(seed=4)
+    batch = grid.example_batch(seed=4)
+    array = getattr(batch, name).copy()
+    array[7] = value
+    with pytest.raises(RangeError, match=r"unit directions, got 1 others, the first for pixel 7:"):
+        grid.render(replace(batch, **{name: array}), seed=0, step=0, options=OPTIONS)

@@ -14,11 +14,13 @@ from photograd_course.cli import (
     SeedOption,
     ThreadsOption,
     emit,
+    note,
 )
 from photograd_course.viz import comparison_strips, save_figure
 
 from photograd.commands.shared import CaptureArgument, DownscaleOption, ModelArgument, use_threads
 from photograd.data.load import load_capture
+from photograd.errors import RangeError, message
 from photograd.evaluate import Evaluation, as_result
 from photograd.evaluate import evaluate as score
 from photograd.model import load_model
@@ -46,8 +48,13 @@ def evaluate(
     Example: photograd evaluate model photos --out comparison.png
     """
     use_threads(threads)
-    views = load_capture(capture, downscale=downscale).test
     loaded = load_model(model)
+    photographs = load_capture(capture, downscale=downscale)
+    views = photographs.test
+    if not views:
+        raise RangeError(message("evaluate", "CAPTURE", "held-out views", f"none in {capture}"))
+    if photographs.split_hash() != loaded.meta.get("split"):
+        note("warning: the model was fitted on another split; it may have seen these views")
     with Progress("evaluate", len(views), [Column("view", "{:.0f}".format)]) as bar:
         result = score(loaded, views, on_view=lambda n: bar.update(n, view=n))
     if out is not None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
 from pathlib import Path
 from typing import Annotated
 
@@ -17,6 +18,7 @@ from photograd_course.cli import (
 )
 from photograd_course.cli import Progress as Bar
 
+from photograd.checkpoint import FILE_NAME
 from photograd.commands.shared import (
     CaptureArgument,
     DownscaleOption,
@@ -24,6 +26,7 @@ from photograd.commands.shared import (
     stop_on_signals,
     use_threads,
 )
+from photograd.data.capture import Capture
 from photograd.data.load import load_capture
 from photograd.errors import RangeError, message
 from photograd.fit import Fit, FitResult, Progress, summary
@@ -44,6 +47,7 @@ def register(app: typer.Typer) -> None:
 
 
 def fit(
+    context: typer.Context,
     capture: CaptureArgument,
     out: Annotated[Path, typer.Option("--out", help="Folder for the model and its checkpoints.")],
     representation: Annotated[
@@ -69,6 +73,9 @@ def fit(
     checkpoint_seconds: Annotated[
         float, typer.Option("--checkpoint-seconds", min=0.0, help="Time between checkpoints.")
     ] = 30.0,
+    allow_blind: Annotated[
+        bool, typer.Option("--allow-blind", help="Fit even if some cameras do not see the scene.")
+    ] = False,
     resume: Annotated[
         bool, typer.Option("--resume", help="Continue the fit in --out; its options are kept.")
     ] = False,
@@ -85,27 +92,19 @@ def fit(
     Example: photograd fit photos --out model --steps 1500 --resolution 128
     """
     use_threads(threads)
-    loaded = load_capture(capture, downscale=downscale)
-    for line in loaded.conversions:
-        note(line)
-    note(
-        f"{len(loaded.train)} training views, {len(loaded.test)} held out, "
-        f"split {loaded.split_hash()}"
-    )
+    if not resume:
+        refuse_to_overwrite(out)
+    loaded = load_and_describe(capture, downscale)
     if resume:
         job = Fit.resume(loaded, out)
+        refuse_other_options(context, job.options)
         note(f"resumed at step {job.step_number} of {job.options.steps}")
     else:
-        if (out / "model.npz").exists():
-            raise RangeError(
-                message("fit", "--out", "a folder without a model", f"{out}, which holds one",
-                        "add --resume to continue it, or choose another folder")
-            )  # fmt: skip
         options = FitOptions(
             representation=representation, steps=steps, resolution=resolution, rays=rays, seed=seed,
             learning_rate=learning_rate, total_variation=total_variation, background=background,
         )  # fmt: skip
-        job = Fit.start(loaded, options)
+        job = Fit.start(loaded, options, allow_blind=allow_blind)
         note(f"box: {job.bounds_rule}")
     with stop_on_signals() as stopping:
         result = run_with_bar(job, out, stopping, checkpoint_seconds)
@@ -113,6 +112,42 @@ def fit(
     if not result.finished:
         note(f"stopped at step {result.step}; continue with --resume")
         raise typer.Exit(stopping.exit_code or 1)
+
+
+def refuse_to_overwrite(out: Path) -> None:
+    """Raise RangeError if `out` holds a model already."""
+    if (out / FILE_NAME).exists():
+        raise RangeError(
+            message("fit", "--out", "a folder without a model", f"{out}, which holds one",
+                    "add --resume to continue it, or choose another folder")
+        )  # fmt: skip
+
+
+def load_and_describe(folder: Path, downscale: int) -> Capture:
+    """Load a capture and say on stderr what was converted and assumed."""
+    loaded = load_capture(folder, downscale=downscale)
+    for line in loaded.conversions:
+        note(line)
+    note(
+        f"{len(loaded.train)} training views, {len(loaded.test)} held out, "
+        f"split {loaded.split_hash()}"
+    )
+    return loaded
+
+
+def refuse_other_options(context: typer.Context, stored: FitOptions) -> None:
+    """A resumed fit keeps its options: raise RangeError for one that says something else."""
+    for field in fields(FitOptions):
+        source = context.get_parameter_source(field.name)
+        if source is None or source.name != "COMMANDLINE":
+            continue
+        given, kept = context.params[field.name], getattr(stored, field.name)
+        if given != kept:
+            option = "--" + field.name.replace("_", "-")
+            expected = f"{kept}, which the checkpoint was started with"
+            raise RangeError(
+                message("fit", option, expected, f"{given}", "leave it out with --resume")
+            )
 
 
 def run_with_bar(

@@ -99,9 +99,12 @@ def march(
     """Render rays through a field of the core. Shapes as in `RayBatch` and `Outputs`.
 
     `fused=False` forces the staged form, the readable oracle of the dense grid's kernel. Raises
-    Error naming the first ray if an output is not finite.
+    Error if a parameter or an output is not finite, RangeError for rays that are not finite or
+    whose directions are not of length one; they are named by their pixel.
     """
     dtype = parameters.dtype
+    _check_parameters(parameters)
+    _check_rays(batch)
     origins = np.ascontiguousarray(batch.origins, dtype)
     directions = np.ascontiguousarray(batch.directions, dtype)
     settings = policy.settings(options.stop)
@@ -143,6 +146,28 @@ def march_backward(context: MarchContext, d_outputs: Outputs) -> dict[str, Array
         gradients["parameters"], gradients.get("origins"), gradients.get("directions"), c.fused,
     )  # fmt: skip
     return gradients
+
+
+def _check_parameters(parameters: Array) -> None:
+    """Kernels may assume finite numbers, and would hide others; one pass over them, done here."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        if np.isfinite(parameters.sum()):
+            return
+    count = parameters.size - int(np.isfinite(parameters).sum())
+    if count:  # else only the sum itself overflowed
+        raise Error(message("march", "parameters", "finite values", f"{count} that are not"))
+
+
+def _check_rays(batch: RayBatch) -> None:
+    length = np.einsum("rk,rk->r", batch.directions, batch.directions)
+    # Ten per cent leave room for differences in the directions, and catch unscaled ones.
+    bad = ~((length > 0.9) & (length < 1.1) & np.isfinite(batch.origins).all(axis=1))
+    if not bad.any():
+        return
+    first = int(np.flatnonzero(bad)[0])
+    got = f"{int(bad.sum())} others, the first for pixel {int(batch.pixel[first])}"
+    got += f": from {batch.origins[first]} along {batch.directions[first]}"
+    raise RangeError(message("march", "batch", "finite origins and unit directions", got))
 
 
 def _check_finite(color: Array, transmittance: Array, batch: RayBatch) -> None:

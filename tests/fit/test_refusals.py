@@ -1,0 +1,114 @@
+"""What a fit refuses, in one sentence, before or while it runs."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from photograd.checkpoint import load_checkpoint
+from photograd.errors import Error, RangeError, SceneError
+from photograd.evaluate import evaluate
+from photograd.fit import Fit
+from photograd.fit_options import FitOptions
+from photograd.pixels import TrainingPixels
+
+from tests.fit import scene
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        (
+            "dense_gird",
+            r"one of .*, got 'dense_gird' .*mean 'dense_grid'",
+        ),
+        ("zebra", r"got 'zebra' \(choose one of these\)"),
+        ("texture_2d", r"one that is seen along rays, got 'texture_2d' \(it lives on a 2D canvas"),
+        ("toy_blobs", "it lives on a 2D canvas; a capture can start 'dense_grid'"),
+        ("tiny_network", "one that a capture can start: 'dense_grid', got 'tiny_network'"),
+    ],
+)
+def test_representations_that_cannot_be_fitted_to_a_capture(name: str, words: str) -> None:
+    with pytest.raises(RangeError, match=words):
+        Fit.start(scene.capture(), scene.options(representation=name))
+
+
+def one_turned_away() -> Any:
+    capture = scene.capture()
+    view = capture.train[3]
+    pose = view.camera.world_from_camera.copy()
+    pose[:3, [0, 2]] *= -1  # about its own vertical axis: it looks the other way
+    turned = replace(view, camera=replace(view.camera, world_from_camera=pose))
+    return replace(capture, train=(*capture.train[:3], turned, *capture.train[4:]))
+
+
+def test_cameras_that_do_not_see_the_box_are_named() -> None:
+    with pytest.raises(SceneError, match=r"cameras that see the box .*got 1 of 12 .*: train_3"):
+        Fit.start(one_turned_away(), scene.options())
+    assert Fit.start(one_turned_away(), scene.options(), allow_blind=True).step() > 0
+
+
+def test_a_box_that_no_camera_sees_is_refused_whatever_is_allowed() -> None:
+    far = replace(scene.capture(), bounds=scene.BOX + 50.0)
+    for allow in (False, True):
+        with pytest.raises(SceneError, match="16 of 16 that do not: train_0, train_1"):
+            Fit.start(far, scene.options(), allow_blind=allow)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"steps": 0}, "FitOptions: steps: expected a positive number, got 0"),
+        ({"learning_rate": float("nan")}, "learning_rate: expected a positive number, got nan"),
+        ({"total_variation": -1.0}, "total_variation: expected zero or more, got -1.0"),
+        ({"background": "grey"}, r"background: expected one of .*, got 'grey'"),
+        ({"refine_at": (0.5, 0.2)}, "refine_at: expected two rising fractions below 1"),
+    ],
+)
+def test_bad_options_are_named(change: dict[str, Any], words: str) -> None:
+    with pytest.raises(RangeError, match=words):
+        FitOptions(**change)
+
+
+def test_a_fit_that_diverges_stops_and_keeps_its_last_checkpoint(tmp_path: Path) -> None:
+    fit = Fit.start(scene.capture(), scene.options(resolution=8, steps=20))
+    fit.run(tmp_path, should_stop=lambda: fit.step_number >= 3)
+    before = (tmp_path / "model.npz").read_bytes()
+    fit.model.params["values"][3, 3, 3, 3] = np.nan
+    with pytest.raises(Error, match="march: parameters: expected finite values"):
+        fit.run(tmp_path)
+    assert (tmp_path / "model.npz").read_bytes() == before
+    assert load_checkpoint(tmp_path).meta["step"] == 3
+
+
+def test_a_loss_that_is_not_finite_is_reported_with_its_step(tmp_path: Path) -> None:
+    fit = Fit.start(scene.capture(), scene.options(resolution=8, steps=20, rays=64))
+    fit.step()
+    fit.pixels.premultiplied[:] = np.nan
+    values = fit.model.params["values"].copy()
+    with pytest.raises(Error, match=r"Fit.step: loss: expected a finite number, got nan at step 1"):
+        fit.run(tmp_path)
+    assert np.array_equal(fit.model.params["values"], values)
+
+
+def test_a_gradient_that_is_not_finite_moves_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    fit = Fit.start(scene.capture(), scene.options(resolution=8, steps=20, rays=64))
+    fit.step()
+    values, state = fit.model.params["values"].copy(), fit.optimiser.state()
+    loss, gradients = fit.loss_and_gradients(fit.pixels.draw(64, seed=1, step=1))
+    gradients["values"][1, 2, 3, 0] = np.inf
+    monkeypatch.setattr(fit, "loss_and_gradients", lambda _: (loss, gradients))
+    with pytest.raises(RangeError, match=r"gradients\['values'\]: expected finite .* got 1 of"):
+        fit.step()
+    assert np.array_equal(fit.model.params["values"], values)
+    assert all(np.array_equal(fit.optimiser.state()[key], array) for key, array in state.items())
+
+
+def test_nothing_to_learn_from_and_nothing_to_score() -> None:
+    with pytest.raises(RangeError, match="TrainingPixels: views: expected at least one view"):
+        TrainingPixels([], "display")
+    with pytest.raises(RangeError, match="evaluate: views: expected at least one held-out view"):
+        evaluate(scene.as_model(scene.truth()), [])
