@@ -56,7 +56,7 @@ struct RayAdjoints {
     R* d_directions = nullptr;
 };
 
-inline constexpr std::int64_t march_slab_samples = 1 << 19;  // samples whose contributions are kept
+inline constexpr std::int64_t march_slab_samples = 1 << 20;  // samples whose contributions are kept
 
 namespace detail {
 
