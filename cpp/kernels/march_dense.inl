@@ -19,19 +19,19 @@ struct SampleBlock {
     Lanes<float> raw[4];  // r, g, b, density before activation
     Lanes<float> sigma_t, rgb[3];
     int base[3][lane_count];
+    int voxel[lane_count];   // number of the base voxel
     Lanes<float> row[4];     // weights of the four rows (x, y): 00 01 10 11
     Lanes<float> z0, z1;     // weights of the two ends of a row
 };
 
 // Positions of samples k0, k0 + 1, ... and their cells and weights.
 static inline void place_block(const MarchDenseArgs& a, std::int64_t ray, int k0, SampleBlock& b) {
-    const float* o = a.origins + 3 * ray;
-    const float* d = a.directions + 3 * ray;
-    const float t0 = a.t0[ray];
+    const float t0 = a.t0[ray], dt = a.dt;
     for (int i = 0; i < lane_count; ++i)
-        b.t[i] = t0 + (static_cast<float>(k0 + i) + 0.5f) * a.dt;
+        b.t[i] = t0 + (static_cast<float>(k0 + i) + 0.5f) * dt;
     for (int axis = 0; axis < 3; ++axis) {
-        for (int i = 0; i < lane_count; ++i) b.p[axis][i] = o[axis] + b.t[i] * d[axis];
+        const float o = a.origins[3 * ray + axis], d = a.directions[3 * ray + axis];
+        for (int i = 0; i < lane_count; ++i) b.p[axis][i] = o + b.t[i] * d;
     }
 }
 
@@ -57,17 +57,31 @@ static inline void weigh_block(const MarchDenseArgs& a, SampleBlock& b) {
     }
     b.z0 = w0[2];
     b.z1 = w1[2];
+    for (int i = 0; i < lane_count; ++i)
+        b.voxel[i] = (b.base[0][i] * a.shape[1] + b.base[1][i]) * a.shape[2] + b.base[2][i];
+}
+
+// Everything about a sub-block that needs no voxel; asks for the voxels that it will need.
+static inline void locate_block(const MarchDenseArgs& a, std::int64_t ray, int k0, SampleBlock& b) {
+    place_block(a, ray, k0, b);
+    weigh_block(a, b);
+    const long long to_y = static_cast<long long>(a.shape[2]) * 4;
+    const long long to_x = a.shape[1] * to_y;
+    for (int i = 0; i < lane_count; i += 2) {
+        const float* row = a.values + static_cast<long long>(b.voxel[i]) * 4;
+        __builtin_prefetch(row);
+        __builtin_prefetch(row + to_y);
+        __builtin_prefetch(row + to_x);
+        __builtin_prefetch(row + to_x + to_y);
+    }
 }
 
 static inline void look_up_block(const MarchDenseArgs& a, SampleBlock& b) {
     const long long to_y = static_cast<long long>(a.shape[2]) * 4;
     const long long to_x = a.shape[1] * to_y;
-    int voxel[lane_count];
-    for (int i = 0; i < lane_count; ++i)
-        voxel[i] = (b.base[0][i] * a.shape[1] + b.base[1][i]) * a.shape[2] + b.base[2][i];
     alignas(64) float found[lane_count][4];
     for (int i = 0; i < lane_count; ++i) {
-        const float* row = a.values + static_cast<long long>(voxel[i]) * 4;
+        const float* row = a.values + static_cast<long long>(b.voxel[i]) * 4;
         const Float8 ends = ((b.row[0][i] * *reinterpret_cast<const Float8*>(row) +
                               b.row[1][i] * *reinterpret_cast<const Float8*>(row + to_y)) +
                              b.row[2][i] * *reinterpret_cast<const Float8*>(row + to_x)) +
@@ -118,8 +132,6 @@ static inline void activate_lanes_backward(Activation kind, const Lanes<float>& 
 }
 
 static inline void evaluate_block(const MarchDenseArgs& a, std::int64_t ray, int k0, SampleBlock& b) {
-    place_block(a, ray, k0, b);
-    weigh_block(a, b);
     look_up_block(a, b);
     activate_lanes(static_cast<Activation>(a.density_activation), b.raw[3], b.sigma_t);
     for (int c = 0; c < 3; ++c)
@@ -130,8 +142,9 @@ static inline void evaluate_block(const MarchDenseArgs& a, std::int64_t ray, int
 }
 
 // Rays of a chunk advance together, lane_count samples a wave: neighbouring rays read the same voxels, which
-// are then still in the first-level cache. visit(i, k0) handles one sub-block of ray begin + i and returns
-// the optical depth behind it.
+// are then still in the first-level cache. visit(i, k0, block) handles one located sub-block of ray begin + i
+// and returns the optical depth behind it. The next sub-block is located first, so that its voxels are on
+// their way while this one is computed.
 template <class Visit>
 static inline void walk_chunk(const MarchDenseArgs& a, std::int64_t begin, std::int64_t end,
                               Visit&& visit) {
@@ -139,11 +152,14 @@ static inline void walk_chunk(const MarchDenseArgs& a, std::int64_t begin, std::
     int count = 0;
     for (int i = 0; i < static_cast<int>(end - begin); ++i)
         if (a.count[begin + i] > 0) alive[count++] = i;
+    SampleBlock blocks[2];
     for (int k0 = 0; count > 0; k0 += lane_count) {
         int left = 0;
+        locate_block(a, begin + alive[0], k0, blocks[0]);
         for (int j = 0; j < count; ++j) {
             const int i = alive[j];
-            const float tau = visit(i, k0);
+            if (j + 1 < count) locate_block(a, begin + alive[j + 1], k0, blocks[(j + 1) % 2]);
+            const float tau = visit(i, k0, blocks[j % 2]);
             if (a.count[begin + i] > k0 + lane_count && tau <= a.tau_stop) alive[left++] = i;
         }
         count = left;
@@ -153,8 +169,7 @@ static inline void walk_chunk(const MarchDenseArgs& a, std::int64_t begin, std::
 static void march_dense_forward(const MarchDenseArgs& a, std::int64_t begin, std::int64_t end) {
     const Quadrature form = static_cast<Quadrature>(a.quadrature);
     RayTotals<float> totals[march_chunk];
-    SampleBlock b;
-    walk_chunk(a, begin, end, [&](int i, int k0) {
+    walk_chunk(a, begin, end, [&](int i, int k0, SampleBlock& b) {
         evaluate_block(a, begin + i, k0, b);
         composite(form, b.sigma_t, b.rgb, b.t, a.dt, totals[i]);
         return totals[i].tau;
@@ -202,8 +217,7 @@ static std::int64_t march_dense_backward(const MarchDenseArgs& a, const MarchDen
     for (std::int64_t ray = begin; ray < end; ++ray)
         cotangents[ray - begin] = start_cotangents(a, back, ray);
     BrickRun* next = runs;
-    SampleBlock b;
-    walk_chunk(a, begin, end, [&](int i, int k0) {
+    walk_chunk(a, begin, end, [&](int i, int k0, SampleBlock& b) {
         const std::int64_t ray = begin + i;
         evaluate_block(a, ray, k0, b);
         Lanes<float> d_raw[4] = {};
