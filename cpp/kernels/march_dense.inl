@@ -273,11 +273,12 @@ static void march_dense_gather(const MarchDenseArgs& a, const BrickRun* runs,
     for (std::int64_t j = 0; j < count; ++j) {
         const BrickRun& run = runs[order[j]];
         // Runs of a brick lie far apart in memory; asked for early, they are there when needed.
-        if (j + 16 < count) __builtin_prefetch(runs + order[j + 16]);
+        if (j + 24 < count) __builtin_prefetch(runs + order[j + 24]);
         if (j + 6 < count) {
             const float* soon = d_raw + 4 * static_cast<std::int64_t>(runs[order[j + 6]].sample);
             __builtin_prefetch(soon);
             __builtin_prefetch(soon + 16);
+            __builtin_prefetch(soon + 32);
         }
         const float* o = a.origins + 3 * static_cast<std::int64_t>(run.ray);
         const float* d = a.directions + 3 * static_cast<std::int64_t>(run.ray);
