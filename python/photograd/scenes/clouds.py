@@ -14,7 +14,7 @@ def cloud_layer(
     seed: int,
     sigma_t: float = 60.0,
     feature_size: float = 0.3,
-    threshold: float = 0.08,
+    threshold: float = -0.1,
 ) -> Density:
     """Clouds that fill a box, flat below and billowing above.
 
@@ -28,7 +28,7 @@ def cloud_layer(
         seed: of the noise.
         sigma_t: the largest value, in 1/m.
         feature_size: metres from cloud to cloud.
-        threshold: of the noise; with 0 about half of the layer is cloud, with more it is less.
+        threshold: of the noise; with -0.1 two fifths of the layer are cloud, with 0 one fifth.
 
     Returns:
         A function from points (N, 3) to sigma_t (N,) in 1/m: continuous, 0 outside the box.

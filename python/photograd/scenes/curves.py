@@ -19,7 +19,8 @@ def smooth_curve(points: FloatArray, count: int, *, closed: bool = False) -> Flo
 
         b + t (c - a)/2 + t^2 (a - 5b/2 + 2c - d/2) + t^3 (3b - a - 3c + d)/2.
 
-    Where a point stands twice, the curve has a corner.
+    Where an open curve has a point twice in a row, it has a corner: the two parts know nothing of
+    each other.
 
     Args:
         points: (P, D), P >= 2.
@@ -35,20 +36,25 @@ def smooth_curve(points: FloatArray, count: int, *, closed: bool = False) -> Flo
     points = _check_points("smooth_curve", points)
     require_integer("smooth_curve", "count", count, least=2)
     if closed:
-        padded = np.concatenate([points[-1:], points, points[:2]])
-    else:
-        padded = np.concatenate([points[:1], points, points[-1:]])
+        dense = _spline(np.concatenate([points[-1:], points, points[:2]]))
+        return evenly_spaced(dense, count + 1)[:-1]
+    corners = 1 + np.flatnonzero((points[1:] == points[:-1]).all(axis=1))
+    parts = np.split(points, corners)
+    ended = [np.concatenate([part[:1], part, part[-1:]]) for part in parts]
+    return evenly_spaced(np.concatenate([_spline(part) for part in ended]), count)
+
+
+def _spline(points: FloatArray) -> FloatArray:
+    """Many points of the spline from the second point (P, D) to the last but one."""
     t = np.linspace(0.0, 1.0, 33)[:-1, None]
     pieces = []
-    for k in range(len(padded) - 3):
-        a, b, c, d = padded[k : k + 4]
+    for k in range(len(points) - 3):
+        a, b, c, d = points[k : k + 4]
         pieces.append(
             b + 0.5 * t * (c - a) + t**2 * (a - 2.5 * b + 2 * c - 0.5 * d)
             + 0.5 * t**3 * (3 * b - a - 3 * c + d)
         )  # fmt: skip
-    pieces.append(points[:1] if closed else points[-1:])
-    dense = np.concatenate(pieces)
-    return evenly_spaced(dense, count + 1)[:-1] if closed else evenly_spaced(dense, count)
+    return np.concatenate([*pieces, points[-2:-1]])
 
 
 def evenly_spaced(points: FloatArray, count: int) -> FloatArray:

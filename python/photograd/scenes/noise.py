@@ -65,21 +65,24 @@ def gradient_noise(
         require_integer("gradient_noise", "period", period, least=1, most=_TABLE)
     table = random.permutation(seed, _TABLE, step=octave)
     wrap = _TABLE if period is None else period
-    axes = points.shape[-1]
-    floor = np.floor(points)
-    inside = points - floor
-    cell = np.mod(floor, wrap).astype(np.int64)
-    fade = inside**3 * (inside * (6.0 * inside - 15.0) + 10.0)
+    gradients = _GRADIENTS[points.shape[-1]]
+    # One array an axis instead of a last axis of two or three: several times faster.
+    cells, inside, fades = [], [], []
+    for x in np.moveaxis(points, -1, 0):
+        floor = np.floor(x)
+        t = x - floor
+        cells.append(np.mod(floor, wrap).astype(np.int64))
+        inside.append(t)
+        fades.append(t * t * t * (t * (6.0 * t - 15.0) + 10.0))
     total = np.zeros(points.shape[:-1])
-    for corner in product((0, 1), repeat=axes):
-        step = np.array(corner)
-        lattice = np.mod(cell + step, wrap)
-        hashed = table[lattice[..., 0]]
-        for axis in range(1, axes):
-            hashed = table[(hashed + lattice[..., axis]) % _TABLE]
-        gradient = _GRADIENTS[axes][hashed % len(_GRADIENTS[axes])]
-        weight = np.prod(np.where(step == 1, fade, 1.0 - fade), axis=-1)
-        total += weight * np.sum(gradient * (inside - step), axis=-1)
+    for corner in product((0, 1), repeat=len(cells)):
+        hashed, weight = np.int64(0), np.float64(1.0)
+        for cell, fade, step in zip(cells, fades, corner, strict=True):
+            hashed = table[(hashed + (cell + step) % wrap) % _TABLE]
+            weight = weight * (fade if step else 1.0 - fade)
+        chosen = hashed % len(gradients)
+        for t, component, step in zip(inside, gradients.T, corner, strict=True):
+            total += weight * component[chosen] * (t - step)
     return total
 
 

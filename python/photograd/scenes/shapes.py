@@ -1,8 +1,7 @@
-"""Closed shapes: ball, box, ring, superellipsoid, and anything turned on a lathe.
+"""Closed shapes around the origin: ball, box, ring, superellipsoid.
 
-All are watertight, counter-clockwise seen from outside, centred at the origin (but for `lathe`),
-and carry texture coordinates with u to the right and v down. `ico_sphere` has the evenest
-triangles.
+All are watertight, counter-clockwise seen from outside, and carry texture coordinates with u to the
+right and v down. `ico_sphere` has the evenest triangles.
 """
 
 from __future__ import annotations
@@ -10,39 +9,8 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 from photograd_course.checks import require_integer, require_number
-from photograd_course.errors import RangeError, ShapeError, message
 
 from photograd.scenes.surface import FloatArray, Surface, from_grid, joined
-
-
-def lathe(profile: FloatArray, *, columns: int = 96) -> Surface:
-    """The solid that a profile sweeps around the +Y axis.
-
-    Args:
-        profile: (M, 2) of (radius, height), from top to bottom on the outside, both ends on the
-            axis (radius 0). A vessel starts on the floor inside, rises along the inner wall and
-            comes down outside. u runs around, v along the profile.
-        columns: number of faces around, at least 3.
-
-    Raises:
-        ShapeError, RangeError, DtypeError: not (M, 2), negative radii, ends off the axis, fewer
-            than 3 columns.
-    """
-    profile = np.asarray(profile, dtype=np.float64)
-    require_integer("lathe", "columns", columns, least=3)
-    if profile.ndim != 2 or profile.shape[1] != 2 or len(profile) < 3:
-        raise ShapeError(message("lathe", "profile", "shape (M, 2), M >= 3", profile.shape))
-    radius, height = profile.T
-    if not bool(np.isfinite(profile).all()) or float(radius.min()) < 0.0:
-        raise RangeError(message("lathe", "profile", "finite, radii of at least 0", "others"))
-    if radius[0] != 0.0 or radius[-1] != 0.0:
-        got = f"radii {radius[0]:g} and {radius[-1]:g}"
-        raise RangeError(message("lathe", "profile", "both ends on the axis", got))
-    angle = 2.0 * np.pi * np.arange(columns) / columns
-    ring = np.stack([np.sin(angle), np.zeros(columns), np.cos(angle)], axis=-1)
-    points = radius[:, None, None] * ring
-    points[..., 1] = height[:, None]
-    return from_grid(points, closed_columns=True)
 
 
 def sphere(radius: float, *, rows: int = 48, columns: int = 96) -> Surface:

@@ -13,17 +13,18 @@ from photograd.scenes.clouds import cloud_layer
 from photograd.scenes.daylight import blue_sky, warm_sun
 from photograd.scenes.description import SceneDescription
 from photograd.scenes.heightfield import land_block, net_points
+from photograd.scenes.lathe import lathe
 from photograd.scenes.noise import FloatArray, fractal_noise
 from photograd.scenes.paints import Color, paint, paints, within_range
 from photograd.scenes.parts import Part, as_meshes, placed
-from photograd.scenes.shapes import lathe, sphere
+from photograd.scenes.shapes import sphere
 from photograd.scenes.surface import joined
 from photograd.scenes.textures import bands
 
 _HALF = 0.55
 _FLOOR = -0.32
 _SEA = -0.16
-_NET = 256
+_NET = 200
 _CLOUDS = np.array([[-0.5, 0.22, -0.5], [0.5, 0.42, 0.5]])
 
 
@@ -56,7 +57,7 @@ def island_heights(plan: FloatArray, *, seed: int) -> FloatArray:
     land = 1.0 - 1.15 * edge**2 + 1.1 * hills
     share = np.clip((land - 0.35) / 0.85, 0.0, 1.0)
     mountains = share**2 * (3.0 - 2.0 * share) * np.clip(0.55 + 0.6 * crests, 0.1, None)
-    return np.asarray(_SEA + 0.055 * np.clip(land, -2.0, None) + 0.33 * mountains)
+    return np.asarray(_SEA + 0.055 * np.clip(land, -2.0, None) + 0.38 * mountains)
 
 
 def ground_colors(plan: FloatArray, ground: FloatArray, *, seed: int) -> Color:

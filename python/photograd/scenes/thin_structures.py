@@ -11,12 +11,12 @@ from photograd_course import random
 from photograd.scenes.curves import smooth_curve
 from photograd.scenes.daylight import blue_sky, warm_sun
 from photograd.scenes.description import SceneDescription, bounds_of
+from photograd.scenes.lathe import lathe, rounded_profile
 from photograd.scenes.paints import paint, paints
 from photograd.scenes.parts import Part, as_meshes, placed
-from photograd.scenes.shapes import lathe, sphere, torus
+from photograd.scenes.shapes import sphere, torus
 from photograd.scenes.surface import FloatArray, rotation_about
 from photograd.scenes.textures import checker, stripes
-from photograd.scenes.toys import rounded_profile
 from photograd.scenes.tube import tube
 
 _WIRE = 0.007

@@ -9,9 +9,10 @@ import numpy as np
 from photograd.scenes import toys
 from photograd.scenes.daylight import blue_sky, warm_sun
 from photograd.scenes.description import SceneDescription, bounds_of
+from photograd.scenes.lathe import lathe, rounded_profile
 from photograd.scenes.paints import paint, paints
 from photograd.scenes.parts import Part, as_meshes, placed
-from photograd.scenes.shapes import lathe, torus
+from photograd.scenes.shapes import torus
 from photograd.scenes.surface import rotation_about
 from photograd.scenes.textures import bands, stripes, wood
 
@@ -48,7 +49,7 @@ def table(*, seed: int) -> list[Part]:
     ]
     top = lathe(np.array(corners), columns=128).moved((0.0, _TOP, 0.0))
     flat = 0.5 + 0.5 * top.vertices[:, [0, 2]] / _RADIUS
-    planks = wood((768, 768), paint("maple"), 0.75 * paint("oak"), seed=seed, planks=6)
+    planks = wood((512, 512), paint("maple"), 0.75 * paint("oak"), seed=seed, planks=6)
     rim = torus(_RADIUS, 0.026, columns=160).moved((0.0, _TOP - 0.025, 0.0))
     ring = torus(0.36, 0.02, columns=128).moved((0.0, _TOP - 0.3, 0.0))
     parts: list[Part] = [
@@ -66,7 +67,7 @@ def leg() -> list[Part]:
     """One leg below the origin, splayed towards +Z."""
     turned = [(0, 0.01), (0.04, 0.0), (0.042, -0.06), (0.02, -0.1), (0.046, -0.15), (0.02, -0.2),
               (0.03, -0.28), (0.022, -0.36), (0.038, -0.4), (0.03, -0.44), (0, -0.45)]  # fmt: skip
-    profile = toys.rounded_profile([(float(r), float(y)) for r, y in turned])
+    profile = rounded_profile([(float(r), float(y)) for r, y in turned])
     colors = paints("blue", "cream", "coral", "cream", "teal", "amber", "blue")
     edges = [0.2, 0.28, 0.42, 0.5, 0.72, 0.84]
     shape = lathe(profile, columns=32).moved((0, 0, 0.38), rotation=rotation_about("x", -8.0))

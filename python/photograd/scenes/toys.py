@@ -9,17 +9,19 @@ from __future__ import annotations
 import numpy as np
 
 from photograd.scenes.curves import smooth_curve
+from photograd.scenes.lathe import lathe, rounded_profile
 from photograd.scenes.paints import Color, paint, paints
 from photograd.scenes.parts import Part, placed
-from photograd.scenes.shapes import lathe, rounded_box, sphere, torus
-from photograd.scenes.surface import FloatArray, rotation_about
+from photograd.scenes.shapes import rounded_box, sphere, torus
+from photograd.scenes.surface import rotation_about
 from photograd.scenes.textures import bands, checker, marble, painted_tiles, stripes
 from photograd.scenes.tube import tube
 
 
 def ring_tower() -> list[Part]:
     """Five rings in the colours of the rainbow, checkered, on a pole with a ball on top."""
-    base = lathe(rounded_profile([(0, 0.045), (0.15, 0.045), (0.165, 0.02), (0.165, 0), (0, 0)]))
+    foot = [(0, 0.045), (0.15, 0.045), (0.165, 0.02), (0.165, 0), (0.165, 0), (0, 0)]
+    base = lathe(rounded_profile(foot))
     parts: list[Part] = [(base, stripes((8, 256), 32, paints("walnut", "amber")))]
     names = ["red", "orange", "yellow", "green", "blue"]
     height = 0.045
@@ -130,11 +132,3 @@ def caterpillar() -> list[Part]:
         tip = sphere(0.017, rows=16, columns=32).moved((x + 0.045, y + 0.15, z + side * 0.06))
         parts += [(eye, paint("ink")), (tube(feeler, 0.008), paint("ink")), (tip, paint("amber"))]
     return parts
-
-
-def rounded_profile(corners: list[tuple[float, float]], *, count: int = 96) -> FloatArray:
-    """A profile for `lathe` through `corners` (radius, height), with its ends on the axis."""
-    profile = smooth_curve(np.array(corners, dtype=np.float64), count)
-    profile[:, 0] = np.clip(profile[:, 0], 0.0, None)
-    profile[[0, -1], 0] = 0.0
-    return profile
