@@ -243,21 +243,51 @@ static std::int64_t march_dense_backward(const MarchDenseArgs& a, const MarchDen
     return next - runs;
 }
 
-// Adds the samples gathered in `b` to a brick's tile.
-static inline void add_to_tile(const MarchDenseArgs& a, SampleBlock& b, int used, const int* corner,
-                               const float* const* d_raw, float* tile) {
+// Samples of a brick on their way into its tile. Runs are short and of any length; lining up their samples
+// in a queue keeps all lanes busy. The queue has room for the block in hand and one more run.
+struct SampleQueue {
+    int used = 0;
+    alignas(64) float p[3][2 * lane_count];
+    alignas(64) int source[2 * lane_count];  // number of the sample in d_raw
+};
+
+// Appends samples k, k + 1, ... of a run, at most lane_count of them; lanes beyond `count` are overwritten
+// by whatever comes next.
+static inline void enqueue(const MarchDenseArgs& a, const BrickRun& run, SampleQueue& q) {
+    const std::int64_t ray = run.ray;
+    const float t0 = a.t0[ray], dt = a.dt;
+    float t[lane_count];
+    for (int i = 0; i < lane_count; ++i)
+        t[i] = t0 + (static_cast<float>(static_cast<int>(run.k) + i) + 0.5f) * dt;
+    for (int axis = 0; axis < 3; ++axis) {
+        const float o = a.origins[3 * ray + axis], d = a.directions[3 * ray + axis];
+        float* p = q.p[axis] + q.used;
+        for (int i = 0; i < lane_count; ++i) p[i] = o + t[i] * d;
+    }
+    int* source = q.source + q.used;
+    for (int i = 0; i < lane_count; ++i) source[i] = static_cast<int>(run.sample) + i;
+    q.used += static_cast<int>(run.count);
+}
+
+// Adds the first `count` samples of the queue to a brick's tile.
+static inline void add_to_tile(const MarchDenseArgs& a, const SampleQueue& q, int count,
+                               const int* corner, const float* d_raw, float* tile) {
+    SampleBlock b;
+    for (int axis = 0; axis < 3; ++axis)
+        for (int i = 0; i < lane_count; ++i) b.p[axis][i] = q.p[axis][i];
     weigh_block(a, b);
     constexpr int to_y = tile_side * 4, to_x = tile_side * to_y;
-    for (int i = 0; i < used; ++i) {
-        float* row = tile + (b.base[0][i] - corner[0]) * to_x + (b.base[1][i] - corner[1]) * to_y +
-                     (b.base[2][i] - corner[2]) * 4;
-        const Float4 d = *reinterpret_cast<const Float4*>(d_raw[i]);
+    int offset[lane_count];
+    for (int i = 0; i < lane_count; ++i)
+        offset[i] = (b.base[0][i] - corner[0]) * to_x + (b.base[1][i] - corner[1]) * to_y +
+                    (b.base[2][i] - corner[2]) * 4;
+    for (int i = 0; i < count; ++i) {
+        float* row = tile + offset[i];
+        const Float4 d = *reinterpret_cast<const Float4*>(d_raw + 4 * static_cast<std::int64_t>(q.source[i]));
         const Float4 near = d * b.z0[i], far = d * b.z1[i];
-        const int offset[4] = {0, to_y, to_x, to_x + to_y};
-        for (int r = 0; r < 4; ++r) {
-            *reinterpret_cast<Float4*>(row + offset[r]) += b.row[r][i] * near;
-            *reinterpret_cast<Float4*>(row + offset[r] + 4) += b.row[r][i] * far;
-        }
+        const Float8 ends = {near[0], near[1], near[2], near[3], far[0], far[1], far[2], far[3]};
+        constexpr int to_row[4] = {0, to_y, to_x, to_x + to_y};
+        for (int r = 0; r < 4; ++r) *reinterpret_cast<Float8*>(row + to_row[r]) += b.row[r][i] * ends;
     }
 }
 
@@ -267,11 +297,8 @@ static void march_dense_gather(const MarchDenseArgs& a, const BrickRun* runs,
                                float* tile) {
     int corner[3];
     BrickLayout::of(a.shape).corner(static_cast<int>(runs[order[0]].brick), corner);
-    SampleBlock b = {};
-    const float* source[lane_count];
-    int used = 0;
+    SampleQueue q = {};
     for (std::int64_t j = 0; j < count; ++j) {
-        const BrickRun& run = runs[order[j]];
         // Runs of a brick lie far apart in memory; asked for early, they are there when needed.
         if (j + 24 < count) __builtin_prefetch(runs + order[j + 24]);
         if (j + 6 < count) {
@@ -280,20 +307,15 @@ static void march_dense_gather(const MarchDenseArgs& a, const BrickRun* runs,
             __builtin_prefetch(soon + 16);
             __builtin_prefetch(soon + 32);
         }
-        const float* o = a.origins + 3 * static_cast<std::int64_t>(run.ray);
-        const float* d = a.directions + 3 * static_cast<std::int64_t>(run.ray);
-        const float t0 = a.t0[run.ray];
-        for (std::uint32_t i = 0; i < run.count; ++i) {
-            const float t = t0 + (static_cast<float>(static_cast<int>(run.k + i)) + 0.5f) * a.dt;
-            for (int axis = 0; axis < 3; ++axis) b.p[axis][used] = o[axis] + t * d[axis];
-            source[used] = d_raw + 4 * static_cast<std::int64_t>(run.sample + i);
-            if (++used == lane_count) {
-                add_to_tile(a, b, used, corner, source, tile);
-                used = 0;
-            }
-        }
+        enqueue(a, runs[order[j]], q);
+        if (q.used < lane_count) continue;
+        add_to_tile(a, q, lane_count, corner, d_raw, tile);
+        q.used -= lane_count;
+        for (int axis = 0; axis < 3; ++axis)
+            for (int i = 0; i < lane_count; ++i) q.p[axis][i] = q.p[axis][i + lane_count];
+        for (int i = 0; i < lane_count; ++i) q.source[i] = q.source[i + lane_count];
     }
-    add_to_tile(a, b, used, corner, source, tile);
+    add_to_tile(a, q, q.used, corner, d_raw, tile);
 }
 
 }  // namespace photograd::PHOTOGRAD_ISA
