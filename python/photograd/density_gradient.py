@@ -89,44 +89,50 @@ def voxel_masks(field: DenseGrid, capture: Capture) -> VoxelMasks:
         )  # fmt: skip
     shape = field.params["values"].shape[:3]
     lo, hi = field.box
-    axes = [lo[k] + (np.arange(shape[k]) + 0.5) * (hi[k] - lo[k]) / shape[k] for k in range(3)]
+    voxel = (hi - lo) / shape
+    axes = [lo[k] + (np.arange(shape[k]) + 0.5) * voxel[k] for k in range(3)]
     centres = np.stack(np.meshgrid(*axes, indexing="ij"), -1).reshape(-1, 3)
-    voxel = float(((hi - lo) / shape).max())
-    least, most, seen = np.ones(len(centres)), np.zeros(len(centres)), np.zeros(len(centres), int)
+    occupied = np.ones(len(centres), np.bool_)
+    empty = np.ones(len(centres), np.bool_)
+    seen = np.zeros(len(centres), np.int64)
     for view in capture.train:
-        _look(view, centres, voxel, least, most, seen)
+        open_ids = np.flatnonzero(occupied | empty)
+        found, rectangle = _footprints(view, centres[open_ids], voxel)
+        shown = open_ids[found]
+        alpha = view.rgba()[..., 3]
+        occupied[shown] &= _count(alpha < OPAQUE, rectangle) == 0
+        empty[shown] &= _count(alpha > EMPTY, rectangle) == 0
+        seen[shown] += 1
     known = seen >= 2
-    return VoxelMasks(
-        (known & (least >= OPAQUE)).reshape(shape), (known & (most <= EMPTY)).reshape(shape)
-    )
+    return VoxelMasks((known & occupied).reshape(shape), (known & empty).reshape(shape))
 
 
-def _look(view: View, centres: Array, voxel: float, least: Array, most: Array, seen: Array) -> None:
-    """Take one view into account: least and greatest alpha under each voxel's footprint."""
+def _footprints(view: View, centres: Array, voxel: Array) -> tuple[NDArray[np.int64], Array]:
+    """Voxels whose centre a view shows, and the pixels that each may touch.
+
+    Returns voxel numbers (M,), and (4, M): left, right, top, bottom of a rectangle that contains
+    the image of the cube of one voxel around the centre; right and bottom are exclusive.
+    """
     camera = view.camera
     position, depth = camera.project(centres)
-    inside = (
-        (depth > 0)
-        & (position[:, 0] >= 0) & (position[:, 0] < camera.width)
-        & (position[:, 1] >= 0) & (position[:, 1] < camera.height)
-    )  # fmt: skip
-    if not inside.any():
-        return
-    # A voxel reaches sqrt(3) voxels from its centre at the corners of its footprint.
-    reach = int(np.ceil(np.sqrt(3) * voxel * camera.fx / depth[inside].min()))
-    alpha = view.rgba()[..., 3]
-    column = position[inside, 0].astype(int)
-    row = position[inside, 1].astype(int)
-    least[inside] = np.minimum(least[inside], _extreme(alpha, reach, np.minimum)[row, column])
-    most[inside] = np.maximum(most[inside], _extreme(alpha, reach, np.maximum)[row, column])
-    seen[inside] += 1
+    # Extent of the cube along the camera's axes: |x - x0| <= reach[0] and so on.
+    reach = np.abs(camera.world_from_camera[:3, :3].T) @ voxel
+    inside = (position >= 0).all(axis=1) & (position < [camera.width, camera.height]).all(axis=1)
+    shown = np.flatnonzero(inside & (depth > reach[2]))
+    position, near = position[shown], depth[shown] - reach[2]
+    # u = f x / z + c moves by at most f (dx + |x / z| dz) / (z - dz).
+    slope = np.abs(position - [camera.cx, camera.cy]) / [camera.fx, camera.fy]
+    move = [camera.fx, camera.fy] * (reach[:2] + slope * reach[2]) / near[:, None]
+    low = np.floor(position - move).astype(np.int64).clip(min=0)
+    high = np.ceil(position + move).astype(np.int64)
+    right, bottom = np.minimum(high, [camera.width, camera.height]).T
+    return shown, np.stack([low[:, 0], right, low[:, 1], bottom])
 
 
-def _extreme(image: Array, reach: int, pick: np.ufunc) -> Array:
-    """Minimum or maximum over the square of `reach` pixels around each pixel (edges repeated)."""
-    for axis in (0, 1):
-        padding = [(reach, reach) if k == axis else (0, 0) for k in range(2)]
-        padded = np.pad(image, padding, mode="edge")
-        windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * reach + 1, axis=axis)
-        image = pick.reduce(windows, axis=-1)
-    return image
+def _count(pixels: NDArray[np.bool_], rectangle: Array) -> Array:
+    """How many True pixels each rectangle holds, from a summed-area table [Crow1984]."""
+    table = np.zeros((pixels.shape[0] + 1, pixels.shape[1] + 1), np.int64)
+    table[1:, 1:] = pixels.cumsum(axis=0, dtype=np.int64).cumsum(axis=1)
+    left, right, top, bottom = rectangle
+    count: Array = table[bottom, right] - table[top, right] - table[bottom, left] + table[top, left]
+    return count

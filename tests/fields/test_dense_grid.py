@@ -63,13 +63,13 @@ def test_empty_space_has_the_density_that_was_asked_for() -> None:
     grid = DenseGrid.empty(BOX, 20, finest=80, sigma_t=0.3, dtype=np.float64)
     assert grid.params["values"].shape == (20, 15, 8, 4)
     np.testing.assert_allclose(grid.box, BOX, atol=1e-12)
-    # Straight through the box along X: 2 m of 0.3/m, grey of sigmoid(0).
+    # Straight through the box along X: 2 m of 0.3/m, middle grey.
     batch = RayBatch(np.array([[-3.0, 0.2, 0.4]]), np.array([[1.0, 0, 0]]), np.zeros(1, np.uint32))
     outputs, _ = grid.render(batch, seed=0, step=0, options=OPTIONS)
     assert outputs.opacity is not None
     # 40 steps of 0.05 m, none of them cut: the sum is exact up to rounding.
     np.testing.assert_allclose(outputs.opacity, [1 - np.exp(-0.6)], rtol=1e-12)
-    np.testing.assert_allclose(outputs.color[0] / outputs.opacity, [0.5] * 3, rtol=1e-12)
+    np.testing.assert_allclose(outputs.color[0] / outputs.opacity, [0.18] * 3, rtol=1e-12)
 
 
 def test_voxels_are_cubes_in_a_box_that_may_grow() -> None:

@@ -18,9 +18,9 @@ from photograd_course.gradcheck import check_gradient
 
 from tests.fit import scene
 
-# T11 at 24 voxels, 200 steps of 1024 rays: over 16 seeds held-out PSNR was 35.8 to 36.5 dB over
-# random backgrounds (5th percentile 35.84), over 10 seeds 35.4 to 36.2 dB with a learned one
-# (5th percentile 35.57). The gates are 1 dB lower. The mean colour of all photographs scores 17 dB.
+# T11 at 24 voxels, 200 steps of 1024 rays: over 16 seeds held-out PSNR was 35.7 to 36.2 dB over
+# random backgrounds (5th percentile 35.75), over 10 seeds 36.1 to 37.1 dB with a learned one
+# (5th percentile 36.17). The gates are 1 dB lower. The mean colour of all photographs scores 17 dB.
 RECOVERS = {"resolution": 24, "steps": 200, "rays": 1024}
 WALL = (0.9, 0.6, 0.3)
 
@@ -40,7 +40,7 @@ def test_a_known_scene_is_recovered() -> None:
     model = finish(fit)
     result = evaluate(model, capture.test)
     assert first.psnr < 18
-    assert result.psnr >= 34.8
+    assert result.psnr >= 34.7
     assert result.ssim >= 0.96  # 0.975 at the lowest PSNR seen
     assert as_result(result)["psnr"] == result.psnr
     # The volume too: where the balls are opaque, light is stopped; beside them it passes.
@@ -63,7 +63,7 @@ def test_photographs_without_alpha_get_a_learned_background() -> None:
     model = finish(Fit.start(capture, scene.options(**RECOVERS)))
     assert model.background is not None
     np.testing.assert_allclose(srgb_encode(model.background), WALL, atol=0.01)
-    assert evaluate(model, capture.test).psnr >= 34.5
+    assert evaluate(model, capture.test).psnr >= 35.1
 
 
 def test_fixed_backgrounds_stand_behind_every_ray() -> None:
@@ -124,7 +124,7 @@ def test_gradient_of_a_whole_step(wall: Any) -> None:
 
 def test_refining_keeps_the_image() -> None:
     # Where the coarse field is affine, upsampling is exact; elsewhere it rounds corners off. After
-    # 60 steps, over ten seeds, the worst of four views moved by 0.0050 to 0.0057 root mean square
+    # 60 steps, over ten seeds, the worst of four views moved by 0.0047 to 0.0055 root mean square
     # (46 to 45 dB): twice that is allowed. One view differs from the next by 0.12.
     capture = scene.capture()
     fit = Fit.start(capture, scene.options(resolution=12))
@@ -136,7 +136,7 @@ def test_refining_keeps_the_image() -> None:
         np.sqrt(np.mean((p.render - q.render) ** 2)) for p, q in zip(a.views, b.views, strict=True)
     ]
     apart = np.sqrt(np.mean((a.views[0].render - a.views[1].render) ** 2))
-    assert 0 < max(moved) < 0.0114
+    assert 0 < max(moved) < 0.011
     assert apart > 0.1
 
 

@@ -19,13 +19,21 @@ from photograd_course.cli import (
     note,
 )
 
-from photograd.commands.shared import CaptureArgument, DownscaleOption, ModelArgument, use_threads
+from photograd.commands.shared import (
+    CaptureArgument,
+    DownscaleOption,
+    ModelArgument,
+    make_folder,
+    use_threads,
+)
 from photograd.data.capture import Capture
 from photograd.data.load import load_capture
-from photograd.density_gradient import density_gradient, voxel_masks
+from photograd.density_gradient import density_gradient
+from photograd.fields.dense_grid import DenseGrid
 from photograd.model import Model, load_model
 from photograd.pixels import TrainingPixels
 from photograd.representation import Array
+from photograd.sign_claim import sign_claim
 from photograd.snapshots import load_snapshots
 
 EXPLAIN = "Blue: more density lowers the loss. Red: less density does. White: no effect."
@@ -62,42 +70,31 @@ def draw_gradients(
     model: Model, folder: Path, capture: Capture, out: Path, rays: int, seed: int
 ) -> dict[str, Any]:
     """All pictures of one fit; returns the files and, where alpha tells, the sign shares."""
-    out.mkdir(parents=True, exist_ok=True)
-    pixels = TrainingPixels(capture.train, capture.color_space)
-    snapshots = load_snapshots(folder) or {int(model.meta["step"]): model.field}
-    fields: dict[int, Array] = {}
-    with Progress("gradients", len(snapshots), [Column("loss", "{:.2e}".format)]) as bar:
-        for number, (step, field) in enumerate(snapshots.items()):
-            background = None if model.background is None else model.background
-            found = density_gradient(field, pixels, seed=seed, background=background, rays=rays)
-            fields[step] = found.d_sigma_t
-            bar.update(number + 1, loss=found.loss)
+    make_folder(out)
+    fields, starts = gradients_of_steps(model, folder, capture, rays, seed)
     first = min(fields)
+    start, gradient = starts[first], fields[first]
     result: dict[str, Any] = {"out": out, "steps": sorted(fields)}
-    box, start = model.field.box, snapshots[first]
     caption, outline = EXPLAIN, None
-    if capture.has_alpha:
-        masks = voxel_masks(start, capture)
-        if masks.occupied.any() and masks.background_only.any():
-            report = viz.sign_report(
-                fields[first], occupied=masks.occupied, background_only=masks.background_only
-            )
-            caption, outline = report.caption(), masks.occupied
-            result["occupied_negative"] = report.occupied_fraction
-            result["background_positive"] = report.background_fraction
-        else:
-            note("no voxel lies in all silhouettes, or none outside: signs are shown, not weighed")
+    claim = sign_claim(start, capture, rays=rays, seed=seed) if capture.has_alpha else None
+    if claim is not None:
+        caption, outline, gradient = claim.caption(), claim.occupied, claim.d_sigma_t
+        result["occupied_negative"] = claim.report.occupied_fraction
+        result["background_positive"] = claim.report.background_fraction
+        result["views_of_signs"] = claim.views
+    else:
+        note("no voxel is known to be matter, or none to be empty: signs are shown, not weighed")
     pictures = {
         "gradient_slices": viz.signed_slices(
-            fields[first], start.box, outline=outline, caption=caption,
+            gradient, start.box, outline=outline, caption=caption,
             title=f"Gradient of the loss at step {first}",
         ),
         "gradient_projections": viz.signed_projections(
-            fields[first], start.box, outline=outline, caption=caption,
+            gradient, start.box, outline=outline, caption=caption,
             title=f"Largest gradient along each axis, step {first}",
         ),
         "gradient_steps": viz.projection_steps(
-            fields, box, common_scale=False, title="The gradient as the fit goes on",
+            fields, start.box, common_scale=False, title="The gradient as the fit goes on",
             caption=EXPLAIN
         ),
     }  # fmt: skip
@@ -107,6 +104,23 @@ def draw_gradients(
         viz.save_figure(figure, out / f"{name}.png")
         result[name] = out / f"{name}.png"
     return result
+
+
+def gradients_of_steps(
+    model: Model, folder: Path, capture: Capture, rays: int, seed: int
+) -> tuple[dict[int, Array], dict[int, DenseGrid]]:
+    """{step: dL/dsigma_t} and {step: field} of every snapshot of a fit, under a progress bar."""
+    pixels = TrainingPixels(capture.train, capture.color_space)
+    snapshots = load_snapshots(folder) or {int(model.meta["step"]): model.field}
+    fields: dict[int, Array] = {}
+    with Progress("gradients", len(snapshots), [Column("loss", "{:.2e}".format)]) as bar:
+        for number, (step, field) in enumerate(snapshots.items()):
+            found = density_gradient(
+                field, pixels, seed=seed, background=model.background, rays=rays
+            )
+            fields[step] = found.d_sigma_t
+            bar.update(number + 1, loss=found.loss)
+    return fields, snapshots
 
 
 def curves_of(model: Model) -> viz.FitCurves:

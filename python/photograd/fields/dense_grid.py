@@ -24,6 +24,14 @@ from photograd.representation import (
     register,
 )
 
+START_COLOR = 0.18
+"""Linear colour of empty space before a fit: middle grey, 0.46 of display white.
+
+In front of a random background it makes the first dL/dsigma_t negative for black matter and for
+white alike, and about equally large: a brighter grey is further from black than the average
+background is, so that dark matter would first be pushed away.
+"""
+
 
 @register
 class DenseGrid(Representation):
@@ -65,7 +73,7 @@ class DenseGrid(Representation):
         steps_per_voxel: float = 2.0,
         dtype: type[np.floating[Any]] = np.float32,
     ) -> DenseGrid:
-        """A nearly transparent grey grid of cubic voxels over `box` (2, 3), world metres.
+        """A nearly transparent middle-grey grid of cubic voxels over `box` (2, 3), world metres.
 
         `resolution` counts voxels along the longest edge; the box grows a little so that voxels are
         cubes. `finest` is the resolution that a coarse-to-fine fit will end with: it fixes the
@@ -90,7 +98,7 @@ class DenseGrid(Representation):
         policy = MarchPolicy(
             (tuple(lo.tolist()), tuple(hi.tolist())), voxel / steps_per_voxel, density_scale=scale
         )
-        values = np.zeros((*shape, 4), dtype)
+        values = np.full((*shape, 4), np.log(START_COLOR / (1 - START_COLOR)), dtype)
         values[..., 3] = np.log(np.expm1(sigma_t / scale))
         return cls(values, policy)
 
