@@ -12,5 +12,10 @@ void bind_core(py::module_& m);
 void bind_ops(py::module_& m);
 void bind_march(py::module_& m);
 void bind_geometry(py::module_& m);
+void bind_bsdf(py::module_& m);
+void bind_light(py::module_& m);
+void bind_direct(py::module_& m);
+void bind_sampling(py::module_& m);
+void bind_direct(py::module_& m);
 
 }  // namespace photograd

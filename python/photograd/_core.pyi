@@ -13,9 +13,17 @@ __all__: list[str] = [
     "Bvh",
     "MarchSettings",
     "Op",
+    "bsdf_lambert",
+    "bsdfs",
+    "cap_to_square",
+    "cosine_hemisphere_to_square",
+    "disk_to_square",
     "exp",
     "expm1",
     "instruction_set",
+    "light_sky",
+    "light_sun",
+    "lights",
     "log1p_unit",
     "march",
     "march_backward",
@@ -23,6 +31,9 @@ __all__: list[str] = [
     "philox4x32",
     "place_samples",
     "set_thread_count",
+    "square_to_cap",
+    "square_to_cosine_hemisphere",
+    "square_to_disk",
     "thread_count",
     "tiny_network_parameters",
     "uniform",
@@ -133,6 +144,176 @@ class Bvh:
         Lower and upper corner (2, 3) of everything.
         """
 
+class bsdf_lambert:
+    """
+    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
+    """
+    @staticmethod
+    def energy() -> tuple[str, float]:
+        """
+        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
+        """
+    @staticmethod
+    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Value without the cosine, (N, 3).
+        """
+    @staticmethod
+    def f_backward(
+        parameters: numpy.ndarray,
+        wo: numpy.ndarray,
+        wi: numpy.ndarray,
+        d_f: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
+        """
+    @staticmethod
+    def jvp(
+        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        Exact derivative of f along v, (N, 3), float64.
+        """
+    @staticmethod
+    def parameters() -> list[tuple[str, int, float, float, str]]:
+        """
+        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
+        """
+    @staticmethod
+    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Density of `sample` over solid angle, (N,).
+        """
+    @staticmethod
+    def reciprocal() -> bool:
+        """
+        Whether f(wo, wi) = f(wi, wo).
+        """
+    @staticmethod
+    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
+        """
+        wi (N, 3) from uniform u2 (N, 2).
+        """
+
+class light_sun:
+    """
+    A light at infinity. parameters (P,), constants (C,); directions (N, 3) of unit length, towards the light, in the world.
+    """
+    @staticmethod
+    def L(parameters: numpy.ndarray, constants: numpy.ndarray, w: numpy.ndarray) -> numpy.ndarray:
+        """
+        Radiance from directions w, (N, 3).
+        """
+    @staticmethod
+    def L_backward(
+        parameters: numpy.ndarray,
+        constants: numpy.ndarray,
+        w: numpy.ndarray,
+        d_L: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Adds dL/dparameters to d_parameters (P,) and returns it.
+        """
+    @staticmethod
+    def constants() -> list[tuple[str, int, float, float, str]]:
+        """
+        The same of what is not differentiated.
+        """
+    @staticmethod
+    def jvp(
+        parameters: numpy.ndarray, constants: numpy.ndarray, v: numpy.ndarray, w: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        Exact derivative of L along v (P,), (N, 3), float64.
+        """
+    @staticmethod
+    def parameters() -> list[tuple[str, int, float, float, str]]:
+        """
+        (name, scalars, lo, hi, unit) of each differentiated parameter.
+        """
+    @staticmethod
+    def pdf(parameters: numpy.ndarray, constants: numpy.ndarray, w: numpy.ndarray) -> numpy.ndarray:
+        """
+        Density of `sample` over solid angle, (N,).
+        """
+    @staticmethod
+    def sample(
+        parameters: numpy.ndarray, constants: numpy.ndarray, u2: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        Directions (N, 3) from uniform u2 (N, 2).
+        """
+
+class light_sky:
+    """
+    A light at infinity. parameters (P,), constants (C,); directions (N, 3) of unit length, towards the light, in the world.
+    """
+    @staticmethod
+    def L(parameters: numpy.ndarray, constants: numpy.ndarray, w: numpy.ndarray) -> numpy.ndarray:
+        """
+        Radiance from directions w, (N, 3).
+        """
+    @staticmethod
+    def L_backward(
+        parameters: numpy.ndarray,
+        constants: numpy.ndarray,
+        w: numpy.ndarray,
+        d_L: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Adds dL/dparameters to d_parameters (P,) and returns it.
+        """
+    @staticmethod
+    def constants() -> list[tuple[str, int, float, float, str]]:
+        """
+        The same of what is not differentiated.
+        """
+    @staticmethod
+    def jvp(
+        parameters: numpy.ndarray, constants: numpy.ndarray, v: numpy.ndarray, w: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        Exact derivative of L along v (P,), (N, 3), float64.
+        """
+    @staticmethod
+    def parameters() -> list[tuple[str, int, float, float, str]]:
+        """
+        (name, scalars, lo, hi, unit) of each differentiated parameter.
+        """
+    @staticmethod
+    def pdf(parameters: numpy.ndarray, constants: numpy.ndarray, w: numpy.ndarray) -> numpy.ndarray:
+        """
+        Density of `sample` over solid angle, (N,).
+        """
+    @staticmethod
+    def sample(
+        parameters: numpy.ndarray, constants: numpy.ndarray, u2: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        Directions (N, 3) from uniform u2 (N, 2).
+        """
+
+def cap_to_square(
+    w: numpy.ndarray, height: typing.SupportsFloat | typing.SupportsIndex
+) -> numpy.ndarray:
+    """
+    The inverse of square_to_cap.
+    """
+
+def cosine_hemisphere_to_square(w: numpy.ndarray) -> numpy.ndarray:
+    """
+    The inverse of square_to_cosine_hemisphere.
+    """
+
+def disk_to_square(p: numpy.ndarray) -> numpy.ndarray:
+    """
+    The inverse of square_to_disk.
+    """
+
 def exp(x: numpy.ndarray) -> numpy.ndarray:
     """
     The portable exp on a flat array.
@@ -210,6 +391,23 @@ def set_thread_count(threads: typing.SupportsInt | typing.SupportsIndex) -> None
     Upper limit on threads; 0 restores the default, all cores.
     """
 
+def square_to_cap(
+    u2: numpy.ndarray, height: typing.SupportsFloat | typing.SupportsIndex
+) -> numpy.ndarray:
+    """
+    Uniform directions (N, 3) with z >= 1 - height, from uniform u2 (N, 2).
+    """
+
+def square_to_cosine_hemisphere(u2: numpy.ndarray) -> numpy.ndarray:
+    """
+    Directions (N, 3) around +Z, density cos / pi, from uniform u2 (N, 2).
+    """
+
+def square_to_disk(u2: numpy.ndarray) -> numpy.ndarray:
+    """
+    Uniform points (N, 2) of the unit disk from uniform u2 (N, 2).
+    """
+
 def thread_count() -> int: ...
 def uniform(
     seed: typing.SupportsInt | typing.SupportsIndex,
@@ -223,5 +421,7 @@ def uniform(
     """
 
 __version__: str = "0.1.0"
+bsdfs: dict[str, typing.Any] = {"lambert": bsdf_lambert}
+lights: dict[str, typing.Any] = {"sun": light_sun, "sky": light_sky}
 ops: dict[str, typing.Any]
 tiny_network_parameters: int = 132

@@ -17,13 +17,13 @@ namespace photograd {
 template <class Model, class Value>
 struct Parameter {
     const char* name;
-    Value Model::*member;
+    Value Model::* member;
     double lo, hi;     // range in which values make sense; tests draw from its inside
     const char* unit;  // "1" for pure numbers
 };
 
 template <class Model, class Value>
-constexpr Parameter<Model, Value> p(const char* name, Value Model::*member, double lo, double hi,
+constexpr Parameter<Model, Value> p(const char* name, Value Model::* member, double lo, double hi,
                                     const char* unit = "1") {
     return {name, member, lo, hi, unit};
 }
@@ -48,6 +48,11 @@ constexpr int scalar_count() {
         return 1;
 }
 
+template <class Model, class Value>
+constexpr int value_scalars(const Parameter<Model, Value>&) {
+    return scalar_count<Value>();
+}
+
 /// A closed list of types; registries are such lists.
 template <class... T>
 struct TypeList {
@@ -57,5 +62,49 @@ struct TypeList {
     }
     static constexpr int size = sizeof...(T);
 };
+
+/// A closed list of models that are templates on the number type.
+template <template <class> class... Model>
+struct ModelList {
+    template <class R>
+    using of = TypeList<Model<R>...>;
+
+    /// Calls visit.template operator()<Model>() for each.
+    template <class Visit>
+    static constexpr void for_each(Visit&& visit) {
+        (visit.template operator()<Model>(), ...);
+    }
+};
+
+/// Number of scalars in a description.
+template <class... Q>
+constexpr int scalars_in(const std::tuple<Q...>& description) {
+    return std::apply([](const auto&... q) { return (0 + ... + value_scalars(q)); }, description);
+}
+
+/// Calls visit(scalar of a, scalar of b, ...) for every scalar of every described member, in their order.
+template <class... Q, class Visit, class... Models>
+constexpr void for_each_scalar(const std::tuple<Q...>& description, Visit&& visit,
+                               Models&... models) {
+    const auto one = [&](const auto& q) {
+        if constexpr (value_scalars(std::remove_cvref_t<decltype(q)>{}) > 1)
+            for (int i = 0; i < value_scalars(q); ++i) visit((models.*q.member)[i]...);
+        else
+            visit(models.*q.member...);
+    };
+    std::apply([&](const auto&... q) { (one(q), ...); }, description);
+}
+
+/// The same for a model's parameters.
+template <class Visit, class Model, class... Models>
+    requires requires { std::remove_const_t<Model>::params; }
+constexpr void for_each_scalar(Visit&& visit, Model& model, Models&... models) {
+    for_each_scalar(std::remove_const_t<Model>::params, visit, model, models...);
+}
+
+template <class Model>
+constexpr int parameter_count() {
+    return scalars_in(Model::params);
+}
 
 }  // namespace photograd

@@ -1,0 +1,43 @@
+// What every reflectance model says about itself. Shading frame: the normal is +Z, wo points to the viewer
+// and wi to the light, both away from the surface; f(wo, wi) does not contain the cosine.
+#pragma once
+
+#include <concepts>
+
+#include "photograd/core/params.h"
+#include "photograd/core/real.h"
+
+namespace photograd {
+
+/// The part of the light that a surface gives back, for the whole range of parameters:
+/// `conserving`  at most 1, and 1 is reached;  `lossy`  stays below 1;  `gains`  up to `most`, as some models do.
+enum class Energy : int { conserving = 0, lossy = 1, gains = 2 };
+
+struct EnergyClaim {
+    Energy kind;
+    double most;  // bound on the directional albedo that tests hold the model to
+};
+
+/// A model T = M<R>. `f_backward` adds dL/dparameter to its last argument, which is a T as well.
+template <class T, class R>
+concept BsdfValue = requires(const T& model, T& d_model, const Vec3<R>& w) {
+    { T::name } -> std::convertible_to<const char*>;
+    { T::energy } -> std::convertible_to<EnergyClaim>;
+    { T::reciprocal } -> std::convertible_to<bool>;
+    T::params;
+    { model.f(w, w) } -> std::same_as<Vec3<R>>;
+    { model.f_backward(w, w, w, d_model) } -> std::same_as<void>;
+};
+
+/// Sampling is detached: it needs no Dual numbers. `sample(wo, u2)` returns wi, `pdf` its density.
+template <class T, class R>
+concept BsdfSampler = requires(const T& model, const Vec3<R>& w, const Vec2<R>& u2) {
+    { model.sample(w, u2) } -> std::same_as<Vec3<R>>;
+    { model.pdf(w, w) } -> std::same_as<R>;
+};
+
+template <template <class> class M>
+concept Bsdf = BsdfValue<M<double>, double> && BsdfValue<M<Dual<double>>, Dual<double>> &&
+               BsdfSampler<M<double>, double> && BsdfSampler<M<float>, float>;
+
+}  // namespace photograd

@@ -1,0 +1,30 @@
+// sin and cos on [-pi/4, pi/4] with the same bits on every processor (libm picks its variant by processor).
+#pragma once
+
+namespace photograd {
+
+template <class R>
+struct SinCos {
+    R sin, cos;
+};
+
+/// Taylor polynomials to x^15 and x^16: remainders below 2e-17 on |x| <= pi/4.
+template <class R>
+SinCos<R> sin_cos_small(R x) {
+    const R y = x * x;
+    R s = R(-1.0 / 1307674368000.0), c = R(1.0 / 20922789888000.0);
+    constexpr double sine[] = {1.0 / 6227020800.0, -1.0 / 39916800.0, 1.0 / 362880.0,
+                               -1.0 / 5040.0,      1.0 / 120.0,       -1.0 / 6.0};
+    constexpr double cosine[] = {-1.0 / 87178291200.0,
+                                 1.0 / 479001600.0,
+                                 -1.0 / 3628800.0,
+                                 1.0 / 40320.0,
+                                 -1.0 / 720.0,
+                                 1.0 / 24.0,
+                                 -0.5};
+    for (const double a : sine) s = s * y + R(a);
+    for (const double a : cosine) c = c * y + R(a);
+    return {x + x * y * s, R(1) + y * c};
+}
+
+}  // namespace photograd

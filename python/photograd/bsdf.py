@@ -1,0 +1,164 @@
+"""Reflectance models: what part of light from wi a surface sends towards wo, and the derivatives.
+
+All models come from the core's registry (cpp/photograd/bsdf/registry.h); everything here, and the
+proofs in the tests, iterates over it. Directions are (N, 3) unit vectors in the shading frame,
+normal +Z, both leaving the surface; `f` does not contain the cosine.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from photograd.core import _core
+from photograd.errors import DtypeError, RangeError, ShapeError, message
+
+Array = npt.NDArray[Any]
+Parameters = Mapping[str, Any]
+"""{name: value}; a value is a number or (3,), or one for each of N rows: (N,) or (N, 3)."""
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A continuous parameter: `size` numbers that make sense in [lo, hi], in `unit`."""
+
+    name: str
+    size: int
+    lo: float
+    hi: float
+    unit: str
+
+
+@dataclass(frozen=True)
+class BsdfModel:
+    """One registered reflectance model.
+
+    Attributes:
+        name: in the registry.
+        parameters: in the order in which the core packs them.
+        energy: ("conserving" | "lossy" | "gains", bound on the directional albedo).
+        reciprocal: whether f(wo, wi) = f(wi, wo).
+        core: the core's class of static functions.
+    """
+
+    name: str
+    parameters: tuple[Parameter, ...]
+    energy: tuple[str, float]
+    reciprocal: bool
+    core: Any
+
+    def pack(self, parameters: Parameters, dtype: npt.DTypeLike = np.float64) -> Array:
+        """Parameters as rows (1, P) or (N, P) of scalars in the core's order.
+
+        Raises:
+            RangeError: a name that is missing or unknown, or values that are not finite.
+            ShapeError: a value of another shape, or different numbers of rows.
+        """
+        names = [parameter.name for parameter in self.parameters]
+        if set(parameters) != set(names):
+            got = sorted(parameters)
+            raise RangeError(message(self.name, "parameters", f"exactly {names}", got))
+        columns = [
+            self._column(parameter, parameters[parameter.name]) for parameter in self.parameters
+        ]
+        rows = max(len(column) for column in columns)
+        if any(len(column) not in (1, rows) for column in columns):
+            counts = [len(column) for column in columns]
+            raise ShapeError(message(self.name, "parameters", "one number of rows", counts))
+        wide = [np.broadcast_to(column, (rows, column.shape[1])) for column in columns]
+        return np.ascontiguousarray(np.concatenate(wide, axis=1), dtype)
+
+    def _column(self, parameter: Parameter, value: Any) -> Array:
+        column = np.asarray(value, np.float64)
+        one = (parameter.size,) if parameter.size > 1 else ()
+        if column.shape != one and (column.ndim != len(one) + 1 or column.shape[1:] != one):
+            expected = f"shape {one} or {('N', *one)}"
+            raise ShapeError(message(self.name, parameter.name, expected, column.shape))
+        if not np.isfinite(column).all():
+            raise RangeError(
+                message(self.name, parameter.name, "finite numbers", "NaN or infinity")
+            )
+        rows: Array = column.reshape(-1, parameter.size)
+        return rows
+
+    def unpack(self, rows: Array) -> dict[str, Array]:
+        """Rows (N, P) as {name: (N,) or (N, size)}."""
+        ends = np.cumsum([parameter.size for parameter in self.parameters])[:-1]
+        parts = np.split(rows, ends, axis=1)
+        return {
+            parameter.name: part[:, 0] if parameter.size == 1 else part
+            for parameter, part in zip(self.parameters, parts, strict=True)
+        }
+
+    def f(self, parameters: Parameters, wo: Array, wi: Array) -> Array:
+        """Value (N, 3) without the cosine, in the dtype of `wo`.
+
+        Raises:
+            DtypeError, ShapeError: directions not float32 or float64, or not (N, 3).
+        """
+        wo, wi = _directions(wo, wi)
+        value: Array = self.core.f(self.pack(parameters, wo.dtype), wo, wi)
+        return value
+
+    def f_backward(
+        self, parameters: Parameters, wo: Array, wi: Array, d_f: Array
+    ) -> dict[str, Array]:
+        """dL/dparameters of d_f (N, 3) as {name: (N,) or (N, size)}; (1, ...) for shared values."""
+        wo, wi = _directions(wo, wi)
+        rows = self.pack(parameters, wo.dtype)
+        d_f = np.ascontiguousarray(d_f, wo.dtype)
+        return self.unpack(self.core.f_backward(rows, wo, wi, d_f, np.zeros_like(rows)))
+
+    def sample(self, parameters: Parameters, wo: Array, u2: Array) -> Array:
+        """Directions wi (N, 3), drawn from uniform u2 (N, 2) with the density `pdf`."""
+        (wo,) = _directions(wo)
+        u2 = np.ascontiguousarray(u2, wo.dtype)
+        wi: Array = self.core.sample(self.pack(parameters, wo.dtype), wo, u2)
+        return wi
+
+    def pdf(self, parameters: Parameters, wo: Array, wi: Array) -> Array:
+        """Density (N,) of `sample` over solid angle."""
+        wo, wi = _directions(wo, wi)
+        density: Array = self.core.pdf(self.pack(parameters, wo.dtype), wo, wi)
+        return density
+
+    def at(self, fraction: float) -> dict[str, Array]:
+        """All parameters at a fraction of their range; channels of colours differ a little."""
+        values = {}
+        for parameter in self.parameters:
+            spread = np.linspace(0.9, 1.1, parameter.size) if parameter.size > 1 else np.ones(1)
+            part = np.clip(fraction * spread, 0.0, 1.0)
+            value = parameter.lo + (parameter.hi - parameter.lo) * part
+            values[parameter.name] = value if parameter.size > 1 else value[0]
+        return values
+
+
+def registry(core: ModuleType | Any = _core) -> dict[str, BsdfModel]:
+    """All reflectance models of a compiled module, by name."""
+    return {
+        name: BsdfModel(
+            name,
+            tuple(Parameter(*row) for row in model.parameters()),
+            model.energy(),
+            model.reciprocal(),
+            model,
+        )
+        for name, model in core.bsdfs.items()
+    }
+
+
+def _directions(*arrays: Array) -> tuple[Array, ...]:
+    for array in arrays:
+        if not isinstance(array, np.ndarray) or array.dtype not in (np.float32, np.float64):
+            got = getattr(array, "dtype", type(array).__name__)
+            raise DtypeError(message("bsdf", "wo, wi", "float32 or float64 arrays", got))
+        if array.ndim != 2 or array.shape[1] != 3 or array.shape != arrays[0].shape:
+            raise ShapeError(message("bsdf", "wo, wi", "shape (N, 3), both", array.shape))
+        if array.dtype != arrays[0].dtype:
+            raise DtypeError(message("bsdf", "wo, wi", "one dtype", array.dtype))
+    return tuple(np.ascontiguousarray(array) for array in arrays)

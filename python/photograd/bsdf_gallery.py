@@ -1,0 +1,110 @@
+"""A picture and a benchmark row for every registered reflectance model."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from photograd_course.color import srgb_encode
+from photograd_course.random import uniform
+
+from photograd.bsdf import BsdfModel
+
+Array = npt.NDArray[Any]
+_FRACTIONS = (0.1, 0.4, 0.7, 1.0)
+_LIGHT = np.array([-0.5, 0.6, 0.62]) / np.linalg.norm([-0.5, 0.6, 0.62])
+
+
+def gallery_picture(model: BsdfModel, path: Path) -> None:
+    """Write a PNG: four lit spheres over the range of the parameters, and the lobe below each.
+
+    The spheres are seen from +Z without perspective, under one distant light of irradiance pi; the
+    lobes show f cos for light that arrives at 45 degrees.
+    """
+    figure = Figure(figsize=(9.0, 4.6), layout="constrained")
+    FigureCanvasAgg(figure)
+    for column, fraction in enumerate(_FRACTIONS):
+        parameters = model.at(fraction)
+        sphere = figure.add_subplot(2, 4, 1 + column)
+        sphere.imshow(srgb_encode(np.clip(_sphere(model, parameters), 0.0, 1.0)))
+        sphere.axis("off")
+        sphere.set_title(_caption(parameters), fontsize=7)
+        lobe = figure.add_subplot(2, 4, 5 + column, projection="polar")
+        angle, value = _lobe(model, parameters)
+        lobe.plot(np.pi / 2 - angle, value, lw=1.5)
+        lobe.set_xlim(0.0, np.pi)
+        lobe.tick_params(labelsize=6)
+    figure.suptitle(model.name)
+    figure.savefig(path, dpi=110, metadata={"Software": None})
+
+
+def _caption(parameters: dict[str, Array]) -> str:
+    parts = [f"{name} {np.round(np.mean(value), 2):g}" for name, value in parameters.items()]
+    return "\n".join(parts)
+
+
+def _sphere(model: BsdfModel, parameters: dict[str, Array], size: int = 160) -> Array:
+    """Radiance (size, size, 3) of a sphere on a transparent-white ground."""
+    x = (np.arange(size) + 0.5) / size * 2.2 - 1.1
+    right, up = np.meshgrid(x, -x)
+    inside = right**2 + up**2 < 1.0
+    normal = np.stack([right, up, np.sqrt(np.clip(1 - right**2 - up**2, 0, 1))], -1)[inside]
+    view = np.array([0.0, 0.0, 1.0])
+    tangent = np.cross([0.0, 1.0, 0.0], normal)
+    tangent /= np.linalg.norm(tangent, axis=1, keepdims=True) + 1e-12
+    frame = np.stack([tangent, np.cross(normal, tangent), normal], axis=1)
+    wo, wi = frame @ view, frame @ _LIGHT
+    value = model.f(parameters, wo, wi) * np.pi * np.clip(wi[:, 2:], 0.0, None)
+    image = np.ones((size, size, 3))
+    image[inside] = value
+    return image
+
+
+def _lobe(model: BsdfModel, parameters: dict[str, Array]) -> tuple[Array, Array]:
+    """Angles from the normal (A,) and f cos, mean over channels (A,), in the plane of incidence."""
+    angle = np.linspace(-np.pi / 2, np.pi / 2, 361)
+    wo = np.stack([np.sin(angle), np.zeros_like(angle), np.cos(angle)], axis=1)
+    wi = np.broadcast_to([-np.sqrt(0.5), 0.0, np.sqrt(0.5)], wo.shape).copy()
+    return angle, model.f(parameters, wo, wi).mean(axis=1) * np.sqrt(0.5)
+
+
+def benchmark_row(model: BsdfModel, *, count: int = 1_000_000, seed: int = 1) -> dict[str, Any]:
+    """Evaluations a second of value and adjoint in float32, one row of parameters for each.
+
+    Returns:
+        {"workload", "model", "count", "forward_per_s", "backward_per_s", "mean"}.
+    """
+    rows = np.arange(count)
+    u = uniform(seed, pixel=rows[:, None], dimension=np.arange(4)).astype(np.float32)
+    wo, wi = (_cosine(u[:, 2 * k : 2 * k + 2]) for k in range(2))
+    parameters = {
+        name: np.broadcast_to(value, (count, *np.shape(value))).copy()
+        for name, value in model.at(0.5).items()
+    }
+    packed = model.pack(parameters, np.float32)
+    start = time.perf_counter()
+    value = model.core.f(packed, wo, wi)
+    middle = time.perf_counter()
+    model.core.f_backward(packed, wo, wi, value, np.zeros_like(packed))
+    end = time.perf_counter()
+    return {
+        "workload": "bsdf",
+        "model": model.name,
+        "count": count,
+        "forward_per_s": count / (middle - start),
+        "backward_per_s": count / (end - middle),
+        "mean": float(value.mean()),
+    }
+
+
+def _cosine(u2: Array) -> Array:
+    radius, angle = np.sqrt(0.9996 * u2[:, 0]), 2.0 * np.pi * u2[:, 1]
+    up = np.sqrt(1.0 - radius**2)
+    return np.ascontiguousarray(
+        np.stack([radius * np.cos(angle), radius * np.sin(angle), up], axis=1), np.float32
+    )

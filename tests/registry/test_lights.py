@@ -1,0 +1,141 @@
+"""Every registered light: gradients, sampling, energy; and what sun and sky are."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from photograd.errors import RangeError, ShapeError
+from photograd.light import LightModel, cap_height, registry
+from photograd_course.gradcheck import check_accumulation, check_gradient, dot_product_error
+from photograd_course.mutants import check_mutants, check_overwriting_mutants
+from photograd_course.random import uniform
+
+from support.statistics import chi_square_p, sidak, sphere_cell_masses, sphere_counts
+
+LIGHTS = registry()
+DIRECTION = np.array([2.0, 3.0, -6.0]) / 7.0
+CONSTANTS: dict[str, dict[str, Any]] = {
+    "sun": {"direction": DIRECTION, "height": cap_height(0.3)},
+    "sky": {},
+}
+COUNT = 24
+
+
+def values(light: LightModel) -> dict[str, Any]:
+    drawn = dict(CONSTANTS[light.name])
+    for number, parameter in enumerate(light.parameters):
+        u = uniform(3, step=number, pixel=np.arange(parameter.size))
+        drawn[parameter.name] = parameter.lo + (parameter.hi - parameter.lo) * (0.1 + 0.8 * u)
+    return drawn
+
+
+def lit_directions(light: LightModel) -> Any:
+    """Directions (COUNT, 3) in which the light shines, and some in which it may not."""
+    u2 = uniform(4, pixel=np.arange(COUNT)[:, None], dimension=np.arange(2))
+    w = light.sample(values(light), u2)
+    w[::5] *= -1.0
+    return w
+
+
+def test_each_light_is_tested_here() -> None:
+    assert set(CONSTANTS) == set(LIGHTS), "give the new light its constants above"
+
+
+@pytest.mark.parametrize("name", sorted(LIGHTS))
+def test_gradients(name: str) -> None:
+    light = LIGHTS[name]
+    given = values(light)
+    w = lit_directions(light)
+    place = {p.name: np.asarray(given[p.name]) for p in light.parameters}
+    constants = light.pack(given)[1]
+    d_L = 0.5 + uniform(5, pixel=np.arange(COUNT)[:, None], dimension=np.arange(3))
+
+    def flat(groups: dict[str, Any]) -> Any:
+        return np.concatenate([groups[p.name] for p in light.parameters])
+
+    def split(row: Any) -> dict[str, Any]:
+        return {p.name: row[3 * k : 3 * k + 3] for k, p in enumerate(light.parameters)}
+
+    def forward(groups: dict[str, Any]) -> Any:
+        return light.core.L(flat(groups), constants, w)
+
+    def accumulate(groups: dict[str, Any], d: Any, d_groups: dict[str, Any]) -> None:
+        buffer = flat(d_groups)
+        light.core.L_backward(flat(groups), constants, w, np.ascontiguousarray(d), buffer)
+        for key, part in split(buffer).items():
+            d_groups[key][...] = part
+
+    def backward(groups: dict[str, Any], d: Any) -> dict[str, Any]:
+        d_groups = {key: np.zeros_like(value) for key, value in groups.items()}
+        accumulate(groups, d, d_groups)
+        return d_groups
+
+    def jvp(groups: dict[str, Any], directions: dict[str, Any]) -> Any:
+        return light.core.jvp(flat(groups), constants, flat(directions), w)
+
+    report: Any = check_gradient(forward, backward, place, seed=1)
+    assert report, str(report)
+    report = dot_product_error(jvp, backward, place, seed=1)
+    assert report, str(report)
+    report = check_accumulation(accumulate, place, d_L)
+    assert report, str(report)
+    report = check_mutants(
+        lambda b: check_gradient(forward, b, place, seed=1), backward, place, d_L
+    )
+    assert report, str(report)
+    report = check_overwriting_mutants(
+        lambda a: check_accumulation(a, place, d_L), accumulate, place, d_L
+    )
+    assert report, str(report)
+
+
+@pytest.mark.parametrize("name", sorted(LIGHTS))
+def test_samples_have_the_stated_density(name: str) -> None:
+    light = LIGHTS[name]
+    given = values(light)
+    if name == "sun":  # around +Z, so that rows of equal height follow its rim
+        given["direction"] = np.array([0.0, 0.0, 1.0])
+    samples = 1_000_000
+    u2 = uniform(6, pixel=np.arange(samples)[:, None], dimension=np.arange(2))
+    w = light.sample(given, u2)
+    np.testing.assert_allclose(np.linalg.norm(w, axis=1), 1.0, atol=1e-12)
+    low = 1.0 - given["height"] if name == "sun" else -1.0
+    z = np.linspace(low, 1.0, 21)
+    masses = sphere_cell_masses(lambda v: light.pdf(given, v), z, 40)
+    np.testing.assert_allclose(masses.sum(), 1.0, rtol=1e-9)
+    # Fixed seed; right samplers would fail for one seed in a hundred.
+    assert chi_square_p(sphere_counts(w, z, 40), masses) > sidak(0.01, len(LIGHTS))
+    assert (light.L(given, w) > 0).all(), "every sample sees the light"
+
+
+@pytest.mark.parametrize("dtype", ["f4", "f8"])
+@pytest.mark.parametrize("angle", [0.00465, 0.05, 0.5])
+def test_irradiance_of_the_sun(angle: float, dtype: str) -> None:
+    # The integral of L cos over a disc of angular radius a around the normal is pi L sin^2(a).
+    sun = LIGHTS["sun"]
+    given = {"radiance": np.ones(3), "direction": DIRECTION, "height": cap_height(angle)}
+    u2 = uniform(7, pixel=np.arange(100_000)[:, None], dimension=np.arange(2)).astype(dtype)
+    w = sun.sample(given, u2)
+    pdf = sun.pdf(given, w)
+    assert (pdf > 0).all(), "no sample on the rim is lost to rounding"
+    estimate = (sun.L(given, w)[:, 0] * (w @ DIRECTION) / pdf).mean()
+    # The cosine varies by a^2 / 2 at most, so the error is far below this even in float.
+    np.testing.assert_allclose(estimate, np.pi * np.sin(angle) ** 2, rtol=1e-3)
+
+
+def test_radiance_of_the_sky_by_height() -> None:
+    sky = LIGHTS["sky"]
+    given = {"zenith": [1.0, 0, 0], "horizon": [0, 1.0, 0], "ground": [0, 0, 1.0]}
+    w = np.array([[0, 1.0, 0], [1.0, 0, 0], [0, -1.0, 0], [0.8, 0.6, 0], [0, -0.6, 0.8]])
+    expected = [[1, 0, 0], [0, 1, 0], [0, 0, 1], [0.6, 0.4, 0], [0, 0.4, 0.6]]
+    np.testing.assert_allclose(sky.L(given, w), expected, atol=1e-15)
+
+
+def test_bad_arguments_are_named() -> None:
+    with pytest.raises(RangeError, match="exactly"):
+        LIGHTS["sky"].L({"zenith": [1, 1, 1]}, np.zeros((1, 3)))
+    given = {"radiance": [1, 1, 1], "direction": [0, 1, 0], "height": [0.1]}
+    with pytest.raises(ShapeError, match="height"):
+        LIGHTS["sun"].L(given, np.zeros((1, 3)))
