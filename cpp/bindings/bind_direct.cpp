@@ -1,100 +1,131 @@
-// Scenes of placed meshes, and their direct light with its adjoint.
-#include "model_args.h"
+// Direct light: the renderer and its adjoint on arrays.
+#include <pybind11/stl.h>
+
+#include <cmath>
+
+#include "array_args.h"
 #include "module.h"
 #include "photograd/render/direct.h"
 
 namespace photograd {
 namespace {
 
-using LayoutRow = std::tuple<int, int, int>;  // kind, width, height
+/// (kind, first entry, width, height) of each mesh, as Python hands them over.
+using Layouts = std::vector<std::tuple<int, std::int64_t, int, int>>;
 
-std::shared_ptr<Scene> make_scene(const std::shared_ptr<Bvh>& bvh, const std::vector<LayoutRow>& rows) {
+Pinhole pinhole(const py::tuple& numbers) {
+    Pinhole camera{};
+    camera.width = numbers[0].cast<int>();
+    camera.height = numbers[1].cast<int>();
+    camera.fx = numbers[2].cast<double>();
+    camera.fy = numbers[3].cast<double>();
+    camera.cx = numbers[4].cast<double>();
+    camera.cy = numbers[5].cast<double>();
+    const auto pose = numbers[6].cast<std::array<std::array<double, 4>, 3>>();
+    for (std::size_t i = 0; i < 3; ++i)
+        std::copy(pose[i].begin(), pose[i].end(), camera.world_from_camera[i]);
+    return camera;
+}
+
+std::vector<AlbedoLayout> layouts_of(const ArrayArgs& args, const Bvh& bvh, const Layouts& given,
+                                     std::int64_t entries) {
+    if (given.size() != bvh.meshes().size())
+        args.range("layouts", std::to_string(bvh.meshes().size()) + ", one a mesh",
+                   std::to_string(given.size()));
     std::vector<AlbedoLayout> layouts;
-    for (const auto& [kind, width, height] : rows)
-        layouts.push_back({static_cast<AlbedoKind>(kind), 0, width, height});
-    return std::make_shared<Scene>(bvh, std::move(layouts));
+    for (std::size_t i = 0; i < given.size(); ++i) {
+        const auto [kind, first, width, height] = given[i];
+        layouts.push_back({static_cast<AlbedoKind>(kind), first, width, height});
+        const std::int64_t count = layouts[i].count(bvh.meshes()[i]);
+        if (kind < 0 || kind > 2 || first < 0 || count < 1 || first + count > entries)
+            args.range("layouts", "places within the " + std::to_string(entries) + " colours",
+                       "entry " + std::to_string(first) + " of mesh " + std::to_string(i));
+    }
+    return layouts;
 }
 
-PinholeView view_of(ArrayArgs& args, std::pair<int, int> size, const py::array& intrinsics,
-                    const py::array& world_from_camera) {
-    const double* k = args.in<double>("intrinsics", intrinsics, "4");
-    const double* m = args.in<double>("world_from_camera", world_from_camera, "3 4");
-    PinholeView view{size.first, size.second, k[0], k[1], k[2], k[3], {}};
-    std::copy_n(m, 12, view.world_from_camera);
-    return view;
-}
-
-/// sun (7,): radiance, direction, height; sky (9,): zenith, horizon, ground.
 template <class R>
-DirectLights<R> lights_of(ArrayArgs& args, const py::array& sun, const py::array& sky) {
-    DirectLights<R> lights;
-    const R* s = args.in<R>("sun", sun, "7");
-    const R* d = args.in<R>("sky", sky, "9");
-    for_each_scalar(Sun<R>::params, [&](R& x) { x = *s++; }, lights.sun);
-    for_each_scalar(Sun<R>::constants, [&](R& x) { x = *s++; }, lights.sun);
-    for_each_scalar(Sky<R>::params, [&](R& x) { x = *d++; }, lights.sky);
-    return lights;
+Vec3<R> row(const R* lights, int i) {
+    return {lights[3 * i], lights[3 * i + 1], lights[3 * i + 2]};
 }
 
-py::tuple render(const Scene& scene, const py::array& colors, const py::array& sun, const py::array& sky,
-                 std::pair<int, int> size, const py::array& intrinsics,
-                 const py::array& world_from_camera, std::uint32_t samples, std::uint64_t seed) {
-    return dispatch_real("render_direct", "colors", colors, [&](auto real) -> py::tuple {
+/// lights (4, 3): radiance of the sun, zenith, horizon, ground.
+template <class R>
+DirectScene<R> direct_scene(ArrayArgs& args, const Bvh& bvh, std::span<const AlbedoLayout> layouts,
+                            const py::array& albedo, const py::array& lights,
+                            const std::array<double, 3>& sun_direction, double sun_radius) {
+    const R* values = args.in<R>("albedo", albedo, "A 3");
+    const R* light = args.in<R>("lights", lights, "4 3");
+    const double half = std::sin(0.5 * sun_radius);
+    Sun<R> sun{row(light, 0),
+               {R(sun_direction[0]), R(sun_direction[1]), R(sun_direction[2])},
+               R(2 * half * half)};
+    return {&bvh,           layouts, values,
+            args.size("A"), sun,     {row(light, 1), row(light, 2), row(light, 3)}};
+}
+
+py::tuple direct(const Bvh& bvh, const Layouts& given, const py::array& albedo,
+                 const py::array& lights, const std::array<double, 3>& sun_direction,
+                 double sun_radius, const py::tuple& camera_numbers, int spp, std::uint64_t seed) {
+    return dispatch_real("render_direct", "albedo", albedo, [&](auto real) -> py::tuple {
         using R = decltype(real);
         ArrayArgs args("render_direct");
-        const R* table = args.in<R>("colors", colors, std::to_string(scene.colors()) + " 3");
-        const DirectLights<R> lights = lights_of<R>(args, sun, sky);
-        const PinholeView view = view_of(args, size, intrinsics, world_from_camera);
-        py::array_t<R> radiance({view.height, view.width, 3}), alpha({view.height, view.width}),
-            depth({view.height, view.width});
-        const DirectOutputs<R> out{radiance.mutable_data(), alpha.mutable_data(), depth.mutable_data()};
+        const Pinhole camera = pinhole(camera_numbers);
+        const auto layouts = layouts_of(args, bvh, given, albedo.shape(0));
+        const DirectScene<R> scene =
+            direct_scene<R>(args, bvh, layouts, albedo, lights, sun_direction, sun_radius);
+        py::array_t<R> radiance({camera.height, camera.width, 3}),
+            alpha({camera.height, camera.width}), depth({camera.height, camera.width});
+        const DirectImage<R> image{radiance.mutable_data(), alpha.mutable_data(),
+                                   depth.mutable_data()};
         {
             const py::gil_scoped_release release;
-            render_direct(scene, table, lights, view, {samples, seed}, out);
+            render_direct(scene, camera, {spp, seed}, image);
         }
         return py::make_tuple(radiance, alpha, depth);
     });
 }
 
-void render_backward(const Scene& scene, const py::array& colors, const py::array& sun,
-                     const py::array& sky, std::pair<int, int> size, const py::array& intrinsics,
-                     const py::array& world_from_camera, std::uint32_t samples, std::uint64_t seed,
-                     const py::array& d_radiance, py::array d_colors, py::array d_sun, py::array d_sky) {
-    dispatch_real("render_direct_backward", "colors", colors, [&](auto real) {
+void direct_backward(const Bvh& bvh, const Layouts& given, const py::array& albedo,
+                     const py::array& lights, const std::array<double, 3>& sun_direction,
+                     double sun_radius, const py::tuple& camera_numbers, int spp,
+                     std::uint64_t seed, const py::array& d_radiance, py::array d_albedo,
+                     py::array d_lights) {
+    dispatch_real("render_direct_backward", "albedo", albedo, [&](auto real) {
         using R = decltype(real);
         ArrayArgs args("render_direct_backward");
-        const std::string rows = std::to_string(scene.colors()) + " 3";
-        const R* table = args.in<R>("colors", colors, rows);
-        const DirectLights<R> lights = lights_of<R>(args, sun, sky);
-        const PinholeView view = view_of(args, size, intrinsics, world_from_camera);
-        const R* d = args.in<R>("d_radiance", d_radiance,
-                                std::to_string(view.height) + " " + std::to_string(view.width) + " 3");
-        R* d_table = args.out<R>("d_colors", d_colors, rows);
-        R *d_s = args.out<R>("d_sun", d_sun, "3"), *d_k = args.out<R>("d_sky", d_sky, "9");
-        DirectLights<R> d_lights{zero_model<Sun<R>, R>(), zero_model<Sky<R>, R>()};
+        const Pinhole camera = pinhole(camera_numbers);
+        const auto layouts = layouts_of(args, bvh, given, albedo.shape(0));
+        const DirectScene<R> scene =
+            direct_scene<R>(args, bvh, layouts, albedo, lights, sun_direction, sun_radius);
+        const R* d = args.in<R>("d_radiance", d_radiance, "H W 3");
+        if (args.size("H") != camera.height || args.size("W") != camera.width)
+            args.range("d_radiance", "the size of the camera's image", "another");
+        R* d_values = args.out<R>("d_albedo", d_albedo, "A 3");
+        R* d_light = args.out<R>("d_lights", d_lights, "4 3");
+        Sun<R> d_sun{Vec3<R>(R(0))};
+        Sky<R> d_sky{Vec3<R>(R(0)), Vec3<R>(R(0)), Vec3<R>(R(0))};
         {
             const py::gil_scoped_release release;
-            render_direct_backward(scene, table, lights, view, {samples, seed}, d, d_table, d_lights);
+            render_direct_backward(scene, camera, {spp, seed}, d, d_values, d_sun, d_sky);
         }
-        for_each_scalar([&](R& x) { *d_s++ += x; }, d_lights.sun);
-        for_each_scalar([&](R& x) { *d_k++ += x; }, d_lights.sky);
+        const Vec3<R> parts[4] = {d_sun.radiance, d_sky.zenith, d_sky.horizon, d_sky.ground};
+        for (int i = 0; i < 4; ++i)
+            for (int c = 0; c < 3; ++c) d_light[3 * i + c] += parts[i][c];
     });
 }
 
 }  // namespace
 
 void bind_direct(py::module_& m) {
-    py::class_<Scene, std::shared_ptr<Scene>>(m, "Scene", "Placed meshes that know which colours they mix.")
-        .def(py::init(&make_scene), py::arg("bvh"), py::arg("layouts"),
-             "One (kind, width, height) a mesh; kind 0 constant, 1 vertices, 2 faces, 3 texture.")
-        .def_property_readonly("colors", &Scene::colors, "Rows of the table of colours.");
-    m.def("render_direct", &render, py::arg("scene"), py::arg("colors"), py::arg("sun"), py::arg("sky"),
-          py::arg("size"), py::arg("intrinsics"), py::arg("world_from_camera"), py::arg("samples"),
-          py::arg("seed"), "Radiance (H, W, 3) premultiplied, alpha (H, W), depth (H, W).");
-    m.def("render_direct_backward", &render_backward, py::arg("scene"), py::arg("colors"), py::arg("sun"),
-          py::arg("sky"), py::arg("size"), py::arg("intrinsics"), py::arg("world_from_camera"),
-          py::arg("samples"), py::arg("seed"), py::arg("d_radiance"), py::arg("d_colors"),
-          py::arg("d_sun"), py::arg("d_sky"), "Adds to d_colors (A, 3), d_sun (3,) and d_sky (9,).");
+    m.def("render_direct", &direct, py::arg("bvh"), py::arg("layouts"), py::arg("albedo"),
+          py::arg("lights"), py::arg("sun_direction"), py::arg("sun_radius"), py::arg("camera"),
+          py::arg("spp"), py::arg("seed"),
+          "Radiance (H, W, 3) premultiplied, alpha (H, W), depth (H, W).");
+    m.def("render_direct_backward", &direct_backward, py::arg("bvh"), py::arg("layouts"),
+          py::arg("albedo"), py::arg("lights"), py::arg("sun_direction"), py::arg("sun_radius"),
+          py::arg("camera"), py::arg("spp"), py::arg("seed"), py::arg("d_radiance"),
+          py::arg("d_albedo"), py::arg("d_lights"), "Adds to d_albedo (A, 3) and d_lights (4, 3).");
 }
 
 }  // namespace photograd

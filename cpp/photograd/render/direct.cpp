@@ -1,258 +1,283 @@
 #include "photograd/render/direct.h"
 
-#include <algorithm>
-#include <array>
+#include <cmath>
 #include <limits>
-#include <numeric>
+#include <vector>
 
-#include "photograd/core/parallel.h"
+#include "photograd/bsdf/lambert.h"
+#include "photograd/core/random.h"
 #include "photograd/core/scatter.h"
-#include "photograd/render/direct_sample.h"
-#include "photograd/render/pixel_strata.h"
 
 namespace photograd {
 namespace {
 
-constexpr int lanes = RayPacket::width;
-constexpr int tile_size = 8;  // pixels along an edge: the unit of work, whatever the thread count
+constexpr int width = RayPacket::width;
+constexpr std::int64_t chunk_pixels = 64;  // of one task
+constexpr std::int64_t slab_chunks = 64;   // whose contributions are kept at a time
+constexpr int owner_entries = 64;          // albedo entries of one owner
+constexpr float shadow_offset = 1e-4f;     // of the scene's size, against self-shadowing
+
+/// Random dimensions of a sample.
+enum Dimension : std::uint32_t { film_x, film_y, sun_x, sun_y, sky_x, sky_y };
 
 template <class R>
-Ray<R> camera_ray(const PinholeView& view, int column, int row, const Vec2<R>& offset) {
-    const R x = (R(column) + offset.x - R(view.cx)) / R(view.fx);
-    const R y = (R(row) + offset.y - R(view.cy)) / R(view.fy);
-    const double* m = view.world_from_camera;
-    Ray<R> ray;
-    for (int k = 0; k < 3; ++k, m += 4) {
-        ray.origin[k] = R(m[3]);
-        ray.direction[k] = R(m[0]) * x + R(m[1]) * y + R(m[2]);
-    }
-    ray.direction = normalize(ray.direction);
-    return ray;
+Vec2<R> uniform2(const RandomKey& key, Dimension first) {
+    return {uniform<R>(key, first), uniform<R>(key, first + 1)};
+}
+
+/// One light sample of a hit: a direction and what multiplies f L there. weight = cos / pdf.
+template <class R>
+struct LightSample {
+    Vec3<R> world, local;
+    R weight = R(0);
+};
+
+/// One camera sample that met a surface.
+template <class R>
+struct Hit {
+    bool valid = false;
+    R t;
+    Vec3<R> position, normal, wo;  // normal towards the viewer, wo in the shading frame
+    AlbedoTaps<R> taps;
+    LightSample<R> sun, sky;
+};
+
+/// The n-th sample's place in its pixel: cell of the largest square grid that fits, then anywhere.
+template <class R>
+Vec2<R> film_offset(const RandomKey& key, int n, int spp) {
+    const Vec2<R> u = uniform2<R>(key, film_x);
+    const int side = static_cast<int>(std::sqrt(static_cast<double>(spp)));
+    if (n >= side * side) return u;
+    return {(R(n % side) + u.x) / R(side), (R(n / side) + u.y) / R(side)};
 }
 
 template <class R>
-void put_ray(RayPacket& packet, int k, const Ray<R>& ray, bool active) {
+void put(RayPacket& packet, int k, const Vec3<R>& o, const Vec3<R>& d, float t_min) {
     for (int axis = 0; axis < 3; ++axis) {
-        packet.origin[axis][k] = float(ray.origin[axis]);
-        packet.direction[axis][k] = float(ray.direction[axis]);
+        packet.origin[axis][k] = static_cast<float>(o[axis]);
+        packet.direction[axis][k] = static_cast<float>(d[axis]);
     }
-    packet.t_min[k] = 0;
+    packet.t_min[k] = t_min;
     packet.t_max[k] = std::numeric_limits<float>::infinity();
-    packet.active[k] = active;
+    packet.active[k] = true;
 }
 
-struct Tile {
-    int column, row, width, height;  // in pixels; narrower at the image's border
-
-    Tile(const PinholeView& view, std::int64_t number) {
-        const int across = (view.width + tile_size - 1) / tile_size;
-        column = static_cast<int>(number % across) * tile_size;
-        row = static_cast<int>(number / across) * tile_size;
-        width = std::min(tile_size, view.width - column);
-        height = std::min(tile_size, view.height - row);
-    }
-    static std::int64_t count(const PinholeView& view) {
-        const auto across = [](int n) { return std::int64_t((n + tile_size - 1) / tile_size); };
-        return across(view.width) * across(view.height);
-    }
-    [[nodiscard]] std::int64_t pixel(const PinholeView& view, int local) const {
-        return std::int64_t(row + local / width) * view.width + column + local % width;
-    }
-};
-
-/// The rays of sixteen samples, wherever they are on their way.
 template <class R>
-struct Lane {
-    int pixel;  // within the tile
-    SamplePoints<R> points;
-    Ray<R> ray;
-    DirectSample<R> sample;
-};
-
-/// Everything about a hit that needs no further ray; prepares the two shadow rays.
-template <class R>
-void meet_surface(const Scene& scene, const DirectLights<R>& lights, const PacketHits& hits, int k,
-                  Lane<R>& lane, RayPacket& to_sun, RayPacket& to_sky) {
-    const Bvh& bvh = scene.bvh();
-    const TrianglePoint<R> p = bvh.surface_point(lane.ray, hits.instance[k], hits.primitive[k]);
-    const Vec3<R> normal = dot(p.normal, lane.ray.direction) > R(0) ? -p.normal : p.normal;
-    const Frame<R> frame = Frame<R>::from_normal(normal);
-    DirectSample<R>& s = lane.sample;
-    s.t = p.t;
-    s.wo = frame.to_local(-lane.ray.direction);
-    s.print = scene.albedo_at(hits.instance[k], hits.primitive[k], p.u, p.v);
-    s.sun.w = lights.sun.sample(lane.points.sun);
-    s.sun.wi = frame.to_local(s.sun.w);
-    s.sun.gain = std::max(s.sun.wi.z, R(0)) / lights.sun.pdf(s.sun.w);
-    s.sky.wi = square_to_cosine_hemisphere(lane.points.sky);
-    s.sky.w = frame.to_world(s.sky.wi);
-    s.sky.gain = s.sky.wi.z > R(0) ? s.sky.wi.z / cosine_hemisphere_pdf(s.sky.wi) : R(0);
-    // Far enough from the surface that float rounding of a ray's start cannot put it behind, and far less
-    // than any feature that a mesh in float can have.
-    const float reach = length(bvh.bounds().hi - bvh.bounds().lo);
-    const Vec3<R> start = p.position + R(2e-5f * reach) * normal;
-    put_ray(to_sun, k, Ray<R>{start, s.sun.w}, s.sun.gain > R(0));
-    put_ray(to_sky, k, Ray<R>{start, s.sky.w}, s.sky.gain > R(0));
+Hit<R> shade(const DirectScene<R>& scene, const Ray<R>& ray, std::int32_t instance,
+             std::int32_t primitive, const RandomKey& key) {
+    const TrianglePoint<R> point = scene.bvh->surface_point(ray, instance, primitive);
+    Hit<R> hit;
+    hit.valid = true;
+    hit.t = point.t;
+    hit.position = point.position;
+    hit.normal = dot(point.normal, ray.direction) > R(0) ? -point.normal : point.normal;
+    hit.taps = albedo_taps(*scene.bvh, scene.layouts, instance, primitive, point.u, point.v);
+    const Frame<R> frame = Frame<R>::from_normal(hit.normal);
+    hit.wo = frame.to_local(-ray.direction);
+    hit.sun.world = scene.sun.sample(uniform2<R>(key, sun_x));
+    hit.sun.local = frame.to_local(hit.sun.world);
+    if (hit.sun.local.z > R(0)) hit.sun.weight = hit.sun.local.z / scene.sun.pdf(hit.sun.world);
+    const Lambert<R> lobe;  // its sampling depends on no parameter
+    hit.sky.local = lobe.sample(hit.wo, uniform2<R>(key, sky_x));
+    hit.sky.world = frame.to_world(hit.sky.local);
+    const R pdf = lobe.pdf(hit.wo, hit.sky.local);
+    if (pdf > R(0)) hit.sky.weight = hit.sky.local.z / pdf;
+    return hit;
 }
 
-/// The one loop of both passes: calls visit(pixel within the tile, sample) for every sample of the tile
-/// that hits a surface, in an order that depends on nothing else.
+/// Sets the weight of light samples that something stands in front of to zero.
+template <class R>
+void cast_shadows(const DirectScene<R>& scene, Hit<R>* hits, LightSample<R> Hit<R>::* light) {
+    const Box& box = scene.bvh->bounds();
+    float size = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        size = std::max(size, static_cast<float>(box.upper[axis] - box.lower[axis]));
+    RayPacket packet{};
+    bool any = false;
+    for (int k = 0; k < width; ++k) {
+        const LightSample<R>& sample = hits[k].*light;
+        packet.active[k] = false;
+        if (!hits[k].valid || !(sample.weight > R(0))) continue;
+        put(packet, k, hits[k].position + hits[k].normal * R(shadow_offset * size), sample.world,
+            0);
+        any = true;
+    }
+    if (!any) return;
+    bool blocked[width];
+    scene.bvh->occluded(packet, false, blocked);
+    for (int k = 0; k < width; ++k)
+        if (packet.active[k] && blocked[k]) (hits[k].*light).weight = R(0);
+}
+
+/// Traces up to `width` samples of one pixel, from sample `first` on.
+template <class R>
+void trace_samples(const DirectScene<R>& scene, const Pinhole& camera, const DirectOptions& options,
+                   std::int64_t pixel, int first, Hit<R>* hits) {
+    RayPacket packet{};
+    Ray<R> rays[width];
+    RandomKey key{options.seed, 0, static_cast<std::uint32_t>(pixel), 0};
+    const int used = std::min(width, options.spp - first);
+    for (int k = 0; k < width; ++k) {
+        hits[k].valid = false;
+        packet.active[k] = false;
+        if (k >= used) continue;
+        key.sample = static_cast<std::uint32_t>(first + k);
+        const Vec2<R> at = film_offset<R>(key, first + k, options.spp);
+        rays[k] = camera.ray(R(pixel % camera.width) + at.x, R(pixel / camera.width) + at.y);
+        put(packet, k, rays[k].origin, rays[k].direction, 0);
+    }
+    PacketHits found;
+    scene.bvh->trace(packet, true, found);
+    for (int k = 0; k < used; ++k) {
+        if (found.primitive[k] < 0) continue;
+        key.sample = static_cast<std::uint32_t>(first + k);
+        hits[k] = shade(scene, rays[k], found.instance[k], found.primitive[k], key);
+    }
+    cast_shadows(scene, hits, &Hit<R>::sun);
+    cast_shadows(scene, hits, &Hit<R>::sky);
+}
+
+/// The one loop of both passes: visit(pixel, hit) for every sample that met a surface, in order.
 template <class R, class Visit>
-void for_each_hit(const Scene& scene, const DirectLights<R>& lights, const PinholeView& view,
-                  const DirectOptions& options, const Tile& tile, Visit&& visit) {
-    const int pixels = tile.width * tile.height;
-    const std::int64_t total = std::int64_t(pixels) * options.samples;
-    PixelStrata strata(options.seed, static_cast<std::uint32_t>(tile.pixel(view, 0)), options.samples);
-    int strata_of = 0;
-    std::array<Lane<R>, lanes> lane;
-    RayPacket camera, to_sun, to_sky;
-    PacketHits hits;
-    bool sun_blocked[lanes], sky_blocked[lanes];
-    for (std::int64_t first = 0; first < total; first += lanes) {
-        const int used = static_cast<int>(std::min<std::int64_t>(lanes, total - first));
-        for (int k = 0; k < lanes; ++k) {
-            Lane<R>& own = lane[static_cast<std::size_t>(k)];
-            if (k < used) {
-                const std::int64_t at = first + k;
-                own.pixel = static_cast<int>(at / options.samples);
-                if (own.pixel != strata_of) {
-                    strata_of = own.pixel;
-                    const auto number = static_cast<std::uint32_t>(tile.pixel(view, own.pixel));
-                    strata = PixelStrata(options.seed, number, options.samples);
-                }
-                own.points = strata.draw<R>(static_cast<std::uint32_t>(at % options.samples));
-                own.ray = camera_ray(view, tile.column + own.pixel % tile.width,
-                                     tile.row + own.pixel / tile.width, own.points.pixel);
-            }
-            put_ray(camera, k, lane[static_cast<std::size_t>(std::min(k, used - 1))].ray, k < used);
+void for_each_hit(const DirectScene<R>& scene, const Pinhole& camera, const DirectOptions& options,
+                  std::int64_t begin, std::int64_t end, Visit&& visit) {
+    Hit<R> hits[width];
+    for (std::int64_t pixel = begin; pixel < end; ++pixel)
+        for (int first = 0; first < options.spp; first += width) {
+            trace_samples(scene, camera, options, pixel, first, hits);
+            for (const Hit<R>& hit : hits)
+                if (hit.valid) visit(pixel, hit);
         }
-        scene.bvh().trace(camera, true, hits);
-        bool any = false;
-        for (int k = 0; k < lanes; ++k) {
-            to_sun.active[k] = to_sky.active[k] = false;
-            if (k >= used || hits.primitive[k] < 0) continue;
-            meet_surface(scene, lights, hits, k, lane[static_cast<std::size_t>(k)], to_sun, to_sky);
-            any = true;
-        }
-        if (!any) continue;
-        scene.bvh().occluded(to_sun, true, sun_blocked);
-        scene.bvh().occluded(to_sky, false, sky_blocked);
-        for (int k = 0; k < used; ++k) {
-            if (hits.primitive[k] < 0) continue;
-            Lane<R>& own = lane[static_cast<std::size_t>(k)];
-            if (sun_blocked[k]) own.sample.sun.gain = R(0);
-            if (sky_blocked[k]) own.sample.sky.gain = R(0);
-            visit(own.pixel, own.sample);
-        }
-    }
 }
 
 template <class R>
-struct Contribution {
-    std::uint32_t row;  // of the table of colours
+Vec3<R> reflected(const DirectScene<R>& scene, const Hit<R>& hit) {
+    const Lambert<R> bsdf{look_up(hit.taps, scene.albedo)};
+    return bsdf.f(hit.wo, hit.sun.local) * scene.sun.L(hit.sun.world) * hit.sun.weight +
+           bsdf.f(hit.wo, hit.sky.local) * scene.sky.L(hit.sky.world) * hit.sky.weight;
+}
+
+/// Adjoint of `reflected`: returns d_albedo of the point, adds to the lights.
+template <class R>
+Vec3<R> reflected_backward(const DirectScene<R>& scene, const Hit<R>& hit, const Vec3<R>& d_out,
+                           Sun<R>& d_sun, Sky<R>& d_sky) {
+    const Lambert<R> bsdf{look_up(hit.taps, scene.albedo)};
+    Lambert<R> d_bsdf{Vec3<R>(R(0))};
+    const Vec3<R> to_sun = d_out * hit.sun.weight, to_sky = d_out * hit.sky.weight;
+    bsdf.f_backward(hit.wo, hit.sun.local, to_sun * scene.sun.L(hit.sun.world), d_bsdf);
+    bsdf.f_backward(hit.wo, hit.sky.local, to_sky * scene.sky.L(hit.sky.world), d_bsdf);
+    scene.sun.L_backward(hit.sun.world, to_sun * bsdf.f(hit.wo, hit.sun.local), d_sun);
+    scene.sky.L_backward(hit.sky.world, to_sky * bsdf.f(hit.wo, hit.sky.local), d_sky);
+    return d_bsdf.albedo;
+}
+
+/// What one sample adds to one entry of the albedo array.
+template <class R>
+struct AlbedoContribution {
+    std::uint32_t entry;
     Vec3<R> d;
 };
 
-/// d_colors[row] += d for all, tile after tile: rows are dealt to owners, each adds its own in that order.
+/// Binned owners: contributions of a slab, in pixel order, each added by the owner of its entry.
 template <class R>
-void add_contributions(const std::vector<std::vector<Contribution<R>>>& tiles, std::int64_t colors,
-                       OwnerBins& bins, R* d_colors) {
-    std::vector<Contribution<R>> all;
-    for (const auto& tile : tiles) all.insert(all.end(), tile.begin(), tile.end());
-    constexpr std::uint32_t rows_of_owner = 256;
-    const int owners = static_cast<int>((colors + rows_of_owner - 1) / rows_of_owner);
+void scatter(const std::vector<std::vector<AlbedoContribution<R>>>& chunks, std::int64_t entries,
+             R* d_albedo) {
+    std::vector<AlbedoContribution<R>> all;
+    for (const auto& chunk : chunks) all.insert(all.end(), chunk.begin(), chunk.end());
     std::vector<std::uint32_t> items(all.size());
-    std::iota(items.begin(), items.end(), 0u);
-    bin_by_owner(items, owners, [&](std::uint32_t i) { return all[i].row / rows_of_owner; }, bins);
+    for (std::uint32_t i = 0; i < items.size(); ++i) items[i] = i;
+    const int owners = static_cast<int>((entries + owner_entries - 1) / owner_entries);
+    OwnerBins bins;
+    bin_by_owner(
+        items, owners, [&](std::uint32_t i) { return all[i].entry / owner_entries; }, bins);
     parallel_for(owners, [&](std::int64_t owner) {
-        const auto o = static_cast<std::size_t>(owner);
-        for (std::uint32_t j = bins.begin[o]; j < bins.begin[o + 1]; ++j) {
-            const Contribution<R>& c = all[bins.order[j]];
-            for (int k = 0; k < 3; ++k) d_colors[3 * std::int64_t(c.row) + k] += c.d[k];
+        const auto k = static_cast<std::size_t>(owner);
+        for (std::uint32_t j = bins.begin[k]; j < bins.begin[k + 1]; ++j) {
+            const AlbedoContribution<R>& c = all[bins.order[j]];
+            for (int channel = 0; channel < 3; ++channel)
+                d_albedo[3 * static_cast<std::int64_t>(c.entry) + channel] += c.d[channel];
         }
     });
 }
 
+constexpr std::size_t light_numbers = 12;  // radiance of the sun, zenith, horizon, ground
+
 template <class R>
-void add_lights(const DirectLights<R>& d, double* partial) {
-    const auto add = [&](const R& x) { *partial++ += x; };
-    for_each_scalar(add, d.sun);
-    for_each_scalar(add, d.sky);
+void add_lights(const Sun<R>& sun, const Sky<R>& sky, double* total) {
+    const Vec3<R> parts[4] = {sun.radiance, sky.zenith, sky.horizon, sky.ground};
+    for (int part = 0; part < 4; ++part)
+        for (int c = 0; c < 3; ++c) total[3 * part + c] += static_cast<double>(parts[part][c]);
 }
 
 }  // namespace
 
 template <Real R>
-void render_direct(const Scene& scene, const R* colors, const DirectLights<R>& lights,
-                   const PinholeView& view, const DirectOptions& options, const DirectOutputs<R>& out) {
-    parallel_for(Tile::count(view), [&](std::int64_t number) {
-        const Tile tile(view, number);
-        std::array<Vec3<R>, tile_size * tile_size> radiance;
-        std::array<R, tile_size * tile_size> depth{};
-        std::array<std::uint32_t, tile_size * tile_size> hit{};
-        radiance.fill(Vec3<R>(R(0)));
-        for_each_hit(scene, lights, view, options, tile, [&](int pixel, const DirectSample<R>& s) {
-            const auto at = static_cast<std::size_t>(pixel);
-            radiance[at] += shade(s, mix_colors(s.print, colors), lights);
-            depth[at] += s.t;
-            ++hit[at];
-        });
-        for (int pixel = 0; pixel < tile.width * tile.height; ++pixel) {
-            const auto at = static_cast<std::size_t>(pixel);
-            const std::int64_t i = tile.pixel(view, pixel);
-            for (int k = 0; k < 3; ++k) out.radiance[3 * i + k] = radiance[at][k] / R(options.samples);
-            out.alpha[i] = R(hit[at]) / R(options.samples);
-            out.depth[i] = hit[at] > 0 ? depth[at] / R(hit[at]) : std::numeric_limits<R>::infinity();
-        }
+void render_direct(const DirectScene<R>& scene, const Pinhole& camera, const DirectOptions& options,
+                   const DirectImage<R>& image) {
+    const std::int64_t pixels = static_cast<std::int64_t>(camera.width) * camera.height;
+    const R share = R(1) / R(options.spp);
+    parallel_for((pixels + chunk_pixels - 1) / chunk_pixels, [&](std::int64_t chunk) {
+        const std::int64_t begin = chunk * chunk_pixels,
+                           end = std::min(begin + chunk_pixels, pixels);
+        std::fill(image.radiance + 3 * begin, image.radiance + 3 * end, R(0));
+        std::fill(image.alpha + begin, image.alpha + end, R(0));
+        std::fill(image.depth + begin, image.depth + end, R(0));
+        for_each_hit(scene, camera, options, begin, end,
+                     [&](std::int64_t pixel, const Hit<R>& hit) {
+                         const Vec3<R> L = reflected(scene, hit);
+                         for (int c = 0; c < 3; ++c) image.radiance[3 * pixel + c] += L[c] * share;
+                         image.alpha[pixel] += share;
+                         image.depth[pixel] += hit.t * share;
+                     });
     });
 }
 
 template <Real R>
-void render_direct_backward(const Scene& scene, const R* colors, const DirectLights<R>& lights,
-                            const PinholeView& view, const DirectOptions& options,
-                            const R* d_radiance, R* d_colors, DirectLights<R>& d_lights) {
-    // Slabs of about 2^17 samples bound the memory of contributions: four a sample.
-    const std::int64_t tiles = Tile::count(view);
-    const std::int64_t slab = std::max<std::int64_t>(
-        1, (1 << 17) / (std::int64_t(tile_size) * tile_size * options.samples));
-    std::array<double, 12> light_sums{};
-    OwnerBins bins;
-    for (std::int64_t start = 0; start < tiles; start += slab) {
-        std::vector<std::vector<Contribution<R>>> contributions(
-            static_cast<std::size_t>(std::min(slab, tiles - start)));
-        sum_partials<double>(std::ssize(contributions), light_sums, [&](std::int64_t chunk, auto partial) {
-            const Tile tile(view, start + chunk);
-            auto& own = contributions[static_cast<std::size_t>(chunk)];
-            for_each_hit(scene, lights, view, options, tile, [&](int pixel, const DirectSample<R>& s) {
-                const R* d = d_radiance + 3 * tile.pixel(view, pixel);
-                const Vec3<R> d_shade = Vec3<R>(d[0], d[1], d[2]) / R(options.samples);
-                Vec3<R> d_albedo(R(0));
-                DirectLights<R> d_sample{{Vec3<R>(R(0))}, {Vec3<R>(R(0)), Vec3<R>(R(0)), Vec3<R>(R(0))}};
-                shade_backward(s, mix_colors(s.print, colors), lights, d_shade, d_albedo, d_sample);
-                add_lights(d_sample, partial.data());
-                for (std::size_t k = 0; k < 4; ++k)
-                    if (s.print.weight[k] != R(0))
-                        own.push_back({static_cast<std::uint32_t>(s.print.texel[k]),
-                                       s.print.weight[k] * d_albedo});
-            });
+void render_direct_backward(const DirectScene<R>& scene, const Pinhole& camera,
+                            const DirectOptions& options, const R* d_radiance, R* d_albedo,
+                            Sun<R>& d_sun, Sky<R>& d_sky) {
+    const std::int64_t pixels = static_cast<std::int64_t>(camera.width) * camera.height;
+    const std::int64_t chunks = (pixels + chunk_pixels - 1) / chunk_pixels;
+    const R share = R(1) / R(options.spp);
+    std::vector<double> lights(static_cast<std::size_t>(chunks) * light_numbers, 0.0);
+    for (std::int64_t slab = 0; slab < chunks; slab += slab_chunks) {
+        const std::int64_t count = std::min(slab_chunks, chunks - slab);
+        std::vector<std::vector<AlbedoContribution<R>>> kept(static_cast<std::size_t>(count));
+        parallel_for(count, [&](std::int64_t k) {
+            const std::int64_t begin = (slab + k) * chunk_pixels;
+            Sun<R> sun{Vec3<R>(R(0))};
+            Sky<R> sky{Vec3<R>(R(0)), Vec3<R>(R(0)), Vec3<R>(R(0))};
+            auto& out = kept[static_cast<std::size_t>(k)];
+            for_each_hit(scene, camera, options, begin, std::min(begin + chunk_pixels, pixels),
+                         [&](std::int64_t pixel, const Hit<R>& hit) {
+                             const R* d = d_radiance + 3 * pixel;
+                             const Vec3<R> d_out = Vec3<R>(d[0], d[1], d[2]) * share;
+                             const Vec3<R> d_point =
+                                 reflected_backward(scene, hit, d_out, sun, sky);
+                             for (int tap = 0; tap < hit.taps.count; ++tap)
+                                 out.push_back({static_cast<std::uint32_t>(hit.taps.entry[tap]),
+                                                d_point * hit.taps.weight[tap]});
+                         });
+            add_lights(sun, sky, &lights[static_cast<std::size_t>(slab + k) * light_numbers]);
         });
-        add_contributions(contributions, scene.colors(), bins, d_colors);
+        scatter(kept, scene.albedo_count, d_albedo);
     }
-    const double* sum = light_sums.data();
-    const auto add = [&](R& x) { x += R(*sum++); };
-    for_each_scalar(add, d_lights.sun);
-    for_each_scalar(add, d_lights.sky);
+    double total[light_numbers] = {};
+    for (std::size_t i = 0; i < lights.size(); ++i) total[i % light_numbers] += lights[i];
+    Vec3<R>* parts[4] = {&d_sun.radiance, &d_sky.zenith, &d_sky.horizon, &d_sky.ground};
+    for (int part = 0; part < 4; ++part)
+        for (int c = 0; c < 3; ++c) (*parts[part])[c] += static_cast<R>(total[3 * part + c]);
 }
 
-template void render_direct(const Scene&, const float*, const DirectLights<float>&, const PinholeView&,
-                            const DirectOptions&, const DirectOutputs<float>&);
-template void render_direct(const Scene&, const double*, const DirectLights<double>&,
-                            const PinholeView&, const DirectOptions&, const DirectOutputs<double>&);
-template void render_direct_backward(const Scene&, const float*, const DirectLights<float>&,
-                                     const PinholeView&, const DirectOptions&, const float*, float*,
-                                     DirectLights<float>&);
-template void render_direct_backward(const Scene&, const double*, const DirectLights<double>&,
-                                     const PinholeView&, const DirectOptions&, const double*, double*,
-                                     DirectLights<double>&);
+template void render_direct(const DirectScene<float>&, const Pinhole&, const DirectOptions&,
+                            const DirectImage<float>&);
+template void render_direct(const DirectScene<double>&, const Pinhole&, const DirectOptions&,
+                            const DirectImage<double>&);
+template void render_direct_backward(const DirectScene<float>&, const Pinhole&,
+                                     const DirectOptions&, const float*, float*, Sun<float>&,
+                                     Sky<float>&);
+template void render_direct_backward(const DirectScene<double>&, const Pinhole&,
+                                     const DirectOptions&, const double*, double*, Sun<double>&,
+                                     Sky<double>&);
 
 }  // namespace photograd

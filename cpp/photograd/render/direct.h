@@ -1,57 +1,59 @@
-// Direct light from a sun and a sky on diffuse surfaces, with shadow rays.
+// Direct light: what a camera sees of surfaces lit by the sun and the sky, with shadows.
 //
-// A pixel is the mean over its samples of
-//   sum over the two lights of  f(wo, wi) L(w) V cos(theta) / pdf
-// where V is 1 if nothing stands in the way. The sun is sampled over its disc, the sky in proportion to the
-// cosine. Where a ray misses everything it adds nothing: colours are premultiplied by alpha.
+// For a hit with albedo a, one sample of each light (detached: where to look does not depend on a or L),
 //
-// The adjoint is the interior term only: derivatives of the integrand with respect to albedo and radiance,
-// with visibility, positions and samples held constant. These are exact, as no edge depends on them. There
-// are no derivatives with respect to geometry, the camera or the sun's direction, which move edges.
+//   sun:  w drawn on the disc,                     contribution f(wo, w) cos L_sun(w) V(w) / pdf(w)
+//   sky:  w drawn by the BSDF (cosine lobe),       contribution f(wo, w) cos L_sky(w) V(w) / pdf(w)
+//
+// where V is 1 if the ray towards w meets nothing. The two are different lights, each with its one good
+// sampling, so nothing is counted twice. A pixel is the mean over `spp` samples, stratified over its area;
+// radiance is premultiplied: a sample that meets no surface counts as 0 and lowers alpha.
+//
+// Every term is linear in the albedo and in the lights' radiances, and the adjoint is f_backward and
+// L_backward on the same samples. Visibility and positions are held fixed: moving a shadow's edge or a
+// silhouette changes the image too, and that part is not in this gradient (interior term only).
 #pragma once
 
 #include <cstdint>
+#include <span>
 
+#include "photograd/camera/pinhole.h"
 #include "photograd/light/sky.h"
 #include "photograd/light/sun.h"
-#include "photograd/scene/scene.h"
+#include "photograd/scene/surfaces.h"
 
 namespace photograd {
 
-/// A pinhole camera; axes as OpenCV has them, pixel centres at + 1/2.
-struct PinholeView {
-    int width, height;
-    double fx, fy, cx, cy;
-    double world_from_camera[12];  // three rows of four
-};
-
-struct DirectOptions {
-    std::uint32_t samples;  // a pixel
-    std::uint64_t seed;
-};
-
-template <class R>
-struct DirectLights {
+template <Real R>
+struct DirectScene {
+    const Bvh* bvh;
+    std::span<const AlbedoLayout> layouts;  // one a mesh
+    const R* albedo;                        // (A, 3)
+    std::int64_t albedo_count;
     Sun<R> sun;
     Sky<R> sky;
 };
 
-template <class R>
-struct DirectOutputs {
-    R* radiance;  // (H, W, 3) linear, premultiplied
-    R* alpha;     // (H, W) the part of the samples that hit anything
-    R* depth;     // (H, W) mean distance of those from the camera, infinite without any
+struct DirectOptions {
+    int spp = 64;
+    std::uint64_t seed = 0;
 };
 
-/// The same bits for any number of threads; O(1) memory a ray.
 template <Real R>
-void render_direct(const Scene& scene, const R* colors, const DirectLights<R>& lights,
-                   const PinholeView& view, const DirectOptions& options, const DirectOutputs<R>& out);
+struct DirectImage {
+    R* radiance;  // (H, W, 3) premultiplied
+    R* alpha;     // (H, W)
+    R* depth;     // (H, W) mean of hit * distance
+};
 
-/// Adds to d_colors (A, 3) and to the radiances of d_lights; traces the same rays again.
 template <Real R>
-void render_direct_backward(const Scene& scene, const R* colors, const DirectLights<R>& lights,
-                            const PinholeView& view, const DirectOptions& options,
-                            const R* d_radiance, R* d_colors, DirectLights<R>& d_lights);
+void render_direct(const DirectScene<R>& scene, const Pinhole& camera, const DirectOptions& options,
+                   const DirectImage<R>& image);
+
+/// Adds to d_albedo (A, 3) and to the lights' radiances, for dL/dradiance (H, W, 3).
+template <Real R>
+void render_direct_backward(const DirectScene<R>& scene, const Pinhole& camera,
+                            const DirectOptions& options, const R* d_radiance, R* d_albedo,
+                            Sun<R>& d_sun, Sky<R>& d_sky);
 
 }  // namespace photograd
