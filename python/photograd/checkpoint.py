@@ -1,6 +1,6 @@
 """Checkpoints: everything that a fit needs to go on, in one file that is replaced atomically.
 
-A checkpoint is a NumPy archive: `param.NAME`, `optimiser.NAME`, `state.NAME`, `history`, and
+A checkpoint is a NumPy archive: `params.NAME`, `optimiser.NAME`, `state.NAME`, `history`, and
 `meta`, a JSON text with the format's version, the step, the options, the policy of the march and
 where the capture lies. A crash or a full disk while saving leaves the previous checkpoint as it
 was.
@@ -10,9 +10,6 @@ from __future__ import annotations
 
 import io
 import json
-import struct
-import zipfile
-import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -26,13 +23,6 @@ from photograd.representation import Array
 
 VERSION = 1
 FILE_NAME = "model.npz"
-
-# All that NumPy, zipfile and json raise for files that somebody else has changed.
-_DAMAGE = (
-    OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile, zlib.error, struct.error,
-    NotImplementedError, RuntimeError, MemoryError, TypeError, AttributeError, IndexError,
-    OverflowError, SyntaxError,
-)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -75,7 +65,7 @@ def load_checkpoint(path: Path) -> Checkpoint:
             arrays = {name: archive[name] for name in archive.files}
         meta = json.loads(str(arrays.pop("meta")))
         history = arrays.pop("history")
-    except _DAMAGE as failure:
+    except Exception as failure:  # whatever numpy, zipfile, json and tokenize say of foreign bytes
         raise _damaged(file, f"{failure}") from failure
     if not isinstance(meta, dict):
         raise _damaged(file, f"meta that is no JSON object but {type(meta).__name__}")
@@ -92,6 +82,16 @@ def load_checkpoint(path: Path) -> Checkpoint:
     return Checkpoint(
         meta, _part(arrays, "params"), _part(arrays, "optimiser"), _part(arrays, "state"), history
     )
+
+
+def make_folder(folder: Path) -> None:
+    """Make a folder for results, and those above it. Raises IoError if that cannot be done."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as failure:
+        got = failure.strerror or f"{failure}"
+        expected = f"a folder that can be made at {folder}"
+        raise IoError(message("make_folder", "folder", expected, got)) from failure
 
 
 def _damaged(file: Path, got: str) -> IoError:

@@ -14,9 +14,8 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from photograd_course.atomic_io import remove_leftovers
@@ -34,42 +33,32 @@ from photograd.backgrounds import (
     learned_background_backward,
     random_background,
 )
-from photograd.checkpoint import FILE_NAME, Checkpoint, load_checkpoint, save_checkpoint
+from photograd.checkpoint import (
+    FILE_NAME,
+    Checkpoint,
+    load_checkpoint,
+    make_folder,
+    save_checkpoint,
+)
 from photograd.core import _core
 from photograd.data.bounds import estimate_bounds
 from photograd.data.capture import Capture
 from photograd.data.visibility import require_views_of
-from photograd.errors import Error, IoError, RangeError, message
 from photograd.fields.dense_grid import DenseGrid
+from photograd.fit_checks import (
+    require_finite,
+    require_finite_loss,
+    require_pixels_of,
+    require_split_of,
+    require_startable,
+)
 from photograd.fit_options import FitOptions
+from photograd.fit_result import FitResult, Progress
 from photograd.imaging import image_loss, image_loss_backward
 from photograd.model import model_of
 from photograd.pixels import TrainingPixels
-from photograd.representation import Array, RenderOptions, representation
+from photograd.representation import Array, RenderOptions
 from photograd.snapshots import save_snapshot, snapshot_steps
-
-
-@dataclass(frozen=True)
-class Progress:
-    """What a progress display gets after a step."""
-
-    step: int
-    steps: int
-    loss: float
-    psnr: float  # of the batch, on the values the loss is taken on
-    resolution: int
-    rays_per_second: float
-
-
-@dataclass(frozen=True)
-class FitResult:
-    """How a fit ended."""
-
-    path: Path
-    step: int
-    finished: bool
-    seconds: float
-    loss: float
 
 
 class Fit:
@@ -100,7 +89,7 @@ class Fit:
         Raises RangeError for an unknown or unfit representation, SceneError naming the training
         cameras that do not see the scene's box (with `allow_blind` only if none does).
         """
-        _require_startable(options.representation)
+        require_startable(options.representation)
         bounds = estimate_bounds(capture)
         if not allow_blind:
             require_views_of(capture.train, bounds.box)
@@ -124,22 +113,9 @@ class Fit:
         """
         saved = load_checkpoint(folder)
         model = model_of(saved, folder)
-        missing = {"step", "split", "pixels"} - set(saved.meta)
-        if missing:
-            raise IoError(
-                message("Fit.resume", f"{folder}", "the checkpoint of a fit",
-                        f"one without {sorted(missing)}", "was it saved by another version?")
-            )  # fmt: skip
-        remedy = "resume with the capture, and the --downscale, that the fit was started on"
-        if saved.meta["split"] != capture.split_hash():
-            raise RangeError(
-                message("Fit.resume", "capture", f"the checkpoint's split {saved.meta['split']}",
-                        capture.split_hash(), remedy)
-            )  # fmt: skip
+        require_split_of(saved, capture)
         fit = cls(capture, model.options, model.field, saved.params.get("background"))
-        if saved.meta["pixels"] != fit.pixels.digest:
-            expected = f"the images and cameras {saved.meta['pixels']} of the checkpoint"
-            raise RangeError(message("Fit.resume", "capture", expected, fit.pixels.digest, remedy))
+        require_pixels_of(saved, fit.pixels.digest)
         remove_leftovers(folder / FILE_NAME)
         fit.optimiser.load_state(saved.optimiser)
         fit.step_number = int(saved.meta["step"])
@@ -151,11 +127,7 @@ class Fit:
         self._refine()
         chosen = self.pixels.draw(self.options.rays, seed=self.options.seed, step=self.step_number)
         loss, gradients = self.loss_and_gradients(chosen)
-        if not np.isfinite(loss):
-            raise Error(
-                message("Fit.step", "loss", "a finite number", f"{loss} at step {self.step_number}",
-                        "the last checkpoint is as it was; lower the learning rate")
-            )  # fmt: skip
+        require_finite_loss(loss, self.step_number)
         self._add_prior(gradients)
         rate = self.options.learning_rate * exponential(
             self.options.final_rate, self.options.steps
@@ -167,7 +139,8 @@ class Fit:
         if self.background is not None:
             params["background"] = self.background
             rates["background"] = 0.02 * rate
-        self.optimiser.step(params, gradients, rates)
+        with np.errstate(over="ignore", invalid="ignore"):  # looked for where it is saved and used
+            self.optimiser.step(params, gradients, rates)
         psnr = -10 * np.log10(max(loss, 1e-12))
         self.history.append((self.step_number, loss, float(psnr)))
         self.step_number += 1
@@ -213,7 +186,7 @@ class Fit:
         Raises IoError if it cannot be written, Error if the loss or a gradient is not finite; the
         last checkpoint then stays as it was.
         """
-        _make_folder(folder)
+        make_folder(folder)
         began = saved = time.perf_counter()
         keep = snapshot_steps(self.options)
         if self.step_number == 0:
@@ -222,6 +195,7 @@ class Fit:
             before = time.perf_counter()
             self.step()
             if self.step_number in keep:
+                require_finite(self.model.params, self.step_number)
                 save_snapshot(folder, self.model, self.options, self.step_number)
             now = time.perf_counter()
             if on_step:
@@ -243,7 +217,12 @@ class Fit:
         )
 
     def save(self, folder: Path) -> None:
-        """Write the checkpoint DIR/model.npz atomically."""
+        """Write the checkpoint DIR/model.npz atomically.
+
+        Raises IoError if there is no room, Error if a parameter is not finite: a good checkpoint is
+        never replaced by a bad one.
+        """
+        require_finite(self.model.params, self.step_number)
         params = dict(self.model.params)
         if self.background is not None:
             params["background"] = self.background
@@ -283,36 +262,3 @@ class Fit:
         total_variation_squared_backward(
             values[start : start + planes], weight, gradients["values"][start : start + planes]
         )
-
-
-def _require_startable(name: str) -> None:
-    """Raise RangeError unless a capture can start the representation called `name`."""
-    kind = representation(name)
-    if "rays" not in kind.capabilities:
-        raise RangeError(
-            message("Fit", "representation", "one that is seen along rays", repr(name),
-                    "it lives on a 2D canvas; a capture can start 'dense_grid'")
-        )  # fmt: skip
-    if kind is not DenseGrid:
-        raise RangeError(
-            message("Fit", "representation", "one that a capture can start: 'dense_grid'",
-                    repr(name), "start it from Python, with parameters of your own")
-        )  # fmt: skip
-
-
-def _make_folder(folder: Path) -> None:
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as failure:
-        raise IoError(
-            message("Fit.run", "folder", f"a folder that can be made at {folder}",
-                    failure.strerror or f"{failure}")
-        ) from failure  # fmt: skip
-
-
-def summary(result: FitResult) -> dict[str, Any]:
-    """A fit's result for the machine-readable last line."""
-    return {
-        "model": str(result.path), "step": result.step, "finished": result.finished,
-        "seconds": round(result.seconds, 3), "loss": result.loss,
-    }  # fmt: skip

@@ -5,6 +5,7 @@ Stored in every checkpoint, so that a run can be resumed and explained.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from photograd.errors import RangeError, message
@@ -46,12 +47,12 @@ class FitOptions:
             "sigma_t",
         )
         for name in positive:
-            if not getattr(self, name) > 0:
+            if not 0 < getattr(self, name) < math.inf:
                 raise RangeError(
                     message("FitOptions", name, "a positive number", f"{getattr(self, name)}")
                 )
         for name in ("total_variation", "stop"):
-            if not getattr(self, name) >= 0:
+            if not 0 <= getattr(self, name) < math.inf:
                 raise RangeError(
                     message("FitOptions", name, "zero or more", f"{getattr(self, name)}")
                 )

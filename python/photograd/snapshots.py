@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from photograd.checkpoint import Checkpoint, load_checkpoint, save_checkpoint
+from photograd.checkpoint import Checkpoint, load_checkpoint, make_folder, save_checkpoint
 from photograd.fields.dense_grid import DenseGrid
 from photograd.fit_options import FitOptions
 from photograd.model import model_of
@@ -28,7 +28,7 @@ def snapshot_file(folder: Path, step: int) -> Path:
 def save_snapshot(folder: Path, field: DenseGrid, options: FitOptions, step: int) -> None:
     """Write the field as it is now."""
     meta = {"policy": asdict(field.policy), "options": asdict(options), "step": step}
-    snapshot_file(folder, step).parent.mkdir(parents=True, exist_ok=True)
+    make_folder(folder / "snapshots")
     save_checkpoint(
         snapshot_file(folder, step), Checkpoint(meta, dict(field.params), {}, {}, np.zeros((0, 3)))
     )

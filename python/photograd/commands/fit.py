@@ -29,8 +29,9 @@ from photograd.commands.shared import (
 from photograd.data.capture import Capture
 from photograd.data.load import load_capture
 from photograd.errors import RangeError, message
-from photograd.fit import Fit, FitResult, Progress, summary
+from photograd.fit import Fit
 from photograd.fit_options import FitOptions
+from photograd.fit_result import FitResult, Progress, summary
 
 DEFAULTS = FitOptions()
 COLUMNS = (

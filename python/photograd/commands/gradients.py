@@ -19,11 +19,11 @@ from photograd_course.cli import (
     note,
 )
 
+from photograd.checkpoint import make_folder
 from photograd.commands.shared import (
     CaptureArgument,
     DownscaleOption,
     ModelArgument,
-    make_folder,
     use_threads,
 )
 from photograd.data.capture import Capture

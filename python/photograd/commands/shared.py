@@ -12,7 +12,6 @@ from typing import Annotated, Any
 import typer
 
 from photograd.core import _core
-from photograd.errors import IoError, message
 
 CaptureArgument = Annotated[
     Path,
@@ -32,17 +31,6 @@ DownscaleOption = Annotated[
 def use_threads(threads: int) -> None:
     """Limit the core's threads; 0 means all cores."""
     _core.set_thread_count(threads)
-
-
-def make_folder(folder: Path) -> None:
-    """Make a folder for results, and those above it. Raises IoError if that cannot be done."""
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as failure:
-        got = failure.strerror or f"{failure}"
-        raise IoError(
-            message("make_folder", "--out", f"a folder that can be made at {folder}", got)
-        ) from failure
 
 
 class StopRequest:

@@ -1,0 +1,70 @@
+"""What a fit refuses: before it starts, before it goes on, and before it saves."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+
+from photograd.checkpoint import Checkpoint
+from photograd.data.capture import Capture
+from photograd.errors import Error, IoError, RangeError, message
+from photograd.fields.dense_grid import DenseGrid
+from photograd.representation import Array, representation
+
+_SAME = "resume with the capture, and the --downscale, that the fit was started on"
+
+
+def require_startable(name: str) -> None:
+    """Raise RangeError unless a capture can start the representation called `name`."""
+    kind = representation(name)
+    if "rays" not in kind.capabilities:
+        raise RangeError(
+            message("Fit", "representation", "one that is seen along rays", repr(name),
+                    "it lives on a 2D canvas; a capture can start 'dense_grid'")
+        )  # fmt: skip
+    if kind is not DenseGrid:
+        raise RangeError(
+            message("Fit", "representation", "one that a capture can start: 'dense_grid'",
+                    repr(name), "start it from Python, with parameters of your own")
+        )  # fmt: skip
+
+
+def require_split_of(saved: Checkpoint, capture: Capture) -> None:
+    """Raise IoError unless `saved` is the checkpoint of a fit, RangeError if of another split."""
+    missing = sorted({"step", "split", "pixels"} - set(saved.meta))
+    if missing:
+        got = f"one without {missing}"
+        raise IoError(
+            message("Fit.resume", "checkpoint", "that of a fit", got, "is it another version's?")
+        )
+    if saved.meta["split"] != capture.split_hash():
+        expected = f"the checkpoint's split {saved.meta['split']}"
+        raise RangeError(message("Fit.resume", "capture", expected, capture.split_hash(), _SAME))
+
+
+def require_pixels_of(saved: Checkpoint, digest: str) -> None:
+    """Raise RangeError if the training images or cameras are not those of the checkpoint."""
+    if saved.meta["pixels"] != digest:
+        expected = f"the images and cameras {saved.meta['pixels']} of the checkpoint"
+        raise RangeError(message("Fit.resume", "capture", expected, digest, _SAME))
+
+
+def require_finite_loss(loss: float, step: int) -> None:
+    """Raise Error for a loss that is NaN or infinite."""
+    if not math.isfinite(loss):
+        raise Error(
+            message("Fit.step", "loss", "a finite number", f"{loss} at step {step}",
+                    "what was saved is as it was; lower the learning rate")
+        )  # fmt: skip
+
+
+def require_finite(params: Mapping[str, Array], step: int) -> None:
+    """Raise Error if a parameter is not finite: a good checkpoint is not replaced by a bad one."""
+    for name, array in params.items():
+        count = array.size - int(np.isfinite(array).sum())
+        if count:
+            got = f"{count} that are not after {step} steps"
+            remedy = "what was saved is as it was; lower the learning rate"
+            raise Error(message("Fit.step", name, "finite values", got, remedy))
