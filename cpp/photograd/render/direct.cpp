@@ -1,5 +1,6 @@
 #include "photograd/render/direct.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -90,8 +91,7 @@ template <class R>
 void cast_shadows(const DirectScene<R>& scene, Hit<R>* hits, LightSample<R> Hit<R>::* light) {
     const Box& box = scene.bvh->bounds();
     float size = 0;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-        size = std::max(size, static_cast<float>(box.upper[axis] - box.lower[axis]));
+    for (int axis = 0; axis < 3; ++axis) size = std::max(size, box.hi[axis] - box.lo[axis]);
     RayPacket packet{};
     bool any = false;
     for (int k = 0; k < width; ++k) {

@@ -1,10 +1,79 @@
-"""`photograd capture`: photographs of a built-in scene."""
+"""`photograd capture`: photographs of a built-in scene, so that a fresh machine has input."""
 
 from __future__ import annotations
 
+from pathlib import Path
+from typing import Annotated, Any
+
 import typer
+from photograd_course.cli import (
+    Column,
+    DebugOption,
+    JsonOption,
+    Progress,
+    SeedOption,
+    ThreadsOption,
+    emit,
+)
+
+from photograd.commands.shared import use_threads
+from photograd.data.write import write_blender_capture
+from photograd.scenes.capture import capture_scene
+from photograd.scenes.registry import scene as build_scene
+from photograd.scenes.registry import scenes
+from photograd.tracer import TracedScene
+
+DEFAULT_SCENE = next(iter(scenes()))
 
 
 def register(app: typer.Typer) -> None:
     """Add the command."""
-    del app
+    app.command("capture")(capture)
+
+
+def capture(
+    out: Annotated[Path, typer.Option("--out", help="Folder to create.")],
+    scene: Annotated[
+        str, typer.Option("--scene", help=f"One of: {', '.join(scenes())}.")
+    ] = DEFAULT_SCENE,
+    views: Annotated[int, typer.Option("--views", min=2, help="Training views.")] = 60,
+    test_views: Annotated[int, typer.Option("--test-views", min=0, help="Held-out views.")] = 8,
+    size: Annotated[int, typer.Option("--size", min=8, help="Pixels along an edge.")] = 128,
+    spp: Annotated[int, typer.Option("--spp", min=1, help="Samples a pixel.")] = 64,
+    overwrite: Annotated[
+        bool, typer.Option("--overwrite", help="Replace what OUT holds.")
+    ] = False,
+    seed: SeedOption = 0,
+    threads: ThreadsOption = 0,
+    as_json: JsonOption = False,
+    debug: DebugOption = False,  # noqa: ARG001  read by the command line's frame
+) -> None:
+    """Render photographs of a built-in scene with direct light and soft shadows.
+
+    Writes OUT in the NeRF/Blender layout: transforms_train.json, transforms_test.json, PNG images
+    with alpha (display values) and EXR images (linear radiance).
+
+    Example: photograd capture --scene textured --views 60 --test-views 8 --out my_capture
+    """
+    use_threads(threads)
+    result = make_capture(
+        scene, out, views=views, test_views=test_views, size=size, spp=spp, seed=seed,
+        overwrite=overwrite,
+    )  # fmt: skip
+    emit(result, as_json=as_json, title="capture")
+
+
+def make_capture(
+    name: str, out: Path, *, views: int, test_views: int, size: int, spp: int, seed: int,
+    overwrite: bool = False,
+) -> dict[str, Any]:  # fmt: skip
+    """Render and write a capture under a progress bar; returns what the command reports."""
+    description = build_scene(name, seed=seed)
+    traced = TracedScene(description)
+    with Progress("capture", views + test_views, [Column("view", "{:.0f}".format)]) as bar:
+        splits = capture_scene(
+            description, traced.render_view, views=views, test_views=test_views, size=size,
+            seed=seed, spp=spp, on_view=lambda done, _total: bar.update(done, view=done),
+        )  # fmt: skip
+    write_blender_capture(out, splits, aabb=description.bounds, overwrite=overwrite)
+    return {"out": out, "scene": name, "views": views, "test_views": test_views, "spp": spp}
