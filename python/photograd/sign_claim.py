@@ -20,6 +20,7 @@ from photograd.pixels import TrainingPixels
 from photograd.representation import Array
 
 VIEW_COUNTS = (48, 24, 12, 6)  # tried after all of them
+ENOUGH = 30  # voxels of each kind; with fewer, fewer views may leave more
 
 
 @dataclass(frozen=True)
@@ -37,8 +38,8 @@ class SignClaim:
         if self.views == self.all_views:
             return self.report.caption()
         return (
-            f"Loss of {self.views} of the {self.all_views} training views: more would leave no "
-            f"voxel that is seen against the background alone. {self.report.caption()}"
+            f"Loss of {self.views} of the {self.all_views} training views: more would leave few or "
+            f"no voxels that are seen against the background alone. {self.report.caption()}"
         )
 
 
@@ -49,16 +50,21 @@ def sign_claim(
 
     Raises RangeError if the capture has no alpha.
     """
-    total = len(capture.train)
+    total, most, best = len(capture.train), 0, None
     for count in (total, *(n for n in VIEW_COUNTS if n < total)):
-        part = capture.limited(count)
-        masks = voxel_masks(field, part)
-        if not (masks.occupied.any() and masks.background_only.any()):
-            continue
-        pixels = TrainingPixels(part.train, part.color_space)
-        found = density_gradient(field, pixels, seed=seed, background=background, rays=rays)
-        report = sign_report(
-            found.d_sigma_t, occupied=masks.occupied, background_only=masks.background_only
-        )
-        return SignClaim(report, found.d_sigma_t, masks.occupied, count, total)
-    return None
+        masks = voxel_masks(field, capture.limited(count))
+        voxels = int(min(masks.occupied.sum(), masks.background_only.sum()))
+        if voxels > most:
+            most, best = voxels, (count, masks)
+        if most >= ENOUGH:
+            break
+    if best is None:
+        return None
+    count, masks = best
+    part = capture.limited(count)
+    pixels = TrainingPixels(part.train, part.color_space)
+    found = density_gradient(field, pixels, seed=seed, background=background, rays=rays)
+    report = sign_report(
+        found.d_sigma_t, occupied=masks.occupied, background_only=masks.background_only
+    )
+    return SignClaim(report, found.d_sigma_t, masks.occupied, count, total)
