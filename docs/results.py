@@ -22,10 +22,15 @@ RESOLUTIONS = (64, 128, 192)
 
 
 def command(*words: str) -> dict[str, Any]:
-    """Run `photograd ... --json`; the last line, with wall seconds and peak memory of the process."""
+    """Run `photograd ...
+
+    --json`; the last line, with wall seconds and peak memory of the process.
+    """
     before = os.times()
     done = subprocess.Popen(
-        [sys.executable, "-m", "photograd_course", *words, "--json"], stdout=subprocess.PIPE, text=True
+        [sys.executable, "-m", "photograd_course", *words, "--json"],
+        stdout=subprocess.PIPE,
+        text=True,
     )
     assert done.stdout is not None
     text = done.stdout.read()
@@ -41,7 +46,14 @@ def measure(data: Path, out: Path, name: str, resolution: int) -> str:
     capture, downscale = str(data / name), str(CAPTURES[name])
     model = out / f"{name}_{resolution}"
     fit = command(
-        "fit", capture, "--out", str(model), "--resolution", str(resolution), "--downscale", downscale
+        "fit",
+        capture,
+        "--out",
+        str(model),
+        "--resolution",
+        str(resolution),
+        "--downscale",
+        downscale,
     )
     picture = model / "comparison.png"
     score = command(
@@ -61,13 +73,17 @@ def main() -> None:
     parser.add_argument("--captures", nargs="*", default=list(CAPTURES))
     parser.add_argument("--resolutions", nargs="*", type=int, default=list(RESOLUTIONS))
     given = parser.parse_args()
-    rows = [measure(given.data, given.out, name, size) for name in given.captures for size in given.resolutions]
+    rows = [
+        measure(given.data, given.out, name, size)
+        for name in given.captures
+        for size in given.resolutions
+    ]
     text = RESULTS.read_text() if RESULTS.exists() else "<!-- table -->\n<!-- end -->\n"
     head, rest = text.split("<!-- table -->", 1)
     tail = rest.split("<!-- end -->", 1)[1]
     table = [
         "", f"Measured on {platform.machine()}, {os.cpu_count()} cores.", "",
-        "| capture | voxels along the longest edge | steps | fit, s | peak, GiB | PSNR, dB | SSIM | views |",
+        "| capture | voxels | steps | fit, s | peak, GiB | PSNR, dB | SSIM | test views |",
         "|---|---|---|---|---|---|---|---|", *rows, "",
     ]  # fmt: skip
     RESULTS.write_text(head + "<!-- table -->" + "\n".join(table) + "<!-- end -->" + tail)

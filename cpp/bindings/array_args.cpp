@@ -34,7 +34,8 @@ void ArrayArgs::check(const char* name, const py::array& array, std::string_view
                       const py::dtype& type) {
     if (!array.dtype().is(type))
         fail(ErrorKind::dtype, function_, name, "dtype " + std::string(py::str(type)),
-             "dtype " + std::string(py::str(array.dtype())), "convert it first, nothing is converted here");
+             "dtype " + std::string(py::str(array.dtype())),
+             "convert it first, nothing is converted here");
     const std::vector<std::string> names = split(axes);
     if (array.ndim() != static_cast<py::ssize_t>(names.size()))
         fail(ErrorKind::shape, function_, name, wanted_shape(names), shape_text(array));
@@ -51,8 +52,8 @@ void ArrayArgs::check(const char* name, const py::array& array, std::string_view
         const auto [known, inserted] = sizes_.try_emplace(axis, size, name);
         if (!inserted && known->second.first != size)
             fail(ErrorKind::shape, function_, name,
-                 wanted_shape(names) + " with " + axis + " = " + std::to_string(known->second.first) +
-                     " as in " + known->second.second,
+                 wanted_shape(names) + " with " + axis + " = " +
+                     std::to_string(known->second.first) + " as in " + known->second.second,
                  shape_text(array));
     }
     if (!(array.flags() & py::array::c_style))

@@ -51,10 +51,12 @@ public:
     }
 
 private:
-    void check(const char* name, const py::array& array, std::string_view axes, const py::dtype& type);
+    void check(const char* name, const py::array& array, std::string_view axes,
+               const py::dtype& type);
 
     std::string function_;
-    std::map<std::string, std::pair<std::int64_t, std::string>> sizes_;  // axis -> size, who fixed it
+    std::map<std::string, std::pair<std::int64_t, std::string>>
+        sizes_;  // axis -> size, who fixed it
 };
 
 /// Calls visit(float{}) or visit(double{}) according to the dtype of `array`; refuses others by name.
@@ -64,7 +66,8 @@ decltype(auto) dispatch_real(const char* function, const char* argument, const p
     if (array.dtype().is(py::dtype::of<float>())) return visit(float{});
     if (array.dtype().is(py::dtype::of<double>())) return visit(double{});
     fail(ErrorKind::dtype, function, argument, "dtype float32 or float64",
-         "dtype " + std::string(py::str(array.dtype())), "convert with numpy.asarray(..., numpy.float32)");
+         "dtype " + std::string(py::str(array.dtype())),
+         "convert with numpy.asarray(..., numpy.float32)");
 }
 
 /// A fresh zero-filled array.

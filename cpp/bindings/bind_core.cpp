@@ -52,23 +52,28 @@ void bind_core(py::module_& m) {
     m.def("set_thread_count", &set_thread_count, py::arg("threads"),
           "Upper limit on threads; 0 restores the default, all cores.");
     m.def("thread_count", &thread_count);
-    m.def("instruction_set", [] { return kernels().name; },
-          "Name of the kernels in use: baseline, v3 or v4.");
+    m.def(
+        "instruction_set", [] { return kernels().name; },
+        "Name of the kernels in use: baseline, v3 or v4.");
     m.def("philox4x32", &philox, py::arg("counter"), py::arg("key"),
           "Philox4x32-10 words (N, 4) uint32 of counters (N, 4) under keys (N, 2).");
-    m.def("uniform", &uniform_numbers, py::arg("seed"), py::arg("step"), py::arg("pixel"),
-          py::arg("sample"), py::arg("dimension"),
-          "Uniform numbers (N,) in [0, 1) for pixels (N,), as photograd_course.random defines them.");
-    m.def("exp", [](const py::array& x) { return map_real("exp", x, [](auto v) { return exp(v); }); },
-          py::arg("x"), "The portable exp on a flat array.");
-    m.def("expm1",
-          [](const py::array& x) { return map_real("expm1", x, [](auto v) { return expm1(v); }); },
-          py::arg("x"), "The portable exp(x) - 1 on a flat array.");
-    m.def("log1p_unit",
-          [](const py::array& x) {
-              return map_real("log1p_unit", x, [](auto v) { return log1p_unit(v); });
-          },
-          py::arg("x"), "The portable ln(1 + x) for x in [0, 1] on a flat array.");
+    m.def(
+        "uniform", &uniform_numbers, py::arg("seed"), py::arg("step"), py::arg("pixel"),
+        py::arg("sample"), py::arg("dimension"),
+        "Uniform numbers (N,) in [0, 1) for pixels (N,), as photograd_course.random defines them.");
+    m.def(
+        "exp", [](const py::array& x) { return map_real("exp", x, [](auto v) { return exp(v); }); },
+        py::arg("x"), "The portable exp on a flat array.");
+    m.def(
+        "expm1",
+        [](const py::array& x) { return map_real("expm1", x, [](auto v) { return expm1(v); }); },
+        py::arg("x"), "The portable exp(x) - 1 on a flat array.");
+    m.def(
+        "log1p_unit",
+        [](const py::array& x) {
+            return map_real("log1p_unit", x, [](auto v) { return log1p_unit(v); });
+        },
+        py::arg("x"), "The portable ln(1 + x) for x in [0, 1] on a flat array.");
 }
 
 }  // namespace photograd

@@ -36,8 +36,8 @@ struct MarchSettings {
     }
 };
 
-py::tuple place(const MarchSettings& settings, const py::array& origins, const py::array& directions,
-                const std::optional<py::array>& jitter) {
+py::tuple place(const MarchSettings& settings, const py::array& origins,
+                const py::array& directions, const std::optional<py::array>& jitter) {
     return dispatch_real("place_samples", "origins", origins, [&](auto real) -> py::tuple {
         using R = decltype(real);
         ArrayArgs args("place_samples");
@@ -53,11 +53,12 @@ py::tuple place(const MarchSettings& settings, const py::array& origins, const p
         {
             const py::gil_scoped_release release;
             parallel_for((count + 4095) / 4096, [&](std::int64_t chunk) {
-                for (std::int64_t ray = chunk * 4096; ray < std::min(count, (chunk + 1) * 4096); ++ray) {
-                    const RaySamples<R> placed = place_samples(
-                        clip_to_box(o + 3 * ray, d + 3 * ray, options.box),
-                        static_cast<R>(settings.dt), static_cast<Lattice>(settings.lattice),
-                        u ? u[ray] : R(0.5));
+                for (std::int64_t ray = chunk * 4096; ray < std::min(count, (chunk + 1) * 4096);
+                     ++ray) {
+                    const RaySamples<R> placed =
+                        place_samples(clip_to_box(o + 3 * ray, d + 3 * ray, options.box),
+                                      static_cast<R>(settings.dt),
+                                      static_cast<Lattice>(settings.lattice), u ? u[ray] : R(0.5));
                     t0_out[ray] = placed.t0;
                     samples_out[ray] = placed.count;
                 }
@@ -174,17 +175,23 @@ void bind_march(py::module_& m) {
                           std::to_string(dt));
                  for (std::size_t axis = 0; axis < 3; ++axis)
                      if (!(box[1][axis] > box[0][axis]))
-                         fail(ErrorKind::range, "MarchSettings", "box",
-                              "a lower corner below the upper one on every axis",
-                              std::to_string(box[0][axis]) + " and " + std::to_string(box[1][axis]));
-                 return MarchSettings{box,        dt,     stop,
-                                      lattice,    quadrature, border,
-                                      density_activation, color_activation, density_scale};
+                         fail(
+                             ErrorKind::range, "MarchSettings", "box",
+                             "a lower corner below the upper one on every axis",
+                             std::to_string(box[0][axis]) + " and " + std::to_string(box[1][axis]));
+                 return MarchSettings{box,
+                                      dt,
+                                      stop,
+                                      lattice,
+                                      quadrature,
+                                      border,
+                                      density_activation,
+                                      color_activation,
+                                      density_scale};
              }),
              py::arg("box"), py::arg("dt"), py::arg("stop"), py::arg("lattice"),
              py::arg("quadrature"), py::arg("border"), py::arg("density_activation"),
-             py::arg("color_activation"),
-             py::arg("density_scale"));
+             py::arg("color_activation"), py::arg("density_scale"));
     m.attr("tiny_network_parameters") = TinyNetwork<float>::parameter_count;
     m.def("place_samples", &place, py::arg("settings"), py::arg("origins"), py::arg("directions"),
           py::arg("jitter") = py::none(), "Per ray: t0 (R,) and the number of samples (R,) int32.");

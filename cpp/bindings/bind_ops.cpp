@@ -69,7 +69,8 @@ py::array op_jvp(const py::array& x, const py::array& v) {
     std::array<D, Op::outputs> out;
     Op::forward(dual.data(), out.data());
     py::array_t<double> jv(Op::outputs);
-    for (int i = 0; i < Op::outputs; ++i) jv.mutable_data()[i] = out[static_cast<std::size_t>(i)].tangent;
+    for (int i = 0; i < Op::outputs; ++i)
+        jv.mutable_data()[i] = out[static_cast<std::size_t>(i)].tangent;
     return jv;
 }
 
@@ -80,16 +81,19 @@ void bind_ops(py::module_& m) {
         .def_readonly("name", &OpInfo::name)
         .def_readonly("inputs", &OpInfo::inputs, "Differentiable groups: (name, size, lo, hi).")
         .def_readonly("outputs", &OpInfo::outputs)
-        .def("forward", [](const OpInfo& op, const py::array& x) { return op.forward(x); },
-             py::arg("x"), "y of the flat inputs x, in float32 or float64.")
-        .def("backward",
-             [](const OpInfo& op, const py::array& x, const py::array& d_y, py::array d_x) {
-                 return op.backward(x, d_y, std::move(d_x));
-             },
-             py::arg("x"), py::arg("d_y"), py::arg("d_x"), "Adds J^T d_y to d_x and returns it.")
-        .def("jvp",
-             [](const OpInfo& op, const py::array& x, const py::array& v) { return op.jvp(x, v); },
-             py::arg("x"), py::arg("v"), "J v, exactly, by dual numbers (float64).");
+        .def(
+            "forward", [](const OpInfo& op, const py::array& x) { return op.forward(x); },
+            py::arg("x"), "y of the flat inputs x, in float32 or float64.")
+        .def(
+            "backward",
+            [](const OpInfo& op, const py::array& x, const py::array& d_y, py::array d_x) {
+                return op.backward(x, d_y, std::move(d_x));
+            },
+            py::arg("x"), py::arg("d_y"), py::arg("d_x"), "Adds J^T d_y to d_x and returns it.")
+        .def(
+            "jvp",
+            [](const OpInfo& op, const py::array& x, const py::array& v) { return op.jvp(x, v); },
+            py::arg("x"), py::arg("v"), "J v, exactly, by dual numbers (float64).");
     py::dict ops;
     Ops::for_each([&]<class Op>(std::type_identity<Op>) {
         OpInfo info{Op::name, {}, Op::outputs, &op_forward<Op>, &op_backward<Op>, &op_jvp<Op>};

@@ -12,5 +12,4 @@ PYBIND11_MODULE(_core, m) {
     photograd::bind_light(m);
     photograd::bind_direct(m);
     photograd::bind_sampling(m);
-    photograd::bind_direct(m);
 }

@@ -16,6 +16,5 @@ void bind_bsdf(py::module_& m);
 void bind_light(py::module_& m);
 void bind_direct(py::module_& m);
 void bind_sampling(py::module_& m);
-void bind_direct(py::module_& m);
 
 }  // namespace photograd

@@ -11,8 +11,9 @@ struct Kernels {
     void (*march_dense_forward)(const MarchDenseArgs&, std::int64_t begin, std::int64_t end);
     std::int64_t (*march_dense_backward)(const MarchDenseArgs&, const MarchDenseBackward&,
                                          std::int64_t begin, std::int64_t end, BrickRun* runs);
-    void (*march_dense_gather)(const MarchDenseArgs&, const BrickRun* runs, const std::uint32_t* order,
-                               std::int64_t count, const float* d_raw, float* tile);
+    void (*march_dense_gather)(const MarchDenseArgs&, const BrickRun* runs,
+                               const std::uint32_t* order, std::int64_t count, const float* d_raw,
+                               float* tile);
 };
 
 [[nodiscard]] const Kernels& kernels();

@@ -22,9 +22,9 @@ struct MarchDenseArgs {
     float density_scale;
     float dt;
     float tau_stop;  // a ray ends behind the sub-block in which its optical depth exceeds this
-    const float* origins;     // (R, 3)
-    const float* directions;  // (R, 3)
-    const float* t0;          // (R,) sample k lies at t0 + (k + 1/2) dt
+    const float* origins;       // (R, 3)
+    const float* directions;    // (R, 3)
+    const float* t0;            // (R,) sample k lies at t0 + (k + 1/2) dt
     const std::int32_t* count;  // (R,)
     float* color;               // (R, 3) without background
     float* transmittance;       // (R,) behind the last sample
@@ -32,9 +32,9 @@ struct MarchDenseArgs {
 };
 
 struct MarchDenseBackward {
-    const float* d_color;   // (R, 3)
-    const float* d_depth;   // (R,)
-    const float* d_transmittance;  // (R,)
+    const float* d_color;               // (R, 3)
+    const float* d_depth;               // (R,)
+    const float* d_transmittance;       // (R,)
     const std::int64_t* sample_offset;  // (rays of the slab + 1,) first sample of each ray in d_raw
     std::int64_t first_ray;             // the ray that sample_offset[0] belongs to
     float* d_raw;                       // (samples of the slab, 4)

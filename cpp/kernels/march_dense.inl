@@ -19,16 +19,15 @@ struct SampleBlock {
     Lanes<float> raw[4];  // r, g, b, density before activation
     Lanes<float> sigma_t, rgb[3];
     int base[3][lane_count];
-    int voxel[lane_count];   // number of the base voxel
-    Lanes<float> row[4];     // weights of the four rows (x, y): 00 01 10 11
-    Lanes<float> z0, z1;     // weights of the two ends of a row
+    int voxel[lane_count];  // number of the base voxel
+    Lanes<float> row[4];    // weights of the four rows (x, y): 00 01 10 11
+    Lanes<float> z0, z1;    // weights of the two ends of a row
 };
 
 // Positions of samples k0, k0 + 1, ... and their cells and weights.
 static inline void place_block(const MarchDenseArgs& a, std::int64_t ray, int k0, SampleBlock& b) {
     const float t0 = a.t0[ray], dt = a.dt;
-    for (int i = 0; i < lane_count; ++i)
-        b.t[i] = t0 + (static_cast<float>(k0 + i) + 0.5f) * dt;
+    for (int i = 0; i < lane_count; ++i) b.t[i] = t0 + (static_cast<float>(k0 + i) + 0.5f) * dt;
     for (int axis = 0; axis < 3; ++axis) {
         const float o = a.origins[3 * ray + axis], d = a.directions[3 * ray + axis];
         for (int i = 0; i < lane_count; ++i) b.p[axis][i] = o + b.t[i] * d;
@@ -131,7 +130,8 @@ static inline void activate_lanes_backward(Activation kind, const Lanes<float>& 
     }
 }
 
-static inline void evaluate_block(const MarchDenseArgs& a, std::int64_t ray, int k0, SampleBlock& b) {
+static inline void evaluate_block(const MarchDenseArgs& a, std::int64_t ray, int k0,
+                                  SampleBlock& b) {
     look_up_block(a, b);
     activate_lanes(static_cast<Activation>(a.density_activation), b.raw[3], b.sigma_t);
     for (int c = 0; c < 3; ++c)
@@ -283,11 +283,13 @@ static inline void add_to_tile(const MarchDenseArgs& a, const SampleQueue& q, in
                     (b.base[2][i] - corner[2]) * 4;
     for (int i = 0; i < count; ++i) {
         float* row = tile + offset[i];
-        const Float4 d = *reinterpret_cast<const Float4*>(d_raw + 4 * static_cast<std::int64_t>(q.source[i]));
+        const Float4 d =
+            *reinterpret_cast<const Float4*>(d_raw + 4 * static_cast<std::int64_t>(q.source[i]));
         const Float4 near = d * b.z0[i], far = d * b.z1[i];
         const Float8 ends = {near[0], near[1], near[2], near[3], far[0], far[1], far[2], far[3]};
         constexpr int to_row[4] = {0, to_y, to_x, to_x + to_y};
-        for (int r = 0; r < 4; ++r) *reinterpret_cast<Float8*>(row + to_row[r]) += b.row[r][i] * ends;
+        for (int r = 0; r < 4; ++r)
+            *reinterpret_cast<Float8*>(row + to_row[r]) += b.row[r][i] * ends;
     }
 }
 

@@ -19,7 +19,8 @@ TEST_CASE("a ray parallel to a face, inside of the slab, is clipped by the other
 }
 
 TEST_CASE("rays that miss, point away or touch a face from outside have no samples") {
-    const double miss[3] = {-3, 2, 0}, along[3] = {1, 0, 0}, away[3] = {-1, 0, 0}, hit[3] = {-3, 0, 0};
+    const double miss[3] = {-3, 2, 0}, along[3] = {1, 0, 0}, away[3] = {-1, 0, 0},
+                 hit[3] = {-3, 0, 0};
     for (const auto& [o, d] : {std::pair{miss, along}, std::pair{hit, away}})
         CHECK(place_samples(clip_to_box(o, d, box), 0.1, Lattice::origin, 0.5).count == 0);
 }

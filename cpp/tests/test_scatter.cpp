@@ -45,5 +45,9 @@ TEST_CASE("parallel_for visits every index once and lets exceptions through") {
     std::vector<int> visits(1000, 0);
     parallel_for(1000, [&](std::int64_t i) { ++visits[static_cast<std::size_t>(i)]; });
     CHECK(visits == std::vector<int>(1000, 1));
-    CHECK_THROWS_AS(parallel_for(10, [](std::int64_t i) { if (i == 7) throw 5; }), int);
+    CHECK_THROWS_AS(parallel_for(10,
+                                 [](std::int64_t i) {
+                                     if (i == 7) throw 5;
+                                 }),
+                    int);
 }

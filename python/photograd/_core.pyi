@@ -30,6 +30,8 @@ __all__: list[str] = [
     "ops",
     "philox4x32",
     "place_samples",
+    "render_direct",
+    "render_direct_backward",
     "set_thread_count",
     "square_to_cap",
     "square_to_cosine_hemisphere",
@@ -384,6 +386,57 @@ def place_samples(
 ) -> tuple[typing.Any, ...]:
     """
     Per ray: t0 (R,) and the number of samples (R,) int32.
+    """
+
+def render_direct(
+    bvh: Bvh,
+    layouts: collections.abc.Sequence[
+        tuple[
+            typing.SupportsInt | typing.SupportsIndex,
+            typing.SupportsInt | typing.SupportsIndex,
+            typing.SupportsInt | typing.SupportsIndex,
+            typing.SupportsInt | typing.SupportsIndex,
+        ]
+    ],
+    albedo: numpy.ndarray,
+    lights: numpy.ndarray,
+    sun_direction: typing.Annotated[
+        collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(3)"
+    ],
+    sun_radius: typing.SupportsFloat | typing.SupportsIndex,
+    camera: tuple[typing.Any, ...],
+    spp: typing.SupportsInt | typing.SupportsIndex,
+    seed: typing.SupportsInt | typing.SupportsIndex,
+) -> tuple[typing.Any, ...]:
+    """
+    Radiance (H, W, 3) premultiplied, alpha (H, W), depth (H, W).
+    """
+
+def render_direct_backward(
+    bvh: Bvh,
+    layouts: collections.abc.Sequence[
+        tuple[
+            typing.SupportsInt | typing.SupportsIndex,
+            typing.SupportsInt | typing.SupportsIndex,
+            typing.SupportsInt | typing.SupportsIndex,
+            typing.SupportsInt | typing.SupportsIndex,
+        ]
+    ],
+    albedo: numpy.ndarray,
+    lights: numpy.ndarray,
+    sun_direction: typing.Annotated[
+        collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(3)"
+    ],
+    sun_radius: typing.SupportsFloat | typing.SupportsIndex,
+    camera: tuple[typing.Any, ...],
+    spp: typing.SupportsInt | typing.SupportsIndex,
+    seed: typing.SupportsInt | typing.SupportsIndex,
+    d_radiance: numpy.ndarray,
+    d_albedo: numpy.ndarray,
+    d_lights: numpy.ndarray,
+) -> None:
+    """
+    Adds to d_albedo (A, 3) and d_lights (4, 3).
     """
 
 def set_thread_count(threads: typing.SupportsInt | typing.SupportsIndex) -> None:

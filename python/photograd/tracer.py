@@ -1,8 +1,8 @@
 """Direct light by ray tracing: what a camera sees of a described scene, and its adjoint.
 
-The mathematics is in cpp/photograd/render/direct.h. Parameters are arrays: `albedo` (A, 3), the colours
-of all surfaces one after another, and `lights` (4, 3), the radiances of the sun, of the zenith, of the
-horizon and of the ground.
+The mathematics is in cpp/photograd/render/direct.h. Parameters are arrays: `albedo` (A, 3), the
+colours of all surfaces one after another, and `lights` (4, 3), the radiances of the sun, of the
+zenith, of the horizon and of the ground.
 """
 
 from __future__ import annotations

@@ -1,4 +1,7 @@
-"""What the boundary says about arrays that do not fit. Nothing is converted behind the caller's back."""
+"""What the boundary says about arrays that do not fit.
+
+Nothing is converted behind the caller's back.
+"""
 
 from __future__ import annotations
 
@@ -6,9 +9,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from photograd.core import _core
 from photograd_course.errors import DtypeError, RangeError, ShapeError
 
-from photograd.core import _core
 from tests.render.rays import settings
 
 
@@ -30,7 +33,8 @@ def call(**changes: Any) -> Any:
          r"march: t0: expected shape \(R,\) with R = 5 as in origins, got \(4,\)"),
         ({"directions": np.ones((5, 2), np.float32)}, ShapeError,
          r"directions: expected shape \(R, 3\), got \(5, 2\)"),
-        ({"directions": np.ones((5, 3))}, DtypeError, "directions: expected dtype float32, got dtype float64"),
+        ({"directions": np.ones((5, 3))}, DtypeError,
+         "directions: expected dtype float32, got dtype float64"),
         ({"directions": np.ones((3, 5), np.float32).T}, ShapeError, "C-contiguous"),
         ({"samples": np.zeros(5, np.int64)}, DtypeError, "samples: expected dtype int32"),
         ({"parameters": np.zeros((4, 4, 4, 3), np.float32)}, ShapeError, r"\(X, Y, Z, 4\)"),
@@ -62,7 +66,9 @@ def test_gradients_are_not_written_into_a_read_only_array() -> None:
         _core.march_backward("dense_grid", grid, settings(), *rays, t0, samples, *out, *out, d_grid)
 
 
-@pytest.mark.parametrize("changes", [{"dt": 0.0}, {"dt": float("nan")}, {"box": [[0, 0, 0], [1, 0, 1]]}])
+@pytest.mark.parametrize(
+    "changes", [{"dt": 0.0}, {"dt": float("nan")}, {"box": [[0, 0, 0], [1, 0, 1]]}]
+)
 def test_settings_are_checked(changes: dict[str, Any]) -> None:
     with pytest.raises(RangeError, match="MarchSettings"):
         settings(**changes)

@@ -1,4 +1,4 @@
-"""Portable exp, expm1 and log1p against NumPy's, and random numbers against the Python definition."""
+"""Portable exp, expm1 and log1p against NumPy's; random numbers against Python's."""
 
 from __future__ import annotations
 
@@ -6,9 +6,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd_course.random import philox4x32, uniform
-
 from photograd.core import _core
+from photograd_course.random import philox4x32, uniform
 
 # Bounds: the polynomials' remainders (5e-9, 4e-18) plus two to four roundings of each type.
 PRECISIONS = [(np.float32, 2e-7), (np.float64, 5e-16)]

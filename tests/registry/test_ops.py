@@ -1,4 +1,4 @@
-"""Every op of the core's list is proved: T1, T2, T3, accumulation, float against double, mutants."""
+"""Every op of the list is proved: T1, T2, T3, accumulation, float against double, mutants."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from photograd.core import _core
 from photograd_course.gradcheck import (
     check_accumulation,
     check_gradient,
@@ -14,8 +15,6 @@ from photograd_course.gradcheck import (
 )
 from photograd_course.mutants import check_mutants, check_overwriting_mutants
 from photograd_course.random import uniform
-
-from photograd.core import _core
 
 OPS = sorted(_core.ops)
 
@@ -87,7 +86,9 @@ def test_taylor_remainder_falls_quadratically(name: str) -> None:
 @pytest.mark.parametrize("name", OPS)
 def test_backward_adds_to_its_buffers(name: str) -> None:
     proof = Proof(name)
-    report = check_accumulation(proof.accumulate, draw(proof.op, 6), proof.forward(draw(proof.op, 6)))
+    report = check_accumulation(
+        proof.accumulate, draw(proof.op, 6), proof.forward(draw(proof.op, 6))
+    )
     assert report, str(report)
 
 

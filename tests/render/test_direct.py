@@ -1,4 +1,4 @@
-"""Direct light: closed forms, the adjoint of all its parameters, the same bits for any thread count."""
+"""Direct light: closed forms, the adjoint of all parameters, the same bits on any threads."""
 
 from __future__ import annotations
 
@@ -6,9 +6,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd_course.gradcheck import check_gradient
-from photograd_course.mutants import check_mutants
-
 from photograd.core import _core
 from photograd.data.camera import Camera
 from photograd.errors import DtypeError, RangeError, ShapeError
@@ -20,6 +17,8 @@ from photograd.scenes.description import (
     SunDescription,
 )
 from photograd.tracer import TracedScene
+from photograd_course.gradcheck import check_gradient
+from photograd_course.mutants import check_mutants
 
 BLACK = np.zeros(3)
 BOX = np.array([[-2.0, -2.0, -2.0], [2.0, 2.0, 2.0]])
@@ -62,7 +61,7 @@ def lively(dtype: Any = np.float64) -> TracedScene:
 
 
 def test_white_sky_gives_back_the_albedo() -> None:
-    # An open plane under a dome of radiance 1 has irradiance pi: radiance = albedo, with no variance.
+    # An open plane under a dome of radiance 1 has irradiance pi: radiance = albedo, no variance.
     image = TracedScene(scene(square(0, 1.5, [0.7, 0.4, 0.1]), sky=[1, 1, 1])).render(
         camera(), spp=16, seed=1
     )
@@ -86,8 +85,8 @@ def test_sun_irradiance_follows_the_cosine(tilt: float) -> None:
 
 
 def test_penumbra_is_between_light_and_shadow() -> None:
-    # A lid of half size 0.25 m hangs 1 m above a floor under a sun of radius 0.2 rad, straight above:
-    # the middle is in full shadow (0.25 > tan 0.2), far outside full light, and between them neither.
+    # A lid of half size 0.25 m hangs 1 m above a floor under a sun of radius 0.2 rad, straight
+    # above: full shadow in the middle (0.25 > tan 0.2), full light far outside, neither between.
     floor, lid = square(0, 1.5, [0.8] * 3), square(1.0, 0.25, [0.0] * 3)
     traced = TracedScene(scene(floor, lid, sun=[10, 10, 10], radius=0.2))
     under = Camera(64, 1, 40.0, 40.0, 32.0, 0.5, look_at(np.array([0, 0.7, 1e-3]), np.zeros(3)))

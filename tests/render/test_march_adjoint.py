@@ -1,4 +1,4 @@
-"""The march's adjoint as a whole: all parameters and the camera, in the cases that break toy versions."""
+"""The march's adjoint as a whole: all parameters and the camera, in the hard cases."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from photograd.core import _core
 from photograd_course.gradcheck import check_gradient, taylor_slope
 
-from photograd.core import _core
 from tests.render.rays import bundle, constant_grid, march, march_backward, settings
 
 
@@ -90,13 +90,11 @@ def test_taylor_remainder() -> None:
 
 @pytest.mark.parametrize("field", ["dense_grid", "tiny_network"])
 def test_camera_gradient(field: str) -> None:
-    # Interior term: the samples' t are held fixed, so finite differences must hold them fixed as well.
+    # Interior term: the samples' t are held fixed, so differences must hold them fixed as well.
     s = settings(density_activation=2, color_activation=4)
     g = np.random.default_rng(6)
     parameters = (
-        random_grid(6)
-        if field == "dense_grid"
-        else g.uniform(-1, 1, _core.tiny_network_parameters)
+        random_grid(6) if field == "dense_grid" else g.uniform(-1, 1, _core.tiny_network_parameters)
     )
     origins, directions = bundle(10, 6)
     t0, samples = _core.place_samples(s, origins, directions)
@@ -120,13 +118,17 @@ def test_camera_gradient(field: str) -> None:
     # larger steps; the sweep's best step is below them. 1e-4 is the gate near kinks, 1e-6 without.
     tolerance = 1e-4 if field == "dense_grid" else 1e-6
     report = check_gradient(
-        function, backward, {"origins": origins, "directions": directions}, seed=4, tolerance=tolerance
+        function,
+        backward,
+        {"origins": origins, "directions": directions},
+        seed=4,
+        tolerance=tolerance,
     )
     assert report, str(report)
 
 
 def test_early_stop_is_the_same_in_both_passes() -> None:
-    # With the stop the image is that of the truncated ray, and its adjoint that of the truncated image.
+    # With the stop the image is that of the truncated ray, and its adjoint that of that image.
     s = settings(stop=1e-3, dt=0.02)
     grid = constant_grid(12.0, (0.5, 0.6, 0.7))
     grid[..., 3] += 0.01 * np.random.default_rng(0).random((4, 4, 4))

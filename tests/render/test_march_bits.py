@@ -1,4 +1,7 @@
-"""Fused and staged, one thread and many, every instruction set: the same bits. Float against double."""
+"""Fused and staged, one thread and many, every instruction set: the same bits.
+
+Float against double.
+"""
 
 from __future__ import annotations
 
@@ -9,8 +12,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-
 from photograd.core import _core
+
 from tests.render.rays import bundle, march, march_backward, settings
 
 VARIANTS = {

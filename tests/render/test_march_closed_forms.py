@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-
 from photograd.core import _core
+
 from tests.render.rays import along_x, bundle, constant_grid, field_grid, march, settings
 
 COLOR = (0.7, 0.4, 0.2)
@@ -33,12 +33,13 @@ def test_weights_and_the_rest_sum_to_one(sigma_t: float) -> None:
 
 
 def test_two_slabs_split_at_a_lattice_point() -> None:
-    # Left half sigma 2, red; right half sigma 0.5, green. 64 voxels put the jump into one voxel, where
-    # trilinear interpolation makes a ramp; the symmetric ramp keeps the optical depth.
-    grid = field_grid(
-        lambda x, y, z: np.stack([1.0 * (x < 0), 1.0 * (x > 0), 0 * x, np.where(x < 0, 2.0, 0.5)], -1),
-        64,
-    )
+    # Left half sigma 2, red; right half sigma 0.5, green. 64 voxels put the jump into one voxel,
+    # where trilinear interpolation makes a ramp; the symmetric ramp keeps the optical depth.
+    def halves(x: np.ndarray, _y: np.ndarray, _z: np.ndarray) -> np.ndarray:
+        left = 1.0 * (x < 0)
+        return np.stack([left, 1 - left, 0 * x, 0.5 + 1.5 * left], -1)
+
+    grid = field_grid(halves, 64)
     color, transmittance, *_ = march(grid, settings(dt=1 / 512, lattice="entry"), along_x())
     assert transmittance[0] == pytest.approx(np.exp(-2.5), rel=1e-6)
     # The ramp of one voxel (1/32 m) blurs colour and density together: 2 % of a slab's weight.
@@ -63,14 +64,16 @@ def test_gaussian_blob_has_the_optical_depth_of_its_integral() -> None:
 
 
 def smooth(x: np.ndarray, y: np.ndarray, z: np.ndarray) -> np.ndarray:
-    return np.stack([0.5 + 0.3 * x, 0.5 - 0.2 * y, 0.4 + 0.1 * z, 1.5 + 0.7 * x + 0.3 * y - 0.4 * z], -1)
+    return np.stack(
+        [0.5 + 0.3 * x, 0.5 - 0.2 * y, 0.4 + 0.1 * z, 1.5 + 0.7 * x + 0.3 * y - 0.4 * z], -1
+    )
 
 
 @pytest.mark.parametrize(("quadrature", "order"), [("alpha", 2.0), ("riemann", 1.0)])
 def test_order_of_convergence(quadrature: str, order: float) -> None:
-    # An affine field is reproduced exactly by the grid, so only the quadrature errs. T8: within 0.15.
-    # The ray runs between voxel centres (x from -0.8 to 0.8), where nothing is clamped, and its samples
-    # are placed by hand: N steps over exactly 1.6 m.
+    # An affine field is reproduced exactly by the grid, so only the quadrature errs. T8: within
+    # 0.15. The ray runs between voxel centres (x from -0.8 to 0.8), where nothing is clamped, and
+    # its samples are placed by hand: N steps over exactly 1.6 m.
     grid = field_grid(smooth, 8)
     origins, directions = np.array([[-0.8, 0.1, -0.2]]), np.array([[1.0, 0.0, 0.0]])
 
@@ -91,7 +94,8 @@ def test_lecture_sum_without_the_step_grows_with_resolution() -> None:
     # The Riemann form keeps the step: halving it changes little. Without it the sum doubles.
     grid = constant_grid(0.8, (1, 1, 1))
     coarse, fine = (
-        march(grid, settings(dt=dt, quadrature="riemann"), along_x())[0][0, 0] for dt in (0.02, 0.01)
+        march(grid, settings(dt=dt, quadrature="riemann"), along_x())[0][0, 0]
+        for dt in (0.02, 0.01)
     )
     assert fine == pytest.approx(coarse, rel=0.02)
     assert (fine / 0.01) / (coarse / 0.02) == pytest.approx(2.0, rel=0.02)
@@ -101,7 +105,7 @@ def test_lattice_from_the_origin_does_not_depend_on_the_box() -> None:
     small = settings(box=[[-0.5, -1, -1], [0.5, 1, 1]])
     large = settings()
     rays = bundle(40, 3)
-    for t0, samples, s in ((*march(constant_grid(1, COLOR), s, rays)[3:], s) for s in (small, large)):
+    for t0, samples in (march(constant_grid(1, COLOR), s, rays)[3:] for s in (small, large)):
         hit = samples > 0
         assert hit.sum() > 20
         first = t0[hit] / 0.05

@@ -1,7 +1,7 @@
 """Wrong adjoints of the emission-absorption ray that have been seen in the wild: all must die.
 
-Each variant is the right formula, in NumPy, with one thing wrong. The unchanged formula must pass the
-same check, and must agree with the core's backward; the error of each wrong one must exceed the
+Each variant is the right formula, in NumPy, with one thing wrong. The unchanged formula must pass
+the same check, and must agree with the core's backward; the error of each wrong one must exceed the
 tolerance by at least a factor of 1000, so that none dies by luck.
 """
 
@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from photograd.core import _core
 from photograd_course.gradcheck import check_gradient
 
-from photograd.core import _core
 from tests.registry.test_ops import Proof, draw, flat, split
 
 DT = 0.13

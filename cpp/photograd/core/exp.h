@@ -18,8 +18,8 @@ namespace exp_detail {
 
 template <class R>
 struct ScaledExp {
-    R scale;       // 2^n
-    R q;           // exp(r) - 1
+    R scale;  // 2^n
+    R q;      // exp(r) - 1
 };
 
 inline ScaledExp<float> scaled_exp(float x) {

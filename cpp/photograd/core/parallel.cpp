@@ -54,7 +54,8 @@ int thread_count() {
 
 namespace photograd {
 namespace {
-std::unique_ptr<tbb::global_control> limit;  // lives as long as the limit is wanted; bounds Embree too
+std::unique_ptr<tbb::global_control>
+    limit;  // lives as long as the limit is wanted; bounds Embree too
 std::mutex limit_lock;
 }  // namespace
 
@@ -71,8 +72,8 @@ void set_thread_count(int threads) {
     const std::lock_guard<std::mutex> guard(limit_lock);
     limit.reset();
     if (threads > 0)
-        limit = std::make_unique<tbb::global_control>(
-            tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+        limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
+                                                      static_cast<std::size_t>(threads));
 }
 
 int thread_count() {

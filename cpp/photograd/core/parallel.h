@@ -19,7 +19,11 @@ void parallel_for_erased(std::int64_t count, LoopBody body, void* context);
 template <class Body>
 void parallel_for(std::int64_t count, Body&& body) {
     detail::parallel_for_erased(
-        count, [](void* context, std::int64_t i) { (*static_cast<std::remove_reference_t<Body>*>(context))(i); }, &body);
+        count,
+        [](void* context, std::int64_t i) {
+            (*static_cast<std::remove_reference_t<Body>*>(context))(i);
+        },
+        &body);
 }
 
 /// Upper limit on threads for everything in the process (0 restores the default: all cores).

@@ -36,9 +36,9 @@ struct RandomKey {
 /// Uniform in [0, 1), a multiple of 2^-24: the same number in float and in double.
 template <class R>
 constexpr R uniform(const RandomKey& key, std::uint32_t dimension) {
-    const Philox4 word =
-        philox4x32({key.pixel, key.sample, key.step, dimension / 4},
-                   static_cast<std::uint32_t>(key.seed), static_cast<std::uint32_t>(key.seed >> 32));
+    const Philox4 word = philox4x32({key.pixel, key.sample, key.step, dimension / 4},
+                                    static_cast<std::uint32_t>(key.seed),
+                                    static_cast<std::uint32_t>(key.seed >> 32));
     return static_cast<R>(word[dimension % 4] >> 8) * R(1.0 / 16777216.0);
 }
 

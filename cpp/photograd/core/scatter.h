@@ -42,7 +42,8 @@ void sum_partials(std::int64_t chunks, std::span<R> total, Add&& add) {
     const std::size_t size = total.size();
     std::vector<double> partials(static_cast<std::size_t>(chunks) * size, 0.0);
     parallel_for(chunks, [&](std::int64_t chunk) {
-        add(chunk, std::span<double>(partials).subspan(static_cast<std::size_t>(chunk) * size, size));
+        add(chunk,
+            std::span<double>(partials).subspan(static_cast<std::size_t>(chunk) * size, size));
     });
     for (std::size_t p = 0; p < size; ++p) {
         double sum = 0.0;

@@ -65,8 +65,7 @@ struct DenseGrid {
                 R raw[channels];
                 trilinear<R, channels>(values, shape, w.x, w.y, w.z, raw);
                 for (std::size_t c = 0; c < channels; ++c) cache.raw[g][c][i] = raw[c];
-                out.sigma_t[g][i] =
-                    density_scale * activate(options.density_activation, raw[3]);
+                out.sigma_t[g][i] = density_scale * activate(options.density_activation, raw[3]);
                 for (int c = 0; c < 3; ++c)
                     out.rgb[c][g][i] = activate(options.color_activation, raw[c]);
             }
@@ -88,9 +87,7 @@ struct DenseGrid {
         R* gradient;  // (X, Y, Z, 4), added to
         std::vector<std::vector<Contribution>> chunks;
 
-        void begin(int chunk_count) {
-            chunks.assign(static_cast<std::size_t>(chunk_count), {});
-        }
+        void begin(int chunk_count) { chunks.assign(static_cast<std::size_t>(chunk_count), {}); }
         void finish();
     };
 
@@ -138,7 +135,8 @@ void DenseGrid<R>::Sink::finish() {
     for (int color = 0; color < brick_colors; ++color)
         parallel_for(layout.count(), [&](std::int64_t brick) {
             const auto k = static_cast<std::size_t>(brick);
-            if (layout.color(static_cast<int>(brick)) != color || bins.begin[k] == bins.begin[k + 1])
+            if (layout.color(static_cast<int>(brick)) != color ||
+                bins.begin[k] == bins.begin[k + 1])
                 return;
             std::vector<R> tile(static_cast<std::size_t>(tile_voxels * channels), R(0));
             int corner[3];

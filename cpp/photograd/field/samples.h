@@ -52,14 +52,15 @@ struct FieldOptions {
 /// A radiance field: batch calls, never virtual per sample. `Cache` is what backward needs of eval, and
 /// `Sink` collects parameter gradients for a slab of rays; the marcher calls sink.finish() after it.
 template <class F>
-concept Field = requires(const F field, const SampleBatch<typename F::Scalar>& batch,
-                         typename F::Cache& cache, SampleValues<typename F::Scalar>& values,
-                         typename F::Sink& sink, int chunk, std::vector<Lanes<typename F::Scalar>>* d) {
-    { F::name } -> std::convertible_to<const char*>;
-    field.eval(batch, cache, values);
-    field.backward(batch, cache, values, sink, chunk, d);
-    sink.begin(int{});
-    sink.finish();
-};
+concept Field =
+    requires(const F field, const SampleBatch<typename F::Scalar>& batch, typename F::Cache& cache,
+             SampleValues<typename F::Scalar>& values, typename F::Sink& sink, int chunk,
+             std::vector<Lanes<typename F::Scalar>>* d) {
+        { F::name } -> std::convertible_to<const char*>;
+        field.eval(batch, cache, values);
+        field.backward(batch, cache, values, sink, chunk, d);
+        sink.begin(int{});
+        sink.finish();
+    };
 
 }  // namespace photograd

@@ -67,9 +67,7 @@ struct TinyNetwork {
         R* gradient;
         std::vector<std::array<double, parameter_count>> partials;
 
-        void begin(int chunks) {
-            partials.assign(static_cast<std::size_t>(chunks), {});
-        }
+        void begin(int chunks) { partials.assign(static_cast<std::size_t>(chunks), {}); }
         void finish() {
             for (std::size_t p = 0; p < parameter_count; ++p) {
                 double total = 0.0;

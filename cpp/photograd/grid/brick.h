@@ -61,7 +61,9 @@ void flush_tile(const BrickLayout& layout, int brick, const R* tile, R* gradient
         for (int j = 0; j < size[1]; ++j) {
             const R* from = tile + (i * tile_side + j) * tile_side * C;
             R* to = gradient + ((static_cast<long long>(at[0] + i) * layout.shape[1] + at[1] + j) *
-                                    layout.shape[2] + at[2]) * C;
+                                    layout.shape[2] +
+                                at[2]) *
+                                   C;
             for (int k = 0; k < size[2] * C; ++k) to[k] += from[k];
         }
 }

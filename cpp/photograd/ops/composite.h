@@ -94,8 +94,8 @@ struct RayCotangents {
 /// Adds d_sigma_t[i] and d_rgb[c][i] of one sub-block, and moves `ray` behind it.
 template <class R>
 inline void composite_backward(Quadrature form, const Lanes<R>& sigma_t, const Lanes<R>* rgb,
-                               const Lanes<R>& t, R dt, RayCotangents<R>& ray,
-                               Lanes<R>& d_sigma_t, Lanes<R>* d_rgb) {
+                               const Lanes<R>& t, R dt, RayCotangents<R>& ray, Lanes<R>& d_sigma_t,
+                               Lanes<R>* d_rgb) {
     const SampleWeights<R> block = composite_weights(form, ray.tau, sigma_t, dt);
     const R d_color[3] = {ray.d_color[0], ray.d_color[1], ray.d_color[2]};
     const R d_depth = ray.d_depth, remainder = ray.remainder, end_term = ray.end_term;
@@ -110,8 +110,7 @@ inline void composite_backward(Quadrature form, const Lanes<R>& sigma_t, const L
         d_sigma_t[i] = d_sigma_t[i] + dt * ((block.slope[i] * v[i] - later) + end_term);
     }
     for (int c = 0; c < 3; ++c)
-        for (int i = 0; i < lane_count; ++i)
-            d_rgb[c][i] = d_rgb[c][i] + block.w[i] * d_color[c];
+        for (int i = 0; i < lane_count; ++i) d_rgb[c][i] = d_rgb[c][i] + block.w[i] * d_color[c];
     ray.remainder = ray.remainder - through[lane_count - 1];
     ray.tau = block.tau_end;
 }

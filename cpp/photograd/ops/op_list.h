@@ -48,7 +48,8 @@ struct TrilinearOp {
     static constexpr int channels = 2;
     static constexpr int values = 3 * 4 * 2 * channels;
     // Positions stay inside one cell: at a cell face the slope jumps and differences are meaningless.
-    static constexpr std::array<InputGroup, 2> inputs{{{"values", values, -1, 1}, {"q", 3, 0.1, 0.9}}};
+    static constexpr std::array<InputGroup, 2> inputs{
+        {{"values", values, -1, 1}, {"q", 3, 0.1, 0.9}}};
     static constexpr int outputs = channels;
 
     template <class R>
@@ -164,9 +165,9 @@ struct CompositeOp {
     }
 };
 
-using Ops = TypeList<ActivationOp<Activation::relu>, ActivationOp<Activation::softplus>,
-                     ActivationOp<Activation::exp>, ActivationOp<Activation::sigmoid>, TrilinearOp,
-                     TrilinearBorderOp, CompositeOp<Quadrature::alpha>,
-                     CompositeOp<Quadrature::riemann>>;
+using Ops =
+    TypeList<ActivationOp<Activation::relu>, ActivationOp<Activation::softplus>,
+             ActivationOp<Activation::exp>, ActivationOp<Activation::sigmoid>, TrilinearOp,
+             TrilinearBorderOp, CompositeOp<Quadrature::alpha>, CompositeOp<Quadrature::riemann>>;
 
 }  // namespace photograd

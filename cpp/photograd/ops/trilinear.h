@@ -32,7 +32,7 @@ inline AxisWeights<R> axis_weights(R q, int n, Border border) {
     const R inside = clamped(q, R(0), last);
     const int base = smaller(to_int(inside), n - 2);
     const R fraction = inside - R(base);
-    const bool before = q < R(0), behind = q > last, fades = border == Border::zero;
+    const bool before = q<R(0), behind = q> last, fades = border == Border::zero;
     // Written as selections, not branches, so that a loop over samples turns into lanes.
     // zero: in front of the grid our base, voxel 0, keeps 1 + q; behind it voxel n - 1 keeps n - q.
     const R w0_before = fades ? larger(R(1) + q, R(0)) : R(1);
@@ -40,7 +40,8 @@ inline AxisWeights<R> axis_weights(R q, int n, Border border) {
     const R s0_before = fades && q > R(-1) ? R(1) : R(0);
     const R s1_behind = fades && q < last + R(1) ? R(-1) : R(0);
     return {base, before ? w0_before : R(1) - fraction, behind ? w1_behind : fraction,
-            before ? s0_before : (behind ? R(0) : R(-1)), behind ? s1_behind : (before ? R(0) : R(1))};
+            before ? s0_before : (behind ? R(0) : R(-1)),
+            behind ? s1_behind : (before ? R(0) : R(1))};
 }
 
 struct GridShape {

@@ -22,8 +22,8 @@
 namespace photograd {
 
 struct MarchOptions {
-    double dt = 0.01;    // step in metres
-    double stop = 0.0;   // early stop below this transmittance; 0 is off, as gradient proofs need it
+    double dt = 0.01;   // step in metres
+    double stop = 0.0;  // early stop below this transmittance; 0 is off, as gradient proofs need it
     Quadrature quadrature = Quadrature::alpha;
 
     /// The stop as an optical depth, which needs no exp per sub-block; large and finite when off.
@@ -33,9 +33,9 @@ struct MarchOptions {
 template <Real R>
 struct RayBatch {
     std::int64_t count;
-    const R* origins;     // (R, 3)
-    const R* directions;  // (R, 3) unit
-    const R* t0;          // (R,) sample k lies at t0 + (k + 1/2) dt
+    const R* origins;             // (R, 3)
+    const R* directions;          // (R, 3) unit
+    const R* t0;                  // (R,) sample k lies at t0 + (k + 1/2) dt
     const std::int32_t* samples;  // (R,)
 };
 
@@ -52,7 +52,8 @@ struct RayAdjoints {
     const R* d_color;          // (R, 3) wrt color without background
     const R* d_transmittance;  // (R,)
     const R* d_depth;          // (R,)
-    R* d_origins = nullptr;    // (R, 3) or null: camera adjoint, interior term (the clip is held fixed)
+    R* d_origins =
+        nullptr;  // (R, 3) or null: camera adjoint, interior term (the clip is held fixed)
     R* d_directions = nullptr;
 };
 
@@ -232,8 +233,14 @@ void march_backward(const F& field, const RayBatch<R>& rays, const MarchOptions&
         parallel_for(chunks, [&](std::int64_t chunk) {
             const std::int64_t begin = first + chunk * march_chunk;
             const std::int64_t end = std::min(begin + march_chunk, last);
-            detail::BackwardPass<R, F> pass{field, options.quadrature, static_cast<R>(options.dt),
-                                            begin, static_cast<int>(chunk), sink, adjoints, {}};
+            detail::BackwardPass<R, F> pass{field,
+                                            options.quadrature,
+                                            static_cast<R>(options.dt),
+                                            begin,
+                                            static_cast<int>(chunk),
+                                            sink,
+                                            adjoints,
+                                            {}};
             for (std::int64_t ray = begin; ray < end; ++ray)
                 pass.rays.push_back(detail::start_cotangents(out, adjoints, ray));
             detail::walk(field, rays, options, begin, end, pass);

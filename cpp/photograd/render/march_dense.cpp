@@ -8,7 +8,7 @@ namespace {
 
 /// offset[i] = first sample of ray begin + i, within the slab.
 std::vector<std::int64_t> sample_offsets(const std::int32_t* samples, std::int64_t begin,
-                                                std::int64_t end) {
+                                         std::int64_t end) {
     std::vector<std::int64_t> offset(static_cast<std::size_t>(end - begin) + 1, 0);
     for (std::int64_t ray = begin; ray < end; ++ray)
         offset[static_cast<std::size_t>(ray - begin) + 1] =
@@ -82,8 +82,8 @@ void record_slab(const Kernels& kernel, const MarchDenseArgs& args, MarchDenseBa
 /// One task per brick adds the brick's runs into a tile, and the tile to the gradient.
 void gather_slab(const Kernels& kernel, const MarchDenseArgs& args, const BrickLayout& layout,
                  Slab& slab, float* d_values) {
-    bin_by_owner(slab.items, layout.count(), [&](std::uint32_t i) { return slab.runs[i].brick; },
-                 slab.bins);
+    bin_by_owner(
+        slab.items, layout.count(), [&](std::uint32_t i) { return slab.runs[i].brick; }, slab.bins);
     std::vector<int> bricks[brick_colors];
     for (int brick = 0; brick < layout.count(); ++brick) {
         const auto k = static_cast<std::size_t>(brick);

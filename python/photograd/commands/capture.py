@@ -40,9 +40,7 @@ def capture(
     test_views: Annotated[int, typer.Option("--test-views", min=0, help="Held-out views.")] = 8,
     size: Annotated[int, typer.Option("--size", min=8, help="Pixels along an edge.")] = 128,
     spp: Annotated[int, typer.Option("--spp", min=1, help="Samples a pixel.")] = 64,
-    overwrite: Annotated[
-        bool, typer.Option("--overwrite", help="Replace what OUT holds.")
-    ] = False,
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace what OUT holds.")] = False,
     seed: SeedOption = 0,
     threads: ThreadsOption = 0,
     as_json: JsonOption = False,
