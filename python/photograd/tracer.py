@@ -85,7 +85,7 @@ class TracedScene:
             RangeError: spp below 1.
             Error: the result is not finite; names the pixel.
         """
-        radiance, alpha, depth = _core.render_direct(*self._arguments(camera, spp, seed))
+        radiance, alpha, depth = _core.render_direct(**self._arguments(camera, spp, seed))
         if not np.isfinite(radiance).all():
             row, column = np.argwhere(~np.isfinite(radiance))[0][:2]
             got = f"a value that is not, first in pixel ({column}, {row})"
@@ -109,10 +109,10 @@ class TracedScene:
         gradients = {name: np.zeros_like(value) for name, value in self.params.items()}
         dtype = self.params["albedo"].dtype
         _core.render_direct_backward(
-            *self._arguments(camera, spp, seed),
-            np.ascontiguousarray(d_radiance, dtype),
-            gradients["albedo"],
-            gradients["lights"],
+            **self._arguments(camera, spp, seed),
+            d_radiance=np.ascontiguousarray(d_radiance, dtype),
+            d_albedo=gradients["albedo"],
+            d_lights=gradients["lights"],
         )
         return gradients
 
@@ -121,7 +121,7 @@ class TracedScene:
         image = self.render(camera, spp=spp, seed=seed)
         return image.radiance, image.alpha
 
-    def _arguments(self, camera: Camera, spp: int, seed: int) -> tuple[Any, ...]:
+    def _arguments(self, camera: Camera, spp: int, seed: int) -> dict[str, Any]:
         if spp < 1:
             raise RangeError(message("TracedScene", "spp", "at least 1", spp))
         sun = self.scene.sun
@@ -129,7 +129,8 @@ class TracedScene:
         numbers = (
             camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy, pose,
         )  # fmt: skip
-        return (
-            self._bvh.core, self._layouts, self.params["albedo"], self.params["lights"],
-            sun.direction.tolist(), sun.angular_radius, numbers, spp, seed,
-        )  # fmt: skip
+        return {
+            "bvh": self._bvh.core, "layouts": self._layouts, "albedo": self.params["albedo"],
+            "lights": self.params["lights"], "sun_direction": sun.direction.tolist(),
+            "sun_radius": sun.angular_radius, "camera": numbers, "spp": spp, "seed": seed,
+        }  # fmt: skip
