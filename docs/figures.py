@@ -1,4 +1,4 @@
-"""The picture on the front page: `python docs/figures.py DEMO`, DEMO being what `photograd demo` wrote."""
+"""The picture on the front page: `python docs/figures.py DEMO`, DEMO as `photograd demo` wrote it."""
 
 from __future__ import annotations
 
@@ -7,14 +7,13 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
-from photograd_course.viz import signed_projection
-
 from photograd.data import load_capture
 from photograd.density_gradient import density_gradient
 from photograd.evaluate import display_image, truth_image
 from photograd.fields import DenseGrid
 from photograd.model import load_model
 from photograd.pixels import TrainingPixels
+from photograd_course.viz import signed_projection
 
 PICTURE = Path(__file__).resolve().parent / "images" / "demo.png"
 VIEW = 2

@@ -72,7 +72,7 @@ decltype(auto) dispatch_real(const char* function, const char* argument, const p
 
 /// A fresh zero-filled array.
 template <class T>
-py::array_t<T> zeros(std::vector<py::ssize_t> shape) {
+py::array_t<T> zeros(const std::vector<py::ssize_t>& shape) {
     py::array_t<T> array(shape);
     std::fill_n(array.mutable_data(), array.size(), T(0));
     return array;
