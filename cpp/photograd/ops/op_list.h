@@ -41,47 +41,25 @@ struct ActivationOp {
     }
 };
 
-/// Values of a 3 x 4 x 2 grid with 2 channels, and the position in voxels.
+/// Values of a 3 x 4 x 2 grid with 2 channels, and a position in voxels: inside of one cell, or, with the
+/// zero border, half a voxel outside of the grid on every axis. At a cell face the slope jumps, and
+/// differences would be meaningless there.
+template <Border Outside>
 struct TrilinearOp {
-    static constexpr const char* name = "trilinear";
+    static constexpr const char* name =
+        Outside == Border::clamp ? "trilinear" : "trilinear_zero_border";
     static constexpr GridShape shape{3, 4, 2};
     static constexpr int channels = 2;
     static constexpr int values = 3 * 4 * 2 * channels;
-    // Positions stay inside one cell: at a cell face the slope jumps and differences are meaningless.
+    static constexpr double lo = Outside == Border::clamp ? 0.1 : -0.9;
     static constexpr std::array<InputGroup, 2> inputs{
-        {{"values", values, -1, 1}, {"q", 3, 0.1, 0.9}}};
+        {{"values", values, -1, 1}, {"q", 3, lo, lo + 0.8}}};
     static constexpr int outputs = channels;
 
     template <class R>
     static void weights(const R* q, AxisWeights<R>* a) {
         const int n[3] = {shape.x, shape.y, shape.z};
-        for (int k = 0; k < 3; ++k) a[k] = axis_weights(q[k], n[k], Border::clamp);
-    }
-    template <class R>
-    static void forward(const R* in, R* out) {
-        AxisWeights<R> a[3];
-        weights(in + values, a);
-        trilinear<R, channels>(in, shape, a[0], a[1], a[2], out);
-    }
-    template <class R>
-    static void backward(const R* in, const R* d_out, R* d_in) {
-        AxisWeights<R> a[3];
-        weights(in + values, a);
-        trilinear_backward<R, channels>(shape, a[0], a[1], a[2], d_out, d_in);
-        trilinear_position_backward<R, channels>(in, shape, a[0], a[1], a[2], d_out, d_in + values);
-    }
-};
-
-/// The zero border: a position half a voxel outside the grid on every axis.
-struct TrilinearBorderOp : TrilinearOp {
-    static constexpr const char* name = "trilinear_zero_border";
-    static constexpr std::array<InputGroup, 2> inputs{
-        {{"values", values, -1, 1}, {"q", 3, -0.9, -0.1}}};
-
-    template <class R>
-    static void weights(const R* q, AxisWeights<R>* a) {
-        const int n[3] = {shape.x, shape.y, shape.z};
-        for (int k = 0; k < 3; ++k) a[k] = axis_weights(q[k], n[k], Border::zero);
+        for (int k = 0; k < 3; ++k) a[k] = axis_weights(q[k], n[k], Outside);
     }
     template <class R>
     static void forward(const R* in, R* out) {
@@ -165,9 +143,9 @@ struct CompositeOp {
     }
 };
 
-using Ops =
-    TypeList<ActivationOp<Activation::relu>, ActivationOp<Activation::softplus>,
-             ActivationOp<Activation::exp>, ActivationOp<Activation::sigmoid>, TrilinearOp,
-             TrilinearBorderOp, CompositeOp<Quadrature::alpha>, CompositeOp<Quadrature::riemann>>;
+using Ops = TypeList<ActivationOp<Activation::relu>, ActivationOp<Activation::softplus>,
+                     ActivationOp<Activation::exp>, ActivationOp<Activation::sigmoid>,
+                     TrilinearOp<Border::clamp>, TrilinearOp<Border::zero>,
+                     CompositeOp<Quadrature::alpha>, CompositeOp<Quadrature::riemann>>;
 
 }  // namespace photograd
