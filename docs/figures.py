@@ -1,4 +1,4 @@
-"""The picture on the front page: `python docs/figures.py DEMO`, DEMO as `photograd demo` wrote it."""
+"""The picture on the front page: `python docs/figures.py DEMO`, DEMO from `photograd demo`."""
 
 from __future__ import annotations
 
