@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from photograd.core import _core
 from photograd.mesh import Bvh, Hits, Instance, Mesh
+from photograd_course.random import uniform
 
 from .shapes import Array, brute_force, bumpy_sphere, camera_rays, random_rays
 
@@ -86,6 +87,46 @@ def test_instances_match_a_mesh_that_was_moved_by_hand() -> None:
     # Embree transforms the box of a mesh, so the bounds of a turned instance may be too large.
     assert (instanced.bounds[0] <= lo.min(0) + 1e-5).all()
     assert (instanced.bounds[1] >= hi.max(0) - 1e-5).all()
+
+
+def test_a_camera_sees_instances_and_their_shadows() -> None:
+    # Neighbouring rays take another path through the tracer than scattered ones.
+    mesh = Mesh(VERTICES, FACES)
+    places = [np.eye(4)] + [turned(0.7 * k, 0.2, [0.3 * k - 1.5, 1.2, 0.8]) for k in range(10)]
+    instanced = Bvh([mesh], [Instance(0, place) for place in places])
+    moved = [CORNERS @ place[:3, :3].T + place[:3, 3] for place in places]
+    by_hand = Bvh([Mesh(c.reshape(-1, 3), np.arange(3 * len(FACES)).reshape(-1, 3)) for c in moved])
+    origins, directions = camera_rays(96)
+    seen, expected = instanced.trace(origins, directions), by_hand.trace(origins, directions)
+    assert len(np.unique(seen.instance)) > 10
+    # Float rounding of transformed rays decides a few edges otherwise.
+    assert (seen.instance != expected.instance).mean() < 1e-3
+    points = by_hand.surface_points(origins, directions, expected)
+    hit = expected.hit
+    start = points.position[hit] + 1e-3 * points.normal[hit]
+    towards = np.broadcast_to([0.48, 0.6, 0.64], start.shape) + 0.05 * directions[hit]
+    blocked = instanced.occluded(start, towards)
+    assert 0.05 < blocked.mean() < 0.95
+    assert (blocked != by_hand.occluded(start, towards)).mean() < 1e-3
+
+
+def test_neighbouring_shadow_rays_towards_instances_return() -> None:
+    # Sixteen neighbours each, whose directions differ in sign along one axis: with Embree's hint for
+    # neighbours and without the exception that geometry/bvh.cpp makes, this call never returns.
+    places = [Instance(0, turned(t, 0.4, [t - 1.0, 0.2 * t, 0.3])) for t in (0.4, 1.1, 1.8)]
+    bvh = Bvh([Mesh(VERTICES, FACES)], [Instance(0), *places])
+    packets = 1000
+    rows, axes = np.arange(packets)[:, None], np.arange(3)
+    middle = 3.0 * uniform(9, pixel=rows, dimension=axes) - 1.5
+    ahead = 2.0 * uniform(10, pixel=rows, dimension=axes) - 1.0
+    ahead[np.arange(packets), np.arange(packets) % 3] = 0.0
+    ahead /= np.linalg.norm(ahead, axis=1, keepdims=True)
+    u = uniform(11, pixel=np.arange(16 * packets)[:, None], dimension=np.arange(6)) - 0.5
+    origins = np.repeat(middle, 16, axis=0) + 0.03 * u[:, :3]
+    directions = np.repeat(ahead, 16, axis=0) + 0.1 * u[:, 3:]
+    blocked = bvh.occluded(origins, directions)
+    assert 0.1 < blocked.mean() < 0.9
+    np.testing.assert_array_equal(blocked, bvh.trace(origins, directions).hit)
 
 
 def test_surface_points_lie_on_ray_and_triangle(bvh: Bvh) -> None:
