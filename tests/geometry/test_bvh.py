@@ -111,7 +111,7 @@ def test_a_camera_sees_instances_and_their_shadows() -> None:
 
 
 def test_neighbouring_shadow_rays_towards_instances_return() -> None:
-    # Sixteen neighbours each, whose directions differ in sign along one axis: with Embree's hint for
+    # Sixteen neighbours each, whose directions differ in sign along an axis: with Embree's hint for
     # neighbours and without the exception that geometry/bvh.cpp makes, this call never returns.
     places = [Instance(0, turned(t, 0.4, [t - 1.0, 0.2 * t, 0.3])) for t in (0.4, 1.1, 1.8)]
     bvh = Bvh([Mesh(VERTICES, FACES)], [Instance(0), *places])
