@@ -33,13 +33,22 @@ struct RandomKey {
     std::uint32_t sample = 0;
 };
 
+/// The words of dimensions 4 block .. 4 block + 3.
+constexpr Philox4 random_block(const RandomKey& key, std::uint32_t block) {
+    return philox4x32({key.pixel, key.sample, key.step, block},
+                      static_cast<std::uint32_t>(key.seed),
+                      static_cast<std::uint32_t>(key.seed >> 32));
+}
+
 /// Uniform in [0, 1), a multiple of 2^-24: the same number in float and in double.
 template <class R>
+constexpr R uniform_from(std::uint32_t word) {
+    return static_cast<R>(word >> 8) * R(1.0 / 16777216.0);
+}
+
+template <class R>
 constexpr R uniform(const RandomKey& key, std::uint32_t dimension) {
-    const Philox4 word = philox4x32({key.pixel, key.sample, key.step, dimension / 4},
-                                    static_cast<std::uint32_t>(key.seed),
-                                    static_cast<std::uint32_t>(key.seed >> 32));
-    return static_cast<R>(word[dimension % 4] >> 8) * R(1.0 / 16777216.0);
+    return uniform_from<R>(random_block(key, dimension / 4)[dimension % 4]);
 }
 
 }  // namespace photograd

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "photograd/bsdf/lambert.h"
-#include "photograd/core/random.h"
 #include "photograd/core/scatter.h"
+#include "photograd/render/pixel_strata.h"
 
 namespace photograd {
 namespace {
@@ -17,14 +17,6 @@ constexpr std::int64_t chunk_pixels = 64;  // of one task
 constexpr std::int64_t slab_chunks = 64;   // whose contributions are kept at a time
 constexpr int owner_entries = 64;          // albedo entries of one owner
 constexpr float shadow_offset = 1e-4f;     // of the scene's size, against self-shadowing
-
-/// Random dimensions of a sample.
-enum Dimension : std::uint32_t { film_x, film_y, sun_x, sun_y, sky_x, sky_y };
-
-template <class R>
-Vec2<R> uniform2(const RandomKey& key, Dimension first) {
-    return {uniform<R>(key, first), uniform<R>(key, first + 1)};
-}
 
 /// One light sample of a hit: a direction and what multiplies f L there. weight = cos / pdf.
 template <class R>
@@ -43,15 +35,6 @@ struct Hit {
     LightSample<R> sun, sky;
 };
 
-/// The n-th sample's place in its pixel: cell of the largest square grid that fits, then anywhere.
-template <class R>
-Vec2<R> film_offset(const RandomKey& key, int n, int spp) {
-    const Vec2<R> u = uniform2<R>(key, film_x);
-    const int side = static_cast<int>(std::sqrt(static_cast<double>(spp)));
-    if (n >= side * side) return u;
-    return {(R(n % side) + u.x) / R(side), (R(n / side) + u.y) / R(side)};
-}
-
 template <class R>
 void put(RayPacket& packet, int k, const Vec3<R>& o, const Vec3<R>& d, float t_min) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -65,7 +48,7 @@ void put(RayPacket& packet, int k, const Vec3<R>& o, const Vec3<R>& d, float t_m
 
 template <class R>
 Hit<R> shade(const DirectScene<R>& scene, const Ray<R>& ray, std::int32_t instance,
-             std::int32_t primitive, const RandomKey& key) {
+             std::int32_t primitive, const SamplePoints<R>& points) {
     const TrianglePoint<R> point = scene.bvh->surface_point(ray, instance, primitive);
     Hit<R> hit;
     hit.valid = true;
@@ -75,11 +58,11 @@ Hit<R> shade(const DirectScene<R>& scene, const Ray<R>& ray, std::int32_t instan
     hit.taps = albedo_taps(*scene.bvh, scene.layouts, instance, primitive, point.u, point.v);
     const Frame<R> frame = Frame<R>::from_normal(hit.normal);
     hit.wo = frame.to_local(-ray.direction);
-    hit.sun.world = scene.sun.sample(uniform2<R>(key, sun_x));
+    hit.sun.world = scene.sun.sample(points.sun);
     hit.sun.local = frame.to_local(hit.sun.world);
     if (hit.sun.local.z > R(0)) hit.sun.weight = hit.sun.local.z / scene.sun.pdf(hit.sun.world);
     const Lambert<R> lobe;  // its sampling depends on no parameter
-    hit.sky.local = lobe.sample(hit.wo, uniform2<R>(key, sky_x));
+    hit.sky.local = lobe.sample(hit.wo, points.sky);
     hit.sky.world = frame.to_world(hit.sky.local);
     const R pdf = lobe.pdf(hit.wo, hit.sky.local);
     if (pdf > R(0)) hit.sky.weight = hit.sky.local.z / pdf;
@@ -88,7 +71,8 @@ Hit<R> shade(const DirectScene<R>& scene, const Ray<R>& ray, std::int32_t instan
 
 /// Sets the weight of light samples that something stands in front of to zero.
 template <class R>
-void cast_shadows(const DirectScene<R>& scene, Hit<R>* hits, LightSample<R> Hit<R>::* light) {
+void cast_shadows(const DirectScene<R>& scene, Hit<R>* hits, LightSample<R> Hit<R>::* light,
+                  bool side_by_side) {
     const Box& box = scene.bvh->bounds();
     float size = 0;
     for (int axis = 0; axis < 3; ++axis) size = std::max(size, box.hi[axis] - box.lo[axis]);
@@ -104,7 +88,7 @@ void cast_shadows(const DirectScene<R>& scene, Hit<R>* hits, LightSample<R> Hit<
     }
     if (!any) return;
     bool blocked[width];
-    scene.bvh->occluded(packet, false, blocked);
+    scene.bvh->occluded(packet, side_by_side, blocked);
     for (int k = 0; k < width; ++k)
         if (packet.active[k] && blocked[k]) (hits[k].*light).weight = R(0);
 }
@@ -112,17 +96,17 @@ void cast_shadows(const DirectScene<R>& scene, Hit<R>* hits, LightSample<R> Hit<
 /// Traces up to `width` samples of one pixel, from sample `first` on.
 template <class R>
 void trace_samples(const DirectScene<R>& scene, const Pinhole& camera, const DirectOptions& options,
-                   std::int64_t pixel, int first, Hit<R>* hits) {
+                   const PixelStrata& strata, std::int64_t pixel, int first, Hit<R>* hits) {
     RayPacket packet{};
     Ray<R> rays[width];
-    RandomKey key{options.seed, 0, static_cast<std::uint32_t>(pixel), 0};
+    SamplePoints<R> points[width];
     const int used = std::min(width, options.spp - first);
     for (int k = 0; k < width; ++k) {
         hits[k].valid = false;
         packet.active[k] = false;
         if (k >= used) continue;
-        key.sample = static_cast<std::uint32_t>(first + k);
-        const Vec2<R> at = film_offset<R>(key, first + k, options.spp);
+        points[k] = strata.draw<R>(static_cast<std::uint32_t>(first + k));
+        const Vec2<R>& at = points[k].pixel;
         rays[k] = camera.ray(R(pixel % camera.width) + at.x, R(pixel / camera.width) + at.y);
         put(packet, k, rays[k].origin, rays[k].direction, 0);
     }
@@ -130,11 +114,10 @@ void trace_samples(const DirectScene<R>& scene, const Pinhole& camera, const Dir
     scene.bvh->trace(packet, true, found);
     for (int k = 0; k < used; ++k) {
         if (found.primitive[k] < 0) continue;
-        key.sample = static_cast<std::uint32_t>(first + k);
-        hits[k] = shade(scene, rays[k], found.instance[k], found.primitive[k], key);
+        hits[k] = shade(scene, rays[k], found.instance[k], found.primitive[k], points[k]);
     }
-    cast_shadows(scene, hits, &Hit<R>::sun);
-    cast_shadows(scene, hits, &Hit<R>::sky);
+    cast_shadows(scene, hits, &Hit<R>::sun, true);
+    cast_shadows(scene, hits, &Hit<R>::sky, false);
 }
 
 /// The one loop of both passes: visit(pixel, hit) for every sample that met a surface, in order.
@@ -142,12 +125,15 @@ template <class R, class Visit>
 void for_each_hit(const DirectScene<R>& scene, const Pinhole& camera, const DirectOptions& options,
                   std::int64_t begin, std::int64_t end, Visit&& visit) {
     Hit<R> hits[width];
-    for (std::int64_t pixel = begin; pixel < end; ++pixel)
+    for (std::int64_t pixel = begin; pixel < end; ++pixel) {
+        const PixelStrata strata(options.seed, static_cast<std::uint32_t>(pixel),
+                                 static_cast<std::uint32_t>(options.spp));
         for (int first = 0; first < options.spp; first += width) {
-            trace_samples(scene, camera, options, pixel, first, hits);
+            trace_samples(scene, camera, options, strata, pixel, first, hits);
             for (const Hit<R>& hit : hits)
                 if (hit.valid) visit(pixel, hit);
         }
+    }
 }
 
 template <class R>

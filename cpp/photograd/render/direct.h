@@ -6,7 +6,8 @@
 //   sky:  w drawn by the BSDF (cosine lobe),       contribution f(wo, w) cos L_sky(w) V(w) / pdf(w)
 //
 // where V is 1 if the ray towards w meets nothing. The two are different lights, each with its one good
-// sampling, so nothing is counted twice. A pixel is the mean over `spp` samples, stratified over its area;
+// sampling, so nothing is counted twice. A pixel is the mean over `spp` samples, stratified over its area,
+// the disc of the sun and the lobe (pixel_strata.h);
 // radiance is premultiplied: a sample that meets no surface counts as 0 and lowers alpha.
 //
 // Every term is linear in the albedo and in the lights' radiances, and the adjoint is f_backward and
