@@ -44,7 +44,6 @@ def main() -> None:
     found: dict[str, Any] = {}
     parts: dict[str, Any] = {}
     for name, (origins, directions) in rays.items():
-
         # Memory for the answers is lent and used again, as other tracers' allocators do.
         answers = Hits.empty(len(origins), origins.dtype)
 
