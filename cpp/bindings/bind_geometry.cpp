@@ -31,6 +31,7 @@ std::shared_ptr<Bvh> build(const std::vector<MeshArrays>& meshes, const py::arra
     const std::int32_t* index = args.in<std::int32_t>("mesh_index", mesh_index, "N");
     const double* rows = args.in<double>("world_from_object", world_from_object, "N 3 4");
     std::vector<Mesh> built;
+    built.reserve(meshes.size());
     for (std::size_t i = 0; i < meshes.size(); ++i)
         built.push_back(mesh_of(meshes[i], static_cast<int>(i)));
     std::vector<Instance> instances(static_cast<std::size_t>(args.size("N")));

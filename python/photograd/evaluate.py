@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 from photograd_course.color import srgb_encode, unpremultiply
-from photograd_course.metrics import psnr, ssim
+from photograd_course.metrics import psnr, round_to_8_bits, ssim
 
 from photograd.data.camera import Camera
 from photograd.data.view import View
@@ -91,12 +91,6 @@ def over_white(encoded: Array, alpha: Array) -> Array:
     """Straight display values over white, clipped and rounded to 8 bits."""
     alpha = alpha[..., None]
     return round_to_8_bits(np.clip(encoded, 0, 1) * alpha + (1 - alpha))
-
-
-def round_to_8_bits(image: Array) -> Array:
-    """Nearest multiple of 1/255 in [0, 1]."""
-    rounded: Array = np.rint(np.clip(image, 0, 1) * 255) / 255
-    return rounded
 
 
 def evaluate(

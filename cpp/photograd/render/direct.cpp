@@ -107,7 +107,8 @@ void trace_samples(const DirectScene<R>& scene, const Pinhole& camera, const Dir
         if (k >= used) continue;
         points[k] = strata.draw<R>(static_cast<std::uint32_t>(first + k));
         const Vec2<R>& at = points[k].pixel;
-        rays[k] = camera.ray(R(pixel % camera.width) + at.x, R(pixel / camera.width) + at.y);
+        const std::int64_t column = pixel % camera.width, row = pixel / camera.width;
+        rays[k] = camera.ray(R(column) + at.x, R(row) + at.y);
         put(packet, k, rays[k].origin, rays[k].direction, 0);
     }
     PacketHits found;

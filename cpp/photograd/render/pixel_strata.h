@@ -59,9 +59,10 @@ private:
     }
     template <class R>
     [[nodiscard]] Vec2<R> in_cell(std::uint32_t cell, std::uint32_t x, std::uint32_t y) const {
-        const R rows = R(samples_ / columns_), columns = R(columns_);
-        return {(R(cell % columns_) + uniform_from<R>(x)) / columns,
-                (R(cell / columns_) + uniform_from<R>(y)) / rows};
+        const std::uint32_t rows = samples_ / columns_;
+        const std::uint32_t column = cell % columns_, row = cell / columns_;
+        return {(R(column) + uniform_from<R>(x)) / R(columns_),
+                (R(row) + uniform_from<R>(y)) / R(rows)};
     }
 
     RandomKey key_;
