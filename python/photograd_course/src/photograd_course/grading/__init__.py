@@ -1,0 +1,32 @@
+"""The trusted side: what a check may say, how hand-ins are called, and what comes of it.
+
+An assignment's `checks.py` needs only what this module exports.
+"""
+
+from __future__ import annotations
+
+from .check import Check, check
+from .failures import CheckFailed, GraderFault, StudentFailure
+from .outcome import Outcome, Status
+from .specs import Array, Integer, Items, Number, Record, Text, Truth
+from .tolerance import Tolerance
+from .trial import Trial
+
+__all__ = [
+    "Array",
+    "Check",
+    "CheckFailed",
+    "GraderFault",
+    "Integer",
+    "Items",
+    "Number",
+    "Outcome",
+    "Record",
+    "Status",
+    "StudentFailure",
+    "Text",
+    "Tolerance",
+    "Trial",
+    "Truth",
+    "check",
+]

@@ -1,0 +1,51 @@
+"""Three ways in which a check ends without passing, kept apart because they cost differently."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+from ..errors import Error
+
+
+@dataclass
+class CheckFailed(Exception):
+    """The answer came and is wrong.
+
+    Attributes:
+        text: one sentence for the student; never contains a hidden value.
+        details: numbers for the report: error, tolerance, worst index, expected sign and scale.
+        fingerprint: of the wrong answer, for the table of known mistakes.
+    """
+
+    text: str
+    details: dict[str, Any] = field(default_factory=dict)
+    fingerprint: str | None = None
+
+    def __str__(self) -> str:
+        return self.text
+
+
+@dataclass
+class StudentFailure(Exception):
+    """No answer came, through the hand-in's own doing.
+
+    Attributes:
+        reason: "not implemented", "raised", "missing", "timeout", "died", "protocol", "forbidden",
+            "unreadable", "broken" (it does not import) or "output".
+        text: one sentence for the student.
+        private: what may hold input of a check (an exception's text); shown for public checks only.
+        line: (file, line) in the hand-in.
+    """
+
+    reason: str
+    text: str
+    private: str = ""
+    line: tuple[str, int] | None = None
+
+    def __str__(self) -> str:
+        return self.text
+
+
+class GraderFault(Error):
+    """Our own mistake or a broken machine. Never costs a student points."""

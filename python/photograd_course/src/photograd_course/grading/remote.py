@@ -1,0 +1,141 @@
+"""A hand-in in a worker process, as the checks see it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+from ..worker.codec import Frame
+from ..worker.process import WorkerDied, WorkerLied, WorkerTimeout, contains_function
+from .failures import StudentFailure
+from .local import not_implemented
+
+START_SECONDS = 30.0
+
+
+@dataclass(frozen=True)
+class Hand:
+    """What a worker loads.
+
+    Attributes:
+        sources: module name to text, in the order of import.
+        graded: names of those that the student wrote; their imports are screened.
+        allowed: top-level modules these may import.
+    """
+
+    sources: Mapping[str, str]
+    graded: Sequence[str]
+    allowed: Sequence[str]
+    substitutes: Mapping[str, Callable[..., Any]] = field(default_factory=dict)
+
+
+class Connection(Protocol):
+    """A started worker; `worker.process.WorkerProcess` is one."""
+
+    def request(self, kind: str, value: Any, *, seconds: float, callbacks: int = ...) -> Frame:
+        """Send a frame and wait for its answer."""
+
+    def cpu_seconds(self) -> float | None:
+        """Processor time of the worker and its children, measured from outside."""
+
+    def kill(self) -> None:
+        """End it, and all that it has started."""
+
+
+class RemoteStudent:
+    """Loads the hand-in into a started worker and forwards calls."""
+
+    def __init__(self, connection: Connection, hand: Hand) -> None:
+        self._connection = connection
+        try:
+            self._load(hand)
+        except BaseException:
+            connection.kill()
+            raise
+
+    def _load(self, hand: Hand) -> None:
+        frame = self._ask(
+            "load",
+            {
+                "sources": dict(hand.sources),
+                "graded": list(hand.graded),
+                "allowed": list(hand.allowed),
+                "substitutes": dict(hand.substitutes),
+            },
+            START_SECONDS,
+            "while being imported",
+        )
+        if frame.kind == "loaded":
+            return
+        if frame.kind == "forbidden":
+            raise _forbidden(frame.value, hand.allowed)
+        if frame.kind in {"unreadable", "broken"}:
+            says = "cannot be read as Python" if frame.kind == "unreadable" else "does not import"
+            kind, text, line = _described(frame.value)
+            where = f"{line[0]}, line {line[1]}: " if line else ""
+            raise StudentFailure(frame.kind, f"{where}{says}: {kind}", f"{kind}: {text}", line)
+        raise StudentFailure("protocol", "the hand-in interfered with the worker")
+
+    def call(self, function: str, args: Sequence[Any], *, seconds: float) -> Any:
+        """See Student."""
+        name = function.rpartition(".")[2]
+        frame = self._ask("call", {"function": function, "args": list(args)}, seconds, f"in {name}")
+        if frame.kind == "result" and not contains_function(frame.value):
+            return frame.value
+        if frame.kind == "raised":
+            kind, text, line = _described(frame.value)
+            if kind == "NotImplementedError":
+                raise not_implemented(name, text, line)
+            where = f" (line {line[1]})" if line else ""
+            said = f"{name} raised {kind}{where}"
+            raise StudentFailure("raised", said, f"{kind}: {text}", line)
+        if frame.kind == "missing":
+            raise StudentFailure("missing", f"there is no function {name}")
+        if frame.kind == "unsendable":
+            raise StudentFailure("output", f"{name} returned {str(frame.value)[:200]}")
+        raise StudentFailure("protocol", "the hand-in interfered with the worker")
+
+    def cpu_seconds(self) -> float | None:
+        """See Student."""
+        return self._connection.cpu_seconds()
+
+    def close(self) -> None:
+        """End the worker."""
+        self._connection.kill()
+
+    def _ask(self, kind: str, value: Any, seconds: float, where: str) -> Frame:
+        try:
+            return self._connection.request(kind, value, seconds=seconds)
+        except WorkerTimeout:
+            said = f"no answer within {seconds:g} seconds {where}"
+            raise StudentFailure("timeout", said) from None
+        except WorkerDied:
+            said = f"the process ended {where} (a crash, an exit, or out of memory)"
+            raise StudentFailure("died", said) from None
+        except WorkerLied as error:
+            said = f"what came back {where} is no valid answer"
+            raise StudentFailure("protocol", said, str(error)) from None
+
+
+def _described(value: Any) -> tuple[str, str, tuple[str, int] | None]:
+    """Type, text and line out of a frame that may hold anything."""
+    if not isinstance(value, dict):
+        return "an exception", "", None
+    kind, text, line = value.get("type"), value.get("text"), value.get("line")
+    place = None
+    if isinstance(line, list) and len(line) == 2 and isinstance(line[1], int):
+        place = (str(line[0])[:80], line[1])
+    name = kind[:60] if isinstance(kind, str) and kind.isidentifier() else "an exception"
+    return name, str(text)[:2000], place
+
+
+def _forbidden(problems: Any, allowed: Sequence[str]) -> StudentFailure:
+    lines = []
+    for problem in problems if isinstance(problems, list) else []:
+        if isinstance(problem, dict):
+            file, line = str(problem.get("file"))[:80], problem.get("line")
+            lines.append(f"{file}, line {line}: imports {str(problem.get('module'))[:60]}")
+    permitted = ", ".join(allowed)
+    text = f"{'; '.join(lines[:5])}. A graded module may import {permitted} only: remove the import"
+    return StudentFailure("forbidden", text)

@@ -1,0 +1,147 @@
+"""The shape of an answer, asked for before its values are looked at. Nothing is converted."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+
+from .failures import CheckFailed
+
+
+class Spec(Protocol):
+    """What a returned value must be."""
+
+    def require(self, value: Any, where: str) -> None:
+        """Raise CheckFailed unless ``value`` is what it should be; ``where`` names it."""
+
+
+@dataclass(frozen=True)
+class Array:
+    """A finite array of exactly this shape and dtype ("f8", "f4", "i8", "i4", "u1" or "bool")."""
+
+    shape: tuple[int, ...]
+    dtype: str = "f8"
+
+    def require(self, value: Any, where: str) -> None:
+        """See Spec."""
+        want = f"an array of shape {self.shape} and dtype {np.dtype(_FULL[self.dtype])}"
+        if not isinstance(value, np.ndarray):
+            raise _wrong_kind(where, want, value)
+        if value.shape != self.shape:
+            raise CheckFailed(f"{where}: expected {want}, got shape {value.shape}")
+        if value.dtype != np.dtype(_FULL[self.dtype]):
+            raise CheckFailed(f"{where}: expected {want}, got dtype {value.dtype}")
+        if value.dtype.kind == "f" and not np.isfinite(value).all():
+            index = tuple(int(i) for i in np.argwhere(~np.isfinite(value))[0])
+            count = int((~np.isfinite(value)).sum())
+            raise CheckFailed(
+                f"{where}: {count} of {value.size} values are not finite, the first at {index}",
+                {"worst_index": index},
+            )
+
+
+@dataclass(frozen=True)
+class Number:
+    """A finite real number; an array without axes will do."""
+
+    def require(self, value: Any, where: str) -> None:
+        """See Spec."""
+        if isinstance(value, np.ndarray) and value.shape == () and value.dtype == np.float64:
+            value = float(value)
+        if isinstance(value, bool) or not isinstance(value, (int, float)):
+            raise _wrong_kind(where, "a float", value)
+        if not np.isfinite(value):
+            raise CheckFailed(f"{where}: expected a finite float, got {value}")
+
+
+@dataclass(frozen=True)
+class Integer:
+    """An integer, from ``low`` to ``high`` where given."""
+
+    low: int | None = None
+    high: int | None = None
+
+    def require(self, value: Any, where: str) -> None:
+        """See Spec."""
+        if isinstance(value, bool) or not isinstance(value, int):
+            raise _wrong_kind(where, "an int", value)
+        if (self.low is not None and value < self.low) or (
+            self.high is not None and value > self.high
+        ):
+            raise CheckFailed(f"{where}: expected {self.low} to {self.high}, got {value}")
+
+
+@dataclass(frozen=True)
+class Truth:
+    """True or False."""
+
+    def require(self, value: Any, where: str) -> None:
+        """See Spec."""
+        if not isinstance(value, bool):
+            raise _wrong_kind(where, "True or False", value)
+
+
+@dataclass(frozen=True)
+class Text:
+    """A string of at most ``longest`` characters."""
+
+    longest: int = 10_000
+
+    def require(self, value: Any, where: str) -> None:
+        """See Spec."""
+        if not isinstance(value, str):
+            raise _wrong_kind(where, "a str", value)
+        if len(value) > self.longest:
+            raise CheckFailed(f"{where}: expected at most {self.longest} characters")
+
+
+class Items:
+    """A tuple or list with exactly these parts."""
+
+    def __init__(self, *parts: Spec, names: tuple[str, ...] = ()) -> None:
+        self.parts = parts
+        self.names = names or tuple(f"item {k}" for k in range(len(parts)))
+
+    def require(self, value: Any, where: str) -> None:
+        """See Spec."""
+        if not isinstance(value, list):
+            raise _wrong_kind(where, f"a tuple of {len(self.parts)}", value)
+        if len(value) != len(self.parts):
+            raise CheckFailed(f"{where}: expected {len(self.parts)} values, got {len(value)}")
+        for part, name, item in zip(self.parts, self.names, value, strict=True):
+            part.require(item, f"{where}, {name}")
+
+
+@dataclass(frozen=True)
+class Record:
+    """A dict with exactly these keys."""
+
+    parts: Mapping[str, Spec]
+
+    def require(self, value: Any, where: str) -> None:
+        """See Spec."""
+        if not isinstance(value, dict):
+            raise _wrong_kind(where, f"a dict with the keys {sorted(self.parts)}", value)
+        if set(value) != set(self.parts):
+            raise CheckFailed(f"{where}: expected the keys {sorted(self.parts)}")
+        for key, part in self.parts.items():
+            part.require(value[key], f"{where}[{key!r}]")
+
+
+_FULL = {
+    "f8": "float64",
+    "f4": "float32",
+    "i8": "int64",
+    "i4": "int32",
+    "u1": "uint8",
+    "bool": "bool",
+}
+
+
+def _wrong_kind(where: str, want: str, value: Any) -> CheckFailed:
+    kind = "None" if value is None else type(value).__name__
+    hint = " (does a return statement lack?)" if value is None else ""
+    return CheckFailed(f"{where}: expected {want}, got {kind}{hint}")

@@ -1,0 +1,208 @@
+"""One run of one check: calls of the hand-in, and comparisons."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Sequence
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from .check import Check
+from .failures import CheckFailed, GraderFault, StudentFailure
+from .specs import Spec
+from .tolerance import Tolerance
+
+# Wrong answers that agree to so many digits have the same cause.
+FINGERPRINT_DIGITS = 8
+
+
+class Student(Protocol):
+    """Where calls go: into a worker, or into this process for code that we trust."""
+
+    def call(self, function: str, args: Sequence[Any], *, seconds: float) -> Any:
+        """The value of one function of the hand-in; raises StudentFailure."""
+
+    def cpu_seconds(self) -> float | None:
+        """Processor time used so far, measured from outside; None where that is not possible."""
+
+    def close(self) -> None:
+        """End it, and all that it has started."""
+
+
+class Trial:
+    """What the body of a check gets.
+
+    Attributes:
+        rng: random numbers of this check; the same seed gives the same check.
+        reference: the solution's module, for hidden checks; None on a student's machine.
+        margins: error / tolerance of each comparison, in order; what the doctor looks at.
+        asked: how many other conditions were looked at.
+    """
+
+    def __init__(
+        self,
+        check: Check,
+        student: Student,
+        *,
+        seed: Sequence[int],
+        module: str,
+        reference: Any = None,
+    ) -> None:
+        self.check = check
+        self.rng = np.random.default_rng(list(seed))
+        self.margins: list[float] = []
+        self.asked = 0
+        self._student = student
+        self._module = module
+        self._reference = reference
+
+    @property
+    def reference(self) -> Any:
+        """The solution's module.
+
+        Raises:
+            GraderFault: this is a student's machine, where no check may use it.
+        """
+        if self._reference is None:
+            raise GraderFault(f"{self.check.id}: uses the reference, which is not here")
+        return self._reference
+
+    @property
+    def has_reference(self) -> bool:
+        """Whether the solution is at hand."""
+        return self._reference is not None
+
+    def call(self, function: str, *args: Any, returns: Spec) -> Any:
+        """Call the hand-in, and look at kind, shape, dtype and finiteness of what comes back.
+
+        Args:
+            function: its name; of the graded module, or "module.name" for another.
+            args: scalars, arrays, lists, dicts; functions, which the hand-in can call.
+            returns: what the value must be.
+
+        Raises:
+            StudentFailure: no value came.
+            CheckFailed: the value is not of that kind.
+        """
+        where = function if "." in function else f"{self._module}.{function}"
+        value = self._student.call(where, args, seconds=self.check.seconds)
+        returns.require(value, function.rpartition(".")[2])
+        return value
+
+    def cpu_seconds(self) -> float | None:
+        """Processor time of the hand-in so far; None where it cannot be measured from outside."""
+        return self._student.cpu_seconds()
+
+    def close(
+        self,
+        what: str,
+        got: ArrayLike,
+        expected: ArrayLike,
+        tolerance: Tolerance | None = None,
+        *,
+        reveal: bool = False,
+        hint: str = "",
+    ) -> None:
+        """Require that ``got`` is ``expected`` within the tolerance, by relative norm.
+
+        Args:
+            what: names the quantity, such as "d_sigma".
+            got, expected: numbers or arrays; the shapes must be equal.
+            tolerance: by default the check's.
+            reveal: the expected value may be shown; never in hidden checks.
+            hint: said on failure.
+
+        Raises:
+            CheckFailed: with the error, the worst index, and the expected sign and scale.
+            GraderFault: there is no tolerance, or ``expected`` is not finite.
+        """
+        bound = tolerance or self.check.tolerance
+        if bound is None:
+            raise GraderFault(f"{self.check.id}: compares without a tolerance")
+        right, answer = np.asarray(expected, np.float64), np.asarray(got, np.float64)
+        if not np.isfinite(right).all():
+            raise GraderFault(f"{self.check.id}: {what}: the expected value is not finite")
+        if answer.shape != right.shape:
+            raise CheckFailed(f"{what}: expected shape {right.shape}, got {answer.shape}")
+        if right.size == 0:
+            raise GraderFault(f"{self.check.id}: {what}: compares nothing")
+        scale = max(float(np.linalg.norm(right)), bound.floor)
+        difference = np.abs(answer - right)
+        error = float(np.linalg.norm(difference)) / scale if scale > 0 else np.inf
+        if scale == 0 and not difference.any():
+            error = 0.0
+        self.margins.append(error / bound.relative)
+        if error <= bound.relative:  # written so that NaN fails
+            return
+        worst = np.unravel_index(int(np.argmax(np.nan_to_num(difference, nan=np.inf))), right.shape)
+        raise CheckFailed(
+            self._sentence(what, error, bound, answer, right, worst, reveal),
+            {
+                "error": error,
+                "tolerance": bound.relative,
+                "worst_index": [int(i) for i in worst],
+                "expected_sign": int(np.sign(right[worst])),
+                "expected_scale": _power_of_ten(right[worst]),
+                "advice": hint,
+            },
+            fingerprint(what, answer),
+        )
+
+    def require(self, condition: bool, text: str, *, hint: str = "", **details: Any) -> None:
+        """Fail with ``text`` unless ``condition`` is True."""
+        self.asked += 1
+        if condition is not True and not (isinstance(condition, np.bool_) and bool(condition)):
+            raise CheckFailed(text, {**details, "advice": hint}, fingerprint(text, np.zeros(0)))
+
+    def refuses(self, function: str, *args: Any, error: str) -> None:
+        """Require that the hand-in raises ``error``, named by its type, for these arguments."""
+        where = function if "." in function else f"{self._module}.{function}"
+        self.asked += 1
+        try:
+            self._student.call(where, args, seconds=self.check.seconds)
+        except StudentFailure as failure:
+            if failure.reason == "raised" and failure.private.startswith(f"{error}:"):
+                return
+            if failure.reason != "raised":
+                raise
+            raise CheckFailed(f"{function}: expected {error}, got another exception") from failure
+        raise CheckFailed(f"{function}: expected {error}, but it returned")
+
+    def _sentence(
+        self,
+        what: str,
+        error: float,
+        bound: Tolerance,
+        got: Any,
+        right: Any,
+        worst: tuple[Any, ...],
+        reveal: bool,
+    ) -> str:
+        at = f" at index {tuple(int(i) for i in worst)}" if right.ndim else ""
+        head = f"{what}: relative error {error:.1e}, allowed {bound.relative:.0e}"
+        mine = f"yours{at} is {float(got[worst]):.6g}"
+        if reveal and self.check.visibility == "public":
+            return f"{head}; {mine}, expected {float(right[worst]):.6g}"
+        sign = {1: "positive", -1: "negative", 0: "zero"}[int(np.sign(right[worst]))]
+        size = f", of the order {_power_of_ten(right[worst])}" if right[worst] else ""
+        return f"{head}; {mine}, expected something {sign}{size}"
+
+
+def fingerprint(what: str, answer: ArrayLike) -> str:
+    """A short hash of a wrong answer, equal for answers that agree to eight digits."""
+    values = np.asarray(answer, np.float64)
+    finite = np.abs(values[np.isfinite(values)])
+    top = float(finite.max()) if finite.size else 0.0
+    step = top * 10.0**-FINGERPRINT_DIGITS
+    rounded = np.rint(values / step) + 0.0 if step > 0 else values
+    size = f"{top:.{FINGERPRINT_DIGITS - 2}e}"
+    data = f"{what}|{values.shape}|{size}|".encode() + rounded.astype("<f8").tobytes()
+    return hashlib.sha256(data).hexdigest()[:24]
+
+
+def _power_of_ten(value: float) -> str:
+    if not value or not np.isfinite(value):
+        return "0"
+    return f"1e{int(np.floor(np.log10(abs(value)))):+03d}"
