@@ -45,7 +45,7 @@ class _Verdict:
 
 def run_checks(
     checks: Sequence[Check],
-    setting: Setting,
+    setting_of: Callable[[Check], Setting],
     open_student: Open,
     *,
     on_outcome: Callable[[Outcome], None] | None = None,
@@ -57,7 +57,7 @@ def run_checks(
 
     Args:
         checks: sorted so that tasks come after those they need.
-        setting: of the assignment.
+        setting_of: what the assignment adds to a check, such as `Bundle.setting`.
         open_student: starts the hand-in; gets the functions to be replaced by the reference's.
         on_outcome: called after each check.
     """
@@ -65,7 +65,7 @@ def run_checks(
     outcomes = []
     for check in checks:
         started = time.monotonic()
-        verdict = _judge(check, setting, open_student, failed)
+        verdict = _judge(check, setting_of(check), open_student, failed)
         if verdict.status is not Status.PASSED:
             for function in check.calls:
                 failed.setdefault(function, check.id)

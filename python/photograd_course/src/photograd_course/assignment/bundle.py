@@ -1,0 +1,101 @@
+"""All that judging a hand-in takes: manifest, checks, questions, the solution, known mistakes.
+
+A *bundle* holds everything and stays with instructors. A *public bundle* is what a student's kit
+carries: public checks, questions without keys, no solution.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import hmac
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from types import ModuleType
+
+from ..grading.check import Check
+from ..grading.remote import Hand
+from ..grading.runner import Setting
+from .checks_file import load_checks, load_module
+from .manifest import Manifest, read_manifest
+from .questions import Question, read_questions
+
+PUBLIC_SECRET = b"public"
+
+
+@dataclass(frozen=True)
+class Bundle:
+    """One assignment, ready to judge hand-ins.
+
+    Attributes:
+        manifest, checks, questions: of the assignment.
+        secret: seeds of hidden checks come from it; public checks have seeds of their own.
+        reference: the solution as a module; None in a public bundle.
+        keys: `answers.py` as a module, with a function for each generated question; or None.
+        adapters: text of `adapters.py`, which runs beside the hand-in; or None.
+        hints: the table of known mistakes.
+    """
+
+    manifest: Manifest
+    checks: tuple[Check, ...]
+    questions: tuple[Question, ...]
+    secret: bytes = PUBLIC_SECRET
+    reference: ModuleType | None = None
+    keys: ModuleType | None = None
+    adapters: str | None = None
+    hints: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def is_public(self) -> bool:
+        """Whether this is a student's bundle."""
+        return self.reference is None
+
+    def setting(self, check: Check) -> Setting:
+        """What the runner needs to know for one check."""
+        secret = PUBLIC_SECRET if check.visibility == "public" else self.secret
+        digest = hmac.new(secret, self.manifest.id.encode(), hashlib.sha256).digest()
+        seed = tuple(int.from_bytes(digest[k : k + 4], "big") for k in (0, 4, 8, 12))
+        # A public check runs the same for students and grader, seeds and known mistakes alike.
+        salt = PUBLIC_SECRET.hex() if check.visibility == "public" else self.secret.hex()
+        return Setting(self.manifest.module, seed, self.reference, self.hints, salt)
+
+    def hand(self, files: Mapping[str, bytes]) -> Hand:
+        """What a worker loads of a hand-in.
+
+        Args:
+            files: its files by name; the graded module must be among them.
+
+        Raises:
+            UnicodeDecodeError: the module is not UTF-8.
+        """
+        module = self.manifest.module
+        sources = {module: files[f"{module}.py"].decode("utf-8")}
+        if self.adapters is not None:
+            sources["adapters"] = self.adapters
+        return Hand(sources, (module,), self.manifest.imports)
+
+
+def read_folder(folder: Path, *, secret: bytes = PUBLIC_SECRET) -> Bundle:
+    """The bundle of an assignment's source folder, or of an unpacked public one.
+
+    In a source folder the graded module is the solution; a public folder has none beside its
+    `checks.py`.
+    """
+    manifest = read_manifest(folder)
+    module = folder / f"{manifest.module}.py"
+    reference = None
+    if module.exists():
+        reference = load_module(manifest.module, module.read_text(encoding="utf-8"))
+    keys = folder / "answers.py"
+    adapters, hints = folder / "adapters.py", folder / "hints.json"
+    return Bundle(
+        manifest=manifest,
+        checks=tuple(load_checks(manifest)),
+        questions=read_questions(folder),
+        secret=secret,
+        reference=reference,
+        keys=load_module("answers", keys.read_text(encoding="utf-8")) if keys.exists() else None,
+        adapters=adapters.read_text(encoding="utf-8") if adapters.exists() else None,
+        hints=json.loads(hints.read_text(encoding="utf-8")) if hints.exists() else {},
+    )
