@@ -3,7 +3,8 @@
 Kinds: a *prediction* is locked before the first check and earns its points by being made; a
 *diagnosis* or *concept* question has a right answer; a *generated* one draws its numbers from the
 hand-in itself, and its right answer is computed by a function of `answers.py`. An answer is
-a letter ("b") where there are options, else a number. Keys (`answer`, `because`) never leave the grader.
+a letter ("b") where there are options, else a number. Keys (`answer`, `because`) never leave the
+grader.
 """
 
 from __future__ import annotations
