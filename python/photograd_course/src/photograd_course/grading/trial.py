@@ -148,6 +148,7 @@ class Trial:
                 "advice": hint,
             },
             fingerprint(what, answer),
+            (answer, right) if right.ndim else None,
         )
 
     def require(self, condition: bool, text: str, *, hint: str = "", **details: Any) -> None:
