@@ -85,10 +85,8 @@ def find_folder(manifest: Manifest, given: Path | None = None) -> WorkFolder:
     Raises:
         IoError: no such folder.
     """
-    if given is not None:
-        candidates = [given]
-    else:
-        candidates = [Path.cwd(), Path.cwd() / manifest.folder_name]
+    here = Path.cwd()
+    candidates = [here, here / manifest.folder_name] if given is None else [given]
     for candidate in candidates:
         if (candidate / f"{manifest.module}.py").is_file():
             return WorkFolder(candidate, manifest)

@@ -47,6 +47,7 @@ def _planes(got: Array, expected: Array) -> Figure:
             plane, cmap=signed_colour_map(), vmin=-top, vmax=top, interpolation="nearest"
         )
         axes.set_title(name, fontsize=9)
+        axes.locator_params(integer=True)
     figure.colorbar(image, ax=figure.axes, shrink=0.8)
     return figure
 
