@@ -1,0 +1,143 @@
+"""The report on one hand-in: verdicts, points, and all it takes to come to them again."""
+
+from __future__ import annotations
+
+import platform
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from ..cli.version import version_of
+from ..grading.outcome import Outcome, Status
+from .answers import Answered
+
+INDICATIVE = "graded without isolation: indicative only"
+
+
+@dataclass(frozen=True)
+class Report:
+    """What became of one hand-in.
+
+    Attributes:
+        student: as the export or table names them.
+        declared: the name in `answers.toml`, by which questions were drawn.
+        assignment, title: of the assignment.
+        hand_in, bundle: SHA-256 of both.
+        mode: of isolation; verdicts of mode "E" are indicative only.
+        checks, questions: every one of the bundle, none missing.
+        problem, warnings, ignored: about the hand-in's files.
+        staff: what staff must look at; empty where nothing is wrong on our side.
+        versions: of what took part.
+        seconds: wall-clock time.
+    """
+
+    student: str
+    declared: str
+    assignment: str
+    title: str
+    hand_in: str
+    bundle: str
+    mode: str
+    checks: tuple[Outcome, ...]
+    questions: tuple[Answered, ...]
+    problem: str = ""
+    warnings: tuple[str, ...] = ()
+    ignored: tuple[str, ...] = ()
+    staff: tuple[str, ...] = ()
+    versions: dict[str, str] = field(default_factory=dict)
+    seconds: float = 0.0
+
+    @property
+    def is_sound(self) -> bool:
+        """Whether nothing went wrong on our side, so that the score may count."""
+        return not self.staff
+
+    @property
+    def proven(self) -> float:
+        """Points of what has been proven."""
+        return float(sum(item.points for item in (*self.checks, *self.questions)))
+
+    @property
+    def score(self) -> float | None:
+        """The points; None where the grader failed, for then nobody knows them yet."""
+        return self.proven if self.is_sound else None
+
+    @property
+    def max_score(self) -> float:
+        """What a perfect hand-in gets."""
+        return float(sum(item.max for item in (*self.checks, *self.questions)))
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What stands above the verdicts."""
+        first = (INDICATIVE,) if self.mode == "E" else ()
+        return (*first, *((self.problem,) if self.problem else ()), *self.warnings)
+
+    def to_json(self) -> dict[str, Any]:
+        """As plain JSON types."""
+        return {
+            "student": self.student,
+            "declared": self.declared,
+            "assignment": self.assignment,
+            "title": self.title,
+            "score": self.score,
+            "max_score": self.max_score,
+            "proven": self.proven,
+            "status": "ok" if self.is_sound else Status.ERROR_OURS.value,
+            "mode": self.mode,
+            "indicative_only": self.mode == "E",
+            "hand_in": self.hand_in,
+            "bundle": self.bundle,
+            "checks": [outcome.to_json() for outcome in self.checks],
+            "questions": [answered.to_json() for answered in self.questions],
+            "problem": self.problem,
+            "warnings": list(self.warnings),
+            "ignored": list(self.ignored),
+            "staff": list(self.staff),
+            "versions": dict(self.versions),
+            "seconds": self.seconds,
+        }
+
+    @classmethod
+    def from_json(cls, data: dict[str, Any]) -> Report:
+        """The report that `to_json` wrote.
+
+        Raises:
+            KeyError, TypeError, ValueError: it did not.
+        """
+        return cls(
+            checks=tuple(_outcome(entry) for entry in data["checks"]),
+            questions=tuple(Answered(**entry) for entry in data["questions"]),
+            **{key: data[key] for key in _TEXTS},
+            **{key: tuple(data[key]) for key in ("warnings", "ignored", "staff")},
+            versions=dict(data["versions"]),
+            seconds=float(data["seconds"]),
+        )
+
+
+_TEXTS = (
+    "student", "declared", "assignment", "title", "hand_in", "bundle", "mode", "problem",
+)  # fmt: skip
+
+
+def staff_notes(checks: Sequence[Outcome], questions: Sequence[Answered]) -> tuple[str, ...]:
+    """One line for each of our own failures."""
+    ours = Status.ERROR_OURS.value
+    notes = [f"{each.id}: {each.text}" for each in checks if each.status.value == ours]
+    return (*notes, *(f"{each.id}: {each.text}" for each in questions if each.status == ours))
+
+
+def versions() -> dict[str, str]:
+    """Of what a verdict may depend on."""
+    return {
+        "photograd-course": version_of("photograd-course") or "unknown",
+        "python": platform.python_version(),
+        "numpy": np.__version__,
+        "system": f"{platform.system()} {platform.machine()}",
+    }
+
+
+def _outcome(entry: dict[str, Any]) -> Outcome:
+    return Outcome(**{**entry, "status": Status(entry["status"])})
