@@ -1,4 +1,4 @@
-"""Checks of assignment 00. All are public: it is about the tools, and earns no points that count."""
+"""Checks of assignment 00. All are public: it is about the tools, and its points do not count."""
 
 from __future__ import annotations
 
@@ -13,7 +13,8 @@ ROUNDING = Tolerance(
 
 @check("00.1.differences", task="00.1", points=1, calls=("loss_gradient",),
        kills=("sign", "not_doubled", "sum_not_mean", "squared", "first_row_only"),
-       hint="handout, section 1: the derivative of one square, divided as the mean divides")  # fmt: skip
+       hint="handout, section 1: derive one square, divide as the mean does",
+       sole="the derivative itself; the step below shows the same mistakes at work")  # fmt: skip
 def agrees_with_differences(t):
     """Raising one pixel by a little changes the loss by as much as your derivative says."""
     picture, photograph = t.rng.uniform(0.0, 1.0, (2, 3, 4))
@@ -27,7 +28,7 @@ def agrees_with_differences(t):
 
 @check("00.1.step", task="00.1", points=1, calls=("loss_gradient",), tolerance=ROUNDING,
        kills=("sign", "not_doubled", "sum_not_mean", "squared", "first_row_only"),
-       sole="the same mistakes, seen as what a step downhill does; it says why they matter")  # fmt: skip
+       sole="the same mistakes as a step downhill shows them: why they matter")  # fmt: skip
 def one_step_reaches_the_photograph(t):
     """A step of half as many units as there are pixels lands on the photograph itself."""
     picture, photograph = t.rng.uniform(0.0, 1.0, (2, 5, 7))

@@ -28,7 +28,7 @@ def fig1_gradient(module: ModuleType) -> tuple[Figure, dict[str, bool]]:
 
 def _draw(picture: np.ndarray, photograph: np.ndarray, gradient: np.ndarray) -> Figure:
     with house_style():
-        figure = Figure(figsize=(7.6, 2.3), layout="constrained")
+        figure = Figure(figsize=(6.4, 1.95), layout="constrained")
         top = float(np.abs(gradient).max())
         panels = [
             ("picture p", picture, "gray", 0.0, 1.0),

@@ -1,4 +1,4 @@
-"""Your result is the negative of the derivative: picture minus photograph, not the other way round."""
+"""Your result is the negative of the derivative: it is picture minus photograph."""
 
 TASKS = ("00.1",)
 LOSES = ("00.1.differences", "00.1.step")

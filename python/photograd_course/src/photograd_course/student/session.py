@@ -45,11 +45,12 @@ def run_check_command(
             console.print(f"    picture: {path.name}", soft_wrap=True)
 
     outcomes = check_here(bundle, files, checks, on_outcome=show)
-    print_summary(outcomes, console)
+    print_summary(outcomes, console, bundle.manifest.points)
     passed = all(outcome.status is Status.PASSED for outcome in outcomes)
     if passed and task is None:
         next_command = f"photograd course handin {bundle.manifest.id}"
-        console.print(f"All green. Answer the questions, then: {next_command}", soft_wrap=True)
+        first = "Answer the questions, then: " if bundle.questions else "Next: "
+        console.print(f"All green. {first}{next_command}", soft_wrap=True)
     if as_json:
         emit(as_result(bundle, outcomes), as_json=True)
     return passed

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from rich.console import Console
 from rich.text import Text
@@ -38,12 +38,21 @@ def print_outcome(outcome: Outcome, console: Console) -> None:
             console.print(Text(f"    {part}"), soft_wrap=True)
 
 
-def print_summary(outcomes: Sequence[Outcome], console: Console) -> None:
-    """How many checks passed, and the points of public checks."""
+def print_summary(
+    outcomes: Sequence[Outcome], console: Console, whole: Mapping[str, float]
+) -> None:
+    """How many checks passed, their points, and what else there is to earn.
+
+    Args:
+        outcomes: of public checks.
+        console: where to write.
+        whole: points of "code" and "questions" in the whole assignment.
+    """
     passed = [outcome for outcome in outcomes if outcome.status is Status.PASSED]
     points, top = sum(o.points for o in passed), sum(o.max for o in outcomes)
-    console.print(
-        f"{len(passed)} of {len(outcomes)} public checks pass: {points:g} of {top:g} points. "
-        "Hidden checks and questions come on top.",
-        soft_wrap=True,
-    )
+    said = f"{len(passed)} of {len(outcomes)} checks pass: {points:g} of {top:g} points."
+    if (hidden := whole.get("code", top) - top) > 0:
+        said += f" Other checks of your code hold {hidden:g} more."
+    if questions := whole.get("questions", 0):
+        said += f" Questions hold {questions:g}."
+    console.print(said, soft_wrap=True)
