@@ -21,7 +21,7 @@ from .regions import SolutionPart, solution_parts, strip_solution
 
 Bar = Callable[[str, int], AbstractContextManager[Callable[[int], None]]]
 
-LEAST_SECONDS = 20.0  # for one text, however short the solution takes
+LEAST_SECONDS = 8.0  # of processor time for one text, however short the solution takes
 PATIENCE = 10.0  # times the solution's own seconds
 
 
@@ -29,7 +29,11 @@ PATIENCE = 10.0  # times the solution's own seconds
 def no_bar(title: str, total: int) -> Iterator[Callable[[int], None]]:
     """Shows nothing."""
     del title, total
-    yield lambda done: None
+    yield _ignore
+
+
+def _ignore(done: int) -> None:
+    del done
 
 
 @dataclass

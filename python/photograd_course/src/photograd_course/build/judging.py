@@ -20,6 +20,7 @@ from ..assignment.manifest import read_manifest
 from ..atomic_io import atomic_write
 
 WORKERS = 2
+WALL = 6.0  # seconds of wall clock for a second of processor time: for what sleeps
 # Files of a folder that decide what becomes of a text; and of this package likewise.
 DECIDING = ("assignment.toml", "checks.py", "adapters.py")
 ENGINE = ("grading", "assignment", "worker")
@@ -73,7 +74,7 @@ class Judge:
         folder: its source.
         secret: seeds of hidden checks.
         cache: a folder for results, or None.
-        seconds: of wall clock for one text; more counts as an endless loop.
+        seconds: of processor time for one text; more counts as an endless loop.
         ran: how many texts were run rather than found in the cache.
     """
 
@@ -142,17 +143,17 @@ class Judge:
         """Outcomes of one process, and the check in which it hung or died."""
         order = {
             "folder": str(self.folder), "secret": self.secret.hex(), "text": job.text,
-            "first": job.first, "passed": list(passed), "failed": list(failed),
+            "first": job.first, "seconds": self.seconds, "passed": list(passed), "failed": list(failed),
         }  # fmt: skip
         program = [sys.executable, "-I", "-m", "photograd_course.build.judge_program"]
         try:
             ended = subprocess.run(
-                program, input=json.dumps(order).encode(), timeout=self.seconds, check=False,
+                program, input=json.dumps(order).encode(), timeout=WALL * self.seconds, check=False,
                 capture_output=True, env=_environment(),
             )  # fmt: skip
             written, problem = ended.stdout, ended.stderr.decode(errors="replace")
         except subprocess.TimeoutExpired as error:
-            written, problem = error.stdout or b"", f"more than {self.seconds:g} s"
+            written, problem = error.stdout or b"", "no answer in time"
         lines = [json.loads(line) for line in written.split(b"\n")[:-1]]
         outcomes = [line for line in lines if "status" in line]
         if lines and "end" in lines[-1]:
