@@ -50,7 +50,8 @@ def judge(job: Mapping[str, Any], results: TextIO) -> None:
 
     Args:
         job: "folder", "secret" (hex), "text" of the module, "first" (stop at the first failure),
-            "seconds" of processor time, "passed" and "failed": ids of checks whose outcome is known and that do not run again.
+            "seconds" of processor time, "passed" and "failed": ids of checks whose outcome is known
+            and that do not run again.
         results: gets a JSON object a line.
     """
     bundle = read_folder(Path(job["folder"]), secret=bytes.fromhex(job["secret"]))

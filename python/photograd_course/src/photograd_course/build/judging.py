@@ -143,7 +143,8 @@ class Judge:
         """Outcomes of one process, and the check in which it hung or died."""
         order = {
             "folder": str(self.folder), "secret": self.secret.hex(), "text": job.text,
-            "first": job.first, "seconds": self.seconds, "passed": list(passed), "failed": list(failed),
+            "first": job.first, "seconds": self.seconds,
+            "passed": list(passed), "failed": list(failed),
         }  # fmt: skip
         program = [sys.executable, "-I", "-m", "photograd_course.build.judge_program"]
         try:
