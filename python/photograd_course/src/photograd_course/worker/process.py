@@ -7,6 +7,7 @@ Portable: pipes, threads and `kill`, on any system. What more Linux offers comes
 from __future__ import annotations
 
 import contextlib
+import os
 import queue
 import signal
 import subprocess
@@ -64,7 +65,6 @@ class WorkerProcess:
         seconds: float = float("inf"),
         max_body: int = MAX_BODY,
         longest_log: int = LONGEST_LOG,
-        pass_fds: Sequence[int] = (),
         on_end: Callable[[], None] | None = None,
     ) -> None:
         """Start it.
@@ -75,7 +75,6 @@ class WorkerProcess:
             seconds: wall-clock limit of its whole life.
             max_body: bytes; an answer that announces more is a lie.
             longest_log: bytes of its output that are kept; the rest is drained.
-            pass_fds: descriptors for a program that prepares the worker (POSIX).
             on_end: called once, after it has ended.
         """
         self._deadline = time.monotonic() + seconds
@@ -90,8 +89,7 @@ class WorkerProcess:
             env=environment,
             cwd=cwd,
             bufsize=0,
-            start_new_session=True,
-            pass_fds=tuple(pass_fds),
+            start_new_session=hasattr(os, "killpg"),
         )
         self._frames: queue.Queue[Frame | Exception] = queue.Queue()
         self._wanted = threading.Semaphore(0)  # frames that may be read: never more than asked for
