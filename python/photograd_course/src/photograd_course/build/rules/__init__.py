@@ -73,13 +73,30 @@ class Finding:
 
 def findings(dossier: Dossier) -> list[Finding]:
     """All breaches of all rules; those that need runs only when nothing else is wrong."""
-    found = _apply(dossier, {"markers": markers.look})
-    if not found:
-        found = _apply(dossier, {name: look for name, look in READING.items() if name != "markers"})
+    found = reading_findings(dossier)
     if not found:
         found = _apply(dossier, {"solution": solution.look})
     if not found:
         found = _apply(dossier, {name: k for name, k in RUNNING.items() if name != "solution"})
+    return found
+
+
+def reading_findings(dossier: Dossier) -> list[Finding]:
+    """Breaches of the rules that run nothing."""
+    found = _apply(dossier, {"markers": markers.look})
+    if not found:
+        found = _apply(dossier, {name: look for name, look in READING.items() if name != "markers"})
+    return found
+
+
+def seed_findings(dossier: Dossier) -> list[Finding]:
+    """Breaches of the rules that depend on hidden seeds, for a course's own secret."""
+    if all(check.visibility == "public" for check in dossier.checks):
+        return []
+    found = _apply(dossier, {"solution": solution.look})
+    if not found:
+        names = ("mutants", "kills", "alternatives", "margins")
+        found = _apply(dossier, {name: RUNNING[name] for name in names})
     return found
 
 
