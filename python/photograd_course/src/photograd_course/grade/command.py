@@ -13,19 +13,20 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from ..assignment.manifest import Manifest
 from ..cli.progress import Progress
+from ..grading.failures import GraderFault
 from .batch import Batch, run_batch
 from .exports import find_sources, is_batch
 from .grades_csv import Change, counted
 from .load import load
-from .modes import NoMode, open_workers
 from .one import Case, grade_one
 from .printable import printable
 from .report import Report
 from .report_json import canonical
 from .report_text import print_report
 from .run_folder import RunFolder
-from .workers import Workers
+from .workers import Workers, isolated_workers
 
 
 @dataclass(frozen=True)
@@ -52,8 +53,10 @@ def grade_command(request: Request) -> bool:
     loaded = load(request.assignment, request.bundle, request.secret_file)
     bundle = loaded.read()
     sources = find_sources(bundle.manifest, request.hand_in)
+    places = (request.bundle, request.secret_file, request.hand_in)
+    secrets = tuple(path.resolve() for path in places if path is not None)
     console = Console(stderr=request.as_json, highlight=False)
-    with _workers(bundle.manifest.minimum_mode, request) as (workers, unavailable):
+    with _workers(bundle.manifest, request, secrets) as (workers, unavailable):
         if request.out is None and not is_batch(bundle.manifest, request.hand_in):
             source = sources[0]
             hand_in = source.take(bundle.manifest)
@@ -78,13 +81,15 @@ def grade_command(request: Request) -> bool:
 
 
 @contextlib.contextmanager
-def _workers(minimum: str, request: Request) -> Iterator[tuple[Workers | None, str]]:
+def _workers(
+    manifest: Manifest, request: Request, secrets: Sequence[Path]
+) -> Iterator[tuple[Workers | None, str]]:
     """Workers, or None and what staff should know."""
     with contextlib.ExitStack() as stack:
         try:
-            workers = stack.enter_context(open_workers(minimum, request.mode, request.jobs))
-        except NoMode as error:
-            yield None, str(error)
+            workers = stack.enter_context(isolated_workers(manifest, request.mode, secrets))
+        except GraderFault as fault:
+            yield None, fault.text
         else:
             yield workers, ""
 

@@ -73,6 +73,7 @@ def grade_one(
         hand_in=case.hand_in.digest,
         bundle=case.bundle_digest,
         mode=workers.mode if workers is not None else "none",
+        isolation=workers.note if workers is not None else "",
         checks=tuple(checks),
         questions=tuple(answered),
         problem=case.hand_in.problem,

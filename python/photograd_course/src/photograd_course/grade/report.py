@@ -25,7 +25,8 @@ class Report:
         declared: the name in `answers.toml`, by which questions were drawn.
         assignment, title: of the assignment.
         hand_in, bundle: SHA-256 of both.
-        mode: of isolation; verdicts of mode "E" are indicative only.
+        mode, isolation: of isolation, and what staff should know about it here; verdicts of mode
+            "E" are indicative only.
         checks, questions: every one of the bundle, none missing.
         problem, warnings, ignored: about the hand-in's files.
         staff: what staff must look at; empty where nothing is wrong on our side.
@@ -42,6 +43,7 @@ class Report:
     mode: str
     checks: tuple[Outcome, ...]
     questions: tuple[Answered, ...]
+    isolation: str = ""
     problem: str = ""
     warnings: tuple[str, ...] = ()
     ignored: tuple[str, ...] = ()
@@ -93,6 +95,7 @@ class Report:
             "proven": self.proven,
             "status": "ok" if self.is_sound else Status.ERROR_OURS.value,
             "mode": self.mode,
+            "isolation": self.isolation,
             "indicative": self.mode == "E",
             "hand_in": self.hand_in,
             "bundle": self.bundle,
@@ -123,6 +126,7 @@ class Report:
             hand_in=str(data["hand_in"]),
             bundle=str(data["bundle"]),
             mode=str(data["mode"]),
+            isolation=str(data["isolation"]),
             problem=str(data["problem"]),
             warnings=tuple(data["warnings"]),
             ignored=tuple(data["ignored"]),

@@ -21,7 +21,8 @@ def print_report(report: Report, console: Console) -> None:
         console: where to; whatever the hand-in wrote is printed as text, never as markup.
     """
     _line(console, f"{report.student}: {report.assignment} {report.title}", "bold")
-    _line(console, f"isolation mode {report.mode}, hand-in {report.hand_in[:12]}")
+    said = f" ({report.isolation})" if report.isolation else ""
+    _line(console, f"isolation mode {report.mode}{said}, hand-in {report.hand_in[:12]}")
     for remark in report.remarks:
         _line(console, f"note: {remark}", "yellow")
     for name in report.ignored:
