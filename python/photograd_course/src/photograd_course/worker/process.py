@@ -229,20 +229,21 @@ class WorkerProcess:
                 count -= len(part)
             return b"".join(parts)
 
-        while True:
-            self._wanted.acquire()
-            if self._ended.is_set():
-                return
-            try:
-                self._frames.put(decode(read, max_body=self._max_body))
-            except Exception as error:
-                self._frames.put(error)
-                return
+        with stream:  # closed by the thread that reads it, or the close could meet a read
+            while True:
+                self._wanted.acquire()
+                if self._ended.is_set():
+                    return
+                try:
+                    self._frames.put(decode(read, max_body=self._max_body))
+                except Exception as error:
+                    self._frames.put(error)
+                    return
 
     def _read_log(self) -> None:
         stream = self._process.stderr
         assert stream is not None
-        with contextlib.suppress(OSError, ValueError):
+        with contextlib.suppress(OSError, ValueError), stream:
             while part := stream.read(1 << 16):
                 self._log += part[: max(0, self._longest_log - len(self._log))]
 
