@@ -22,7 +22,8 @@ from course.isolation.support import TEXTS, essence, outcomes_of
 
 if __name__ == "__main__":
     with WorkerHome() as home:
-        found = {key: essence(outcomes_of(text, home, choose(only="E"))) for key, text in TEXTS.items()}
+        mode = choose(only="E")
+        found = {key: essence(outcomes_of(text, home, mode)) for key, text in TEXTS.items()}
     print(json.dumps(found))
 """
 
