@@ -33,12 +33,14 @@ class Loaded:
         read: gives a fresh one.
         digest: SHA-256 of what verdicts depend on, the secret among it, since seeds come from it.
         secret: of the course.
+        place: where it lies; no worker may read there.
         starter: text of the graded module as students got it; empty where it is not known.
     """
 
     read: Callable[[], Bundle]
     digest: str
     secret: bytes
+    place: Path
     starter: str = ""
 
 
@@ -58,7 +60,7 @@ def load(number: str, where: Path | None = None, secret_file: Path | None = None
     secret = PUBLIC_SECRET if secret_file is None else read_secret(secret_file)
     if path.is_dir():
         digest = _folder_digest(path, secret)
-        loaded = Loaded(lambda: read_folder(path, secret=secret), digest, secret)
+        loaded = Loaded(lambda: read_folder(path, secret=secret), digest, secret, path)
     else:
         loaded = _sealed(path, secret)
     bundle = loaded.read()
@@ -114,7 +116,7 @@ def _sealed(path: Path, secret: bytes) -> Loaded:
         raise IoError(message("grade", str(path), "a bundle or a folder", got)) from error
     digest = hashlib.sha256(_of_secret(secret) + data).hexdigest()
     # One reading for all, so that a file that changes meanwhile changes nothing.
-    return Loaded(lambda: open_bundle(data, secret, path.name), digest, secret)
+    return Loaded(lambda: open_bundle(data, secret, path.name), digest, secret, path)
 
 
 def _of_secret(secret: bytes) -> bytes:
