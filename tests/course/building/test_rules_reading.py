@@ -166,15 +166,8 @@ def test_leaked_shingles(broken: Broken) -> None:
 
 def test_comments_and_docstrings_are_no_shingles() -> None:
     text = 'def f(a):\n    """a b c d e f g"""\n    # a b c d e f g\n    return a  # b c d\n'
-    assert {word for each in shingles_of(text) for word in each} == {
-        "def",
-        "f",
-        "(",
-        "a",
-        ")",
-        ":",
-        "return",
-    }
+    words = {word for each in shingles_of(text) for word in each}
+    assert words == {"def", "f", "(", "a", ")", ":", "return"}
 
 
 def test_what_shingles_tell() -> None:
