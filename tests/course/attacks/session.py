@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import tempfile
+import time
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -23,6 +24,7 @@ from photograd_course.worker.launch import open_worker
 
 from course.attacks.attack import ASSIGNMENT, MODULE, solution_upload
 
+LAST_WORDS = 5  # tenths of a second
 CALL_SECONDS = 3.0  # that an attack may take for one call
 PATIENT = Limits(seconds=120.0, cpu_seconds=60.0)  # an honest hand-in must not fail on a busy day
 SECRET = b"only the grader of the attack suite knows this"
@@ -43,9 +45,18 @@ class LoggingWorkers:
         self._opened.append(worker)
         return worker
 
-    def take_log(self) -> str:
-        """What all workers since the last call have written."""
-        text = "".join(worker.log for worker in self._opened)
+    def take_log(self, expected: str = "") -> str:
+        """What all workers since the last call have written.
+
+        They are gone by now, but the threads that read their last words may lag behind; for
+        `expected` it is worth waiting a moment.
+        """
+        text = ""
+        for _ in range(LAST_WORDS):
+            text = "".join(worker.log for worker in self._opened)
+            if expected in text or not self._opened:
+                break
+            time.sleep(0.1)
         self._opened.clear()
         return text
 

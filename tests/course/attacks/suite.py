@@ -91,7 +91,7 @@ class Referee:
             started = time.monotonic()
             report = self._session.grade(upload, attack.checks)
             longest = max(longest, time.monotonic() - started)
-            log = self._session.workers.take_log()
+            log = self._session.workers.take_log(attack.token)
             scores.append(report.proven)
             where = f"{name}: " if name else ""
             violations += [where + text for text in self._about(attack, report, log)]
