@@ -83,7 +83,7 @@ def test_a_missing_prerequisite_is_found(root: Path, old: str, new: str, said: s
 def test_a_missing_prerequisite_fails_the_build(
     root: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    (root / "course.toml").write_text(PLAN.replace('[["01"], ', "[["), "utf-8")
+    (root / "course.toml").write_text(PLAN.replace('[["01"], ["02"]]', '[["02"]]'), "utf-8")
     new_assignment("17", "light", root)
     monkeypatch.setenv("PHOTOGRAD_ASSIGNMENTS", str(root))
     command = ["course", "build", "--no-answers", "--out", str(root / "out"), "--json"]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
 from photograd_course.build.course_files import dossier_of
 from photograd_course.build.evidence import evidence
 from photograd_course.build.rules import findings, seed_findings
@@ -11,6 +12,7 @@ from photograd_course.build.rules import findings, seed_findings
 from .support import SECRET, TOY, Broken
 
 
+@pytest.mark.slow
 def test_the_toy_keeps_every_rule(cache: Path) -> None:
     known = evidence(TOY, cache=cache)
     assert known["findings"] == []
