@@ -7,7 +7,8 @@ REPLACE = [
         "(f(x + step) - f(x - step)) / (2.0 * eps)",
         (
             "(\n"
-            "            8.0 * (f(x + step) - f(x - step)) - f(x + 2.0 * step) + f(x - 2.0 * step)\n"
+            "            8.0 * (f(x + step) - f(x - step))\n"
+            "            - f(x + 2.0 * step) + f(x - 2.0 * step)\n"
             "        ) / (12.0 * eps)"
         ),
     ),
