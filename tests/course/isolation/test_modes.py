@@ -92,7 +92,7 @@ def test_an_unknown_mode_is_refused() -> None:
         modes.choose("F")
 
 
-def test_a_missing_layer_costs_no_points(
+def test_a_missing_layer_is_noticed(
     strict: str, home: WorkerHome, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     honest = launch.policy_of
@@ -102,9 +102,17 @@ def test_a_missing_layer_costs_no_points(
         return replace(policy, layers=policy.layers | {"a wall"})
 
     monkeypatch.setattr(launch, "policy_of", promise_more)
-    found = outcomes_of(SOLUTION, home, strict)
+    with pytest.raises(GraderFault, match="not in force: a wall"):
+        launch.open_worker(home, strict, LIMITS)
+
+
+def test_a_worker_that_does_not_start_costs_no_points(
+    home: WorkerHome, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(launch, "plain_command", lambda _: ["/nowhere/python"])
+    found = outcomes_of(SOLUTION, home, "E")
     assert {each.status for each in found} == {Status.ERROR_OURS}
-    assert all("not in force: a wall" in each.text for each in found)
+    assert all("cannot be started" in each.text for each in found)
 
 
 def test_a_layer_that_does_not_hold_is_not_reported(

@@ -1,7 +1,8 @@
 """Run where a test has made things tight: tells, as JSON, what the grader achieves there.
 
 ``python -m course.isolation.witness MODES``: the self-tests, the mode chosen, and with each of the
-given modes that works the toy assignment's outcomes and how some misbehaviour ends.
+given modes that works the outcomes of a hand-in that is right but for one sign, and how some
+misbehaviour ends.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from photograd_course.grading import StudentFailure
 from photograd_course.worker import modes, processes
 from photograd_course.worker.home import WorkerHome
 
-from course.isolation.support import SOLUTION, WRONG, essence, hand_in, outcomes_of
+from course.isolation.support import WRONG, essence, hand_in, outcomes_of
 
 MISBEHAVIOUR = {
     "loop": "while True: pass",
@@ -55,7 +56,6 @@ def testify(wanted: str) -> dict[str, Any]:
         works = modes.probe((Path(folder), secret))
         seen = {
             mode: {
-                "right": essence(outcomes_of(SOLUTION, home, mode)),
                 "wrong": essence(outcomes_of(WRONG, home, mode)),
                 "endings": endings(home, mode, secret),
                 "left": processes.of_user(home.uid(0)) if home.has_users else [],

@@ -22,7 +22,9 @@ def open_network() -> str:
     address = bytes([AF_INET, 0, 0, 53, 192, 0, 2, 1]) + bytes(8)
     libc.fcntl(descriptor, F_SETFL, os.O_NONBLOCK)
     libc.connect(descriptor, address, len(address))
-    return "" if ctypes.get_errno() == NETWORK_IS_UNREACHABLE else "a socket"
+    reason = ctypes.get_errno()
+    os.close(descriptor)
+    return "" if reason == NETWORK_IS_UNREACHABLE else "a socket"
 
 
 def start_process() -> str:
