@@ -23,6 +23,8 @@ REPORTED = Tolerance(
     1e-7, "differences, and so what is reported, are right to 1e-10; one-sided ones are off by 1e-6"
 )
 
+STEPS = Tolerance(1e-3, "x + h is rounded: 1e-11 of h; a step half or twice as long is off by 0.5")
+
 STEP = 1e-5
 SLOPES = Record({"value": Number(), "slopes": Array((2,)), "strangers": Integer(0)})
 RUN = "adapters.run_graph"
@@ -590,21 +592,29 @@ def wrong_gradients_are_measured(t):
        kills=("check_one_sided", "check_half", "check_leaves_steps", "check_all_at_once",
               "check_angle_only", "check_absolute", "check_fixed_step"))  # fmt: skip
 def large_and_small_numbers(t):
-    """Coordinates of 1e8 and gradients of 1e-9 are judged like any others."""
+    """Coordinates of 1e8 and gradients of 1e-9 are judged like others; steps follow Eq. (15)."""
     f, x = smooth(t.rng, 3)
+    x[2] = 0.0
+    moves = []
 
     def stretched(size, height, factor):
-        def g(x):
-            value, gradient = f(np.asarray(x) / size)
+        def g(at):
+            at = np.asarray(at)
+            moves.append(np.abs(at - x * size))
+            value, gradient = f(at / size)
             return height * value, factor * height * gradient / size
 
         return g
 
-    for size, height in ((1e8, 1.0), (1.0, 1e-9)):
+    for size, height in ((np.array([1e8, 1.0, 1.0]), 1.0), (np.ones(3), 1e-9)):
+        moves.clear()
         found = t.call("adapters.checked", stretched(size, height, 1.0), x * size, returns=VERDICT)
-        t.require(found["accepted"], f"right, but refused: x of {size:g}, f of {height:g}")
+        where = f"x of {size[0]:g}, f of {height:g}"
+        t.require(found["accepted"], f"right, but refused: {where}")
+        steps = STEP * np.maximum(1.0, np.abs(x * size))
+        t.close("the steps of Eq. (15)", np.max(moves, 0) / steps, np.ones(3), STEPS)
         found = t.call("adapters.checked", stretched(size, height, 1.1), x * size, returns=VERDICT)
-        t.require(not found["accepted"], f"wrong, but accepted: x of {size:g}, f of {height:g}")
+        t.require(not found["accepted"], f"wrong, but accepted: {where}")
 
 
 @check("02.6.not_finite", task="02.6", points=1, calls=("grad_check",), visibility="hidden",
@@ -616,7 +626,9 @@ def not_a_number_is_refused(t):
         found = t.call("adapters.checked",
                        lambda x, bad=bad: (f(np.asarray(x))[0], np.array([bad, 0.0, 0.0])), x,
                        returns=VERDICT)  # fmt: skip
-        t.require(not found["accepted"] and found["error"] == -1.0, f"{bad} is not refused")
+        t.require(found["error"] == -1.0, f"{bad} in the gradient does not give infinity")
+    found = t.call("adapters.checked", lambda _: (np.nan, np.ones(3)), x, returns=VERDICT)
+    t.require(found["error"] == -1.0, "a value that is not a number does not give infinity")
     found = t.call("adapters.checked", lambda _: (1.0, np.zeros(3)), x, returns=VERDICT)
     t.require(found["accepted"] and found["error"] == 0.0, "a constant's zero gradient is refused")
 
