@@ -138,6 +138,20 @@ def test_too_many_entries(take_zip: Take) -> None:
     assert "more than 5000 files" in taken.problem
 
 
+def test_a_repository_around_the_hand_in_does_not_count(
+    take_zip: Take, bundle: Bundle, tmp_path: Path
+) -> None:
+    objects = [(f".git/objects/f{k}", b"") for k in range(5001)]
+    assert take_zip(zipped(("toy.py", GOOD), *objects)).files == {"toy.py": GOOD}
+    folder = tmp_path / "work"
+    (folder / ".git" / "objects").mkdir(parents=True)
+    (folder / ".git" / "objects" / "toy.py").write_bytes(b"y = 2\n")
+    (folder / "toy.py").write_bytes(GOOD)
+    taken = take(bundle.manifest, folder)
+    assert taken.files == {"toy.py": GOOD}
+    assert any(".git" in entry for entry in taken.ignored)
+
+
 @pytest.mark.parametrize("data", [b"", b"PK", b"not a zip at all", b"\x00" * 1000])
 def test_garbage(take_zip: Take, data: bytes) -> None:
     taken = take_zip(data)
