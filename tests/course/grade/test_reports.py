@@ -191,6 +191,14 @@ def test_grades_of_ours_are_empty_or_stay() -> None:
     assert (row["score"], row["status"]) == ("6", "error-ours, earlier grade kept")
 
 
+def test_two_hand_ins_that_declare_one_name_are_pointed_out() -> None:
+    who = [("Ada", "Ada L."), ("Bo", "Ada L."), ("Cy", "Cy"), ("Di", "")]
+    reports = [report(student=name, declared=declared) for name, declared in who]
+    rows = csv.DictReader(io.StringIO(grades_table(reports, {}).decode()))
+    flagged = [row["student"] for row in rows if "as another hand-in does" in row["notes"]]
+    assert flagged == ["Ada", "Bo"]
+
+
 def test_differences_name_who_and_by_what() -> None:
     before = {"Ada": report(outcome(), outcome("1.b")), "Bo": report(student="Bo"),
               "Cy": report(student="Cy")}  # fmt: skip

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import hashlib
 import io
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -41,6 +42,7 @@ def grades_table(reports: Sequence[Report], earlier: Mapping[str, Report]) -> by
     head = ["student", "assignment", "score", "max_score", "status", "mode", "page", "hand_in"]
     ids = list(reports[0].points) if reports else []
     rows: list[list[Any]] = [[*head, *ids, "notes"]]
+    declared = Counter(report.declared for report in reports if report.declared)
     for report in sorted(reports, key=lambda each: each.student):
         score, status = counted(report, earlier.get(report.student))
         points = report.points
@@ -48,9 +50,16 @@ def grades_table(reports: Sequence[Report], earlier: Mapping[str, Report]) -> by
             report.student, report.assignment, "" if score is None else score, report.max_score,
             status, report.mode, f"{page_name(report.student)}.html", report.hand_in[:16],
             *(points.get(each, "") for each in ids),
-            "; ".join((*report.remarks, *(f"staff: {note}" for note in report.staff))),
+            "; ".join(_notes(report, declared)),
         ])  # fmt: skip
     return _csv(rows)
+
+
+def _notes(report: Report, declared: Mapping[str, int]) -> list[str]:
+    notes = [*report.remarks, *(f"staff: {note}" for note in report.staff)]
+    if declared.get(report.declared, 0) > 1:  # whose questions, and so whose answers, are these?
+        notes.append(f"staff: answers.toml names {report.declared}, as another hand-in does")
+    return notes
 
 
 def counted(report: Report, earlier: Report | None) -> tuple[float | None, str]:
