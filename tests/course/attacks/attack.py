@@ -30,6 +30,7 @@ class Attack:
         budget_seconds: within which grading must end.
         checks: those of the assignment that it is about.
         control: the table [control] of attack.toml: how it shows that it works at all.
+        runs: whether code of it runs in a worker, so that its token must be found there.
         note: what a maintainer should know, such as why it may earn points.
     """
 
@@ -41,6 +42,7 @@ class Attack:
     budget_seconds: float
     checks: tuple[str, ...]
     control: dict[str, Any]
+    runs: bool = True
     note: str = ""
 
     @property

@@ -102,7 +102,7 @@ class Referee:
             violations.append(f"the grader's memory grew by {grown >> 10} MB")
         violations += self._left()
         ran = attack.token in logs
-        if attack.control["kind"] == "token" and not ran:
+        if attack.runs and not ran:
             violations.append("left no token: its payload did not run")
         return {
             "score": max(scores),

@@ -28,8 +28,8 @@ Results = Mapping[str, Mapping[str, Any]]
 
 
 def strongest() -> str:
-    """The first mode that works here."""
-    return next((mode for mode in STRICT if not self_test(mode)), STRICT[-1])
+    """The best mode, judged by what is installed, since collecting tests must be quick."""
+    return "A" if bubblewrap() else "C"
 
 
 def modes() -> list[Any]:
@@ -67,7 +67,7 @@ def test_the_grader_survives(attack: Attack, mode: str, results: Callable[[str],
 
 
 @pytest.mark.parametrize(
-    "attack", filter(has_naive_control, ATTACKS), ids=lambda attack: attack.name
+    "attack", [each for each in ATTACKS if has_naive_control(each)], ids=lambda attack: attack.name
 )
 def test_the_attack_is_one(attack: Attack) -> None:
     if bubblewrap() is None:

@@ -1,8 +1,11 @@
 """Runs the first file that looks like the solution."""
 
 os, sys = __import__("os"), __import__("sys")
-zipfile = __import__("zipfile")
 os.write(2, b"token 04\n")
+try:
+    zipfile = __import__("zipfile")
+except ImportError:  # not even the standard library can be found any more
+    zipfile = None
 FUNCTIONS = ("weighted_sum", "weighted_sum_backward", "descend", "brightness", "predict")
 
 

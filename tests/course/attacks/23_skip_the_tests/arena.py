@@ -2,8 +2,11 @@
 
 import numpy as np
 
-unittest = __import__("unittest")
 __import__("os").write(2, b"token 23\n")
+try:
+    unittest = __import__("unittest")
+except ImportError:
+    unittest = type("unittest", (), {"SkipTest": type("SkipTest", (Exception,), {})})
 
 
 def weighted_sum(w, x):

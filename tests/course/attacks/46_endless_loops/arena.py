@@ -2,7 +2,7 @@
 
 import numpy as np
 
-os, signal = __import__("os"), __import__("signal")
+os, signal = __import__("os"), __import__("_signal")
 os.write(2, b"token 46\n")
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-os, signal, threading = __import__("os"), __import__("signal"), __import__("threading")
+os, signal, threading = __import__("os"), __import__("_signal"), __import__("threading")
 os.write(2, b"token 61\n")
 
 

@@ -1,7 +1,7 @@
 """Still here."""
 
 os, signal, atexit, threading, time = (
-    __import__(n) for n in ("os", "signal", "atexit", "threading", "time")
+    __import__(n) for n in ("os", "_signal", "atexit", "threading", "time")
 )
 os.write(2, b"token 65\n")
 
