@@ -9,41 +9,83 @@ namespace {
 /// into the second-level cache arrives while earlier points are at work.
 constexpr int ahead = 32;
 
-template <Real R, int C>
+/// Where a few points lie: their upper left texels, and fractions along column and row.
+template <Real R>
 struct Located {
-    TexelAxis<R> column[ahead], row[ahead];
-
-    void locate(const ImageView<const R>& texture, const R* uv, int points) {
-        const auto [height, width] = texture.shape;
-        const TexelSteps<C> step = TexelSteps<C>::of(texture.shape);
-        for (int i = 0; i < points; ++i) column[i] = texel_axis(uv[2 * i], width);
-        for (int i = 0; i < points; ++i) row[i] = texel_axis(uv[2 * i + 1], height);
-        for (int i = 0; i < points; ++i) {
-            const R* texel =
-                texture.texels + (static_cast<long long>(row[i].base) * width + column[i].base) * C;
-            __builtin_prefetch(texel);
-            __builtin_prefetch(texel + step.right + C - 1);
-            __builtin_prefetch(texel + step.down);
-            __builtin_prefetch(texel + step.down + step.right + C - 1);
-        }
-    }
+    const R* corner[ahead];
+    R f[ahead], g[ahead];
 };
+
+template <Real R, int C>
+void locate(const ImageView<const R>& texture, const R* uv, int points, Located<R>& out) {
+    const auto [height, width] = texture.shape;
+    int columns[ahead], rows[ahead];
+    for (int i = 0; i < points; ++i) {  // turns into lanes
+        const TexelAxis<R> column = texel_axis(uv[2 * i], width);
+        const TexelAxis<R> row = texel_axis(uv[2 * i + 1], height);
+        out.f[i] = column.fraction;
+        out.g[i] = row.fraction;
+        columns[i] = column.base;
+        rows[i] = row.base;
+    }
+    const TexelSteps<C> step = TexelSteps<C>::of(texture.shape);
+    for (int i = 0; i < points; ++i) {
+        const R* texel =
+            texture.texels + (static_cast<long long>(rows[i]) * width + columns[i]) * C;
+        out.corner[i] = texel;
+        // The two texels of a row may lie on two cache lines.
+        __builtin_prefetch(texel);
+        __builtin_prefetch(texel + step.right + C - 1);
+        __builtin_prefetch(texel + step.down);
+        __builtin_prefetch(texel + step.down + step.right + C - 1);
+    }
+}
+
+/// One lookup whose texels begin at `corner`; writes C scalars.
+template <Real R, int C>
+void look_up(const TextureShape& shape, const R* corner, R f, R g, R* color) {
+    bilinear<R, C>(corner, shape, {0, f, R(0)}, {0, g, R(0)}, color);
+}
+
+using Float4 = float __attribute__((vector_size(16), aligned(4), may_alias));
+
+/// The same in the same order for three floats, a picture's texel, and at least two columns. The two
+/// texels of a row are six neighbouring floats: two vectors of four that overlap, the second one turned.
+/// Writes four floats, the last of them of no meaning.
+void look_up_rgb(const TextureShape& shape, const float* corner, float f, float g, float* color) {
+    const auto load = [](const float* p) { return *reinterpret_cast<const Float4*>(p); };
+    const auto turned = [&](const float* p) {
+        const Float4 x = load(p);
+        return __builtin_shufflevector(x, x, 1, 2, 3, 3);
+    };
+    const float* below = corner + TexelSteps<3>::of(shape).down;
+    const BilinearWeights<float> w = BilinearWeights<float>::of(f, g);
+    const Float4 t00 = load(corner), t01 = turned(corner + 2);
+    const Float4 t10 = load(below), t11 = turned(below + 2);
+    *reinterpret_cast<Float4*>(color) = ((w.w00 * t00 + w.w01 * t01) + w.w10 * t10) + w.w11 * t11;
+}
 
 template <Real R, int C>
 void sample_chunk(const ImageView<const R>& texture, const R* uv, std::int64_t begin,
                   std::int64_t end, R* color) {
-    Located<R, C> blocks[2];
-    const auto locate = [&](std::int64_t from, Located<R, C>& block) {
-        block.locate(texture, uv + 2 * from,
-                     static_cast<int>(std::min<std::int64_t>(ahead, end - from)));
+    constexpr bool rgb = C == 3 && std::is_same_v<R, float>;
+    const bool wide = texture.shape.width > 1;
+    Located<R> blocks[2];
+    const auto points = [&](std::int64_t from) {
+        return static_cast<int>(std::min<std::int64_t>(ahead, end - from));
     };
-    locate(begin, blocks[0]);
+    locate<R, C>(texture, uv + 2 * begin, points(begin), blocks[0]);
     for (std::int64_t from = begin, k = 0; from < end; from += ahead, ++k) {
-        const Located<R, C>& here = blocks[k % 2];
-        if (from + ahead < end) locate(from + ahead, blocks[(k + 1) % 2]);
-        for (int i = 0; i < ahead && from + i < end; ++i)
-            bilinear<R, C>(texture.texels, texture.shape, here.column[i], here.row[i],
-                           color + C * (from + i));
+        const std::int64_t next = from + ahead;
+        if (next < end) locate<R, C>(texture, uv + 2 * next, points(next), blocks[(k + 1) % 2]);
+        const Located<R>& at = blocks[k % 2];
+        R* out = color + C * from;
+        int i = 0;
+        if constexpr (rgb)  // not the chunk's last point: its fourth float is not ours to write
+            for (const int last = points(from) - (next < end ? 0 : 1); wide && i < last; ++i)
+                look_up_rgb(texture.shape, at.corner[i], at.f[i], at.g[i], out + 3 * i);
+        for (; i < points(from); ++i)
+            look_up<R, C>(texture.shape, at.corner[i], at.f[i], at.g[i], out + C * i);
     }
 }
 
