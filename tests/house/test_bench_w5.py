@@ -1,4 +1,4 @@
-"""The texture benchmark does the work that it says: the same figures from NumPy in double precision."""
+"""The texture benchmark does the work that it says: NumPy in double precision agrees."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from importlib import import_module
 
 import numpy as np
 import pytest
+from tests.texture.oracle import adjoint, lookup
 
 from support.tree import ROOT
-from tests.texture.oracle import adjoint, lookup
 
 BENCH = ROOT / "bench"
 SIZE = {"n": 256, "points": 200_000, "iters": 3}  # with fewer texels a step of 40,000 diverges

@@ -8,6 +8,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 CPP_SUFFIXES = {".h", ".inl", ".cpp"}
 _MADE = {"build", "dist", "out", "node_modules", "__pycache__"}  # and everything hidden
+_PACKAGE = "photograd_course/build"  # ours, in spite of its name
 
 
 def walk(folder: Path, suffixes: set[str] | None = None) -> Iterator[Path]:
@@ -15,7 +16,8 @@ def walk(folder: Path, suffixes: set[str] | None = None) -> Iterator[Path]:
     for path in sorted(folder.iterdir()):
         if path.is_dir():
             hidden = path.name.startswith(".") and path.name != ".ci"
-            if not hidden and path.name not in _MADE and not path.name.endswith(".egg-info"):
+            made = path.name in _MADE and not path.as_posix().endswith(_PACKAGE)
+            if not hidden and not made and not path.name.endswith(".egg-info"):
                 yield from walk(path, suffixes)
         elif suffixes is None or path.suffix in suffixes:
             yield path

@@ -54,17 +54,20 @@ void any_hit(const int* valid, RTCScene scene, bool side_by_side, RTCRay16* rays
 }
 #endif
 
+/// Where packets of sixteen have no kernel (processors without AVX-512), Embree splits them up and does
+/// not look at `valid`, only at the interval: a lane that is off gets an empty one, and a harmless ray.
 void load(const RayPacket& rays, RTCRay16& out, int* valid) {
     for (int i = 0; i < width; ++i) {
-        valid[i] = rays.active[i] ? -1 : 0;
-        out.org_x[i] = rays.origin[0][i];
-        out.org_y[i] = rays.origin[1][i];
-        out.org_z[i] = rays.origin[2][i];
-        out.dir_x[i] = rays.direction[0][i];
-        out.dir_y[i] = rays.direction[1][i];
-        out.dir_z[i] = rays.direction[2][i];
-        out.tnear[i] = rays.t_min[i];
-        out.tfar[i] = rays.t_max[i];
+        const bool on = rays.active[i];
+        valid[i] = on ? -1 : 0;
+        out.org_x[i] = on ? rays.origin[0][i] : 0;
+        out.org_y[i] = on ? rays.origin[1][i] : 0;
+        out.org_z[i] = on ? rays.origin[2][i] : 0;
+        out.dir_x[i] = on ? rays.direction[0][i] : 0;
+        out.dir_y[i] = on ? rays.direction[1][i] : 0;
+        out.dir_z[i] = on ? rays.direction[2][i] : 1;
+        out.tnear[i] = on ? rays.t_min[i] : 1;
+        out.tfar[i] = on ? rays.t_max[i] : 0;
         out.time[i] = 0;
         out.mask[i] = 0xffffffffu;
         out.id[i] = static_cast<unsigned>(i);

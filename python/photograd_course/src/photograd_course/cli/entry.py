@@ -11,7 +11,7 @@ from typing import Annotated
 import typer
 from typer.main import get_command
 
-from . import version
+from . import course, version
 from .core_commands import add_missing_core_commands
 from .failures import INTERRUPTED, exit_code
 from .options import DebugOption, wants_debug
@@ -65,6 +65,7 @@ def build_app(
     )
     app.callback(invoke_without_command=True, epilog=EPILOG)(_photograd)
     version.register(app)
+    course.register(app)
     names, problems = load_plugins(app, plugins)
     add_missing_core_commands(app, names, problems)
     return app, problems

@@ -16,11 +16,13 @@ class CheckFailed(Exception):
         text: one sentence for the student; never contains a hidden value.
         details: numbers for the report: error, tolerance, worst index, expected sign and scale.
         fingerprint: of the wrong answer, for the table of known mistakes.
+        arrays: (got, expected) where a picture of them helps.
     """
 
     text: str
     details: dict[str, Any] = field(default_factory=dict)
     fingerprint: str | None = None
+    arrays: tuple[Any, Any] | None = None
 
     def __str__(self) -> str:
         return self.text

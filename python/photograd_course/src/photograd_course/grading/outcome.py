@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from enum import Enum
 from typing import Any
 
@@ -28,6 +28,7 @@ class Outcome:
         hint: what is probably wrong; empty where nothing is known.
         details: error, tolerance, worst index, expected sign and scale; margins for the doctor.
         seconds: wall-clock time.
+        arrays: (got, expected) of a failed public check, for a picture; never in a report.
     """
 
     id: str
@@ -42,7 +43,10 @@ class Outcome:
     hint: str = ""
     details: dict[str, Any] = field(default_factory=dict)
     seconds: float = 0.0
+    arrays: tuple[Any, Any] | None = field(default=None, compare=False, repr=False)
 
     def to_json(self) -> dict[str, Any]:
         """As plain JSON types."""
-        return {**asdict(self), "status": self.status.value}
+        plain = asdict(replace(self, arrays=None))
+        del plain["arrays"]
+        return {**plain, "status": self.status.value}

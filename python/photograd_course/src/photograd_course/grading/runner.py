@@ -41,6 +41,7 @@ class _Verdict:
     text: str = ""
     hint: str = ""
     details: dict[str, Any] = field(default_factory=dict)
+    arrays: tuple[Any, Any] | None = None
 
 
 def run_checks(
@@ -83,6 +84,7 @@ def run_checks(
             hint=verdict.hint,
             details=verdict.details,
             seconds=time.monotonic() - started,
+            arrays=verdict.arrays if check.visibility == "public" else None,
         )
         outcomes.append(outcome)
         if on_outcome is not None:
@@ -134,6 +136,7 @@ def _run(
         advice = str(failure.details.pop("advice", ""))
         verdict = _Verdict(Status.FAILED, "wrong", failure.text, hint or advice or check.hint)
         verdict.details.update(failure.details)
+        verdict.arrays = failure.arrays
         if failure.fingerprint is not None:
             verdict.details["fingerprint"] = failure.fingerprint
     except StudentFailure as failure:

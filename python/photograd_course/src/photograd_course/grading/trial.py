@@ -148,6 +148,7 @@ class Trial:
                 "advice": hint,
             },
             fingerprint(what, answer),
+            (answer, right) if right.ndim else None,
         )
 
     def require(self, condition: bool, text: str, *, hint: str = "", **details: Any) -> None:
@@ -196,7 +197,7 @@ def fingerprint(what: str, answer: ArrayLike) -> str:
     finite = np.abs(values[np.isfinite(values)])
     top = float(finite.max()) if finite.size else 0.0
     step = top * 10.0**-FINGERPRINT_DIGITS
-    rounded = np.rint(values / step) + 0.0 if step > 0 else values
+    rounded = (np.rint(values / step) if step > 0 else values) + 0.0  # no minus zero
     size = f"{top:.{FINGERPRINT_DIGITS - 2}e}"
     data = f"{what}|{values.shape}|{size}|".encode() + rounded.astype("<f8").tobytes()
     return hashlib.sha256(data).hexdigest()[:24]

@@ -29,6 +29,11 @@ class Channel:
         sys.stdin = open(os.devnull, encoding="utf-8")  # noqa: SIM115, PTH123 - for good
         return cls(source, sink)
 
+    @property
+    def descriptors(self) -> set[int]:
+        """Of the pipe."""
+        return {self._source.fileno(), self._sink.fileno()}
+
     def receive(self) -> Frame:
         """The next request, with stubs in the place of functions."""
         frame = decode(self._read)

@@ -1,0 +1,194 @@
+"""Judge many texts of a module: a process each, two at a time, results kept by content."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import subprocess
+import sys
+import threading
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..assignment.manifest import read_manifest
+from ..atomic_io import atomic_write
+
+WORKERS = 2
+WALL = 6.0  # seconds of wall clock for a second of processor time: for what sleeps
+# Files of a folder that decide what becomes of a text; and of this package likewise.
+DECIDING = ("assignment.toml", "checks.py", "adapters.py")
+ENGINE = ("grading", "assignment", "worker")
+RULES_SECRET = b"seeds of hidden checks while rules are looked at"
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What became of one text.
+
+    Attributes:
+        outcomes: of the checks that ran, as `Outcome.to_json` has them.
+        hung: ids of checks that were running when their time was up.
+    """
+
+    outcomes: tuple[dict[str, Any], ...]
+    hung: tuple[str, ...] = ()
+
+    @property
+    def lost(self) -> tuple[str, ...]:
+        """Ids of the checks that are not passed, in order."""
+        bad = [each["id"] for each in self.outcomes if each["status"] != "passed"]
+        return (*bad, *self.hung)
+
+    @property
+    def passed(self) -> tuple[str, ...]:
+        """Ids of the checks that are passed."""
+        return tuple(each["id"] for each in self.outcomes if each["status"] == "passed")
+
+    @property
+    def ours(self) -> tuple[dict[str, Any], ...]:
+        """Outcomes that are our own fault: a check that falters on a wrong answer."""
+        return tuple(each for each in self.outcomes if each["status"] == "error-ours")
+
+
+@dataclass(frozen=True)
+class Job:
+    """One text to judge; see `judge_program.judge`."""
+
+    text: str
+    first: bool = False
+    passed: tuple[str, ...] = ()
+    failed: tuple[str, ...] = ()
+
+
+@dataclass
+class Judge:
+    """Judges texts of one assignment.
+
+    Attributes:
+        folder: its source.
+        secret: seeds of hidden checks.
+        cache: a folder for results, or None.
+        seconds: of processor time for one text; more counts as an endless loop.
+        ran: how many texts were run rather than found in the cache.
+    """
+
+    folder: Path
+    secret: bytes = RULES_SECRET
+    cache: Path | None = None
+    seconds: float = 60.0
+    ran: int = 0
+    _lock: threading.Lock = field(default_factory=threading.Lock)
+    _known: str = ""
+
+    def judge(self, job: Job) -> Verdict:
+        """The verdict on one text, from the cache where it is known."""
+        place = None
+        if self.cache is not None:
+            key = hashlib.sha256(f"{self._stem()}|{job!r}".encode()).hexdigest()
+            place = self.cache / key[:2] / f"{key}.json"
+            if place.exists():
+                return _from_json(place.read_bytes())
+        verdict = self._run(job)
+        with self._lock:
+            self.ran += 1
+        if place is not None:
+            place.parent.mkdir(parents=True, exist_ok=True)
+            record = {"outcomes": verdict.outcomes, "hung": verdict.hung}
+            atomic_write(place, json.dumps(record, default=str).encode())
+        return verdict
+
+    def judge_all(
+        self, jobs: Sequence[Job], done: Callable[[int], None] | None = None
+    ) -> list[Verdict]:
+        """The verdicts, in the order of the jobs; ``done`` hears how many there are."""
+        finished = 0
+
+        def one(job: Job) -> Verdict:
+            nonlocal finished
+            verdict = self.judge(job)
+            with self._lock:
+                finished += 1
+                if done is not None:
+                    done(finished)
+            return verdict
+
+        with ThreadPoolExecutor(WORKERS) as pool:
+            return list(pool.map(one, jobs))
+
+    def _run(self, job: Job) -> Verdict:
+        outcomes: list[dict[str, Any]] = []
+        hung: list[str] = []
+        failed = list(job.failed)
+        passed = list(job.passed)
+        while True:
+            found, running = self._process(job, passed, failed)
+            outcomes += found
+            if running is None:
+                return Verdict(tuple(outcomes), tuple(hung))
+            hung.append(running)
+            if job.first:
+                return Verdict(tuple(outcomes), tuple(hung))
+            passed += [each["id"] for each in found if each["status"] == "passed"]
+            failed += [each["id"] for each in found if each["status"] != "passed"] + [running]
+
+    def _process(
+        self, job: Job, passed: Sequence[str], failed: Sequence[str]
+    ) -> tuple[list[dict[str, Any]], str | None]:
+        """Outcomes of one process, and the check in which it hung or died."""
+        order = {
+            "folder": str(self.folder), "secret": self.secret.hex(), "text": job.text,
+            "first": job.first, "seconds": self.seconds,
+            "passed": list(passed), "failed": list(failed),
+        }  # fmt: skip
+        program = [sys.executable, "-I", "-m", "photograd_course.build.judge_program"]
+        try:
+            ended = subprocess.run(
+                program, input=json.dumps(order).encode(), timeout=WALL * self.seconds, check=False,
+                capture_output=True, env=_environment(),
+            )  # fmt: skip
+            written, problem = ended.stdout, ended.stderr.decode(errors="replace")
+        except subprocess.TimeoutExpired as error:
+            written, problem = error.stdout or b"", "no answer in time"
+        lines = [json.loads(line) for line in written.split(b"\n")[:-1]]
+        outcomes = [line for line in lines if "status" in line]
+        if lines and "end" in lines[-1]:
+            return outcomes, None
+        begun = [line["begins"] for line in lines if "begins" in line]
+        finished = {each["id"] for each in outcomes}
+        open_ones = [each for each in begun if each not in finished and each not in failed]
+        if not open_ones:
+            raise RuntimeError(f"judging {self.folder.name} ended early: {problem[-2000:]}")
+        return outcomes, open_ones[-1]
+
+    def _stem(self) -> str:
+        """What verdicts depend on besides the text."""
+        if not self._known:
+            parts = [np.__version__, sys.version.split()[0], self.secret.hex()]
+            package = Path(__file__).resolve().parents[1]
+            paths = [path for name in ENGINE for path in sorted((package / name).glob("*.py"))]
+            paths.append(Path(__file__).with_name("judge_program.py"))
+            paths += [self.folder / name for name in DECIDING]
+            paths.append(self.folder / f"{read_manifest(self.folder).module}.py")  # the reference
+            parts += [
+                f"{path.name}:{hashlib.sha256(path.read_bytes()).hexdigest()}"
+                for path in paths
+                if path.exists()
+            ]
+            self._known = "|".join(parts)
+        return self._known
+
+
+def _environment() -> dict[str, str]:
+    """One thread for linear algebra: two processes run at a time, and the bits stay the same."""
+    return {**os.environ, "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
+
+
+def _from_json(data: bytes) -> Verdict:
+    record = json.loads(data)
+    return Verdict(tuple(record["outcomes"]), tuple(record["hung"]))

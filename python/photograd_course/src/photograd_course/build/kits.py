@@ -1,0 +1,126 @@
+"""Find an assignment's kit: in an installed wheel ready-made, in a checkout stripped on the fly."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from ..assignment.bundle import Bundle, read_folder
+from ..assignment.manifest import Manifest
+from ..errors import RangeError, message
+from ..suggest import choose_from
+from .public import kit_files, public_files
+
+__all__ = ["Kit", "find_kit", "kit_files", "list_kits", "public_files", "source_folders"]
+
+PACKAGE = Path(__file__).resolve().parents[1]
+ENVIRONMENT = "PHOTOGRAD_ASSIGNMENTS"  # a folder of assignments other than the built-in one
+
+
+@dataclass(frozen=True)
+class Kit:
+    """What a student gets.
+
+    Attributes:
+        manifest: of the assignment.
+        files: of the student's folder, path to content.
+        bundle: the public checks and questions.
+    """
+
+    manifest: Manifest
+    files: Mapping[str, bytes]
+    bundle: Bundle
+
+
+def list_kits(root: Path | None = None) -> list[str]:
+    """Folder names such as "01_gradient_descent", in order."""
+    return sorted(_places(root))
+
+
+def find_kit(id_or_name: str, root: Path | None = None) -> Kit:
+    """The kit of an assignment.
+
+    Args:
+        id_or_name: "01", "1", "gradient_descent" or "01_gradient_descent".
+        root: a folder of assignments; by default that of the checkout, or the installed kits.
+
+    Raises:
+        RangeError: there is no such assignment.
+        IoError, SceneError: its files are wrong.
+    """
+    places = _places(root)
+    name = match_folder(id_or_name, list(places))
+    place = places[name]
+    if (place / "checks").is_dir():  # a wheel's
+        files, public = _read_tree(place / "kit"), _read_tree(place / "checks")
+    else:
+        files, public = kit_files(place), public_files(place)
+    bundle = bundle_of(public, name)
+    return Kit(bundle.manifest, files, bundle)
+
+
+def match_folder(id_or_name: str, folders: list[str]) -> str:
+    """Which of the folders "NN_name" is meant.
+
+    Raises:
+        RangeError: none.
+    """
+    for folder in folders:
+        number, _, name = folder.partition("_")
+        if id_or_name in {folder, name, number, str(int(number))}:
+            return folder
+    remedy = choose_from(id_or_name, folders) if folders else "none is there"
+    raise RangeError(message("find_kit", "assignment", "one that exists", repr(id_or_name), remedy))
+
+
+def source_folders(root: Path | None = None) -> dict[str, Path]:
+    """Assignments in source, by folder name; empty in an installed wheel."""
+    top = root or source_root()
+    if top is None or not top.is_dir():
+        return {}
+    found = [path for path in top.iterdir() if (path / "assignment.toml").exists()]
+    return {path.name: path for path in sorted(found) if path.name[:2].isdigit()}
+
+
+def source_root() -> Path | None:
+    """The folder of assignments named by the environment, or that of the checkout, if any."""
+    if given := os.environ.get(ENVIRONMENT):
+        return Path(given)
+    if len(PACKAGE.parents) > 3 and (PACKAGE.parents[1] / "pyproject.toml").exists():
+        checkout = PACKAGE.parents[3] / "assignments"
+        return checkout if checkout.is_dir() else None
+    return None
+
+
+def bundle_of(files: Mapping[str, bytes], name: str, *, secret: bytes | None = None) -> Bundle:
+    """A bundle from files in memory, which touch the disk for a moment in a private folder.
+
+    Args:
+        files: path to content.
+        name: what the manifest gives as its folder.
+        secret: the course's, for a sealed bundle; None for a public one.
+    """
+    with tempfile.TemporaryDirectory(prefix="photograd-") as scratch:
+        folder = Path(scratch)
+        for path, content in files.items():
+            (folder / path).parent.mkdir(parents=True, exist_ok=True)
+            (folder / path).write_bytes(content)
+        bundle = read_folder(folder) if secret is None else read_folder(folder, secret=secret)
+    return replace(bundle, manifest=replace(bundle.manifest, folder=Path(name)))
+
+
+def _places(root: Path | None) -> dict[str, Path]:
+    if found := source_folders(root):
+        return found
+    installed = root or PACKAGE / "kits"
+    if not installed.is_dir():
+        return {}
+    return {path.name: path for path in sorted(installed.iterdir()) if (path / "checks").is_dir()}
+
+
+def _read_tree(top: Path) -> dict[str, bytes]:
+    paths = sorted(path for path in top.rglob("*") if path.is_file())
+    return {path.relative_to(top).as_posix(): path.read_bytes() for path in paths}

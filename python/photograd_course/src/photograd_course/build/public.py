@@ -1,0 +1,113 @@
+"""What leaves the instructor's folder: files of the kit, and files of the public checks.
+
+Pure functions of a source folder, also called while a wheel is built, so only the standard library
+(and tomli on Python 3.10) is needed here.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from ..assignment.manifest import Manifest, read_manifest
+from ..assignment.toml import read_toml
+from .notebook import notebook_of
+from .regions import strip_hidden, strip_solution
+from .toml_text import tables, toml_key
+
+SECRET_KEYS = ("answer", "because")  # of questions
+COPIED = ("figures/*.png", "data/*")  # into the kit as they are
+
+
+def kit_files(folder: Path) -> dict[str, bytes]:
+    """The student's folder: path to content.
+
+    Args:
+        folder: an assignment's source folder.
+
+    Returns:
+        The stub module, README.md (the handout) with figures/ and data/, answers.toml to fill in,
+        explore.py with its notebook, adapters.py; each only where the source has it.
+
+    Raises:
+        IoError, SceneError: the manifest, a question or a marker is wrong.
+    """
+    manifest = read_manifest(folder)
+    module = f"{manifest.module}.py"
+    files = {module: _encode(strip_solution(_text(folder / module), module))}
+    if "answers.toml" in manifest.handin:
+        files["answers.toml"] = _encode(answers_template(manifest))
+    if (folder / "handout.md").exists():
+        files["README.md"] = _encode(_text(folder / "handout.md"))
+    if (folder / "explore.py").exists():
+        script = _text(folder / "explore.py")
+        files["explore.py"] = _encode(script)
+        files["explore.ipynb"] = _encode(notebook_of(script))
+    if (folder / "adapters.py").exists():
+        files["adapters.py"] = _encode(_text(folder / "adapters.py"))
+    for pattern in COPIED:
+        for path in sorted(folder.glob(pattern)):
+            files[path.relative_to(folder).as_posix()] = path.read_bytes()
+    return dict(sorted(files.items()))
+
+
+def public_files(folder: Path) -> dict[str, bytes]:
+    """The public checks: manifest, checks without hidden ones, questions without keys, hints.
+
+    Raises:
+        IoError, SceneError: the manifest, a question or a marker is wrong.
+    """
+    files = {"assignment.toml": _encode(_text(folder / "assignment.toml"))}
+    files["checks.py"] = _encode(strip_hidden(_text(folder / "checks.py")))
+    if (folder / "questions.toml").exists():
+        files["questions.toml"] = _encode(questions_without_keys(folder))
+    for name in ("adapters.py", "hints.json"):
+        if (folder / name).exists():
+            files[name] = _encode(_text(folder / name))
+    return dict(sorted(files.items()))
+
+
+def wheel_kits(folder: Path) -> dict[str, bytes]:
+    """Both products as they lie in a wheel's `kits/NN_name/`: kit/ and checks/."""
+    kit = {f"kit/{path}": data for path, data in kit_files(folder).items()}
+    return {**kit, **{f"checks/{path}": data for path, data in public_files(folder).items()}}
+
+
+def questions_without_keys(folder: Path) -> str:
+    """`questions.toml` as students have it."""
+    parts = [
+        tables(kind, [{k: v for k, v in entry.items() if k not in SECRET_KEYS} for entry in found])
+        for kind, found in read_toml(folder / "questions.toml").items()
+    ]
+    return "\n".join(parts)
+
+
+def answers_template(manifest: Manifest) -> str:
+    """`answers.toml` with an empty answer for each question.
+
+    Raises:
+        SceneError: a question lacks its id.
+    """
+    lines = ['student = ""  # your name or number, as your course knows it', "", "[answers]"]
+    for kind, entry in _questions(manifest.folder):
+        options = entry.get("options", [])
+        last = "abcdefgh"[len(options) - 1 : len(options)]
+        form = f"a letter, a to {last}" if options else "a number"
+        lines.append(f'{toml_key(str(entry["id"]))} = ""  # {kind}: {form}')
+    return "\n".join(lines) + "\n"
+
+
+def _questions(folder: Path) -> list[tuple[str, dict[str, Any]]]:
+    path = folder / "questions.toml"
+    if not path.exists():
+        return []
+    return [(kind, entry) for kind, found in read_toml(path).items() for entry in found]
+
+
+def _text(path: Path) -> str:
+    """A text file; line ends of any system become plain newlines."""
+    return path.read_text(encoding="utf-8")
+
+
+def _encode(text: str) -> bytes:
+    return text.encode("utf-8")

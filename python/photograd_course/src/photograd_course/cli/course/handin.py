@@ -1,0 +1,62 @@
+"""``photograd course handin``: pack what is handed in."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from ..options import DebugOption, JsonOption
+
+
+def register(course: typer.Typer) -> None:
+    """Add the command."""
+
+    @course.command(
+        epilog="Example: photograd course handin 01",
+        short_help="Pack your work into one file to hand in.",
+    )
+    def handin(
+        assignment: Annotated[str, typer.Argument(help="Number or name, such as 01.")],
+        folder: Annotated[
+            Path | None,
+            typer.Option("--dir", help="Folder of your code; by default here."),
+        ] = None,
+        out: Annotated[
+            Path | None,
+            typer.Option(help="The archive; by default NN_name_handin.zip in that folder."),
+        ] = None,
+        as_json: JsonOption = False,
+        debug: DebugOption = False,  # noqa: ARG001
+    ) -> None:
+        """Pack the files that count into a zip archive, and say what is still open."""
+        from ...build.kits import find_kit
+        from ...student.folder import find_folder
+        from ...student.handing_in import pack
+        from ...student.sheet import open_questions
+        from ..output import emit, note
+
+        bundle = find_kit(assignment).bundle
+        work = find_folder(bundle.manifest, folder)
+        files = work.files()
+        target = out or work.path / f"{bundle.manifest.folder_name}_handin.zip"
+        digest = pack(files, target)
+        if lacking := [name for name in bundle.manifest.handin if name not in files]:
+            note(f"warning: not in the folder: {', '.join(lacking)}", style="yellow")
+        if still_open := open_questions(bundle, work):
+            note(f"still without an answer: {', '.join(still_open)}", style="yellow")
+        student = work.answers()[0]
+        if not student:
+            note("answers.toml: student is empty; write your name", style="yellow")
+        emit(
+            {
+                "archive": target,
+                "student": student,
+                "files": " ".join(sorted(files)),
+                "open_questions": len(still_open),
+                "sha256": digest,
+            },
+            as_json=as_json,
+            title=f"Hand-in of {bundle.manifest.id}",
+        )

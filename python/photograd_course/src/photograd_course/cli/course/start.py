@@ -1,0 +1,54 @@
+"""``photograd course start``: begin an assignment."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from ..options import DebugOption
+
+
+def register(course: typer.Typer) -> None:
+    """Add the command."""
+
+    @course.command(
+        epilog="Example: photograd course start 01",
+        short_help="Begin an assignment: lay out its kit in a folder.",
+    )
+    def start(
+        assignment: Annotated[str, typer.Argument(help="Number or name, such as 01.")],
+        folder: Annotated[
+            Path | None,
+            typer.Argument(help="Where; by default a folder of the assignment's name, here."),
+        ] = None,
+        debug: DebugOption = False,  # noqa: ARG001
+    ) -> None:
+        """Lay out the kit of an assignment: handout, starter code, answers, things to play with.
+
+        No file is ever replaced.
+        """
+        from rich.console import Console
+
+        from ...build.kits import find_kit
+        from ...student.starting import lay_out
+
+        kit = find_kit(assignment)
+        target = folder or Path(kit.manifest.folder_name)
+        lay_out(kit.files, target)
+        console = Console(highlight=False)
+        console.print(f"{kit.manifest.id} {kit.manifest.title}: ready in {target}", soft_wrap=True)
+        console.print("Next:", soft_wrap=True)
+        for line in _next_steps(kit.manifest.id, kit.manifest.module, target):
+            console.print(f"  {line}", soft_wrap=True)
+
+
+def _next_steps(number: str, module: str, target: Path) -> list[str]:
+    return [
+        f"cd {target}",
+        "read README.md",
+        f"photograd course check {number}     (red at first)",
+        f"write {module}.py, and check again until all is green",
+        f"photograd course handin {number}",
+    ]

@@ -1,0 +1,192 @@
+"""Points for the answers in `answers.toml`."""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from ..assignment.bundle import Bundle
+from ..assignment.drawing import draw
+from ..assignment.questions import LETTERS, Question
+from ..errors import SceneError
+from ..student.folder import LOCK_NAME
+from ..student.predictions import locked_answers
+from .hand_in import HandIn
+from .printable import printable
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+MISSING = object()
+
+
+@dataclass(frozen=True)
+class Answered:
+    """What became of one question.
+
+    Attributes:
+        id, kind: of the question.
+        status: "passed", "failed" or "error-ours".
+        points, max: 0 unless passed.
+        text: one sentence; never the right answer.
+        answer: what was answered, as text; empty where nothing was.
+    """
+
+    id: str
+    kind: str
+    status: str
+    points: float
+    max: float
+    text: str = ""
+    answer: str = ""
+
+    def to_json(self) -> dict[str, Any]:
+        """As plain JSON types."""
+        return asdict(self)
+
+
+def score_answers(bundle: Bundle, hand_in: HandIn) -> tuple[list[Answered], str, list[str]]:
+    """Every question of the assignment, none missing.
+
+    Args:
+        bundle: with keys.
+        hand_in: of a student.
+
+    Returns:
+        The results, the student's name as `answers.toml` has it, and warnings.
+    """
+    student, given, warnings = read_answers(hand_in.files.get("answers.toml"))
+    locked: dict[str, str] = {}
+    lock = hand_in.files.get(LOCK_NAME)
+    if lock is not None:
+        try:
+            locked = locked_answers(lock, bundle.manifest.id)
+        except SceneError as error:
+            warnings.append(str(error))
+    source = hand_in.files.get(f"{bundle.manifest.module}.py", b"").decode("utf-8")
+    results = []
+    for question in bundle.questions:
+        answer = given.get(question.id, MISSING)
+        if question.kind == "prediction":
+            results.append(_prediction(question, answer, locked))
+        elif answer is MISSING or answer == "":
+            results.append(_result(question, "failed", "not answered"))
+        elif question.options:
+            results.append(_choice(question, answer))
+        else:
+            results.append(_number(bundle, question, answer, (student, source)))
+    return results, student, warnings
+
+
+def read_answers(data: bytes | None) -> tuple[str, dict[str, Any], list[str]]:
+    """Name, answers by id, and warnings; whatever the file holds.
+
+    Ids with a dot are taken quoted (`"01.p1" = "b"`) or as tables within tables (`01.p1 = "b"`).
+    """
+    if data is None:
+        return "", {}, []
+    try:
+        table = tomllib.loads(data.decode("utf-8"))
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError, ValueError) as error:
+        # Deep nesting can exhaust the parser; that is the file's fault as well.
+        return "", {}, [f"answers.toml is no TOML, so nothing is answered: {printable(error, 120)}"]
+    answers = table.get("answers", {})
+    if not isinstance(answers, dict):
+        return "", {}, ["answers.toml: [answers] is no table, so nothing is answered"]
+    name = table.get("student", "")
+    return printable(name, 120) if isinstance(name, str) else "", _flat(answers), []
+
+
+def _flat(table: Mapping[str, Any], prefix: str = "", depth: int = 0) -> dict[str, Any]:
+    flat: dict[str, Any] = {}
+    for key, value in table.items():
+        if isinstance(value, dict) and depth < 4:
+            flat.update(_flat(value, f"{prefix}{key}.", depth + 1))
+        else:
+            flat[prefix + key] = value
+    return flat
+
+
+def _prediction(question: Question, answer: Any, locked: Mapping[str, str]) -> Answered:
+    letter = _letter(question, locked.get(question.id))
+    if letter is None:
+        return _result(question, "failed", "not predicted before the first check")
+    if answer is not MISSING and answer != "" and _letter(question, answer) != letter:
+        said = f"answers.toml differs from the locked prediction ({letter})"
+        return _result(question, "failed", said, answer)
+    return _result(question, "passed", "predicted and locked", letter)
+
+
+def _choice(question: Question, answer: Any) -> Answered:
+    letter = _letter(question, answer)
+    if letter is None:
+        last = LETTERS[len(question.options) - 1]
+        return _result(question, "failed", f"expected a letter from a to {last}", answer)
+    if (
+        not isinstance(question.answer, str)
+        or question.answer not in LETTERS
+        or not question.answer
+    ):
+        return _result(question, "error-ours", f"{question.id}: the bundle holds no key", answer)
+    right = letter == question.answer
+    return _result(question, *(("passed", "") if right else ("failed", "not right")), letter)
+
+
+def _letter(question: Question, answer: Any) -> str | None:
+    if not isinstance(answer, str):
+        return None
+    letter = answer.strip().lower()
+    is_one = len(letter) == 1 and letter in LETTERS[: len(question.options)]
+    return letter if is_one else None
+
+
+def _number(
+    bundle: Bundle, question: Question, answer: Any, drawn_for: tuple[str, str]
+) -> Answered:
+    value = _finite(answer)
+    if value is None:
+        return _result(question, "failed", "expected a finite number", answer)
+    try:
+        key = _key(bundle, question, drawn_for)
+    except Exception as error:  # our own answers.py; whatever it does is not the student's fault
+        said = f"{question.id}: {type(error).__name__}: {error}"
+        return _result(question, "error-ours", said, answer)
+    # Written so that nothing undefined passes.
+    if abs(value - key) <= question.tolerance * abs(key):
+        return _result(question, "passed", "", answer)
+    allowed = f"not within {question.tolerance:.0e} of the right value, relatively"
+    return _result(question, "failed", allowed, answer)
+
+
+def _key(bundle: Bundle, question: Question, drawn_for: tuple[str, str]) -> float:
+    if isinstance(question.answer, str):
+        if bundle.keys is None or bundle.reference is None:
+            raise SceneError(f"{question.id}: the bundle has no keys")
+        values = draw(question, *drawn_for).values
+        key = float(getattr(bundle.keys, question.answer)(bundle.reference, **values))
+    else:
+        key = float(question.answer)
+    if not math.isfinite(key):
+        raise SceneError(f"{question.id}: the key is {key}")
+    return key
+
+
+def _finite(answer: Any) -> float | None:
+    if isinstance(answer, bool) or not isinstance(answer, (int, float, str)):
+        return None
+    try:
+        value = float(str(answer)[:60])
+    except ValueError:
+        return None
+    return value if math.isfinite(value) else None
+
+
+def _result(question: Question, status: str, text: str, answer: Any = "") -> Answered:
+    points = question.points if status == "passed" else 0.0
+    shown = printable(answer, 80) if isinstance(answer, (str, int, float)) else "(no value)"
+    return Answered(question.id, question.kind, status, points, question.points, text, shown)

@@ -1,0 +1,138 @@
+"""Judge one hand-in: every check of the bundle in a worker of its own, every question."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+from ..assignment.bundle import Bundle
+from ..grading.check import Check
+from ..grading.failures import GraderFault, StudentFailure
+from ..grading.outcome import Outcome, Status
+from ..grading.remote import RemoteStudent
+from ..grading.runner import run_checks
+from ..grading.trial import Student
+from .answers import score_answers
+from .hand_in import HandIn
+from .report import Report, staff_notes, versions
+from .workers import Clocked, Workers
+
+LONGEST = 240.0  # seconds for a whole hand-in; grading services allow a few minutes
+OnOutcome = Callable[[Outcome], None]
+
+
+@dataclass(frozen=True)
+class Case:
+    """What is to be judged.
+
+    Attributes:
+        student: whose it is.
+        hand_in: as taken in.
+        bundle, bundle_digest: the assignment, with hidden checks.
+    """
+
+    student: str
+    hand_in: HandIn
+    bundle: Bundle
+    bundle_digest: str
+
+
+def grade_one(
+    case: Case,
+    workers: Workers | None,
+    *,
+    slot: int = 0,
+    unavailable: str = "",
+    on_outcome: OnOutcome | None = None,
+) -> Report:
+    """The report on one hand-in; never raises for what the hand-in or the bundle's checks do.
+
+    Args:
+        case: what is to be judged.
+        workers: where to run it; None where no isolation mode is good enough.
+        slot: number of the worker, among those that run at the same time.
+        unavailable: why there are no workers; for staff.
+        on_outcome: called after each check.
+    """
+    started = time.monotonic()
+    if workers is None:
+        checks = _all(case, Status.ERROR_OURS, "error-ours", unavailable, on_outcome)
+    elif case.hand_in.problem:
+        checks = _all(case, Status.FAILED, "hand-in", case.hand_in.problem, on_outcome)
+    else:
+        checks = _run(case, workers, slot, on_outcome)
+    answered, declared, warnings = score_answers(case.bundle, case.hand_in)
+    manifest = case.bundle.manifest
+    return Report(
+        student=case.student,
+        declared=declared,
+        assignment=manifest.id,
+        title=manifest.title,
+        hand_in=case.hand_in.digest,
+        bundle=case.bundle_digest,
+        mode=workers.mode if workers is not None else "none",
+        isolation=workers.note if workers is not None else "",
+        checks=tuple(checks),
+        questions=tuple(answered),
+        problem=case.hand_in.problem,
+        warnings=(*case.hand_in.warnings, *warnings),
+        ignored=case.hand_in.ignored,
+        staff=staff_notes(checks, answered),
+        versions=versions(),
+        seconds=time.monotonic() - started,
+    )
+
+
+def time_allowed(bundle: Bundle) -> float:
+    """Seconds for all checks of one hand-in: what each may take, capped."""
+    return min(LONGEST, bundle.manifest.limits.seconds * max(1, len(bundle.checks)))
+
+
+def _run(case: Case, workers: Workers, slot: int, on_outcome: OnOutcome | None) -> list[Outcome]:
+    bundle = case.bundle
+    hand = bundle.hand(case.hand_in.files)
+    end = time.monotonic() + time_allowed(bundle)
+
+    def open_student(substitutes: Mapping[str, Callable[..., Any]]) -> Student:
+        now = time.monotonic()
+        if now >= end:
+            said = f"the {time_allowed(bundle):g} seconds for this hand-in were used up before"
+            raise StudentFailure("timeout", said)
+        connection = workers.open(slot)
+        deadline = min(end, time.monotonic() + bundle.manifest.limits.seconds)
+        return RemoteStudent(
+            Clocked(connection, deadline), replace(hand, substitutes=dict(substitutes))
+        )
+
+    found = run_checks(bundle.checks, bundle.setting, open_student, on_outcome=on_outcome)
+    # Ids and points come from the bundle, whatever has happened meanwhile.
+    expected = [(check.id, check.points) for check in bundle.checks]
+    if [(outcome.id, outcome.max) for outcome in found] != expected:
+        raise GraderFault("the outcomes are not those of the bundle's checks")
+    return found
+
+
+def _all(
+    case: Case, status: Status, reason: str, text: str, on_outcome: OnOutcome | None
+) -> list[Outcome]:
+    outcomes = [_outcome(check, status, reason, text) for check in case.bundle.checks]
+    for outcome in outcomes:
+        if on_outcome is not None:
+            on_outcome(outcome)
+    return outcomes
+
+
+def _outcome(check: Check, status: Status, reason: str, text: str) -> Outcome:
+    return Outcome(
+        id=check.id,
+        title=check.title,
+        task=check.task,
+        visibility=check.visibility,
+        status=status,
+        points=0.0,
+        max=check.points,
+        reason=reason,
+        text=text,
+    )

@@ -1,0 +1,59 @@
+"""A report on the terminal of whoever grades: everything, also about hidden checks."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from rich.console import Console
+from rich.text import Text
+
+from ..grading.outcome import Outcome
+from ..student.terminal import print_outcome
+from .printable import printable
+from .report import Report
+
+
+def print_report(report: Report, console: Console) -> None:
+    """Print verdicts, answers, what was left out, and the score.
+
+    Args:
+        report: of one hand-in.
+        console: where to; whatever the hand-in wrote is printed as text, never as markup.
+    """
+    _line(console, f"{report.student}: {report.assignment} {report.title}", "bold")
+    said = f" ({report.isolation})" if report.isolation else ""
+    _line(console, f"isolation mode {report.mode}{said}, hand-in {report.hand_in[:12]}")
+    for remark in report.remarks:
+        _line(console, f"note: {remark}", "yellow")
+    for name in report.ignored:
+        _line(console, f"ignored: {name}")
+    for outcome in report.checks:
+        print_outcome(safe(outcome), console)
+    for question in report.questions:
+        said = f" ({question.text})" if question.text else ""
+        points = f"{question.points:g} of {question.max:g}"
+        _line(console, f"{question.id} {question.kind}: {question.status}, {points}{said}")
+    for note in report.staff:
+        _line(console, f"staff: {note}", "magenta")
+    _line(console, score_text(report), "bold")
+
+
+def score_text(report: Report) -> str:
+    """The points, or why there are none yet."""
+    if report.score is None:
+        proven = f"{report.proven:g} of {report.max_score:g} points are proven"
+        return f"no score, since the grader failed: {proven}, the rest is for staff to look at"
+    return f"{report.score:g} of {report.max_score:g} points"
+
+
+def safe(outcome: Outcome) -> Outcome:
+    """The outcome without anything that could steer a terminal."""
+    details = dict(outcome.details)
+    if "exception" in details:
+        details["exception"] = printable(details["exception"])
+    text, hint = printable(outcome.text), printable(outcome.hint)
+    return replace(outcome, text=text, hint=hint, details=details)
+
+
+def _line(console: Console, text: str, style: str = "") -> None:
+    console.print(Text(printable(text), style=style), soft_wrap=True)

@@ -1,0 +1,94 @@
+"""Where hand-ins run: fresh workers in the best isolation mode, each against the clock."""
+
+from __future__ import annotations
+
+import contextlib
+import time
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any, Protocol
+
+from ..assignment.manifest import Manifest
+from ..grading.remote import Connection
+from ..worker.codec import Frame
+from ..worker.home import WorkerHome
+from ..worker.launch import open_worker
+from ..worker.modes import choose
+from ..worker.modes import note as note_on
+from ..worker.process import WorkerTimeout
+
+
+class Workers(Protocol):
+    """Gives out started workers."""
+
+    @property
+    def mode(self) -> str:
+        """Of isolation, "A" to "E"."""
+
+    @property
+    def note(self) -> str:
+        """What staff should know about this mode here; "" where there is nothing to say."""
+
+    def open(self, slot: int) -> Connection:
+        """A fresh worker; `slot` numbers those that run at the same time.
+
+        Raises:
+            GraderFault: it does not start, or its isolation does not hold.
+        """
+
+
+class IsolatedWorkers:
+    """Workers of one mode, with the limits of an assignment."""
+
+    def __init__(self, home: WorkerHome, mode: str, manifest: Manifest) -> None:
+        self._home, self._limits = home, manifest.limits
+        self.mode, self.note = mode, note_on(mode)
+
+    def open(self, slot: int) -> Connection:
+        """See Workers."""
+        return open_worker(self._home, self.mode, self._limits, slot)
+
+
+@contextlib.contextmanager
+def isolated_workers(
+    manifest: Manifest, only: str | None = None, secrets: Sequence[Path] = ()
+) -> Iterator[Workers]:
+    """Workers in the strongest mode that works here, for as long as the context lasts.
+
+    Args:
+        manifest: names the weakest mode that will do, limits and imports.
+        only: this mode or none.
+        secrets: files and folders that no worker may read.
+
+    Raises:
+        GraderFault: no mode is strong enough; the text tells staff why.
+        RangeError: `only` is no mode.
+    """
+    mode = choose(manifest.minimum_mode, only, secrets)
+    with WorkerHome(manifest.imports) as home:
+        yield IsolatedWorkers(home, mode, manifest)
+
+
+class Clocked:
+    """A connection whose requests end at a deadline, however long each may take by itself."""
+
+    def __init__(self, connection: Connection, deadline: float) -> None:
+        self._connection = connection
+        self._deadline = deadline
+
+    def request(self, kind: str, value: Any, *, seconds: float, callbacks: int = 200_000) -> Frame:
+        """See Connection."""
+        left = self._deadline - time.monotonic()
+        if left <= 0:
+            raise WorkerTimeout
+        return self._connection.request(
+            kind, value, seconds=min(seconds, left), callbacks=callbacks
+        )
+
+    def cpu_seconds(self) -> float | None:
+        """See Connection."""
+        return self._connection.cpu_seconds()
+
+    def kill(self) -> None:
+        """See Connection."""
+        self._connection.kill()

@@ -1,0 +1,1 @@
+"""A student's machine: the folder of an assignment, predictions, checks, the hand-in."""

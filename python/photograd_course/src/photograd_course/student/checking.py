@@ -1,0 +1,64 @@
+"""Run the public checks on this machine: each in a process of its own, on any system."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from ..assignment.bundle import Bundle
+from ..errors import RangeError, message
+from ..grading.check import Check
+from ..grading.outcome import Outcome
+from ..grading.remote import Hand, RemoteStudent
+from ..grading.runner import run_checks
+from ..grading.trial import Student
+from ..suggest import choose_from
+from ..worker.process import WorkerProcess, install_program, plain_command, scratch_folder
+
+START_SECONDS = 60.0  # a cold start of Python with NumPy on a slow laptop
+
+
+def select(checks: Sequence[Check], task: str | None) -> list[Check]:
+    """The checks of one task (id, or name of a function), or all.
+
+    Raises:
+        RangeError: there is no such task.
+    """
+    if task is None:
+        return list(checks)
+    chosen = [c for c in checks if task in (c.task, c.id) or task in c.calls]
+    if not chosen:
+        names = list(dict.fromkeys([c.task for c in checks] + [f for c in checks for f in c.calls]))
+        remedy = choose_from(task, names)
+        raise RangeError(message("check", "--task", "a task", repr(task), remedy))
+    return chosen
+
+
+def check_here(
+    bundle: Bundle,
+    files: Mapping[str, bytes],
+    checks: Sequence[Check],
+    on_outcome: Callable[[Outcome], None] | None = None,
+) -> list[Outcome]:
+    """Run `checks` on a hand-in of this machine's user. The verdict is indicative only."""
+    hand = bundle.hand(files)
+    with scratch_folder() as scratch:
+        home = install_program(Path(scratch))
+
+        def open_student(substitutes: Mapping[str, Callable[..., Any]]) -> Student:
+            worker = WorkerProcess(plain_command(home), environment=_environment(), cwd=home)
+            worker.request("start", {}, seconds=START_SECONDS)
+            return RemoteStudent(
+                worker, Hand(hand.sources, hand.graded, hand.allowed, dict(substitutes))
+            )
+
+        return run_checks(checks, bundle.setting, open_student, on_outcome=on_outcome)
+
+
+def _environment() -> dict[str, str]:
+    """What Python needs to start, and nothing that steers it; one thread for linear algebra."""
+    needed = ("PATH", "SYSTEMROOT", "TEMP", "TMP", "HOME", "LANG", "LD_LIBRARY_PATH")
+    kept = {name: os.environ[name] for name in needed if name in os.environ}
+    return {**kept, "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "PYTHONHASHSEED": "0"}

@@ -1,0 +1,60 @@
+"""A picture of a wrong array: yours, what it should be, and the difference, on shared scales."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from ..grading.outcome import Outcome
+from ..viz.style import house_style, save_figure, signed_colour_map
+
+Array = np.ndarray[Any, np.dtype[np.float64]]
+
+
+def draw_failure(outcome: Outcome, folder: Path) -> Path | None:
+    """Draw the arrays of a failed check to `folder/check_<id>.png`; None if there are none."""
+    if outcome.arrays is None:
+        return None
+    got, expected = (np.asarray(array, np.float64) for array in outcome.arrays)
+    if got.ndim == 0 or got.size < 3:
+        return None
+    with house_style():
+        figure = _lines(got, expected) if got.squeeze().ndim < 2 else _planes(got, expected)
+        figure.suptitle(f"{outcome.id}: {outcome.title}", fontsize=9)
+        return save_figure(figure, folder / f"check_{outcome.id}.png")
+
+
+def _lines(got: Array, expected: Array) -> Figure:
+    figure = Figure(figsize=(6.0, 3.0), layout="constrained")
+    axes = figure.add_subplot()
+    axes.plot(expected.ravel(), color="0.6", linewidth=4, label="expected")
+    axes.plot(got.ravel(), "o-", color="C0", markersize=3, linewidth=1, label="yours")
+    axes.set_xlabel("index")
+    axes.legend()
+    return figure
+
+
+def _planes(got: Array, expected: Array) -> Figure:
+    shown = [_plane(array) for array in (got, expected, got - expected)]
+    top = max(float(np.abs(plane).max()) for plane in shown[:2]) or 1.0
+    figure = Figure(figsize=(7.5, 2.8), layout="constrained")
+    for k, (plane, name) in enumerate(zip(shown, ("yours", "expected", "difference"), strict=True)):
+        axes = figure.add_subplot(1, 3, k + 1)
+        image = axes.imshow(
+            plane, cmap=signed_colour_map(), vmin=-top, vmax=top, interpolation="nearest"
+        )
+        axes.set_title(name, fontsize=9)
+        axes.locator_params(integer=True)
+    figure.colorbar(image, ax=figure.axes, shrink=0.8)
+    return figure
+
+
+def _plane(array: Array) -> Array:
+    """Two axes of an array: the first channel of pictures, the first slice of what is larger."""
+    plane = array.squeeze()
+    while plane.ndim > 2:
+        plane = plane[..., 0]
+    return plane

@@ -1,0 +1,130 @@
+"""What happens between `photograd course check` and its last line."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import typer
+from rich.console import Console
+
+from ..assignment.bundle import Bundle
+from ..assignment.questions import LETTERS, Question
+from ..atomic_io import atomic_write
+from ..cli.output import emit
+from ..errors import SceneError, message
+from ..grading.outcome import Outcome, Status
+from .checking import check_here, select
+from .folder import LOCK_NAME, WorkFolder, find_folder
+from .pictures import draw_failure
+from .predictions import prediction_letters, write_lock
+from .terminal import print_outcome, print_summary
+
+
+def run_check_command(
+    bundle: Bundle, given: Path | None, task: str | None, *, pictures: bool, as_json: bool
+) -> bool:
+    """Lock predictions, run checks, report; True if all passed.
+
+    Args:
+        bundle: the public one.
+        given: folder of the student's code, or None for here.
+        task: only this task.
+        pictures: draw wrong arrays.
+        as_json: one JSON line at the end.
+    """
+    console = Console(stderr=as_json, highlight=False)
+    folder = find_folder(bundle.manifest, given)
+    checks = select(bundle.checks, task)
+    files = folder.files()
+    lock_predictions(bundle, folder, console)
+
+    def show(outcome: Outcome) -> None:
+        print_outcome(outcome, console)
+        if pictures and (path := draw_failure(outcome, folder.path)) is not None:
+            console.print(f"    picture: {path.name}", soft_wrap=True)
+
+    outcomes = check_here(bundle, files, checks, on_outcome=show)
+    print_summary(outcomes, console, bundle.manifest.points)
+    passed = all(outcome.status is Status.PASSED for outcome in outcomes)
+    if passed and task is None:
+        next_command = f"photograd course handin {bundle.manifest.id}"
+        first = "Answer the questions, then: " if bundle.questions else "Next: "
+        console.print(f"All green. {first}{next_command}", soft_wrap=True)
+    if as_json:
+        emit(as_result(bundle, outcomes), as_json=True)
+    return passed
+
+
+def as_result(bundle: Bundle, outcomes: list[Outcome]) -> dict[str, object]:
+    """The JSON form, equal to that of `grade` in what both have."""
+    return {
+        "assignment": bundle.manifest.id,
+        "mode": "E",
+        "indicative": True,
+        "score": sum(outcome.points for outcome in outcomes),
+        "max_score": sum(outcome.max for outcome in outcomes),
+        "checks": [
+            {"id": o.id, "status": o.status.value, "points": o.points, "max": o.max, "text": o.text}
+            for o in outcomes
+        ],
+    }
+
+
+def lock_predictions(bundle: Bundle, folder: WorkFolder, console: Console) -> None:
+    """Lock the predictions in answers.toml, asking for those that lack where someone can answer.
+
+    Raises:
+        SceneError: predictions are missing, and nobody is there to ask.
+    """
+    if (folder.path / LOCK_NAME).exists():
+        return
+    _, answers = folder.answers()
+    made, lacking = prediction_letters(bundle.questions, answers)
+    if not made and not lacking:
+        return
+    number = bundle.manifest.id
+    if lacking and not sys.stdin.isatty():
+        names = ", ".join(question.id for question in lacking)
+        remedy = (
+            f"write a letter for each into answers.toml, or run 'photograd course predict {number}'"
+        )
+        expected = "predictions before the first check"
+        raise SceneError(message("check", "answers.toml", expected, f"none for {names}", remedy))
+    if lacking:
+        made = {**made, **ask(lacking, folder, console)}
+    write_lock(folder.path, number, made)
+    console.print(f"Predictions locked in {LOCK_NAME}.", soft_wrap=True)
+
+
+def ask(questions: list[Question], folder: WorkFolder, console: Console) -> dict[str, str]:
+    """Ask for predictions on the terminal and write them into answers.toml."""
+    console.print(
+        "Before the first check: what do you expect? Each earns its points right or wrong.",
+        soft_wrap=True,
+    )
+    made = {}
+    for question in questions:
+        console.print(f"\n{question.id}  {question.text}", soft_wrap=True, markup=False)
+        letters = LETTERS[: len(question.options)]
+        for letter, option in zip(letters, question.options, strict=True):
+            console.print(f"  {letter}) {option}", soft_wrap=True, markup=False)
+        answer = ""
+        while len(answer) != 1 or answer not in letters:
+            answer = str(typer.prompt(f"Your prediction ({'/'.join(letters)})")).strip().lower()
+        made[question.id] = answer
+    write_answers(folder.path / "answers.toml", made)
+    return made
+
+
+def write_answers(path: Path, made: dict[str, str]) -> None:
+    """Fill in answers of a TOML file, leaving everything else as it is."""
+    lines = path.read_text(encoding="utf-8").splitlines() if path.exists() else ["[answers]"]
+    for name, answer in made.items():
+        line = f'"{name}" = "{answer}"'
+        at = [k for k, text in enumerate(lines) if text.split("=")[0].strip() == f'"{name}"']
+        if at:
+            lines[at[0]] = line
+        else:
+            lines.append(line)
+    atomic_write(path, ("\n".join(lines) + "\n").encode())

@@ -1,0 +1,275 @@
+"""What every assignment owes, as tests that an assignment's own test file inherits.
+
+    class TestTextureRecovery(AssignmentTests):
+        folder = ASSIGNMENTS / "03_texture_recovery"
+
+Facts of a figure are `{"claim": True}` or `{"claim": (value, low, high)}`. `figures.py` names for
+each figure the mutant that turns at least one of its facts red (RED), and, where it wants to be
+exact, one for each fact (RED_FACTS = {"fig1_x": {"claim": "mutant"}}); a fact in HELD, with a
+reason, needs none.
+"""
+
+from __future__ import annotations
+
+import io
+import re
+import tempfile
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+import pytest
+from photograd_course.assignment.bundle import Bundle, read_folder
+from photograd_course.assignment.checks_file import load_module
+from photograd_course.grading.local import LocalStudent
+from photograd_course.grading.outcome import Outcome, Status
+from photograd_course.grading.runner import run_checks
+from photograd_course.viz import save_figure
+from PIL import Image
+
+from support.tree import ROOT
+
+ASSIGNMENTS = ROOT / "assignments"
+SECRET = b"seeds of the hidden checks, in tests"
+PICTURE_BYTES = 120_000
+# Mean difference of two drawings of one figure, in grey levels; 0 here, text moves elsewhere.
+PICTURE_DIFFERENCE = 3.0
+
+Fact = bool | tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Mutant:
+    """A named wrong solution: what is wrong, the checks it fails, how it differs."""
+
+    diagnosis: str
+    tasks: tuple[str, ...]
+    loses: frozenset[str]
+    replace: list[tuple[str, str]]
+
+
+def names(folder: Path, kind: str) -> list[str]:
+    """Names of the mutants or alternatives of an assignment."""
+    return sorted(path.stem for path in (folder / kind).glob("*.py"))
+
+
+def read_mutant(folder: Path, name: str) -> Mutant:
+    module = load_module(name, (folder / "mutants" / f"{name}.py").read_text("utf-8"))
+    diagnosis = (module.__doc__ or "").strip().splitlines()[0]
+    return Mutant(diagnosis, module.TASKS, frozenset(module.LOSES), module.REPLACE)
+
+
+def source(folder: Path) -> str:
+    """The instructor source."""
+    module = read_folder(folder).manifest.module
+    return (folder / f"{module}.py").read_text("utf-8")
+
+
+def apply_mutant(folder: Path, name: str) -> str:
+    """The instructor source with a mutant's replacements."""
+    text = source(folder)
+    for old, new in read_mutant(folder, name).replace:
+        assert text.count(old) == 1, f"{name}: {old!r} occurs {text.count(old)} times"
+        text = text.replace(old, new)
+    return text
+
+
+def starter(folder: Path) -> str:
+    """What students start from, as far as behaviour goes: every region raises."""
+    text = re.sub(
+        r"^( *)# >>> solution (\S+)\n.*?# <<< solution",
+        r"\1raise NotImplementedError('\2: see the handout')",
+        source(folder),
+        flags=re.MULTILINE | re.DOTALL,
+    )
+    assert "<<< solution" not in text
+    return text
+
+
+def judge(folder: Path, source_text: str | None = None, *, secret: bytes = SECRET) -> list[Outcome]:
+    """The outcome of every check for a text; by default for the solution."""
+    bundle = read_folder(folder, secret=secret)
+    hand = bundle.hand({f"{bundle.manifest.module}.py": (source_text or source(folder)).encode()})
+    return run_checks(bundle.checks, bundle.setting, lambda given: _open(hand.sources, given))
+
+
+def _open(sources: Mapping[str, str], given: Mapping[str, Callable[..., Any]]) -> LocalStudent:
+    return LocalStudent(sources, given)
+
+
+def lost(outcomes: list[Outcome]) -> set[str]:
+    """Ids of the checks not passed; our own faults are ours."""
+    ours = [f"{each.id}: {each.text}" for each in outcomes if each.status is Status.ERROR_OURS]
+    assert ours == []
+    return {each.id for each in outcomes if each.status is not Status.PASSED}
+
+
+def load_figures(folder: Path) -> ModuleType:
+    return load_module("figures", (folder / "figures.py").read_text("utf-8"))
+
+
+def draw(folder: Path, mutant: str | None = None, only: str | None = None) -> dict[str, Any]:
+    """(figure, facts) by figure, computed from the solution or from a mutant."""
+    text = source(folder) if mutant is None else apply_mutant(folder, mutant)
+    module = load_module(read_folder(folder).manifest.module, text)
+    made: dict[str, Callable[[ModuleType], Any]] = load_figures(folder).FIGURES
+    with np.errstate(all="ignore" if mutant else "warn"):
+        return {name: make(module) for name, make in made.items() if only in (None, name)}
+
+
+def figure_facts(
+    folder: Path, mutant: str | None = None, only: str | None = None
+) -> dict[str, dict[str, Fact]]:
+    """The facts behind the captions, by figure."""
+    return {name: facts for name, (_, facts) in draw(folder, mutant, only).items()}
+
+
+def holds(fact: Fact) -> bool:
+    """Whether a fact is true; NaN is not."""
+    if isinstance(fact, tuple):
+        value, low, high = fact
+        return bool(low <= value <= high)
+    assert isinstance(fact, bool | np.bool_), f"{fact!r} is no fact"
+    return bool(fact)
+
+
+def red(facts: Mapping[str, Fact]) -> dict[str, Fact]:
+    """Those that do not hold."""
+    return {claim: fact for claim, fact in facts.items() if not holds(fact)}
+
+
+class AssignmentTests:
+    """Inherit, and set `folder`."""
+
+    folder: Path
+
+    def pytest_generate_tests(self, metafunc: pytest.Metafunc) -> None:
+        wanted = metafunc.fixturenames
+        if "mutant" in wanted:
+            metafunc.parametrize("mutant", names(self.folder, "mutants"))
+        if "alternative" in wanted:
+            metafunc.parametrize("alternative", names(self.folder, "alternatives"))
+        if "figure" in wanted:
+            metafunc.parametrize("figure", list(load_figures(self.folder).FIGURES))
+
+    @property
+    def bundle(self) -> Bundle:
+        return read_folder(self.folder, secret=SECRET)
+
+    def test_points_and_tasks_add_up(self) -> None:
+        bundle = self.bundle
+        assert sum(check.points for check in bundle.checks) == bundle.manifest.points["code"]
+        asked = sum(question.points for question in bundle.questions)
+        assert asked == bundle.manifest.points["questions"]
+        assert {check.task for check in bundle.checks} == {t.id for t in bundle.manifest.tasks}
+        assert sum(len(task.functions) for task in bundle.manifest.tasks) <= 6
+
+    @pytest.mark.parametrize("secret", [SECRET, b"another", b"a third"])
+    def test_the_solution_earns_everything(self, secret: bytes) -> None:
+        outcomes = judge(self.folder, secret=secret)
+        assert {each.id: each.text for each in outcomes if each.points < each.max} == {}
+        # Tolerances stand ten times above the worst correct answer.
+        margins = {each.id: each.details.get("margin", 0.0) for each in outcomes}
+        assert {id: value for id, value in margins.items() if value > 0.1} == {}
+
+    def test_the_starter_earns_nothing(self) -> None:
+        outcomes = judge(self.folder, starter(self.folder))
+        assert {each.reason for each in outcomes} == {"not implemented"}
+        assert sum(each.points for each in outcomes) == 0.0
+
+    def test_a_mutant_loses_exactly_what_it_says(self, mutant: str) -> None:
+        told = read_mutant(self.folder, mutant)
+        outcomes = judge(self.folder, apply_mutant(self.folder, mutant))
+        assert lost(outcomes) == told.loses
+        assert told.loses
+        assert told.tasks == tuple(sorted({e.task for e in outcomes if e.id in told.loses}))
+        # It fails by ten times the tolerance, wherever a tolerance decides.
+        errors = [e.details for e in outcomes if e.id in told.loses and "tolerance" in e.details]
+        assert [each for each in errors if not each["error"] > 10 * each["tolerance"]] == []
+
+    def test_the_checks_name_the_mutants_they_kill(self, mutant: str) -> None:
+        named = {check.id for check in self.bundle.checks if mutant in check.kills}
+        assert named == read_mutant(self.folder, mutant).loses
+
+    def test_a_check_kills_a_mutant_alone_or_says_why_it_stays(self) -> None:
+        losses = [read_mutant(self.folder, name).loses for name in names(self.folder, "mutants")]
+        alone = {next(iter(ids)) for ids in losses if len(ids) == 1}
+        idle = {each.id for each in self.bundle.checks if not each.sole} - alone
+        # Automatic mutants may do it too; then `sole` says so.
+        assert idle == set()
+
+    @pytest.mark.parametrize("secret", [SECRET, b"another"])
+    def test_an_alternative_earns_everything(self, alternative: str, secret: bytes) -> None:
+        text = (self.folder / "alternatives" / f"{alternative}.py").read_text("utf-8")
+        outcomes = judge(self.folder, text, secret=secret)
+        assert {each.id: each.text for each in outcomes if each.points < each.max} == {}
+        margins = {each.id: each.details.get("margin", 0.0) for each in outcomes}
+        assert {id: value for id, value in margins.items() if value > 0.1} == {}
+
+    def test_there_are_enough_mutants_and_alternatives(self) -> None:
+        assert len(names(self.folder, "mutants")) >= 10
+        assert len(names(self.folder, "alternatives")) >= 3
+
+    def test_a_figure_says_what_its_picture_shows(self, figure: str) -> None:
+        facts = figure_facts(self.folder, only=figure)[figure]
+        assert facts
+        assert red(facts) == {}
+
+    def test_a_figure_turns_red_under_its_mutant(self, figure: str) -> None:
+        module = load_figures(self.folder)
+        assert red(figure_facts(self.folder, module.RED[figure], figure)[figure])
+        exact: dict[str, str] = getattr(module, "RED_FACTS", {}).get(figure, {})
+        for claim, mutant in exact.items():
+            assert claim in red(figure_facts(self.folder, mutant, figure)[figure]), (claim, mutant)
+        if hasattr(module, "RED_FACTS"):
+            held = getattr(module, "HELD", {}).get(figure, {})
+            assert set(exact) | set(held) == set(figure_facts(self.folder, only=figure)[figure])
+
+    def test_a_picture_is_the_one_that_its_script_draws(self, figure: str) -> None:
+        path = self.folder / "figures" / f"{figure}.png"
+        assert path.stat().st_size < PICTURE_BYTES
+        with tempfile.TemporaryDirectory() as place:
+            drawn, _ = draw(self.folder, only=figure)[figure]
+            again = _pixels(write_picture(self.folder, drawn, Path(place) / path.name).read_bytes())
+        kept = _pixels(path.read_bytes())
+        assert kept.shape == again.shape
+        assert np.abs(kept - again).mean() < PICTURE_DIFFERENCE
+        assert kept.shape[1] >= 600
+        assert kept.std() > 5.0
+
+    def test_the_handout_shows_every_figure_and_numbers_its_equations(self) -> None:
+        text = (self.folder / "handout.md").read_text("utf-8")
+        shown = set(re.findall(r"\(figures/(\w+)\.png\)", text))
+        assert shown == set(load_figures(self.folder).FIGURES)
+        assert len(shown) >= 4
+        for task in self.bundle.manifest.tasks:
+            number = task.id.rpartition(".")[2]
+            assert re.search(rf"^## {number}[. ]", text, re.MULTILINE), f"no section {number}"
+            for function in task.functions:
+                assert f"`{function}" in text
+        assert re.search(r"\\tag\{1\}", text)
+
+    def test_papers_are_cited_by_a_key_of_the_bibliography(self) -> None:
+        text = (self.folder / "handout.md").read_text("utf-8")
+        keys = set(re.findall(r"\[([A-Z][A-Za-z]*\d{4}[a-z]?)[^\]]*\]", text))
+        known = set(re.findall(r"^@\w+\{([^,\s]+),", _bibliography(), re.MULTILINE))
+        assert keys
+        assert keys <= known
+
+
+def write_picture(folder: Path, figure: Any, path: Path) -> Path:
+    """Write a figure as the assignment's script does: its own `save`, or the house's."""
+    save = getattr(load_figures(folder), "save", save_figure)
+    save(figure, path)
+    return path
+
+
+def _pixels(data: bytes) -> np.ndarray:
+    return np.asarray(Image.open(io.BytesIO(data)).convert("RGB"), dtype=np.float64)
+
+
+def _bibliography() -> str:
+    return (ROOT / "cpp" / "references.bib").read_text("utf-8")

@@ -1,0 +1,73 @@
+"""Kind, shape, dtype and finiteness are asked for before values, and nothing broadcasts."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from photograd_course.grading import (
+    Array,
+    CheckFailed,
+    Integer,
+    Items,
+    Number,
+    Record,
+    Text,
+    Truth,
+)
+
+GOOD = [
+    (Array((2, 3)), np.zeros((2, 3))),
+    (Array((0,)), np.zeros(0)),
+    (Array((2,), "i8"), np.zeros(2, np.int64)),
+    (Number(), 2.5),
+    (Number(), 3),
+    (Number(), np.array(1.0)),
+    (Integer(0, 3), 3),
+    (Truth(), False),
+    (Text(), "x"),
+    (Items(Number(), Array((1,))), [1.0, np.zeros(1)]),
+    (Record({"a": Number()}), {"a": 1.0}),
+]
+BAD = [
+    (Array((2, 3)), np.zeros((3, 2))),
+    (Array((2, 3)), np.zeros((1, 3))),  # would broadcast
+    (Array((2, 3)), np.zeros(())),
+    (Array((2, 3)), 0.0),
+    (Array((2, 3)), [[0.0] * 3] * 2),
+    (Array((2,)), np.zeros(2, np.float32)),
+    (Array((2,)), np.zeros(2, np.int64)),
+    (Array((2,)), np.array([0.0, np.nan])),
+    (Array((2,)), np.array([np.inf, 0.0])),
+    (Array((2,)), None),
+    (Number(), float("nan")),
+    (Number(), float("inf")),
+    (Number(), True),
+    (Number(), np.zeros(1)),
+    (Number(), np.array(1.0, np.float32)),
+    (Number(), "1"),
+    (Integer(), 1.0),
+    (Integer(), True),
+    (Integer(0, 3), 4),
+    (Truth(), 1),
+    (Text(2), "abc"),
+    (Items(Number(), Number()), [1.0]),
+    (Items(Number(), Number()), np.zeros(2)),
+    (Record({"a": Number()}), {"a": 1.0, "b": 2.0}),
+    (Record({"a": Number()}), {}),
+]
+
+
+@pytest.mark.parametrize(("spec", "value"), GOOD)
+def test_what_fits_passes(spec: Number, value: object) -> None:
+    spec.require(value, "f")
+
+
+@pytest.mark.parametrize(("spec", "value"), BAD)
+def test_what_does_not_fit_fails_with_a_sentence(spec: Number, value: object) -> None:
+    with pytest.raises(CheckFailed, match=r"^f"):
+        spec.require(value, "f")
+
+
+def test_a_forgotten_return_is_recognised() -> None:
+    with pytest.raises(CheckFailed, match="return statement"):
+        Array((1,)).require(None, "f")
