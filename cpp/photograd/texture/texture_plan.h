@@ -14,7 +14,7 @@
 #include <memory>
 
 #include "photograd/core/scatter.h"
-#include "photograd/texture/image.h"
+#include "photograd/texture/tile.h"
 
 namespace photograd {
 
@@ -35,9 +35,9 @@ public:
 private:
     template <int C>
     struct Point {
-        R f, g;  // fractions along column and row
-        R target[C];
-        std::int32_t texel;  // upper left of the four, in the tile
+        R f, g;                    // fractions along column and row
+        R target[tile_stride<C>];  // padded with zeros, like the texels of a tile
+        std::int32_t texel;        // upper left of the four, in the tile
     };
     template <int C>
     void sort(const OwnerBins& bins, const R* uv, const R* target);
