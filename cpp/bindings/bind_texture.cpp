@@ -210,11 +210,11 @@ BoundPlan make_plan(std::int64_t height, std::int64_t width, const py::array& uv
         using R = decltype(real);
         ArrayArgs args("TexturePlan");
         const R* points = finite_in<R>(args, "uv", uv, "N 2");
-        const R* colors = args.in<R>("target", target, "N C");
+        const R* colors = args.in<R>("colors", target, "N C");
         const std::int64_t channels = args.size("C"), count = args.size("N");
         if (count == 0) args.range("uv", "at least one point", "none");
         if (channels < 1 || channels > max_channels)
-            args.range("target", "1 to " + std::to_string(max_channels) + " channels",
+            args.range("colors", "1 to " + std::to_string(max_channels) + " channels",
                        std::to_string(channels));
         if (height < 1 || width < 1 || height > largest_side || width > largest_side)
             args.range("shape", "1 to " + std::to_string(largest_side) + " texels along each axis",
@@ -269,7 +269,7 @@ void bind_texture(py::module_& m) {
           py::arg("d_level"), "Adds to all levels of d_mips, d_uv (N, 2) and d_level (N,).");
     py::class_<BoundPlan>(m, "TexturePlan", "Points sorted by tile, with their colours.")
         .def(py::init(&make_plan), py::arg("height"), py::arg("width"), py::arg("uv"),
-             py::arg("target"))
+             py::arg("colors"))
         .def(
             "loss_and_gradient",
             [](const BoundPlan& bound, const py::array& texture, py::array d_texture) {

@@ -317,7 +317,7 @@ class TexturePlan:
         height: typing.SupportsInt | typing.SupportsIndex,
         width: typing.SupportsInt | typing.SupportsIndex,
         uv: numpy.ndarray,
-        target: numpy.ndarray,
+        colors: numpy.ndarray,
     ) -> None: ...
     def loss_and_gradient(self, texture: numpy.ndarray, d_texture: numpy.ndarray) -> float:
         """

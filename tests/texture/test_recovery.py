@@ -134,10 +134,10 @@ def test_unseen_texels_keep_their_value_and_are_reported() -> None:
 def test_bad_input_is_refused() -> None:
     uv, colors = points(10, 1), np.zeros((10, 3))
     with pytest.raises(
-        ShapeError, match=r"TexturePlan: target: expected shape \(N, C\) with N = 10"
+        ShapeError, match=r"TexturePlan: colors: expected shape \(N, C\) with N = 10"
     ):
         recover(uv, colors[:9], (4, 4), steps=1)
-    with pytest.raises(DtypeError, match="TexturePlan: target: expected dtype float64"):
+    with pytest.raises(DtypeError, match="TexturePlan: colors: expected dtype float64"):
         recover(uv, colors.astype(np.float32), (4, 4), steps=1)
     with pytest.raises(RangeError, match="recover: steps: expected at least 1, got 0"):
         recover(uv, colors, (4, 4), steps=0)

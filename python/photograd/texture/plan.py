@@ -29,7 +29,7 @@ class TexturePlan:
             RangeError: no point, or texture coordinates that are not finite.
         """
         uv = float_array("TexturePlan", "uv", uv)
-        colors = float_array("TexturePlan", "target", colors)
+        colors = float_array("TexturePlan", "colors", colors)
         if len(shape) != 2:
             raise ShapeError(message("TexturePlan", "shape", "(H, W)", tuple(shape)))
         height, width = (int(size) for size in shape)
