@@ -1,7 +1,10 @@
-"""you ask only that the value does not rise: Armijo's rule asks for a part of the promised decrease"""
+"""you ask only that the value does not rise, not for a part of the promised decrease"""
 
-TASKS = ('01.6',)
-LOSES = ('01.6.armijo',)
+TASKS = ("01.6",)
+LOSES = ("01.6.armijo",)
 REPLACE = [
-    ("start + c * tau * slope", "start"),
+    (
+        "start + c * tau * slope",
+        "start",
+    ),
 ]

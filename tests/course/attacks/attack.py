@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import importlib.util
+import json
 import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+
+from photograd_course.student.folder import LOCK_NAME
+from photograd_course.student.predictions import digest
 
 from course.attacks.archive import zip_of
 
@@ -74,8 +78,11 @@ def read_attacks() -> list[Attack]:
 
 def solution_upload() -> bytes:
     """What an honest and able student hands in."""
+    made = {"91.p1": "a"}
+    lock = {"assignment": "91", "answers": made, "locked_at": "", "sha256": digest("91", made)}
     answers = 'student = "innocent"\n[answers]\n"91.p1" = "a"\n"91.c1" = 1.0\n'
-    return zip_of({MODULE: (ASSIGNMENT / MODULE).read_bytes(), "answers.toml": answers})
+    module = (ASSIGNMENT / MODULE).read_bytes()
+    return zip_of({MODULE: module, "answers.toml": answers, LOCK_NAME: json.dumps(lock)})
 
 
 def _read(folder: Path) -> Attack:

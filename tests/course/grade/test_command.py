@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from photograd_course.build.seal import bundle_files, seal_bundle
 from photograd_course.cli import run
 
 
@@ -54,14 +55,14 @@ def test_a_mode_below_the_minimum_is_for_staff_and_no_zero(
     assert result["grades"][0]["score"] is None
 
 
-def test_secrets_change_the_seeds_and_short_ones_are_refused(
+def test_a_short_secret_is_refused(
     hand_in: Path, toy: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     secret = tmp_path / "secret"
     secret.write_text("short")
     code, _, said = grade(capsys, hand_in, "--bundle", toy, "--secret-file", secret, "--mode", "E")
     assert code == 1
-    assert "at least 16 bytes" in said
+    assert "at least 16 characters" in said
 
 
 @pytest.mark.parametrize(
@@ -75,6 +76,22 @@ def test_wrong_calls(
     code, _, said = grade(capsys, *(w.format(hand_in) for w in words), "--bundle", toy)
     assert code == 1
     assert says in said
+
+
+def test_a_sealed_bundle_opens_with_its_secret_only(
+    hand_in: Path, toy: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    secret, other = tmp_path / "secret.txt", tmp_path / "other.txt"
+    secret.write_text("a secret of the whole course\n")
+    other.write_text("a secret of another course\n")
+    sealed = tmp_path / "hidden.zip"
+    sealed.write_bytes(seal_bundle(bundle_files(toy, {}), secret.read_bytes().strip()))
+    words = (hand_in, "--bundle", sealed, "--mode", "E", "--secret-file")
+    code, result, _ = grade(capsys, *words, secret)
+    assert (code, result["score"], result["max_score"]) == (0, 15, 21)
+    code, _, said = grade(capsys, *words, other)
+    assert code == 1
+    assert "seal of this course's secret" in said
 
 
 def test_a_kit_is_no_bundle(

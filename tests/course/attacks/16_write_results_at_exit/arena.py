@@ -1,6 +1,6 @@
 """The last word."""
 
-import json
+json = __import__("json")
 
 os, atexit, threading, time = (__import__(n) for n in ("os", "atexit", "threading", "time"))
 os.write(2, b"token 16\n")

@@ -1,6 +1,6 @@
 """Somebody stays behind."""
 
-import json
+json = __import__("json")
 
 os, time = __import__("os"), __import__("time")
 os.write(2, b"token 17\n")

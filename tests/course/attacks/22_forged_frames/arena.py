@@ -1,6 +1,6 @@
 """Speaks for the worker."""
 
-import json
+json = __import__("json")
 
 os, struct, threading = __import__("os"), __import__("struct"), __import__("threading")
 os.write(2, b"token 22\n")

@@ -1,6 +1,6 @@
 """Totals of its own."""
 
-import json
+json = __import__("json")
 
 os = __import__("os")
 os.write(2, b"token 31\n")

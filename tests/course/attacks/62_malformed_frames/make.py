@@ -2,8 +2,7 @@
 
 PAYLOAD = '''"""Speaks nonsense."""
 
-import struct
-
+struct = __import__("struct")
 os, stat = __import__("os"), __import__("stat")
 os.write(2, b"token 62\\n")
 
@@ -54,7 +53,7 @@ def variants() -> dict[str, bytes]:
         "brackets": "frame(b'[' * 1_000_000)",
         "digits": "frame(b'{\"number\": ' + b'9' * 3_000_000 + b'}')",
         "amplified": 'frame(b\'{"kind": "result", "number": 3, "arrays": [], "value": [\''
-        " + b'[],' * 9_000_000 + b'[]]}')",
+        " + b'[],' * 2_700_000 + b'[]]}')",
     }
     made = {name: PAYLOAD.format(data=data, repeats=1).encode() for name, data in kinds.items()}
     made["torrent"] = PAYLOAD.format(data="frame(b' ' * 1_000_000)", repeats=400).encode()

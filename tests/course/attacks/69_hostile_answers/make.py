@@ -5,7 +5,7 @@ import json
 
 from course.attacks.archive import zip_of
 
-MODULE = '__import__("os").write(2, b"token 69\\n")\n'
+MODULE = "# nothing\n"
 MADE = {"91.p1": "a"}
 LOCK = {"assignment": "91", "answers": MADE, "locked_at": "1970-01-01", "sha256": "0" * 64}
 

@@ -66,7 +66,8 @@ def value_at_random_points(t):
 
 
 @check("90.2.cost", task="90.2", points=3, calls=("weighted_sum_backward",), visibility="hidden",
-       tolerance=ROUNDING, kills=("differences", "sign", "unweighted_backward", "no_cotangent"),
+       needs=("weighted_sum",), tolerance=ROUNDING,
+       kills=("differences", "sign", "unweighted_backward", "no_cotangent"),
        seconds=5.0)  # fmt: skip
 def the_derivative_is_cheap(t):
     """With 4,000 parameters the derivative is right, and costs a few forward calls."""

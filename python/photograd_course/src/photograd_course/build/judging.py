@@ -18,6 +18,7 @@ import numpy as np
 
 from ..assignment.manifest import read_manifest
 from ..atomic_io import atomic_write
+from ..errors import Error, message
 
 WORKERS = 2
 WALL = 6.0  # seconds of wall clock for a second of processor time: for what sleeps
@@ -87,7 +88,11 @@ class Judge:
     _known: str = ""
 
     def judge(self, job: Job) -> Verdict:
-        """The verdict on one text, from the cache where it is known."""
+        """The verdict on one text, from the cache where it is known.
+
+        Raises:
+            Error: the judging itself does not work; no fault of the text.
+        """
         place = None
         if self.cache is not None:
             key = hashlib.sha256(f"{self._stem()}|{job!r}".encode()).hexdigest()
@@ -163,7 +168,8 @@ class Judge:
         finished = {each["id"] for each in outcomes}
         open_ones = [each for each in begun if each not in finished and each not in failed]
         if not open_ones:
-            raise RuntimeError(f"judging {self.folder.name} ended early: {problem[-2000:]}")
+            got = f"an end before the first: {problem[-2000:]}"
+            raise Error(message("judge", self.folder.name, "an outcome of each check", got))
         return outcomes, open_ones[-1]
 
     def _stem(self) -> str:

@@ -73,9 +73,19 @@ def fenced_code(markdown: str) -> str:
     return "\n".join(_FENCE.findall(markdown))
 
 
-def words_of(text: str) -> set[str]:
+@lru_cache(maxsize=4096)
+def words_of(text: str) -> frozenset[str]:
     """Everything in a text that looks like a name."""
-    return set(_WORD.findall(text))
+    return frozenset(_WORD.findall(text))
+
+
+def shingles_in(telling: set[Shingle], code: str) -> set[Shingle]:
+    """Those of ``telling`` that occur in a text; most texts lack their words and are not cut up."""
+    words = words_of(code)
+    possible = {
+        each for each in telling if all(word in words for word in each if word.isidentifier())
+    }
+    return possible & shingles_of(code) if possible else set()
 
 
 def bound_names(module: str, parts: Iterable[tuple[int, int]]) -> set[str]:

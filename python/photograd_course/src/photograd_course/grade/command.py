@@ -53,8 +53,8 @@ def grade_command(request: Request) -> bool:
     loaded = load(request.assignment, request.bundle, request.secret_file)
     bundle = loaded.read()
     sources = find_sources(bundle.manifest, request.hand_in)
-    places = (request.bundle, request.secret_file, request.hand_in)
-    secrets = tuple(path.resolve() for path in places if path is not None)
+    places = (loaded.place, request.secret_file, request.hand_in, request.out)
+    secrets = tuple(path.resolve() for path in places if path is not None and path.exists())
     console = Console(stderr=request.as_json, highlight=False)
     with _workers(bundle.manifest, request, secrets) as (workers, unavailable):
         if request.out is None and not is_batch(bundle.manifest, request.hand_in):

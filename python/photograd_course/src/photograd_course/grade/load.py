@@ -10,6 +10,8 @@ from pathlib import Path
 from ..assignment.bundle import PUBLIC_SECRET, Bundle, read_folder
 from ..assignment.manifest import Manifest, read_manifest
 from ..build.kits import find_kit, kit_files, match_folder, source_folders
+from ..build.seal import open_bundle
+from ..build.secret import read_secret
 from ..errors import Error, IoError, SceneError, message
 
 # What a verdict depends on, in a folder; a built bundle is one file.
@@ -21,7 +23,6 @@ JUDGING = (
     "adapters.py",
     "hints.json",
 )
-LONGEST_SECRET = 4096
 
 
 @dataclass(frozen=True)
@@ -32,12 +33,14 @@ class Loaded:
         read: gives a fresh one.
         digest: SHA-256 of what verdicts depend on, the secret among it, since seeds come from it.
         secret: of the course.
+        place: where it lies; no worker may read there.
         starter: text of the graded module as students got it; empty where it is not known.
     """
 
     read: Callable[[], Bundle]
     digest: str
     secret: bytes
+    place: Path
     starter: str = ""
 
 
@@ -57,9 +60,9 @@ def load(number: str, where: Path | None = None, secret_file: Path | None = None
     secret = PUBLIC_SECRET if secret_file is None else read_secret(secret_file)
     if path.is_dir():
         digest = _folder_digest(path, secret)
-        loaded = Loaded(lambda: read_folder(path, secret=secret), digest, secret)
+        loaded = Loaded(lambda: read_folder(path, secret=secret), digest, secret, path)
     else:
-        loaded = _packed(path, secret)
+        loaded = _sealed(path, secret)
     bundle = loaded.read()
     if number not in _names_of(bundle.manifest):
         raise SceneError(message("grade", path.name, f"assignment {number}", bundle.manifest.id))
@@ -83,25 +86,6 @@ def find_source(number: str) -> Path:
     return folders[match_folder(number, list(folders))]
 
 
-def read_secret(path: Path) -> bytes:
-    """The course secret: the file's bytes without blanks around them.
-
-    Raises:
-        IoError: it cannot be read.
-        SceneError: it is too short to be a secret.
-    """
-    try:
-        with path.open("rb") as file:
-            secret = file.read(LONGEST_SECRET).strip()
-    except OSError as error:
-        raise IoError(message("grade", str(path), "a secret", str(error.strerror))) from error
-    if len(secret) < 16:
-        remedy = "make one: python -c 'import secrets; print(secrets.token_hex(32))'"
-        expected = "a secret of at least 16 bytes"
-        raise SceneError(message("grade", path.name, expected, f"{len(secret)}", remedy))
-    return secret
-
-
 def _names_of(manifest: Manifest) -> set[str]:
     short = manifest.id.lstrip("0") or "0"
     return {manifest.id, short, manifest.name, manifest.folder_name}
@@ -116,7 +100,7 @@ def _starter(path: Path, manifest: Manifest) -> str:
 
 
 def _folder_digest(folder: Path, secret: bytes) -> str:
-    total = hashlib.sha256(hashlib.sha256(b"seeds\0" + secret).digest())
+    total = hashlib.sha256(_of_secret(secret))
     for name in sorted({*JUDGING, f"{read_manifest(folder).module}.py"}):
         if (folder / name).is_file():
             data = (folder / name).read_bytes()
@@ -124,5 +108,16 @@ def _folder_digest(folder: Path, secret: bytes) -> str:
     return total.hexdigest()
 
 
-def _packed(path: Path, secret: bytes) -> Loaded:
-    raise IoError(message("grade", str(path), "a folder", f"a file ({len(secret)})"))
+def _sealed(path: Path, secret: bytes) -> Loaded:
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        got = error.strerror or str(error)
+        raise IoError(message("grade", str(path), "a bundle or a folder", got)) from error
+    digest = hashlib.sha256(_of_secret(secret) + data).hexdigest()
+    # One reading for all, so that a file that changes meanwhile changes nothing.
+    return Loaded(lambda: open_bundle(data, secret, path.name), digest, secret, path)
+
+
+def _of_secret(secret: bytes) -> bytes:
+    return hashlib.sha256(b"seeds\0" + secret).digest()

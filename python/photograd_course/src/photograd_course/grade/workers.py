@@ -80,7 +80,7 @@ class Clocked:
         """See Connection."""
         left = self._deadline - time.monotonic()
         if left <= 0:
-            raise WorkerTimeout
+            raise WorkerTimeout("the time for this check is used up")
         return self._connection.request(
             kind, value, seconds=min(seconds, left), callbacks=callbacks
         )

@@ -10,18 +10,21 @@ from pathlib import Path
 
 libc = ctypes.CDLL(None, use_errno=True)
 PTRACE_SEIZE = 0x4206
+AF_INET, F_SETFL, NETWORK_IS_UNREACHABLE = 2, 4, 101
 
 
 def open_network() -> str:
-    """An internet socket."""
-    for family in (2, 10):
-        descriptor = libc.socket(family, 1, 0)
-        if descriptor >= 0:
-            # In a network namespace of its own it leads nowhere.
-            address = bytes([2, 0, 0, 53, 192, 0, 2, 1]) + bytes(8)
-            if libc.connect(descriptor, address, 16) == 0 or ctypes.get_errno() != 101:
-                return "a socket"
-    return ""
+    """An internet socket that leads anywhere."""
+    descriptor = libc.socket(AF_INET, 1, 0)
+    if descriptor < 0:
+        return ""
+    # In a network namespace of its own even an address of RFC 5737, which nobody has, says so.
+    address = bytes([AF_INET, 0, 0, 53, 192, 0, 2, 1]) + bytes(8)
+    libc.fcntl(descriptor, F_SETFL, os.O_NONBLOCK)
+    libc.connect(descriptor, address, len(address))
+    reason = ctypes.get_errno()
+    os.close(descriptor)
+    return "" if reason == NETWORK_IS_UNREACHABLE else "a socket"
 
 
 def start_process() -> str:

@@ -34,7 +34,7 @@ def confine(policy: dict[str, Any], keep: set[int]) -> list[str]:
     if policy["unshare"]:
         kernel.unshare(policy["unshare"])
     after = namespace_ids()
-    rules = landlock.open_ruleset(policy["readable"]) if policy["landlock"] else None
+    rules = landlock.open_ruleset([*policy["readable"], "."]) if policy["landlock"] else None
     for name, amount in policy["limits"].items():
         limit(name, amount)
     if policy["uid"] is not None:

@@ -53,6 +53,11 @@ class WorkerHome:
             self._users.close()
             self._users = None
 
+    @property
+    def has_users(self) -> bool:
+        """Whether a block of user ids is borrowed."""
+        return self._users is not None
+
     def uid(self, slot: int) -> int:
         """The user id of a slot; a block of them is borrowed at the first call.
 

@@ -37,7 +37,7 @@ class PlainLifeline:
         if kill_group is not None:
             with contextlib.suppress(OSError):
                 kill_group(process.pid, 9)
-        process.kill()
+        processes.finish(process)
         for member in family[1:]:
             processes.send_end(member)
 

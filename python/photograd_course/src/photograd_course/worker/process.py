@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from .codec import MAX_BODY, Frame, FrameError, FunctionId, decode, encode
+from .processes import finish
 from .program import install_program, plain_command, scratch_folder
 
 __all__ = [
@@ -157,7 +158,7 @@ class WorkerProcess:
         self._ended.set()
         self._wanted.release()  # lets the reading thread see the end
         if self._lifeline is None:
-            self._process.kill()
+            finish(self._process)
         else:
             self._lifeline.end(self._process)
 
@@ -165,7 +166,7 @@ class WorkerProcess:
         """End the worker when its time is over, so that no write to it can block for longer."""
         while not self._ended.wait(HEARTBEAT):
             if time.monotonic() > self._request_deadline + HEARTBEAT:
-                self._process.kill()
+                finish(self._process)
                 return
 
     def _name(self, function: Callable[..., Any]) -> int:

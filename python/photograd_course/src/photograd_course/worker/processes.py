@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import signal
+import subprocess
 import sys
 import time
 from pathlib import Path
@@ -76,6 +78,14 @@ def is_alive(pid: int) -> bool:
     """Whether a process is there and no mere entry in a table."""
     fields = stat_fields(pid)
     return bool(fields) and fields[0] not in "ZX"
+
+
+def finish(process: subprocess.Popen[bytes]) -> None:
+    """Kill a child. Where there is no SIGKILL, terminating is just as final."""
+    if hasattr(signal, "SIGKILL"):
+        process.kill()
+    else:
+        process.terminate()
 
 
 def send_end(pid: int) -> None:

@@ -12,6 +12,7 @@ from ..leak_words import (
     Shingle,
     fenced_code,
     says_something,
+    shingles_in,
     shingles_of,
     well_known_shingles,
 )
@@ -28,7 +29,7 @@ def look(dossier: Dossier) -> Iterator[str]:
             continue  # its fences are given on purpose, its sentences are no code
         else:
             code = text.replace("\\n", "\n").replace('"', " ")
-        common = sorted(telling & shingles_of(code))
+        common = sorted(shingles_in(telling, code))
         if common:
             more = f" and {len(common) - 1} more" if len(common) > 1 else ""
             yield f"'{' '.join(common[0])}'{more} of the solution stands in {path}"
