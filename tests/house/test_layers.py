@@ -6,6 +6,7 @@ import re
 import sys
 import tomllib
 from importlib import import_module
+from itertools import chain
 
 import pytest
 
@@ -35,9 +36,11 @@ def allowed_imports() -> dict[str, set[str]]:
     finally:
         sys.path.pop(0)
     optional = [line for name in ("viewer", "sfm", "data") for line in extras[name]]
+    extras_of_course = course["project"].get("optional-dependencies", {})
+    of_course = [*course["project"]["dependencies"], *chain(*extras_of_course.values())]
     standard = set(sys.stdlib_module_names)
     return {
-        COURSE: standard | names(course["project"]["dependencies"]) | {"photograd_course"},
+        COURSE: standard | names(of_course) | {"photograd_course"},
         CORE: standard | names(declared + optional) | {"photograd"},
     }
 
