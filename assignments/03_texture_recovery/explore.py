@@ -83,18 +83,19 @@ print(f"yours: {steps} steps in {seconds:.2f} s, {decibels:.1f} dB, {unknown.sum
 # ## The C++ core on the same samples
 
 # %%
-if find_spec("photograd") is not None and find_spec("photograd.texture") is not None:
+try:
     core = importlib.import_module("photograd.texture")
     before = time.perf_counter()
     result = core.recover(places, measured, truth.shape[:2], steps=steps)
+except (ImportError, AttributeError):  # none, or one from before it had textures
+    print("core not installed")
+else:
     core_seconds = time.perf_counter() - before
     core_error = np.mean((result.texture - truth)[~unknown] ** 2)
     print(
         f"core:  {steps} steps in {core_seconds:.2f} s, {-10 * np.log10(core_error):.1f} dB: "
         f"{seconds / core_seconds:.0f} times as fast"
     )
-else:
-    print("core not installed")
 
 # %% [markdown]
 # ## Pictures

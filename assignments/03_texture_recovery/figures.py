@@ -108,7 +108,9 @@ def fig2_adjoint(module: ModuleType) -> tuple[Figure, Facts]:
             axes.set_title(title)
         panels[0].plot(*_centres(shape).T, ".", color=GREY, markersize=4)
         colours = {"cmap": signed_colour_map(), "vmin": -1, "vmax": 1}
-        panels[0].scatter(*uv[:3].T, c=[1.0, -1.0, 0.8], s=70, edgecolors=INK, zorder=3, **colours)
+        panels[0].scatter(
+            *uv[:3].T, c=[1.0, -1.0, 0.8], s=70, edgecolors=INK, zorder=3, clip_on=False, **colours
+        )
         for k, value in enumerate(("+1.0", "−0.7 and −0.3", "+0.8 ")):
             panels[0].annotate(
                 value,
