@@ -13,4 +13,6 @@ PYBIND11_MODULE(_core, m) {
     photograd::bind_direct(m);
     photograd::bind_sampling(m);
     photograd::bind_texture(m);
+    photograd::bind_octree(m);
+    photograd::bind_voxel_hash(m);
 }

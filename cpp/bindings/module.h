@@ -17,5 +17,7 @@ void bind_light(py::module_& m);
 void bind_direct(py::module_& m);
 void bind_sampling(py::module_& m);
 void bind_texture(py::module_& m);
+void bind_octree(py::module_& m);
+void bind_voxel_hash(py::module_& m);
 
 }  // namespace photograd

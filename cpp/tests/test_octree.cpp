@@ -104,6 +104,9 @@ TEST_CASE("point queries equal the dense array at a million points") {
     for (std::uint32_t row = 0; row < 1'000'000; ++row) {
         double point[3];
         for (std::uint32_t a = 0; a < 3; ++a) point[a] = 66.0 * number(row, a) - 1.0;
+        // Every fourth point lies on faces of cells, where the upper one counts.
+        for (double& x : point)
+            if (row % 4 == 0) x = std::floor(x);
         Coefficients<float> expected{0, 0};
         int cell[3];
         for (int a = 0; a < 3; ++a) cell[a] = static_cast<int>(std::floor(point[a]));

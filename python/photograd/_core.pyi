@@ -12,8 +12,11 @@ import typing
 __all__: list[str] = [
     "Bvh",
     "MarchSettings",
+    "Octree",
     "Op",
+    "Quadtree",
     "TexturePlan",
+    "VoxelHash",
     "bsdf_lambert",
     "bsdfs",
     "build_mips",
@@ -322,6 +325,132 @@ class TexturePlan:
     def loss_and_gradient(self, texture: numpy.ndarray, d_texture: numpy.ndarray) -> float:
         """
         The loss; adds to d_texture (H, W, C).
+        """
+
+class Octree:
+    """
+    Which cube of space is a leaf.
+    """
+    @staticmethod
+    def from_dense(
+        values: numpy.ndarray,
+        background: numpy.ndarray,
+        tolerance: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> tuple[typing.Any, ...]:
+        """
+        The tree of an array, and its payloads (L, C).
+        """
+    @staticmethod
+    def from_function(
+        depth: typing.SupportsInt | typing.SupportsIndex,
+        classify: collections.abc.Callable,
+        channels: typing.SupportsInt | typing.SupportsIndex,
+    ) -> tuple[typing.Any, ...]:
+        """
+        The tree of classify(lower, side) -> None or channels; payloads (L, C).
+        """
+    def leaf_boxes(self) -> tuple[typing.Any, ...]:
+        """
+        Lower corners (L, D) and sides (L,) in cells.
+        """
+    def locate(self, points: numpy.ndarray, leaf: numpy.ndarray) -> None:
+        """
+        Fills leaf (N,) int32 for points (N, D) in cells; -1 is outside of the root.
+        """
+    def statistics(self) -> tuple[int, int, int, list[int]]:
+        """
+        nodes, leaves, bytes, and a list of leaves by level, that of the root first.
+        """
+    def traverse(
+        self,
+        origins: numpy.ndarray,
+        directions: numpy.ndarray,
+        t_min: numpy.ndarray,
+        t_max: numpy.ndarray,
+    ) -> tuple[typing.Any, ...]:
+        """
+        Visits of rays (R, D) in cells: ray_offset (R + 1,), leaf (M,), t0 (M,), t1 (M,).
+        """
+    @property
+    def depth(self) -> int:
+        """
+        Levels below the root.
+        """
+
+class Quadtree:
+    """
+    Which square of a plane is a leaf.
+    """
+    @staticmethod
+    def from_dense(
+        values: numpy.ndarray,
+        background: numpy.ndarray,
+        tolerance: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> tuple[typing.Any, ...]:
+        """
+        The tree of an array, and its payloads (L, C).
+        """
+    @staticmethod
+    def from_function(
+        depth: typing.SupportsInt | typing.SupportsIndex,
+        classify: collections.abc.Callable,
+        channels: typing.SupportsInt | typing.SupportsIndex,
+    ) -> tuple[typing.Any, ...]:
+        """
+        The tree of classify(lower, side) -> None or channels; payloads (L, C).
+        """
+    def leaf_boxes(self) -> tuple[typing.Any, ...]:
+        """
+        Lower corners (L, D) and sides (L,) in cells.
+        """
+    def locate(self, points: numpy.ndarray, leaf: numpy.ndarray) -> None:
+        """
+        Fills leaf (N,) int32 for points (N, D) in cells; -1 is outside of the root.
+        """
+    def statistics(self) -> tuple[int, int, int, list[int]]:
+        """
+        nodes, leaves, bytes, and a list of leaves by level, that of the root first.
+        """
+    def traverse(
+        self,
+        origins: numpy.ndarray,
+        directions: numpy.ndarray,
+        t_min: numpy.ndarray,
+        t_max: numpy.ndarray,
+    ) -> tuple[typing.Any, ...]:
+        """
+        Visits of rays (R, D) in cells: ray_offset (R + 1,), leaf (M,), t0 (M,), t1 (M,).
+        """
+    @property
+    def depth(self) -> int:
+        """
+        Levels below the root.
+        """
+
+class VoxelHash:
+    """
+    Which row of a payload array belongs to a voxel.
+    """
+    def __init__(self) -> None: ...
+    def erase(self, voxels: numpy.ndarray, rows: numpy.ndarray) -> None:
+        """
+        Fills rows (N,) with those that are free now.
+        """
+    def find(self, voxels: numpy.ndarray, rows: numpy.ndarray) -> None:
+        """
+        Fills rows (N,), -1 where there is none.
+        """
+    def insert(self, voxels: numpy.ndarray, rows: numpy.ndarray) -> None:
+        """
+        Fills rows (N,); new voxels (N, 3) are given one.
+        """
+    def items(self) -> tuple[typing.Any, ...]:
+        """
+        Voxels (M, 3) and their rows (M,), by ascending row.
+        """
+    def statistics(self) -> tuple[int, int, int, int, int, float]:
+        """
+        count, row_limit, slots, bytes, longest_probe, mean_probe.
         """
 
 def build_mips(mips: collections.abc.Sequence[numpy.ndarray]) -> None:

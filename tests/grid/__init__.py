@@ -1,0 +1,1 @@
+"""Sparse grids: trees and hash tables."""
