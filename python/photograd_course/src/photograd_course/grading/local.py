@@ -95,6 +95,7 @@ def _crossing(value: Any) -> Any:
         try:
             return round_trip(value(*[round_trip(arg) for arg in args]))
         except Exception as error:
-            raise ValueError(f"{type(error).__name__}: {error}"[:500]) from error
+            said = f"a function given to you cannot take these arguments ({type(error).__name__})"
+            raise ValueError(said) from error
 
     return service
