@@ -39,16 +39,17 @@ def rotated_bowl(rng, curvatures):
 
 
 def scripted(gradients):
-    """A gradient that ignores where it is asked, and hands out the given rows in turn."""
-    rows = iter(gradients)
+    """A gradient that hands out the given rows in turn, and the list of points it was asked at."""
+    rows, asked = iter(gradients), []
 
-    def grad(_):
+    def grad(x):
+        asked.append(np.array(x))
         row = next(rows, None)
         if row is None:
             raise RuntimeError(f"grad was called more than {len(gradients)} times: once a step")
         return row
 
-    return grad
+    return grad, asked
 
 
 # 01.1 ------------------------------------------------------------------------------------------
@@ -122,7 +123,7 @@ def the_error_falls_with_the_square_of_the_step(t):
     points=4,
     calls=("gd_1d",),
     tolerance=EXACT,
-    kills=("uphill", "no_tau", "stale_gradient", "stale_loss"),
+    kills=("uphill", "no_tau", "stale_gradient", "stale_loss", "relative_loss"),
     hint="Each step multiplies the distance to the minimum by the same factor, Eq. (6).",
 )
 def a_parabola_contracts_by_one_factor(t):
@@ -150,22 +151,22 @@ def a_parabola_contracts_by_one_factor(t):
     task="01.2",
     points=3,
     calls=("gd_1d",),
-    kills=("uphill", "no_tau", "stale_gradient", "verdict_by_position"),
+    kills=("uphill", "no_tau", "stale_gradient", "stale_loss", "verdict_by_position"),
     hint="Compare the last value with the first, Eq. (8), not the points.",
 )
 def the_verdict_changes_at_the_bound(t):
     """Just below tau = 2 / lambda the walk closes in, just above it flies off and says so."""
     curvature, centre = float(t.rng.uniform(0.5, 3.0)), float(t.rng.uniform(3.0, 5.0))
 
-    def go(reach, x0):
+    def go(reach, x0, n=30):
         return t.call(
             "gd_1d",
             lambda y: 0.5 * curvature * (y - centre) ** 2,
             lambda y: curvature * (y - centre),
             x0,
             reach / curvature,
-            30,
-            returns=walk(30),
+            n,
+            returns=walk(n),
         )
 
     for x0 in (centre - 0.5, centre + 0.5):
@@ -177,6 +178,8 @@ def the_verdict_changes_at_the_bound(t):
         t.require(wrong, "above the bound the verdict must be True")
     _, _, wrong = go(0.5, centre)
     t.require(not wrong, "a walk that starts in the minimum and stays has not gone wrong")
+    _, _, wrong = go(2.1, centre + 0.5, 1)
+    t.require(wrong, "a single step that leads higher has gone wrong")
 
 
 # 01.3 ------------------------------------------------------------------------------------------
@@ -188,7 +191,7 @@ def the_verdict_changes_at_the_bound(t):
     points=4,
     calls=("gd_nd",),
     tolerance=EXACT,
-    kills=("aliased_trail", "one_at_a_time", "unit_steps", "stale_loss_nd"),
+    kills=("aliased_trail", "one_at_a_time", "unit_steps", "stale_loss_nd", "relative_loss_nd"),
     hint="Take the gradient once, at the old point, and move all coordinates with it.",
 )
 def each_eigenvector_has_a_factor_of_its_own(t):
@@ -208,7 +211,7 @@ def each_eigenvector_has_a_factor_of_its_own(t):
     task="01.3",
     points=4,
     calls=("gd_nd",),
-    kills=("aliased_trail", "one_at_a_time", "unit_steps", "verdict_by_last_step"),
+    kills=("aliased_trail", "one_at_a_time", "unit_steps", "stale_loss_nd", "verdict_by_last_step"),
     hint="The verdict compares the last value with the first, Eq. (8).",
 )
 def the_largest_curvature_decides(t):
@@ -226,6 +229,10 @@ def the_largest_curvature_decides(t):
     start = vectors @ np.array([1.0, 1.0, 1e-3])
     _, _, wrong = t.call("gd_nd", f, grad, start, 2.1 / 4.0, 40, returns=walk(40, 3))
     t.require(not wrong, "the walk ends lower than it began, so the verdict should be False")
+    _, _, wrong = t.call("gd_nd", f, grad, np.zeros(3), 0.1, 2, returns=walk(2, 3))
+    t.require(not wrong, "a walk that starts in the minimum and stays has not gone wrong")
+    _, _, wrong = t.call("gd_nd", f, grad, vectors[:, 2], 2.1 / 4.0, 1, returns=walk(1, 3))
+    t.require(wrong, "a single step that leads higher has gone wrong")
 
 
 # 01.4 ------------------------------------------------------------------------------------------
@@ -335,9 +342,10 @@ TRACE_POINTS = np.array(
 )
 def five_steps_agree_with_the_table(t):
     """Five steps with the gradients of the handout's table lead where the table says."""
-    grad = scripted(TRACE_GRADIENTS)
+    grad, asked = scripted(TRACE_GRADIENTS)
     x = t.call("adam", grad, np.zeros(2), 0.1, 5, returns=Array((6, 2)))
     t.close("the points", x, TRACE_POINTS, reveal=True)
+    t.close("the points at which the gradient is taken", np.array(asked), TRACE_POINTS[:5])
 
 
 # 01.6 ------------------------------------------------------------------------------------------
@@ -376,6 +384,19 @@ def the_step_is_the_first_that_keeps_its_promise(t):
             refused += 1
             t.require(not keeps(shrink ** (count - 1)), "a longer step would have been accepted")
     t.require(refused >= 4, "too few steps were refused")
+    # f(1) = -1/4 is the bound itself, in binary numbers without rounding.
+    tau = t.call(
+        "backtracking",
+        lambda y: float(0.75 * y[0] ** 2 - y[0]),
+        lambda y: 1.5 * y - 1.0,
+        np.zeros(1),
+        np.ones(1),
+        1.0,
+        0.25,
+        0.5,
+        returns=Number(),
+    )
+    t.require(float(tau) == 1.0, "a value that equals the bound is good enough")
 
 
 @check(
@@ -387,10 +408,12 @@ def the_step_is_the_first_that_keeps_its_promise(t):
     hint="Raise ValueError unless the slope along d is negative.",
 )
 def a_direction_uphill_is_refused(t):
-    """A direction that leads uphill, or neither up nor down, raises ValueError."""
+    """A direction that leads uphill, nowhere, or nobody knows where raises ValueError."""
     f, grad, vectors = rotated_bowl(t.rng, np.array([1.0, 3.0]))
     t.refuses("backtracking", f, grad, vectors[:, 0], vectors[:, 0], error="ValueError")
     t.refuses("backtracking", f, grad, vectors[:, 0], np.zeros(2), error="ValueError")
+    unknown = np.full(2, math.nan)
+    t.refuses("backtracking", f, lambda _: unknown, vectors[:, 0], np.ones(2), error="ValueError")
 
 
 # >>> hidden
@@ -555,9 +578,8 @@ def random_gradients_are_weighted_as_they_should(t):
     n, beta1, beta2, eps = 20, float(t.rng.uniform(0.5, 0.8)), float(t.rng.uniform(0.9, 0.98)), 1e-3
     gradients = t.rng.uniform(0.2, 1.0, (n, 3)) * t.rng.choice([-1.0, 1.0], (n, 3))
     x0 = t.rng.uniform(-1.0, 1.0, 3)
-    got = t.call(
-        "adam", scripted(gradients), x0, 0.1, n, beta1, beta2, eps, returns=Array((n + 1, 3))
-    )
+    grad, asked = scripted(gradients)
+    got = t.call("adam", grad, x0, 0.1, n, beta1, beta2, eps, returns=Array((n + 1, 3)))
     steps = np.empty((n, 3))
     for k in range(n):
         age = np.arange(k, -1, -1)[:, None]  # of each gradient so far
@@ -565,6 +587,7 @@ def random_gradients_are_weighted_as_they_should(t):
         square = np.sum(beta2**age * gradients[: k + 1] ** 2, axis=0) / np.sum(beta2**age)
         steps[k] = -0.1 * mean / (np.sqrt(square) + eps)
     t.close("the steps", np.diff(got, axis=0), steps)
+    t.close("the points at which the gradient is taken", np.array(asked), got[:-1])
 
 
 @check(
