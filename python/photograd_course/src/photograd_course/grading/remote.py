@@ -87,7 +87,7 @@ class RemoteStudent:
             kind, text, line = _described(frame.value)
             if kind == "NotImplementedError":
                 raise not_implemented(function, text, line)
-            where = f" (line {line[1]})" if line else ""
+            where = f" ({line[0]}, line {line[1]})" if line else ""
             said = f"{name} raised {kind}{where}"
             raise StudentFailure("raised", said, f"{kind}: {text}", line)
         if frame.kind == "missing":
