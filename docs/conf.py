@@ -9,4 +9,5 @@ bibtex_bibfiles = ["../cpp/references.bib"]
 exclude_patterns = ["README.md"]
 html_theme = "furo"
 html_title = "photograd"
+myst_enable_extensions = ["dollarmath"]
 myst_heading_anchors = 3

@@ -151,7 +151,7 @@ for _ in range(300):
     if d @ d < 1e-20:
         break
     tau = descent.backtracking(valley, valley_slope, x, d, 2.0 * tau)
-    x = x + tau * d
+    x = x + d * tau
     chosen.append(tau)
 plt.semilogy(chosen, ".")
 plt.xlabel("step")

@@ -235,7 +235,7 @@ def checked(f, x):
     """
     kept = x.copy()
     error = engine.grad_check(f, x)
-    if not math.isfinite(error):
+    if not np.isfinite(error):
         error = -1.0 if error == math.inf else -2.0
     return {
         "accepted": bool(0.0 <= error <= 1e-6),

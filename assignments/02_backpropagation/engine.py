@@ -170,15 +170,15 @@ def grad_check(f, x, eps=1e-5):
     # >>> solution 02.6
     x = np.array(x, dtype=np.float64)
     gradient = np.asarray(f(x.copy())[1], dtype=np.float64)
-    differences = np.zeros_like(x)
+    quotients = np.zeros_like(x)
     for i in range(x.size):
         step = eps * max(1.0, abs(x[i]))
         ahead, behind = x.copy(), x.copy()
         ahead[i] += step
         behind[i] -= step
-        differences[i] = (f(ahead)[0] - f(behind)[0]) / (2.0 * step)
-    error = float(np.linalg.norm(gradient - differences))
-    scale = max(float(np.linalg.norm(gradient)), float(np.linalg.norm(differences)))
+        quotients[i] = (f(ahead)[0] - f(behind)[0]) / (2.0 * step)
+    error = float(np.linalg.norm(gradient - quotients))
+    scale = max(float(np.linalg.norm(gradient)), float(np.linalg.norm(quotients)))
     if not math.isfinite(error + scale):
         return math.inf
     return error / scale if scale > 0.0 else 0.0

@@ -114,51 +114,48 @@ def fig1_worked_graph(module):
     return figure, facts
 
 
-def fig2_uses_add_up(module):
-    """(x + y) + x x: three uses of x, and the tangents of their sums."""
-    x, y = module.Value(5.0), module.Value(4.0)
-    total, square = x + y, x * x
-    f = total + square
-    module.backward(f)
-    by_sum = sum(slopes_of(total, x)) * total.grad
-    by_square = [slope * square.grad for slope in slopes_of(square, x)]
+def recorded_uses(module, root):
+    """How many contributions `backward` adds up, and how many values there are."""
+    order = module.topo_order(root)
+    return sum(len(node.inputs) for node in order), len(order)
+
+
+def fig2_cost(module):
+    """Work for one gradient: against the number of inputs, and against the number of paths."""
+    counts, backward, forward = [1, 4, 16, 64, 256], [], []
+    for n in counts:
+        root = sum((module.Value(0.1 * k) * 0.5 + 0.3) ** 2 for k in range(n))
+        uses, gates = recorded_uses(module, root)
+        backward.append(uses)
+        forward.append(gates)
+    ladder, paths, rungs = [], [], [1, 2, 4, 6, 8, 10, 12]
+    for k in rungs:
+        bottom = module.Value(1.0)
+        for _ in range(k):
+            bottom = bottom**0.5 + bottom**0.25
+        ladder.append(recorded_uses(module, bottom)[0])
+        paths.append(2**k)
+    share = np.array(backward) / np.array(forward)
     with house_style():
-        figure = new_figure(WIDTH, 2.7)
-        axes = graph_axes(figure, 0, 0, 3.5, 2.7)
-        places = {
-            "x": (0.55, 0.95),
-            "y": (0.55, 2.2),
-            "+": (1.75, 1.75),
-            "×": (1.75, 0.6),
-            "f": (3.0, 1.2),
-        }
-        arrow(axes, places["y"], places["+"])
-        arrow(axes, places["+"], places["f"])
-        arrow(axes, places["×"], places["f"])
-        arrow(axes, places["x"], places["+"], f"{by_sum:g}", colour=ORANGE, lift=0.0)
-        for bend, amount in zip((-0.35, 0.35), by_square, strict=True):
-            arrow(axes, places["x"], places["×"], f"{amount:g}", bend=-bend, colour=ORANGE,
-                  lift=0.0)  # fmt: skip
-        for name, node in (("x", x), ("y", y), ("+", total), ("×", square), ("f", f)):
-            label = "+" if name == "f" else name
-            circle(axes, places[name], label, f"{node.data:g}", f"{node.grad:g}")
-        plot = place_axes(figure, 4.15, 0.3, 2.3, 1.85)
-        h = np.linspace(-2.0, 2.0, 41)
-        plot.plot(5 + h, (5 + h + 4) + (5 + h) ** 2, color=INK, lw=2.2, label="f")
-        for slope, colour, style, name in (
-            (x.grad, ORANGE, "--", f"slope {x.grad:g}, all uses"),
-            (by_sum, GREY, ":", f"slope {by_sum:g}, the sum alone"),
-        ):
-            plot.plot(5 + h, 34 + slope * h, style, color=colour, lw=1.8, label=name)
-        plot.set(xlabel="x, with y = 4", ylabel="f", xticks=[3, 4, 5, 6, 7], ylim=(8, 72))
-        plot.legend(loc="upper left", fontsize=8, handlelength=1.6, borderaxespad=0.1)
-    bend = max(abs((9 + s) + (5 + s) ** 2 - 34 - x.grad * s) for s in (-0.01, 0.01))
+        figure = new_figure(WIDTH, 2.9)
+        left = place_axes(figure, 0.65, 0.4, 2.45, 1.95)
+        left.loglog(counts, 2.0 * np.array(counts), "s--", color=GREY, ms=5, label="differences")
+        left.loglog(counts, share, "o-", color=ORANGE, ms=5, label="backward")
+        left.set(title="work for a gradient", xlabel="inputs",
+                 ylabel="in forward evaluations", ylim=(0.3, 2000))  # fmt: skip
+        right = place_axes(figure, 3.95, 0.4, 2.45, 1.95)
+        right.semilogy(rungs, paths, "s--", color=GREY, ms=5, label="paths")
+        right.semilogy(rungs, ladder, "o-", color=ORANGE, ms=5, label="contributions added")
+        right.set(title="diamonds in a row", xlabel="diamonds", ylim=(1, 3e4), xticks=rungs)
+        for axes in (left, right):
+            axes.legend(loc="upper left", fontsize=SMALL)
+            axes.tick_params(labelsize=SMALL)
+            axes.grid(True, axis="y")
     facts = {
-        "the value is 34": (f.data, 34.0, 34.0),
-        "the uses bring 1, 5 and 5": by_sum == 1.0 and by_square == [5.0, 5.0],
-        "x gets 11": (x.grad, 11.0, 11.0),
-        "the tangent of slope 11 touches": bend < 2e-4,
-        "y gets 1": (y.grad, 1.0, 1.0),
+        "backward stays below two forward evaluations": bool(share.max() < 2.0),
+        "and hardly depends on the number of inputs": (share[-1] / share[1], 0.8, 1.25),
+        "a diamond adds four contributions": bool(np.allclose(ladder, 4 * np.array(rungs))),
+        "twelve diamonds have over 50 times as many paths": paths[-1] > 50 * ladder[-1],
     }
     return figure, facts
 
@@ -271,48 +268,51 @@ def _draw_order(axes, name, uses, ranks, gradients):
         axes.text(place[0], place[1] - 0.27, made[key_], ha="center", fontsize=SMALL)
 
 
-def recorded_uses(module, root):
-    """How many contributions `backward` adds up, and how many values there are."""
-    order = module.topo_order(root)
-    return sum(len(node.inputs) for node in order), len(order)
-
-
-def fig5_cost(module):
-    """Work for one gradient: against the number of inputs, and against the number of paths."""
-    counts, backward, forward = [1, 4, 16, 64, 256], [], []
-    for n in counts:
-        root = sum((module.Value(0.1 * k) * 0.5 + 0.3) ** 2 for k in range(n))
-        uses, gates = recorded_uses(module, root)
-        backward.append(uses)
-        forward.append(gates)
-    ladder, paths, rungs = [], [], [1, 2, 4, 6, 8, 10, 12]
-    for k in rungs:
-        bottom = module.Value(1.0)
-        for _ in range(k):
-            bottom = bottom**0.5 + bottom**0.25
-        ladder.append(recorded_uses(module, bottom)[0])
-        paths.append(2**k)
-    share = np.array(backward) / np.array(forward)
+def fig5_uses_add_up(module):
+    """(x + y) + x x: three uses of x, and the tangents of their sums."""
+    x, y = module.Value(5.0), module.Value(4.0)
+    total, square = x + y, x * x
+    f = total + square
+    module.backward(f)
+    by_sum = sum(slopes_of(total, x)) * total.grad
+    by_square = [slope * square.grad for slope in slopes_of(square, x)]
     with house_style():
-        figure = new_figure(WIDTH, 2.9)
-        left = place_axes(figure, 0.65, 0.4, 2.45, 1.95)
-        left.loglog(counts, 2.0 * np.array(counts), "s--", color=GREY, ms=5, label="differences")
-        left.loglog(counts, share, "o-", color=ORANGE, ms=5, label="backward")
-        left.set(title="work for a gradient", xlabel="inputs",
-                 ylabel="in forward evaluations", ylim=(0.3, 2000))  # fmt: skip
-        right = place_axes(figure, 3.95, 0.4, 2.45, 1.95)
-        right.semilogy(rungs, paths, "s--", color=GREY, ms=5, label="paths")
-        right.semilogy(rungs, ladder, "o-", color=ORANGE, ms=5, label="contributions added")
-        right.set(title="diamonds in a row", xlabel="diamonds", ylim=(1, 3e4), xticks=rungs)
-        for axes in (left, right):
-            axes.legend(loc="upper left", fontsize=SMALL)
-            axes.tick_params(labelsize=SMALL)
-            axes.grid(True, axis="y")
+        figure = new_figure(WIDTH, 2.7)
+        axes = graph_axes(figure, 0, 0, 3.5, 2.7)
+        places = {
+            "x": (0.55, 0.95),
+            "y": (0.55, 2.2),
+            "+": (1.75, 1.75),
+            "×": (1.75, 0.6),
+            "f": (3.0, 1.2),
+        }
+        arrow(axes, places["y"], places["+"])
+        arrow(axes, places["+"], places["f"])
+        arrow(axes, places["×"], places["f"])
+        arrow(axes, places["x"], places["+"], f"{by_sum:g}", colour=ORANGE, lift=0.0)
+        for bend, amount in zip((-0.35, 0.35), by_square, strict=True):
+            arrow(axes, places["x"], places["×"], f"{amount:g}", bend=-bend, colour=ORANGE,
+                  lift=0.0)  # fmt: skip
+        for name, node in (("x", x), ("y", y), ("+", total), ("×", square), ("f", f)):
+            label = "+" if name == "f" else name
+            circle(axes, places[name], label, f"{node.data:g}", f"{node.grad:g}")
+        plot = place_axes(figure, 4.15, 0.3, 2.3, 1.85)
+        h = np.linspace(-2.0, 2.0, 41)
+        plot.plot(5 + h, (5 + h + 4) + (5 + h) ** 2, color=INK, lw=2.2, label="f")
+        for slope, colour, style, name in (
+            (x.grad, ORANGE, "--", f"slope {x.grad:g}, all uses"),
+            (by_sum, GREY, ":", f"slope {by_sum:g}, the sum alone"),
+        ):
+            plot.plot(5 + h, 34 + slope * h, style, color=colour, lw=1.8, label=name)
+        plot.set(xlabel="x, with y = 4", ylabel="f", xticks=[3, 4, 5, 6, 7], ylim=(8, 72))
+        plot.legend(loc="upper left", fontsize=8, handlelength=1.6, borderaxespad=0.1)
+    bend = max(abs((9 + s) + (5 + s) ** 2 - 34 - x.grad * s) for s in (-0.01, 0.01))
     facts = {
-        "backward stays below two forward evaluations": bool(share.max() < 2.0),
-        "and hardly depends on the number of inputs": (share[-1] / share[1], 0.8, 1.25),
-        "a diamond adds four contributions": bool(np.allclose(ladder, 4 * np.array(rungs))),
-        "twelve diamonds have over 50 times as many paths": paths[-1] > 50 * ladder[-1],
+        "the value is 34": (f.data, 34.0, 34.0),
+        "the uses bring 1, 5 and 5": by_sum == 1.0 and by_square == [5.0, 5.0],
+        "x gets 11": (x.grad, 11.0, 11.0),
+        "the tangent of slope 11 touches": bend < 2e-4,
+        "y gets 1": (y.grad, 1.0, 1.0),
     }
     return figure, facts
 
@@ -427,19 +427,19 @@ def fig7_picture(module):
 
 FIGURES = {
     "fig1_worked_graph": fig1_worked_graph,
-    "fig2_uses_add_up": fig2_uses_add_up,
+    "fig2_cost": fig2_cost,
     "fig3_kink": fig3_kink,
     "fig4_order": fig4_order,
-    "fig5_cost": fig5_cost,
+    "fig5_uses_add_up": fig5_uses_add_up,
     "fig6_steps": fig6_steps,
     "fig7_picture": fig7_picture,
 }
 RED = {
     "fig1_worked_graph": "product_no_swap",
-    "fig2_uses_add_up": "overwrite",
+    "fig2_cost": "order_with_repeats",
     "fig3_kink": "max_tie_to_first",
     "fig4_order": "order_breadth_first",
-    "fig5_cost": "order_with_repeats",
+    "fig5_uses_add_up": "overwrite",
     "fig6_steps": "check_one_sided",
     "fig7_picture": "forgets_the_chain",
 }

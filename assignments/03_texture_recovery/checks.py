@@ -467,7 +467,7 @@ def the_estimate_at_random_places(t):
 @check("03.5.recovers", task="03.5", points=4, calls=("recover_texture",), needs=EARLIER,
        visibility="hidden",
        kills=("step_whole", "step_uphill", "step_ignored", "unseen_inverted",),
-       seconds=40.0,
+       seconds=20.0,
        sole="the whole: a texture that nobody has seen, recovered from samples")  # fmt: skip
 def a_texture_is_recovered(t):
     """Fifty steps recover an unknown texture from 1,500 samples to 55 dB or better."""

@@ -56,6 +56,13 @@ def test_what_a_row_names_exists(row: dict[str, Any]) -> None:
     assert faults(row) == []
 
 
+def test_the_book_has_every_handout() -> None:
+    folders = [path.parent.name for path in ROOT.glob("assignments/*/assignment.toml")]
+    pages = {path.stem: path.read_text("utf-8") for path in (ROOT / "docs/handouts").glob("*.md")}
+    assert sorted(pages) == sorted(folders)
+    assert all(f"assignments/{name}/handout.md" in text for name, text in pages.items())
+
+
 def test_a_broken_row_is_seen() -> None:
     here = "tests/house/test_systems.py"
     good = {

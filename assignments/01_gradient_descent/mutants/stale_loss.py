@@ -1,7 +1,7 @@
 """your values are those of the point before"""
 
 TASKS = ("01.2",)
-LOSES = ("01.2.rate",)
+LOSES = ("01.2.rate", "01.2.verdict")
 REPLACE = [
     (
         "np.array([f(float(each)) for each in x])",

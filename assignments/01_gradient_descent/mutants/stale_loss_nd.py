@@ -1,7 +1,7 @@
 """your values are those of the point before"""
 
 TASKS = ("01.3",)
-LOSES = ("01.3.rates",)
+LOSES = ("01.3.rates", "01.3.stability")
 REPLACE = [
     (
         "np.array([f(each) for each in x])",

@@ -5,12 +5,12 @@ LOSES = ("02.6.rejects", "02.6.scale")
 REPLACE = [
     (
         """\
-    error = float(np.linalg.norm(gradient - differences))
-    scale = max(float(np.linalg.norm(gradient)), float(np.linalg.norm(differences)))
+    error = float(np.linalg.norm(gradient - quotients))
+    scale = max(float(np.linalg.norm(gradient)), float(np.linalg.norm(quotients)))
 """,
         """\
-    scale = float(np.linalg.norm(gradient) * np.linalg.norm(differences))
-    error = scale - float(gradient @ differences)
+    scale = float(np.linalg.norm(gradient) * np.linalg.norm(quotients))
+    error = scale - float(gradient @ quotients)
 """,
     ),
 ]

@@ -4,7 +4,7 @@ TASKS = ("02.6",)
 LOSES = ("02.6.rejects",)
 REPLACE = [
     (
-        "scale = max(float(np.linalg.norm(gradient)), float(np.linalg.norm(differences)))",
-        "scale = float(np.linalg.norm(differences))",
+        "scale = max(float(np.linalg.norm(gradient)), float(np.linalg.norm(quotients)))",
+        "scale = float(np.linalg.norm(quotients))",
     ),
 ]

@@ -4,7 +4,7 @@ TASKS = ("02.6",)
 LOSES = ("02.6.rejects",)
 REPLACE = [
     (
-        "np.linalg.norm(gradient - differences))",
-        "abs(np.linalg.norm(gradient) - np.linalg.norm(differences)))",
+        "np.linalg.norm(gradient - quotients))",
+        "abs(np.linalg.norm(gradient) - np.linalg.norm(quotients)))",
     ),
 ]

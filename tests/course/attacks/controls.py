@@ -10,7 +10,7 @@ import tempfile
 from pathlib import Path
 
 from course.attacks.attack import ASSIGNMENT, MODULE, Attack
-from course.naive_grader.cage import FULL, Naive, grade_naively
+from course.naive_grader.cage import FULL, HARD_SECONDS, HUNG_SECONDS, Naive, grade_naively
 
 FLOODED = 1 << 20  # bytes that no report has by itself
 
@@ -31,6 +31,7 @@ def run_control(attack: Attack) -> tuple[bool, Naive]:
             ASSIGNMENT / MODULE,
             earlier=attack.control.get("earlier"),
             wait=attack.control.get("wait", 0.0),
+            seconds=HUNG_SECONDS if attack.control["gain"] == "hang" else HARD_SECONDS,
         )
     return gained(attack, found), found
 

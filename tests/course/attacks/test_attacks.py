@@ -2,62 +2,24 @@
 
 from __future__ import annotations
 
-import os
 import shutil
-from collections.abc import Callable, Mapping
-from functools import cache
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import pytest
 from photograd_course.grade.similarity import similar_pairs
-from photograd_course.worker.self_test import self_test
 
 from course.attacks.attack import ASSIGNMENT, MODULE, Attack, read_attacks
-from course.attacks.suite import STRICT, run_suite
-from course.naive_grader.cage import bubblewrap
+from course.attacks.suite import Results, run_suite, strongest
 
 ATTACKS = read_attacks()
 NUMBERS = range(1, 71)
 UNSTAGED = 4  # at most so many attacks may lack a control
-Results = Mapping[str, Mapping[str, Any]]
 
 
-def strongest() -> str:
-    """The best mode, judged by what is installed, since collecting tests must be quick."""
-    return "A" if bubblewrap() else "C"
-
-
-def modes() -> list[Any]:
-    """The strongest mode always; the others take their time."""
-    best = strongest()
-    return [mode if mode == best else pytest.param(mode, marks=pytest.mark.slow) for mode in STRICT]
-
-
-@pytest.fixture(scope="module")
-def results(request: pytest.FixtureRequest) -> Callable[[str], Results]:
-    """The suite's results in a mode, for those attacks that are asked for."""
-    wanted = {item.callspec.params["attack"].number for item in _attacked(request)}
-
-    @cache
-    def run(mode: str) -> Results:
-        if reason := self_test(mode):
-            pytest.skip(f"mode {mode}: {reason}")
-        chosen = [attack for attack in ATTACKS if attack.number in wanted]
-        found: Results = run_suite([mode], chosen)[mode]["results"]
-        return found
-
-    return run
-
-
-def _attacked(request: pytest.FixtureRequest) -> list[Any]:
-    return [item for item in request.session.items if item.name.startswith("test_the_grader")]
-
-
-@pytest.mark.parametrize("mode", modes())
 @pytest.mark.parametrize("attack", ATTACKS, ids=lambda attack: attack.name)
-def test_the_grader_survives(attack: Attack, mode: str, results: Callable[[str], Results]) -> None:
-    result = results(mode)[attack.name]
+def test_the_grader_survives(attack: Attack, results: Callable[[str], Results]) -> None:
+    result = results(strongest())[attack.name]
     assert result["violations"] == []
     assert result["score"] <= attack.max_points
 
@@ -102,13 +64,3 @@ def test_the_suite_sees_what_it_looks_for(tmp_path: Path) -> None:
     said = sorted(text.split(" ")[0] for text in found["results"][honest.name]["violations"])
     assert said == ["earned", "escape:", "left", "took"]
     assert (found["attacks"], found["survived"]) == (1, 0)
-
-
-@pytest.mark.slow
-def test_mode_c_is_tried_without_capabilities() -> None:
-    if os.geteuid() != 0:
-        pytest.skip("needs root")
-    from course.attacks.privileges import run_like_a_container
-
-    with pytest.raises(RuntimeError, match="unshare"):
-        run_like_a_container(["--mode", "B", "--attacks", "32"])

@@ -6,6 +6,7 @@ reaches for it fails here as on Windows.
 
 from __future__ import annotations
 
+import compileall
 import re
 import subprocess
 import sys
@@ -87,6 +88,7 @@ def make_laptop(folder: Path) -> Laptop:
     (wheel,) = (folder / "wheels").glob("photograd_course-*.whl")
     with zipfile.ZipFile(wheel) as archive:
         archive.extractall(site)
+    compileall.compile_dir(site, quiet=1, maxlevels=20)  # as pip does
     for name in sorted(required("photograd-course")):
         link(name, site)
     (site / "sitecustomize.py").write_text(POISON, encoding="utf-8")

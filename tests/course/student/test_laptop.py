@@ -34,6 +34,11 @@ def test_from_start_to_hand_in(laptop: Laptop, tmp_path: Path) -> None:
     started = laptop.run("course", "start", "00", cwd=tmp_path)
     assert started.returncode == 0, started.stderr
     work = tmp_path / "00_setup"
+    laid_out = {path.relative_to(work).as_posix() for path in work.rglob("*") if path.is_file()}
+    assert laid_out == {
+        "README.md", "answers.toml", "explore.ipynb", "explore.py", "figures/fig1_gradient.png",
+        "first_gradient.py",
+    }  # fmt: skip
 
     red = laptop.run("course", "check", "00", "--json", cwd=work)
     assert red.returncode == 1, red.stderr

@@ -122,5 +122,7 @@ def _places(root: Path | None) -> dict[str, Path]:
 
 
 def _read_tree(top: Path) -> dict[str, bytes]:
-    paths = sorted(path for path in top.rglob("*") if path.is_file())
+    # What pip compiles while it installs a wheel is no part of a kit.
+    files = (path for path in top.rglob("*") if path.is_file())
+    paths = sorted(path for path in files if path.parent.name != "__pycache__")
     return {path.relative_to(top).as_posix(): path.read_bytes() for path in paths}

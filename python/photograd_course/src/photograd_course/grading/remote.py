@@ -86,8 +86,8 @@ class RemoteStudent:
         if frame.kind == "raised":
             kind, text, line = _described(frame.value)
             if kind == "NotImplementedError":
-                raise not_implemented(name, text, line)
-            where = f" (line {line[1]})" if line else ""
+                raise not_implemented(function, text, line)
+            where = f" ({line[0]}, line {line[1]})" if line else ""
             said = f"{name} raised {kind}{where}"
             raise StudentFailure("raised", said, f"{kind}: {text}", line)
         if frame.kind == "missing":

@@ -186,9 +186,10 @@ class Trial:
         mine = f"yours{at} is {float(got[worst]):.6g}"
         if reveal and self.check.visibility == "public":
             return f"{head}; {mine}, expected {float(right[worst]):.6g}"
-        sign = {1: "positive", -1: "negative", 0: "zero"}[int(np.sign(right[worst]))]
-        size = f", of the order {_power_of_ten(right[worst])}" if right[worst] else ""
-        return f"{head}; {mine}, expected something {sign}{size}"
+        expected = _sign_and_size(float(right[worst]))
+        if expected == _sign_and_size(float(got[worst])):
+            return f"{head}; {mine}, which has the right sign and order, and is wrong"
+        return f"{head}; {mine}, expected something {expected}"
 
 
 def fingerprint(what: str, answer: ArrayLike) -> str:
@@ -201,6 +202,12 @@ def fingerprint(what: str, answer: ArrayLike) -> str:
     size = f"{top:.{FINGERPRINT_DIGITS - 2}e}"
     data = f"{what}|{values.shape}|{size}|".encode() + rounded.astype("<f8").tobytes()
     return hashlib.sha256(data).hexdigest()[:24]
+
+
+def _sign_and_size(value: float) -> str:
+    """As much as may be said of a hidden value."""
+    sign = {1.0: "positive", -1.0: "negative"}.get(float(np.sign(value)), "zero")
+    return f"{sign}, of the order {_power_of_ten(value)}" if value else sign
 
 
 def _power_of_ten(value: float) -> str:

@@ -24,7 +24,17 @@ def draw_failure(outcome: Outcome, folder: Path) -> Path | None:
     with house_style():
         figure = _lines(got, expected) if got.squeeze().ndim < 2 else _planes(got, expected)
         figure.suptitle(f"{outcome.id}: {outcome.title}", fontsize=9)
-        return save_figure(figure, folder / f"check_{outcome.id}.png")
+        return save_figure(figure, picture_path(outcome, folder))
+
+
+def remove_picture(outcome: Outcome, folder: Path) -> None:
+    """Remove what an earlier run has drawn of this check."""
+    picture_path(outcome, folder).unlink(missing_ok=True)
+
+
+def picture_path(outcome: Outcome, folder: Path) -> Path:
+    """Where the picture of a check lies."""
+    return folder / f"check_{outcome.id}.png"
 
 
 def _lines(got: Array, expected: Array) -> Figure:

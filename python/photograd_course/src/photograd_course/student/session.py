@@ -16,9 +16,9 @@ from ..errors import SceneError, message
 from ..grading.outcome import Outcome, Status
 from .checking import check_here, select
 from .folder import LOCK_NAME, WorkFolder, find_folder
-from .pictures import draw_failure
+from .pictures import draw_failure, remove_picture
 from .predictions import prediction_letters, write_lock
-from .terminal import print_outcome, print_summary
+from .terminal import print_outcome, print_rest, print_summary
 
 
 def run_check_command(
@@ -41,11 +41,14 @@ def run_check_command(
 
     def show(outcome: Outcome) -> None:
         print_outcome(outcome, console)
+        remove_picture(outcome, folder.path)
         if pictures and (path := draw_failure(outcome, folder.path)) is not None:
             console.print(f"    picture: {path.name}", soft_wrap=True)
 
     outcomes = check_here(bundle, files, checks, on_outcome=show)
-    print_summary(outcomes, console, bundle.manifest.points)
+    print_summary(outcomes, console)
+    if task is None:
+        print_rest(bundle, console)
     passed = all(outcome.status is Status.PASSED for outcome in outcomes)
     if passed and task is None:
         next_command = f"photograd course handin {bundle.manifest.id}"
@@ -113,7 +116,7 @@ def ask(questions: list[Question], folder: WorkFolder, console: Console) -> dict
         while len(answer) != 1 or answer not in letters:
             answer = str(typer.prompt(f"Your prediction ({'/'.join(letters)})")).strip().lower()
         made[question.id] = answer
-    write_answers(folder.path / "answers.toml", made)
+        write_answers(folder.path / "answers.toml", {question.id: answer})  # kept if interrupted
     return made
 
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 from rich.console import Console
 from rich.text import Text
 
+from ..assignment.bundle import Bundle
 from ..grading.outcome import Outcome, Status
 
 # Sign and colour: the sign alone says it, for those who do not see the colour.
@@ -38,21 +39,21 @@ def print_outcome(outcome: Outcome, console: Console) -> None:
             console.print(Text(f"    {part}"), soft_wrap=True)
 
 
-def print_summary(
-    outcomes: Sequence[Outcome], console: Console, whole: Mapping[str, float]
-) -> None:
-    """How many checks passed, their points, and what else there is to earn.
-
-    Args:
-        outcomes: of public checks.
-        console: where to write.
-        whole: points of "code" and "questions" in the whole assignment.
-    """
+def print_summary(outcomes: Sequence[Outcome], console: Console) -> None:
+    """How many checks passed, and their points."""
     passed = [outcome for outcome in outcomes if outcome.status is Status.PASSED]
     points, top = sum(o.points for o in passed), sum(o.max for o in outcomes)
-    said = f"{len(passed)} of {len(outcomes)} checks pass: {points:g} of {top:g} points."
-    if (hidden := whole.get("code", top) - top) > 0:
-        said += f" Other checks of your code hold {hidden:g} more."
-    if questions := whole.get("questions", 0):
-        said += f" Questions hold {questions:g}."
+    said = f"{len(passed)} of {len(outcomes)} public checks pass: {points:g} of {top:g} points."
     console.print(said, soft_wrap=True)
+
+
+def print_rest(bundle: Bundle, console: Console) -> None:
+    """What there is to earn besides public checks."""
+    public = sum(check.points for check in bundle.checks)
+    said = []
+    if (hidden := bundle.manifest.points.get("code", public) - public) > 0:
+        said.append(f"Checks that run only after you have handed in hold {hidden:g} points.")
+    if questions := bundle.manifest.points.get("questions", 0):
+        said.append(f"Questions hold {questions:g}.")
+    if said:
+        console.print(" ".join(said), soft_wrap=True)

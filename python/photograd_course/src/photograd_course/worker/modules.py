@@ -45,13 +45,13 @@ class SourceFinder(importlib.abc.MetaPathFinder, importlib.abc.InspectLoader):
 
 
 def line_of(error: BaseException, names: Sequence[str]) -> tuple[str, int] | None:
-    """The innermost line of the given modules in the traceback, as (file, line)."""
-    files = {f"{name}.py" for name in names}
+    """The innermost line in a traceback of the first of these modules that occurs in it."""
+    files = [f"{name}.py" for name in names]
     if isinstance(error, SyntaxError) and error.filename in files:
         return error.filename, error.lineno or 0
-    found, trace = None, error.__traceback__
+    lines, trace = {}, error.__traceback__
     while trace is not None:
-        if (file := trace.tb_frame.f_code.co_filename) in files:
-            found = (file, trace.tb_lineno)
+        lines[trace.tb_frame.f_code.co_filename] = trace.tb_lineno
         trace = trace.tb_next
-    return found
+    # The student's own module comes first, what runs beside it later.
+    return next(((file, lines[file]) for file in files if file in lines), None)

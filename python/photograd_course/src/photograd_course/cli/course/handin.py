@@ -34,7 +34,7 @@ def register(course: typer.Typer) -> None:
         from ...build.kits import find_kit
         from ...student.folder import find_folder
         from ...student.handing_in import pack
-        from ...student.sheet import open_questions
+        from ...student.sheet import notes_before_handin
         from ..output import emit, note
 
         bundle = find_kit(assignment).bundle
@@ -44,17 +44,15 @@ def register(course: typer.Typer) -> None:
         digest = pack(files, target)
         if lacking := [name for name in bundle.manifest.handin if name not in files]:
             note(f"warning: not in the folder: {', '.join(lacking)}", style="yellow")
-        if still_open := open_questions(bundle, work):
-            note(f"still without an answer: {', '.join(still_open)}", style="yellow")
-        student = work.answers()[0]
-        if not student:
-            note("answers.toml: student is empty; write your name", style="yellow")
+        notes = notes_before_handin(bundle, work)
+        for text in notes:
+            note(text, style="yellow")
         emit(
             {
                 "archive": target,
-                "student": student,
+                "student": work.answers()[0],
                 "files": " ".join(sorted(files)),
-                "open_questions": len(still_open),
+                "notes": len(notes),
                 "sha256": digest,
             },
             as_json=as_json,

@@ -34,10 +34,11 @@ def register(course: typer.Typer) -> None:
 
         from ...build.kits import find_kit
         from ...student.folder import find_folder
-        from ...student.sheet import question_sheet
+        from ...student.sheet import question_sheet, remember_shown
 
         bundle = find_kit(assignment).bundle
         work = find_folder(bundle.manifest, folder)
         console = Console(highlight=False)
         for line in question_sheet(bundle, work):
             console.print(line, soft_wrap=True, markup=False)
+        remember_shown(bundle, work)
