@@ -343,7 +343,7 @@ class Octree:
     @staticmethod
     def from_function(
         depth: typing.SupportsInt | typing.SupportsIndex,
-        classify: collections.abc.Callable,
+        classify: collections.abc.Callable[..., typing.Any],
         channels: typing.SupportsInt | typing.SupportsIndex,
     ) -> tuple[typing.Any, ...]:
         """
@@ -393,7 +393,7 @@ class Quadtree:
     @staticmethod
     def from_function(
         depth: typing.SupportsInt | typing.SupportsIndex,
-        classify: collections.abc.Callable,
+        classify: collections.abc.Callable[..., typing.Any],
         channels: typing.SupportsInt | typing.SupportsIndex,
     ) -> tuple[typing.Any, ...]:
         """
