@@ -129,3 +129,21 @@ def test_a_check_needs_a_title_and_points() -> None:
         check("x", task="1", points=0, calls=())
     with pytest.raises(RangeError, match="visibility"):
         check("x", task="1", points=1, calls=(), visibility="open")
+
+
+def test_a_service_may_give_the_verdict_whatever_the_hand_in_makes_of_it() -> None:
+    code = "def quiet(f):\n    try:\n        f(1.0)\n    except Exception:\n        return 1.0\n"
+    code += "def loud(f):\n    f(1.0)\n"
+
+    def body(t: Trial) -> None:
+        """Something holds."""
+
+    whole = check("1.x", task="1", points=1, calls=("quiet",))(body)
+
+    def stop(_x: float) -> float:
+        raise CheckFailed("called too often")
+
+    for function in ("quiet", "loud"):
+        t = Trial(whole, LocalStudent({"m": code}), seed=(1,), module="m")
+        with pytest.raises(CheckFailed, match="too often"):
+            t.call(function, stop, returns=Number())

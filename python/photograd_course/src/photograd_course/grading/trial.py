@@ -55,6 +55,7 @@ class Trial:
         self.margins: list[float] = []
         self.asked = 0
         self._student = student
+        self._verdict: CheckFailed | None = None
         self._module = module
         self._reference = reference
 
@@ -84,12 +85,35 @@ class Trial:
 
         Raises:
             StudentFailure: no value came.
-            CheckFailed: the value is not of that kind.
+            CheckFailed: the value is not of that kind, or a function among `args` has raised it: what
+                the hand-in makes of such an exception does not matter.
         """
         where = function if "." in function else f"{self._module}.{function}"
-        value = self._student.call(where, args, seconds=self.check.seconds)
+        try:
+            given = [self._watched(arg) for arg in args]
+            value = self._student.call(where, given, seconds=self.check.seconds)
+        except StudentFailure:
+            if self._verdict is not None:
+                raise self._verdict from None
+            raise
+        if self._verdict is not None:
+            raise self._verdict
         returns.require(value, function.rpartition(".")[2])
         return value
+
+    def _watched(self, arg: Any) -> Any:
+        """The argument; of a function, one that remembers if it has given the verdict."""
+        if not callable(arg):
+            return arg
+
+        def service(*args: Any) -> Any:
+            try:
+                return arg(*args)
+            except CheckFailed as failure:
+                self._verdict = failure
+                raise
+
+        return service
 
     def cpu_seconds(self) -> float | None:
         """Processor time of the hand-in so far; None where it cannot be measured from outside."""
