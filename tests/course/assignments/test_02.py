@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import shutil
 import subprocess
@@ -12,12 +13,14 @@ import numpy as np
 import pytest
 from photograd_course.assignment.bundle import read_folder
 from photograd_course.assignment.checks_file import load_module
+from photograd_course.grading.outcome import Status
 
 from course.assignments.support import (
     ASSIGNMENTS,
     SECRET,
     AssignmentTests,
     apply_mutant,
+    judge,
     source,
 )
 
@@ -158,12 +161,78 @@ def work_per_node(text: str, edges: list) -> float:
     sys.modules["engine"] = load_module("engine", text)
     try:
         adapters = load_module("adapters", (FOLDER / "adapters.py").read_text("utf-8"))
-        return adapters.work(edges, len(edges) - 1) / len(edges)
+        found = adapters.work(edges, len(edges) - 1)
+        return (found["reads"] + found["comparisons"]) / len(edges)
     finally:
         if kept is None:
             del sys.modules["engine"]
         else:
             sys.modules["engine"] = kept
+
+
+GOOD_SUM = "return Value(self.data + other.data, ((self, 1.0), (other, 1.0)))"
+GOOD_EXP = "return Value(grown, ((self, grown),))"
+MALFORMED = {
+    "a comma": (GOOD_EXP, "return Value(grown, ((self, grown)))", "02.3.exp"),
+    "(Value)": (
+        GOOD_SUM,
+        "return Value(self.data + other.data, ((self,), (other,)))",
+        "02.1.slopes",
+    ),
+    "yours is a Value": (GOOD_SUM, "return Value(self.data + other.data, self)", "02.1.slopes"),
+    "expected a Value as result": (GOOD_SUM, "return self.data + other.data", "02.1.slopes"),
+}
+
+
+@pytest.mark.parametrize("said", MALFORMED)
+def test_malformed_inputs_are_named(said: str) -> None:
+    good, bad, check = MALFORMED[said]
+    assert source(FOLDER).count(good) == 1
+    outcomes = {each.id: each for each in judge(FOLDER, source(FOLDER).replace(good, bad))}
+    assert outcomes[check].status is Status.FAILED
+    assert said in outcomes[check].details["exception"]
+    assert said in outcomes["02.5.expressions"].details["exception"]
+
+
+HINTS = {
+    "a stack of your own": ("02.4.chain", "order_recursive"),
+    "marks in a list": ("02.4.chain", "order_list_of_seen"),
+    "too early": ("02.4.order", "order_breadth_first"),
+}
+
+
+@pytest.mark.parametrize("hint", HINTS)
+def test_a_wrong_order_gets_the_hint_that_fits(hint: str) -> None:
+    check, mutant = HINTS[hint]
+    outcomes = {each.id: each for each in judge(FOLDER, apply_mutant(FOLDER, mutant))}
+    assert hint in outcomes[check].hint
+    if check == "02.4.order":
+        assert "in the graph a, b(a), c(a, b) with the root c" in outcomes[check].text
+
+
+IN_PLACE = """\
+        kept, step = x[i], eps * max(1.0, abs(x[i]))
+        x[i] = kept + step
+        up = f(x)[0]
+        x[i] = kept - step
+        quotients[i] = (up - f(x)[0]) / (2.0 * step)
+"""
+
+
+def test_moving_x_in_place_is_not_taken_for_another_mistake() -> None:
+    text = apply_mutant(FOLDER, "check_moves_x")
+    table = json.loads((FOLDER / "hints.json").read_text("utf-8"))
+    said = {each.id: each.hint for each in judge(FOLDER, text) if each.task == "02.6"}
+    assert "You move x itself" in said["02.6.rejects"]
+    assert not any("divide by the length" in hint for hint in said.values())
+    assert any("divide by the length" in hint for hint in table.values())
+    # Differences that are right, in an x that is not put back.
+    first = text.index("        step = eps * max")
+    last = text.index("    error = float")
+    moved = text[:first] + IN_PLACE + text[last:]
+    outcome = {each.id: each for each in judge(FOLDER, moved)}["02.6.accepts"]
+    assert "has changed the x" in outcome.text
+    assert "copies of x" in outcome.hint
 
 
 def test_the_exploration_runs_with_a_finished_engine(tmp_path: Path) -> None:

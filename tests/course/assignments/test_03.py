@@ -12,7 +12,7 @@ from photograd_course.assignment.bundle import read_folder
 from photograd_course.assignment.drawing import draw as draw_question
 from PIL import Image
 
-from course.assignments.support import ASSIGNMENTS, AssignmentTests, source
+from course.assignments.support import ASSIGNMENTS, AssignmentTests, judge, source
 
 FOLDER = ASSIGNMENTS / "03_texture_recovery"
 T = np.array([[1.0, 2.0, 4.0], [3.0, 7.0, 5.0]])[:, :, None]
@@ -84,6 +84,52 @@ def test_exchanged_weights_are_as_far_off_as_the_diagnosis_says(solution) -> Non
     assert abs(-10 * np.log10(np.mean((wrong - right) ** 2)) - 15.2) < 0.2
 
 
+def test_predictions_come_true(solution) -> None:
+    rng = np.random.default_rng(5)
+    uv = rng.random((20_000, 2))
+    longest = [2 / solution.largest_curvature((n, n), uv, 80) for n in (8, 16)]
+    assert 3.7 < longest[1] / longest[0] < 4.3  # 3.85 to 3.93 over four seeds
+    truth, uv = rng.random((6, 5, 1)), rng.random((900, 2))
+    target = solution.bilinear_sample(truth, uv)
+    bound = 2 / solution.largest_curvature((6, 5), uv, 300)
+    texture, worst = np.full(truth.shape, 0.5), 0.0
+    for share, steps in ((1.05, 120), (0.5, 400)):
+        for _ in range(steps):
+            texture = texture - share * bound * solution.loss_and_grad(texture, uv, target)[1]
+        worst = max(worst, float(np.abs(texture).max()))
+    assert worst > 1000
+    assert np.abs(texture - truth).max() < 1e-6
+
+
+def judged(old: str, new: str, *ids: str) -> dict[str, tuple[str, str]]:
+    """What public checks say, (text, hint) by id, of the solution with one place changed."""
+    text = source(FOLDER)
+    assert text.count(old) == 1
+    told = {each.id: (each.text, each.hint) for each in judge(FOLDER, text.replace(old, new))}
+    return {id: told[id] for id in ids}
+
+
+def test_hints_name_what_is_wrong_and_nothing_else() -> None:
+    late = "    losses[n] = loss_and_grad(T, uv, target)[0]\n"
+    said = judged(late, "    losses = losses[:n]\n", "03.5.step", "03.5.unseen")
+    assert all("n + 1" in hint for _, hint in said.values())
+    summed = ("fine = (fine[:, 0::2] + fine[:, 1::2]) / 2", "fine = fine[:, 0::2] + fine[:, 1::2]")
+    text, hint = judged(*summed, "03.6.mean")["03.6.mean"]
+    assert "mean of level 1" in text
+    assert "2 times as bright" in hint
+    typed = (
+        "        fine = levels[-1]\n",
+        "        fine = levels[-1]\n"
+        "        if min(fine.shape[:2]) == 1:\n"
+        "            raise IndexError('row 1 of one row')\n",
+    )
+    text, _ = judged(*typed, "03.6.mean")["03.6.mean"]
+    assert "2 x 16: where one side is a single texel already" in text
+    text, hint = judged("while levels[-1].shape[:2] != (1, 1):", "while len(fine := levels[-1]) > 1:",
+                        "03.6.mean")["03.6.mean"]  # fmt: skip
+    assert "average the two along the other" in hint
+
+
 def test_generated_questions_have_the_answers_that_their_reasons_give() -> None:
     bundle = read_folder(FOLDER)
     keys, text = bundle.keys, source(FOLDER)
@@ -100,19 +146,34 @@ def test_generated_questions_have_the_answers_that_their_reasons_give() -> None:
         if question.kind == "generated":
             drawn = draw_question(question, "somebody", text)
             assert "{" not in drawn.text
+            assert " 1 times" not in drawn.text
             assert np.isfinite(
                 getattr(keys, str(question.answer))(bundle.reference, **drawn.values)
             )
 
 
-def test_the_exploration_runs_and_says_what_it_did(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("rows", "columns", "options", "said"),
+    [
+        (30, 40, (), "16 x 12, measured 3072 times"),
+        (4, 40, (), "16 x 2, measured 512 times"),
+        (40, 5, (), "2 x 16, measured 512 times"),
+        (30, 40, ("--fine", "3", "--samples", "2"), "16 x 12, measured 384 times"),
+    ],
+)
+def test_the_exploration_runs_and_says_what_it_did(
+    tmp_path: Path, rows: int, columns: int, options: tuple[str, ...], said: str
+) -> None:
     for name in ("explore.py", "texture_recovery.py"):
         (tmp_path / name).write_bytes((FOLDER / name).read_bytes())
 
-    Image.fromarray(np.full((30, 40, 3), 90, np.uint8)).save(tmp_path / "mine.png")
+    values = np.random.default_rng(0).integers(0, 256, (rows, columns, 3), dtype=np.uint8)
+    Image.fromarray(values).save(tmp_path / "mine.png")
     order = [sys.executable, "explore.py", "--image", "mine.png", "--size", "16", "--steps", "9"]
+    order.extend(options)
     ran = subprocess.run(order, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert ran.returncode == 0, ran.stderr
-    assert "picture: mine.png, 16 x 12, measured 3072 times" in ran.stdout
+    assert f"picture: mine.png, {said}" in ran.stdout
     assert "core" in ran.stdout
+    assert "the smallest eigenvalue is 1/" in ran.stdout
     assert (tmp_path / "recovered.png").stat().st_size > 5_000

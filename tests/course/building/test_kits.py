@@ -11,6 +11,8 @@ from photograd_course.build.notebook import notebook_of
 from photograd_course.build.toml_text import toml_key, toml_value
 from photograd_course.errors import DtypeError, RangeError
 
+from support.tree import ROOT
+
 from .support import TOY, Broken
 
 
@@ -107,3 +109,12 @@ def test_toml_that_is_written_is_read_again(tmp_path: Path) -> None:
     assert read_toml(tmp_path / "a.toml") == table
     with pytest.raises(DtypeError):
         toml_value(None)
+
+
+def test_the_readme_says_how_to_work_where_there_are_questions() -> None:
+    plain, asked = (kit_files(ROOT / "assignments" / name)["README.md"].decode("utf-8")
+                    for name in ("00_setup", "02_backpropagation"))  # fmt: skip
+    assert "How to work" not in plain
+    assert asked.splitlines()[0].startswith("# 02")
+    for command in ("predict 02", "check 02", "questions 02", "handin 02"):
+        assert f"photograd course {command}" in asked.split("## ")[0]

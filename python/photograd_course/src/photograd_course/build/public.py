@@ -38,7 +38,7 @@ def kit_files(folder: Path) -> dict[str, bytes]:
     if "answers.toml" in manifest.handin:
         files["answers.toml"] = _encode(answers_template(manifest))
     if (folder / "handout.md").exists():
-        files["README.md"] = _encode(_text(folder / "handout.md"))
+        files["README.md"] = _encode(readme(manifest, _text(folder / "handout.md")))
     if (folder / "explore.py").exists():
         script = _text(folder / "explore.py")
         files["explore.py"] = _encode(script)
@@ -65,6 +65,24 @@ def public_files(folder: Path) -> dict[str, bytes]:
         if (folder / name).exists():
             files[name] = _encode(_text(folder / name))
     return dict(sorted(files.items()))
+
+
+def readme(manifest: Manifest, handout: str) -> str:
+    """The handout, with how to work on it below its title, where it has questions."""
+    if not (manifest.folder / "questions.toml").exists():
+        return handout
+    title, _, rest = handout.partition("\n")
+    number = manifest.id
+    work = f"""
+> **How to work.** In this folder, `photograd course predict {number}` comes before anything
+> else. Then `photograd course check {number}` as often as you like, `--task` for one task: it
+> says what is wrong and draws what helps. When the code is final, look at the questions with
+> `photograd course questions {number}`; answers and your name go into `answers.toml`, numbers
+> to four significant digits. `photograd course handin {number}` packs the archive to hand in.
+> Green is not finished: some checks run only after you have handed in. `explore.py`, or the
+> notebook `explore.ipynb`, is for play.
+"""
+    return f"{title}\n{work}{rest}"
 
 
 def wheel_kits(folder: Path) -> dict[str, bytes]:

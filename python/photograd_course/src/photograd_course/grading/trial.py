@@ -85,8 +85,8 @@ class Trial:
 
         Raises:
             StudentFailure: no value came.
-            CheckFailed: the value is not of that kind, or a function among `args` has raised it: what
-                the hand-in makes of such an exception does not matter.
+            CheckFailed: the value is not of that kind, or a function among `args` has raised it;
+                what the hand-in makes of such an exception does not matter.
         """
         where = function if "." in function else f"{self._module}.{function}"
         try:
