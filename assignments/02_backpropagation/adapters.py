@@ -18,6 +18,49 @@ class TooManyReads(Exception):
     """`inputs` was read far more often than there are nodes."""
 
 
+class MalformedValue(TypeError):
+    """A gate of the engine returned no `Value`, or one whose `inputs` cannot be read."""
+
+
+def required_value(op, result):
+    """`result` of the gate `op`, if it is a Value whose inputs are pairs (value, slope).
+
+    Raises:
+        MalformedValue: it is not; says what it is, and what was expected.
+    """
+    if not isinstance(result, engine.Value):
+        raise MalformedValue(f"{op}: expected a Value as result, got {type(result).__name__}")
+    pairs, wanted = result.inputs, "inputs must be a tuple of pairs (value, slope)"
+    if isinstance(pairs, (tuple, list)) and all(map(is_pair, pairs)):
+        return result
+    if is_pair(pairs):
+        raise MalformedValue(
+            f"{op}: {wanted}, yours is one pair by itself: ((x, slope)) is (x, slope); "
+            "put a comma behind the pair: ((x, slope),)"
+        )
+    if not isinstance(pairs, (tuple, list)):
+        raise MalformedValue(f"{op}: {wanted}, yours is a {type(pairs).__name__}")
+    got = ", ".join(each_kind(part) for part in pairs)
+    raise MalformedValue(f"{op}: {wanted}, yours holds {got}")
+
+
+def is_pair(part):
+    """Whether this is (Value, number)."""
+    return (
+        isinstance(part, (tuple, list))
+        and len(part) == 2
+        and isinstance(part[0], engine.Value)
+        and isinstance(part[1], (int, float, np.number))
+    )
+
+
+def each_kind(part):
+    """The types in an entry of `inputs`, in words."""
+    if isinstance(part, (tuple, list)):
+        return "(" + ", ".join(type(inner).__name__ for inner in part) + ")"
+    return type(part).__name__
+
+
 def apply(op, a, b):
     """One gate of the engine: `a` a Value, `b` a Value or a plain number (None where not used)."""
     if op == "exp":
@@ -51,7 +94,7 @@ def gate(op, a, b=None, same=False):
     first = engine.Value(a)
     plain = b is None or op in {"pow", "radd", "rmul"}
     second = first if same else b if plain else engine.Value(b)
-    result = apply(op, first, second)
+    result = required_value(op, apply(op, first, second))
     slopes, strangers = np.zeros(2), 0
     for node, slope in result.inputs:
         if node is first:
@@ -79,7 +122,7 @@ def build(program, inputs):
     nodes = [engine.Value(number) for number in inputs]
     for op, a, b in program:
         plain = b is None or op in {"pow", "radd", "rmul"}
-        nodes.append(apply(op, nodes[a], b if plain else nodes[b]))
+        nodes.append(required_value(op, apply(op, nodes[a], b if plain else nodes[b])))
     return nodes
 
 
@@ -116,10 +159,16 @@ def by_hand(edges):
 
 
 def order_of(edges, root):
-    """`topo_order` of node `root` of a graph made by hand, as places."""
+    """`topo_order` of node `root` of a graph made by hand.
+
+    Returns:
+        Places (2 M + 1,), -1 for a value that is none of the graph's, and -2 behind the end.
+    """
     nodes = by_hand(edges)
     place = {id(node): k for k, node in enumerate(nodes)}
-    return [place.get(id(node), -1) for node in engine.topo_order(nodes[root])]
+    places = [place.get(id(node), -1) for node in engine.topo_order(nodes[root])]
+    end = [-2] * (2 * len(nodes) + 1)
+    return np.array((places + end)[: len(end)])
 
 
 def run_by_hand(edges, orders, seeds, default_seed=False):
@@ -155,8 +204,9 @@ def chain(n, slope=1.0, with_backward=False):
     """A chain of n nodes, each with one input.
 
     Returns:
-        {"length": of the order, "in_order": whether each node follows its input, "gradient": of the
-        first node, 0 without `with_backward`}.
+        {"length": of the order, -1 where Python's limit on the depth of calls was met, "in_order":
+        whether each node follows its input, "gradient": of the first node, 0 without
+        `with_backward`}.
     """
     nodes = [engine.Value(1.0)]
     for _ in range(n - 1):
@@ -168,7 +218,10 @@ def chain(n, slope=1.0, with_backward=False):
         finally:
             engine.topo_order = original
         return {"length": n, "in_order": True, "gradient": nodes[0].grad}
-    order = engine.topo_order(nodes[-1])
+    try:
+        order = engine.topo_order(nodes[-1])
+    except RecursionError:
+        return {"length": -1, "in_order": False, "gradient": 0.0}
     in_order = len(order) == n and all(a is b for a, b in zip(order, nodes, strict=True))
     return {"length": len(order), "in_order": in_order, "gradient": 0.0}
 
@@ -177,13 +230,21 @@ class Counter:
     """Counts how often inputs are read and how often nodes are compared with one another."""
 
     def __init__(self):
-        self.count = 0
+        self.reads = self.comparisons = 0
 
-    def add(self):
-        """One more."""
-        self.count += 1
-        if self.count > READS_ALLOWED:
-            raise TooManyReads(f"{READS_ALLOWED} reads")
+    def read(self):
+        """One more time inputs are read."""
+        self.reads += 1
+        self.stop_where_too_many()
+
+    def compare(self):
+        """One more comparison."""
+        self.comparisons += 1
+        self.stop_where_too_many()
+
+    def stop_where_too_many(self):
+        if self.reads + self.comparisons > READS_ALLOWED:
+            raise TooManyReads(f"{READS_ALLOWED} reads and comparisons")
 
 
 class Counted(tuple):
@@ -192,21 +253,25 @@ class Counted(tuple):
     counter = None
 
     def __iter__(self):
-        self.counter.add()
+        self.counter.read()
         return super().__iter__()
 
     def __getitem__(self, place):
-        self.counter.add()
+        self.counter.read()
         return super().__getitem__(place)
 
 
 def work(edges, root):
-    """How often `topo_order` reads inputs or compares nodes; at most READS_ALLOWED and one more."""
+    """How often `topo_order` reads inputs and compares nodes; READS_ALLOWED and one more at most.
+
+    Returns:
+        {"reads", "comparisons", "too_deep": whether Python's limit on the depth of calls was met}.
+    """
     counter = Counter()
 
     class Watched(engine.Value):
         def __eq__(self, other):
-            counter.add()
+            counter.compare()
             return self is other
 
         __hash__ = object.__hash__
@@ -218,12 +283,15 @@ def work(edges, root):
     nodes = []
     for uses in edges:
         nodes.append(Watched(1.0, Reads((nodes[k], slope) for k, slope in uses)))
-    counter.count = 0
+    counter.reads = counter.comparisons = 0
+    too_deep = False
     try:
         engine.topo_order(nodes[root])
     except TooManyReads:
-        return counter.count
-    return counter.count
+        pass
+    except RecursionError:
+        too_deep = True
+    return {"reads": counter.reads, "comparisons": counter.comparisons, "too_deep": too_deep}
 
 
 def checked(f, x):

@@ -142,7 +142,7 @@ def fig2_cost(module):
         left.loglog(counts, 2.0 * np.array(counts), "s--", color=GREY, ms=5, label="differences")
         left.loglog(counts, share, "o-", color=ORANGE, ms=5, label="backward")
         left.set(title="work for a gradient", xlabel="inputs",
-                 ylabel="in forward evaluations", ylim=(0.3, 2000))  # fmt: skip
+                 ylabel="operations for each value", ylim=(0.3, 2000))  # fmt: skip
         right = place_axes(figure, 3.95, 0.4, 2.45, 1.95)
         right.semilogy(rungs, paths, "s--", color=GREY, ms=5, label="paths")
         right.semilogy(rungs, ladder, "o-", color=ORANGE, ms=5, label="contributions added")
@@ -152,7 +152,7 @@ def fig2_cost(module):
             axes.tick_params(labelsize=SMALL)
             axes.grid(True, axis="y")
     facts = {
-        "backward stays below two forward evaluations": bool(share.max() < 2.0),
+        "backward adds less than two contributions for each value": bool(share.max() < 2.0),
         "and hardly depends on the number of inputs": (share[-1] / share[1], 0.8, 1.25),
         "a diamond adds four contributions": bool(np.allclose(ladder, 4 * np.array(rungs))),
         "twelve diamonds have over 50 times as many paths": paths[-1] > 50 * ladder[-1],
@@ -249,13 +249,15 @@ def fig4_order(module):
         "in the engine's order users come first": all(mine[end] < mine[at] for at, end in uses),
         "level by level a is visited before c, which uses it": theirs["a"] < theirs["c"],
         "and x gets 4 only": (gradients["level by level"]["x"], 4.0, 4.0),
+        "a ends with 257 all the same": gradients["level by level"]["a"] == 257.0,
+        "every user first x gets 1028": gradients["every user first"]["x"] == 1028.0,
     }  # fmt: skip
     return figure, facts
 
 
 def _draw_order(axes, name, uses, ranks, gradients):
     at = {"x": (0.4, 1.55), "a": (1.02, 1.55), "c": (1.65, 0.9), "b": (2.27, 0.9), "f": (2.9, 1.55)}
-    made = {"x": "x", "a": "a = x²", "c": "c = a²", "b": "b = c²", "f": "b + a"}
+    made = {"x": "x = 2", "a": "a = x²", "c": "c = a²", "b": "b = c²", "f": "b + a"}
     rank = ranks[name]
     axes.text(1.65, 0.2, name, ha="center", fontsize=TEXT + 1)
     for start, end in uses:
@@ -312,6 +314,9 @@ def fig5_uses_add_up(module):
         "the uses bring 1, 5 and 5": by_sum == 1.0 and by_square == [5.0, 5.0],
         "x gets 11": (x.grad, 11.0, 11.0),
         "the tangent of slope 11 touches": bend < 2e-4,
+        "a line of slope 1 cuts through": (
+            34 - 0.1 * by_sum > 8.9 + 4.9**2 and 34 + 0.1 * by_sum < 9.1 + 5.1**2
+        ),
         "y gets 1": (y.grad, 1.0, 1.0),
     }
     return figure, facts
@@ -349,7 +354,7 @@ def fig6_steps(module):
         for exponent in (-12, -5, -3, -2)
     }
     facts = {
-        "at 1e-5 a right gradient is a thousand times below the gate": right[at[-5]] < 1e-9,
+        "at 1e-5 a right gradient is a thousand times below the limit": right[at[-5]] < 1e-9,
         "a step of 1e-12 would refuse it": right[at[-12]] > 1e-6,
         "ten times the step, a hundred times the truncation": (
             right[at[-2]] / right[at[-3]], 90.0, 110.0),
