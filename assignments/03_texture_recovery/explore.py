@@ -2,7 +2,9 @@
 # # Recovering a photograph
 # Measures a picture at scattered places and recovers it with your functions, next to the C++ core
 # where that is installed. Never graded. Run it as `python explore.py`, with your own picture as
-# `python explore.py --image FILE`; `--size`, `--samples` and `--steps` change the amount of work.
+# `python explore.py --image FILE`; `--size`, `--samples` (for each texel) and `--steps` change the
+# amount of work. `--fine 4` measures a picture with four times as many rows and columns as the
+# texture that you look for: its edges lie inside texels then.
 
 # %%
 from __future__ import annotations
@@ -26,7 +28,8 @@ def option(name, default):
 
 size = int(option("size", 96))
 samples_per_texel = float(option("samples", 16))
-steps = int(option("steps", 40))
+steps = max(1, int(option("steps", 40)))
+fine = int(option("fine", 1))
 
 
 # %% [markdown]
@@ -55,16 +58,18 @@ def photograph():
         data = importlib.import_module("skimage.data")
         picture, origin = Image.fromarray(data.astronaut()), "the astronaut of scikit-image"
     else:
-        return hills(size), "hills drawn by formulas: scikit-image is not installed"
+        return hills(size * fine), "hills drawn by formulas: scikit-image is not installed"
     scale = size / max(picture.size)
-    shrunk = picture.resize([max(1, round(scale * side)) for side in picture.size])
+    shrunk = picture.resize([fine * max(1, round(scale * side)) for side in picture.size])
     return (np.asarray(shrunk) / 255.0) ** 2.2, origin
 
 
-truth, origin = photograph()
+wall, origin = photograph()
+rows, columns = (side // fine for side in wall.shape[:2])
+truth = wall.reshape(rows, fine, columns, fine, 3).mean(axis=(1, 3))  # one mean for each texel
 rng = np.random.default_rng(0)
-places = rng.random((int(samples_per_texel * truth.shape[0] * truth.shape[1]), 2))
-measured = mine.bilinear_sample(truth, places)
+places = rng.random((int(samples_per_texel * rows * columns), 2))
+measured = mine.bilinear_sample(wall, places)
 print(f"picture: {origin}, {truth.shape[1]} x {truth.shape[0]}, measured {len(places)} times")
 
 # %% [markdown]
@@ -78,6 +83,25 @@ seconds = time.perf_counter() - before
 error = np.mean((found - truth)[~unknown] ** 2)
 decibels = -10 * np.log10(error)
 print(f"yours: {steps} steps in {seconds:.2f} s, {decibels:.1f} dB, {unknown.sum()} texels unseen")
+print(f"loss:  {history[0]:.3g} at the start, {history[-1]:.3g} at the end")
+
+# %% [markdown]
+# ## The slow part
+# Steps of half the largest stable length shrink each pattern, the slow ones least. So they leave a
+# mixture of slow ones, and the Rayleigh quotient of that is an estimate, from above, of the
+# smallest eigenvalue. One channel is enough.
+
+# %%
+left = np.where(unknown[:, :, None], 0.0, found - truth)
+slow, nothing = left[:, :, :1], np.zeros((len(places), 1))
+if slow.any() and rows * columns > 1:
+    largest = mine.largest_curvature(truth.shape[:2], places, 40)
+    for _ in range(40):
+        slow = slow - mine.loss_and_grad(slow, places, nothing)[1] / largest
+        slow = slow / np.linalg.norm(slow)
+    smallest = np.sum(slow * mine.loss_and_grad(slow, places, nothing)[1])
+    print(f"slow:  the smallest eigenvalue is 1/{largest / smallest:.0f} of the largest, or less;")
+    print(f"       a step leaves {1 - 0.95 * 2 * smallest / largest:.3f} of such a pattern")
 
 # %% [markdown]
 # ## The C++ core on the same samples
@@ -100,32 +124,42 @@ else:
 # %% [markdown]
 # ## Pictures
 # Look at the gradient of the first step beside what was missing: the adjoint paints the one
-# from the other.
+# from the other. It also paints the last picture: the squared residual of each sample, shared out
+# to the texels that it came from.
 
 # %%
 _, slope = mine.loss_and_grad(beginning, places, measured)
 missing = (truth - beginning).mean(axis=2)
 painted = -slope.mean(axis=2)
 painted *= np.abs(missing).max() / np.abs(painted).max()
-levels = mine.build_mips(found[: 2 ** int(np.log2(size)) // 2, : 2 ** int(np.log2(size)) // 2])
-figure = Figure(figsize=(11, 6), layout="constrained")
+rest = mine.bilinear_sample(found, places) - measured
+shares = mine.bilinear_sample_adjoint(truth.shape[:2], places, np.ones((len(places), 1)))
+squares = mine.bilinear_sample_adjoint(truth.shape[:2], places, rest**2).mean(axis=2)
+residual = np.sqrt(squares / np.where(unknown, 1, shares[:, :, 0]))
+tall, wide = (2 ** int(np.log2(side)) for side in truth.shape[:2])  # a pyramid wants powers of two
+levels = mine.build_mips(found[:tall, :wide])
+level = min(2, len(levels) - 1)
+figure = Figure(figsize=(14, 6.5), layout="constrained")
 shown = [
-    ("truth", truth),
-    (f"{steps} steps, {decibels:.1f} dB", found),
-    ("mip level 2 of a part", levels[min(2, len(levels) - 1)]),
-    ("missing at the start", missing),
-    ("minus the gradient, scaled alike", painted),
+    ("truth", truth, None),
+    (f"{steps} steps, {decibels:.1f} dB", found, None),
+    (f"mip level {level} of its upper left", levels[level], None),
+    ("missing at the start", missing, np.abs(missing).max()),
+    ("minus the gradient, scaled alike", painted, np.abs(missing).max()),
+    ("missing at the end", -left.mean(axis=2), np.abs(left).max()),
+    ("residual, root of the mean square", residual, residual.max()),
 ]
-for k, (title, values) in enumerate(shown):
-    axes = figure.add_subplot(2, 3, k + 1)
-    if values.ndim == 3:
+for k, (title, values, top) in enumerate(shown):
+    axes = figure.add_subplot(2, 4, k + 1)
+    if top is None:
         axes.imshow(np.clip(values, 0, 1) ** (1 / 2.2), interpolation="nearest")
     else:
-        top = np.abs(missing).max()
-        axes.imshow(values, cmap="RdBu_r", vmin=-top, vmax=top, interpolation="nearest")
+        end = max(float(top), 1e-12)
+        image = axes.imshow(values, cmap="RdBu_r", vmin=-end, vmax=end, interpolation="nearest")
+        figure.colorbar(image, ax=axes, ticks=[-end, 0, end], format="%.2g", shrink=0.7)
     axes.set(title=title, xticks=[], yticks=[])
-axes = figure.add_subplot(2, 3, 6)
+axes = figure.add_subplot(2, 4, 8)
 axes.semilogy(history)
 axes.set(title="loss", xlabel="step")
 figure.savefig("recovered.png", dpi=110)
-print("recovered.png: what was found, and the first gradient beside what was missing")
+print("recovered.png: what was found, the first gradient beside what was missing, what is left")

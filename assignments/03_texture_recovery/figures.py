@@ -211,7 +211,7 @@ def fig4_step(module: ModuleType) -> tuple[Figure, Facts]:
             axes.plot(values, color=colour, linestyle=dashes, label=f"{share:g}")
             place = {0.3: -3, 0.6: -3, 0.95: 3, 1.05: -3}[share]
             axes.annotate(
-                f"{share:g} of the bound", (steps, values[-1]), (4, place),
+                f"{share:g} · 2/λ", (steps, values[-1]), (4, place),
                 textcoords="offset points", color=colour if share != 0.3 else INK, va="center",
             )  # fmt: skip
         axes.set(xlabel="step", ylabel="PSNR of the texture [dB]", xlim=(0, 74))
@@ -244,6 +244,11 @@ def fig5_photograph(module: ModuleType) -> tuple[Figure, Facts]:
         "unseen texels lie in the patch": (float(unseen.mean()), 0.04, 0.07),
         "the loss falls with every step": bool((np.diff(losses) < 0).all()),
         "after 3 steps noise is still to be seen": (psnr(early[seen], truth[seen]), 12, 32),
+        "over a third of the dark half's values are below zero then": (
+            float((early[24:][seen[24:]] < 0).mean()),
+            1 / 3,
+            0.6,
+        ),
     }
     with house_style():
         figure = Figure(figsize=(7.0, 4.7), layout="constrained")
@@ -278,6 +283,11 @@ def fig6_mips(module: ModuleType) -> tuple[Figure, Facts]:
             float(picked[fine_half].std()),
             0.3,
             0.4,
+        ),
+        "about half of the false contrast remains where rings are of medium width": (
+            float(coarse[6:14, 6:14].std() / picked[6:14, 6:14].std()),
+            0.4,
+            0.65,
         ),
         "the mip level is even there": (float(coarse[fine_half].std()), 0, 0.05),
     }

@@ -44,7 +44,7 @@ def bilinear_sample_adjoint(shape, uv, g):
     """The transpose of `bilinear_sample`: each sample's number goes back to its four texels.
 
     Args:
-        shape: (H, W), a tuple or list; the texels' values are not needed.
+        shape: (H, W), a tuple or a list: take it apart, (*shape, 1) works for both.
         uv: (N, 2), the places; the same place may occur many times.
         g: (N, C), the derivative of some loss by each sample.
 
@@ -93,7 +93,7 @@ def largest_curvature(shape, uv, n):
     The Hessian is the same for each channel and does not depend on texels or measurements.
 
     Args:
-        shape: (H, W) of the texture.
+        shape: (H, W) of the texture, a tuple or a list.
         uv: (N, 2), where was measured.
         n: number of rounds, from 0 upwards, that start at a texture of ones.
 
@@ -114,7 +114,7 @@ def recover_texture(T0, uv, target, n):
     """Gradient descent with a fixed step, SAFETY times the largest stable one.
 
     Args:
-        T0: (H, W, C), where the descent starts; must not change.
+        T0: (H, W, C), where the descent starts; this array itself must not change.
         uv: (N, 2), where was measured.
         target: (N, C), what was measured.
         n: number of steps, from 0 upwards.

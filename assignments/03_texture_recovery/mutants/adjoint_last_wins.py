@@ -1,4 +1,4 @@
-"""Where a texel is hit more than once, only the last sample counts: add, do not assign."""
+"""`A[index] += values` adds once for an index that occurs twice: only the last sample counts."""
 
 TASKS = ("03.2",)
 LOSES = ("03.2.transpose", "03.2.repeated", "03.2.hidden", "03.2.cost")

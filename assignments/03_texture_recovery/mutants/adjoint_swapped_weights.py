@@ -1,4 +1,4 @@
-"""In your adjoint the right texel gets the lower one's weight, and the reverse."""
+"""The right and the lower texel have each other's weight: equation (6) has row before column."""
 
 TASKS = ("03.2",)
 LOSES = ("03.2.single", "03.2.transpose", "03.2.hidden", "03.2.cost")

@@ -1,4 +1,4 @@
-"""The right texel's weight goes to the lower texel, forwards and backwards alike."""
+"""The right and the lower texel have each other's weight: equation (6) has row before column."""
 
 TASKS = ("03.1", "03.2")
 LOSES = ("03.1.ramp", "03.1.product", "03.1.hidden", "03.2.single", "03.2.hidden", "03.2.cost")

@@ -1,4 +1,4 @@
-"""The weight of the right texel multiplies the lower one, and the reverse."""
+"""The right and the lower texel have each other's weight: equation (6) has row before column."""
 
 TASKS = ("03.1",)
 LOSES = ("03.1.ramp", "03.1.product", "03.1.hidden")
