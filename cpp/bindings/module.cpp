@@ -12,4 +12,5 @@ PYBIND11_MODULE(_core, m) {
     photograd::bind_light(m);
     photograd::bind_direct(m);
     photograd::bind_sampling(m);
+    photograd::bind_sh(m);
 }

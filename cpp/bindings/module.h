@@ -16,5 +16,6 @@ void bind_bsdf(py::module_& m);
 void bind_light(py::module_& m);
 void bind_direct(py::module_& m);
 void bind_sampling(py::module_& m);
+void bind_sh(py::module_& m);
 
 }  // namespace photograd

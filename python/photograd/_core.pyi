@@ -33,6 +33,8 @@ __all__: list[str] = [
     "render_direct",
     "render_direct_backward",
     "set_thread_count",
+    "sh_colors",
+    "sh_colors_backward",
     "square_to_cap",
     "square_to_cosine_hemisphere",
     "square_to_disk",
@@ -442,6 +444,24 @@ def render_direct_backward(
 def set_thread_count(threads: typing.SupportsInt | typing.SupportsIndex) -> None:
     """
     Upper limit on threads; 0 restores the default, all cores.
+    """
+
+def sh_colors(
+    directions: numpy.ndarray, coefficients: numpy.ndarray, colors: numpy.ndarray
+) -> None:
+    """
+    Writes sum_k Y_k(directions) coefficients[:, k] to colors (N, C).
+    """
+
+def sh_colors_backward(
+    directions: numpy.ndarray,
+    coefficients: numpy.ndarray,
+    d_colors: numpy.ndarray,
+    d_directions: numpy.ndarray,
+    d_coefficients: numpy.ndarray,
+) -> None:
+    """
+    Adds the derivatives to d_directions (N, 3) and d_coefficients (N, K, C).
     """
 
 def square_to_cap(

@@ -10,6 +10,7 @@
 
 #include "photograd/core/params.h"
 #include "photograd/ops/composite.h"
+#include "photograd/ops/sh.h"
 #include "photograd/ops/trilinear.h"
 
 namespace photograd {
@@ -73,6 +74,33 @@ struct TrilinearOp {
         weights(in + values, a);
         trilinear_backward<R, channels>(shape, a[0], a[1], a[2], d_out, d_in);
         trilinear_position_backward<R, channels>(in, shape, a[0], a[1], a[2], d_out, d_in + values);
+    }
+};
+
+/// A colour of two channels from a direction and its coefficients, to the highest degree. The direction need
+/// not be of unit length: the polynomials are defined everywhere.
+struct ShColorOp {
+    static constexpr const char* name = "sh_color";
+    static constexpr int degree = sh_max_degree, channels = 2;
+    static constexpr int coefficients = sh_count(degree) * channels;
+    static constexpr std::array<InputGroup, 2> inputs{
+        {{"coefficients", coefficients, -1, 1}, {"direction", 3, 0.2, 0.9}}};
+    static constexpr int outputs = channels;
+
+    template <class R>
+    static void forward(const R* in, R* out) {
+        const R* d = in + coefficients;
+        R Y[sh_count(degree)];
+        sh_basis<degree>(d[0], d[1], d[2], Y);
+        sh_color<degree, channels>(Y, in, out);
+    }
+    template <class R>
+    static void backward(const R* in, const R* d_out, R* d_in) {
+        const R* d = in + coefficients;
+        R Y[sh_count(degree)], d_Y[sh_count(degree)] = {};
+        sh_basis<degree>(d[0], d[1], d[2], Y);
+        sh_color_backward<degree, channels>(Y, in, d_out, d_Y, d_in);
+        sh_basis_backward<degree>(d[0], d[1], d[2], d_Y, d_in + coefficients);
     }
 };
 
@@ -145,7 +173,7 @@ struct CompositeOp {
 
 using Ops = TypeList<ActivationOp<Activation::relu>, ActivationOp<Activation::softplus>,
                      ActivationOp<Activation::exp>, ActivationOp<Activation::sigmoid>,
-                     TrilinearOp<Border::clamp>, TrilinearOp<Border::zero>,
+                     TrilinearOp<Border::clamp>, TrilinearOp<Border::zero>, ShColorOp,
                      CompositeOp<Quadrature::alpha>, CompositeOp<Quadrature::riemann>>;
 
 }  // namespace photograd
