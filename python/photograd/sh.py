@@ -1,9 +1,9 @@
 """Real spherical harmonics to degree 4: evaluate, differentiate, project, rotate, light a surface.
 
-Coefficient k = l (l + 1) + m, m from -l to l. Signs are those of Plenoxels and Gaussian splatting, which
-keep the phase (-1)^m; `from_convention` and `to_convention` convert. Directions are unit vectors; what
-a direction means (towards the viewer, from the light) is for the caller to say, and a wrong sign
-shows in the odd degrees only. [Sloan2008]
+Coefficient k = l (l + 1) + m, m from -l to l. Signs are those of Plenoxels and Gaussian splatting,
+which keep the phase (-1)^m; `from_convention` and `to_convention` convert. Directions are unit
+vectors; what a direction means (towards the viewer, from the light) is for the caller to say, and
+a wrong sign shows in the odd degrees only. [Sloan2008]
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ def degree_of(coefficients: int) -> int:
 
 
 def evaluate(coefficients: Array, directions: Array) -> Array:
-    """sum_k Y_k(directions) coefficients[:, k]
+    """The values sum_k Y_k(directions) coefficients[:, k].
 
     Args:
         coefficients: (N, K, C) with C 1 or 3, float32 or float64.
@@ -107,8 +107,8 @@ def project(
 def rotation(rotation_matrix: ArrayLike, degree: int) -> NDArray[np.float64]:
     """The matrix (K, K) that turns coefficients: rotate(f)(R d) = f(d).
 
-    Found degree by degree from 2 l + 1 and more directions, by solving for what makes both sides equal;
-    exact up to rounding, because harmonics of one degree rotate among themselves.
+    Found degree by degree from more than 2 l + 1 directions, by solving for what makes both sides
+    equal; exact up to rounding, because harmonics of one degree rotate among themselves.
 
     Args:
         rotation_matrix: (3, 3), orthonormal with determinant 1.
@@ -135,8 +135,8 @@ def rotation(rotation_matrix: ArrayLike, degree: int) -> NDArray[np.float64]:
 def irradiance(coefficients: ArrayLike, normals: ArrayLike) -> NDArray[np.float64]:
     """Irradiance (N, C) on surfaces of these normals (N, 3), from radiance coefficients (K, C).
 
-    Radiance arriving from direction d is sum_k c_k Y_k(d). Nine coefficients (degree 2) keep the error
-    of a distant light below 3 % on average [Ramamoorthi2001].
+    Radiance arriving from direction d is sum_k c_k Y_k(d). Nine coefficients (degree 2) keep the
+    error of a distant light below 3 % on average [Ramamoorthi2001].
     """
     c = np.asarray(coefficients, np.float64)
     degree = degree_of(len(c))

@@ -1,6 +1,8 @@
-"""Spherical harmonics: orthonormal, named signs, rotation, projection, irradiance, both derivatives."""
+"""Spherical harmonics: orthonormal, named signs, rotation, projection, irradiance, derivatives."""
 
 from __future__ import annotations
+
+import itertools
 
 import numpy as np
 import pytest
@@ -133,7 +135,7 @@ def test_the_error_of_a_projection_falls_with_degree() -> None:
     for degree in range(5):
         rebuilt = sh.basis(d, degree) @ sh.project(d, values, w, degree)
         errors.append(float(np.sqrt((w[:, None] * (rebuilt - values) ** 2).sum())))
-    assert all(later < 0.6 * earlier for earlier, later in zip(errors, errors[1:], strict=False))
+    assert all(later < 0.6 * earlier for earlier, later in itertools.pairwise(errors))
 
 
 @pytest.mark.parametrize("degree", range(5))
