@@ -16,6 +16,7 @@ RATES = {
     "load_L2": 4.029e9,  # loads of 32 bytes at random places of a 1 MiB table
     "load_L3": 2.627e9,  # the same in 8 MiB
     "rmw_L2": 1.7964e9,  # read, add and write 32 bytes at random places of 1 MiB
+    "rmw_L3": 1.4114e9,  # the same in 8 MiB
 }
 
 BOX_TEST = 8 * 12  # flop of a ray against the eight boxes of a node
@@ -44,6 +45,14 @@ def ray_bound(primary: int, bounce: int) -> dict[str, Any]:
     """W1: 14 nodes and 2 leaves a primary ray; 24 and 3, and 8 cache lines, a bounce ray."""
     flop = primary * (14 * BOX_TEST + 2 * LEAF_TEST) + bounce * (24 * BOX_TEST + 3 * LEAF_TEST)
     return _row(slowest({"flop": flop, "load_L3": 8 * bounce}), None)
+
+
+def texture_bound(lookups: int) -> dict[str, Any]:
+    """W5: two rows of texels loaded per lookup; backward two more, which are added to in place.
+
+    For points in the order that they come in. A program that sorts them first can be faster.
+    """
+    return _row(slowest({"load_L3": 2 * lookups}), slowest({"rmw_L3": 2 * lookups}))
 
 
 def _row(forward: tuple[float, str], both: tuple[float, str] | None) -> dict[str, Any]:

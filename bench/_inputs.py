@@ -19,6 +19,8 @@ RECORDED = {
     "W1 nv=500 res=2048": "5b2b0689c738cf38",
     "W4 n=128 res=200 views=8": "92a6b833a56f6bc9",
     "W4 n=16 res=8 views=1": "bbf2719ce201136b",
+    "W5 n=512 points=1000000": "90849c1cc0c7762d",
+    "W5 n=256 points=200000": "bed43a2402088295",
 }
 
 
@@ -97,6 +99,26 @@ def orbit_rays(res: int, views: int) -> tuple[Array, Array]:
         np.concatenate(origins).astype(np.float32),
         np.concatenate(directions).astype(np.float32),
     )
+
+
+# W5: a texture and points of it
+
+
+def texture(n: int) -> Array:
+    """(n, n, 3) float32 in [0, 1], index [row, column]: other waves in each channel."""
+    c = (np.arange(n) + 0.5) / n
+    v, u = np.meshgrid(c, c, indexing="ij")
+    channels = []
+    for k in range(3):
+        along_u = np.sin(2 * np.pi * (3 + k) * u)
+        along_v = np.sin(2 * np.pi * (4 - k) * v * (1 + u))
+        channels.append(0.5 + 0.25 * along_u + 0.25 * along_v)
+    return np.stack(channels, axis=-1).astype(np.float32)
+
+
+def texture_points(count: int) -> Array:
+    """(count, 2) float32 uniform texture coordinates, in random order."""
+    return np.random.default_rng(3).random((count, 2), dtype=np.float32)
 
 
 # W1: a mesh of a million triangles, and rays that all start inside

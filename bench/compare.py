@@ -45,6 +45,10 @@ PEERS = [
     Peer("W4", "taichi", "w4_volume_taichi.py", "ti"),
     Peer("W4", "torch", "w4_volume_torch.py", "torch"),
     Peer("W4", "jax", "w4_volume_jax.py", "jax"),
+    Peer("W5", "numba", "w5_texture_numba.py", "numba"),
+    Peer("W5", "drjit-llvm", "w5_texture_drjit.py", "mi"),
+    Peer("W5", "torch", "w5_texture_torch.py", "torch"),
+    Peer("W5", "jax", "w5_texture_jax.py", "jax"),
 ]
 
 

@@ -16,7 +16,12 @@ from pathlib import Path
 from _runs import BUSY, Row, Runs, comparison, group, read_rows
 
 HEAD = "# Measured\n\nHow this was taken, and what it means, is said in `docs/bench.md`."
-UNITS = {"load_L2": "loads from L2", "rmw_L2": "additions in L2", "load_L3": "loads from L3"}
+UNITS = {
+    "load_L2": "loads from L2",
+    "load_L3": "loads from L3",
+    "rmw_L2": "additions in L2",
+    "rmw_L3": "additions in L3",
+}
 
 
 def markdown_table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:

@@ -20,6 +20,9 @@ Python's venv      | python:venv                          | python3-venv
 TABLE
     if [ "$1" = dev ]; then
         echo "doctest            | header:doctest/doctest.h             | doctest-dev"
+        # Tests of the grader's isolation.
+        echo "bubblewrap         | command:bwrap                        | bubblewrap"
+        echo "libseccomp         | library:libseccomp.so*               | libseccomp2"
     fi
 }
 

@@ -16,6 +16,23 @@ TEST_CASE("bin_by_owner keeps the order of contributions within each owner") {
     CHECK(bins.order == std::vector<std::uint32_t>{1, 4, 3, 0, 2, 5});
 }
 
+TEST_CASE("bin_by_owner on threads gives what it gives on one") {
+    // More than two pieces of 2^16, an owner without anything, and more owners than a piece is long.
+    for (const int owners : {1, 7, 100000}) {
+        std::vector<std::uint32_t> owner(150000), items(owner.size());
+        for (std::size_t i = 0; i < owner.size(); ++i) {
+            const auto k = static_cast<std::uint32_t>(i * 2654435761u >> 7);
+            owner[i] = owners == 1 ? 0 : k % static_cast<std::uint32_t>(owners - 1);
+        }
+        std::iota(items.begin(), items.end(), 0u);
+        OwnerBins serial, threaded;
+        bin_by_owner(items, owners, [&](std::uint32_t i) { return owner[i]; }, serial);
+        bin_by_owner(owner, owners, threaded);
+        CHECK(threaded.begin == serial.begin);
+        CHECK(threaded.order == serial.order);
+    }
+}
+
 TEST_CASE("bin_by_owner of nothing has an empty bin for every owner") {
     OwnerBins bins;
     bin_by_owner({}, 3, [](std::uint32_t) { return 0u; }, bins);

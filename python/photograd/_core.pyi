@@ -13,8 +13,11 @@ __all__: list[str] = [
     "Bvh",
     "MarchSettings",
     "Op",
+    "TexturePlan",
     "bsdf_lambert",
     "bsdfs",
+    "build_mips",
+    "build_mips_backward",
     "cap_to_square",
     "cosine_hemisphere_to_square",
     "disk_to_square",
@@ -27,11 +30,17 @@ __all__: list[str] = [
     "log1p_unit",
     "march",
     "march_backward",
+    "mip_level",
+    "mip_shapes",
     "ops",
     "philox4x32",
     "place_samples",
     "render_direct",
     "render_direct_backward",
+    "sample",
+    "sample_backward",
+    "sample_mips",
+    "sample_mips_backward",
     "set_thread_count",
     "sh_colors",
     "sh_colors_backward",
@@ -301,6 +310,32 @@ class light_sky:
         Directions (N, 3) from uniform u2 (N, 2).
         """
 
+class TexturePlan:
+    """
+    Points sorted by tile, with their colours.
+    """
+    def __init__(
+        self,
+        height: typing.SupportsInt | typing.SupportsIndex,
+        width: typing.SupportsInt | typing.SupportsIndex,
+        uv: numpy.ndarray,
+        colors: numpy.ndarray,
+    ) -> None: ...
+    def loss_and_gradient(self, texture: numpy.ndarray, d_texture: numpy.ndarray) -> float:
+        """
+        The loss; adds to d_texture (H, W, C).
+        """
+
+def build_mips(mips: collections.abc.Sequence[numpy.ndarray]) -> None:
+    """
+    Fills level 1 and all after it from level 0.
+    """
+
+def build_mips_backward(d_mips: collections.abc.Sequence[numpy.ndarray]) -> None:
+    """
+    Adds the adjoint of every level to the one before; level 0 ends as the texture's.
+    """
+
 def cap_to_square(
     w: numpy.ndarray, height: typing.SupportsFloat | typing.SupportsIndex
 ) -> numpy.ndarray:
@@ -375,6 +410,23 @@ def march_backward(
     Adds to d_parameters and, where given, to d_origins and d_directions.
     """
 
+def mip_level(
+    height: typing.SupportsInt | typing.SupportsIndex,
+    width: typing.SupportsInt | typing.SupportsIndex,
+    footprint: numpy.ndarray,
+) -> numpy.ndarray:
+    """
+    Level (N,) of footprints (N, 2, 2): du/dx, dv/dx; du/dy, dv/dy.
+    """
+
+def mip_shapes(
+    height: typing.SupportsInt | typing.SupportsIndex,
+    width: typing.SupportsInt | typing.SupportsIndex,
+) -> list[tuple[int, int]]:
+    """
+    Height and width of every level of a mip map.
+    """
+
 def philox4x32(counter: numpy.ndarray, key: numpy.ndarray) -> numpy.typing.NDArray[numpy.uint32]:
     """
     Philox4x32-10 words (N, 4) uint32 of counters (N, 4) under keys (N, 2).
@@ -439,6 +491,45 @@ def render_direct_backward(
 ) -> None:
     """
     Adds to d_albedo (A, 3) and d_lights (4, 3).
+    """
+
+def sample(texture: numpy.ndarray, uv: numpy.ndarray, out: numpy.ndarray) -> None:
+    """
+    Writes the colours (N, C) of a texture (H, W, C) at uv (N, 2) to out.
+    """
+
+def sample_backward(
+    texture: numpy.ndarray,
+    uv: numpy.ndarray,
+    d_color: numpy.ndarray,
+    d_texture: numpy.ndarray | None = None,
+    d_uv: numpy.ndarray | None = None,
+) -> None:
+    """
+    Adds to d_texture (H, W, C) and d_uv (N, 2), where given.
+    """
+
+def sample_mips(
+    mips: collections.abc.Sequence[numpy.ndarray],
+    uv: numpy.ndarray,
+    level: numpy.ndarray,
+    out: numpy.ndarray,
+) -> None:
+    """
+    Writes the colours (N, C) at uv (N, 2) and level (N,) to out.
+    """
+
+def sample_mips_backward(
+    mips: collections.abc.Sequence[numpy.ndarray],
+    uv: numpy.ndarray,
+    level: numpy.ndarray,
+    d_color: numpy.ndarray,
+    d_mips: collections.abc.Sequence[numpy.ndarray],
+    d_uv: numpy.ndarray,
+    d_level: numpy.ndarray,
+) -> None:
+    """
+    Adds to all levels of d_mips, d_uv (N, 2) and d_level (N,).
     """
 
 def set_thread_count(threads: typing.SupportsInt | typing.SupportsIndex) -> None:

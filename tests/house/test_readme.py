@@ -18,6 +18,12 @@ import pytest
 
 from support.tree import ROOT
 
+sys.path.insert(0, str(ROOT / "tools"))
+try:
+    import ready
+finally:
+    sys.path.pop(0)
+
 PAGES = ["README.md", "CONTRIBUTING.md"]
 KINDS = {"run", "commands", "text"}
 BLOCK = re.compile(r"(?:^<!-- check: (\w+) -->\n)?^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
@@ -51,13 +57,12 @@ def faults(line: str) -> list[str]:
         wrong = [word for word in words[1:] if word not in names and not (ROOT / word).exists()]
         return [f"./run knows no {word}" for word in wrong if not word.isdigit()]
     if words[0] == "photograd":
-        command = [sys.executable, "-m", "photograd_course", words[1], "--help"]
+        name = " ".join(words[1 : 3 if words[1] == "course" else 2])
+        command = [sys.executable, "-m", "photograd_course", *name.split(), "--help"]
         page = subprocess.run(command, capture_output=True, text=True, check=False)
         if page.returncode != 0:
-            return [f"photograd has no command {words[1]}"]
-        return [
-            f"{words[1]} has no {w}" for w in words if w.startswith("--") and w not in page.stdout
-        ]
+            return [f"photograd has no command {name}"]
+        return [f"{name} has no {w}" for w in words if w.startswith("--") and w not in page.stdout]
     if words[0] in {"pip", "cmake", "ctest", "git"}:
         return [f"no {word}" for word in words if "/" in word and not (ROOT / word).exists()]
     return (
@@ -95,8 +100,19 @@ def test_paths_exist(page: str) -> None:
     assert [name for name in PATH.findall(text) if not (ROOT / name).exists()] == []
 
 
+def test_the_line_about_what_is_ready_is_the_generated_one() -> None:
+    (line,) = [
+        text
+        for text in (ROOT / "README.md").read_text(encoding="utf-8").splitlines()
+        if text.startswith(ready.START)
+    ]
+    assert line == ready.ready_line()  # python tools/ready.py --write
+
+
 def test_what_does_not_exist_is_seen() -> None:
     assert faults("./run dance") == ["./run knows no dance"]
     assert faults("./run test --loud") == ["./run knows no --loud"]
     assert faults("photograd dance --help") == ["photograd has no command dance"]
+    assert faults("photograd course dance") == ["photograd has no command course dance"]
+    assert faults("photograd course check 01 --loud") == ["course check has no --loud"]
     assert faults("photograd version --loud") == ["version has no --loud"]

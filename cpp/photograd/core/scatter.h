@@ -8,8 +8,10 @@
 //                  of chunks each sum in double, and the chunks are added in order
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "photograd/core/parallel.h"
@@ -34,6 +36,35 @@ void bin_by_owner(std::span<const std::uint32_t> items, int owners, OwnerOf&& ow
     // begin[k + 1] walks from the start of owner k to its end, which is the start of owner k + 1.
     for (const std::uint32_t i : items) bins.order[bins.begin[owner_of(i) + 1]++] = i;
     bins.begin.pop_back();
+}
+
+/// The same for all contributions 0, 1, ... of which owner[i] is given, on all threads: pieces of fixed
+/// size count, and then place, their own.
+inline void bin_by_owner(std::span<const std::uint32_t> owner, int owners, OwnerBins& bins) {
+    const std::size_t kinds = static_cast<std::size_t>(owners), n = owner.size();
+    // No smaller than the number of owners, so that all counts together are no longer than `owner`.
+    const std::size_t piece = std::max<std::size_t>(kinds, 1 << 16);
+    const std::size_t pieces = (n + piece - 1) / piece;
+    std::vector<std::uint32_t> next(pieces * kinds, 0);  // of piece p for owner k: at p * kinds + k
+    const auto for_pieces = [&](auto&& visit) {
+        parallel_for(static_cast<std::int64_t>(pieces), [&](std::int64_t p) {
+            const std::size_t begin = static_cast<std::size_t>(p) * piece;
+            std::uint32_t* own = next.data() + static_cast<std::size_t>(p) * kinds;
+            for (std::size_t i = begin; i < std::min(begin + piece, n); ++i) visit(own, i);
+        });
+    };
+    for_pieces([&](std::uint32_t* own, std::size_t i) { ++own[owner[i]]; });
+    bins.begin.assign(kinds + 1, 0);
+    std::uint32_t place = 0;
+    for (std::size_t k = 0; k < kinds; ++k) {
+        bins.begin[k] = place;
+        for (std::size_t p = 0; p < pieces; ++p) place += std::exchange(next[p * kinds + k], place);
+    }
+    bins.begin[kinds] = place;
+    bins.order.resize(n);
+    for_pieces([&](std::uint32_t* own, std::size_t i) {
+        bins.order[own[owner[i]]++] = static_cast<std::uint32_t>(i);
+    });
 }
 
 /// total[p] += sum over chunks, in order, of what add(chunk, partial) put into its own zeroed partial.

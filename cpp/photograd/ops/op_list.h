@@ -9,6 +9,7 @@
 #include <array>
 
 #include "photograd/core/params.h"
+#include "photograd/ops/bilinear.h"
 #include "photograd/ops/composite.h"
 #include "photograd/ops/sh.h"
 #include "photograd/ops/trilinear.h"
@@ -104,6 +105,35 @@ struct ShColorOp {
     }
 };
 
+/// Texels with 2 channels and a point in texture coordinates. Inside: a texture of 3 rows and 4 columns, the
+/// point within one cell. At the left border: 12 rows and 3 columns, the point left of the first centres,
+/// where u is clamped and v is not.
+template <bool AtBorder>
+struct BilinearOp {
+    static constexpr const char* name = AtBorder ? "bilinear_border" : "bilinear";
+    static constexpr TextureShape shape = AtBorder ? TextureShape{12, 3} : TextureShape{3, 4};
+    static constexpr int channels = 2;
+    static constexpr int texels = shape.height * shape.width * channels;
+    static constexpr double lo = AtBorder ? 0.05 : 0.4, hi = AtBorder ? 0.12 : 0.48;
+    static constexpr std::array<InputGroup, 2> inputs{
+        {{"texels", texels, -1, 1}, {"uv", 2, lo, hi}}};
+    static constexpr int outputs = channels;
+
+    template <class R>
+    static void forward(const R* in, R* out) {
+        const R* uv = in + texels;
+        bilinear<R, channels>(in, shape, texel_axis(uv[0], shape.width),
+                              texel_axis(uv[1], shape.height), out);
+    }
+    template <class R>
+    static void backward(const R* in, const R* d_out, R* d_in) {
+        const TexelAxis<R> column = texel_axis(in[texels], shape.width);
+        const TexelAxis<R> row = texel_axis(in[texels + 1], shape.height);
+        bilinear_backward<R, channels>(shape, column, row, d_out, d_in);
+        bilinear_uv_backward<R, channels>(in, shape, column, row, d_out, d_in + texels);
+    }
+};
+
 /// A ray of two sub-blocks over a background; outputs colour, opacity, depth.
 template <Quadrature Form>
 struct CompositeOp {
@@ -171,9 +201,10 @@ struct CompositeOp {
     }
 };
 
-using Ops = TypeList<ActivationOp<Activation::relu>, ActivationOp<Activation::softplus>,
-                     ActivationOp<Activation::exp>, ActivationOp<Activation::sigmoid>,
-                     TrilinearOp<Border::clamp>, TrilinearOp<Border::zero>, ShColorOp,
-                     CompositeOp<Quadrature::alpha>, CompositeOp<Quadrature::riemann>>;
+using Ops =
+    TypeList<ActivationOp<Activation::relu>, ActivationOp<Activation::softplus>,
+             ActivationOp<Activation::exp>, ActivationOp<Activation::sigmoid>, BilinearOp<false>,
+             BilinearOp<true>, TrilinearOp<Border::clamp>, TrilinearOp<Border::zero>, ShColorOp,
+             CompositeOp<Quadrature::alpha>, CompositeOp<Quadrature::riemann>>;
 
 }  // namespace photograd

@@ -15,7 +15,8 @@ ROUNDING = Tolerance(1e-12, "two orders of summation differ by 2e-16")
 
 
 @check("90.1.value", task="90.1", points=3, calls=("weighted_sum",), tolerance=ROUNDING,
-       kills=("growing", "unweighted"))  # fmt: skip
+       kills=("growing", "unweighted"),
+       sole="students need a public check; the hidden one repeats it")  # fmt: skip
 def value_at_known_points(t):
     """exp(0) = 1 and exp(-log 2) = 1/2 give the sums they must."""
     w = t.rng.uniform(1.0, 2.0, 5)
@@ -25,7 +26,8 @@ def value_at_known_points(t):
 
 
 @check("90.2.differences", task="90.2", points=3, calls=("weighted_sum_backward",),
-       needs=("weighted_sum",), kills=("sign", "unweighted_backward", "no_cotangent"))  # fmt: skip
+       needs=("weighted_sum",),
+       kills=("sign", "unweighted_backward", "no_cotangent", "no_zero"))  # fmt: skip
 def derivatives_agree_with_differences(t):
     """Both derivatives agree with central differences of your own forward function."""
     point = {"w": t.rng.uniform(0.5, 2.0, 6), "x": t.rng.uniform(-1.0, 1.0, 6)}
@@ -64,7 +66,8 @@ def value_at_random_points(t):
 
 
 @check("90.2.cost", task="90.2", points=3, calls=("weighted_sum_backward",), visibility="hidden",
-       tolerance=ROUNDING, kills=("differences", "sign", "unweighted_backward", "no_cotangent"),
+       needs=("weighted_sum",), tolerance=ROUNDING,
+       kills=("differences", "sign", "unweighted_backward", "no_cotangent"),
        seconds=5.0)  # fmt: skip
 def the_derivative_is_cheap(t):
     """With 4,000 parameters the derivative is right, and costs a few forward calls."""

@@ -23,8 +23,8 @@ class AutoMutant:
     Attributes:
         function: that it is in, "" at module level.
         line: the line of the source without layout, the first one where a statement has several.
-        mutation: what was changed, such as "a + b -> a - b"; with " [2]" where the same change can be
-            made a second time in such a line of the function.
+        mutation: what was changed, such as "a + b -> a - b"; with " [2]" where the same change can
+            be made a second time in such a line of the function.
         number: of the line, for messages only; what identifies the mutant is the rest.
         text: the whole module with the change.
     """

@@ -16,12 +16,12 @@ from .automatic import AutoMutant, automatic_mutants
 from .equivalents import Equivalent, read_equivalents
 from .judging import RULES_SECRET, Job, Judge, Verdict
 from .named import NamedMutant, read_alternatives, read_mutants
-from .public import kit_files, public_files
+from .public import wheel_kits
 from .regions import SolutionPart, solution_parts, strip_solution
 
 Bar = Callable[[str, int], AbstractContextManager[Callable[[int], None]]]
 
-LEAST_SECONDS = 20.0  # for one text, however short the solution takes
+LEAST_SECONDS = 8.0  # of processor time for one text, however short the solution takes
 PATIENCE = 10.0  # times the solution's own seconds
 
 
@@ -29,7 +29,11 @@ PATIENCE = 10.0  # times the solution's own seconds
 def no_bar(title: str, total: int) -> Iterator[Callable[[int], None]]:
     """Shows nothing."""
     del title, total
-    yield lambda done: None
+    yield _ignore
+
+
+def _ignore(done: int) -> None:
+    del done
 
 
 @dataclass
@@ -110,9 +114,7 @@ class Dossier:
     @cached_property
     def visible(self) -> dict[str, bytes]:
         """What students get of this assignment, by path."""
-        kit = {f"kit/{path}": data for path, data in kit_files(self.folder).items()}
-        public = {f"checks/{path}": data for path, data in public_files(self.folder).items()}
-        return {**kit, **public}
+        return wheel_kits(self.folder)
 
     @cached_property
     def judge(self) -> Judge:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import math
 import os
 import sys
 from collections.abc import Callable, Mapping
@@ -37,7 +38,7 @@ def main() -> None:
     job = json.loads(sys.stdin.read())
     results = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)  # what a mutant prints is no result
-    _limit_memory()
+    _limit(job["seconds"])
     with contextlib.suppress(_Enough):
         judge(job, results)
     results.write('{"end": true}\n')
@@ -49,7 +50,8 @@ def judge(job: Mapping[str, Any], results: TextIO) -> None:
 
     Args:
         job: "folder", "secret" (hex), "text" of the module, "first" (stop at the first failure),
-            "passed" and "failed": ids of checks whose outcome is known and that do not run again.
+            "seconds" of processor time, "passed" and "failed": ids of checks whose outcome is known
+            and that do not run again.
         results: gets a JSON object a line.
     """
     bundle = read_folder(Path(job["folder"]), secret=bytes.fromhex(job["secret"]))
@@ -97,11 +99,14 @@ def _plain(value: Any) -> Any:
     return value.tolist() if hasattr(value, "tolist") else str(value)
 
 
-def _limit_memory() -> None:
+def _limit(seconds: float) -> None:
+    """Bound memory and processor time, where the system can; a busy machine changes neither."""
     if find_spec("resource") is not None:
         resource = import_module("resource")
+        cpu = math.ceil(seconds)
         with contextlib.suppress(ValueError, OSError):
             resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+            resource.setrlimit(resource.RLIMIT_CPU, (cpu, cpu + 1))
 
 
 if __name__ == "__main__":

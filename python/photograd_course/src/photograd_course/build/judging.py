@@ -18,8 +18,10 @@ import numpy as np
 
 from ..assignment.manifest import read_manifest
 from ..atomic_io import atomic_write
+from ..errors import Error, message
 
 WORKERS = 2
+WALL = 6.0  # seconds of wall clock for a second of processor time: for what sleeps
 # Files of a folder that decide what becomes of a text; and of this package likewise.
 DECIDING = ("assignment.toml", "checks.py", "adapters.py")
 ENGINE = ("grading", "assignment", "worker")
@@ -73,7 +75,7 @@ class Judge:
         folder: its source.
         secret: seeds of hidden checks.
         cache: a folder for results, or None.
-        seconds: of wall clock for one text; more counts as an endless loop.
+        seconds: of processor time for one text; more counts as an endless loop.
         ran: how many texts were run rather than found in the cache.
     """
 
@@ -86,7 +88,11 @@ class Judge:
     _known: str = ""
 
     def judge(self, job: Job) -> Verdict:
-        """The verdict on one text, from the cache where it is known."""
+        """The verdict on one text, from the cache where it is known.
+
+        Raises:
+            Error: the judging itself does not work; no fault of the text.
+        """
         place = None
         if self.cache is not None:
             key = hashlib.sha256(f"{self._stem()}|{job!r}".encode()).hexdigest()
@@ -142,17 +148,18 @@ class Judge:
         """Outcomes of one process, and the check in which it hung or died."""
         order = {
             "folder": str(self.folder), "secret": self.secret.hex(), "text": job.text,
-            "first": job.first, "passed": list(passed), "failed": list(failed),
+            "first": job.first, "seconds": self.seconds,
+            "passed": list(passed), "failed": list(failed),
         }  # fmt: skip
         program = [sys.executable, "-I", "-m", "photograd_course.build.judge_program"]
         try:
             ended = subprocess.run(
-                program, input=json.dumps(order).encode(), timeout=self.seconds, check=False,
+                program, input=json.dumps(order).encode(), timeout=WALL * self.seconds, check=False,
                 capture_output=True, env=_environment(),
             )  # fmt: skip
             written, problem = ended.stdout, ended.stderr.decode(errors="replace")
         except subprocess.TimeoutExpired as error:
-            written, problem = error.stdout or b"", f"more than {self.seconds:g} s"
+            written, problem = error.stdout or b"", "no answer in time"
         lines = [json.loads(line) for line in written.split(b"\n")[:-1]]
         outcomes = [line for line in lines if "status" in line]
         if lines and "end" in lines[-1]:
@@ -161,7 +168,8 @@ class Judge:
         finished = {each["id"] for each in outcomes}
         open_ones = [each for each in begun if each not in finished and each not in failed]
         if not open_ones:
-            raise RuntimeError(f"judging {self.folder.name} ended early: {problem[-2000:]}")
+            got = f"an end before the first: {problem[-2000:]}"
+            raise Error(message("judge", self.folder.name, "an outcome of each check", got))
         return outcomes, open_ones[-1]
 
     def _stem(self) -> str:

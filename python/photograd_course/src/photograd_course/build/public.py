@@ -67,6 +67,12 @@ def public_files(folder: Path) -> dict[str, bytes]:
     return dict(sorted(files.items()))
 
 
+def wheel_kits(folder: Path) -> dict[str, bytes]:
+    """Both products as they lie in a wheel's `kits/NN_name/`: kit/ and checks/."""
+    kit = {f"kit/{path}": data for path, data in kit_files(folder).items()}
+    return {**kit, **{f"checks/{path}": data for path, data in public_files(folder).items()}}
+
+
 def questions_without_keys(folder: Path) -> str:
     """`questions.toml` as students have it."""
     parts = [

@@ -70,7 +70,7 @@ def finish(manifest: Manifest, raw: Mapping[str, bytes], ignored: Collection[str
         if name not in raw:
             if name == module:
                 problem = f"there is no {module} in the hand-in: hand in a file of this name"
-            elif name in manifest.handin:
+            elif name in manifest.handin and _matters(manifest, name):
                 warnings.append(f"{name} is missing")
             continue
         fault = _fault(name, raw[name])
@@ -86,6 +86,10 @@ def finish(manifest: Manifest, raw: Mapping[str, bytes], ignored: Collection[str
 def refused(text: str, ignored: Collection[str] = ()) -> HandIn:
     """A hand-in of which nothing was taken."""
     return HandIn({}, printable(text), (), _shortened(ignored))
+
+
+def _matters(manifest: Manifest, name: str) -> bool:
+    return name != "answers.toml" or manifest.points.get("questions", 0) > 0
 
 
 def _fault(name: str, data: bytes) -> str:

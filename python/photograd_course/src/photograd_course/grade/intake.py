@@ -12,7 +12,7 @@ from pathlib import Path
 
 from ..assignment.manifest import Manifest
 from .hand_in import HandIn, refused, wanted_names
-from .listing import MOST_ENTRIES, Entry, choose
+from .listing import MOST_ENTRIES, NOISE, Entry, choose
 
 LARGEST_ZIP = 16 << 20  # bytes on disk; the files of an assignment are a hundredth of it
 _PLAIN_METHODS = {zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED}
@@ -83,7 +83,7 @@ def _take_folder(manifest: Manifest, folder: Path) -> HandIn:
         for name in sorted([*folders, *files]):
             path = Path(parent) / name
             entries.append(_file_entry(path.relative_to(folder).as_posix(), path))
-        folders.sort()
+        folders[:] = sorted(name for name in folders if name.lower() not in NOISE)
         if len(entries) > MOST_ENTRIES:
             break
     zips = [entry for entry in entries if entry.name.lower().endswith(".zip")]

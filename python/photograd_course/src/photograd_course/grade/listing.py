@@ -12,7 +12,7 @@ from .printable import printable
 
 MOST_ENTRIES = 5000
 DEEPEST = 3  # folders around a hand-in that are looked through
-_NOISE = {"__macosx", "__pycache__", ".git", ".svn", ".hg", ".ds_store", ".venv", "venv", ".idea"}
+NOISE = {"__macosx", "__pycache__", ".git", ".svn", ".hg", ".ds_store", ".venv", "venv", ".idea"}
 
 
 @dataclass(frozen=True)
@@ -39,9 +39,9 @@ def choose(manifest: Manifest, entries: Sequence[Entry]) -> HandIn:
     """
     ignored: list[str] = []
     try:
-        if len(entries) > MOST_ENTRIES:
-            raise Refused(f"more than {MOST_ENTRIES} files: hand in those of the assignment only")
         usable = [entry for entry in entries if _usable(entry, ignored)]
+        if len(usable) > MOST_ENTRIES:
+            raise Refused(f"more than {MOST_ENTRIES} files: hand in those of the assignment only")
         top = _top(usable, wanted_names(manifest))
         raw = _take(manifest, usable, top, ignored)
     except Refused as error:
@@ -57,7 +57,7 @@ def _usable(entry: Entry, ignored: list[str]) -> bool:
         ignored.append(f"{entry.name}: leads out of the hand-in")
     elif "" in parts or "." in parts or printable(entry.name, 2000) != entry.name:
         ignored.append(f"{entry.name}: not a proper name")
-    elif any(part.lower() in _NOISE for part in parts):
+    elif any(part.lower() in NOISE for part in parts):
         if entry.kind == "file" and len(parts) <= 2:
             ignored.append(f"{entry.name}: does not belong to a hand-in")
         elif entry.kind == "folder" and len(parts) == 1:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from ..assignment.bundle import Bundle
+from ..errors import IoError
 from ..grading.check import Check
 from ..grading.failures import GraderFault, StudentFailure
 from ..grading.outcome import Outcome, Status
@@ -57,12 +58,7 @@ def grade_one(
         on_outcome: called after each check.
     """
     started = time.monotonic()
-    if workers is None:
-        checks = _all(case, Status.ERROR_OURS, "error-ours", unavailable, on_outcome)
-    elif case.hand_in.problem:
-        checks = _all(case, Status.FAILED, "hand-in", case.hand_in.problem, on_outcome)
-    else:
-        checks = _run(case, workers, slot, on_outcome)
+    checks = _judge(case, workers, slot, unavailable, on_outcome)
     answered, declared, warnings = score_answers(case.bundle, case.hand_in)
     manifest = case.bundle.manifest
     return Report(
@@ -73,6 +69,7 @@ def grade_one(
         hand_in=case.hand_in.digest,
         bundle=case.bundle_digest,
         mode=workers.mode if workers is not None else "none",
+        isolation=workers.note if workers is not None else "",
         checks=tuple(checks),
         questions=tuple(answered),
         problem=case.hand_in.problem,
@@ -87,6 +84,22 @@ def grade_one(
 def time_allowed(bundle: Bundle) -> float:
     """Seconds for all checks of one hand-in: what each may take, capped."""
     return min(LONGEST, bundle.manifest.limits.seconds * max(1, len(bundle.checks)))
+
+
+def _judge(
+    case: Case, workers: Workers | None, slot: int, unavailable: str, on_outcome: OnOutcome | None
+) -> list[Outcome]:
+    if workers is None:
+        return _all(case, Status.ERROR_OURS, "error-ours", unavailable, on_outcome)
+    if case.hand_in.problem:
+        return _all(case, Status.FAILED, "hand-in", case.hand_in.problem, on_outcome)
+    try:
+        return _run(case, workers, slot, on_outcome)
+    except IoError:
+        raise  # from writing results: nothing that is judged from here on could be kept
+    except Exception as error:  # ours, whatever it is; the next hand-in still gets its turn
+        said = f"{type(error).__name__}: {error}"
+        return _all(case, Status.ERROR_OURS, "error-ours", said, on_outcome)
 
 
 def _run(case: Case, workers: Workers, slot: int, on_outcome: OnOutcome | None) -> list[Outcome]:

@@ -25,7 +25,8 @@ class Report:
         declared: the name in `answers.toml`, by which questions were drawn.
         assignment, title: of the assignment.
         hand_in, bundle: SHA-256 of both.
-        mode: of isolation; verdicts of mode "E" are indicative only.
+        mode, isolation: of isolation, and what staff should know about it here; verdicts of mode
+            "E" are indicative only.
         checks, questions: every one of the bundle, none missing.
         problem, warnings, ignored: about the hand-in's files.
         staff: what staff must look at; empty where nothing is wrong on our side.
@@ -42,6 +43,7 @@ class Report:
     mode: str
     checks: tuple[Outcome, ...]
     questions: tuple[Answered, ...]
+    isolation: str = ""
     problem: str = ""
     warnings: tuple[str, ...] = ()
     ignored: tuple[str, ...] = ()
@@ -57,7 +59,7 @@ class Report:
     @property
     def proven(self) -> float:
         """Points of what has been proven."""
-        return float(sum(item.points for item in (*self.checks, *self.questions)))
+        return float(sum(c.points for c in self.checks) + sum(q.points for q in self.questions))
 
     @property
     def score(self) -> float | None:
@@ -67,7 +69,13 @@ class Report:
     @property
     def max_score(self) -> float:
         """What a perfect hand-in gets."""
-        return float(sum(item.max for item in (*self.checks, *self.questions)))
+        return float(sum(c.max for c in self.checks) + sum(q.max for q in self.questions))
+
+    @property
+    def points(self) -> dict[str, float]:
+        """Points of each check and question, by id."""
+        checks = {check.id: check.points for check in self.checks}
+        return {**checks, **{question.id: question.points for question in self.questions}}
 
     @property
     def remarks(self) -> tuple[str, ...]:
@@ -87,7 +95,8 @@ class Report:
             "proven": self.proven,
             "status": "ok" if self.is_sound else Status.ERROR_OURS.value,
             "mode": self.mode,
-            "indicative_only": self.mode == "E",
+            "isolation": self.isolation,
+            "indicative": self.mode == "E",
             "hand_in": self.hand_in,
             "bundle": self.bundle,
             "checks": [outcome.to_json() for outcome in self.checks],
@@ -110,16 +119,21 @@ class Report:
         return cls(
             checks=tuple(_outcome(entry) for entry in data["checks"]),
             questions=tuple(Answered(**entry) for entry in data["questions"]),
-            **{key: data[key] for key in _TEXTS},
-            **{key: tuple(data[key]) for key in ("warnings", "ignored", "staff")},
+            student=str(data["student"]),
+            declared=str(data["declared"]),
+            assignment=str(data["assignment"]),
+            title=str(data["title"]),
+            hand_in=str(data["hand_in"]),
+            bundle=str(data["bundle"]),
+            mode=str(data["mode"]),
+            isolation=str(data["isolation"]),
+            problem=str(data["problem"]),
+            warnings=tuple(data["warnings"]),
+            ignored=tuple(data["ignored"]),
+            staff=tuple(data["staff"]),
             versions=dict(data["versions"]),
             seconds=float(data["seconds"]),
         )
-
-
-_TEXTS = (
-    "student", "declared", "assignment", "title", "hand_in", "bundle", "mode", "problem",
-)  # fmt: skip
 
 
 def staff_notes(checks: Sequence[Outcome], questions: Sequence[Answered]) -> tuple[str, ...]:

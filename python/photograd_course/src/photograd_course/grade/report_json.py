@@ -13,6 +13,8 @@ import json
 import math
 from typing import Any
 
+import numpy as np
+
 from ..errors import SceneError, message
 from .report import Report
 
@@ -70,10 +72,13 @@ def _seal(body: Any, secret: bytes) -> str:
 
 
 def _finite(value: Any) -> Any:
+    if isinstance(value, (np.generic, np.ndarray)):
+        value = value.tolist()
     if isinstance(value, float) and not math.isfinite(value):
         return str(value)
     if isinstance(value, dict):
         return {str(key): _finite(item) for key, item in value.items()}
     if isinstance(value, (list, tuple)):
         return [_finite(item) for item in value]
-    return value
+    # A check may put anything into its details; what JSON lacks is kept as text.
+    return value if isinstance(value, (str, int, float, type(None))) else repr(value)

@@ -1,72 +1,59 @@
-"""Outcomes on a terminal: what holds, what does not, by how much, and what to look at."""
+"""A report on the terminal of whoever grades: everything, also about hidden checks."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from dataclasses import replace
 
 from rich.console import Console
 from rich.text import Text
 
-from ..grading.outcome import Outcome, Status
+from ..grading.outcome import Outcome
+from ..student.terminal import print_outcome
 from .printable import printable
-
-# A word and a mark stand beside each colour, so that none is needed to read a report.
-MARKS = {
-    Status.PASSED: ("\N{CHECK MARK}", "passed", "bright_blue"),
-    Status.FAILED: ("\N{MULTIPLICATION X}", "failed", "dark_orange"),
-    Status.BLOCKED: ("\N{WHITE CIRCLE}", "blocked", "bright_black"),
-    Status.ERROR_OURS: ("!", "error of the grader", "magenta"),
-}
+from .report import Report
 
 
-def render_outcomes(outcomes: Sequence[Outcome], console: Console) -> None:
-    """Print one block a check, under a heading for each task.
+def print_report(report: Report, console: Console) -> None:
+    """Print verdicts, answers, what was left out, and the score.
 
     Args:
-        outcomes: in the order of the report; for students as `disclosure.for_student` leaves them.
-        console: where to; text of hand-ins is printed as text, never as markup.
+        report: of one hand-in.
+        console: where to; whatever the hand-in wrote is printed as text, never as markup.
     """
-    task = ""
-    for outcome in outcomes:
-        if outcome.task != task:
-            task = outcome.task
-            console.print(Text(f"Task {printable(task)}", style="bold"))
-        for line in outcome_lines(outcome):
-            console.print(line, soft_wrap=True)
+    _line(console, f"{report.student}: {report.assignment} {report.title}", "bold")
+    said = f" ({report.isolation})" if report.isolation else ""
+    _line(console, f"isolation mode {report.mode}{said}, hand-in {report.hand_in[:12]}")
+    for remark in report.remarks:
+        _line(console, f"note: {remark}", "yellow")
+    for name in report.ignored:
+        _line(console, f"ignored: {name}")
+    for outcome in report.checks:
+        print_outcome(safe(outcome), console)
+    for question in report.questions:
+        said = f" ({question.text})" if question.text else ""
+        points = f"{question.points:g} of {question.max:g}"
+        _line(console, f"{question.id} {question.kind}: {question.status}, {points}{said}")
+    for note in report.staff:
+        _line(console, f"staff: {note}", "magenta")
+    _line(console, score_text(report), "bold")
 
 
-def outcome_lines(outcome: Outcome) -> list[Text]:
-    """The lines about one check: verdict, sentence, place, hint."""
-    mark, word, style = MARKS[outcome.status]
-    head = Text("  ")
-    head.append(f"{mark} {word}", style=style)
-    head.append(f"  {outcome.id}", style="bold")
-    head.append(f"  {outcome.points:g} of {outcome.max:g}  {printable(outcome.title)}")
-    lines = [head]
-    lines += [_indented(sentence) for sentence in facts(outcome)]
-    if outcome.hint:
-        lines.append(_indented(f"hint: {outcome.hint}", style="italic"))
-    return lines
+def score_text(report: Report) -> str:
+    """The points, or why there are none yet."""
+    if report.score is None:
+        proven = f"{report.proven:g} of {report.max_score:g} points are proven"
+        return f"no score, since the grader failed: {proven}, the rest is for staff to look at"
+    return f"{report.score:g} of {report.max_score:g} points"
 
 
-def facts(outcome: Outcome) -> list[str]:
-    """What is known about a check that did not plainly pass, one sentence each."""
-    said = [outcome.text] if outcome.text else []
-    exception, line = outcome.details.get("exception"), outcome.details.get("line")
-    if exception:
-        said.append(str(exception))
-    if isinstance(line, (list, tuple)) and len(line) == 2:
-        said.append(f"{line[0]}, line {line[1]}")
-    return [printable(sentence) for sentence in said]
+def safe(outcome: Outcome) -> Outcome:
+    """The outcome without anything that could steer a terminal."""
+    details = dict(outcome.details)
+    if "exception" in details:
+        details["exception"] = printable(details["exception"])
+    text, hint = printable(outcome.text), printable(outcome.hint)
+    return replace(outcome, text=text, hint=hint, details=details)
 
 
-def render_score(score: float | None, max_score: float, console: Console) -> None:
-    """The last line: points, or that staff have to look."""
-    if score is None:
-        console.print(Text("no score: the grader failed, staff have to look", style="magenta"))
-        return
-    console.print(Text(f"{score:g} of {max_score:g} points", style="bold"))
-
-
-def _indented(sentence: str, style: str = "") -> Text:
-    return Text(f"      {printable(sentence)}", style=style)
+def _line(console: Console, text: str, style: str = "") -> None:
+    console.print(Text(printable(text), style=style), soft_wrap=True)

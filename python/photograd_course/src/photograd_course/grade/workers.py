@@ -1,71 +1,72 @@
-"""Where hand-ins run: fresh workers in one isolation mode, against the clock."""
+"""Where hand-ins run: fresh workers in the best isolation mode, each against the clock."""
 
 from __future__ import annotations
 
-import tempfile
+import contextlib
 import time
+from collections.abc import Iterator, Sequence
 from pathlib import Path
-from types import TracebackType
 from typing import Any, Protocol
 
-from ..grading.failures import GraderFault
+from ..assignment.manifest import Manifest
 from ..grading.remote import Connection
 from ..worker.codec import Frame
-from ..worker.process import (
-    WorkerDied,
-    WorkerLied,
-    WorkerProcess,
-    WorkerTimeout,
-    install_program,
-    plain_command,
-)
-
-START_SECONDS = 30.0
+from ..worker.home import WorkerHome
+from ..worker.launch import open_worker
+from ..worker.modes import choose
+from ..worker.modes import note as note_on
+from ..worker.process import WorkerTimeout
 
 
 class Workers(Protocol):
-    """Gives out started workers.
-
-    Attributes:
-        mode: of isolation, "A" to "E".
-    """
+    """Gives out started workers."""
 
     @property
     def mode(self) -> str:
         """Of isolation, "A" to "E"."""
 
+    @property
+    def note(self) -> str:
+        """What staff should know about this mode here; "" where there is nothing to say."""
+
     def open(self, slot: int) -> Connection:
-        """A fresh worker; `slot` numbers those that run at the same time."""
+        """A fresh worker; `slot` numbers those that run at the same time.
+
+        Raises:
+            GraderFault: it does not start, or its isolation does not hold.
+        """
 
 
-class PlainWorkers:
-    """Processes without any isolation: mode E, whose verdicts are indicative only."""
+class IsolatedWorkers:
+    """Workers of one mode, with the limits of an assignment."""
 
-    mode = "E"
-
-    def __enter__(self) -> PlainWorkers:
-        self._folder = tempfile.TemporaryDirectory(prefix="photograd-", ignore_cleanup_errors=True)
-        self._root = install_program(Path(self._folder.name) / "program")
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self._folder.cleanup()
+    def __init__(self, home: WorkerHome, mode: str, manifest: Manifest) -> None:
+        self._home, self._limits = home, manifest.limits
+        self.mode, self.note = mode, note_on(mode)
 
     def open(self, slot: int) -> Connection:
         """See Workers."""
-        del slot
-        worker = WorkerProcess(plain_command(self._root), environment={}, cwd=self._root)
-        try:
-            worker.request("start", {}, seconds=START_SECONDS)
-        except (WorkerDied, WorkerLied, WorkerTimeout) as error:
-            worker.kill()
-            raise GraderFault(f"a worker did not start: {type(error).__name__}") from error
-        return worker
+        return open_worker(self._home, self.mode, self._limits, slot)
+
+
+@contextlib.contextmanager
+def isolated_workers(
+    manifest: Manifest, only: str | None = None, secrets: Sequence[Path] = ()
+) -> Iterator[Workers]:
+    """Workers in the strongest mode that works here, for as long as the context lasts.
+
+    Args:
+        manifest: names the weakest mode that will do, limits and imports.
+        only: this mode or none.
+        secrets: files and folders that no worker may read.
+
+    Raises:
+        GraderFault: no mode is strong enough; the text tells staff why.
+        RangeError: `only` is no mode.
+    """
+    mode = choose(manifest.minimum_mode, only, secrets)
+    with WorkerHome(manifest.imports) as home:
+        yield IsolatedWorkers(home, mode, manifest)
 
 
 class Clocked:
@@ -79,7 +80,7 @@ class Clocked:
         """See Connection."""
         left = self._deadline - time.monotonic()
         if left <= 0:
-            raise WorkerTimeout
+            raise WorkerTimeout("the time for this check is used up")
         return self._connection.request(
             kind, value, seconds=min(seconds, left), callbacks=callbacks
         )

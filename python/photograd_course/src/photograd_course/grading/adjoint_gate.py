@@ -8,23 +8,29 @@ cotangent of zero, and the cost. Measured for emission-absorption rays, wrong fo
 
 from __future__ import annotations
 
-import statistics
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
 
+from .cost import require_cheap
 from .failures import CheckFailed
-from .specs import Spec
 from .tolerance import Tolerance
 from .trial import Trial
+
+__all__ = [
+    "central_differences",
+    "random_cotangent",
+    "require_cheap",
+    "require_gradients",
+    "require_transpose",
+    "require_zero_for_zero",
+]
 
 STEP = 1e-5
 DIFFERENCES = Tolerance(1e-6, "central differences at 1e-5 leave 1e-10 to 2e-8 of smooth code")
 ANALYTIC = Tolerance(1e-9, "two ways to write the same sum differ by some 1e-15")
 TRANSPOSE = Tolerance(1e-9, "both sides are sums of the same products")
-COST_RATIO = 20.0  # an adjoint costs 2 to 5 forward calls, differences one for each parameter
-
 Forward = Callable[[Mapping[str, Any]], Any]
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
@@ -101,41 +107,3 @@ def require_zero_for_zero(trial: Trial, gradients: Mapping[str, Any]) -> None:
             not np.asarray(gradient).any(),
             f"d_{group}: not zero although the incoming derivative is zero",
         )
-
-
-def require_cheap(
-    trial: Trial,
-    forward: tuple[str, Sequence[Any], Spec],
-    backward: tuple[str, Sequence[Any], Spec],
-    ratio: float = COST_RATIO,
-) -> None:
-    """The backward function must cost at most ``ratio`` forward calls of the same hand-in.
-
-    Processor time, measured from outside; median of three, and one retry. Where it cannot be
-    measured (a student's machine), nothing is asked.
-
-    Args:
-        trial: of the check; the arguments should hold 2,000 parameters or more.
-        forward, backward: function name, arguments and spec.
-        ratio: the cap.
-    """
-    if trial.cpu_seconds() is None:
-        return
-    measured = 0.0
-    for _ in range(2):
-        once = [_cost(trial, *forward, repeats=4) for _ in range(3)]
-        back = [_cost(trial, *backward, repeats=1) for _ in range(3)]
-        measured = statistics.median(back) / max(statistics.median(once), 2e-5)
-        if measured <= ratio:
-            return
-    raise CheckFailed(
-        f"{backward[0]}: costs {measured:.0f} forward calls, allowed {ratio:.0f}",
-        {"advice": "an adjoint visits each value about once; finite differences do not count"},
-    )
-
-
-def _cost(trial: Trial, function: str, args: Sequence[Any], spec: Spec, *, repeats: int) -> float:
-    before = trial.cpu_seconds() or 0.0
-    for _ in range(repeats):
-        trial.call(function, *args, returns=spec)
-    return ((trial.cpu_seconds() or 0.0) - before) / repeats

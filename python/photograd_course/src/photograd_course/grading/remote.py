@@ -107,8 +107,8 @@ class RemoteStudent:
     def _ask(self, kind: str, value: Any, seconds: float, where: str) -> Frame:
         try:
             return self._connection.request(kind, value, seconds=seconds)
-        except WorkerTimeout:
-            said = f"no answer within {seconds:g} seconds {where}"
+        except WorkerTimeout as late:
+            said = f"{str(late) or f'no answer within {seconds:g} seconds'} {where}"
             raise StudentFailure("timeout", said) from None
         except WorkerDied:
             said = f"the process ended {where} (a crash, an exit, or out of memory)"

@@ -1,7 +1,8 @@
 """The worker: loads one hand-in and answers calls until the pipe closes.
 
-Started as ``python -I path/to/worker``; standard library and NumPy only. Everything it says may be
-forged by the hand-in once that is loaded: the grader believes nothing but values it can check.
+Started by `home.BOOT`; standard library and NumPy only. Everything it says may be forged by the
+hand-in once that is loaded: the grader believes nothing but values it can check. Until then it
+speaks for itself: "ready" names the layers of isolation that it has found to hold.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from typing import Any
 
 from .channel import Channel
 from .codec import FrameError
+from .courtesy import behave
 from .modules import SourceFinder, line_of
 from .screen import forbidden_imports
 
@@ -23,7 +25,9 @@ def main() -> None:
     """Start, load, serve."""
     channel = Channel.from_standard_streams()
     start = channel.receive()
-    channel.send("ready", {"python": list(sys.version_info[:3]), "layers": apply(start.value)})
+    channel.send(
+        "ready", {"python": list(sys.version_info[:3]), "layers": apply(start.value, channel)}
+    )
     load = channel.receive().value
     modules = load_modules(channel, load)
     if modules is None:
@@ -36,10 +40,15 @@ def main() -> None:
         answer(channel, modules, request.value, list(load["sources"]))
 
 
-def apply(policy: Any) -> list[str]:
-    """Put the layers of the sandbox in force and name them."""
-    del policy
-    return []
+def apply(policy: Any, channel: Channel) -> list[str]:
+    """Put the layers of the policy in force and name those that hold; without one, be polite."""
+    if not policy:
+        behave()
+        return []
+    # Here, since it does not exist on every system.
+    from .confine import confine
+
+    return confine(policy, channel.descriptors)
 
 
 def load_modules(channel: Channel, load: dict[str, Any]) -> dict[str, ModuleType] | None:

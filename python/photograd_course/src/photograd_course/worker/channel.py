@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import sys
 from collections.abc import Callable
 from typing import Any, BinaryIO
 
@@ -26,8 +25,12 @@ class Channel:
         os.dup2(nothing, 0)
         os.close(nothing)
         os.dup2(2, 1)
-        sys.stdin = open(os.devnull, encoding="utf-8")  # noqa: SIM115, PTH123 - for good
         return cls(source, sink)
+
+    @property
+    def descriptors(self) -> set[int]:
+        """Of the pipe."""
+        return {self._source.fileno(), self._sink.fileno()}
 
     def receive(self) -> Frame:
         """The next request, with stubs in the place of functions."""

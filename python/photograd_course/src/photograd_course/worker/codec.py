@@ -23,7 +23,7 @@ PREFIX = struct.Struct(">4sIQ")
 # The only element types that cross; little endian whatever the machine is.
 DTYPES = {"f4": "<f4", "f8": "<f8", "i4": "<i4", "i8": "<i8", "u1": "|u1", "bool": "|b1"}
 NAMES = {np.dtype(code): name for name, code in DTYPES.items()}
-MAX_HEADER = 32 << 20
+MAX_HEADER = 8 << 20  # parsed as JSON it takes some twenty times as much memory
 MAX_BODY = 256 << 20
 MAX_DEPTH = 24
 

@@ -1,28 +1,38 @@
-"""The grader's end of a worker: start it, talk to it against the clock, and be rid of it."""
+"""The grader's end of a worker: start it, talk to it against the clock, and be rid of it.
+
+Portable: pipes, threads and `kill`, on any system. What more Linux offers comes in through
+`Lifeline`.
+"""
 
 from __future__ import annotations
 
 import contextlib
+import os
 import queue
-import shutil
+import signal
 import subprocess
-import sys
-import tempfile
 import threading
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
-from .codec import Frame, FrameError, FunctionId, decode, encode
+from .codec import MAX_BODY, Frame, FrameError, FunctionId, decode, encode
+from .processes import finish
+from .program import install_program, plain_command, scratch_folder
 
-PROGRAM = ("__init__.py", "__main__.py", "channel.py", "codec.py", "modules.py", "screen.py")
+__all__ = [
+    "Lifeline", "WorkerDied", "WorkerLied", "WorkerProcess", "WorkerTimeout", "contains_function",
+    "install_program", "plain_command", "scratch_folder",
+]  # fmt: skip
+
 LONGEST_LOG = 64 << 10  # bytes of stderr kept
-BOOT = "import sys; sys.path.insert(0, sys.argv[1]); import photograd_worker.__main__"
+HEARTBEAT = 0.2  # seconds between looks at the clock while a write is blocked
+LAST_WORDS = 5.0  # seconds that the system may take to bury a killed process
 
 
 class WorkerTimeout(Exception):
-    """No answer before the deadline."""
+    """No answer before the deadline, or the processor time is used up."""
 
 
 class WorkerDied(Exception):
@@ -33,19 +43,45 @@ class WorkerLied(Exception):
     """The worker sent something that is no valid answer."""
 
 
-def install_program(folder: Path) -> Path:
-    """Copy the worker program to ``folder/photograd_worker`` and return ``folder``."""
-    target = folder / "photograd_worker"
-    target.mkdir(parents=True)
-    for name in PROGRAM:
-        shutil.copyfile(Path(__file__).parent / name, target / name)
-    return folder
+class Lifeline(Protocol):
+    """What a mode of isolation knows about its processes beyond the one that was started."""
+
+    def cpu_seconds(self, pid: int) -> float | None:
+        """Processor time of the process and all below it, seen from outside."""
+
+    def end(self, process: subprocess.Popen[bytes]) -> None:
+        """Kill the process and all that belongs to it."""
 
 
 class WorkerProcess:
-    """One worker. Portable: pipes, a reading thread and ``kill``, on any system."""
+    """One worker, from start to end."""
 
-    def __init__(self, command: Sequence[str], *, environment: dict[str, str], cwd: Path) -> None:
+    def __init__(
+        self,
+        command: Sequence[str],
+        *,
+        environment: dict[str, str],
+        cwd: Path,
+        lifeline: Lifeline | None = None,
+        seconds: float = float("inf"),
+        max_body: int = MAX_BODY,
+        longest_log: int = LONGEST_LOG,
+        on_end: Callable[[], None] | None = None,
+    ) -> None:
+        """Start it.
+
+        Args:
+            command, environment, cwd: as for Popen.
+            lifeline: how to end and measure it; the plain way where None.
+            seconds: wall-clock limit of its whole life.
+            max_body: bytes; an answer that announces more is a lie.
+            longest_log: bytes of its output that are kept; the rest is drained.
+            on_end: called once, after it has ended.
+        """
+        self._deadline = time.monotonic() + seconds
+        self._request_deadline = self._deadline
+        self._lifeline, self._on_end = lifeline, on_end
+        self._max_body, self._longest_log = max_body, longest_log
         self._process = subprocess.Popen(
             list(command),
             stdin=subprocess.PIPE,
@@ -54,13 +90,21 @@ class WorkerProcess:
             env=environment,
             cwd=cwd,
             bufsize=0,
+            start_new_session=hasattr(os, "killpg"),
         )
         self._frames: queue.Queue[Frame | Exception] = queue.Queue()
+        self._wanted = threading.Semaphore(0)  # frames that may be read: never more than asked for
+        self._ended = threading.Event()
         self._log = bytearray()
         self._number = 0
         self._functions: dict[int, Callable[..., Any]] = {}
-        for target in (self._read_frames, self._read_log):
+        for target in (self._read_frames, self._read_log, self._watch):
             threading.Thread(target=target, daemon=True).start()
+
+    @property
+    def pid(self) -> int:
+        """Of the process that was started."""
+        return self._process.pid
 
     @property
     def log(self) -> str:
@@ -79,28 +123,51 @@ class WorkerProcess:
             WorkerTimeout, WorkerDied, WorkerLied: no valid answer came.
         """
         self._number += 1
+        deadline = min(self._deadline, time.monotonic() + seconds)
+        self._request_deadline = deadline
         self._send(encode(kind, self._number, value, self._name))
-        deadline = time.monotonic() + seconds
         for _ in range(callbacks + 1):
             frame = self._next(deadline)
             if frame.number != self._number:
                 raise WorkerLied("an answer to another question")
             if frame.kind != "callback":
+                self._request_deadline = self._deadline
                 return frame
             self._serve(frame)
         raise WorkerLied(f"more than {callbacks} calls of the functions it was given")
 
     def cpu_seconds(self) -> float | None:
-        """Processor time of the worker; not measured here, since no portable way exists."""
-        return None
+        """Processor time of the worker and all it has started; None where nobody can tell."""
+        if self._lifeline is None or self._ended.is_set():
+            return None
+        return self._lifeline.cpu_seconds(self.pid)
 
     def kill(self) -> None:
-        """End the process; returns when it is gone."""
-        self._process.kill()
+        """End the worker and all that belongs to it; returns when it is gone. Can be repeated."""
+        first = not self._ended.is_set()
+        self._end()
         if self._process.stdin is not None:
             with contextlib.suppress(OSError):
                 self._process.stdin.close()
-        self._process.wait()
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            self._process.wait(LAST_WORDS)
+        if first and self._on_end is not None:
+            self._on_end()
+
+    def _end(self) -> None:
+        self._ended.set()
+        self._wanted.release()  # lets the reading thread see the end
+        if self._lifeline is None:
+            finish(self._process)
+        else:
+            self._lifeline.end(self._process)
+
+    def _watch(self) -> None:
+        """End the worker when its time is over, so that no write to it can block for longer."""
+        while not self._ended.wait(HEARTBEAT):
+            if time.monotonic() > self._request_deadline + HEARTBEAT:
+                finish(self._process)
+                return
 
     def _name(self, function: Callable[..., Any]) -> int:
         self._functions[len(self._functions)] = function
@@ -122,9 +189,10 @@ class WorkerProcess:
             while view:
                 view = view[stream.write(view) :]
         except (OSError, ValueError) as error:
-            raise WorkerDied("it closed its input") from error
+            raise self._cause_of_death() from error
 
     def _next(self, deadline: float) -> Frame:
+        self._wanted.release()
         try:
             item = self._frames.get(timeout=max(0.0, deadline - time.monotonic()))
         except queue.Empty:
@@ -132,8 +200,21 @@ class WorkerProcess:
         if isinstance(item, FrameError):
             raise WorkerLied(str(item))
         if isinstance(item, Exception):
-            raise WorkerDied("it ended")
+            raise self._cause_of_death()
         return item
+
+    def _cause_of_death(self) -> WorkerTimeout | WorkerDied:
+        """Why the pipe is closed: the clock, the limit on processor time, or the hand-in."""
+        if time.monotonic() >= self._request_deadline:
+            return WorkerTimeout()
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            self._process.wait(HEARTBEAT)
+        status = self._process.returncode
+        exhausted = getattr(signal, "SIGXCPU", None)
+        # Bubblewrap passes a signal on as a shell does.
+        if exhausted is not None and status in (-exhausted, 128 + exhausted):
+            return WorkerTimeout("its processor time is used up")
+        return WorkerDied("it ended" if status is None else f"it ended with status {status}")
 
     def _read_frames(self) -> None:
         stream = self._process.stdout
@@ -149,18 +230,23 @@ class WorkerProcess:
                 count -= len(part)
             return b"".join(parts)
 
-        while True:
-            try:
-                self._frames.put(decode(read))
-            except Exception as error:
-                self._frames.put(error)
-                return
+        with stream:  # closed by the thread that reads it, or the close could meet a read
+            while True:
+                self._wanted.acquire()
+                if self._ended.is_set():
+                    return
+                try:
+                    self._frames.put(decode(read, max_body=self._max_body))
+                except Exception as error:
+                    self._frames.put(error)
+                    return
 
     def _read_log(self) -> None:
         stream = self._process.stderr
         assert stream is not None
-        while part := stream.read(1 << 16):
-            self._log += part[: max(0, LONGEST_LOG - len(self._log))]
+        with contextlib.suppress(OSError, ValueError), stream:
+            while part := stream.read(1 << 16):
+                self._log += part[: max(0, self._longest_log - len(self._log))]
 
 
 def contains_function(value: Any) -> bool:
@@ -169,13 +255,3 @@ def contains_function(value: Any) -> bool:
         return True
     items = value.values() if isinstance(value, dict) else value if isinstance(value, list) else ()
     return any(contains_function(item) for item in items)
-
-
-def plain_command(folder: Path) -> list[str]:
-    """How to start the worker installed in ``folder`` without any isolation."""
-    return [sys.executable, "-I", "-c", BOOT, str(folder)]
-
-
-def scratch_folder() -> tempfile.TemporaryDirectory[str]:
-    """A folder for one worker, removed even where a file in it resists."""
-    return tempfile.TemporaryDirectory(prefix="photograd-", ignore_cleanup_errors=True)

@@ -1,0 +1,675 @@
+"""Checks of assignment 01: descent in one and many dimensions."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from photograd_course.grading import Array, CheckFailed, Items, Number, Tolerance, Truth, check
+
+EXACT = Tolerance(1e-12, "solution and alternatives: 6e-16 to 2e-14; the nearest mutant 4e-10")
+DIFFERENCE = Tolerance(
+    1e-11, "values of order 10 over a step of 0.5 leave 2e-15; the nearest mutant 2e-2"
+)
+
+
+class Values:
+    """Floats of a given length; NaN and infinities are looked at by the check."""
+
+    def __init__(self, count):
+        self.count = count
+
+    def require(self, value, where):
+        """See photograd_course.grading.specs.Spec."""
+        right = isinstance(value, np.ndarray) and value.dtype == np.float64
+        if not right or value.shape != (self.count,):
+            raise CheckFailed(f"{where}: expected a float64 array of shape ({self.count},)")
+
+
+def walk(n, *axes):
+    """What a walk of n steps returns: points, values, verdict."""
+    names = ("the points", "the values", "the verdict")
+    return Items(Array((n + 1, *axes)), Array((n + 1,)), Truth(), names=names)
+
+
+def rotated_bowl(rng, curvatures):
+    """f, its gradient and the eigenvectors (columns) for given eigenvalues of the Hessian."""
+    vectors, _ = np.linalg.qr(rng.normal(size=(len(curvatures), len(curvatures))))
+    hessian = vectors @ np.diag(curvatures) @ vectors.T
+    return lambda x: float(0.5 * x @ hessian @ x), lambda x: hessian @ x, vectors
+
+
+def scripted(gradients):
+    """A gradient that ignores where it is asked, and hands out the given rows in turn."""
+    rows = iter(gradients)
+
+    def grad(_):
+        row = next(rows, None)
+        if row is None:
+            raise RuntimeError(f"grad was called more than {len(gradients)} times: once a step")
+        return row
+
+    return grad
+
+
+# 01.1 ------------------------------------------------------------------------------------------
+
+
+@check(
+    "01.1.quadratic",
+    task="01.1",
+    points=4,
+    calls=("numeric_derivative",),
+    tolerance=DIFFERENCE,
+    kills=("forward_difference", "missing_half", "keeps_moving"),
+    hint="Move one coordinate at a time, both ways, and come back: Eq. (3).",
+)
+def central_differences_are_exact_for_quadratics(t):
+    """For a quadratic in four variables the result is the gradient, however long the step."""
+    _, slope_of, _ = rotated_bowl(t.rng, t.rng.uniform(0.5, 4.0, 4))
+    b = t.rng.uniform(-2.0, 2.0, 4)
+    for eps in (0.5, 0.01):
+        x = t.rng.uniform(-2.0, 2.0, 4)
+        got = t.call(
+            "numeric_derivative",
+            lambda y: float(0.5 * y @ slope_of(y) + b @ y),
+            x,
+            eps,
+            returns=Array((4,)),
+        )
+        t.close(f"gradient with eps = {eps}", got, slope_of(x) + b)
+
+
+@check(
+    "01.1.order",
+    task="01.1",
+    points=4,
+    calls=("numeric_derivative",),
+    kills=("forward_difference", "missing_half", "five_point"),
+    sole="the order is what the handout is about; who fails here fails 01.1.cubic too, later",
+    hint="Halve eps: the error should fall to a quarter, Eq. (4).",
+)
+def the_error_falls_with_the_square_of_the_step(t):
+    """Error against eps has slope 1.9 to 2.1 on logarithmic axes, for exp and for sin."""
+    steps = np.geomspace(1e-1, 1e-3, 7)
+    for f, df, name in ((math.exp, math.exp, "exp"), (math.sin, math.cos, "sin")):
+        x = float(t.rng.uniform(0.3, 1.0))
+        errors = [
+            abs(
+                float(
+                    t.call(
+                        "numeric_derivative",
+                        lambda y, f=f: f(float(y[0])),
+                        np.array([x]),
+                        float(eps),
+                        returns=Array((1,)),
+                    )[0]
+                )
+                - df(x)
+            )
+            for eps in steps
+        ]
+        t.require(min(errors) > 0.0, f"{name}: with these steps no formula of order 2 is exact")
+        slope = float(np.polyfit(np.log(steps), np.log(errors), 1)[0])
+        t.require(1.9 <= slope <= 2.1, f"{name}: the slope is {slope:.2f}, expected 1.9 to 2.1")
+
+
+# 01.2 ------------------------------------------------------------------------------------------
+
+
+@check(
+    "01.2.rate",
+    task="01.2",
+    points=4,
+    calls=("gd_1d",),
+    tolerance=EXACT,
+    kills=("uphill", "no_tau", "stale_gradient", "stale_loss"),
+    hint="Each step multiplies the distance to the minimum by the same factor, Eq. (6).",
+)
+def a_parabola_contracts_by_one_factor(t):
+    """On a parabola the distance to the minimum is multiplied by 1 - tau lambda in each step."""
+    curvature, centre = float(t.rng.uniform(0.5, 3.0)), float(t.rng.uniform(-2.0, 2.0))
+    for reach in (0.3, 1.6):
+        x0, n = centre + float(t.rng.uniform(0.5, 0.9)), 12
+        x, loss, wrong = t.call(
+            "gd_1d",
+            lambda y: 0.5 * curvature * (y - centre) ** 2,
+            lambda y: curvature * (y - centre),
+            x0,
+            reach / curvature,
+            n,
+            returns=walk(n),
+        )
+        distance = (x0 - centre) * (1.0 - reach) ** np.arange(n + 1)
+        t.close("the points", x, centre + distance)
+        t.close("the values", loss, 0.5 * curvature * (np.asarray(x) - centre) ** 2)
+        t.require(not wrong, "the verdict is True for a walk that converges")
+
+
+@check(
+    "01.2.verdict",
+    task="01.2",
+    points=3,
+    calls=("gd_1d",),
+    kills=("uphill", "no_tau", "stale_gradient", "verdict_by_position"),
+    hint="Compare the last value with the first, Eq. (8), not the points.",
+)
+def the_verdict_changes_at_the_bound(t):
+    """Just below tau = 2 / lambda the walk closes in, just above it flies off and says so."""
+    curvature, centre = float(t.rng.uniform(0.5, 3.0)), float(t.rng.uniform(3.0, 5.0))
+
+    def go(reach, x0):
+        return t.call(
+            "gd_1d",
+            lambda y: 0.5 * curvature * (y - centre) ** 2,
+            lambda y: curvature * (y - centre),
+            x0,
+            reach / curvature,
+            30,
+            returns=walk(30),
+        )
+
+    for x0 in (centre - 0.5, centre + 0.5):
+        x, _, wrong = go(1.99, x0)
+        t.require(abs(x[-1] - centre) < 0.45, "below the bound the walk must close in")
+        t.require(not wrong, "below the bound the verdict must be False")
+        x, _, wrong = go(2.01, x0)
+        t.require(abs(x[-1] - centre) > 0.55, "above the bound the walk must fly off")
+        t.require(wrong, "above the bound the verdict must be True")
+    _, _, wrong = go(0.5, centre)
+    t.require(not wrong, "a walk that starts in the minimum and stays has not gone wrong")
+
+
+# 01.3 ------------------------------------------------------------------------------------------
+
+
+@check(
+    "01.3.rates",
+    task="01.3",
+    points=4,
+    calls=("gd_nd",),
+    tolerance=EXACT,
+    kills=("aliased_trail", "one_at_a_time", "unit_steps", "stale_loss_nd"),
+    hint="Take the gradient once, at the old point, and move all coordinates with it.",
+)
+def each_eigenvector_has_a_factor_of_its_own(t):
+    """On a bowl the part along each eigenvector is multiplied by 1 - tau lambda_i."""
+    curvatures = t.rng.uniform([0.2, 1.0, 2.0], [0.6, 1.5, 3.0])
+    f, grad, vectors = rotated_bowl(t.rng, curvatures)
+    start, tau, n = t.rng.uniform(1.0, 2.0, 3), 1.7 / float(curvatures[2]), 15
+    x, loss, wrong = t.call("gd_nd", f, grad, vectors @ start, tau, n, returns=walk(n, 3))
+    parts = start * (1.0 - tau * curvatures) ** np.arange(n + 1)[:, None]
+    t.close("the points", x, parts @ vectors.T)
+    t.close("the values", loss, 0.5 * parts**2 @ curvatures)
+    t.require(not wrong, "the verdict is True for a walk that converges")
+
+
+@check(
+    "01.3.stability",
+    task="01.3",
+    points=4,
+    calls=("gd_nd",),
+    kills=("aliased_trail", "one_at_a_time", "unit_steps", "verdict_by_last_step"),
+    hint="The verdict compares the last value with the first, Eq. (8).",
+)
+def the_largest_curvature_decides(t):
+    """The verdict changes at tau = 2 / lambda_max, and looks at the last and the first value."""
+    curvatures = np.array([0.1, 1.0, 4.0])
+    f, grad, vectors = rotated_bowl(t.rng, curvatures)
+    start = vectors @ t.rng.choice([-1.0, 1.0], 3)
+    for reach, fate in ((1.99, False), (2.01, True)):
+        x, loss, wrong = t.call("gd_nd", f, grad, start, reach / 4.0, 200, returns=walk(200, 3))
+        steep = np.abs(np.asarray(x) @ vectors[:, 2])
+        t.require((steep[-1] > steep[0]) == fate, f"tau = {reach} / lambda_max: the wrong fate")
+        t.require(wrong == fate, f"tau = {reach} / lambda_max: the verdict should be {fate}")
+        t.require((loss[-1] > loss[0]) == fate, f"tau = {reach} / lambda_max: the wrong values")
+    # It has begun to rise, but has not come back to where it began.
+    start = vectors @ np.array([1.0, 1.0, 1e-3])
+    _, _, wrong = t.call("gd_nd", f, grad, start, 2.1 / 4.0, 40, returns=walk(40, 3))
+    t.require(not wrong, "the walk ends lower than it began, so the verdict should be False")
+
+
+# 01.4 ------------------------------------------------------------------------------------------
+
+
+@check(
+    "01.4.constant",
+    task="01.4",
+    points=4,
+    calls=("momentum",),
+    tolerance=EXACT,
+    kills=("averaged_velocity", "forgets_velocity", "late_velocity"),
+    sole="arithmetic that a student can do by hand; the others need the walk to bend",
+    hint="With a constant gradient the steps grow towards tau g / (1 - beta), Eq. (14).",
+)
+def a_constant_slope_leads_to_a_terminal_velocity(t):
+    """Down a plane the k-th step is tau g (1 - beta^k) / (1 - beta) long."""
+    g, x0 = t.rng.uniform(0.5, 2.0, 3) * t.rng.choice([-1.0, 1.0], 3), t.rng.uniform(-1.0, 1.0, 3)
+    tau, beta, n = 0.1, float(t.rng.uniform(0.5, 0.9)), 30
+    x = t.call("momentum", lambda _: g, x0, tau, beta, n, returns=Array((n + 1, 3)))
+    lengths = (1.0 - beta ** np.arange(1, n + 1)) / (1.0 - beta)
+    t.close("the steps", np.diff(x, axis=0), -tau * lengths[:, None] * g)
+
+
+@check(
+    "01.4.plain",
+    task="01.4",
+    points=3,
+    calls=("momentum",),
+    tolerance=EXACT,
+    kills=("late_velocity", "default_for_zero"),
+    hint="With beta = 0 there is no memory: the walk is that of gradient descent.",
+)
+def without_memory_it_is_gradient_descent(t):
+    """With beta = 0 a bowl contracts by 1 - tau lambda_i, as without momentum."""
+    curvatures = t.rng.uniform(0.5, 2.0, 3)
+    x0, tau, n = t.rng.uniform(1.0, 2.0, 3), 0.4, 10
+    x = t.call("momentum", lambda y: curvatures * y, x0, tau, 0.0, n, returns=Array((n + 1, 3)))
+    t.close("the points", x, x0 * (1.0 - tau * curvatures) ** np.arange(n + 1)[:, None])
+
+
+# 01.5 ------------------------------------------------------------------------------------------
+
+
+@check(
+    "01.5.constant",
+    task="01.5",
+    points=3,
+    calls=("adam",),
+    tolerance=EXACT,
+    kills=(
+        "no_bias_correction",
+        "no_second_correction",
+        "exponent_off_by_one",
+        "shared_scale",
+        "eps_inside_root",
+        "no_square_root",
+        "late_moments",
+        "moment_of_mean",
+    ),
+    sole="arithmetic that a student can do by hand: all corrections cancel",
+    hint="With a constant gradient m_hat = g and v_hat = g^2 in every step, Eq. (21).",
+)
+def a_constant_slope_gives_steps_of_length_tau(t):
+    """Down a plane every step is tau g / (|g| + eps), however steep the plane is."""
+    g = np.array([1e3, -1.0, 1e-3, -1e-7]) * t.rng.uniform(1.0, 2.0, 4)
+    n, tau = 12, 0.05
+    x = t.call("adam", lambda _: g, np.zeros(4), tau, n, returns=Array((n + 1, 4)))
+    expected = -tau * g / (np.abs(g) + 1e-8) * np.arange(n + 1)[:, None]
+    t.close("the points", x, expected)
+
+
+# The gradients of the handout's table, and the points that they lead to from (0, 0), by Eqs. (16)
+# to (20) in 40 decimal digits.
+TRACE_GRADIENTS = np.array([[1.0, 0.0], [-2.0, 0.0], [0.5, 4.0], [3.0, -1.0], [-1.0, 0.5]])
+TRACE_POINTS = np.array(
+    [
+        [0.0, 0.0],
+        [-0.099999999000000010, 0.0],
+        [-0.063389646527924912, 0.0],
+        [-0.049720580326178274, -0.063881359663375460],
+        [-0.089130569565123351, -0.100544142564580310],
+        [-0.107348211388094751, -0.137879953828913628],
+    ]
+)
+
+
+@check(
+    "01.5.trace",
+    task="01.5",
+    points=5,
+    calls=("adam",),
+    tolerance=EXACT,
+    kills=(
+        "no_bias_correction",
+        "no_second_correction",
+        "exponent_off_by_one",
+        "shared_scale",
+        "eps_inside_root",
+        "no_square_root",
+        "late_moments",
+        "swapped_betas",
+        "moment_of_mean",
+    ),
+    sole="the five steps that the handout prints, so that a student can find the first wrong",
+    hint="Print m, v, m_hat and v_hat for each of the five steps beside the table.",
+)
+def five_steps_agree_with_the_table(t):
+    """Five steps with the gradients of the handout's table lead where the table says."""
+    grad = scripted(TRACE_GRADIENTS)
+    x = t.call("adam", grad, np.zeros(2), 0.1, 5, returns=Array((6, 2)))
+    t.close("the points", x, TRACE_POINTS, reveal=True)
+
+
+# 01.6 ------------------------------------------------------------------------------------------
+
+
+@check(
+    "01.6.armijo",
+    task="01.6",
+    points=4,
+    calls=("backtracking",),
+    tolerance=EXACT,
+    kills=("no_promise", "wrong_promise", "deaf_to_c", "slope_of_steepest", "one_too_short"),
+    hint="The right-hand side of Eq. (22) falls with tau, along the direction you were given.",
+)
+def the_step_is_the_first_that_keeps_its_promise(t):
+    """The step length satisfies Armijo's rule, and the one tried before it does not."""
+    refused = 0
+    for _ in range(8):
+        f, grad, _ = rotated_bowl(t.rng, t.rng.uniform(0.5, 20.0, 3))
+        x = t.rng.uniform(-2.0, 2.0, 3)
+        d = -grad(x) * t.rng.uniform(0.3, 1.0, 3) - 0.1 * grad(x)
+        if float(grad(x) @ d) >= 0.0:
+            continue
+        c, shrink = float(t.rng.uniform(0.2, 0.45)), float(t.rng.uniform(0.6, 0.9))
+        tau = float(t.call("backtracking", f, grad, x, d, 1.0, c, shrink, returns=Number()))
+
+        def keeps(tau, f=f, grad=grad, x=x, d=d, c=c):
+            return f(x + tau * d) <= f(x) + c * tau * float(grad(x) @ d)
+
+        t.require(tau > 0.0, "the step length must be positive")
+        count = round(math.log(tau) / math.log(shrink))
+        t.close("the step length, as a power of shrink", tau, shrink**count)
+        t.require(keeps(shrink**count), "the step length breaks Armijo's rule")
+        if count:
+            refused += 1
+            t.require(not keeps(shrink ** (count - 1)), "a longer step would have been accepted")
+    t.require(refused >= 4, "too few steps were refused")
+
+
+@check(
+    "01.6.refuses",
+    task="01.6",
+    points=2,
+    calls=("backtracking",),
+    kills=("walks_uphill",),
+    hint="Raise ValueError unless the slope along d is negative.",
+)
+def a_direction_uphill_is_refused(t):
+    """A direction that leads uphill, or neither up nor down, raises ValueError."""
+    f, grad, vectors = rotated_bowl(t.rng, np.array([1.0, 3.0]))
+    t.refuses("backtracking", f, grad, vectors[:, 0], vectors[:, 0], error="ValueError")
+    t.refuses("backtracking", f, grad, vectors[:, 0], np.zeros(2), error="ValueError")
+
+
+# >>> hidden
+@check(
+    "01.1.cubic",
+    task="01.1",
+    points=4,
+    calls=("numeric_derivative",),
+    visibility="hidden",
+    tolerance=DIFFERENCE,
+    kills=("forward_difference", "missing_half", "five_point", "scaled_step"),
+    hint="For a x^3 the result is 3 a x^2 + a eps^2 exactly: Eq. (4) has no further term.",
+)
+def a_cubic_is_off_by_a_known_amount(t):
+    """For a cubic the error is eps^2 times a sixth of the third derivative, exactly."""
+    for eps in (1.0, 0.5):
+        a, b = t.rng.uniform(0.5, 2.0, 2)
+        x = np.array([float(t.rng.uniform(1.5, 3.0))])
+        got = t.call(
+            "numeric_derivative",
+            lambda y, a=a, b=b: float(a * y[0] ** 3 + b * y[0]),
+            x,
+            eps,
+            returns=Array((1,)),
+        )
+        excess = np.asarray(got) - 3.0 * a * x**2 - b
+        t.close("the error", excess, np.array([a * eps**2]))
+
+
+@check(
+    "01.2.basins",
+    task="01.2",
+    points=3,
+    calls=("gd_1d",),
+    visibility="hidden",
+    tolerance=Tolerance(1e-9, "200 steps leave 4e-16; the nearest mutant ends 2e-1 off"),
+    kills=("uphill", "no_tau", "stale_gradient", "clipped_step"),
+    hint="Short steps stay in the valley where they began; a long one may jump out of it.",
+)
+def the_walk_ends_in_the_predicted_valley(t):
+    """With two valleys, start and step length decide in which one the walk ends."""
+    tilt = float(t.rng.uniform(0.1, 0.3))  # f = (x^2 - 1)^2 + tilt x
+
+    def f(x):
+        return (x * x - 1.0) ** 2 + tilt * x
+
+    def df(x):
+        return 4.0 * x * (x * x - 1.0) + tilt
+
+    left, hump, right = np.sort(np.roots([4.0, 0.0, -4.0, tilt]).real)
+    for x0, end in ((hump - 0.1, left), (hump + 0.1, right), (-1.6, left), (1.5, right)):
+        x, _, _ = t.call("gd_1d", f, df, float(x0), 0.05, 200, returns=walk(200))
+        t.close(f"the end of a walk from {x0:.2f}", x[-1], end)
+    # One long step over the hump: from 1.7 by -0.1 f'(1.7), about -1.3, to 0.4; twice that: across.
+    x, _, _ = t.call("gd_1d", f, df, 1.9, 0.14, 200, returns=walk(200))
+    t.close("the end of a walk that jumps", x[-1], t.reference.gd_1d(f, df, 1.9, 0.14, 200)[0][-1])
+
+
+@check(
+    "01.2.undefined",
+    task="01.2",
+    points=3,
+    calls=("gd_1d",),
+    visibility="hidden",
+    kills=("uphill", "no_tau", "verdict_blind_to_nan"),
+    hint="NaN > 1 is False: write the verdict so that NaN counts as gone wrong, Eq. (8).",
+)
+def nothing_is_not_better(t):
+    """A walk that leaves the domain of the function has gone wrong."""
+
+    def f(x):
+        return x - math.log(x) if x > 0.0 else math.nan
+
+    names = ("the points", "the values", "the verdict")
+    spec = Items(Array((4,)), Values(4), Truth(), names=names)
+    x0 = float(t.rng.uniform(1.15, 1.2))
+    _, loss, wrong = t.call("gd_1d", f, lambda x: 1.0 - 1.0 / x, x0, 12.0, 3, returns=spec)
+    t.require(bool(np.isnan(loss[-1])), "f is not defined where this walk must end")
+    t.require(wrong, "the last value is NaN, so the verdict should be True")
+
+
+@check(
+    "01.3.contraction",
+    task="01.3",
+    points=4,
+    calls=("gd_nd",),
+    visibility="hidden",
+    tolerance=Tolerance(
+        1e-6,
+        "the factor over the last 20 of 150 steps is off by 4e-10 at "
+        "most, so 2 % are not needed; the nearest mutant is off by 8e-2",
+    ),
+    kills=("aliased_trail", "one_at_a_time", "unit_steps", "stops_early"),
+    hint="At the best step length each step multiplies the distance by Eq. (11), to the end.",
+)
+def the_condition_number_gives_the_rate(t):
+    """At the best step length the distance shrinks by (kappa - 1) / (kappa + 1) a step."""
+    for kappa in (5.0, 25.0):
+        low = float(t.rng.uniform(0.5, 2.0))
+        curvatures = low * np.array([1.0, 0.5 + 0.5 * kappa, kappa])
+        f, grad, vectors = rotated_bowl(t.rng, curvatures)
+        start, n = vectors @ t.rng.uniform(1.0, 2.0, 3), 75 if kappa < 10.0 else 150
+        tau = 2.0 / (low + low * kappa)
+        x, _, _ = t.call("gd_nd", f, grad, start, tau, n, returns=walk(n, 3))
+        length = np.linalg.norm(np.asarray(x), axis=1)
+        t.require(bool(length[-1] > 0.0), "the distance is still far above rounding here")
+        t.close(
+            f"factor per step, kappa = {kappa:g}",
+            (length[n] / length[n - 20]) ** (1.0 / 20.0),
+            (kappa - 1.0) / (kappa + 1.0),
+        )
+
+
+@check(
+    "01.4.roots",
+    task="01.4",
+    points=5,
+    calls=("momentum",),
+    visibility="hidden",
+    tolerance=Tolerance(
+        1e-11, "the closed form itself rounds: 1e-15 to 2e-13; the nearest mutant 2e-1"
+    ),
+    kills=("averaged_velocity", "forgets_velocity", "late_velocity", "look_ahead"),
+    hint="The gradient is taken at the point, not where the velocity would lead.",
+)
+def a_parabola_swings_as_two_roots_say(t):
+    """On a bowl each part of the walk is a sum of two powers, damped waves among them."""
+    curvatures = np.array([0.1, 1.0, 6.0]) * t.rng.uniform(0.9, 1.1, 3)
+    x0, n = t.rng.uniform(1.0, 2.0, 3), 25
+    tau, beta = 0.3, float(t.rng.uniform(0.6, 0.85))
+    x = t.call("momentum", lambda y: curvatures * y, x0, tau, beta, n, returns=Array((n + 1, 3)))
+    expected = np.empty((n + 1, 3))
+    for i, curvature in enumerate(curvatures):
+        first, second = np.roots([1.0, -(1.0 + beta - tau * curvature), beta]).astype(complex)
+        weight = (1.0 - tau * curvature - second) / (first - second)
+        powers = np.arange(n + 1)
+        expected[:, i] = (x0[i] * (weight * first**powers + (1 - weight) * second**powers)).real
+    t.close("the points", x, expected)
+
+
+@check(
+    "01.5.sums",
+    task="01.5",
+    points=6,
+    calls=("adam",),
+    visibility="hidden",
+    tolerance=EXACT,
+    kills=(
+        "no_bias_correction",
+        "no_second_correction",
+        "exponent_off_by_one",
+        "shared_scale",
+        "eps_inside_root",
+        "no_square_root",
+        "late_moments",
+        "swapped_betas",
+        "moment_of_mean",
+        "deaf_to_arguments",
+    ),
+    hint="beta1, beta2 and eps are arguments; their defaults are only defaults.",
+)
+def random_gradients_are_weighted_as_they_should(t):
+    """With other decays and random gradients the points are those of the sums, written out."""
+    n, beta1, beta2, eps = 20, float(t.rng.uniform(0.5, 0.8)), float(t.rng.uniform(0.9, 0.98)), 1e-3
+    gradients = t.rng.uniform(0.2, 1.0, (n, 3)) * t.rng.choice([-1.0, 1.0], (n, 3))
+    x0 = t.rng.uniform(-1.0, 1.0, 3)
+    got = t.call(
+        "adam", scripted(gradients), x0, 0.1, n, beta1, beta2, eps, returns=Array((n + 1, 3))
+    )
+    steps = np.empty((n, 3))
+    for k in range(n):
+        age = np.arange(k, -1, -1)[:, None]  # of each gradient so far
+        mean = np.sum(beta1**age * gradients[: k + 1], axis=0) / np.sum(beta1**age)
+        square = np.sum(beta2**age * gradients[: k + 1] ** 2, axis=0) / np.sum(beta2**age)
+        steps[k] = -0.1 * mean / (np.sqrt(square) + eps)
+    t.close("the steps", np.diff(got, axis=0), steps)
+
+
+@check(
+    "01.6.undefined",
+    task="01.6",
+    points=2,
+    calls=("backtracking",),
+    visibility="hidden",
+    kills=("accepts_nan",),
+    hint="Write the loop so that NaN is refused: `not value <= bound`.",
+)
+def a_step_out_of_the_domain_is_refused(t):
+    """Where the function is NaN the step is too long."""
+
+    def f(x):
+        return float(x[0] - math.log(x[0])) if x[0] > 0.0 else math.nan
+
+    x = np.array([float(t.rng.uniform(2.0, 3.0))])
+    d = np.array([-4.0])
+    tau = float(t.call("backtracking", f, lambda y: 1.0 - 1.0 / y, x, d, returns=Number()))
+    t.require(tau > 0.0 and float(x[0] + tau * d[0]) > 0.0, "this step leaves the domain of f")
+    t.require(f(x + tau * d) < f(x), "this step does not lead downhill")
+
+
+# Iterations of the best of 120 fixed step lengths from 1e-3 to 30, until a millionth of the excess
+# is left; tests/course/assignments/test_01.py counts them again.
+FIXED_STEPS = {"bowl": 98, "valley": 244, "quartic": 23, "logistic": 6, "two walls": 30}
+
+
+def five_functions():
+    """Name to (f, gradient, start, minimum)."""
+    hessian = np.array([[0.2, 0.0, 0.0], [0.0, 3.25, 2.75], [0.0, 2.75, 3.25]])  # 0.2, 0.5, 6
+    data = np.random.default_rng(0).normal(size=(30, 3))
+    data *= np.sign(data @ np.array([1.0, -2.0, 0.5]) + 0.5 * data[::-1, 0])[:, None]
+    weights, walls = np.array([1.0, 2.0, 4.0]), np.array([1.0, 3.0])
+    return {
+        "bowl": (
+            lambda x: float(0.5 * x @ hessian @ x),
+            lambda x: hessian @ x,
+            np.array([6.0, 2.0, 1.0]),
+        ),
+        "valley": (
+            lambda x: float((1 - x[0]) ** 2 + 4 * (x[1] - x[0] ** 2) ** 2),
+            lambda x: np.array(
+                [-2 * (1 - x[0]) - 16 * x[0] * (x[1] - x[0] ** 2), 8 * (x[1] - x[0] ** 2)]
+            ),
+            np.array([-1.2, 1.0]),
+        ),
+        "quartic": (
+            lambda x: float(np.sum(weights * x**2 / 2 + x**4 / 4)),
+            lambda x: weights * x + x**3,
+            np.array([3.0, -2.0, 1.0]),
+        ),
+        "logistic": (
+            lambda x: float(np.mean(np.logaddexp(0, -data @ x)) + 0.05 * x @ x),
+            lambda x: 0.1 * x - data.T @ np.exp(-np.logaddexp(0, data @ x)) / 30,
+            np.array([-3.0, 3.0, -3.0]),
+        ),
+        "two walls": (
+            lambda x: float(np.sum(np.logaddexp(walls * x, -walls * x)) + 0.05 * x @ x),
+            lambda x: walls * np.tanh(walls * x) + 0.1 * x,
+            np.array([2.0, -1.5]),
+        ),
+    }
+
+
+def goal_of(name, f, x0):
+    """The value at which a millionth of the excess over the minimum is left."""
+    least = {
+        "bowl": 0.0,
+        "valley": 0.0,
+        "quartic": 0.0,
+        "logistic": LOGISTIC_MINIMUM,
+        "two walls": 2.0 * math.log(2.0),
+    }[name]
+    return least + 1e-6 * (f(x0) - least)
+
+
+LOGISTIC_MINIMUM = 0.5052239008227084  # where the gradient is 1e-15
+
+
+@check(
+    "01.6.descends",
+    task="01.6",
+    points=4,
+    calls=("backtracking",),
+    visibility="hidden",
+    kills=("ignores_tau0", "one_too_short"),
+    seconds=15.0,
+    hint="Begin with the step length tau0 that you are given, also above 1.",
+)
+def it_needs_no_tuning(t):
+    """On five functions the loss never rises, in at most twice the steps of the best fixed tau."""
+    for name, (f, grad, x0) in five_functions().items():
+        x, tau, goal, most = x0, 1.0, goal_of(name, f, x0), 2 * FIXED_STEPS[name]
+        for _ in range(most):
+            d = -grad(x)
+            tau = float(t.call("backtracking", f, grad, x, d, 2.0 * tau, returns=Number()))
+            t.require(f(x + tau * d) <= f(x), f"{name}: a step has raised the loss")
+            x = x + tau * d
+            if f(x) <= goal:
+                break
+        t.require(f(x) <= goal, f"{name}: not there after {most} steps")
+
+
+# <<< hidden

@@ -1,0 +1,183 @@
+"""Assignment 01: walk downhill.
+
+Six functions that take other functions as arguments. Everything is float64. A point in N
+dimensions is an array of shape (N,); the points of a walk are the rows of an array (n + 1, N), the
+start among them. Never change an array that you were given: make a new one.
+
+`photograd course check 01` tells how far you are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+Loss = Callable[[np.ndarray], float]  # (N,) -> float
+Gradient = Callable[[np.ndarray], np.ndarray]  # (N,) -> (N,)
+
+
+def numeric_derivative(f: Loss, x: np.ndarray, eps: float) -> np.ndarray:
+    """The gradient of f at x from values of f alone, by central differences, Eq. (3).
+
+    Args:
+        f: the function; takes an array (N,), returns a float.
+        x: where, (N,) float64. It stays as it is.
+        eps: how far to move in each coordinate, in the unit of x, > 0.
+
+    Returns:
+        The gradient, (N,) float64. f is called 2 N times.
+    """
+    # >>> solution 01.1
+    slope = np.zeros(len(x))
+    for i in range(len(x)):
+        step = np.zeros(len(x))
+        step[i] = eps
+        slope[i] = (f(x + step) - f(x - step)) / (2.0 * eps)
+    return slope
+    # <<< solution
+
+
+def gd_1d(
+    f: Callable[[float], float], df: Callable[[float], float], x0: float, tau: float, n: int
+) -> tuple[np.ndarray, np.ndarray, bool]:
+    """n steps of gradient descent on a function of one variable, Eq. (5), and a verdict, Eq. (8).
+
+    Args:
+        f: the function, float -> float; may return NaN where it is not defined.
+        df: its derivative, float -> float; call it once a step.
+        x0: where to start.
+        tau: step length, > 0.
+        n: number of steps, >= 0.
+
+    Returns:
+        The points x_0 ... x_n, (n + 1,) float64; the values f(x_0) ... f(x_n), (n + 1,) float64;
+        and True if the walk went wrong: the last value is not at most the first.
+    """
+    # >>> solution 01.2
+    x = np.full(n + 1, x0)
+    for k in range(n):
+        x[k + 1] = x[k] - tau * df(float(x[k]))
+    loss = np.array([f(float(each)) for each in x])
+    return x, loss, not loss[n] <= loss[0]
+    # <<< solution
+
+
+def gd_nd(
+    f: Loss, grad: Gradient, x0: np.ndarray, tau: float, n: int
+) -> tuple[np.ndarray, np.ndarray, bool]:
+    """n steps of gradient descent on a function of N variables, Eq. (9).
+
+    Args:
+        f: the function, (N,) -> float; may return NaN where it is not defined.
+        grad: its gradient, (N,) -> (N,); call it once a step.
+        x0: where to start, (N,) float64. It stays as it is.
+        tau: step length, > 0.
+        n: number of steps, >= 0.
+
+    Returns:
+        The points x_0 ... x_n, (n + 1, N) float64; the values f(x_0) ... f(x_n), (n + 1,) float64;
+        and True if the walk went wrong, as in `gd_1d`.
+    """
+    # >>> solution 01.3
+    x = np.tile(x0, (n + 1, 1))
+    for k in range(n):
+        x[k + 1] = x[k] - tau * grad(x[k])
+    loss = np.array([f(each) for each in x])
+    return x, loss, not loss[n] <= loss[0]
+    # <<< solution
+
+
+def momentum(grad: Gradient, x0: np.ndarray, tau: float, beta: float, n: int) -> np.ndarray:
+    """n steps of gradient descent with a velocity, Eqs. (12) and (13), from rest.
+
+    Args:
+        grad: the gradient, (N,) -> (N,); call it once a step.
+        x0: where to start, (N,) float64. It stays as it is.
+        tau: step length, > 0.
+        beta: the part of the velocity that survives a step, 0 <= beta < 1.
+        n: number of steps, >= 0.
+
+    Returns:
+        The points x_0 ... x_n, (n + 1, N) float64.
+    """
+    # >>> solution 01.4
+    x, v = np.tile(x0, (n + 1, 1)), np.zeros(len(x0))
+    for k in range(n):
+        v = beta * v + grad(x[k])
+        x[k + 1] = x[k] - tau * v
+    return x
+    # <<< solution
+
+
+def adam(
+    grad: Gradient,
+    x0: np.ndarray,
+    tau: float,
+    n: int,
+    beta1: float = 0.9,
+    beta2: float = 0.999,
+    eps: float = 1e-8,
+) -> np.ndarray:
+    """n steps of Adam, Eqs. (16) to (20), both moments starting at zero.
+
+    Args:
+        grad: the gradient, (N,) -> (N,); call it once a step.
+        x0: where to start, (N,) float64. It stays as it is.
+        tau: step length, > 0.
+        n: number of steps, >= 0.
+        beta1, beta2: decay of the first and of the second moment, 0 <= beta < 1.
+        eps: keeps the quotient finite; stands outside the square root.
+
+    Returns:
+        The points x_0 ... x_n, (n + 1, N) float64.
+    """
+    # >>> solution 01.5
+    x = np.tile(x0, (n + 1, 1))
+    m, v = np.zeros(len(x0)), np.zeros(len(x0))
+    for k in range(1, n + 1):
+        g = grad(x[k - 1])
+        m = beta1 * m + (1.0 - beta1) * g
+        v = beta2 * v + (1.0 - beta2) * g * g
+        m_hat = m / (1.0 - beta1**k)
+        v_hat = v / (1.0 - beta2**k)
+        x[k] = x[k - 1] - tau * m_hat / (np.sqrt(v_hat) + eps)
+    return x
+    # <<< solution
+
+
+def backtracking(
+    f: Loss,
+    grad: Gradient,
+    x: np.ndarray,
+    d: np.ndarray,
+    tau0: float = 1.0,
+    c: float = 1e-4,
+    shrink: float = 0.5,
+) -> float:
+    """The first of tau0, tau0 shrink, tau0 shrink^2, ... that satisfies Armijo's rule, Eq. (22).
+
+    Args:
+        f: the function, (N,) -> float; where it returns NaN, a step is not acceptable.
+        grad: its gradient, (N,) -> (N,).
+        x: where we stand, (N,) float64. It stays as it is.
+        d: the direction in which to walk, (N,); need not be minus the gradient.
+        tau0: the step length to try first, > 0.
+        c: the part of the promised decrease that is asked for, 0 < c < 1.
+        shrink: by what a refused step length is multiplied, 0 < shrink < 1.
+
+    Returns:
+        The step length, a float.
+
+    Raises:
+        ValueError: d does not lead downhill: its scalar product with the gradient is not < 0.
+    """
+    # >>> solution 01.6
+    slope = float(grad(x) @ d)
+    if not slope < 0.0:
+        raise ValueError(f"d does not lead downhill: slope {slope}")
+    tau, start = tau0, f(x)
+    while not f(x + tau * d) <= start + c * tau * slope:
+        tau *= shrink
+    return tau
+    # <<< solution

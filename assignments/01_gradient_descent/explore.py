@@ -1,0 +1,160 @@
+# %% [markdown]
+# # Assignment 01, for play
+#
+# Nothing here is graded. Each cell uses your own `descent.py`; a cell whose function is not written
+# yet stops with the name of the task. Change numbers, run again. The whole script takes seconds.
+
+# %%
+from pathlib import Path
+
+import descent
+import matplotlib as mpl
+import numpy as np
+
+if __name__ == "__main__" and "get_ipython" not in globals():
+    mpl.use("Agg")  # as a script: pictures go to files
+import matplotlib.pyplot as plt
+
+OUT = Path("explore")
+OUT.mkdir(exist_ok=True)
+
+
+def keep(name):
+    """Save the current picture, and show it in a notebook."""
+    plt.tight_layout()
+    plt.savefig(OUT / f"{name}.png", dpi=110)
+    plt.show() if "get_ipython" in globals() else plt.close()
+
+
+# %% [markdown]
+# ## 1. How small should eps be?
+# Which eps is best, and why is smaller not better? Try another function.
+
+# %%
+eps = 10.0 ** np.arange(-13.0, 0.0, 0.5)
+point = np.array([0.7])
+error = [
+    abs(descent.numeric_derivative(lambda y: float(np.sin(y[0])), point, e)[0] - np.cos(0.7))
+    for e in eps
+]
+plt.loglog(eps, error, "o-")
+plt.xlabel("eps")
+plt.ylabel("error")
+keep("differences")
+
+# %% [markdown]
+# ## 2. Two valleys
+# Every start on the axis, coloured by the valley in which it ends. With tau = 0.05 there is one
+# border. What happens to the border with tau = 0.15?
+
+
+# %%
+def f(x):
+    return (x * x - 1.0) ** 2 + 0.2 * x
+
+
+def df(x):
+    return 4.0 * x * (x * x - 1.0) + 0.2
+
+
+starts = np.linspace(-1.9, 1.9, 381)
+for tau in (0.05, 0.15):
+    with np.errstate(all="ignore"):
+        ends = [descent.gd_1d(f, df, float(x0), tau, 80)[0][-1] for x0 in starts]
+    plt.plot(starts, ends, ".", label=f"tau = {tau}")
+plt.xlabel("start")
+plt.ylabel("end")
+plt.legend()
+keep("basins")
+
+# %% [markdown]
+# ## 3. Zig-zag
+# A bowl whose steep way is `kappa` times as steep. Watch the number of zigs grow with kappa.
+
+# %%
+kappa, start, n = 30.0, np.array([-2.0, 0.4]), 60
+hessian = np.array([1.0, kappa])
+
+
+def bowl(x):
+    return float(0.5 * x @ (hessian * x))
+
+
+def slope(x):
+    return hessian * x
+
+
+def contours(walks, name):
+    """The bowl from above, with some walks."""
+    x, y = np.meshgrid(np.linspace(-2.3, 1.0, 150), np.linspace(-1.0, 1.0, 100))
+    plt.contour(x, y, 0.5 * (x**2 + kappa * y**2), levels=np.geomspace(0.02, 15, 10), colors="0.8")
+    for label, walk in walks.items():
+        plt.plot(*walk.T, "o-", ms=3, lw=1, label=label)
+    plt.xlim(-2.3, 1.0)
+    plt.ylim(-1.0, 1.0)
+    plt.legend()
+    keep(name)
+
+
+best = descent.gd_nd(bowl, slope, start, 2.0 / (1.0 + kappa), n)[0]
+edge = descent.gd_nd(bowl, slope, start, 1.98 / kappa, n)[0]
+contours({"best step": best, "near the bound": edge}, "zigzag")
+
+# %% [markdown]
+# ## 4. Momentum
+# Try beta = 0.5, 0.7, 0.9, 0.97. Where does the ball begin to overshoot?
+
+# %%
+contours(
+    {f"beta = {beta}": descent.momentum(slope, start, 1.0 / kappa, beta, n) for beta in (0.5, 0.9)},
+    "momentum",
+)
+
+# %% [markdown]
+# ## 5. Adam
+# Turn the bowl by 45 degrees and Adam loses its advantage. Why?
+
+# %%
+turn = np.array([[1.0, -1.0], [1.0, 1.0]]) / np.sqrt(2.0)
+
+
+def turned(x):
+    return turn @ (hessian * (turn.T @ x))
+
+
+for label, grad, x0 in (("along the axes", slope, start), ("turned", turned, turn @ start)):
+    walk = descent.adam(grad, x0, 0.05, 300)
+    plt.semilogy(np.linalg.norm(walk, axis=1), label=label)
+plt.xlabel("step")
+plt.ylabel("distance")
+plt.legend()
+keep("adam")
+
+# %% [markdown]
+# ## 6. A step length that looks first
+# Rosenbrock's valley: no fixed step is right everywhere. Which lengths does the search choose?
+
+
+# %%
+def valley(x):
+    return float((1.0 - x[0]) ** 2 + 20.0 * (x[1] - x[0] ** 2) ** 2)
+
+
+def valley_slope(x):
+    across = x[1] - x[0] ** 2
+    return np.array([-2.0 * (1.0 - x[0]) - 80.0 * x[0] * across, 40.0 * across])
+
+
+x, tau, chosen = np.array([-1.2, 1.0]), 1.0, []
+for _ in range(300):
+    d = -valley_slope(x)
+    if d @ d < 1e-20:
+        break
+    tau = descent.backtracking(valley, valley_slope, x, d, 2.0 * tau)
+    x = x + tau * d
+    chosen.append(tau)
+plt.semilogy(chosen, ".")
+plt.xlabel("step")
+plt.ylabel("tau")
+plt.title(f"ends at ({x[0]:.4f}, {x[1]:.4f})")
+keep("line_search")

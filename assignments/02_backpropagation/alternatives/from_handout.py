@@ -1,0 +1,127 @@
+"""From the handout alone: its steps and equations, one after another."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+
+class Value:
+    def __init__(self, data, inputs=()):
+        self.data = float(data)
+        self.grad = 0.0
+        self.inputs = inputs
+
+    def __add__(self, other):
+        other = as_value(other)
+        # Moving either one by h moves the sum by h.
+        return Value(self.data + other.data, [(self, 1), (other, 1)])
+
+    def __mul__(self, other):
+        other = as_value(other)
+        x, y = self.data, other.data
+        # (x + h) y - x y = h y, so what is left over is the other one.
+        return Value(x * y, [(self, y), (other, x)])
+
+    def maximum(self, other):
+        other = as_value(other)
+        if self.data > other.data:
+            return Value(self.data, [(self, 1.0), (other, 0.0)])
+        return Value(other.data, [(self, 0.0), (other, 1.0)])
+
+    def exp(self):
+        u = math.exp(self.data)
+        return Value(u, [(self, u)])
+
+    def log(self):
+        u = math.log(self.data)
+        # x = e^u, so 1 = e^u du/dx.
+        return Value(u, [(self, 1 / math.exp(u))])
+
+    def __pow__(self, n):
+        x = self.data
+        return Value(x**n, [(self, n * x ** (n - 1))])
+
+    def __truediv__(self, other):
+        other = as_value(other)
+        quotient = self.data / other.data
+        d_self, d_other = 1.0 / other.data, -quotient / other.data
+        return Value(quotient, ((self, d_self), (other, d_other)))
+
+    def __radd__(self, other):
+        return self + other
+
+    def __rmul__(self, other):
+        return self * other
+
+    def __neg__(self):
+        return self * -1.0
+
+    def __sub__(self, other):
+        return self + as_value(other) * -1.0
+
+    def __rsub__(self, other):
+        return as_value(other) - self
+
+    def __rtruediv__(self, other):
+        return as_value(other) / self
+
+
+def as_value(number):
+    return number if isinstance(number, Value) else Value(number)
+
+
+def topo_order(root):
+    # A stack of values; the state says whether the inputs have been put on the stack.
+    done = []
+    state = {}
+    stack = [root]
+    while len(stack) > 0:
+        u = stack[-1]
+        if u not in state:
+            state[u] = "waiting for inputs"
+            for v, _ in u.inputs:
+                if v not in state:
+                    stack.append(v)
+            continue
+        stack.pop()
+        if state[u] == "waiting for inputs":
+            state[u] = "done"
+            done.append(u)
+    return done
+
+
+def backward(root, seed=1.0):
+    order = topo_order(root)
+    for v in order:
+        v.grad = 0.0
+    root.grad = 1.0 * seed
+    for k in range(len(order)):
+        u = order[len(order) - 1 - k]
+        for v, slope in u.inputs:
+            v.grad += u.grad * slope
+
+
+def grad_check(f, x, eps=1e-5):
+    n = len(x)
+    g = f(np.copy(x))[1]
+    d = np.zeros(n)
+    for i in range(n):
+        h = eps * max(1, abs(x[i]))
+        e = np.zeros(n)
+        e[i] = 1
+        d[i] = (f(x + h * e)[0] - f(x - h * e)[0]) / (2 * h)
+    if not (np.all(np.isfinite(g)) and np.all(np.isfinite(d))):
+        return float("inf")
+    longest = max(np.linalg.norm(g), np.linalg.norm(d))
+    if longest == 0:
+        return 0.0
+    return np.linalg.norm(g - d) / longest
+
+
+def value_and_gradient(f, x):
+    leaves = [Value(number) for number in x]
+    root = f(leaves)
+    backward(root)
+    return root.data, np.array([leaf.grad for leaf in leaves])

@@ -1,0 +1,201 @@
+"""Reverse-mode differentiation on a graph of scalars.
+
+A `Value` is a number that remembers how it was made: from which values, and with which slope (the
+derivative of the result by that input, at the numbers at hand). `backward` walks from the result to
+the inputs and multiplies and adds slopes.
+
+Your tasks are the functions that raise NotImplementedError; `photograd course check 02` tells how
+far you are. Equations are those of the handout.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+
+class Value:
+    """A number in a graph.
+
+    Attributes:
+        data: the number, a float.
+        grad: derivative of the root by this number; set by `backward`.
+        inputs: pairs (value, slope), one for each use of an input; () for a leaf.
+    """
+
+    def __init__(self, data, inputs=()):
+        self.data = float(data)
+        self.grad = 0.0
+        self.inputs = inputs
+
+    def __add__(self, other):
+        """self + other; `other` may be a plain number. Eq. (5)."""
+        other = as_value(other)
+        # >>> solution 02.1
+        return Value(self.data + other.data, ((self, 1.0), (other, 1.0)))
+        # <<< solution
+
+    def __mul__(self, other):
+        """self * other; `other` may be a plain number. Eq. (6)."""
+        other = as_value(other)
+        # >>> solution 02.1
+        return Value(self.data * other.data, ((self, other.data), (other, self.data)))
+        # <<< solution
+
+    def maximum(self, other):
+        """The larger of self and other; at a tie `other` takes all. Eq. (7)."""
+        other = as_value(other)
+        # >>> solution 02.2
+        wins = 1.0 if self.data > other.data else 0.0
+        larger = self.data if wins else other.data
+        return Value(larger, ((self, wins), (other, 1.0 - wins)))
+        # <<< solution
+
+    def exp(self):
+        """The exponential of self. Eq. (8)."""
+        # >>> solution 02.3
+        grown = math.exp(self.data)
+        return Value(grown, ((self, grown),))
+        # <<< solution
+
+    def log(self):
+        """The natural logarithm of self, which must be positive. Eq. (9)."""
+        # >>> solution 02.3
+        return Value(math.log(self.data), ((self, 1.0 / self.data),))
+        # <<< solution
+
+    def __pow__(self, n):
+        """self to the power of a plain number n, which is no input of the graph. Eq. (10)."""
+        # >>> solution 02.3
+        return Value(self.data**n, ((self, n * self.data ** (n - 1)),))
+        # <<< solution
+
+    def __truediv__(self, other):
+        """self / other: the twin that the handout derives, Eq. (4). Nothing to do here."""
+        other = as_value(other)
+        quotient = self.data / other.data
+        d_self, d_other = 1.0 / other.data, -quotient / other.data
+        return Value(quotient, ((self, d_self), (other, d_other)))
+
+    # What is made of the others.
+
+    def __radd__(self, other):
+        return self + other
+
+    def __rmul__(self, other):
+        return self * other
+
+    def __neg__(self):
+        return self * -1.0
+
+    def __sub__(self, other):
+        return self + as_value(other) * -1.0
+
+    def __rsub__(self, other):
+        return as_value(other) - self
+
+    def __rtruediv__(self, other):
+        return as_value(other) / self
+
+    def __repr__(self):
+        return f"Value({self.data:g}, grad={self.grad:g})"
+
+
+def as_value(number):
+    """A `Value` as it is; a plain number as a new leaf."""
+    return number if isinstance(number, Value) else Value(number)
+
+
+def topo_order(root):
+    """The values that `root` depends on, in an order in which every input precedes its users.
+
+    Args:
+        root: a `Value`.
+
+    Returns:
+        A list; each value stands in it once, `root` last. The time is proportional to the number of
+        values and uses, and the depth of the graph does not matter.
+    """
+    # >>> solution 02.4
+    order, seen = [], set()
+    stack = [(root, False)]
+    while stack:
+        node, inputs_done = stack.pop()
+        if inputs_done:
+            order.append(node)
+        elif node not in seen:
+            seen.add(node)
+            stack.append((node, True))
+            for source, _ in node.inputs:
+                stack.append((source, False))
+    return order
+    # <<< solution
+
+
+def backward(root, seed=1.0):
+    """Set `grad` of every value that `root` depends on to seed * d root / d value. Eq. (13).
+
+    What was in `grad` before does not matter: these values start from zero at each call. Values
+    that `root` does not depend on are left alone.
+
+    Args:
+        root: a `Value`, the end of the graph.
+        seed: derivative of whatever follows by the root; 1 where nothing follows.
+    """
+    # >>> solution 02.5
+    order = topo_order(root)
+    for node in order:
+        node.grad = 0.0
+    root.grad = float(seed)
+    for node in reversed(order):
+        for source, slope in node.inputs:
+            source.grad += slope * node.grad
+    # <<< solution
+
+
+def grad_check(f, x, eps=1e-5):
+    """How far a gradient is from central differences, Eqs. (14) to (16).
+
+    Args:
+        f: f(x) returns (value, gradient) at x, a float and an array (N,).
+        x: float64 array (N,); it is not changed.
+        eps: the step for coordinates up to 1; coordinate i moves by eps * max(1, |x_i|).
+
+    Returns:
+        ||gradient - differences|| / max(||gradient||, ||differences||), a float: at most 1e-6 for a
+        right gradient of a smooth function. 0 if both are zero, infinity if a number is not finite.
+        `f` is called 2 N + 1 times.
+    """
+    # >>> solution 02.6
+    x = np.array(x, dtype=np.float64)
+    gradient = np.asarray(f(x.copy())[1], dtype=np.float64)
+    differences = np.zeros_like(x)
+    for i in range(x.size):
+        step = eps * max(1.0, abs(x[i]))
+        ahead, behind = x.copy(), x.copy()
+        ahead[i] += step
+        behind[i] -= step
+        differences[i] = (f(ahead)[0] - f(behind)[0]) / (2.0 * step)
+    error = float(np.linalg.norm(gradient - differences))
+    scale = max(float(np.linalg.norm(gradient)), float(np.linalg.norm(differences)))
+    if not math.isfinite(error + scale):
+        return math.inf
+    return error / scale if scale > 0.0 else 0.0
+    # <<< solution
+
+
+def value_and_gradient(f, x):
+    """The value of f and its gradient by `backward`.
+
+    Args:
+        f: takes a list of N `Value`s and returns one.
+        x: N numbers.
+
+    Returns:
+        A float and an array (N,).
+    """
+    leaves = [Value(number) for number in x]
+    root = f(leaves)
+    backward(root)
+    return root.data, np.array([leaf.grad for leaf in leaves])

@@ -1,0 +1,144 @@
+# %% [markdown]
+# # Play with your engine
+#
+# Nothing here is graded. Run the whole file, or cell by cell in an editor that knows `# %%`.
+# It needs a finished `engine.py`, takes some ten seconds, and writes two pictures beside itself.
+
+# %%
+from pathlib import Path
+
+import matplotlib as mpl
+import numpy as np
+
+mpl.use("Agg")
+from engine import Value, backward, grad_check, value_and_gradient
+from matplotlib.figure import Figure
+
+HERE = Path(__file__).parent if "__file__" in globals() else Path()
+
+# %% [markdown]
+# ## 1. Is your gradient right?
+#
+# Change the formula as you like. Then make a gate wrong on purpose, and see what `grad_check` says.
+
+
+# %%
+def formula(v):
+    x, y, z = v
+    return (x * y + z.exp()).log() * (x / z) ** 2 + x.maximum(y)
+
+
+place = np.array([1.3, 0.7, 0.4])
+print("value and gradient:", value_and_gradient(formula, place))
+print("grad_check:", grad_check(lambda x: value_and_gradient(formula, x), place))
+
+# %% [markdown]
+# ## 2. A gradient is a picture
+#
+# The texels of a small picture are seen through a blur. The derivative of the error by each texel
+# has the shape of the picture: blue where a texel should be raised, red where it should be lowered.
+# After many steps dark and bright rims appear: the engine finds the texels that look right when
+# blurred.
+
+# %%
+row, column = np.mgrid[0:12, 0:20]
+heart = ((column - 9.5) / 6) ** 2 + (
+    (6 - row) / 5 - np.abs((column - 9.5) / 6) ** 0.6 * 0.6
+) ** 2 < 0.7
+wanted = np.where(heart, 0.85, 0.15)
+
+
+def seen_through_blur(texels):
+    """Each texel with its neighbours to the left and right; numbers or Values."""
+    return [
+        [0.25 * line[max(k - 1, 0)] + 0.5 * line[k] + 0.25 * line[min(k + 1, len(line) - 1)]
+         for k in range(len(line))]
+        for line in texels
+    ]  # fmt: skip
+
+
+def picture_loss(texels):
+    """The squared error, and its derivative by each texel."""
+    leaves = [[Value(number) for number in line] for line in texels]
+    total = Value(0.0)
+    for line, should in zip(seen_through_blur(leaves), wanted, strict=True):
+        for pixel, target in zip(line, should, strict=True):
+            total = total + (pixel - float(target)) ** 2
+    backward(total)
+    return total.data, np.array([[leaf.grad for leaf in line] for line in leaves])
+
+
+texels = np.full(wanted.shape, 0.5)
+shown = []
+for number in range(13):
+    loss, slopes = picture_loss(texels)
+    if number in {0, 3, 12}:
+        shown.append((number, texels.copy(), slopes))
+        print(f"step {number}: loss {loss:.4f}")
+    texels = texels - 0.4 * slopes
+
+figure = Figure(figsize=(9, 4), layout="constrained")
+top = np.abs(shown[0][2]).max()
+for k, (number, picture, slopes) in enumerate(shown):
+    above, below = figure.add_subplot(2, 3, k + 1), figure.add_subplot(2, 3, k + 4)
+    above.imshow(picture, cmap="gray", vmin=0, vmax=1)
+    above.set_title(f"texels after {number} steps")
+    below.imshow(slopes, cmap="RdBu_r", vmin=-top, vmax=top)
+    below.set_title("derivative of the loss")
+figure.savefig(HERE / "explore_picture.png", dpi=110)
+
+# %% [markdown]
+# ## 3. A network of 25 parameters learns a curve
+#
+# Eight hinges, max(0, w x + b), weighted and added. Try three hinges, or a longer step.
+
+# %%
+HINGES, STEPS, LENGTH = 8, 200, 0.35
+xs = np.linspace(-1, 1, 21)
+ys = np.sin(3 * xs) * 0.5
+rng = np.random.default_rng(2)
+parameters = np.concatenate(
+    [
+        rng.choice([-1.0, 1.0], HINGES),
+        rng.uniform(-0.8, 0.8, HINGES),
+        rng.normal(0, 0.3, HINGES),
+        [0.0],
+    ]
+)
+
+
+def network(p, x):
+    """The sum of all hinges at one number x; p are numbers or Values."""
+    out = p[3 * HINGES]
+    for k in range(HINGES):
+        out = out + p[2 * HINGES + k] * (p[k] * float(x) + p[HINGES + k]).maximum(0.0)
+    return out
+
+
+def misfit(p):
+    """The mean squared error over all samples."""
+    total = Value(0.0)
+    for x, y in zip(xs, ys, strict=True):
+        total = total + (network(p, x) - float(y)) ** 2
+    return total * (1.0 / len(xs))
+
+
+curves = [parameters.copy()]
+losses = []
+for number in range(STEPS):
+    loss, slopes = value_and_gradient(misfit, parameters)
+    losses.append(loss)
+    parameters = parameters - LENGTH * slopes
+    if number in {9, STEPS - 1}:
+        curves.append(parameters.copy())
+print(f"misfit {losses[0]:.4f} -> {losses[-1]:.5f}")
+
+figure = Figure(figsize=(9, 3.2), layout="constrained")
+left, right = figure.add_subplot(1, 2, 1), figure.add_subplot(1, 2, 2)
+left.plot(xs, ys, "k.", label="samples")
+for p, name in zip(curves, ("start", "10 steps", f"{STEPS} steps"), strict=True):
+    left.plot(xs, [network([Value(number) for number in p], x).data for x in xs], label=name)
+left.legend()
+right.semilogy(losses)
+right.set(xlabel="step", ylabel="misfit")
+figure.savefig(HERE / "explore_network.png", dpi=110)

@@ -1,0 +1,17 @@
+"""Your sum notes the slopes of a product; towards each term the slope is 1."""
+
+TASKS = ("02.1", "02.5")
+LOSES = (
+    "02.1.slopes",
+    "02.1.square",
+    "02.1.many",
+    "02.5.worked",
+    "02.5.expressions",
+    "02.5.random",
+)
+REPLACE = [
+    (
+        "((self, 1.0), (other, 1.0))",
+        "((self, other.data), (other, self.data))",
+    ),
+]

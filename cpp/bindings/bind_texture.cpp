@@ -1,0 +1,283 @@
+// Texture lookups, mip maps and the plan of a texture's recovery. Results are added to, or written into,
+// arrays that the Python face (photograd.texture) makes.
+#include <pybind11/stl.h>
+
+#include <atomic>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <variant>
+
+#include "array_args.h"
+#include "module.h"
+#include "photograd/core/parallel.h"
+#include "photograd/texture/mip_chain.h"
+#include "photograd/texture/mip_sample.h"
+#include "photograd/texture/sample.h"
+#include "photograd/texture/texture_plan.h"
+
+namespace photograd {
+namespace {
+
+constexpr std::int64_t largest_side = 1 << 16;
+constexpr std::int64_t most_points = std::int64_t{1} << 31;
+
+/// The shape that the axes H, W and C of `args` have.
+TextureShape checked_shape(const ArrayArgs& args, const char* name) {
+    const std::int64_t h = args.size("H"), w = args.size("W"), c = args.size("C");
+    if (h < 1 || w < 1 || h > largest_side || w > largest_side)
+        args.range(name, "1 to " + std::to_string(largest_side) + " texels along each axis",
+                   std::to_string(h) + " x " + std::to_string(w));
+    if (c < 1 || c > max_channels)
+        args.range(name, "1 to " + std::to_string(max_channels) + " channels", std::to_string(c));
+    return {static_cast<int>(h), static_cast<int>(w)};
+}
+
+template <class R>
+ImageView<const R> texture_in(ArrayArgs& args, const py::array& texture) {
+    const R* texels = args.in<R>("texture", texture, "H W C");
+    return {texels, checked_shape(args, "texture"), static_cast<int>(args.size("C"))};
+}
+
+/// Numbers of points (N, ...), all of them finite: a NaN has no texels.
+template <class R>
+const R* finite_in(ArrayArgs& args, const char* name, const py::array& array, const char* axes) {
+    const R* values = args.in<R>(name, array, axes);
+    const std::int64_t size = array.size(), rows = args.size("N");
+    if (rows >= most_points) args.range(name, "fewer than 2^31 points", std::to_string(rows));
+    constexpr std::int64_t piece = 1 << 16;
+    std::vector<std::int64_t> bad(static_cast<std::size_t>((size + piece - 1) / piece), 0);
+    parallel_for(static_cast<std::int64_t>(bad.size()), [&](std::int64_t p) {
+        // x - x is 0 for finite x and NaN otherwise; a sum of integers turns into lanes.
+        int count = 0;
+        for (std::int64_t i = p * piece; i < std::min(size, (p + 1) * piece); ++i)
+            count += values[i] - values[i] == R(0) ? 0 : 1;
+        bad[static_cast<std::size_t>(p)] = count;
+    });
+    std::int64_t total = 0;
+    for (const std::int64_t count : bad) total += count;
+    if (total > 0) {
+        std::int64_t first = 0;
+        while (std::isfinite(values[first])) ++first;
+        args.range(name, "finite numbers",
+                   std::to_string(total) + " that are not, the first in point " +
+                       std::to_string(first / (size / rows)));
+    }
+    return values;
+}
+
+void sample_any(const py::array& texture, const py::array& uv, py::array color) {
+    dispatch_real("sample", "texture", texture, [&](auto real) {
+        using R = decltype(real);
+        ArrayArgs args("sample");
+        const ImageView<const R> view = texture_in<R>(args, texture);
+        const R* points = finite_in<R>(args, "uv", uv, "N 2");
+        R* out = args.out<R>("out", color, "N C");
+        const py::gil_scoped_release release;
+        sample(view, points, args.size("N"), out);
+    });
+}
+
+void sample_any_backward(const py::array& texture, const py::array& uv, const py::array& d_color,
+                         std::optional<py::array> d_texture, std::optional<py::array> d_uv) {
+    dispatch_real("sample_backward", "texture", texture, [&](auto real) {
+        using R = decltype(real);
+        ArrayArgs args("sample_backward");
+        const ImageView<const R> view = texture_in<R>(args, texture);
+        const R* points = finite_in<R>(args, "uv", uv, "N 2");
+        const R* d_out = args.in<R>("d_color", d_color, "N C");
+        R* d_texels = d_texture ? args.out<R>("d_texture", *d_texture, "H W C") : nullptr;
+        R* d_points = d_uv ? args.out<R>("d_uv", *d_uv, "N 2") : nullptr;
+        const py::gil_scoped_release release;
+        sample_backward(view, points, args.size("N"), d_out, d_texels, d_points);
+    });
+}
+
+/// Checked views of the levels; T is R for levels that are written to.
+template <class R, class T>
+std::vector<ImageView<T>> mips_in(const char* function, const char* name,
+                                  std::vector<py::array>& levels) {
+    std::vector<ImageView<T>> views;
+    std::vector<TextureShape> shapes;
+    for (std::size_t k = 0; k < levels.size(); ++k) {
+        ArrayArgs args(function);
+        const std::string label = std::string(name) + "[" + std::to_string(k) + "]";
+        T* texels = nullptr;
+        if constexpr (std::is_const_v<T>)
+            texels = args.in<R>(label.c_str(), levels[k], "H W C");
+        else
+            texels = args.out<R>(label.c_str(), levels[k], "H W C");
+        const TextureShape shape = checked_shape(args, label.c_str());
+        if (k == 0) shapes = mip_shapes(shape);
+        const TextureShape wanted = shapes[std::min(k, shapes.size() - 1)];
+        const int channels = static_cast<int>(args.size("C"));
+        if (k >= shapes.size() || shape.height != wanted.height || shape.width != wanted.width ||
+            (k > 0 && channels != views[0].channels))
+            args.range(label, "the shapes that build_mips makes",
+                       std::to_string(shape.height) + " x " + std::to_string(shape.width) + " x " +
+                           std::to_string(channels));
+        views.push_back({texels, shape, channels});
+    }
+    if (views.empty()) fail(ErrorKind::range, function, name, "at least one level", "none");
+    return views;
+}
+
+void build(std::vector<py::array> mips) {
+    if (mips.empty()) fail(ErrorKind::range, "build_mips", "mips", "at least one level", "none");
+    dispatch_real("build_mips", "texture", mips[0], [&](auto real) {
+        using R = decltype(real);
+        const auto views = mips_in<R, R>("build_mips", "mips", mips);
+        const py::gil_scoped_release release;
+        for (std::size_t k = 0; k + 1 < views.size(); ++k)
+            halve<R>({views[k].texels, views[k].shape, views[k].channels}, views[k + 1]);
+    });
+}
+
+void build_backward(std::vector<py::array> d_mips) {
+    const char* name = "build_mips_backward";
+    if (d_mips.empty()) fail(ErrorKind::range, name, "d_mips", "at least one level", "none");
+    dispatch_real(name, "d_mips", d_mips[0], [&](auto real) {
+        using R = decltype(real);
+        const auto views = mips_in<R, R>(name, "d_mips", d_mips);
+        const py::gil_scoped_release release;
+        for (std::size_t k = views.size() - 1; k > 0; --k)
+            halve_backward<R>({views[k].texels, views[k].shape, views[k].channels}, views[k - 1]);
+    });
+}
+
+py::array level_of(std::int64_t height, std::int64_t width, const py::array& footprint) {
+    return dispatch_real("mip_level", "footprint", footprint, [&](auto real) -> py::array {
+        using R = decltype(real);
+        ArrayArgs args("mip_level");
+        const R* d = finite_in<R>(args, "footprint", footprint, "N 2 2");
+        if (height < 1 || width < 1)
+            args.range("shape", "at least one texel along each axis",
+                       std::to_string(height) + " x " + std::to_string(width));
+        py::array_t<R> level(args.size("N"));
+        mip_level({static_cast<int>(height), static_cast<int>(width)}, d, args.size("N"),
+                  level.mutable_data());
+        return level;
+    });
+}
+
+void sample_mips_any(std::vector<py::array> mips, const py::array& uv, const py::array& level,
+                     py::array color) {
+    dispatch_real("sample_mips", "uv", uv, [&](auto real) {
+        using R = decltype(real);
+        const auto views = mips_in<R, const R>("sample_mips", "mips", mips);
+        ArrayArgs args("sample_mips");
+        const R* points = finite_in<R>(args, "uv", uv, "N 2");
+        const R* levels = finite_in<R>(args, "level", level, "N");
+        R* out = args.out<R>("out", color, "N " + std::to_string(views[0].channels));
+        const py::gil_scoped_release release;
+        sample_mips<R>(views, points, levels, args.size("N"), out);
+    });
+}
+
+void sample_mips_any_backward(std::vector<py::array> mips, const py::array& uv,
+                              const py::array& level, const py::array& d_color,
+                              std::vector<py::array> d_mips, py::array d_uv, py::array d_level) {
+    const char* name = "sample_mips_backward";
+    dispatch_real(name, "uv", uv, [&](auto real) {
+        using R = decltype(real);
+        const auto views = mips_in<R, const R>(name, "mips", mips);
+        const auto d_views = mips_in<R, R>(name, "d_mips", d_mips);
+        ArrayArgs args(name);
+        if (views.size() != d_views.size())
+            args.range("d_mips", std::to_string(views.size()) + " levels as in mips",
+                       std::to_string(d_views.size()));
+        const R* points = finite_in<R>(args, "uv", uv, "N 2");
+        const R* levels = finite_in<R>(args, "level", level, "N");
+        const R* d_out = args.in<R>("d_color", d_color, "N " + std::to_string(views[0].channels));
+        R* d_points = args.out<R>("d_uv", d_uv, "N 2");
+        R* d_levels = args.out<R>("d_level", d_level, "N");
+        const py::gil_scoped_release release;
+        sample_mips_backward<R>(views, points, levels, args.size("N"), d_out, d_views, d_points,
+                                d_levels);
+    });
+}
+
+using AnyPlan =
+    std::variant<std::unique_ptr<TexturePlan<float>>, std::unique_ptr<TexturePlan<double>>>;
+
+struct BoundPlan {
+    AnyPlan plan;
+};
+
+BoundPlan make_plan(std::int64_t height, std::int64_t width, const py::array& uv,
+                    const py::array& target) {
+    return dispatch_real("TexturePlan", "uv", uv, [&](auto real) -> BoundPlan {
+        using R = decltype(real);
+        ArrayArgs args("TexturePlan");
+        const R* points = finite_in<R>(args, "uv", uv, "N 2");
+        const R* colors = args.in<R>("colors", target, "N C");
+        const std::int64_t channels = args.size("C"), count = args.size("N");
+        if (count == 0) args.range("uv", "at least one point", "none");
+        if (channels < 1 || channels > max_channels)
+            args.range("colors", "1 to " + std::to_string(max_channels) + " channels",
+                       std::to_string(channels));
+        if (height < 1 || width < 1 || height > largest_side || width > largest_side)
+            args.range("shape", "1 to " + std::to_string(largest_side) + " texels along each axis",
+                       std::to_string(height) + " x " + std::to_string(width));
+        const py::gil_scoped_release release;
+        return {std::make_unique<TexturePlan<R>>(
+            TextureShape{static_cast<int>(height), static_cast<int>(width)},
+            static_cast<int>(channels), points, colors, count)};
+    });
+}
+
+template <class R>
+double plan_loss(const TexturePlan<R>& plan, const py::array& texture, py::array& d_texture) {
+    ArrayArgs args("loss_and_gradient");
+    const ImageView<const R> view = texture_in<R>(args, texture);
+    R* d_texels = args.out<R>("d_texture", d_texture, "H W C");
+    if (view.shape.height != plan.shape().height || view.shape.width != plan.shape().width ||
+        view.channels != plan.channels())
+        args.range("texture", "the shape that the plan was made for",
+                   std::to_string(view.shape.height) + " x " + std::to_string(view.shape.width) +
+                       " x " + std::to_string(view.channels));
+    const py::gil_scoped_release release;
+    return plan.loss_and_gradient(view.texels, d_texels);
+}
+
+}  // namespace
+
+void bind_texture(py::module_& m) {
+    m.def("sample", &sample_any, py::arg("texture"), py::arg("uv"), py::arg("out"),
+          "Writes the colours (N, C) of a texture (H, W, C) at uv (N, 2) to out.");
+    m.def("sample_backward", &sample_any_backward, py::arg("texture"), py::arg("uv"),
+          py::arg("d_color"), py::arg("d_texture") = py::none(), py::arg("d_uv") = py::none(),
+          "Adds to d_texture (H, W, C) and d_uv (N, 2), where given.");
+    m.def(
+        "mip_shapes",
+        [](int height, int width) {
+            std::vector<std::pair<int, int>> shapes;
+            for (const TextureShape& s : mip_shapes({height, width}))
+                shapes.emplace_back(s.height, s.width);
+            return shapes;
+        },
+        py::arg("height"), py::arg("width"), "Height and width of every level of a mip map.");
+    m.def("build_mips", &build, py::arg("mips"), "Fills level 1 and all after it from level 0.");
+    m.def("build_mips_backward", &build_backward, py::arg("d_mips"),
+          "Adds the adjoint of every level to the one before; level 0 ends as the texture's.");
+    m.def("mip_level", &level_of, py::arg("height"), py::arg("width"), py::arg("footprint"),
+          "Level (N,) of footprints (N, 2, 2): du/dx, dv/dx; du/dy, dv/dy.");
+    m.def("sample_mips", &sample_mips_any, py::arg("mips"), py::arg("uv"), py::arg("level"),
+          py::arg("out"), "Writes the colours (N, C) at uv (N, 2) and level (N,) to out.");
+    m.def("sample_mips_backward", &sample_mips_any_backward, py::arg("mips"), py::arg("uv"),
+          py::arg("level"), py::arg("d_color"), py::arg("d_mips"), py::arg("d_uv"),
+          py::arg("d_level"), "Adds to all levels of d_mips, d_uv (N, 2) and d_level (N,).");
+    py::class_<BoundPlan>(m, "TexturePlan", "Points sorted by tile, with their colours.")
+        .def(py::init(&make_plan), py::arg("height"), py::arg("width"), py::arg("uv"),
+             py::arg("colors"))
+        .def(
+            "loss_and_gradient",
+            [](const BoundPlan& bound, const py::array& texture, py::array d_texture) {
+                return std::visit(
+                    [&](const auto& plan) { return plan_loss(*plan, texture, d_texture); },
+                    bound.plan);
+            },
+            py::arg("texture"), py::arg("d_texture"), "The loss; adds to d_texture (H, W, C).");
+}
+
+}  // namespace photograd

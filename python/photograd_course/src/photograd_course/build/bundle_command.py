@@ -1,0 +1,53 @@
+"""`photograd course bundle`: one zip of one assignment."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from ..atomic_io import atomic_write
+from ..cli.failures import complain
+from ..cli.output import emit
+from .command import bar, chosen_folders, read_wheels
+from .course_files import dossier_of
+from .gradescope import gradescope_zip
+from .products import sealed
+from .rules import findings, seed_findings
+from .secret import course_secret
+
+
+def bundle_command(
+    kind: str,
+    number: str,
+    out: Path | None,
+    secret_file: Path | None,
+    wheels: Path | None,
+    *,
+    as_json: bool,
+) -> bool:
+    """Write the zip; whether every rule is kept.
+
+    Args:
+        kind: "gradescope" or "hidden".
+        number: of the assignment.
+        out, secret_file, wheels: see `photograd course bundle --help`.
+        as_json: print the result as JSON.
+
+    Raises:
+        IoError, RangeError, SceneError: as for `build_command`.
+    """
+    root, folders = chosen_folders([number])
+    folder = next(iter(folders.values()))
+    secret, place = course_secret(secret_file, root.parent / "build" / "course")
+    dossier = dossier_of(folder, root=root, secret=secret, bar=bar)
+    found = findings(dossier_of(folder, root=root, bar=bar)) or seed_findings(dossier)
+    for each in found:
+        complain(str(each))
+    target = out or Path(f"{dossier.manifest.id}_{kind}.zip")
+    if not found:
+        data = sealed(dossier)
+        if kind == "gradescope":
+            data = gradescope_zip(dossier.manifest.id, data, secret, read_wheels(wheels))
+        atomic_write(target, data)
+    result = {"ok": not found, "zip": target if not found else None, "secret": place}
+    emit({**result, "findings": len(found)}, as_json=as_json)
+    return not found

@@ -1,0 +1,64 @@
+"""The program that `run_autograder` starts: grade one submission and keep results.json up to date.
+
+It does what `photograd course grade` does for one hand-in, and writes after every check, so that
+what was proven counts even if the container is stopped.
+"""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from ..grade.intake import take
+from ..grade.load import load
+from ..grade.one import Case, grade_one
+from ..grade.report_gradescope import ResultsFile, best_earlier
+from ..grade.workers import Workers, isolated_workers
+from ..grading.failures import GraderFault
+
+
+def main(words: Sequence[str] | None = None) -> int:
+    """Grade and say how it went: 0, or 3 when the grader itself failed (never the student's loss).
+
+    Args:
+        words: of the command line; by default this process's.
+    """
+    given = _options(words)
+    loaded = load(given.number, given.bundle, given.secret_file)
+    bundle = loaded.read()
+    results = ResultsFile(given.results, bundle, best_earlier(given.metadata))
+    hand_in = take(bundle.manifest, given.submission)
+    secrets = tuple(
+        path.resolve()
+        for path in (given.bundle, given.secret_file, given.submission, given.results)
+    )
+    with contextlib.ExitStack() as stack:
+        workers: Workers | None = None
+        unavailable = ""
+        try:
+            workers = stack.enter_context(isolated_workers(bundle.manifest, given.mode, secrets))
+        except GraderFault as fault:
+            unavailable = fault.text
+        case = Case("submission", hand_in, bundle, loaded.digest)
+        report = grade_one(case, workers, unavailable=unavailable, on_outcome=results.on_outcome)
+    results.finish(report)
+    sys.stdout.write(f"isolation mode {report.mode}: {report.proven:g} of {report.max_score:g}\n")
+    for line in report.staff:
+        sys.stdout.write(f"staff: {line}\n")
+    return 0 if report.is_sound else 3
+
+
+def _options(words: Sequence[str] | None) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description="Grade one Gradescope submission.")
+    parser.add_argument("number")
+    for name in ("bundle", "secret-file", "submission", "metadata", "results"):
+        parser.add_argument(f"--{name}", type=Path, required=True)
+    parser.add_argument("--mode", default=None)
+    return parser.parse_args(words)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,105 @@
+"""Make an assignment's products, or the whole course as it may be published."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from .dossier import Dossier
+from .gradescope import EXECUTABLE, gradescope_zip
+from .hint_table import hints_of
+from .public import kit_files, public_files
+from .seal import bundle_files, seal_bundle
+
+SOLUTION = ("handout.md", "figures.py", "explore.py", "equivalent.toml")
+
+
+@dataclass(frozen=True)
+class Products:
+    """The five products of one assignment, files by path.
+
+    Attributes:
+        kit: the student's folder.
+        checks: the public checks.
+        hidden: the sealed bundle, a zip.
+        solution: module, worked handout, figures, mutants, alternatives, questions with keys.
+        gradescope: the autograder's zip.
+    """
+
+    kit: Mapping[str, bytes]
+    checks: Mapping[str, bytes]
+    hidden: bytes
+    solution: Mapping[str, bytes]
+    gradescope: bytes
+
+    def files(self) -> dict[str, bytes]:
+        """All of them, by path in the output folder."""
+        return {
+            **{f"kit/{path}": data for path, data in self.kit.items()},
+            **{f"checks/{path}": data for path, data in self.checks.items()},
+            **{f"solution/{path}": data for path, data in self.solution.items()},
+            "hidden.zip": self.hidden,
+            "gradescope.zip": self.gradescope,
+        }
+
+
+def make_products(dossier: Dossier, wheels: Mapping[str, bytes] | None = None) -> Products:
+    """The products of an assignment that keeps the rules.
+
+    Args:
+        dossier: with the course's secret, so that hints fit the hidden seeds.
+        wheels: for the Gradescope zip.
+    """
+    hidden = sealed(dossier)
+    number, secret = dossier.manifest.id, dossier.secret
+    return Products(
+        kit=kit_files(dossier.folder),
+        checks=public_files(dossier.folder),
+        hidden=hidden,
+        solution=solution_files(dossier),
+        gradescope=gradescope_zip(number, hidden, secret, wheels),
+    )
+
+
+def sealed(dossier: Dossier) -> bytes:
+    """The sealed bundle, with hints for all checks."""
+    mutants, verdicts = dossier.mutants, dossier.mutant_verdicts
+    hints = hints_of(mutants, verdicts, dossier.checks, dossier.secret)
+    return seal_bundle(bundle_files(dossier.folder, hints), dossier.secret)
+
+
+def solution_files(dossier: Dossier) -> dict[str, bytes]:
+    """What instructors read: everything of the source folder but what tools left there."""
+    found = {}
+    for path in sorted(dossier.folder.rglob("*")):
+        inside = path.relative_to(dossier.folder)
+        hidden = any(part.startswith((".", "__pycache__")) for part in inside.parts)
+        if path.is_file() and not hidden:
+            found[inside.as_posix()] = path.read_bytes()
+    return found
+
+
+def publishable(folder: Path) -> dict[str, bytes]:
+    """A source folder as it may be published: stubs, no hidden checks, no keys, no mutants."""
+    kit, public = kit_files(folder), public_files(folder)
+    made = {"README.md", "answers.toml", "explore.ipynb"}  # students get them from the kit
+    files = {path: data for path, data in kit.items() if path not in made}
+    if "README.md" in kit:
+        files["handout.md"] = kit["README.md"]
+    return {**files, **public}
+
+
+def write_tree(target: Path, files: Mapping[str, bytes]) -> None:
+    """Write files into a folder that holds nothing else afterwards."""
+    fresh = target.with_name(f".{target.name}.new")
+    shutil.rmtree(fresh, ignore_errors=True)
+    for path, data in sorted(files.items()):
+        place = fresh / path
+        place.parent.mkdir(parents=True, exist_ok=True)
+        place.write_bytes(data)
+        if place.name in EXECUTABLE:
+            place.chmod(0o755)
+    shutil.rmtree(target, ignore_errors=True)
+    fresh.rename(target)

@@ -1,0 +1,44 @@
+"""Names that only the solution introduces occur nowhere in what students can see.
+
+Seen are the kit, the public checks and both wheels, whole texts there: code, comments, handout.
+Names that may be seen stand in the manifest's `vocabulary`; names of one or two characters are
+free.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from ..dossier import Dossier
+from ..leak_words import bound_names, words_of
+from ..regions import find_regions
+
+
+def look(dossier: Dossier) -> Iterator[str]:
+    """See the module."""
+    secret = secret_names(dossier)
+    places: dict[str, list[str]] = {}
+    for path, text in seen_texts(dossier).items():
+        for name in secret & words_of(text):
+            places.setdefault(name, []).append(path)
+    for name, found in sorted(places.items()):
+        more = f" and {len(found) - 1} more" if len(found) > 1 else ""
+        yield f"'{name}' belongs to the solution and occurs in {sorted(found)[0]}{more}"
+
+
+def secret_names(dossier: Dossier) -> set[str]:
+    """Names that the solution introduces, that the starter lacks and the vocabulary too."""
+    regions = find_regions(dossier.source, dossier.module_file)
+    spans = [(each.first, each.last) for each in regions if each.kind == "solution"]
+    given = words_of(dossier.starter) | set(dossier.manifest.vocabulary)
+    return bound_names(dossier.source, spans) - given
+
+
+def seen_texts(dossier: Dossier) -> dict[str, str]:
+    """All texts that students can see, by place."""
+    own = {
+        path: data.decode("utf-8")
+        for path, data in dossier.visible.items()
+        if not path.endswith((".png", ".npy", ".npz"))
+    }
+    return {**dossier.haystacks, **own}

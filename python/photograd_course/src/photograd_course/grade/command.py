@@ -1,0 +1,148 @@
+"""`photograd course grade`, from its options to its output."""
+
+from __future__ import annotations
+
+import contextlib
+import sys
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from ..assignment.manifest import Manifest
+from ..cli.progress import Progress
+from ..grading.failures import GraderFault
+from .batch import Batch, run_batch
+from .exports import find_sources, is_batch
+from .grades_csv import Change, counted
+from .load import load
+from .one import Case, grade_one
+from .printable import printable
+from .report import Report
+from .report_json import canonical
+from .report_text import print_report
+from .run_folder import RunFolder
+from .workers import Workers, isolated_workers
+
+
+@dataclass(frozen=True)
+class Request:
+    """The command's options; see `photograd course grade --help`."""
+
+    assignment: str
+    hand_in: Path
+    bundle: Path | None = None
+    secret_file: Path | None = None
+    jobs: int = 1
+    resume: bool = False
+    out: Path | None = None
+    mode: str | None = None
+    as_json: bool = False
+
+
+def grade_command(request: Request) -> bool:
+    """Grade what was asked for; whether nothing went wrong on our side.
+
+    Raises:
+        IoError, SceneError, RangeError: hand-ins, bundle or folder cannot be used.
+    """
+    loaded = load(request.assignment, request.bundle, request.secret_file)
+    bundle = loaded.read()
+    sources = find_sources(bundle.manifest, request.hand_in)
+    places = (loaded.place, request.secret_file, request.hand_in, request.out)
+    secrets = tuple(path.resolve() for path in places if path is not None and path.exists())
+    console = Console(stderr=request.as_json, highlight=False)
+    with _workers(bundle.manifest, request, secrets) as (workers, unavailable):
+        if request.out is None and not is_batch(bundle.manifest, request.hand_in):
+            source = sources[0]
+            hand_in = source.take(bundle.manifest)
+            case = Case(source.student, hand_in, bundle, loaded.digest)
+            report = grade_one(case, workers, unavailable=unavailable)
+            print_report(report, console)
+            _say_json(request, report.to_json())
+            return report.is_sound
+        out = request.out or Path(f"grades_{bundle.manifest.id}")
+        folder = RunFolder(out, loaded.secret)
+        batch = Batch(sources, loaded, workers, unavailable, min(request.jobs, len(sources)))
+        with Progress("grade", len(sources)) as bar:
+            reports, changed = run_batch(
+                batch,
+                folder,
+                resume=request.resume,
+                on_report=lambda done, _report: bar.update(done),
+            )
+    _summary(reports, changed, folder, console)
+    _say_json(request, _batch_json(reports, changed, folder))
+    return all(report.is_sound for report in reports)
+
+
+@contextlib.contextmanager
+def _workers(
+    manifest: Manifest, request: Request, secrets: Sequence[Path]
+) -> Iterator[tuple[Workers | None, str]]:
+    """Workers, or None and what staff should know."""
+    with contextlib.ExitStack() as stack:
+        try:
+            workers = stack.enter_context(isolated_workers(manifest, request.mode, secrets))
+        except GraderFault as fault:
+            yield None, fault.text
+        else:
+            yield workers, ""
+
+
+def _summary(
+    reports: Sequence[Report], changed: Sequence[Change] | None, folder: RunFolder, console: Console
+) -> None:
+    earlier = folder.earlier()
+    scores = [counted(report, earlier.get(report.student)) for report in reports]
+    known = [score for score, _ in scores if score is not None]
+    console.print(f"{len(reports)} hand-ins: {folder.path / 'grades.csv'}", soft_wrap=True)
+    if known:
+        mean = sum(known) / len(known)
+        top = reports[0].max_score
+        console.print(f"mean {mean:.1f} of {top:g}, best {max(known):g}, least {min(known):g}")
+    for report in reports:
+        for note in report.staff[:2]:
+            line = Text(f"staff: {printable(report.student)}: {printable(note)}", style="magenta")
+            console.print(line, soft_wrap=True)
+    if changed is None:
+        return
+    table = Table(title=f"{len(changed)} grades differ from the run before", title_justify="left")
+    for column in ("student", "before", "after", "by"):
+        table.add_column(column)
+    for change in changed:
+        numbers = ["none" if s is None else f"{s:g}" for s in (change.before, change.after)]
+        cells = [change.student, *numbers, "; ".join(change.checks)]
+        table.add_row(*(Text(printable(cell)) for cell in cells))
+    console.print(table)
+
+
+def _batch_json(
+    reports: Sequence[Report], changed: Sequence[Change] | None, folder: RunFolder
+) -> dict[str, Any]:
+    earlier = folder.earlier()
+    grades = []
+    for report in reports:
+        score, status = counted(report, earlier.get(report.student))
+        grades.append({
+            "student": report.student, "score": score, "max_score": report.max_score,
+            "status": status,
+        })  # fmt: skip
+    differing = None if changed is None else [change.student for change in changed]
+    return {
+        "out": str(folder.path),
+        "hand_ins": len(reports),
+        "needs_staff": [report.student for report in reports if not report.is_sound],
+        "changed": differing,
+        "grades": grades,
+    }
+
+
+def _say_json(request: Request, result: dict[str, Any]) -> None:
+    if request.as_json:
+        sys.stdout.write(canonical(result).decode() + "\n")
+        sys.stdout.flush()

@@ -1,0 +1,123 @@
+"""`grades.csv` for the gradebook and `changes.csv` for a second grading."""
+
+from __future__ import annotations
+
+import csv
+import hashlib
+import io
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from .printable import csv_cell, file_name
+from .report import Report
+
+
+@dataclass(frozen=True)
+class Change:
+    """How one student's grade differs from an earlier run.
+
+    Attributes:
+        student: whose.
+        before, after: scores; None where there is none.
+        checks: "id: before -> after" for each check and question whose points differ.
+    """
+
+    student: str
+    before: float | None
+    after: float | None
+    checks: tuple[str, ...]
+
+
+def grades_table(reports: Sequence[Report], earlier: Mapping[str, Report]) -> bytes:
+    """One row a student, by name; nothing in it depends on when or in what order it was graded.
+
+    A score is empty, not zero, where the grader failed; if an earlier run had one, it stays.
+
+    Args:
+        reports: of this run.
+        earlier: of the run before, by student.
+    """
+    head = ["student", "assignment", "score", "max_score", "status", "mode", "page", "hand_in"]
+    ids = list(reports[0].points) if reports else []
+    rows: list[list[Any]] = [[*head, *ids, "notes"]]
+    declared = Counter(report.declared for report in reports if report.declared)
+    for report in sorted(reports, key=lambda each: each.student):
+        score, status = counted(report, earlier.get(report.student))
+        points = report.points
+        rows.append([
+            report.student, report.assignment, "" if score is None else score, report.max_score,
+            status, report.mode, f"{page_name(report.student)}.html", report.hand_in[:16],
+            *(points.get(each, "") for each in ids),
+            "; ".join(_notes(report, declared)),
+        ])  # fmt: skip
+    return _csv(rows)
+
+
+def _notes(report: Report, declared: Mapping[str, int]) -> list[str]:
+    notes = [*report.remarks, *(f"staff: {note}" for note in report.staff)]
+    if declared.get(report.declared, 0) > 1:  # whose questions, and so whose answers, are these?
+        notes.append(f"staff: answers.toml names {report.declared}, as another hand-in does")
+    return notes
+
+
+def counted(report: Report, earlier: Report | None) -> tuple[float | None, str]:
+    """The score that counts, and why: our own failure never lowers a grade."""
+    if report.is_sound:
+        return report.score, "hand-in refused" if report.problem else "ok"
+    if earlier is not None and earlier.score is not None:
+        return max(earlier.score, report.proven), "error-ours, earlier grade kept"
+    return None, "error-ours"
+
+
+def changes(reports: Sequence[Report], earlier: Mapping[str, Report]) -> list[Change]:
+    """Who changes, and by which check; also who is new or gone."""
+    found = []
+    now = {report.student: report for report in reports}
+    for student in sorted({*now, *earlier}):
+        new, old = now.get(student), earlier.get(student)
+        lines = _differing(old, new)
+        after = None if new is None else counted(new, old)[0]
+        before = None if old is None else old.score
+        if lines or before != after:
+            found.append(Change(student, before, after, tuple(lines)))
+    return found
+
+
+def changes_table(found: Sequence[Change]) -> bytes:
+    """The differences as a table."""
+    rows: list[list[Any]] = [["student", "before", "after", "checks"]]
+    for change in found:
+        scores = ["" if s is None else s for s in (change.before, change.after)]
+        rows.append([change.student, *scores, "; ".join(change.checks)])
+    return _csv(rows)
+
+
+def page_name(student: str) -> str:
+    """Unique for each student on any file system, and readable."""
+    digest = hashlib.sha256(student.encode("utf-8", errors="replace")).hexdigest()
+    return f"{file_name(student)}-{digest[:10]}"
+
+
+def _differing(old: Report | None, new: Report | None) -> list[str]:
+    if old is None or new is None:
+        return ["new" if old is None else "gone"]
+    before, after = _verdicts(old), _verdicts(new)
+    return [
+        f"{each}: {before.get(each, 'none')} -> {after.get(each, 'none')}"
+        for each in dict.fromkeys([*before, *after])
+        if before.get(each) != after.get(each)
+    ]
+
+
+def _verdicts(report: Report) -> dict[str, str]:
+    checks = {c.id: f"{c.status.value} {c.points:g}" for c in report.checks}
+    return {**checks, **{q.id: f"{q.status} {q.points:g}" for q in report.questions}}
+
+
+def _csv(rows: Sequence[Sequence[Any]]) -> bytes:
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n", quoting=csv.QUOTE_MINIMAL)
+    writer.writerows([csv_cell(cell) for cell in row] for row in rows)
+    return text.getvalue().encode("utf-8", errors="replace")

@@ -1,0 +1,133 @@
+"""The price of an adjoint: a few forward calls, where differences pay one for each parameter.
+
+Three ways round it are closed. Answers kept from an earlier call: each timed call gets arguments of
+its own, and where the reference is at hand its answer is looked at as well. A forward function that
+wastes time, so that all else looks cheap: the reference's forward function sets a second cap. Work
+left to processes or threads: what is counted is the processor time of all that belongs to the
+hand-in.
+"""
+
+from __future__ import annotations
+
+import statistics
+import time
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+
+from .failures import CheckFailed
+from .specs import Spec
+from .trial import Trial
+
+COST_RATIO = 20.0  # an adjoint costs 2 to 5 forward calls, differences one for each parameter
+# Of forward calls of the reference: loops over single numbers cost 98 to 870 of them (toy and 03),
+# complex steps for 4,000 parameters 9,000. An honest loop must never fail, hence nearer to those.
+REFERENCE_RATIO = 3000.0
+SHORTEST = 2e-5  # seconds; below it a call is all overhead
+VARIATION = 0.01
+AGREEMENT = 1e-6  # relative; two ways to write the same sum differ by some 1e-15
+
+Call = tuple[str, Sequence[Any], Spec]
+
+
+def require_cheap(trial: Trial, forward: Call, backward: Call, ratio: float = COST_RATIO) -> None:
+    """The backward function must cost at most ``ratio`` forward calls of the same hand-in.
+
+    Processor time, measured from outside; median of three, and one retry. Where it cannot be
+    measured (a student's machine), nothing is asked. For each call the arrays of float64 among the
+    arguments are made smaller by up to a percent, each by a factor of its own.
+
+    Args:
+        trial: of the check; the arguments should hold 2,000 parameters or more, and 4,000 where
+            the second cap is to mean something.
+        forward, backward: function name, arguments and spec.
+        ratio: the cap.
+
+    Raises:
+        CheckFailed: too expensive, or the answer to a timed call is another than the reference's.
+    """
+    if trial.cpu_seconds() is None:
+        return
+    measured, most = 0.0, np.inf
+    if (plain := _reference_seconds(trial, forward)) is not None:
+        most = REFERENCE_RATIO * max(plain, SHORTEST)
+    for _ in range(2):
+        once = [_cost(trial, forward, repeats=4) for _ in range(3)]
+        back = statistics.median([_cost(trial, backward, repeats=1) for _ in range(3)])
+        measured = back / max(statistics.median(once), SHORTEST)
+        if measured <= ratio and back <= most:
+            return
+    advice = "an adjoint visits each value about once; finite differences do not count"
+    if measured <= ratio:
+        raise CheckFailed(
+            f"{backward[0]}: costs more than {REFERENCE_RATIO:.0f} forward calls should",
+            {"advice": f"{advice}, nor does slowing down {forward[0]}"},
+        )
+    raise CheckFailed(
+        f"{backward[0]}: costs {measured:.0f} forward calls, allowed {ratio:.0f}",
+        {"advice": advice},
+    )
+
+
+def _cost(trial: Trial, call: Call, *, repeats: int) -> float:
+    function, args, spec = call
+    seconds = 0.0
+    for _ in range(repeats):
+        varied = [_varied(trial, value) for value in args]
+        before = trial.cpu_seconds() or 0.0
+        answer = trial.call(function, *varied, returns=spec)
+        seconds += (trial.cpu_seconds() or 0.0) - before
+        _require_fresh(trial, function, varied, answer)
+    return seconds / repeats
+
+
+def _varied(trial: Trial, value: Any) -> Any:
+    """One factor for a whole array, so that what is sorted stays so, and what is >= 0 too."""
+    if isinstance(value, np.ndarray) and value.dtype == np.float64:
+        return value * (1.0 - VARIATION * float(trial.rng.random()))
+    return value
+
+
+def _require_fresh(trial: Trial, function: str, args: Sequence[Any], answer: Any) -> None:
+    reference = _reference(trial, function, args)
+    if reference is not None and not _agree(answer, reference(*args)):
+        raise CheckFailed(
+            f"{function}: the answer to a timed call does not belong to its arguments",
+            {"advice": "compute it from the arguments each time"},
+        )
+
+
+def _reference(trial: Trial, function: str, args: Sequence[Any]) -> Callable[..., Any] | None:
+    """The solution's function; None where there is none, or a call of it might have effects."""
+    if not trial.has_reference or any(callable(value) for value in args):
+        return None
+    found: Callable[..., Any] | None = getattr(trial.reference, function, None)
+    return found
+
+
+def _reference_seconds(trial: Trial, call: Call) -> float | None:
+    function, args, _ = call
+    reference = _reference(trial, function, args)
+    if reference is None:
+        return None
+    times = []
+    for _ in range(5):
+        before = time.process_time()
+        reference(*args)
+        times.append(time.process_time() - before)
+    return statistics.median(times)
+
+
+def _agree(got: Any, expected: Any) -> bool:
+    if isinstance(expected, dict):
+        return isinstance(got, dict) and all(_agree(got.get(k), v) for k, v in expected.items())
+    if isinstance(expected, (tuple, list)):
+        return len(got) == len(expected) and all(map(_agree, got, expected))
+    if isinstance(expected, (float, int, np.number, np.ndarray)):
+        right, answer = np.asarray(expected, np.float64), np.asarray(got, np.float64)
+        if right.shape != answer.shape:
+            return False
+        error = float(np.linalg.norm(answer - right))
+        return error <= AGREEMENT * float(np.linalg.norm(right))
+    return True  # of another kind: nothing to compare

@@ -1,0 +1,22 @@
+"""What graded code may import later, imported while it can still be read."""
+
+from __future__ import annotations
+
+import importlib
+
+# With the modules that these, NumPy and the interpreter import only on first use.
+NUMPY = ("numpy.fft", "numpy.linalg", "numpy.ma", "numpy.polynomial", "numpy.random")
+STANDARD = (
+    "abc", "array", "ast", "bisect", "cmath", "collections.abc", "contextlib", "copy",
+    "dataclasses", "datetime", "decimal", "enum", "fractions", "functools", "heapq", "inspect",
+    "io", "itertools", "json", "linecache", "math", "numbers", "operator", "os", "pathlib",
+    "pprint", "random", "re", "statistics", "string", "struct", "textwrap", "time", "tokenize",
+    "traceback", "types", "typing", "unicodedata", "warnings", "weakref",
+)  # fmt: skip
+CODECS = ("ascii", "latin_1", "unicode_escape", "utf_8", "utf_8_sig", "utf_16", "cp1252")
+
+
+def preload(more: list[str]) -> None:
+    """Import all of it, and the modules that the assignment names."""
+    for name in (*NUMPY, *STANDARD, *more, *(f"encodings.{codec}" for codec in CODECS)):
+        importlib.import_module(name)

@@ -1,0 +1,96 @@
+"""What /proc tells about processes: descent, user, processor time."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+PROC = Path("/proc")
+TICKS = 100  # of the fields of /proc/PID/stat per second, on every architecture Linux has
+
+
+def family(pid: int) -> list[int]:
+    """A process and all that descend from it, parents first; empty where there is no /proc."""
+    if sys.platform != "linux":
+        return []
+    children: dict[int, list[int]] = {}
+    for entry in PROC.iterdir():
+        if entry.name.isdigit() and (fields := stat_fields(int(entry.name))):
+            children.setdefault(int(fields[1]), []).append(int(entry.name))
+    found = [pid]
+    for member in found:  # grows on the way
+        found += children.get(member, [])
+    return found
+
+
+def stat_fields(pid: int) -> list[str]:
+    """The fields of /proc/PID/stat from the third on (state, parent, ...); [] when it is gone."""
+    try:
+        text = (PROC / str(pid) / "stat").read_bytes()
+    except OSError:
+        return []
+    return text[text.rindex(b")") + 2 :].decode("ascii").split()
+
+
+def of_user(uid: int) -> list[int]:
+    """Processes that run as a user and can still do anything."""
+    found = []
+    for entry in PROC.iterdir():
+        if not entry.name.isdigit():
+            continue
+        try:
+            lines = (entry / "status").read_text("utf-8", "replace").splitlines()
+        except OSError:
+            continue
+        fields = dict(line.split(":", 1) for line in lines if ":" in line)
+        ids = {int(number) for number in fields.get("Uid", "").split()}
+        if uid in ids and not fields.get("State", "").strip().startswith(("Z", "X")):
+            found.append(int(entry.name))
+    return found
+
+
+def cpu_seconds(pid: int) -> float | None:
+    """Processor time of a process, its threads and its descendants, ended ones included.
+
+    The kernel's clock of each living process counts nanoseconds; ended children are counted in
+    ticks of 10 ms, by the parent that waited for them.
+    """
+    if sys.platform != "linux":
+        return None
+    total = 0.0
+    for member in family(pid):
+        fields = stat_fields(member)
+        if not fields:
+            continue
+        total += (int(fields[13]) + int(fields[14])) / TICKS
+        try:
+            total += time.clock_gettime(~member << 3 | 2)  # man 3 clock_getcpuclockid
+        except OSError:  # it has just ended
+            total += (int(fields[11]) + int(fields[12])) / TICKS
+    return total
+
+
+def is_alive(pid: int) -> bool:
+    """Whether a process is there and no mere entry in a table."""
+    fields = stat_fields(pid)
+    return bool(fields) and fields[0] not in "ZX"
+
+
+def finish(process: subprocess.Popen[bytes]) -> None:
+    """Kill a child. Where there is no SIGKILL, terminating is just as final."""
+    if hasattr(signal, "SIGKILL"):
+        process.kill()
+    else:
+        process.terminate()
+
+
+def send_end(pid: int) -> None:
+    """Kill one process, if it still can be."""
+    try:
+        os.kill(pid, 9)
+    except OSError:
+        return

@@ -1,0 +1,159 @@
+"""Every rule that runs goes red on a copy that breaks it, and says which check and which text."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from photograd_course.build.course_files import dossier_of
+from photograd_course.build.evidence import evidence
+from photograd_course.build.rules import findings, seed_findings
+
+from .support import SECRET, TOY, Broken
+
+
+@pytest.mark.slow
+def test_the_toy_keeps_every_rule(cache: Path) -> None:
+    known = evidence(TOY, cache=cache)
+    assert known["findings"] == []
+    assert known["ok"]
+    assert known["checks"] == 5
+    assert known["named_mutants"] == known["named_mutants_as_listed"] == 8
+    assert known["alternatives"] == known["alternatives_accepted"] == 3
+    assert known["automatic_mutants"] == known["automatic_mutants_killed"] == 36
+    assert known["margin_right"] < 0.1
+    assert known["margin_wrong"] > 10
+
+
+def test_the_scaffold_keeps_every_rule_for_any_secret(scaffold: Path, cache: Path) -> None:
+    assert findings(dossier_of(scaffold, cache=cache)) == []
+    assert seed_findings(dossier_of(scaffold, secret=SECRET, cache=cache)) == []
+
+
+def test_solution(broken: Broken) -> None:
+    broken.change("checks.py", "[2.0, 4.0, 10.0]", "[2.0, 4.0, 11.0]")
+    assert broken.broken_rules() == {"solution"}
+    assert "does not pass 17.1.known" in broken.says("solution")[0]
+
+
+def test_starter(broken: Broken) -> None:
+    broken.change(
+        "checks.py", "    known = np", '    t.require(True, "")\n    return\n    known = np'
+    )
+    assert broken.says("starter") == ["the starter passes 17.1.known"]
+
+
+def test_starter_that_crashes(broken: Broken) -> None:
+    broken.change("checks.py", "    known = np", '    t.require(False, "no")\n    known = np')
+    assert (
+        "17.1.known should say of the starter that it is not implemented"
+        in broken.says("starter")[0]
+    )
+
+
+def test_mutants(broken: Broken) -> None:
+    broken.change("mutants/squared.py", '"17.1.known", ', '"17.1.none", ')
+    assert broken.says("mutants") == [
+        "squared should lose 17.1.none, which is no check",
+        "squared loses 17.1.known, which LOSES does not list",
+    ]
+    broken.change("mutants/squared.py", "return x * x", "return x + x")
+    assert "squared survives 17.1.random, which it should lose" in broken.says("mutants")
+
+
+def test_mutants_that_no_longer_apply(broken: Broken) -> None:
+    broken.change("light.py", "2.0 * x", "x * 2.0")
+    assert any(
+        "'return 2.0 * x' once in the solution, got 0" in str(f) for f in findings(broken.dossier)
+    )
+
+
+def test_mutants_without_a_sentence(broken: Broken) -> None:
+    broken.add("mutants/silent.py", 'TASKS = ("17.1",)\nLOSES = ()\nREPLACE = [("2", "3")]\n')
+    assert "no docstring" in str(findings(broken.dossier)[0])
+
+
+def test_kills(broken: Broken) -> None:
+    broken.change("checks.py", '"squared"), hint', '"squared", "halved"), hint')
+    assert broken.says("kills") == ["17.1.known should kill halved, and there is no such mutant"]
+    same = (broken.folder / "mutants/squared.py").read_text("utf-8").replace("x * x", "x + x")
+    broken.add("mutants/halved.py", same)
+    assert broken.says("kills") == ["17.1.known should kill halved, which survives it"]
+
+
+def test_alternatives(broken: Broken) -> None:
+    broken.change("alternatives/vectorised.py", "x + x", "x + x * x")
+    said = broken.says("alternatives")
+    assert [text.partition(":")[0] for text in said] == [
+        f"vectorised is right and does not pass {check}" for check in ("17.1.known", "17.1.random")
+    ]
+
+
+def test_margins_of_right_answers(broken: Broken) -> None:
+    broken.change("alternatives/vectorised.py", "x + x", "(x + x) * (1 + 5e-13)")
+    said = broken.says("margins")
+    assert "17.1.known: vectorised is right and uses 0.5 of the tolerance" in said[0]
+
+
+def test_margins_of_wrong_answers(broken: Broken) -> None:
+    broken.change("mutants/squared.py", "return x * x", "return (2.0 + 4e-12) * x")
+    assert "17.1.known: squared is wrong by only 2 times the tolerance" in broken.says("margins")[0]
+
+
+def test_automatic(broken: Broken) -> None:
+    dead = "2.0 * x\n    spare = 3.0\n    return y"
+    broken.change("light.py", "return 2.0 * x", f"y = {dead}")
+    said = broken.says("automatic")
+    assert "less than 95%" in said[0]
+    assert [text.partition("the change ")[2] for text in said[1:]] == [
+        "'3.0 -> 6.0'",
+        "'3.0 -> -3.0'",
+    ]
+    entry = '[[equivalent]]\nfunction = "twice"\nline = "spare = 3.0"\nreason = "never read"\n'
+    both = [f'{entry}mutation = "3.0 -> {value}"\n' for value in ("6.0", "-3.0", "0.0")]
+    broken.add("equivalent.toml", "".join(both))
+    assert "equivalent.toml lists '3.0 -> 0.0' in 'spare = 3.0'" in broken.says("automatic")[1]
+    assert len(broken.says("automatic")) == 2
+
+
+def test_sole(broken: Broken) -> None:
+    broken.change("checks.py", 'sole="random', 'hint="random')
+    assert "17.1.random is never the only check to notice a mutant" in broken.says("sole")[0]
+    # A mistake that shows at negative values only: the public check has none.
+    broken.add(
+        "mutants/folded.py",
+        '"""Negative values come out positive."""\n\nTASKS = ("17.1",)\nLOSES = ("17.1.random",)\n'
+        'REPLACE = [("return 2.0 * x", "return np.abs(2.0 * x)")]\n',
+    )
+    assert broken.says("sole") == []
+
+
+def test_sole_by_an_automatic_mutant(broken: Broken) -> None:
+    broken.change("checks.py", 'sole="random', 'hint="random')
+    broken.change("light.py", "return 2.0 * x", "return 2.0 * x if x[0] >= 1.0 else x * 2.0")
+    # "x * 2.0 -> x" shows only where x[0] < 1, and the public check has x[0] = 1.
+    assert broken.says("sole") == []
+
+
+def test_hints(broken: Broken) -> None:
+    assert broken.says("hints") == []
+    broken.change("mutants/squared.py", "Your result is the square", "Your result is a square")
+    assert broken.says("hints") == [
+        "hints.json is not up to date: run 'photograd course build --update-hints'"
+    ]
+
+
+def test_a_check_that_falters_is_reported(broken: Broken) -> None:
+    broken.change(
+        "checks.py",
+        "    t.close",
+        "    assert t.call('twice', known, returns=Array((3,)))[0] == 2.0\n    t.close",
+    )
+    assert any("17.1.known falters on not_doubled" in text for text in broken.says("mutants"))
+
+
+def test_a_broken_fixture_is_not_ok(broken: Broken) -> None:
+    broken.change("alternatives/vectorised.py", "x + x", "x + x * x")
+    known = evidence(broken.folder, cache=broken.cache)
+    assert not known["ok"]
+    assert known["alternatives_accepted"] == 2

@@ -1,0 +1,115 @@
+from __future__ import annotations
+
+import io
+import json
+import os
+import stat
+import zipfile
+from pathlib import Path
+
+import pytest
+from photograd_course.build.archive import zip_bytes
+from photograd_course.build.seal import (
+    SealError,
+    bundle_files,
+    open_bundle,
+    read_bundle,
+    seal_bundle,
+)
+from photograd_course.build.secret import course_secret, read_secret
+from photograd_course.errors import IoError, SceneError
+
+from .support import SECRET, TOY
+
+
+@pytest.fixture(scope="module")
+def sealed() -> bytes:
+    return seal_bundle(bundle_files(TOY, {"key": "You forgot the sign."}), SECRET)
+
+
+def contents(data: bytes) -> dict[str, bytes]:
+    with zipfile.ZipFile(io.BytesIO(data)) as archive:
+        return {name: archive.read(name) for name in archive.namelist()}
+
+
+def test_what_was_sealed_is_read(sealed: bytes, tmp_path: Path) -> None:
+    (tmp_path / "hidden.zip").write_bytes(sealed)
+    bundle = read_bundle(tmp_path / "hidden.zip", SECRET)
+    assert [check.id for check in bundle.checks] == [
+        "90.1.value", "90.1.hidden", "90.2.differences", "90.2.cost", "90.3.services",
+    ]  # fmt: skip
+    assert not bundle.is_public
+    assert bundle.secret == SECRET
+    assert bundle.hints == {"key": "You forgot the sign."}
+
+
+def test_the_seal_names_ids_and_points(sealed: bytes) -> None:
+    seal = json.loads(contents(sealed)["seal.json"])
+    assert seal["assignment"] == "90"
+    assert sum(check["points"] for check in seal["checks"]) == 15
+    assert SECRET.decode() not in sealed.decode("latin-1")
+
+
+def test_any_altered_byte_is_refused(sealed: bytes) -> None:
+    for place in range(0, len(sealed), 11):
+        altered = bytearray(sealed)
+        altered[place] ^= 1
+        with pytest.raises(SealError):
+            open_bundle(bytes(altered), SECRET)
+
+
+def test_another_secret_is_refused(sealed: bytes) -> None:
+    with pytest.raises(SealError, match="the seal of this course's secret"):
+        open_bundle(sealed, SECRET + b"!")
+
+
+@pytest.mark.parametrize("how", ["dropped", "added", "replaced", "points", "unsealed"])
+def test_a_zip_made_anew_is_refused(sealed: bytes, how: str) -> None:
+    files = contents(sealed)
+    if how == "dropped":
+        del files["toy.py"]
+    elif how == "added":
+        files["answers.py"] = b""
+    elif how == "replaced":
+        files["checks.py"] = files["checks.py"].replace(b"points=3", b"points=9")
+    elif how == "points":
+        files["seal.json"] = files["seal.json"].replace(b'"points": 3', b'"points": 9')
+    else:
+        del files["seal.json"]
+    with pytest.raises(SealError):
+        open_bundle(zip_bytes(files), SECRET)
+
+
+@pytest.mark.parametrize("data", [b"", b"no zip", b"PK\x05\x06" + bytes(18)])
+def test_what_is_no_bundle_is_refused(data: bytes) -> None:
+    with pytest.raises(SealError):
+        open_bundle(data, SECRET)
+
+
+def test_a_bundle_that_is_not_there(tmp_path: Path) -> None:
+    with pytest.raises(IoError, match="a sealed bundle"):
+        read_bundle(tmp_path / "none.zip", SECRET)
+
+
+def test_a_secret_is_made_once_and_ignored_by_git(tmp_path: Path) -> None:
+    out = tmp_path / "course"
+    first, place = course_secret(None, out)
+    assert place is not None
+    assert course_secret(None, out) == (first, place)
+    assert len(first) == 64
+    assert (place.parent / ".gitignore").read_text("utf-8") == "*\n"
+    if os.name == "posix":
+        assert stat.S_IMODE(place.stat().st_mode) == 0o600
+    assert course_secret(None, tmp_path / "other")[0] != first
+
+
+def test_a_secret_of_the_environment(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PHOTOGRAD_COURSE_SECRET", SECRET.decode())
+    assert course_secret(None, tmp_path / "course") == (SECRET, None)
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_short_secret_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "secret.txt").write_text("hush\n", "utf-8")
+    with pytest.raises(SceneError, match="at least 16 characters"):
+        read_secret(tmp_path / "secret.txt")

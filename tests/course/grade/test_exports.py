@@ -1,0 +1,96 @@
+"""Whose hand-in is whose, in the layouts of Gradescope, Canvas, Moodle, and in a table."""
+
+from __future__ import annotations
+
+import zipfile
+from pathlib import Path
+
+import pytest
+from photograd_course.assignment.bundle import Bundle
+from photograd_course.errors import IoError, SceneError
+from photograd_course.grade.exports import find_sources, is_batch
+
+MODULE = "x = 1\n"
+
+
+def put(path: Path, text: str = MODULE) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text)
+
+
+def put_zip(path: Path, text: str = MODULE) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr("90_toy/toy.py", text)
+
+
+def taken(bundle: Bundle, path: Path) -> dict[str, str]:
+    """Student to the module's text."""
+    sources = find_sources(bundle.manifest, path)
+    hand_ins = {source.student: source.take(bundle.manifest) for source in sources}
+    assert len(hand_ins) == len(sources)
+    assert not any(hand_in.problem for hand_in in hand_ins.values())
+    return {student: h.files["toy.py"].decode() for student, h in hand_ins.items()}
+
+
+def test_gradescope(bundle: Bundle, tmp_path: Path) -> None:
+    put(tmp_path / "submission_11" / "toy.py", "a = 1\n")
+    put(tmp_path / "submission_12" / "90_toy" / "toy.py", "b = 1\n")
+    put(tmp_path / "submission_13" / "toy.py", "c = 1\n")
+    names = "submission_11:\n  :submitters:\n  - :name: Ada Lovelace\n    :sid: '7'\n"
+    names += "submission_12:\n  :submitters:\n  - :name: Bo\n  - :name: Cy\n"
+    put(tmp_path / "submission_metadata.yml", names)
+    assert is_batch(bundle.manifest, tmp_path)
+    assert taken(bundle, tmp_path) == {
+        "Ada Lovelace": "a = 1\n", "Bo & Cy": "b = 1\n", "submission_13": "c = 1\n",
+    }  # fmt: skip
+
+
+def test_canvas(bundle: Bundle, tmp_path: Path) -> None:
+    put_zip(tmp_path / "doejane_101_900_handin.zip", "a = 1\n")
+    put(tmp_path / "roejim_LATE_102_901_toy-2.py", "b = 1\n")
+    put(tmp_path / "roejim_LATE_102_902_answers.toml", "student = 'Jim'\n")
+    assert taken(bundle, tmp_path) == {"doejane (101)": "a = 1\n", "roejim (102)": "b = 1\n"}
+    (jim,) = [s for s in find_sources(bundle.manifest, tmp_path) if s.student == "roejim (102)"]
+    assert set(jim.take(bundle.manifest).files) == {"toy.py", "answers.toml"}
+
+
+def test_moodle(bundle: Bundle, tmp_path: Path) -> None:
+    put_zip(tmp_path / "Jane Doe_5_assignsubmission_file_" / "work.zip", "a = 1\n")
+    put(tmp_path / "Jane Doe_6_assignsubmission_file" / "toy.py", "b = 1\n")
+    put_zip(tmp_path / "Jim Roe_7_assignsubmission_file_work.zip", "c = 1\n")
+    assert taken(bundle, tmp_path) == {
+        "Jane Doe (5)": "a = 1\n", "Jane Doe (6)": "b = 1\n", "Jim Roe (7)": "c = 1\n",
+    }  # fmt: skip
+
+
+def test_zips_and_folders(bundle: Bundle, tmp_path: Path) -> None:
+    put_zip(tmp_path / "ada.zip", "a = 1\n")
+    put(tmp_path / "bob" / "toy.py", "b = 1\n")
+    put(tmp_path / ".hidden" / "toy.py")
+    assert taken(bundle, tmp_path) == {"ada": "a = 1\n", "bob": "b = 1\n"}
+
+
+def test_same_names_are_told_apart(bundle: Bundle, tmp_path: Path) -> None:
+    put_zip(tmp_path / "ada.zip", "a = 1\n")
+    put(tmp_path / "ada" / "toy.py", "b = 1\n")
+    assert sorted(taken(bundle, tmp_path)) == ["ada (ada)", "ada (ada.zip)"]
+
+
+def test_a_table(bundle: Bundle, tmp_path: Path) -> None:
+    put_zip(tmp_path / "in" / "1.zip", "a = 1\n")
+    put(tmp_path / "table.csv", "student,path\n=Ada,in/1.zip\nBob,in/none.zip\n")
+    sources = find_sources(bundle.manifest, tmp_path / "table.csv")
+    assert [source.student for source in sources] == ["=Ada", "Bob"]
+    assert sources[0].take(bundle.manifest).files
+    assert "nothing at none.zip" in sources[1].take(bundle.manifest).problem
+
+
+def test_bad_tables_and_empty_folders(bundle: Bundle, tmp_path: Path) -> None:
+    put(tmp_path / "columns.csv", "name,file\nA,b\n")
+    put(tmp_path / "twice.csv", "student,path\nA,b\nA,c\n")
+    (tmp_path / "empty").mkdir()
+    for name, kind in (("columns.csv", SceneError), ("twice.csv", SceneError), ("empty", IoError),
+                       ("absent", IoError)):  # fmt: skip
+        with pytest.raises(kind):
+            find_sources(bundle.manifest, tmp_path / name)

@@ -1,0 +1,77 @@
+"""Three hundred hand-ins, of which some hang, some crash and some are no hand-ins."""
+
+from __future__ import annotations
+
+import csv
+import io
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import pytest
+
+HANDED_IN = 300
+HANGING = {7: "while True: pass", 50: "import time; time.sleep(1e6)", 120: "while True: pass",
+           200: "[0 for _ in iter(int, 1)]", 299: "sum(iter(int, 1))"}  # fmt: skip
+# Native crashes, and ends that leave no answer.
+CRASH = "import ctypes; ctypes.string_at(0)"
+CRASHING = {3: CRASH, 77: "import os; os.abort()", 78: "import os; os._exit(0)",
+            150: "import faulthandler; faulthandler._sigabrt()", 260: CRASH}  # fmt: skip
+MALFORMED = {20: b"no zip", 21: b"PK\x03\x04 half", 22: b""}
+WRONG = range(100, 110)
+
+
+def module(solution: str, number: int) -> str:
+    """The hand-in of one student."""
+    head = "    # >>> solution 90.1\n"
+    assert head in solution
+    if number in WRONG:
+        return solution.replace("np.exp(-x)))", "np.exp(x)))")
+    statement = HANGING.get(number) or CRASHING.get(number) or "pass"
+    # By exec, since the imports of a module are looked at before it runs.
+    return solution.replace(head, f"{head}    exec({statement!r})\n") + f"\n# student {number}\n"
+
+
+def hand_in(solution: str, number: int) -> bytes:
+    if number in MALFORMED:
+        return MALFORMED[number]
+    data = io.BytesIO()
+    with zipfile.ZipFile(data, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("90_toy/toy.py", module(solution, number))
+    return data.getvalue()
+
+
+@pytest.mark.slow
+def test_three_hundred_hand_ins(quick: Path, solution: str, tmp_path: Path) -> None:
+    folder = tmp_path / "in"
+    folder.mkdir()
+    for number in range(HANDED_IN):
+        (folder / f"student{number:03}.zip").write_bytes(hand_in(solution, number))
+    command = [
+        sys.executable, "-m", "photograd_course", "course", "grade", "90", str(folder),
+        "--bundle", str(quick), "--mode", "E", "--jobs", "2", "--out", str(tmp_path / "out"),
+    ]  # fmt: skip
+    done = subprocess.run(command, check=False, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr[-2000:]
+    with (tmp_path / "out" / "grades.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == HANDED_IN
+    bad = {*HANGING, *CRASHING, *MALFORMED, *WRONG}
+    for number, row in enumerate(rows):
+        assert row["student"] == f"student{number:03}"
+        assert row["score"] == ("0" if number in bad else "3"), row
+        assert row["status"] == ("hand-in refused" if number in MALFORMED else "ok")
+    pages = list((tmp_path / "out" / "pages").glob("*.html"))
+    assert len(pages) == HANDED_IN
+
+    def page(number: int) -> str:
+        return (tmp_path / "out" / "pages" / rows[number]["page"]).read_text(encoding="utf-8")
+
+    assert all("no answer within 2 seconds" in page(number) for number in HANGING)
+    assert all("the process ended in weighted_sum" in page(number) for number in CRASHING)
+    assert all("no readable zip archive" in page(number) for number in MALFORMED)
+    first = (tmp_path / "out" / "grades.csv").read_bytes()
+    again = subprocess.run([*command, "--json"], check=True, capture_output=True, text=True)
+    assert '"changed":[]' in again.stdout
+    assert (tmp_path / "out" / "grades.csv").read_bytes() == first

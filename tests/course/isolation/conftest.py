@@ -1,0 +1,48 @@
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+from photograd_course.worker import processes
+from photograd_course.worker.home import WorkerHome
+from photograd_course.worker.self_test import self_test
+
+from course.isolation.support import TEXTS, essence, outcomes_of
+
+
+def need(mode: str) -> str:
+    """The mode, or skip the test with the reason that the self-test gives."""
+    if reason := self_test(mode):
+        pytest.skip(f"mode {mode}: {reason}")
+    return mode
+
+
+@pytest.fixture(params=["A", "B", "C", "D", "E"])
+def mode(request: pytest.FixtureRequest) -> str:
+    """Every mode that this machine has."""
+    return need(request.param)
+
+
+@pytest.fixture(params=["A", "B", "C", "D"])
+def strict(request: pytest.FixtureRequest) -> str:
+    """Every mode that enforces something."""
+    return need(request.param)
+
+
+@pytest.fixture(scope="session")
+def expected() -> dict[str, list[list[Any]]]:
+    """What mode E says to both hand-ins: the others must agree."""
+    with WorkerHome() as made:
+        return {key: essence(outcomes_of(text, made, "E")) for key, text in TEXTS.items()}
+
+
+@pytest.fixture
+def home() -> Iterator[WorkerHome]:
+    """Of one test; whatever it did, no process of its users and none of its folders is left."""
+    with WorkerHome() as made:
+        yield made
+        users = [made.uid(slot) for slot in range(4)] if made.has_users else []
+        assert [processes.of_user(uid) for uid in users] == [[]] * len(users)
+        assert list(made.folder.glob("room-*")) == []
+    assert not made.folder.exists()
