@@ -14,4 +14,5 @@ PYBIND11_MODULE(_core, m) {
     photograd::bind_sampling(m);
     photograd::bind_sh(m);
     photograd::bind_texture(m);
+    photograd::bind_sparse(m);
 }

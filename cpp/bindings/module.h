@@ -18,5 +18,6 @@ void bind_direct(py::module_& m);
 void bind_sampling(py::module_& m);
 void bind_sh(py::module_& m);
 void bind_texture(py::module_& m);
+void bind_sparse(py::module_& m);
 
 }  // namespace photograd

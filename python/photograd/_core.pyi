@@ -13,6 +13,8 @@ __all__: list[str] = [
     "Bvh",
     "MarchSettings",
     "Op",
+    "SparseGrid",
+    "SparseStatistics",
     "TexturePlan",
     "bsdf_lambert",
     "bsdfs",
@@ -35,6 +37,7 @@ __all__: list[str] = [
     "ops",
     "philox4x32",
     "place_samples",
+    "read_vdb",
     "render_direct",
     "render_direct_backward",
     "sample",
@@ -50,6 +53,7 @@ __all__: list[str] = [
     "thread_count",
     "tiny_network_parameters",
     "uniform",
+    "write_vdb",
 ]
 
 class Op:
@@ -326,6 +330,84 @@ class TexturePlan:
         The loss; adds to d_texture (H, W, C).
         """
 
+class SparseStatistics:
+    """
+    What a sparse grid holds.
+    """
+    @property
+    def active_tiles(self) -> int: ...
+    @property
+    def active_voxels(self) -> int: ...
+    @property
+    def box(
+        self,
+    ) -> typing.Annotated[list[typing.Annotated[list[int], "FixedSize(3)"]], "FixedSize(2)"]: ...
+    @property
+    def least(self) -> float: ...
+    @property
+    def leaves(self) -> int: ...
+    @property
+    def memory(self) -> int: ...
+    @property
+    def most(self) -> float: ...
+
+class SparseGrid:
+    """
+    A grid of OpenVDB, float or vec3s.
+    """
+
+    name: str
+    @staticmethod
+    def from_dense(
+        values: numpy.ndarray,
+        origin: typing.Annotated[
+            collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex], "FixedSize(3)"
+        ],
+        background: numpy.ndarray,
+        tolerance: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> SparseGrid: ...
+    def activate(self, voxels: numpy.ndarray, values: numpy.ndarray) -> None: ...
+    def copy(self) -> SparseGrid: ...
+    def dilate(self, steps: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def keep(self, keep: numpy.ndarray) -> None: ...
+    def leaf_values(self) -> numpy.typing.NDArray[numpy.float32]: ...
+    def leaves(self) -> tuple[typing.Any, ...]: ...
+    def metadata(self) -> dict[str, bool | int | float | str]: ...
+    def prune(self, tolerance: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def sample(self, points: numpy.ndarray) -> numpy.typing.NDArray[numpy.float32]: ...
+    def set_leaf_values(self, values: numpy.ndarray) -> None: ...
+    def set_metadata(
+        self,
+        key: str,
+        value: bool
+        | typing.SupportsInt
+        | typing.SupportsIndex
+        | typing.SupportsFloat
+        | typing.SupportsIndex
+        | str,
+    ) -> None: ...
+    def set_world_from_index(
+        self,
+        matrix: typing.Annotated[
+            collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(16)"
+        ],
+    ) -> None: ...
+    def statistics(self) -> SparseStatistics: ...
+    def to_dense(
+        self,
+        origin: typing.Annotated[
+            collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex], "FixedSize(3)"
+        ],
+        out: numpy.ndarray,
+    ) -> None: ...
+    def values_at(self, voxels: numpy.ndarray) -> tuple[typing.Any, ...]: ...
+    def voxelize(self) -> None: ...
+    def world_from_index(self) -> typing.Annotated[list[float], "FixedSize(16)"]: ...
+    @property
+    def background(self) -> list[float]: ...
+    @property
+    def channels(self) -> int: ...
+
 def build_mips(mips: collections.abc.Sequence[numpy.ndarray]) -> None:
     """
     Fills level 1 and all after it from level 0.
@@ -440,6 +522,13 @@ def place_samples(
 ) -> tuple[typing.Any, ...]:
     """
     Per ray: t0 (R,) and the number of samples (R,) int32.
+    """
+
+def read_vdb(
+    path: str, memory_limit: typing.SupportsInt | typing.SupportsIndex
+) -> tuple[list[SparseGrid], dict[str, bool | int | float | str]]:
+    """
+    The grids of a file and its metadata.
     """
 
 def render_direct(
@@ -583,6 +672,21 @@ def uniform(
     """
     Uniform numbers (N,) in [0, 1) for pixels (N,), as photograd_course.random defines them.
     """
+
+def write_vdb(
+    path: str,
+    grids: collections.abc.Sequence[SparseGrid],
+    metadata: collections.abc.Mapping[
+        str,
+        bool
+        | typing.SupportsInt
+        | typing.SupportsIndex
+        | typing.SupportsFloat
+        | typing.SupportsIndex
+        | str,
+    ],
+    half: bool | None,
+) -> None: ...
 
 __version__: str = "0.1.0"
 bsdfs: dict[str, typing.Any] = {"lambert": bsdf_lambert}
