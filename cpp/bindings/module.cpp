@@ -15,4 +15,5 @@ PYBIND11_MODULE(_core, m) {
     photograd::bind_sh(m);
     photograd::bind_texture(m);
     photograd::bind_sparse(m);
+    photograd::bind_bricks(m);
 }

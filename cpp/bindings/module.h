@@ -19,5 +19,6 @@ void bind_sampling(py::module_& m);
 void bind_sh(py::module_& m);
 void bind_texture(py::module_& m);
 void bind_sparse(py::module_& m);
+void bind_bricks(py::module_& m);
 
 }  // namespace photograd

@@ -10,6 +10,7 @@ import numpy.typing
 import typing
 
 __all__: list[str] = [
+    "BrickTopology",
     "Bvh",
     "MarchSettings",
     "Op",
@@ -42,6 +43,8 @@ __all__: list[str] = [
     "render_direct_backward",
     "sample",
     "sample_backward",
+    "sample_bricks",
+    "sample_bricks_backward",
     "sample_mips",
     "sample_mips_backward",
     "set_thread_count",
@@ -408,6 +411,23 @@ class SparseGrid:
     @property
     def channels(self) -> int: ...
 
+class BrickTopology:
+    """
+    Where a sparse grid keeps its values.
+    """
+    def __init__(
+        self,
+        origins: numpy.ndarray,
+        active: numpy.ndarray,
+        memory_limit: typing.SupportsInt | typing.SupportsIndex,
+    ) -> None: ...
+    @property
+    def bricks(self) -> int: ...
+    @property
+    def memory(self) -> int: ...
+    @property
+    def voxels(self) -> int: ...
+
 def build_mips(mips: collections.abc.Sequence[numpy.ndarray]) -> None:
     """
     Fills level 1 and all after it from level 0.
@@ -596,6 +616,31 @@ def sample_backward(
 ) -> None:
     """
     Adds to d_texture (H, W, C) and d_uv (N, 2), where given.
+    """
+
+def sample_bricks(
+    topology: BrickTopology,
+    values: numpy.ndarray,
+    background: numpy.ndarray,
+    points: numpy.ndarray,
+    out: numpy.ndarray,
+) -> None:
+    """
+    Writes the values at index-space points (P, 3).
+    """
+
+def sample_bricks_backward(
+    topology: BrickTopology,
+    values: numpy.ndarray,
+    background: numpy.ndarray,
+    points: numpy.ndarray,
+    d_out: numpy.ndarray,
+    d_values: numpy.ndarray,
+    d_background: numpy.ndarray,
+    d_points: numpy.ndarray,
+) -> None:
+    """
+    Adds the derivatives to the last three.
     """
 
 def sample_mips(
