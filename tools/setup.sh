@@ -13,7 +13,7 @@ Ninja              | command:ninja                        | ninja-build
 Embree 3 or 4      | header:embree[34]/rtcore.h           | libembree-dev
 OpenVDB            | header:openvdb/openvdb.h             | libopenvdb-dev
 GLM                | header:glm/glm.hpp                   | libglm-dev
-Boost iostreams    | library:libboost_iostreams*          | libboost-iostreams-dev
+Boost iostreams    | library:libboost_iostreams*[ob]      | libboost-iostreams-dev
 zlib               | header:zlib.h                        | zlib1g-dev
 Python's headers   | python:headers                       | python3-dev
 Python's venv      | python:venv                          | python3-venv

@@ -244,6 +244,11 @@ def fig5_photograph(module: ModuleType) -> tuple[Figure, Facts]:
         "unseen texels lie in the patch": (float(unseen.mean()), 0.04, 0.07),
         "the loss falls with every step": bool((np.diff(losses) < 0).all()),
         "after 3 steps noise is still to be seen": (psnr(early[seen], truth[seen]), 12, 32),
+        "over half of the error is gone by then": (
+            float(np.linalg.norm((early - truth)[seen]) / np.linalg.norm((start - truth)[seen])),
+            0.2,
+            0.5,
+        ),
         "over a third of the dark half's values are below zero then": (
             float((early[24:][seen[24:]] < 0).mean()),
             1 / 3,

@@ -12,7 +12,10 @@ PYBIND11_MODULE(_core, m) {
     photograd::bind_light(m);
     photograd::bind_direct(m);
     photograd::bind_sampling(m);
+    photograd::bind_sh(m);
     photograd::bind_texture(m);
     photograd::bind_octree(m);
     photograd::bind_voxel_hash(m);
+    photograd::bind_sparse(m);
+    photograd::bind_bricks(m);
 }

@@ -16,8 +16,11 @@ void bind_bsdf(py::module_& m);
 void bind_light(py::module_& m);
 void bind_direct(py::module_& m);
 void bind_sampling(py::module_& m);
+void bind_sh(py::module_& m);
 void bind_texture(py::module_& m);
 void bind_octree(py::module_& m);
 void bind_voxel_hash(py::module_& m);
+void bind_sparse(py::module_& m);
+void bind_bricks(py::module_& m);
 
 }  // namespace photograd

@@ -10,11 +10,14 @@ import numpy.typing
 import typing
 
 __all__: list[str] = [
+    "BrickTopology",
     "Bvh",
     "MarchSettings",
     "Octree",
     "Op",
     "Quadtree",
+    "SparseGrid",
+    "SparseStatistics",
     "TexturePlan",
     "VoxelHash",
     "bsdf_lambert",
@@ -38,19 +41,25 @@ __all__: list[str] = [
     "ops",
     "philox4x32",
     "place_samples",
+    "read_vdb",
     "render_direct",
     "render_direct_backward",
     "sample",
     "sample_backward",
+    "sample_bricks",
+    "sample_bricks_backward",
     "sample_mips",
     "sample_mips_backward",
     "set_thread_count",
+    "sh_colors",
+    "sh_colors_backward",
     "square_to_cap",
     "square_to_cosine_hemisphere",
     "square_to_disk",
     "thread_count",
     "tiny_network_parameters",
     "uniform",
+    "write_vdb",
 ]
 
 class Op:
@@ -453,6 +462,101 @@ class VoxelHash:
         count, row_limit, slots, bytes, longest_probe, mean_probe.
         """
 
+class SparseStatistics:
+    """
+    What a sparse grid holds.
+    """
+    @property
+    def active_tiles(self) -> int: ...
+    @property
+    def active_voxels(self) -> int: ...
+    @property
+    def box(
+        self,
+    ) -> typing.Annotated[list[typing.Annotated[list[int], "FixedSize(3)"]], "FixedSize(2)"]: ...
+    @property
+    def least(self) -> float: ...
+    @property
+    def leaves(self) -> int: ...
+    @property
+    def memory(self) -> int: ...
+    @property
+    def most(self) -> float: ...
+
+class SparseGrid:
+    """
+    A grid of OpenVDB, float or vec3s.
+    """
+
+    name: str
+    @staticmethod
+    def from_dense(
+        values: numpy.ndarray,
+        origin: typing.Annotated[
+            collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex], "FixedSize(3)"
+        ],
+        background: numpy.ndarray,
+        tolerance: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> SparseGrid: ...
+    def activate(self, voxels: numpy.ndarray, values: numpy.ndarray) -> None: ...
+    def copy(self) -> SparseGrid: ...
+    def dilate(self, steps: typing.SupportsInt | typing.SupportsIndex) -> None: ...
+    def keep(self, keep: numpy.ndarray) -> None: ...
+    def leaf_values(self) -> numpy.typing.NDArray[numpy.float32]: ...
+    def leaves(self) -> tuple[typing.Any, ...]: ...
+    def metadata(self) -> dict[str, bool | int | float | str]: ...
+    def prune(self, tolerance: typing.SupportsFloat | typing.SupportsIndex) -> None: ...
+    def sample(self, points: numpy.ndarray) -> numpy.typing.NDArray[numpy.float32]: ...
+    def set_leaf_values(self, values: numpy.ndarray) -> None: ...
+    def set_metadata(
+        self,
+        key: str,
+        value: bool
+        | typing.SupportsInt
+        | typing.SupportsIndex
+        | typing.SupportsFloat
+        | typing.SupportsIndex
+        | str,
+    ) -> None: ...
+    def set_world_from_index(
+        self,
+        matrix: typing.Annotated[
+            collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(16)"
+        ],
+    ) -> None: ...
+    def statistics(self) -> SparseStatistics: ...
+    def to_dense(
+        self,
+        origin: typing.Annotated[
+            collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex], "FixedSize(3)"
+        ],
+        out: numpy.ndarray,
+    ) -> None: ...
+    def values_at(self, voxels: numpy.ndarray) -> tuple[typing.Any, ...]: ...
+    def voxelize(self) -> None: ...
+    def world_from_index(self) -> typing.Annotated[list[float], "FixedSize(16)"]: ...
+    @property
+    def background(self) -> list[float]: ...
+    @property
+    def channels(self) -> int: ...
+
+class BrickTopology:
+    """
+    Where a sparse grid keeps its values.
+    """
+    def __init__(
+        self,
+        origins: numpy.ndarray,
+        active: numpy.ndarray,
+        memory_limit: typing.SupportsInt | typing.SupportsIndex,
+    ) -> None: ...
+    @property
+    def bricks(self) -> int: ...
+    @property
+    def memory(self) -> int: ...
+    @property
+    def voxels(self) -> int: ...
+
 def build_mips(mips: collections.abc.Sequence[numpy.ndarray]) -> None:
     """
     Fills level 1 and all after it from level 0.
@@ -569,6 +673,13 @@ def place_samples(
     Per ray: t0 (R,) and the number of samples (R,) int32.
     """
 
+def read_vdb(
+    path: str, memory_limit: typing.SupportsInt | typing.SupportsIndex
+) -> tuple[list[SparseGrid], dict[str, bool | int | float | str]]:
+    """
+    The grids of a file and its metadata.
+    """
+
 def render_direct(
     bvh: Bvh,
     layouts: collections.abc.Sequence[
@@ -636,6 +747,31 @@ def sample_backward(
     Adds to d_texture (H, W, C) and d_uv (N, 2), where given.
     """
 
+def sample_bricks(
+    topology: BrickTopology,
+    values: numpy.ndarray,
+    background: numpy.ndarray,
+    points: numpy.ndarray,
+    out: numpy.ndarray,
+) -> None:
+    """
+    Writes the values at index-space points (P, 3).
+    """
+
+def sample_bricks_backward(
+    topology: BrickTopology,
+    values: numpy.ndarray,
+    background: numpy.ndarray,
+    points: numpy.ndarray,
+    d_out: numpy.ndarray,
+    d_values: numpy.ndarray,
+    d_background: numpy.ndarray,
+    d_points: numpy.ndarray,
+) -> None:
+    """
+    Adds the derivatives to the last three.
+    """
+
 def sample_mips(
     mips: collections.abc.Sequence[numpy.ndarray],
     uv: numpy.ndarray,
@@ -662,6 +798,24 @@ def sample_mips_backward(
 def set_thread_count(threads: typing.SupportsInt | typing.SupportsIndex) -> None:
     """
     Upper limit on threads; 0 restores the default, all cores.
+    """
+
+def sh_colors(
+    directions: numpy.ndarray, coefficients: numpy.ndarray, colors: numpy.ndarray
+) -> None:
+    """
+    Writes sum_k Y_k(directions) coefficients[:, k] to colors (N, C).
+    """
+
+def sh_colors_backward(
+    directions: numpy.ndarray,
+    coefficients: numpy.ndarray,
+    d_colors: numpy.ndarray,
+    d_directions: numpy.ndarray,
+    d_coefficients: numpy.ndarray,
+) -> None:
+    """
+    Adds the derivatives to d_directions (N, 3) and d_coefficients (N, K, C).
     """
 
 def square_to_cap(
@@ -692,6 +846,21 @@ def uniform(
     """
     Uniform numbers (N,) in [0, 1) for pixels (N,), as photograd_course.random defines them.
     """
+
+def write_vdb(
+    path: str,
+    grids: collections.abc.Sequence[SparseGrid],
+    metadata: collections.abc.Mapping[
+        str,
+        bool
+        | typing.SupportsInt
+        | typing.SupportsIndex
+        | typing.SupportsFloat
+        | typing.SupportsIndex
+        | str,
+    ],
+    half: bool | None,
+) -> None: ...
 
 __version__: str = "0.1.0"
 bsdfs: dict[str, typing.Any] = {"lambert": bsdf_lambert}

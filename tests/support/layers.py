@@ -29,7 +29,11 @@ DOORS: dict[str, tuple[str, ...]] = {
     r"glm/": ("photograd/core/vec.h",),
     r"(tbb|oneapi)/": ("photograd/core/parallel.h", "photograd/core/parallel.cpp"),
     r"embree[34]/": ("photograd/geometry/bvh.cpp",),
-    r"(openvdb|nanovdb)/": ("photograd/grid/sparse_grid.cpp",),
+    r"(openvdb|nanovdb)/": (
+        "photograd/grid/openvdb_grid.h",
+        "photograd/grid/sparse_grid.cpp",
+        "photograd/grid/vdb_file.cpp",
+    ),
     r"pybind11/|Python\.h": ("bindings/",),
 }
 

@@ -10,7 +10,9 @@
 
 #include "photograd/core/params.h"
 #include "photograd/ops/bilinear.h"
+#include "photograd/ops/cell_blend.h"
 #include "photograd/ops/composite.h"
+#include "photograd/ops/sh.h"
 #include "photograd/ops/trilinear.h"
 
 namespace photograd {
@@ -74,6 +76,60 @@ struct TrilinearOp {
         weights(in + values, a);
         trilinear_backward<R, channels>(shape, a[0], a[1], a[2], d_out, d_in);
         trilinear_position_backward<R, channels>(in, shape, a[0], a[1], a[2], d_out, d_in + values);
+    }
+};
+
+/// Eight corners with 2 channels, out of order in memory, and a point in their cell.
+struct CellBlendOp {
+    static constexpr const char* name = "cell_blend";
+    static constexpr int channels = 2, values = 8 * channels;
+    static constexpr std::array<InputGroup, 2> inputs{
+        {{"corners", values, -1, 1}, {"fraction", 3, 0.1, 0.9}}};
+    static constexpr int outputs = channels;
+    static constexpr int place[8] = {5, 0, 3, 7, 1, 6, 2, 4};
+
+    template <class R>
+    static void forward(const R* in, R* out) {
+        const R* corner[8];
+        for (int n = 0; n < 8; ++n) corner[n] = in + place[n] * channels;
+        cell_blend(corner, CellWeights<R>::of(in + values), channels, out);
+    }
+    template <class R>
+    static void backward(const R* in, const R* d_out, R* d_in) {
+        const CellWeights<R> w = CellWeights<R>::of(in + values);
+        const R* corner[8];
+        for (int n = 0; n < 8; ++n) {
+            corner[n] = in + place[n] * channels;
+            cell_blend_backward(n, w, channels, d_out, d_in + place[n] * channels);
+        }
+        cell_blend_fraction_backward(corner, w, channels, d_out, d_in + values);
+    }
+};
+
+/// A colour of two channels from a direction and its coefficients, to the highest degree. The direction need
+/// not be of unit length: the polynomials are defined everywhere.
+struct ShColorOp {
+    static constexpr const char* name = "sh_color";
+    static constexpr int degree = sh_max_degree, channels = 2;
+    static constexpr int coefficients = sh_count(degree) * channels;
+    static constexpr std::array<InputGroup, 2> inputs{
+        {{"coefficients", coefficients, -1, 1}, {"direction", 3, 0.2, 0.9}}};
+    static constexpr int outputs = channels;
+
+    template <class R>
+    static void forward(const R* in, R* out) {
+        const R* d = in + coefficients;
+        R Y[sh_count(degree)];
+        sh_basis<degree>(d[0], d[1], d[2], Y);
+        sh_color<degree, channels>(Y, in, out);
+    }
+    template <class R>
+    static void backward(const R* in, const R* d_out, R* d_in) {
+        const R* d = in + coefficients;
+        R Y[sh_count(degree)], d_Y[sh_count(degree)] = {};
+        sh_basis<degree>(d[0], d[1], d[2], Y);
+        sh_color_backward<degree, channels>(Y, in, d_out, d_Y, d_in);
+        sh_basis_backward<degree>(d[0], d[1], d[2], d_Y, d_in + coefficients);
     }
 };
 
@@ -176,7 +232,7 @@ struct CompositeOp {
 using Ops =
     TypeList<ActivationOp<Activation::relu>, ActivationOp<Activation::softplus>,
              ActivationOp<Activation::exp>, ActivationOp<Activation::sigmoid>, BilinearOp<false>,
-             BilinearOp<true>, TrilinearOp<Border::clamp>, TrilinearOp<Border::zero>,
-             CompositeOp<Quadrature::alpha>, CompositeOp<Quadrature::riemann>>;
+             BilinearOp<true>, TrilinearOp<Border::clamp>, TrilinearOp<Border::zero>, CellBlendOp,
+             ShColorOp, CompositeOp<Quadrature::alpha>, CompositeOp<Quadrature::riemann>>;
 
 }  // namespace photograd

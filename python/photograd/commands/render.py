@@ -17,8 +17,9 @@ from photograd_course.cli import (
 )
 from photograd_course.viz import write_frames, write_gif
 
-from photograd.commands.shared import ModelArgument, use_threads
+from photograd.commands.shared import use_threads
 from photograd.evaluate import display_image
+from photograd.fog import RAMPS, load_fog
 from photograd.model import load_model
 from photograd.orbit import orbit_cameras
 
@@ -29,7 +30,12 @@ def register(app: typer.Typer) -> None:
 
 
 def render(
-    model: ModelArgument,
+    model: Annotated[
+        Path,
+        typer.Argument(
+            help="Folder that a fit wrote, its model.npz, or a .vdb file.", metavar="MODEL"
+        ),
+    ],
     orbit: Annotated[int, typer.Option("--orbit", min=1, help="Frames on the circle.")] = 60,
     out: Annotated[
         Path, typer.Option("--out", help="A .gif file, or a folder for PNG frames.")
@@ -38,17 +44,30 @@ def render(
     elevation: Annotated[
         float, typer.Option("--elevation", min=-89.0, max=89.0, help="Degrees above the horizon.")
     ] = 25.0,
+    ramp: Annotated[
+        str, typer.Option("--ramp", help=f"Colours of a .vdb file: {', '.join(RAMPS)}.")
+    ] = "white",
+    sigma_t: Annotated[
+        float | None,
+        typer.Option("--sigma-t", min=0.0, help="Extinction (1/m) of a .vdb file at value 1."),
+    ] = None,
+    resolution: Annotated[
+        int, typer.Option("--resolution", min=2, help="Voxels along a .vdb file's longest edge.")
+    ] = 128,
     seed: SeedOption = 0,  # noqa: ARG001  a rendering draws nothing at random
     threads: ThreadsOption = 0,
     as_json: JsonOption = False,
     debug: DebugOption = False,  # noqa: ARG001
 ) -> None:
-    """Render a turntable of a recovered scene.
+    """Render a turntable of a recovered scene, or of the densities in a .vdb file.
 
     Example: photograd render model --orbit 60 --out turntable.gif
     """
     use_threads(threads)
-    loaded = load_model(model)
+    if model.suffix.lower() == ".vdb":
+        loaded = load_fog(model, ramp=ramp, sigma_t=sigma_t, resolution=resolution)
+    else:
+        loaded = load_model(model)
     frames = []
     with Progress("render", orbit, [Column("frame", "{:.0f}".format)]) as bar:
         for camera in orbit_cameras(loaded.field.box, orbit, size=size, elevation=elevation):
