@@ -19,10 +19,10 @@ def last_point(reference, curvature, reach, start, steps):
     return float(points[-1])
 
 
-def largest_stable_step(reference, a, b):
-    """2 / lambda_max of the Hessian [[a, b], [b, 2 a]]."""
+def largest_stable_step(reference, a, b, c):
+    """2 / lambda_max of the Hessian [[a, b], [b, c]]."""
     del reference
-    return 2.0 / float(np.linalg.eigvalsh(np.array([[a, b], [b, 2.0 * a]]))[-1])
+    return 2.0 / float(np.linalg.eigvalsh(np.array([[a, b], [b, c]]))[-1])
 
 
 def distance_down_the_plane(reference, beta, tau, slope):

@@ -35,7 +35,10 @@ class Patient:
         """The value at x."""
         self.count += 1
         if self.count > 2000:
-            raise RuntimeError("f was called more than 2,000 times: does the step length shrink?")
+            raise CheckFailed(
+                "backtracking: the search does not end: f was called more than 2,000 times",
+                {"advice": "does tau shrink in the loop, and does Eq. (22) contain tau?"},
+            )
         return self.f(x)
 
 
@@ -165,7 +168,14 @@ def a_parabola_contracts_by_one_factor(t):
     task="01.2",
     points=3,
     calls=("gd_1d",),
-    kills=("uphill", "no_tau", "stale_gradient", "stale_loss", "verdict_by_position"),
+    kills=(
+        "uphill",
+        "no_tau",
+        "stale_gradient",
+        "stale_loss",
+        "verdict_by_position",
+        "verdict_by_last_step_1d",
+    ),
     hint="Compare the last value with the first, Eq. (8), not the points.",
 )
 def the_verdict_changes_at_the_bound(t):
@@ -194,6 +204,17 @@ def the_verdict_changes_at_the_bound(t):
     t.require(not wrong, "a walk that starts in the minimum and stays has not gone wrong")
     _, _, wrong = go(2.1, centre + 0.5, 1)
     t.require(wrong, "a single step that leads higher has gone wrong")
+    # Two half parabolas, the left one steeper: down from 0.5 to -0.1, then up again to 0.38.
+    _, _, wrong = t.call(
+        "gd_1d",
+        lambda y: y * y if y > 0.0 else 4.0 * y * y,
+        lambda y: 2.0 * y if y > 0.0 else 8.0 * y,
+        0.5,
+        0.6,
+        2,
+        returns=walk(2),
+    )
+    t.require(not wrong, "the walk ends lower than it began, so the verdict should be False")
 
 
 # 01.3 ------------------------------------------------------------------------------------------
@@ -226,7 +247,8 @@ def each_eigenvector_has_a_factor_of_its_own(t):
     points=4,
     calls=("gd_nd",),
     kills=("aliased_trail", "one_at_a_time", "unit_steps", "stale_loss_nd", "verdict_by_last_step"),
-    hint="The verdict compares the last value with the first, Eq. (8).",
+    hint="If 01.3.rates fails too, repair that first. The verdict compares the last value with the "
+    "first, Eq. (8).",
 )
 def the_largest_curvature_decides(t):
     """The verdict changes at tau = 2 / lambda_max, and looks at the last and the first value."""
@@ -236,9 +258,18 @@ def the_largest_curvature_decides(t):
     for reach, fate in ((1.99, False), (2.01, True)):
         x, loss, wrong = t.call("gd_nd", f, grad, start, reach / 4.0, 200, returns=walk(200, 3))
         steep = np.abs(np.asarray(x) @ vectors[:, 2])
-        t.require((steep[-1] > steep[0]) == fate, f"tau = {reach} / lambda_max: the wrong fate")
-        t.require(wrong == fate, f"tau = {reach} / lambda_max: the verdict should be {fate}")
-        t.require((loss[-1] > loss[0]) == fate, f"tau = {reach} / lambda_max: the wrong values")
+        at, way = f"at tau = {reach} / lambda_max", "grow" if fate else "shrink"
+        t.require(
+            (steep[-1] > steep[0]) == fate,
+            f"{at} the distance along the steepest direction should {way} over the walk, "
+            f"yours goes from {steep[0]:.3g} to {steep[-1]:.3g}",
+        )
+        t.require(wrong == fate, f"{at} the verdict should be {fate}, yours is {not fate}")
+        t.require(
+            (loss[-1] > loss[0]) == fate,
+            f"{at} the values should {way} over the walk, "
+            f"yours go from {loss[0]:.3g} to {loss[-1]:.3g}",
+        )
     # It has begun to rise, but has not come back to where it began.
     start = vectors @ np.array([1.0, 1.0, 1e-3])
     _, _, wrong = t.call("gd_nd", f, grad, start, 2.1 / 4.0, 40, returns=walk(40, 3))
@@ -421,16 +452,23 @@ def the_step_is_the_first_that_keeps_its_promise(t):
     points=2,
     calls=("backtracking",),
     kills=("walks_uphill",),
-    hint="Raise ValueError unless the slope along d is negative.",
+    hint="Raise ValueError unless the slope along d is negative; NaN is not negative.",
 )
 def a_direction_uphill_is_refused(t):
     """A direction that leads uphill, nowhere, or nobody knows where raises ValueError."""
     f, grad, vectors = rotated_bowl(t.rng, np.array([1.0, 3.0]))
-    asked, unknown, d = Patient(f), np.full(2, math.nan), vectors[:, 0]
-    t.refuses("backtracking", asked, grad, d, d, error="ValueError")
-    t.refuses("backtracking", asked, grad, d, np.zeros(2), error="ValueError")
-    t.refuses("backtracking", asked, lambda _: unknown, d, np.ones(2), error="ValueError")
-    t.require(asked.count < 10, "look at the slope before you search")
+    unknown, x = np.full(2, math.nan), vectors[:, 0]
+    for case, slope_of, d in (
+        ("d leads uphill", grad, x),
+        ("d is zero", grad, np.zeros(2)),
+        ("the gradient is NaN", lambda _: unknown, np.ones(2)),
+    ):
+        asked = Patient(f)
+        try:
+            t.refuses("backtracking", asked, slope_of, x, d, error="ValueError")
+        except CheckFailed as failure:
+            raise CheckFailed(f"{case}: {failure.text}", failure.details) from failure
+        t.require(asked.count < 10, f"{case}: look at the slope before you search")
 
 
 # >>> hidden

@@ -106,7 +106,9 @@ def test_answers_in_closed_form() -> None:
     keys, reference = bundle.keys, bundle.reference
     got = keys.last_point(reference, 2.0, 1.8, -3.0, 5)
     assert math.isclose(got, 1.0 - 4.0 * (-0.8) ** 5, rel_tol=1e-12)
-    assert math.isclose(keys.largest_stable_step(reference, 3.0, 2.0), 2.0 / 7.0, rel_tol=1e-12)
+    assert math.isclose(
+        keys.largest_stable_step(reference, 3.0, 2.0, 6.0), 2.0 / 7.0, rel_tol=1e-12
+    )
     assert math.isclose(keys.distance_down_the_plane(reference, 0.5, 0.1, 1.0), 3.8, rel_tol=1e-5)
 
 
@@ -115,10 +117,18 @@ def test_predictions_are_as_the_solution_says() -> None:
     x, _, wrong = descent.gd_1d(lambda x: x * x, lambda x: 2.0 * x, 1.0, 0.75, 6)
     assert not wrong
     assert (x[1:] * x[:-1] < 0.0).all()
-    h = np.array([1.0, 100.0])
-    x, _, _ = descent.gd_nd(lambda y: float(y @ (h * y)), lambda y: h * y, np.ones(2), 2 / 101, 800)
-    distance = np.linalg.norm(x, axis=1)
-    assert abs(int(np.argmax(distance < 1e-6 * distance[0])) - 691) <= 1
+    # The prediction, and the check that section 3 of the handout offers.
+    for kappa, left, steps in ((400.0, 1e-3, 1382), (100.0, 1e-6, 691)):
+        h = np.array([1.0, kappa])
+        x, _, _ = descent.gd_nd(
+            lambda y, h=h: float(y @ (h * y)),
+            lambda y, h=h: h * y,
+            np.ones(2),
+            2.0 / (1.0 + kappa),
+            1500,
+        )
+        distance = np.linalg.norm(x, axis=1)
+        assert abs(int(np.argmax(distance < left * distance[0])) - steps) <= 1
 
 
 def test_every_fact_of_every_figure_has_a_mutant_or_a_reason() -> None:
