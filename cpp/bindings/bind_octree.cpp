@@ -99,7 +99,7 @@ py::tuple from_function(int depth, const py::function& classify, int channels) {
                 fail(ErrorKind::shape, "Octree.from_function", "classify",
                      "None or " + std::to_string(C) + " channels",
                      std::to_string(given.size()) + " channels");
-            P value;
+            P value{};
             std::copy(given.begin(), given.end(), value.begin());
             return value;
         };

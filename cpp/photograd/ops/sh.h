@@ -115,7 +115,7 @@ inline void sh_basis_backward(R x, R y, R z, const R* d_Y, R* d_direction) {
             const R g16 = R(y4_4) * d_Y[16], g17 = R(-y4_3) * d_Y[17], g18 = R(y4_2) * d_Y[18],
                     g19 = R(-y4_1) * d_Y[19], g20 = R(y4_0) * d_Y[20], g21 = R(-y4_1) * d_Y[21],
                     g22 = R(y4_x2) * d_Y[22], g23 = R(-y4_3) * d_Y[23], g24 = R(y4_x4) * d_Y[24];
-            const R xy = x * y, yz = y * z, xz = x * z, xx_yy = xx - yy;
+            const R xy = x * y, xx_yy = xx - yy;
             // d six_zz = (-2x, -2y, 12z), d four_zz = (-6x, -6y, 8z).
             const R slope20 = R(12) * rr - R(60) * zz;  // of the zonal term, over x or y
             dx += g16 * y * (R(3) * xx - yy) + R(6) * g17 * xy * z +
