@@ -71,10 +71,14 @@ void sample_any(const py::array& texture, const py::array& uv, py::array color) 
         using R = decltype(real);
         ArrayArgs args("sample");
         const ImageView<const R> view = texture_in<R>(args, texture);
-        const R* points = finite_in<R>(args, "uv", uv, "N 2");
+        const R* points = args.in<R>("uv", uv, "N 2");
         R* out = args.out<R>("out", color, "N C");
-        const py::gil_scoped_release release;
-        sample(view, points, args.size("N"), out);
+        bool finite = false;
+        {
+            const py::gil_scoped_release release;
+            finite = sample(view, points, args.size("N"), out);
+        }
+        if (!finite) finite_in<R>(args, "uv", uv, "N 2");  // counts them, and throws
     });
 }
 

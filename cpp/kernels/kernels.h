@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kernels/march_dense.h"
+#include "kernels/sample_rgb.h"
 
 namespace photograd {
 
@@ -14,6 +15,7 @@ struct Kernels {
     void (*march_dense_gather)(const MarchDenseArgs&, const BrickRun* runs,
                                const std::uint32_t* order, std::int64_t count, const float* d_raw,
                                float* tile);
+    bool (*sample_rgb)(const SampleRgbArgs&, std::int64_t begin, std::int64_t end);
 };
 
 [[nodiscard]] const Kernels& kernels();

@@ -19,8 +19,8 @@ ORDER: tuple[tuple[str, ...], ...] = (
     ("bindings",),
 )
 RANK = {module: rank for rank, group in enumerate(ORDER) for module in group}
-# Kernels are the vectorised twins of loops in `render`; only these may call them.
-KERNEL_USERS = {"kernels", "render", "bindings", "tests", "bench"}
+# Kernels are the vectorised twins of loops in these modules; only they may call them.
+KERNEL_USERS = {"kernels", "texture", "render", "bindings", "tests", "bench"}
 # What a kernel file may see: plain values and lanes, and the layout of a grid.
 KERNEL_SOURCES = {"kernels", "core", "ops", "grid"}
 
@@ -74,7 +74,7 @@ def _own_breach(path: str, target: str) -> str | None:
     if source == "kernels":
         return None if goal in KERNEL_SOURCES else f"a kernel does not see {goal}"
     if goal == "kernels":
-        return None if source in KERNEL_USERS else "only render and bindings use kernels"
+        return None if source in KERNEL_USERS else "only texture, render and bindings use kernels"
     if source not in RANK or goal not in RANK:
         return f"{source if source not in RANK else goal} has no place in the include order"
     if RANK[goal] > RANK[source]:

@@ -167,6 +167,16 @@ def test_bad_input_is_refused(texture: Any, uv: Any, error: type[Exception], wor
         sample(texture, uv)
 
 
+@pytest.mark.parametrize("channels", [3, 4])
+@pytest.mark.parametrize("point", [0, 31, 32, 4095, 4096, 4996])
+@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
+def test_one_coordinate_that_is_no_number_is_found(channels: int, point: int, value: float) -> None:
+    uv = points(4997, 2).astype(np.float32)
+    uv[point, point % 2] = value
+    with pytest.raises(RangeError, match=f"got 1 that are not, the first in point {point}"):
+        sample(noise((9, 8, channels), 1).astype(np.float32), uv)
+
+
 def test_a_cotangent_of_another_shape_is_refused() -> None:
     with pytest.raises(ShapeError, match=r"sample_backward: d_color: expected shape \(N, C\)"):
         sample_backward(np.zeros((3, 3, 3)), UV, np.zeros((4, 2)))

@@ -1,103 +1,54 @@
 #include "photograd/texture/sample.h"
 
+#include <atomic>
+#include <cmath>
+#include <limits>
+
+#include "kernels/kernels.h"
 #include "photograd/texture/scatter_texels.h"
 
 namespace photograd {
 namespace {
 
-/// Points whose texels are asked for before the first of them is computed: a texture that does not fit
-/// into the second-level cache arrives while earlier points are at work.
-constexpr int ahead = 32;
-
-/// Where a few points lie: their upper left texels, and fractions along column and row.
-template <Real R>
-struct Located {
-    const R* corner[ahead];
-    R f[ahead], g[ahead];
-};
-
 template <Real R, int C>
-void locate(const ImageView<const R>& texture, const R* uv, int points, Located<R>& out) {
-    const auto [height, width] = texture.shape;
-    int columns[ahead], rows[ahead];
-    for (int i = 0; i < points; ++i) {  // turns into lanes
-        const TexelAxis<R> column = texel_axis(uv[2 * i], width);
-        const TexelAxis<R> row = texel_axis(uv[2 * i + 1], height);
-        out.f[i] = column.fraction;
-        out.g[i] = row.fraction;
-        columns[i] = column.base;
-        rows[i] = row.base;
-    }
-    const TexelSteps<C> step = TexelSteps<C>::of(texture.shape);
-    for (int i = 0; i < points; ++i) {
-        const R* texel =
-            texture.texels + (static_cast<long long>(rows[i]) * width + columns[i]) * C;
-        out.corner[i] = texel;
-        // The two texels of a row may lie on two cache lines.
-        __builtin_prefetch(texel);
-        __builtin_prefetch(texel + step.right + C - 1);
-        __builtin_prefetch(texel + step.down);
-        __builtin_prefetch(texel + step.down + step.right + C - 1);
-    }
-}
-
-/// One lookup whose texels begin at `corner`; writes C scalars.
-template <Real R, int C>
-void look_up(const TextureShape& shape, const R* corner, R f, R g, R* color) {
-    bilinear<R, C>(corner, shape, {0, f, R(0)}, {0, g, R(0)}, color);
-}
-
-using Float4 = float __attribute__((vector_size(16), aligned(4), may_alias));
-
-/// The same in the same order for three floats, a picture's texel, and at least two columns. The two
-/// texels of a row are six neighbouring floats: two vectors of four that overlap, the second one turned.
-/// Writes four floats, the last of them of no meaning.
-void look_up_rgb(const TextureShape& shape, const float* corner, float f, float g, float* color) {
-    const auto load = [](const float* p) { return *reinterpret_cast<const Float4*>(p); };
-    const auto turned = [&](const float* p) {
-        const Float4 x = load(p);
-        return __builtin_shufflevector(x, x, 1, 2, 3, 3);
-    };
-    const float* below = corner + TexelSteps<3>::of(shape).down;
-    const BilinearWeights<float> w = BilinearWeights<float>::of(f, g);
-    const Float4 t00 = load(corner), t01 = turned(corner + 2);
-    const Float4 t10 = load(below), t11 = turned(below + 2);
-    *reinterpret_cast<Float4*>(color) = ((w.w00 * t00 + w.w01 * t01) + w.w10 * t10) + w.w11 * t11;
-}
-
-template <Real R, int C>
-void sample_chunk(const ImageView<const R>& texture, const R* uv, std::int64_t begin,
+bool sample_chunk(const ImageView<const R>& texture, const R* uv, std::int64_t begin,
                   std::int64_t end, R* color) {
-    constexpr bool rgb = C == 3 && std::is_same_v<R, float>;
-    const bool wide = texture.shape.width > 1;
-    Located<R> blocks[2];
-    const auto points = [&](std::int64_t from) {
-        return static_cast<int>(std::min<std::int64_t>(ahead, end - from));
-    };
-    locate<R, C>(texture, uv + 2 * begin, points(begin), blocks[0]);
-    for (std::int64_t from = begin, k = 0; from < end; from += ahead, ++k) {
-        const std::int64_t next = from + ahead;
-        if (next < end) locate<R, C>(texture, uv + 2 * next, points(next), blocks[(k + 1) % 2]);
-        const Located<R>& at = blocks[k % 2];
-        R* out = color + C * from;
-        int i = 0;
-        if constexpr (rgb)  // not the chunk's last point: its fourth float is not ours to write
-            for (const int last = points(from) - (next < end ? 0 : 1); wide && i < last; ++i)
-                look_up_rgb(texture.shape, at.corner[i], at.f[i], at.g[i], out + 3 * i);
-        for (; i < points(from); ++i)
-            look_up<R, C>(texture.shape, at.corner[i], at.f[i], at.g[i], out + C * i);
+    for (std::int64_t i = begin; i < end; ++i) {
+        if (!std::isfinite(uv[2 * i]) || !std::isfinite(uv[2 * i + 1])) return false;
+        bilinear<R, C>(texture.texels, texture.shape, texel_axis(uv[2 * i], texture.shape.width),
+                       texel_axis(uv[2 * i + 1], texture.shape.height), color + C * i);
     }
+    return true;
+}
+
+/// Pictures have a kernel; their offsets are counted in 32 bits there.
+template <Real R, int C>
+bool has_kernel(const TextureShape& shape) {
+    return C == 3 && std::is_same_v<R, float> && shape.width > 1 &&
+           3 * shape.texels() <= std::numeric_limits<std::int32_t>::max();
 }
 
 }  // namespace
 
 template <Real R>
-void sample(const ImageView<const R>& texture, const R* uv, std::int64_t count, R* color) {
+bool sample(const ImageView<const R>& texture, const R* uv, std::int64_t count, R* color) {
+    std::atomic<bool> finite{true};
     with_channels(texture.channels, [&](auto channels) {
+        constexpr int C = decltype(channels)::value;
+        const bool fast = has_kernel<R, C>(texture.shape);
         for_point_chunks(count, [&](std::int64_t begin, std::int64_t end) {
-            sample_chunk<R, decltype(channels)::value>(texture, uv, begin, end, color);
+            bool good = false;
+            if constexpr (std::is_same_v<R, float>) {
+                if (fast)
+                    good = kernels().sample_rgb({texture.texels, texture.shape.height,
+                                                 texture.shape.width, uv, color, count},
+                                                begin, end);
+            }
+            if (!fast) good = sample_chunk<R, C>(texture, uv, begin, end, color);
+            if (!good) finite = false;
         });
     });
+    return finite;
 }
 
 template <Real R>
@@ -122,8 +73,8 @@ void sample_backward(const ImageView<const R>& texture, const R* uv, std::int64_
     });
 }
 
-template void sample(const ImageView<const float>&, const float*, std::int64_t, float*);
-template void sample(const ImageView<const double>&, const double*, std::int64_t, double*);
+template bool sample(const ImageView<const float>&, const float*, std::int64_t, float*);
+template bool sample(const ImageView<const double>&, const double*, std::int64_t, double*);
 template void sample_backward(const ImageView<const float>&, const float*, std::int64_t,
                               const float*, float*, float*);
 template void sample_backward(const ImageView<const double>&, const double*, std::int64_t,

@@ -7,9 +7,11 @@
 
 namespace photograd {
 
-/// color (N, C) = texture at the points uv (N, 2).
+/// color (N, C) = texture at the points uv (N, 2). False, with some colours not written, if a coordinate
+/// is not finite: a NaN has no texels.
 template <Real R>
-void sample(const ImageView<const R>& texture, const R* uv, std::int64_t count, R* color);
+[[nodiscard]] bool sample(const ImageView<const R>& texture, const R* uv, std::int64_t count,
+                          R* color);
 
 /// d_texels (H, W, C) and d_uv (N, 2) are added to; null leaves one out.
 template <Real R>
