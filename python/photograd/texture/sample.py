@@ -32,8 +32,8 @@ def sample(texture: Array, uv: Array, *, out: Array | None = None) -> Array:
     Args:
         texture: (H, W, C).
         uv: (N, 2) texture coordinates of the same dtype.
-        out: (N, C) to write to and return, of unknown content after an error; fresh memory for millions of points costs as much as
-            their lookup.
+        out: (N, C) to write to and return, of unknown content after an error; fresh memory for
+            millions of points costs as much as their lookup.
 
     Returns:
         (N, C), the same bits on any number of threads.
