@@ -131,7 +131,7 @@ def test_the_registry() -> None:
     assert NAMES[0] == DEFAULT_SCENE
     with pytest.raises(SceneError, match="did you mean 'toy_table'"):
         scene("toytable", seed=0)
-    with pytest.raises(SceneError, match="choose from terrain_clouds, textured"):
+    with pytest.raises(SceneError, match="choose from flat_walls, foliage, fur"):
         scene("zzz", seed=0)
     with pytest.raises(RangeError, match="seed"):
         scene(seed=-1)

@@ -10,6 +10,10 @@ from photograd_course.errors import SceneError, message
 from photograd_course.suggest import choose_from
 
 from photograd.scenes.description import SceneDescription
+from photograd.scenes.flat_walls import flat_walls
+from photograd.scenes.foliage import foliage
+from photograd.scenes.fur import fur
+from photograd.scenes.smooth_curves import smooth_curves
 from photograd.scenes.terrain_clouds import terrain_clouds
 from photograd.scenes.textured import textured
 from photograd.scenes.thin_structures import thin_structures
@@ -29,6 +33,10 @@ def scenes() -> dict[str, Builder]:
         "thin_structures": thin_structures,
         "textured": textured,
         "terrain_clouds": terrain_clouds,
+        "foliage": foliage,
+        "smooth_curves": smooth_curves,
+        "fur": fur,
+        "flat_walls": flat_walls,
     }
 
 
