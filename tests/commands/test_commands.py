@@ -17,7 +17,7 @@ from tests.commands.conftest import FIT, Photograd
 from tests.fit import scene
 from tests.fit.test_density_gradient import BOX, ball
 
-COMMANDS = ("fit", "render", "evaluate", "gradients", "info")
+COMMANDS = ("fit", "render", "evaluate", "gradients", "compare", "info")
 
 
 @pytest.mark.parametrize("command", COMMANDS)

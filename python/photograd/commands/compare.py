@@ -1,0 +1,133 @@
+"""`photograd compare`: which representation for which scene."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from photograd_course.atomic_io import atomic_write
+from photograd_course.cli import DebugOption, JsonOption, SeedOption, ThreadsOption, emit, note
+from photograd_course.suggest import choose_from
+from photograd_course.viz import comparison_strips, save_figure
+
+from photograd.commands.capture import make_capture
+from photograd.commands.fit import run_with_bar
+from photograd.commands.shared import DownscaleOption, stop_on_signals, use_threads
+from photograd.compare import Score, compare_one, markdown, parse_contenders, worst_view
+from photograd.data.load import load_capture
+from photograd.errors import RangeError, SceneError, message
+from photograd.evaluate import Evaluation
+from photograd.fit_options import FitOptions
+from photograd.scenes.registry import scenes
+
+DEFAULTS = FitOptions()
+CONTRASTS = ("foliage", "smooth_curves", "fur", "flat_walls")
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command."""
+    app.command("compare")(compare)
+
+
+def compare(
+    captures: Annotated[
+        list[str] | None,
+        typer.Argument(
+            help=f"Folders of captures, or built-in scenes; by default {', '.join(CONTRASTS)}.",
+            metavar="[CAPTURE]...",
+        ),
+    ] = None,
+    out: Annotated[Path, typer.Option("--out", help="Folder for models, table and pictures.")] = (
+        Path("out/compare")
+    ),
+    contenders: Annotated[
+        str, typer.Option("--contenders", help="Representations, each with its resolution.")
+    ] = "dense_grid:64,dense_grid:128",
+    steps: Annotated[int, typer.Option("--steps", min=1, help="Steps of each fit.")] = 1000,
+    rays: Annotated[int, typer.Option("--rays", min=1, help="Rays a step.")] = DEFAULTS.rays,
+    views: Annotated[int, typer.Option("--views", min=2, help="Of a built-in scene.")] = 60,
+    size: Annotated[int, typer.Option("--size", min=8, help="Its pixels along an edge.")] = 128,
+    spp: Annotated[int, typer.Option("--spp", min=1, help="Its samples a pixel.")] = 64,
+    downscale: DownscaleOption = 1,
+    seed: SeedOption = 0,
+    threads: ThreadsOption = 0,
+    as_json: JsonOption = False,
+    debug: DebugOption = False,  # noqa: ARG001  read by the command line's frame
+) -> None:
+    """Fit several representations to the same photographs and put the results side by side.
+
+    Writes OUT/table.md, one picture a capture (its worst held-out view), and each model in
+    OUT/CAPTURE/. Stopped by Ctrl-C, the same command line goes on where it was.
+
+    Example: photograd compare foliage fur --contenders dense_grid:64,dense_grid:128
+    """
+    use_threads(threads)
+    candidates = parse_contenders(contenders)
+    scores: list[Score] = []
+    pictures: list[Path] = []
+    with stop_on_signals() as stopping:
+        for given in captures or CONTRASTS:
+            folder = photographs_of(given, out, views=views, size=size, spp=spp, seed=seed)
+            capture, name = load_capture(folder, downscale=downscale), Path(given).name
+            if not capture.test:
+                raise RangeError(
+                    message("compare", "CAPTURE", "held-out views", f"none in {folder}")
+                )
+            evaluations: list[Evaluation] = []
+            for candidate in candidates:
+                note(f"{name}: {candidate.label}")
+                options = FitOptions(
+                    representation=candidate.representation, resolution=candidate.resolution,
+                    steps=steps, rays=rays, seed=seed,
+                )  # fmt: skip
+                place = out / name / candidate.label.replace(":", "_")
+                found = compare_one(
+                    name, capture, candidate, place, options,
+                    lambda job, where: run_with_bar(job, where, stopping),
+                )  # fmt: skip
+                if found is None:
+                    note("stopped; the same command goes on from here")
+                    raise typer.Exit(stopping.exit_code or 1)
+                scores.append(found[0])
+                evaluations.append(found[1])
+            pictures.append(out / f"{name}.png")
+            draw(evaluations, [c.label for c in candidates], name, pictures[-1])
+    table = out / "table.md"
+    atomic_write(table, markdown(scores).encode())
+    emit(
+        {"scores": [asdict(s) for s in scores], "table": table, "pictures": pictures},
+        as_json=as_json, title="compare",
+    )  # fmt: skip
+
+
+def photographs_of(given: str, out: Path, *, views: int, size: int, spp: int, seed: int) -> Path:
+    """The folder of a capture that `given` names; a built-in scene is photographed once.
+
+    Raises SceneError if it is neither a folder nor a scene.
+    """
+    if Path(given).is_dir():
+        return Path(given)
+    if given not in scenes():
+        remedy = choose_from(given, scenes())
+        raise SceneError(
+            message("compare", "CAPTURE", "a folder or a built-in scene", repr(given), remedy)
+        )
+    # Other numbers make other photographs, which may not stand in for these.
+    folder = out / given / f"capture_{views}_{size}_{spp}_{seed}"
+    if not (folder / "transforms_test.json").exists():
+        make_capture(
+            given, folder, views=views, test_views=8, size=size, spp=spp, seed=seed, overwrite=True
+        )
+    return folder
+
+
+def draw(evaluations: list[Evaluation], labels: list[str], name: str, path: Path) -> None:
+    """Truth, rendering and error of every contender at the view that all find hardest."""
+    truth, renders, psnr = worst_view(evaluations)
+    figure = comparison_strips(
+        [truth] * len(renders), renders, names=labels, psnr=psnr, title=name,
+        caption="The held-out view with the lowest mean PSNR of all. " + evaluations[0].protocol,
+    )  # fmt: skip
+    save_figure(figure, path)

@@ -1,0 +1,170 @@
+"""Different representations of the same scene, side by side: quality, bytes and seconds.
+
+No representation is best for every scene: leaves, smooth curves, fur and flat walls ask for
+different ones. Here that is measured: each contender is fitted to the same photographs with the
+same number of steps, scored on the same held-out views, and drawn at the same camera.
+"""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from photograd_course.atomic_io import atomic_write
+
+from photograd.checkpoint import FILE_NAME
+from photograd.core import _core
+from photograd.data.capture import Capture
+from photograd.errors import RangeError, message
+from photograd.evaluate import Evaluation, display_image, evaluate
+from photograd.fit import Fit
+from photograd.fit_checks import require_startable
+from photograd.fit_options import FitOptions
+from photograd.fit_result import FitResult
+from photograd.model import Model, load_model
+from photograd.representation import Array
+
+FRAMES = 5
+"""Frames that are timed; the median counts."""
+
+_SECONDS = "seconds.json"
+
+Run = Callable[[Fit, Path], FitResult]
+"""Runs a fit in a folder, usually under a progress bar."""
+
+
+@dataclass(frozen=True)
+class Contender:
+    """A representation at a resolution, written `sparse_sh:128`."""
+
+    representation: str
+    resolution: int
+
+    @property
+    def label(self) -> str:
+        """As it is written on a command line."""
+        return f"{self.representation}:{self.resolution}"
+
+
+@dataclass(frozen=True)
+class Score:
+    """One line of the table."""
+
+    capture: str
+    contender: str
+    psnr: float  # dB, mean over held-out views
+    ssim: float
+    parameter_bytes: int  # of all parameter arrays and what state they need beside them
+    train_seconds: float
+    frame_ms: float  # median, at the size of the first held-out view
+    threads: int
+    protocol: str
+
+
+def parse_contenders(text: str) -> list[Contender]:
+    """The contenders of "dense_grid:64,sparse_sh:128".
+
+    Raises RangeError for another form, a resolution below 8, one that is given twice, or a
+    representation that a capture cannot start.
+    """
+    contenders = []
+    for word in text.split(","):
+        name, colon, size = word.strip().partition(":")
+        if not (colon and size.isdecimal() and int(size) >= 8):
+            raise RangeError(
+                message("compare", "contenders", "NAME:RESOLUTION with a resolution of 8 or more",
+                        repr(word.strip()), "for example dense_grid:128,sparse_sh:128")
+            )  # fmt: skip
+        require_startable(name)
+        contenders.append(Contender(name, int(size)))
+    if len(set(contenders)) < len(contenders):
+        raise RangeError(message("compare", "contenders", "each only once", text))
+    return contenders
+
+
+def compare_one(
+    name: str, capture: Capture, contender: Contender, folder: Path, options: FitOptions, run: Run
+) -> tuple[Score, Evaluation] | None:
+    """Fit `contender` to `capture` in `folder`, or continue there, and score it.
+
+    `name` is what the table calls the capture; `options` holds what all contenders share. Returns
+    None if `run` ended before the fit did: the same call continues it, and its seconds add up.
+    """
+    if (folder / FILE_NAME).exists():
+        job = Fit.resume(capture, folder)
+        wanted = asdict(options)
+        if asdict(job.options) != wanted:
+            raise RangeError(
+                message("compare", "out", "a folder of the same options", f"{folder}",
+                        "choose another folder, or give the options that it was made with")
+            )  # fmt: skip
+    else:
+        job = Fit.start(capture, options)
+    spent = _spent(folder)
+    if job.step_number < options.steps:
+        result = run(job, folder)
+        spent += result.seconds
+        atomic_write(folder / _SECONDS, json.dumps({"seconds": spent}).encode())
+        if not result.finished:
+            return None
+    model = load_model(folder)
+    evaluation = evaluate(model, capture.test)
+    score = Score(
+        name, contender.label, evaluation.psnr, evaluation.ssim, stored_bytes(model), spent,
+        1000 * frame_seconds(model, capture), max(1, _core.thread_count()), evaluation.protocol,
+    )  # fmt: skip
+    return score, evaluation
+
+
+def stored_bytes(model: Model) -> int:
+    """Bytes of a model's parameters and of the arrays that say where they belong."""
+    arrays: list[Any] = [*model.field.params.values(), *model.field.state().values()]
+    return sum(a.nbytes for a in arrays if isinstance(a, np.ndarray))
+
+
+def frame_seconds(model: Model, capture: Capture) -> float:
+    """Median time to draw the first held-out view."""
+    camera = capture.test[0].camera
+    times = []
+    for _ in range(FRAMES):
+        before = time.perf_counter()
+        display_image(model, camera)
+        times.append(time.perf_counter() - before)
+    return float(np.median(times))
+
+
+def worst_view(evaluations: Sequence[Evaluation]) -> tuple[Array, list[Array], list[float]]:
+    """Truth (H, W, 3), renderings and PSNR of the view with the lowest mean PSNR over all."""
+    scores = np.array([[view.psnr for view in e.views] for e in evaluations])
+    index = int(scores.mean(axis=0).argmin())
+    views = [e.views[index] for e in evaluations]
+    return views[0].truth, [view.render for view in views], [view.psnr for view in views]
+
+
+def markdown(scores: Sequence[Score]) -> str:
+    """The table as text, best PSNR of each capture in bold, and the protocols below it."""
+    best = {s.capture: max(t.psnr for t in scores if t.capture == s.capture) for s in scores}
+    lines = [
+        "| capture | representation | PSNR, dB | SSIM | MiB | training, s | frame, ms |",
+        "|---|---|---|---|---|---|---|",
+    ]
+    for s in scores:
+        psnr = f"{s.psnr:.2f}" if s.psnr < best[s.capture] else f"**{s.psnr:.2f}**"
+        lines.append(
+            f"| {s.capture} | {s.contender} | {psnr} | {s.ssim:.3f} "
+            f"| {s.parameter_bytes / 2**20:.1f} | {s.train_seconds:.0f} | {s.frame_ms:.0f} |"
+        )
+    threads = ", ".join(str(n) for n in sorted({s.threads for s in scores}))
+    lines += ["", f"{threads} threads."]
+    lines += [f"{text}." for text in sorted({s.protocol for s in scores})]
+    return "\n".join(lines) + "\n"
+
+
+def _spent(folder: Path) -> float:
+    path = folder / _SECONDS
+    return float(json.loads(path.read_text())["seconds"]) if path.exists() else 0.0
