@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Annotated
 
@@ -14,8 +14,16 @@ from photograd_course.viz import comparison_strips, save_figure
 
 from photograd.commands.capture import make_capture
 from photograd.commands.fit import run_with_bar
-from photograd.commands.shared import DownscaleOption, stop_on_signals, use_threads
-from photograd.compare import Score, compare_one, markdown, parse_contenders, worst_view
+from photograd.commands.shared import DownscaleOption, StopRequest, stop_on_signals, use_threads
+from photograd.compare import (
+    Contender,
+    Score,
+    compare_one,
+    markdown,
+    parse_contenders,
+    worst_view,
+)
+from photograd.data.capture import Capture
 from photograd.data.load import load_capture
 from photograd.errors import RangeError, SceneError, message
 from photograd.evaluate import Evaluation
@@ -65,41 +73,52 @@ def compare(
     """
     use_threads(threads)
     candidates = parse_contenders(contenders)
+    shared = FitOptions(steps=steps, rays=rays, seed=seed)
     scores: list[Score] = []
     pictures: list[Path] = []
     with stop_on_signals() as stopping:
         for given in captures or CONTRASTS:
             folder = photographs_of(given, out, views=views, size=size, spp=spp, seed=seed)
-            capture, name = load_capture(folder, downscale=downscale), Path(given).name
-            if not capture.test:
-                raise RangeError(
-                    message("compare", "CAPTURE", "held-out views", f"none in {folder}")
-                )
-            evaluations: list[Evaluation] = []
-            for candidate in candidates:
-                note(f"{name}: {candidate.label}")
-                options = FitOptions(
-                    representation=candidate.representation, resolution=candidate.resolution,
-                    steps=steps, rays=rays, seed=seed,
-                )  # fmt: skip
-                place = out / name / candidate.label.replace(":", "_")
-                found = compare_one(
-                    name, capture, candidate, place, options,
-                    lambda job, where: run_with_bar(job, where, stopping),
-                )  # fmt: skip
-                if found is None:
-                    note("stopped; the same command goes on from here")
-                    raise typer.Exit(stopping.exit_code or 1)
-                scores.append(found[0])
-                evaluations.append(found[1])
+            name, capture = Path(given).name, load_capture(folder, downscale=downscale)
+            found = contest(name, capture, candidates, shared, out / name, stopping)
+            scores += [score for score, _ in found]
             pictures.append(out / f"{name}.png")
-            draw(evaluations, [c.label for c in candidates], name, pictures[-1])
+            draw([evaluation for _, evaluation in found], candidates, name, pictures[-1])
     table = out / "table.md"
     atomic_write(table, markdown(scores).encode())
     emit(
         {"scores": [asdict(s) for s in scores], "table": table, "pictures": pictures},
         as_json=as_json, title="compare",
     )  # fmt: skip
+
+
+def contest(
+    name: str, capture: Capture, candidates: list[Contender], shared: FitOptions, out: Path,
+    stopping: StopRequest,
+) -> list[tuple[Score, Evaluation]]:  # fmt: skip
+    """Fit and score all candidates on one capture, under progress bars.
+
+    Raises RangeError for a capture without held-out views, typer.Exit if it was stopped.
+    """
+    if not capture.test:
+        raise RangeError(
+            message("compare", "CAPTURE", "held-out views", f"none in {capture.source}")
+        )
+    found = []
+    for candidate in candidates:
+        note(f"{name}: {candidate.label}")
+        result = compare_one(
+            name, capture, candidate, out / candidate.label.replace(":", "_"),
+            replace(
+                shared, representation=candidate.representation, resolution=candidate.resolution
+            ),
+            lambda job, folder: run_with_bar(job, folder, stopping),
+        )  # fmt: skip
+        if result is None:
+            note("stopped; the same command goes on from here")
+            raise typer.Exit(stopping.exit_code or 1)
+        found.append(result)
+    return found
 
 
 def photographs_of(given: str, out: Path, *, views: int, size: int, spp: int, seed: int) -> Path:
@@ -123,11 +142,11 @@ def photographs_of(given: str, out: Path, *, views: int, size: int, spp: int, se
     return folder
 
 
-def draw(evaluations: list[Evaluation], labels: list[str], name: str, path: Path) -> None:
+def draw(evaluations: list[Evaluation], candidates: list[Contender], name: str, path: Path) -> None:
     """Truth, rendering and error of every contender at the view that all find hardest."""
     truth, renders, psnr = worst_view(evaluations)
     figure = comparison_strips(
-        [truth] * len(renders), renders, names=labels, psnr=psnr, title=name,
+        [truth] * len(renders), renders, names=[c.label for c in candidates], psnr=psnr, title=name,
         caption="The held-out view with the lowest mean PSNR of all. " + evaluations[0].protocol,
     )  # fmt: skip
     save_figure(figure, path)
