@@ -161,29 +161,32 @@ def draw_slice(axes: Axes, tree: Octree, gradient: Array, limit: float, layer: i
     axes.add_collection(collection)
 
 
-def outline_balls(axes: Axes, z: float) -> None:
+def outline_balls(axes: Axes, z: float, color: str = style.INK, *, all_known: bool = False) -> None:
     """Where the slice cuts the balls: solid what the model has, dashed what it lacks."""
     for number, (centre, radius, _) in enumerate(BALLS):
         cut = np.sqrt(max(radius**2 - (z - centre[2]) ** 2, 0.0))
-        lacking = number == len(BALLS) - 1
+        lacking = number == len(BALLS) - 1 and not all_known
         axes.add_patch(
-            Circle(centre[:2], cut, fill=False, edgecolor=style.INK, linewidth=1.1,
+            Circle(centre[:2], cut, fill=False, edgecolor=color, linewidth=1.1,
                    linestyle="--" if lacking else "-")
         )  # fmt: skip
+
+
+def photographs(size: int) -> TrainingPixels:
+    """24 views from all around."""
+    cameras = [
+        camera
+        for elevation in (-30.0, 5.0, 40.0)
+        for camera in orbit_cameras(BOX, 8, size=size, elevation=elevation)
+    ]
+    views = [View(f"view_{k}", c, photograph(c)) for k, c in enumerate(cameras)]
+    return TrainingPixels(views, "display")
 
 
 def octree_figure() -> Figure:
     """The gradient of one step by voxel, by leaf, and by leaf after one refinement."""
     field, full = model_without_the_last_ball()
-    cameras = [
-        camera
-        for elevation in (-30.0, 5.0, 40.0)
-        for camera in orbit_cameras(BOX, 8, size=96, elevation=elevation)
-    ]
-    views = [View(f"view_{k}", c, photograph(c)) for k, c in enumerate(cameras)]
-    d_sigma_t = density_gradient(
-        field, TrainingPixels(views, "display"), seed=0, rays=1 << 18
-    ).d_sigma_t[..., None]
+    d_sigma_t = density_gradient(field, photographs(96), seed=0, rays=1 << 18).d_sigma_t[..., None]
     layer = RESOLUTION // 2
     limit = signed_scale("octree_figure", [d_sigma_t[:, :, layer]], None, quantile=0.98).limit
     known = Octree.from_dense(full[..., None], BOX)
