@@ -1,0 +1,295 @@
+"""An octree whose leaves hold one density and one set of spherical-harmonic coefficients each.
+
+The structure half of PlenOctrees [Yu2021]: topology comes from a field that is known already and
+stays fixed; the leaves are parameters like any other. A ray meets leaf after leaf, in each of which
+everything is constant, so that emission and absorption along it need no quadrature:
+
+    s_k     = sigma_k (t1_k - t0_k)                    leaf k between t0_k and t1_k
+    w_k     = exp(-s_0 - ... - s_{k-1}) (1 - exp(-s_k))
+    color   = sum_k w_k rgb_k,  depth = sum_k w_k (t0_k + t1_k) / 2,  opacity = 1 - exp(-sum_k s_k)
+
+    d_s_k   = exp(-s_0 - ... - s_k) v_k - sum_{j>k} w_j v_j + d_opacity (1 - opacity)
+    v_k     = <d_color, rgb_k> + d_depth (t0_k + t1_k) / 2
+    d_sigma = (t1 - t0) d_s,   d_t1 = sigma d_s + w d_depth / 2,   d_t0 = -sigma d_s + w d_depth / 2
+
+As in cpp/photograd/ops/composite.h, the sum over later leaves is what the whole ray has left. A ray
+leaves a box through the plane x_a = c at t = (c - o_a) / d_a, so
+
+    dt / do_a = -1 / d_a,   dt / dd_a = -t / d_a
+
+and the camera adjoint is exact: no sample hides a border that moves.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+from photograd_course.random import uniform
+
+from photograd import sh
+from photograd.errors import RangeError, ShapeError, message
+from photograd.fields.dense_grid import DenseGrid
+from photograd.fields.leaf_segments import Borders, Segments, border_gradients, segments_of
+from photograd.octree import Octree
+from photograd.representation import (
+    Array,
+    Outputs,
+    ParamSpec,
+    RayBatch,
+    RenderOptions,
+    Representation,
+    register,
+)
+
+Y_0 = 0.28209479177387814  # the constant harmonic
+
+
+@dataclass(frozen=True)
+class Walk:
+    """What compositing leaves for each segment (M,), and for each ray (R,)."""
+
+    weight: Array  # w_k
+    behind: Array  # transmittance behind the segment
+    seen: NDArray[np.bool_]  # in front of where the ray was stopped
+    transmittance: Array  # (R,) behind the last segment
+
+
+@dataclass(frozen=True)
+class OctreeContext:
+    """What the backward pass needs: the rays' segments and what was met in them."""
+
+    params: dict[str, Array]
+    borders: Borders
+    segments: Segments
+    walk: Walk
+    sigma_t: Array  # (M,)
+    rgb: Array  # (M, 3)
+    outputs: Outputs
+    camera_adjoint: bool
+
+
+@register
+class OctreeSh(Representation):
+    """params["density"] (N,) raw and params["sh"] (N, K, 3), a row for each leaf that is not empty.
+
+    sigma_t = density_scale * softplus(density) in 1/m, rgb = sigmoid(sum_k Y_k(direction) sh_k),
+    linear Rec. 709; direction is that of the ray, away from the camera. `row` (L,) says which row a
+    leaf of `tree` has, -1 for none.
+    """
+
+    name: ClassVar[str] = "octree_sh"
+    capabilities: ClassVar[frozenset[str]] = frozenset({"rays"})
+
+    def __init__(
+        self,
+        tree: Octree,
+        row: NDArray[np.int32],
+        density: Array,
+        coefficients: Array,
+        *,
+        density_scale: float = 1.0,
+    ) -> None:
+        """Raises ShapeError unless the arrays fit the tree, RangeError for rows that do not."""
+        rows = int((row >= 0).sum())
+        if row.shape != (len(tree.values),):
+            raise ShapeError(message("OctreeSh", "row", f"({len(tree.values)},)", row.shape))
+        if not np.array_equal(np.sort(row[row >= 0]), np.arange(rows)):
+            raise RangeError(message("OctreeSh", "row", "each of 0, 1, ... once, or -1", "others"))
+        if density.shape != (rows,):
+            raise ShapeError(message("OctreeSh", "density", f"({rows},)", density.shape))
+        if coefficients.ndim != 3 or coefficients.shape[::2] != (rows, 3):
+            raise ShapeError(message("OctreeSh", "sh", f"({rows}, K, 3)", coefficients.shape))
+        sh.degree_of(coefficients.shape[1])  # refuses a K that is no square
+        self.tree = tree
+        self.row = row
+        self.params = {"density": density, "sh": coefficients}
+        self.density_scale = density_scale
+
+    @classmethod
+    def from_dense_grid(
+        cls, field: DenseGrid, *, degree: int = 2, opacity: float = 0.01, tolerance: float = 0.05
+    ) -> OctreeSh:
+        """Tabulate a dense grid: its voxels become leaves, and equal ones share a larger leaf.
+
+        Args:
+            field: its sigma_t and colour are read at the voxels' centres.
+            degree: of the harmonics; those above the constant start as 0.
+            opacity: voxels that are less opaque than this, along their edge, become empty.
+            tolerance: in linear colour, and in opacity, that voxels of one leaf may differ by.
+        """
+        cell = (field.box[1, 0] - field.box[0, 0]) / field.density.shape[0]
+        scale = field.policy.density_scale
+        sigma_t = scale * np.logaddexp(0.0, field.density.astype(np.float64))
+        shown = 1.0 - np.exp(-sigma_t * cell)
+        full = shown > opacity
+        rgb = 1.0 / (1.0 + np.exp(-field.color.astype(np.float64)))
+        known = np.concatenate([shown[..., None], rgb], axis=-1) * full[..., None]
+        tree = Octree.from_dense(known.astype(np.float32), field.box, tolerance=tolerance)
+        held = tree.values.astype(np.float64)
+        occupied = held[:, 0] > 0.5 * opacity
+        row = np.where(occupied, np.cumsum(occupied) - 1, -1).astype(np.int32)
+        mean = -np.log1p(-np.minimum(held[occupied, 0], 1.0 - 1e-6)) / cell
+        color = np.clip(held[occupied, 1:], 1e-4, 1.0 - 1e-4)
+        coefficients = np.zeros((int(occupied.sum()), sh.count(degree), 3))
+        coefficients[:, 0] = np.log(color / (1.0 - color)) / Y_0
+        density = np.log(np.expm1(np.minimum(mean / scale, 500.0)))
+        kind = field.params["values"].dtype
+        return cls(tree, row, density.astype(kind), coefficients.astype(kind), density_scale=scale)
+
+    @classmethod
+    def example(cls, *, seed: int, dtype: type[np.floating[Any]] = np.float64) -> OctreeSh:
+        """Leaves of three sizes in 8 x 8 x 8 cells, a third of them empty, degree 2."""
+        u = uniform(seed, step=0, pixel=np.arange(8**3), sample=0, dimension=0).reshape(8, 8, 8)
+        coarse = u[:2, :2, :2].repeat(4, axis=0).repeat(4, axis=1).repeat(4, axis=2)
+        middle = u[2:6, 2:6, 2:6].repeat(2, axis=0).repeat(2, axis=1).repeat(2, axis=2)
+        mixed = np.where(coarse < 0.3, coarse, np.where(middle < 0.5, middle, u))
+        tree = Octree.from_dense(mixed[..., None], [[-1.0, -0.8, -1.2], [1.0, 1.2, 0.8]])
+        chance = uniform(seed, step=1, pixel=np.arange(len(tree.values)), sample=0, dimension=0)
+        occupied = chance > 1 / 3
+        row = np.where(occupied, np.cumsum(occupied) - 1, -1).astype(np.int32)
+        rows = int(occupied.sum())
+        numbers = uniform(seed, step=2, pixel=np.arange(rows * 28), sample=0, dimension=0)
+        values = (2.0 * numbers - 1.0).reshape(rows, 28).astype(dtype)
+        return cls(
+            tree, row, values[:, 0].copy(), values[:, 1:].reshape(rows, 9, 3).copy(),
+            density_scale=2.0,
+        )  # fmt: skip
+
+    def example_batch(self, *, seed: int) -> RayBatch:
+        """24 rays from a sphere of radius 3 m towards points inside of the box."""
+        return DenseGrid.example(seed=seed).example_batch(seed=seed)
+
+    def param_groups(self) -> Mapping[str, ParamSpec]:
+        """Two groups with a row a leaf."""
+        shape = {name: array.shape for name, array in self.params.items()}
+        return {
+            "density": ParamSpec(shape["density"], "1", (-10.0, 1e4), 0.2, "none"),
+            "sh": ParamSpec(shape["sh"], "1", (-1e3, 1e3), 0.05, "none"),
+        }
+
+    def render(
+        self, batch: RayBatch, *, seed: int, step: int, options: RenderOptions
+    ) -> tuple[Outputs, OctreeContext]:
+        """Colour (R, 3) linear, premultiplied, without background; opacity (R,); depth (R,) m."""
+        del seed, step  # nothing random here: no lattice that could be jittered
+        density, coefficients = self.params["density"], self.params["sh"]
+        directions = np.ascontiguousarray(batch.directions, density.dtype)
+        origins = np.ascontiguousarray(batch.origins, density.dtype)
+        borders = Borders(self.tree, origins, directions)
+        segments = segments_of(borders, self.row)
+        zero = density.dtype.type(0)
+        sigma_t = (self.density_scale * np.logaddexp(zero, density))[segments.row]
+        way = directions[segments.ray]
+        raw = sh.evaluate(coefficients[segments.row], way)
+        rgb = 1 / (1 + np.exp(-raw))
+        rays = len(origins)
+        walk = _walk(segments, sigma_t * (segments.t1 - segments.t0), rays, options.stop)
+        color = np.stack(
+            [_sums(segments.ray, walk.weight * channel, rays) for channel in rgb.T], axis=-1
+        )
+        depth = _sums(segments.ray, walk.weight * segments.middle, rays)
+        outputs = Outputs(
+            color.astype(density.dtype), 1 - walk.transmittance, depth.astype(density.dtype)
+        )
+        context = OctreeContext(
+            dict(self.params), borders, segments, walk, sigma_t, rgb, outputs,
+            options.camera_adjoint,
+        )  # fmt: skip
+        return outputs, context
+
+    def render_backward(self, context: OctreeContext, d_outputs: Outputs) -> dict[str, Array]:
+        """{"density": (N,), "sh": (N, K, 3)}, and "origins", "directions" (R, 3) if asked.
+
+        Every row adds up its contributions in the order of the rays, in double precision.
+        """
+        c, segments = context, context.segments
+        density, coefficients = c.params["density"], c.params["sh"]
+        weight, way = c.walk.weight, c.borders.directions[segments.ray]
+        d_color = np.asarray(d_outputs.color, density.dtype)[segments.ray]
+        d_depth = np.zeros_like(weight)
+        if d_outputs.depth is not None:
+            d_depth = np.asarray(d_outputs.depth, density.dtype)[segments.ray]
+        v = (d_color * c.rgb).sum(axis=1) + d_depth * segments.middle
+        d_s = _optical_depth_backward(segments, c.walk, v, c.outputs, d_outputs)
+        d_raw = weight[:, None] * d_color * c.rgb * (1 - c.rgb)
+        met = coefficients[segments.row]
+        d_met, d_way = sh.evaluate_backward(met, way, d_raw)
+        d_sigma_t = d_s * (segments.t1 - segments.t0)
+        d_density = _sums(segments.row, d_sigma_t, len(density))
+        slope = self.density_scale / (1 + np.exp(-density))
+        flat = d_met.reshape(len(d_met), -1)
+        d_sh = np.stack(
+            [_sums(segments.row, column, len(density)) for column in flat.T], axis=-1
+        ).reshape(coefficients.shape)
+        gradients = {
+            "density": (d_density * slope).astype(density.dtype),
+            "sh": d_sh.astype(density.dtype),
+        }
+        if c.camera_adjoint:
+            pull = 0.5 * weight * d_depth
+            d_t0, d_t1 = pull - c.sigma_t * d_s, pull + c.sigma_t * d_s
+            d_origins, d_directions = border_gradients(c.borders, segments, d_t0, d_t1)
+            for axis in range(3):
+                d_directions[:, axis] += _sums(segments.ray, d_way[:, axis], len(d_directions))
+            gradients["origins"] = d_origins.astype(density.dtype)
+            gradients["directions"] = d_directions.astype(density.dtype)
+        return gradients
+
+    def state(self) -> dict[str, Array]:
+        """{"lower" (L, 3), "side" (L,), "row" (L,)}: which cube of cells has which row."""
+        lower, side = self.tree.leaf_boxes()
+        return {"lower": lower, "side": side, "row": self.row}
+
+    def load_state(self, state: Mapping[str, Array]) -> None:
+        """Topology is fixed: raises RangeError unless `state` is that of the same tree."""
+        own = self.state()
+        if set(state) != set(own) or not all(np.array_equal(state[k], own[k]) for k in own):
+            raise RangeError(
+                message("OctreeSh.load_state", "state", f"this tree's {sorted(own)}",
+                        f"{sorted(state)}", "the topology of an octree_sh cannot change")
+            )  # fmt: skip
+
+
+def _walk(segments: Segments, s: Array, rays: int, stop: float) -> Walk:
+    """Front to back, the k-th segments of all rays at a time.
+
+    A ray of which less than `stop` is left meets nothing any more.
+    """
+    tau = np.zeros(rays, s.dtype)
+    weight, behind, seen = np.zeros_like(s), np.zeros_like(s), np.zeros(len(s), np.bool_)
+    for ray, m in segments.waves():
+        front = np.exp(-tau[ray])
+        seen[m] = front > stop
+        thick = s[m] * seen[m]
+        weight[m] = front * -np.expm1(-thick)
+        tau[ray] += thick
+        behind[m] = np.exp(-tau[ray])
+    return Walk(weight, behind, seen, np.exp(-tau))
+
+
+def _optical_depth_backward(
+    segments: Segments, walk: Walk, v: Array, outputs: Outputs, d_outputs: Outputs
+) -> Array:
+    """d_s (M,), front to back again; `v` is <d_color, rgb> + d_depth (t0 + t1) / 2."""
+    kind = v.dtype
+    left = (np.asarray(d_outputs.color, kind) * outputs.color).sum(axis=1)
+    if d_outputs.depth is not None:
+        left += np.asarray(d_outputs.depth, kind) * outputs.depth
+    end = np.zeros_like(left)
+    if d_outputs.opacity is not None:
+        end += np.asarray(d_outputs.opacity, kind) * walk.transmittance
+    passed = walk.weight * v
+    d_s = np.zeros_like(v)
+    for ray, m in segments.waves():
+        left[ray] -= passed[m]
+        d_s[m] = (walk.behind[m] * v[m] - left[ray] + end[ray]) * walk.seen[m]
+    return d_s
+
+
+def _sums(owner: NDArray[np.integer[Any]], values: Array, count: int) -> Array:
+    """Sums of `values` by owner, in their order."""
+    return np.bincount(owner, values, minlength=count)
