@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from photograd.errors import DtypeError, ShapeError
 from photograd.fields import Texture2D
-from photograd.fields.texture_2d import bilinear, bilinear_backward
+from photograd.texture import sample, sample_backward
 from photograd_course.gradcheck import check_gradient, dot_product_error
 
 # Row 0: 1 2 3, row 1: 10 20 30; the second channel is minus the first, the third its square.
@@ -17,7 +17,7 @@ TEXTURE = np.stack([RED, -RED, RED**2], axis=-1)
 
 
 def red(*points: tuple[float, float]) -> list[float]:
-    values: list[float] = bilinear(TEXTURE, np.array(points))[:, 0].tolist()
+    values: list[float] = sample(TEXTURE, np.array(points))[:, 0].tolist()
     return values
 
 
@@ -25,7 +25,7 @@ def test_rows_go_down_columns_to_the_right() -> None:
     centres = [((column + 0.5) / 3, (row + 0.5) / 2) for row in range(2) for column in range(3)]
     np.testing.assert_allclose(red(*centres), RED.ravel(), rtol=1e-14)
     np.testing.assert_allclose(
-        bilinear(TEXTURE, np.array(centres)), TEXTURE.reshape(6, 3), rtol=1e-14
+        sample(TEXTURE, np.array(centres)), TEXTURE.reshape(6, 3), rtol=1e-14
     )
 
 
@@ -49,13 +49,13 @@ def test_affine_pictures_are_exact_and_weights_add_up_to_one() -> None:
     g = np.random.default_rng(0)
     u, v = g.uniform(0.125, 0.875, 50), g.uniform(0.1, 0.9, 50)
     expected = np.stack([0.3 + 2 * u - v, np.ones(50), 5 * v], axis=-1)
-    np.testing.assert_allclose(bilinear(texture, np.stack([u, v], -1)), expected, atol=1e-14)
+    np.testing.assert_allclose(sample(texture, np.stack([u, v], -1)), expected, atol=1e-14)
 
 
 def test_a_point_gives_its_derivative_to_its_four_texels() -> None:
     # Three quarters from column 1 to column 2, one quarter from row 0 to row 1.
     point = np.array([[(1.75 + 0.5) / 3, (0.25 + 0.5) / 2]])
-    d_texture, d_point = bilinear_backward(TEXTURE, point, np.array([[1.0, 0.0, 0.0]]))
+    d_texture, d_point = sample_backward(TEXTURE, point, np.array([[1.0, 0.0, 0.0]]))
     expected = np.array([[0, 0.75 * 0.25, 0.75 * 0.75], [0, 0.25 * 0.25, 0.25 * 0.75]])
     np.testing.assert_allclose(d_texture[..., 0], expected, rtol=1e-13, atol=1e-16)
     assert not d_texture[..., 1:].any()
@@ -66,14 +66,14 @@ def test_a_point_gives_its_derivative_to_its_four_texels() -> None:
 
 def test_many_points_on_one_texel_add_up() -> None:
     points = np.tile([[0.5, 0.25]], (7, 1))
-    d_texture, _ = bilinear_backward(TEXTURE, points, np.full((7, 3), 0.5))
+    d_texture, _ = sample_backward(TEXTURE, points, np.full((7, 3), 0.5))
     assert d_texture[0, 1].tolist() == [3.5, 3.5, 3.5]
     assert d_texture.sum() == pytest.approx(10.5, rel=1e-15)
 
 
 def test_clamped_points_do_not_move_the_value() -> None:
     points = np.array([[-0.3, 0.4], [0.5, 1.7], [0.05, 0.95]])
-    _, d_points = bilinear_backward(TEXTURE, points, np.ones((3, 3)))
+    _, d_points = sample_backward(TEXTURE, points, np.ones((3, 3)))
     assert d_points[0, 0] == 0
     assert d_points[1, 1] == 0
     assert d_points[2].tolist() == [0, 0]
@@ -84,8 +84,8 @@ def test_clamped_points_do_not_move_the_value() -> None:
 def test_dot_product_of_a_linear_stage() -> None:
     points = np.random.default_rng(1).uniform(-0.1, 1.1, (40, 2))
     report = dot_product_error(
-        lambda _, v: bilinear(v["texture"], points),  # linear: J v is the function at v
-        lambda p, d: {"texture": bilinear_backward(p["texture"], points, d)[0]},
+        lambda _, v: sample(v["texture"], points),  # linear: J v is the function at v
+        lambda p, d: {"texture": sample_backward(p["texture"], points, d)[0]},
         {"texture": TEXTURE}, seed=1, tolerance=1e-12,
     )  # fmt: skip
     assert report, str(report)
@@ -96,14 +96,14 @@ def test_a_single_row_or_column_is_constant_across(shape: tuple[int, ...]) -> No
     g = np.random.default_rng(2)
     texture, points = g.uniform(0, 1, shape), g.uniform(0, 1, (20, 2))
     report = check_gradient(
-        lambda p: bilinear(p["texture"], points),
-        lambda p, d: {"texture": bilinear_backward(p["texture"], points, d)[0]},
+        lambda p: sample(p["texture"], points),
+        lambda p, d: {"texture": sample_backward(p["texture"], points, d)[0]},
         {"texture": texture}, seed=2,
     )  # fmt: skip
     assert report, str(report)
     if shape[0] == 1:
         other = points * [1.0, 0.3]
-        np.testing.assert_array_equal(bilinear(texture, points), bilinear(texture, other))
+        np.testing.assert_array_equal(sample(texture, points), sample(texture, other))
 
 
 @pytest.mark.parametrize(
