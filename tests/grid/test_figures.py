@@ -15,6 +15,7 @@ from support.tree import ROOT
 sys.path.insert(0, str(ROOT / "docs"))
 import figures_bricks as bricks
 import figures_octree as octree
+import figures_sh as harmonics
 
 
 @cache
@@ -74,3 +75,23 @@ def test_a_leaf_gets_the_sum_of_its_voxels() -> None:
     cell = np.abs(leaves[leaf]) / side[leaf] ** 3
     index = tuple(np.floor((centre[0] + 1) / 2 * octree.RESOLUTION).astype(int))
     assert cell < np.abs(d_sigma_t[index])  # wishes of both signs cancel in it
+
+
+def test_cells_ask_to_be_brighter_from_where_they_are_photographed_brighter() -> None:
+    found = harmonics.wishes()
+    biggest = np.abs(found.value).max()
+    assert np.abs(found.value[found.ball == 1]).max() < 1e-12 * biggest  # nothing is lacking there
+    left_ball = found.ball == 0
+    from_right = found.value[left_ball][:, 0]
+    from_left = found.value[left_ball][:, len(harmonics.ANGLES) // 2]
+    x, y = (found.centre[left_ball] - harmonics.BALLS[0][0][:2]).T
+    seen = np.abs(found.value[left_ball]).max(axis=1) > harmonics.LEAST * biggest
+    assert seen.sum() > 12
+    right, left = seen & (x > 0.1), seen & (x < -0.1)
+    assert (from_right[right] < 0).all()  # blue, towards the right
+    assert (from_left[left] > 0).all()  # red, towards the left
+    assert (np.abs(from_right[right]) > np.abs(from_left[right])).all()
+    assert (np.abs(from_left[left]) > np.abs(from_right[left])).all()
+    inside = np.hypot(x, y) < 0.2
+    assert inside.any()
+    assert not seen[inside].any()  # no ray arrives
