@@ -88,7 +88,7 @@ def test_cells_ask_to_be_brighter_from_where_they_are_photographed_brighter() ->
     x, y = (found.centre[left_ball] - harmonics.BALLS[0][0][:2]).T
     seen = np.abs(found.value[left_ball]).max(axis=1) > harmonics.LEAST * biggest
     assert seen.sum() > 12
-    right, left = seen & (x > 0.1), seen & (x < -0.1)
+    right, left = seen & (x > 0.25), seen & (x < -0.25)
     assert (from_right[right] < 0).all()  # blue, towards the right
     assert (from_left[left] > 0).all()  # red, towards the left
     assert (np.abs(from_right[right]) > np.abs(from_left[right])).all()
