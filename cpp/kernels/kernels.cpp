@@ -9,7 +9,12 @@ namespace photograd::PHOTOGRAD_ISA {
 
 #define PHOTOGRAD_TEXT_(x) #x
 #define PHOTOGRAD_TEXT(x) PHOTOGRAD_TEXT_(x)
-extern const Kernels table{PHOTOGRAD_TEXT(PHOTOGRAD_ISA), &march_dense_forward,
-                           &march_dense_backward, &march_dense_gather, &sample_rgb};
+extern const Kernels table{
+    .name = PHOTOGRAD_TEXT(PHOTOGRAD_ISA),
+    .march_dense_forward = &march_dense_forward,
+    .march_dense_backward = &march_dense_backward,
+    .march_dense_gather = &march_dense_gather,
+    .sample_rgb = &sample_rgb,
+};
 
 }  // namespace photograd::PHOTOGRAD_ISA

@@ -90,16 +90,16 @@ static bool sample_rgb(const SampleRgbArgs& a, std::int64_t begin, std::int64_t 
         if (next < end && !prepare(next, blocks[k ^ 1])) return false;
         const LocatedPoints& at = blocks[k];
         // The last point's fourth float is not ours to write.
-        const int n = length(from), wide = next < end ? n : n - 1;
+        const int n = length(from), whole = next < end ? n : n - 1;
         float* out = a.color + 3 * from;
-        for (int i = 0; i < wide; ++i) {
+        for (int i = 0; i < whole; ++i) {
             const float* above = a.texels + at.texel[i];
             *reinterpret_cast<Rgb4*>(out + 3 * i) = look_up_rgb(above, above + down, at, i);
         }
-        if (wide < n) {
-            const float* above = a.texels + at.texel[wide];
-            const Rgb4 color = look_up_rgb(above, above + down, at, wide);
-            for (int c = 0; c < 3; ++c) out[3 * wide + c] = color[c];
+        if (whole < n) {
+            const float* above = a.texels + at.texel[whole];
+            const Rgb4 color = look_up_rgb(above, above + down, at, whole);
+            for (int c = 0; c < 3; ++c) out[3 * whole + c] = color[c];
         }
     }
     return true;
