@@ -1,0 +1,233 @@
+# %% [markdown]
+# # A ray, a volume, photographs
+# Runs your renderer and its adjoint on a ray, on a small volume, and on photographs of your own,
+# next to the C++ core where that is installed. Never graded. `python explore.py` takes `--steps`,
+# `--thick` (a factor for extinctions), `--size` (pixels of a side) and `--capture DIR`: a folder
+# with `transforms.json` and its pictures. Of these, `--box` says how far the box reaches from the
+# origin, `--voxels` how finely it is divided, and `--views` how many pictures to take.
+
+# %%
+from __future__ import annotations
+
+import importlib
+import json
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import volume_rendering as mine
+from matplotlib.figure import Figure
+from PIL import Image
+
+
+def option(name, default):
+    """The value after --name on the command line; the default in a notebook."""
+    words = sys.argv[1:]
+    return words[words.index(f"--{name}") + 1] if f"--{name}" in words else default
+
+
+steps = max(1, int(option("steps", 48)))
+thick = float(option("thick", 1))
+size = max(2, int(option("size", 48)))
+capture = option("capture", "")
+
+
+# %% [markdown]
+# ## A ray
+# A dark cloud before a bright one, and a background between both. Where does the pixel want more
+# extinction to become brighter? Differences of your own forward pass say whether your derivative
+# can be believed.
+
+# %%
+ends = np.linspace(0, 6, steps + 1)
+middle, width = (ends[1:] + ends[:-1]) / 2, np.diff(ends)[None]
+fog = thick * (0.6 * np.exp(-((middle - 1.5) ** 2) * 3) + 2 * np.exp(-((middle - 4.5) ** 2) * 3))
+fog, shine = fog[None], np.where(middle < 3, 0.1, 1.2 - 0.1 * middle)[None, :, None]
+sky = np.array([0.3])
+slope, weights, _ = mine.composite_adjoint(fog, shine, width, sky, np.ones((1, 1)), np.zeros(1))
+differences = np.zeros(steps)
+for k in range(steps):
+    nudge = 1e-5 * np.eye(steps)[k]
+    up, down = (mine.composite(fog + way * nudge, shine, width, sky)[0] for way in (1, -1))
+    differences[k] = (up - down)[0, 0] / 2e-5
+seen, through = mine.composite(fog, shine, width, sky)
+off = np.linalg.norm(slope[0] - differences) / max(np.linalg.norm(differences), 1e-300)
+print(f"ray:    pixel {seen[0, 0]:.4f}, T_end {through[0]:.4f}, {steps} steps")
+print(f"        your derivative is {off:.1e} from differences")
+figure = Figure(figsize=(9, 7), layout="constrained")
+top, centre, bottom = figure.subplots(3, 1, sharex=True)
+top.step(middle, fog[0], where="mid", color="0.4")
+top.set(title="extinction [1/m]: a dark cloud, then a bright one")
+centre.step(middle, weights[0, :, 0], where="mid", color="tab:blue")
+centre.set(title="weight of each step")
+bottom.axhline(0, color="0.7")
+bottom.plot(middle, slope[0], color="black", label="your derivative by extinction")
+bottom.plot(middle, differences, "o", color="tab:orange", markersize=3, label="differences")
+bottom.set(title="derivative of the pixel by extinction", xlabel="m")
+bottom.legend()
+figure.savefig("ray.png", dpi=100)
+
+
+# %% [markdown]
+# ## A volume
+# A camera looks along -z through a cube of two metres: with parallel rays, so that all of them have
+# the same step, as the core wants it. The truth is a ball within a ring; the guess has no ring, and
+# a ball too many.
+
+
+# %%
+def scene(n, *, guess):
+    """A volume of n x n x n voxels."""
+    axis = (np.arange(n) + 0.5) / n * 2 - 1
+    x, y, z = np.meshgrid(axis, axis, axis, indexing="ij")
+    grid = np.zeros((n, n, n, 4))
+    grid[..., :3] = (0.9, 0.7, 0.4)
+    around = np.hypot(x + 0.15, y + 0.1)
+    grid[around**2 + z**2 < 0.09, 3] = 8
+    thing = (x - 0.7) ** 2 + (y - 0.7) ** 2 + z**2 < 0.05 if guess else around > 9
+    grid[thing | ((not guess) & ((around - 0.6) ** 2 + z**2 < 0.02)), 3] = 6
+    grid[..., 3] *= thick
+    return grid
+
+
+truth, guess = scene(24, guess=False), scene(24, guess=True)
+low, high = -np.ones(3), np.ones(3)
+across = (np.arange(size) + 0.5) / size * 2 - 1
+down, right = np.meshgrid(-across, across, indexing="ij")
+eyes = np.stack([right.ravel(), down.ravel(), np.full(size**2, 3.0)], axis=1)
+looks = np.tile([0.0, 0.0, -1.0], (size**2, 1))
+backdrop = np.array([0.1, 0.1, 0.15])
+rays = (low, high, eyes, looks, steps, backdrop)
+photograph = mine.render_rays(truth, *rays)
+before = time.perf_counter()
+picture = mine.render_rays(guess, *rays)
+forward = time.perf_counter() - before
+d_picture = 2 / len(picture) * (picture - photograph)
+before = time.perf_counter()
+d_guess, _ = mine.render_adjoint(guess, *rays, d_picture)
+backward = time.perf_counter() - before
+loss = np.sum((picture - photograph) ** 2) / len(picture)
+print(f"volume: {size} x {size} pixels in {forward:.2f} s, the adjoint in {backward:.2f} s")
+print(f"        loss {loss:.4f}; one step against the derivative, extinctions kept above 0, gives:")
+for length in (1, 10, 100):
+    moved = guess - length * d_guess
+    moved[..., 3] = np.maximum(moved[..., 3], 0)
+    after = mine.render_rays(moved, *rays)
+    print(f"        length {length}: {np.sum((after - photograph) ** 2) / len(after):.4f}")
+
+# %% [markdown]
+# ## The C++ core on the same volume
+
+
+# %%
+def of_the_core():
+    """(its derivative, seconds of its two passes)."""
+    grids = importlib.import_module("photograd.fields.dense_grid")
+    marches = importlib.import_module("photograd.fields.march")
+    base = importlib.import_module("photograd.representation")
+    policy = marches.MarchPolicy(
+        box=(tuple(low), tuple(high)), dt=2 / steps * (1 - 1e-12), lattice="entry",
+        density_activation="identity", color_activation="identity",
+    )  # fmt: skip
+    field = grids.DenseGrid(guess.copy(), policy)
+    batch = base.RayBatch(eyes, looks, np.arange(len(eyes), dtype=np.uint32))
+    started = time.perf_counter()
+    _, context = field.render(batch, options=base.RenderOptions(), seed=0, step=0)
+    # It leaves the background out: pixel = color + (1 - opacity) background.
+    back = base.Outputs(d_picture, -(d_picture @ backdrop), None)
+    gradient = field.render_backward(context, back)["values"]
+    return np.asarray(gradient), time.perf_counter() - started
+
+
+core_slope = None
+try:
+    core_slope, core_seconds = of_the_core()
+except (ImportError, AttributeError, TypeError):  # none, or another than this was written for
+    print("core not installed")
+else:
+    gap = np.linalg.norm(core_slope - d_guess) / np.linalg.norm(core_slope)
+    print(f"core:   both passes in {core_seconds:.4f} s, {(forward + backward) / core_seconds:.0f} "
+          f"times as fast; its derivative is {gap:.1e} from yours")  # fmt: skip
+
+
+# %%
+def signed(axes, values, end, title):
+    """A picture of values seen from above: blue negative, red positive."""
+    axes.imshow(values.sum(axis=2).T[::-1], cmap="RdBu_r", vmin=-end, vmax=end)
+    axes.set(title=title, xticks=[], yticks=[])
+
+
+def shown(axes, values, title):
+    """A picture of linear light."""
+    axes.imshow(np.clip(values, 0, 1).reshape(size, size, -1) ** (1 / 2.2))
+    axes.set(title=title, xticks=[], yticks=[])
+
+
+figure = Figure(figsize=(14, 4), layout="constrained")
+panels = figure.subplots(1, 4)
+shown(panels[0], photograph, "photograph")
+shown(panels[1], picture, "guess")
+end = max(np.abs(d_guess[..., 3].sum(axis=2)).max(), 1e-300)
+signed(panels[2], d_guess[..., 3], end, "your derivative by extinction\nblue: add, red: take away")
+if core_slope is None:
+    panels[3].text(0.5, 0.5, "core not installed", ha="center")
+    panels[3].set_axis_off()
+else:
+    signed(panels[3], core_slope[..., 3], end, "the core's, on the same scale")
+figure.savefig("volume.png", dpi=100)
+print("ray.png, volume.png: look at them")
+
+
+# %% [markdown]
+# ## Photographs of your own
+# `transforms.json` has the cameras (x to the right, y up, looking along -z: columns of a matrix)
+# and an angle of view or a focal length in pixels. In a box full of thin grey fog, where do the
+# photographs want it denser, where thinner? Their background counts as the mean of their border.
+
+
+# %%
+def views(folder):
+    """(origins, directions, colours) of all pixels of the pictures, made small."""
+    file = folder / "transforms.json"
+    file = file if file.exists() else folder / "transforms_train.json"
+    told = json.loads(file.read_text(encoding="utf-8"))
+    frames = told["frames"]
+    some = max(1, len(frames) // max(1, int(option("views", 8))))
+    for frame in frames[::some]:
+        file = folder / frame["file_path"]
+        file = file if file.suffix else file.with_suffix(".png")
+        image = Image.open(file)
+        wide, tall = image.size
+        focal = frame.get("fl_x", told.get("fl_x"))
+        angle = frame.get("camera_angle_x", told.get("camera_angle_x"))
+        focal = focal / told.get("w", wide) if focal else 0.5 / np.tan(angle / 2)
+        small = (size, max(1, round(size * tall / wide)))
+        colours = np.asarray(image.convert("RGBA").resize(small), np.float64) / 255
+        colours = colours[..., :3] ** 2.2 * colours[..., 3:]
+        v, u = np.meshgrid(np.arange(small[1]) + 0.5, np.arange(size) + 0.5, indexing="ij")
+        flat = [(u / size - 0.5) / focal, -(v - small[1] / 2) / size / focal, -np.ones(u.shape)]
+        pose = np.array(frame["transform_matrix"], np.float64)
+        aim = np.stack(flat, axis=2).reshape(-1, 3) @ pose[:3, :3].T
+        yield np.tile(pose[:3, 3], (len(aim), 1)), aim, colours
+
+
+if capture:
+    reach, n = float(option("box", 1.0)), int(option("voxels", 32))
+    corner = np.full(3, reach)
+    grey = np.full((n, n, n, 4), 0.5)
+    grey[..., 3] = 0.1 * thick / reach
+    total, count = np.zeros(grey.shape), 0
+    for places, aims, colours in views(Path(capture)):
+        rim = np.concatenate([colours[0], colours[-1], colours[:, 0], colours[:, -1]])
+        given = (-corner, corner, places, aims, steps, rim.mean(axis=0))
+        wrong = mine.render_rays(grey, *given) - colours.reshape(-1, 3)
+        total += mine.render_adjoint(grey, *given, 2 * wrong / len(wrong))[0]
+        count += 1
+    titles = ("y to the right, z up", "x to the right, z up", "x to the right, y up")
+    figure = Figure(figsize=(10, 4), layout="constrained")
+    for axes, axis in zip(figure.subplots(1, 3), range(3), strict=True):
+        flat = np.moveaxis(total[..., 3], axis, 2)
+        signed(axes, flat, max(np.abs(flat.sum(axis=2)).max(), 1e-300), titles[axis])
+    figure.savefig("capture.png", dpi=100)
+    print(f"capture.png: what {count} photographs want of grey fog; blue is more, red is less")

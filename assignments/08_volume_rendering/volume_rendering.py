@@ -1,0 +1,189 @@
+"""Volume rendering: light through a grid of glowing, absorbing voxels, and its adjoint.
+
+A volume is an array (X, Y, Z, 4) between the corners `low` and `high` of a box; channels are r, g,
+b and sigma, the extinction in 1/m, never negative. Values sit in the middle of their voxels. A ray
+is origin + t * direction, t >= 0; its direction need not have length 1. R rays, S samples each, all
+numbers float64.
+
+Your tasks are six functions, one section of the handout each; `photograd course check 08` tells how
+far you are. `ray_samples` and `render_rays` are given, and work once yours do.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+
+def composite(sigma, color, dt, background):
+    """What is seen along rays that are cut into steps of constant extinction and colour.
+
+    Args:
+        sigma: (R, S), the extinction in each step, 0 or more, nearest step first; 1/m.
+        color: (R, S, C), the colour of each step; any C from 1 upwards.
+        dt: (R, S), the length of each step, 0 or more; m. Steps may differ.
+        background: (C,), the colour behind everything, the same for all rays.
+
+    Returns:
+        (pixel, T_end): (R, C), and (R,) the transmittance of the whole ray; handout equations (4)
+        to (8).
+    """
+    # >>> solution 08.1
+    s = sigma * dt
+    behind = np.cumsum(s, axis=1)
+    front = np.concatenate([np.zeros((len(s), 1)), behind[:, :-1]], axis=1)
+    w = np.exp(-front) * -np.expm1(-s)
+    T_end = np.exp(-behind[:, -1])
+    return np.einsum("rs,rsc->rc", w, color) + T_end[:, None] * background, T_end
+    # <<< solution
+
+
+def composite_adjoint(sigma, color, dt, background, d_pixel, d_T_end):
+    """The adjoint of `composite`: from derivatives by its results to derivatives by its inputs.
+
+    Args:
+        sigma, color, dt, background: as `composite` had them.
+        d_pixel: (R, C), the derivative of some loss by each pixel.
+        d_T_end: (R,), the derivative of that loss by each T_end.
+
+    Returns:
+        (d_sigma, d_color, d_background): (R, S), (R, S, C) and (C,), the derivative of that loss by
+        each; handout section 2.
+    """
+    # >>> solution 08.2
+    pixel, end = composite(sigma, color, dt, background)
+    left = np.sum(pixel * d_pixel, axis=1) + end * d_T_end
+    T = np.ones(len(sigma))
+    d_sigma, d_color = np.zeros(sigma.shape), np.zeros(color.shape)
+    for k in range(sigma.shape[1]):
+        tau = sigma[:, k] * dt[:, k]
+        weight, after = T * -np.expm1(-tau), T * np.exp(-tau)
+        v = np.sum(color[:, k] * d_pixel, axis=1)
+        left = left - weight * v
+        d_sigma[:, k] = dt[:, k] * (after * v - left)
+        d_color[:, k] = weight[:, None] * d_pixel
+        T = after
+    return d_sigma, d_color, T @ d_pixel
+    # <<< solution
+
+
+def ray_box(low, high, origins, directions):
+    """Where rays enter and leave a box with edges along the axes.
+
+    Args:
+        low, high: (3,), two opposite corners, low < high on each axis; faces belong to the box.
+        origins: (R, 3).
+        directions: (R, 3), of any length above zero; single components may be zero.
+
+    Returns:
+        (t_near, t_far): (R,) each, 0 <= t_near < t_far, t in units of the direction; where a ray
+        has no stretch of the box before it, both are 0. Handout equations (13) to (15).
+    """
+    # >>> solution 08.3
+    with np.errstate(divide="ignore", invalid="ignore"):
+        first, second = (low - origins) / directions, (high - origins) / directions
+    enter, leave = np.minimum(first, second), np.maximum(first, second)
+    parallel = directions == 0
+    between = (origins >= low) & (origins <= high)
+    enter = np.where(parallel, np.where(between, -np.inf, np.inf), enter)
+    leave = np.where(parallel, np.inf, leave)
+    t_near = np.maximum(enter.max(axis=1), 0.0)
+    t_far = leave.min(axis=1)
+    hit = t_near < t_far
+    return np.where(hit, t_near, 0.0), np.where(hit, t_far, 0.0)
+    # <<< solution
+
+
+def trilinear(grid, u):
+    """Values of a grid at given places.
+
+    Args:
+        grid: (X, Y, Z, C); any X, Y, Z, C from 1 upwards.
+        u: (N, 3), the places, from 0 to 1 across the box on each axis; the border holds beyond.
+
+    Returns:
+        (N, C); handout equations (16) to (18).
+    """
+    # >>> solution 08.4
+    counts = np.array(grid.shape[:3])
+    place = np.clip(u * counts - 0.5, 0, counts - 1)
+    near = place.astype(int)
+    far = np.minimum(near + 1, counts - 1)
+    f = place - near
+    values = np.zeros((len(u), grid.shape[3]))
+    for corner in np.ndindex(2, 2, 2):
+        i, j, k = np.where(corner, far, near).T
+        share = np.prod(np.where(corner, f, 1 - f), axis=1)
+        values += share[:, None] * grid[i, j, k]
+    return values
+    # <<< solution
+
+
+def trilinear_adjoint(shape, u, g):
+    """The transpose of `trilinear`: each sample's number goes back to its eight voxels.
+
+    Args:
+        shape: (X, Y, Z), a tuple or a list: take it apart, (*shape, 1) works for both.
+        u: (N, 3), the places; the same place may occur many times.
+        g: (N, C), the derivative of some loss by each sample.
+
+    Returns:
+        (X, Y, Z, C), the derivative of that loss by each voxel.
+    """
+    # >>> solution 08.5
+    sizes = np.array(shape)
+    where = np.clip(sizes * u - 0.5, 0, sizes - 1)
+    floor = where.astype(int)
+    ceiling = np.minimum(floor + 1, sizes - 1)
+    fraction = where - floor
+    d_grid = np.zeros((*shape, g.shape[1]))
+    for upper in np.ndindex(2, 2, 2):
+        a, b, c = np.where(upper, ceiling, floor).T
+        part = np.prod(np.where(upper, fraction, 1 - fraction), axis=1)
+        np.add.at(d_grid, (a, b, c), part[:, None] * g)
+    return d_grid
+    # <<< solution
+
+
+def ray_samples(low, high, origins, directions, n):
+    """Given: places in the middle of n equal steps through the box, and the steps' lengths.
+
+    Returns:
+        (u, dt): (R, n, 3), places from 0 to 1 across the box; (R, n), in m whatever the length of
+        the directions.
+    """
+    t_near, t_far = ray_box(low, high, origins, directions)
+    step = (t_far - t_near) / n
+    t = t_near[:, None] + (np.arange(n) + 0.5) * step[:, None]
+    points = origins[:, None, :] + t[:, :, None] * directions[:, None, :]
+    metres = step * np.linalg.norm(directions, axis=1)
+    return (points - low) / (high - low), np.repeat(metres[:, None], n, axis=1)
+
+
+def render_rays(grid, low, high, origins, directions, n, background):
+    """Given: the pixels (R, 3) that rays see through a volume in front of a background (3,)."""
+    u, dt = ray_samples(low, high, origins, directions, n)
+    samples = trilinear(grid, u.reshape(-1, 3)).reshape(len(origins), n, 4)
+    return composite(samples[:, :, 3], samples[:, :, :3], dt, background)[0]
+
+
+def render_adjoint(grid, low, high, origins, directions, n, background, d_pixel):
+    """The adjoint of `render_rays` by the volume and the background.
+
+    Args:
+        grid, low, high, origins, directions, n, background: as `render_rays` had them.
+        d_pixel: (R, 3), the derivative of some loss by each pixel.
+
+    Returns:
+        (d_grid, d_background): (X, Y, Z, 4) and (3,), the derivative of that loss by each; handout
+        section 6.
+    """
+    # >>> solution 08.6
+    places, lengths = ray_samples(low, high, origins, directions, n)
+    flat = places.reshape(-1, 3)
+    found = trilinear(grid, flat).reshape(*lengths.shape, 4)
+    extinction, shade = found[:, :, 3], found[:, :, :3]
+    opaque = np.zeros(len(d_pixel))
+    back = composite_adjoint(extinction, shade, lengths, background, d_pixel, opaque)
+    d_samples = np.concatenate([back[1], back[0][:, :, None]], axis=2)
+    return trilinear_adjoint(grid.shape[:3], flat, d_samples.reshape(-1, 4)), back[2]
+    # <<< solution
