@@ -78,10 +78,10 @@ def apply_mutant(folder: Path, name: str) -> str:
 
 
 def starter(folder: Path) -> str:
-    """What students start from, as far as behaviour goes: every region raises."""
+    """What students start from, as far as behaviour goes: every region in a function raises."""
     text = re.sub(
         r"^( *)# >>> solution (\S+)\n.*?# <<< solution",
-        r"\1raise NotImplementedError('\2: see the handout')",
+        lambda found: f"{found[1]}raise NotImplementedError('{found[2]}')" if found[1] else "",
         source(folder),
         flags=re.MULTILINE | re.DOTALL,
     )

@@ -1,0 +1,13 @@
+"""Your d_v leaves out that the polynomials depend on z."""
+
+TASKS = ("11.3",)
+LOSES = ("11.3.vectors", "11.3.hidden", "11.3.cost")
+REPLACE = [
+    (
+        (
+            "            slope[2] += _size(ell, m) * Q[ell, m + 1] * (plus * even[m] + "
+            "minus * odd[m])\n"
+        ),
+        (""),
+    )
+]

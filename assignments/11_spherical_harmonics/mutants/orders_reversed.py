@@ -1,0 +1,14 @@
+"""Your orders run from l down to -l: they go from -l to l."""
+
+TASKS = ("11.1",)
+LOSES = ("11.1.first", "11.1.signs", "11.1.hidden")
+REPLACE = [
+    (
+        ("            Y[:, ell * (ell + 1) - m] = _size(ell, m) * Q[ell, m] * odd[m]\n"),
+        ("            Y[:, ell * (ell + 1) + m] = _size(ell, m) * Q[ell, m] * odd[m]\n"),
+    ),
+    (
+        ("            Y[:, ell * (ell + 1) + m] = _size(ell, m) * Q[ell, m] * even[m]\n"),
+        ("            Y[:, ell * (ell + 1) - m] = _size(ell, m) * Q[ell, m] * even[m]\n"),
+    ),
+]

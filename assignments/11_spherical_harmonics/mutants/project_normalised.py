@@ -1,0 +1,13 @@
+"""Your projection is divided by the sum of the weights."""
+
+TASKS = ("11.2",)
+LOSES = ("11.2.back", "11.2.rest", "11.2.hidden")
+REPLACE = [
+    (
+        ("    return sh_basis(directions, degree).T @ (weights[:, None] * values)\n"),
+        (
+            "    return sh_basis(directions, degree).T @ (weights[:, None] / weights.sum() "
+            "* values)\n"
+        ),
+    )
+]
