@@ -801,10 +801,13 @@ def set_thread_count(threads: typing.SupportsInt | typing.SupportsIndex) -> None
     """
 
 def sh_colors(
-    directions: numpy.ndarray, coefficients: numpy.ndarray, colors: numpy.ndarray
+    directions: numpy.ndarray,
+    coefficients: numpy.ndarray,
+    colors: numpy.ndarray,
+    fused: bool = True,
 ) -> None:
     """
-    Writes sum_k Y_k(directions) coefficients[:, k] to colors (N, C).
+    Writes sum_k Y_k(directions) coefficients[:, k] to colors (N, C). fused=False forces the scalar form, the oracle of the kernel.
     """
 
 def sh_colors_backward(
@@ -813,9 +816,11 @@ def sh_colors_backward(
     d_colors: numpy.ndarray,
     d_directions: numpy.ndarray,
     d_coefficients: numpy.ndarray,
+    add: bool = True,
+    fused: bool = True,
 ) -> None:
     """
-    Adds the derivatives to d_directions (N, 3) and d_coefficients (N, K, C).
+    Adds the derivatives to d_directions (N, 3) and d_coefficients (N, K, C); with add=False overwrites what stands there, without reading it.
     """
 
 def square_to_cap(
