@@ -77,34 +77,52 @@ def surfaces(solids: Bvh, batch: RayBatch) -> Array:
     return np.asarray(np.where(hits.hit[:, None], color, 0.25 * DIM))
 
 
-def computed() -> tuple[Array, Array, Array]:
-    """Pictures without and with dust (H, W, 3), and a slice (X, Y) of the derivative, 1/m^3."""
-    solids, batch = hall(), rays(SIZE)
-    x, y, z = np.round((HALL[1] - HALL[0]) / VOXEL).astype(int).tolist()
-    medium = SunlitMedium.homogeneous(
-        SIGMA_T, (x, y, z), HALL, VOXEL / 2, albedo=(0.95, 0.95, 0.95), g=0.55,
+def dusty_hall(solids: Bvh, voxel: float) -> SunlitMedium:
+    """The same dust everywhere in the hall."""
+    x, y, z = np.round((HALL[1] - HALL[0]) / voxel).astype(int).tolist()
+    return SunlitMedium.homogeneous(
+        SIGMA_T, (x, y, z), HALL, voxel / 2, albedo=(0.95, 0.95, 0.95), g=0.55,
         irradiance=IRRADIANCE, sun=SUN, solids=solids,
     )  # fmt: skip
+
+
+def computed(size: int = SIZE, voxel: float = VOXEL) -> dict[str, Array]:
+    """What the picture shows.
+
+    Returns:
+        "clear" and "dusty" (H, W, 3) linear radiance, "scattered" (H, W, 3) the dust's own; and of
+        the upright plane through the middle window "light" (X, Y) the share of the sun's light
+        there, "derivative" (X, Y) of the mean scattered light by sigma_t and volume, 1/m^3.
+    """
+    solids, batch = hall(), rays(size)
+    medium = dusty_hall(solids, voxel)
     outputs, context = medium.render(batch, seed=1, step=0, options=RenderOptions(jitter=True))
     assert outputs.opacity is not None
     behind = surfaces(solids, batch)
-    dusty = outputs.color + (1 - outputs.opacity)[:, None] * behind
     mean = Outputs(np.full_like(outputs.color, 1 / outputs.color.size))
     d_sigma_t = medium.render_backward(context, mean)["sigma_t"]
-    shape = (SIZE, SIZE, 3)
-    return behind.reshape(shape), dusty.reshape(shape), d_sigma_t[:, :, z // 2] / VOXEL**3
+    middle = d_sigma_t.shape[2] // 2
+    pictures = {
+        "clear": behind, "scattered": outputs.color,
+        "dusty": outputs.color + (1 - outputs.opacity)[:, None] * behind,
+    }  # fmt: skip
+    slices = {"light": medium.light()[0], "derivative": d_sigma_t / voxel**3}
+    return {name: image.reshape(size, size, 3) for name, image in pictures.items()} | {
+        name: volume[:, :, middle] for name, volume in slices.items()
+    }
 
 
 def main() -> None:
     """Write the picture."""
-    clear, dusty, layer = computed()
+    found = computed()
+    layer = found["derivative"]
     with style.house_style():
         figure = style.new_figure(3 * PANEL + 0.7, PANEL + 1.35)
         panels = [
             style.place_axes(figure, 0.15 + k * (PANEL + 0.2), 0.35, PANEL, PANEL) for k in range(3)
         ]
-        for axes, image in zip(panels, (clear, dusty), strict=False):
-            axes.imshow(srgb_encode(np.clip(image, 0, 1)), interpolation="nearest")
+        for axes, name in zip(panels, ("clear", "dusty"), strict=False):
+            axes.imshow(srgb_encode(np.clip(found[name], 0, 1)), interpolation="nearest")
         panels[2].imshow(
             layer.T, origin="lower", extent=(-4, 4, 0, 4), cmap=style.signed_colour_map(),
             norm=style.symmetric_scale(float(np.quantile(np.abs(layer), 0.995))),
@@ -117,7 +135,8 @@ def main() -> None:
             figure,
             "A hall with three windows on the left. In dust, each shaft of light scatters towards "
             "the camera. Right: the derivative of the picture's mean scattered light by sigma_t "
-            "(red: positive, blue: negative), in the upright plane through the middle window.",
+            "(red: positive, blue: negative), in the upright plane through the middle window. Dust "
+            "in a shaft brightens; dust in the dark can only dim what lies behind it.",
             left=0.15, right=0.15,
         )  # fmt: skip
         save_figure(figure, PICTURE)
