@@ -12,6 +12,7 @@ from typing import Any
 
 RATES = {
     "flop": 514.6e9,  # float32 multiply-adds of 16 lanes, 24 independent chains; counted as two
+    "byte": 95.19e9,  # of long arrays, two read and one written past the caches
     "exp": 18.76e9,  # float32 polynomials of 16 lanes
     "load_L2": 4.029e9,  # loads of 32 bytes at random places of a 1 MiB table
     "load_L3": 2.627e9,  # the same in 8 MiB
@@ -53,6 +54,17 @@ def texture_bound(lookups: int) -> dict[str, Any]:
     For points in the order that they come in. A program that sorts them first can be faster.
     """
     return _row(slowest({"load_L3": 2 * lookups}), slowest({"rmw_L3": 2 * lookups}))
+
+
+def sh_bound(points: int) -> dict[str, Any]:
+    """W6a: a point is 204 bytes of coefficients and direction, and 12 of colour.
+
+    Backward reads the cotangent of the colour and writes as much as forward reads. Coefficients
+    count once: a program that does both in one pass over pieces that fit into a cache can have it
+    so.
+    """
+    forward = slowest({"byte": 216 * points, "flop": 130 * points})
+    return _row(forward, slowest({"byte": 432 * points, "flop": 400 * points}))
 
 
 def _row(forward: tuple[float, str], both: tuple[float, str] | None) -> dict[str, Any]:

@@ -21,6 +21,8 @@ RECORDED = {
     "W4 n=16 res=8 views=1": "bbf2719ce201136b",
     "W5 n=512 points=1000000": "90849c1cc0c7762d",
     "W5 n=256 points=200000": "bed43a2402088295",
+    "W6a points=2000000": "445afa5c746f01b0",
+    "W6a points=1000": "002ee91ab6cb7117",
 }
 
 
@@ -119,6 +121,17 @@ def texture(n: int) -> Array:
 def texture_points(count: int) -> Array:
     """(count, 2) float32 uniform texture coordinates, in random order."""
     return np.random.default_rng(3).random((count, 2), dtype=np.float32)
+
+
+# W6a: directions, each with spherical-harmonic coefficients of its own
+
+
+def sh_points(count: int) -> tuple[Array, Array, Array]:
+    """Unit directions (count, 3), coefficients (count, 16, 3), weights (count, 3); float32."""
+    random = np.random.default_rng(5)
+    directions = unit(random.standard_normal((count, 3))).astype(np.float32)
+    coefficients = random.standard_normal((count, 16, 3), dtype=np.float32)
+    return directions, coefficients, random.standard_normal((count, 3), dtype=np.float32)
 
 
 # W1: a mesh of a million triangles, and rays that all start inside

@@ -1,5 +1,6 @@
 // Spherical harmonics of many directions; photograd.sh is the typed face.
 #include "array_args.h"
+#include "kernels/kernels.h"
 #include "module.h"
 #include "photograd/ops/sh_batch.h"
 
@@ -37,7 +38,14 @@ ShRows<R> rows_of(ArrayArgs& args, const py::array& directions, const py::array&
     return rows;
 }
 
-void colors(const py::array& directions, const py::array& coefficients, py::array out) {
+/// Whether the kernel computes this: floats in three channels, of degree 1 at least. It agrees with the
+/// scalar form of ops/sh_batch.h bit for bit.
+template <class R>
+constexpr bool has_kernel(int degree, int channels) {
+    return std::is_same_v<R, float> && degree > 0 && channels == 3;
+}
+
+void colors(const py::array& directions, const py::array& coefficients, py::array out, bool fused) {
     dispatch_real("sh_colors", "directions", directions, [&](auto real) {
         using R = decltype(real);
         ArrayArgs args("sh_colors");
@@ -45,13 +53,21 @@ void colors(const py::array& directions, const py::array& coefficients, py::arra
         R* to = args.out<R>("colors", out, "N C");
         with_sizes(args, [&](auto degree, auto channels) {
             const py::gil_scoped_release release;
+            if constexpr (has_kernel<R>(degree.value, channels.value))
+                if (fused) {
+                    const ShRgbArgs a{degree.value, rows.directions, rows.coefficients};
+                    return for_sh_rows(rows.count, [&](std::int64_t first, std::int64_t end) {
+                        kernels().sh_rgb(a, first, end, to);
+                    });
+                }
             sh_colors<degree.value, channels.value>(rows, to);
         });
     });
 }
 
 void colors_backward(const py::array& directions, const py::array& coefficients,
-                     const py::array& d_colors, py::array d_directions, py::array d_coefficients) {
+                     const py::array& d_colors, py::array d_directions, py::array d_coefficients,
+                     bool add, bool fused) {
     dispatch_real("sh_colors_backward", "directions", directions, [&](auto real) {
         using R = decltype(real);
         ArrayArgs args("sh_colors_backward");
@@ -61,8 +77,16 @@ void colors_backward(const py::array& directions, const py::array& coefficients,
         R* to_coefficients = args.out<R>("d_coefficients", d_coefficients, "N K C");
         with_sizes(args, [&](auto degree, auto channels) {
             const py::gil_scoped_release release;
+            if constexpr (has_kernel<R>(degree.value, channels.value))
+                if (fused) {
+                    const ShRgbArgs a{degree.value, rows.directions, rows.coefficients};
+                    const ShRgbBackward b{d_out, to_directions, to_coefficients, add};
+                    return for_sh_rows(rows.count, [&](std::int64_t first, std::int64_t end) {
+                        kernels().sh_rgb_backward(a, b, first, end);
+                    });
+                }
             sh_colors_backward<degree.value, channels.value>(rows, d_out, to_directions,
-                                                             to_coefficients);
+                                                             to_coefficients, add);
         });
     });
 }
@@ -70,11 +94,17 @@ void colors_backward(const py::array& directions, const py::array& coefficients,
 }  // namespace
 
 void bind_sh(py::module_& m) {
-    m.def("sh_colors", &colors, py::arg("directions"), py::arg("coefficients"), py::arg("colors"),
-          "Writes sum_k Y_k(directions) coefficients[:, k] to colors (N, C).");
-    m.def("sh_colors_backward", &colors_backward, py::arg("directions"), py::arg("coefficients"),
-          py::arg("d_colors"), py::arg("d_directions"), py::arg("d_coefficients"),
-          "Adds the derivatives to d_directions (N, 3) and d_coefficients (N, K, C).");
+    m.def(
+        "sh_colors", &colors, py::arg("directions"), py::arg("coefficients"), py::arg("colors"),
+        py::arg("fused") = true,
+        "Writes sum_k Y_k(directions) coefficients[:, k] to colors (N, C). fused=False forces the "
+        "scalar form, the oracle of the kernel.");
+    m.def(
+        "sh_colors_backward", &colors_backward, py::arg("directions"), py::arg("coefficients"),
+        py::arg("d_colors"), py::arg("d_directions"), py::arg("d_coefficients"),
+        py::arg("add") = true, py::arg("fused") = true,
+        "Adds the derivatives to d_directions (N, 3) and d_coefficients (N, K, C); with add=False "
+        "overwrites what stands there, without reading it.");
 }
 
 }  // namespace photograd

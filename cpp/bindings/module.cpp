@@ -10,6 +10,7 @@ PYBIND11_MODULE(_core, m) {
     photograd::bind_geometry(m);
     photograd::bind_bsdf(m);
     photograd::bind_light(m);
+    photograd::bind_phase(m);
     photograd::bind_direct(m);
     photograd::bind_sampling(m);
     photograd::bind_sh(m);

@@ -4,6 +4,7 @@
 
 #include "kernels/march_dense.inl"
 #include "kernels/sample_rgb.inl"
+#include "kernels/sh_rgb.inl"
 
 namespace photograd::PHOTOGRAD_ISA {
 
@@ -15,6 +16,8 @@ extern const Kernels table{
     .march_dense_backward = &march_dense_backward,
     .march_dense_gather = &march_dense_gather,
     .sample_rgb = &sample_rgb,
+    .sh_rgb = &sh_rgb,
+    .sh_rgb_backward = &sh_rgb_backward,
 };
 
 }  // namespace photograd::PHOTOGRAD_ISA

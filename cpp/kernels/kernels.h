@@ -4,6 +4,7 @@
 
 #include "kernels/march_dense.h"
 #include "kernels/sample_rgb.h"
+#include "kernels/sh_rgb.h"
 
 namespace photograd {
 
@@ -16,6 +17,9 @@ struct Kernels {
                                const std::uint32_t* order, std::int64_t count, const float* d_raw,
                                float* tile);
     bool (*sample_rgb)(const SampleRgbArgs&, std::int64_t begin, std::int64_t end);
+    void (*sh_rgb)(const ShRgbArgs&, std::int64_t begin, std::int64_t end, float* colors);
+    void (*sh_rgb_backward)(const ShRgbArgs&, const ShRgbBackward&, std::int64_t begin,
+                            std::int64_t end);
 };
 
 [[nodiscard]] const Kernels& kernels();

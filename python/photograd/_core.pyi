@@ -39,6 +39,9 @@ __all__: list[str] = [
     "mip_level",
     "mip_shapes",
     "ops",
+    "phase_cornette_shanks",
+    "phase_henyey_greenstein",
+    "phases",
     "philox4x32",
     "place_samples",
     "read_vdb",
@@ -318,6 +321,78 @@ class light_sky:
     ) -> numpy.ndarray:
         """
         Directions (N, 3) from uniform u2 (N, 2).
+        """
+
+class phase_henyey_greenstein:
+    """
+    A phase function. parameters (P,); cos_theta (N,) of the angle by which light turns.
+    """
+    @staticmethod
+    def jvp(
+        parameters: numpy.ndarray,
+        cos_theta: numpy.ndarray,
+        v_parameters: numpy.ndarray,
+        v_cos_theta: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Exact derivative of p along v_parameters (P,) and v_cos_theta (N,).
+        """
+    @staticmethod
+    def p(parameters: numpy.ndarray, cos_theta: numpy.ndarray) -> numpy.ndarray:
+        """
+        Density over solid angle, (N,) in 1/sr.
+        """
+    @staticmethod
+    def p_backward(
+        parameters: numpy.ndarray,
+        cos_theta: numpy.ndarray,
+        d_p: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+        d_cos_theta: numpy.ndarray,
+    ) -> None:
+        """
+        Adds the derivatives to d_parameters (P,) and d_cos_theta (N,).
+        """
+    @staticmethod
+    def parameters() -> list[tuple[str, int, float, float, str]]:
+        """
+        (name, scalars, lo, hi, unit) of each parameter.
+        """
+
+class phase_cornette_shanks:
+    """
+    A phase function. parameters (P,); cos_theta (N,) of the angle by which light turns.
+    """
+    @staticmethod
+    def jvp(
+        parameters: numpy.ndarray,
+        cos_theta: numpy.ndarray,
+        v_parameters: numpy.ndarray,
+        v_cos_theta: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Exact derivative of p along v_parameters (P,) and v_cos_theta (N,).
+        """
+    @staticmethod
+    def p(parameters: numpy.ndarray, cos_theta: numpy.ndarray) -> numpy.ndarray:
+        """
+        Density over solid angle, (N,) in 1/sr.
+        """
+    @staticmethod
+    def p_backward(
+        parameters: numpy.ndarray,
+        cos_theta: numpy.ndarray,
+        d_p: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+        d_cos_theta: numpy.ndarray,
+    ) -> None:
+        """
+        Adds the derivatives to d_parameters (P,) and d_cos_theta (N,).
+        """
+    @staticmethod
+    def parameters() -> list[tuple[str, int, float, float, str]]:
+        """
+        (name, scalars, lo, hi, unit) of each parameter.
         """
 
 class TexturePlan:
@@ -801,10 +876,13 @@ def set_thread_count(threads: typing.SupportsInt | typing.SupportsIndex) -> None
     """
 
 def sh_colors(
-    directions: numpy.ndarray, coefficients: numpy.ndarray, colors: numpy.ndarray
+    directions: numpy.ndarray,
+    coefficients: numpy.ndarray,
+    colors: numpy.ndarray,
+    fused: bool = True,
 ) -> None:
     """
-    Writes sum_k Y_k(directions) coefficients[:, k] to colors (N, C).
+    Writes sum_k Y_k(directions) coefficients[:, k] to colors (N, C). fused=False forces the scalar form, the oracle of the kernel.
     """
 
 def sh_colors_backward(
@@ -813,9 +891,11 @@ def sh_colors_backward(
     d_colors: numpy.ndarray,
     d_directions: numpy.ndarray,
     d_coefficients: numpy.ndarray,
+    add: bool = True,
+    fused: bool = True,
 ) -> None:
     """
-    Adds the derivatives to d_directions (N, 3) and d_coefficients (N, K, C).
+    Adds the derivatives to d_directions (N, 3) and d_coefficients (N, K, C); with add=False overwrites what stands there, without reading it.
     """
 
 def square_to_cap(
@@ -866,4 +946,8 @@ __version__: str = "0.1.0"
 bsdfs: dict[str, typing.Any] = {"lambert": bsdf_lambert}
 lights: dict[str, typing.Any] = {"sun": light_sun, "sky": light_sky}
 ops: dict[str, typing.Any]
+phases: dict[str, typing.Any] = {
+    "henyey_greenstein": phase_henyey_greenstein,
+    "cornette_shanks": phase_cornette_shanks,
+}
 tiny_network_parameters: int = 132

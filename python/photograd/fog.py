@@ -1,4 +1,4 @@
-"""A picture of a sparse density grid: a transfer function, and a dense field for the marcher."""
+"""A picture of a density grid or scan: a transfer function, and a dense field for the marcher."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ from photograd.model import Model
 from photograd.representation import Array
 from photograd.sparse import SparseGrid
 from photograd.vdb import read_vdb
+from photograd.volumes import SUFFIXES, read_volume
 
 RAMPS = ("white", "inferno", "viridis", "bone")
 GREY = 0.8
@@ -24,16 +25,36 @@ THICK = 12.0
 """Optical depth of the longest edge of the box, filled with the highest density, by default."""
 
 
-def load_fog(path: Path, *, ramp: str, sigma_t: float | None, resolution: int) -> Model:
-    """What `fog_model` makes of the first scalar grid in a .vdb file. Raises IoError as well."""
-    scalars = [grid for grid in read_vdb(path).grids if grid.channels == 1]
-    if not scalars:
-        raise RangeError(message("render", f"{path}", "a grid of densities", "vectors only"))
-    return fog_model(scalars[0], ramp=ramp, sigma_t=sigma_t, resolution=resolution)
+def load_fog(
+    path: Path,
+    *,
+    ramp: str,
+    sigma_t: float | None,
+    resolution: int,
+    window: tuple[float, float] | None = None,
+) -> Model:
+    """What `fog_model` makes of the first scalar grid in a .vdb file, or of a volume's density.
+
+    Raises IoError as `photograd.vdb.read_vdb` and `photograd.volumes.read_volume` as well.
+    """
+    if path.name.lower().endswith(SUFFIXES):
+        volume = read_volume(path)
+        grid = SparseGrid.from_dense(volume.density, world_from_index=volume.world_from_index)
+    else:
+        scalars = [found for found in read_vdb(path).grids if found.channels == 1]
+        if not scalars:
+            raise RangeError(message("render", f"{path}", "a grid of densities", "vectors only"))
+        grid = scalars[0]
+    return fog_model(grid, ramp=ramp, sigma_t=sigma_t, resolution=resolution, window=window)
 
 
 def fog_model(
-    grid: SparseGrid, *, ramp: str = "white", sigma_t: float | None = None, resolution: int = 128
+    grid: SparseGrid,
+    *,
+    ramp: str = "white",
+    sigma_t: float | None = None,
+    resolution: int = 128,
+    window: tuple[float, float] | None = None,
 ) -> Model:
     """A density grid as glowing fog: sigma_t proportional to the value, its colour from a ramp.
 
@@ -43,21 +64,30 @@ def fog_model(
         sigma_t: 1/m at value 1; by default such that the highest value fills the box opaquely.
         resolution: voxels along the longest edge of the box, at most; the values are resampled
             trilinearly where the grid is finer or not aligned with the world.
+        window: values that count as 0 and as 1; below and above is cut off. Scans need it, in which
+            air or noise has a value. By default values are taken as they are.
 
     Raises:
-        RangeError: another ramp, a grid without positive values, a field beyond memory.
+        RangeError: another ramp, a grid without positive values, an empty window, a field beyond
+            memory.
     """
     if ramp not in RAMPS:
         raise RangeError(message("render", "ramp", f"one of {', '.join(RAMPS)}", repr(ramp)))
-    most = grid.statistics.most
-    if not most > 0:
-        raise RangeError(message("render", "density", "a value above zero somewhere", f"{most}"))
+    lo, hi = (0.0, np.inf) if window is None else window
+    if not lo < hi:
+        raise RangeError(message("render", "window", "two values, the lower first", window))
+    found = grid.statistics.most
+    if not found > lo:
+        expected = f"a value above {'zero' if window is None else f'{lo:g}'} somewhere"
+        raise RangeError(message("render", "density", expected, f"{found}"))
+    most = found if window is None else 1.0
     box, shape = _box_and_shape(grid, resolution)
     require_room("render", f"a field of {shape} voxels", 64 * int(np.prod(shape)), None)
     extent = box[1] - box[0]
     axes = [box[0, k] + (np.arange(n) + 0.5) * extent[k] / n for k, n in enumerate(shape)]
     at = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
-    density = np.maximum(grid.sample(at), 0).reshape(shape)
+    sampled = np.clip(grid.sample(at), lo, hi).reshape(shape)
+    density = sampled if window is None else (sampled - lo) / (hi - lo)
     values = np.concatenate([_colors(density / most, ramp), density[..., None]], axis=-1)
     policy = MarchPolicy(
         (tuple(box[0].tolist()), tuple(box[1].tolist())),

@@ -47,33 +47,45 @@ def degree_of(coefficients: int) -> int:
     raise RangeError(message("sh.degree_of", "coefficients", "1, 4, 9, 16 or 25", coefficients))
 
 
-def evaluate(coefficients: Array, directions: Array) -> Array:
+def evaluate(coefficients: Array, directions: Array, *, out: Array | None = None) -> Array:
     """The values sum_k Y_k(directions) coefficients[:, k].
 
     Args:
         coefficients: (N, K, C) with C 1 or 3, float32 or float64.
         directions: (N, 3), of the same dtype; unit vectors.
+        out: (N, C), overwritten; by default a new array.
 
     Returns:
-        (N, C).
+        (N, C), `out` where it is given.
+
+    Raises:
+        DtypeError, RangeError, ShapeError: arrays other than these.
     """
     n, _, channels = _three_axes("sh.evaluate", coefficients)
-    out = np.empty((n, channels), coefficients.dtype)
-    _core.sh_colors(_whole(directions), _whole(coefficients), out)
-    return out
+    values = np.empty((n, channels), coefficients.dtype) if out is None else out
+    _core.sh_colors(_whole(directions), _whole(coefficients), values)
+    return values
 
 
 def evaluate_backward(
-    coefficients: Array, directions: Array, d_values: Array
+    coefficients: Array,
+    directions: Array,
+    d_values: Array,
+    *,
+    out: tuple[Array, Array] | None = None,
 ) -> tuple[Array, Array]:
     """Derivatives of a loss by the coefficients (N, K, C) and by the directions (N, 3).
 
-    The derivative by a direction is that of the polynomials, before any normalisation.
+    The derivative by a direction is that of the polynomials, before any normalisation. `out`, a
+    pair of such arrays, is overwritten; by default they are new.
     """
-    d_coefficients, d_directions = np.zeros_like(coefficients), np.zeros_like(directions)
+    if out is None:
+        out = np.empty(coefficients.shape, coefficients.dtype), np.empty_like(_whole(directions))
+    d_coefficients, d_directions = out
     _core.sh_colors_backward(
-        _whole(directions), _whole(coefficients), _whole(d_values), d_directions, d_coefficients
-    )
+        _whole(directions), _whole(coefficients), _whole(d_values), d_directions, d_coefficients,
+        add=False,
+    )  # fmt: skip
     return d_coefficients, d_directions
 
 

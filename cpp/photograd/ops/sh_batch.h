@@ -43,10 +43,10 @@ void sh_colors(const ShRows<R>& rows, R* colors) {
         }
     });
 }
-/// Adds to d_directions (N, 3) and d_coefficients (N, K, C).
+/// Adds to d_directions (N, 3) and d_coefficients (N, K, C); or, without `add`, overwrites them.
 template <int Degree, int Channels, class R>
 void sh_colors_backward(const ShRows<R>& rows, const R* d_colors, R* d_directions,
-                        R* d_coefficients) {
+                        R* d_coefficients, bool add = true) {
     constexpr int stride = sh_count(Degree) * Channels;
     for_sh_rows(rows.count, [&](std::int64_t first, std::int64_t end) {
         R Y[sh_count(Degree)], d_Y[sh_count(Degree)];
@@ -54,6 +54,10 @@ void sh_colors_backward(const ShRows<R>& rows, const R* d_colors, R* d_direction
             const R* d = rows.directions + 3 * i;
             sh_basis<Degree>(d[0], d[1], d[2], Y);
             std::fill_n(d_Y, sh_count(Degree), R(0));
+            if (!add) {
+                std::fill_n(d_directions + 3 * i, 3, R(0));
+                std::fill_n(d_coefficients + stride * i, stride, R(0));
+            }
             sh_color_backward<Degree, Channels>(Y, rows.coefficients + stride * i,
                                                 d_colors + Channels * i, d_Y,
                                                 d_coefficients + stride * i);

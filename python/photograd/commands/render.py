@@ -22,6 +22,7 @@ from photograd.evaluate import display_image
 from photograd.fog import RAMPS, load_fog
 from photograd.model import load_model
 from photograd.orbit import orbit_cameras
+from photograd.volumes import SUFFIXES
 
 
 def register(app: typer.Typer) -> None:
@@ -33,7 +34,8 @@ def render(
     model: Annotated[
         Path,
         typer.Argument(
-            help="Folder that a fit wrote, its model.npz, or a .vdb file.", metavar="MODEL"
+            help="Folder that a fit wrote, its model.npz, or a volume: .vdb, .vtk, .nii, .vol.",
+            metavar="MODEL",
         ),
     ],
     orbit: Annotated[int, typer.Option("--orbit", min=1, help="Frames on the circle.")] = 60,
@@ -45,27 +47,31 @@ def render(
         float, typer.Option("--elevation", min=-89.0, max=89.0, help="Degrees above the horizon.")
     ] = 25.0,
     ramp: Annotated[
-        str, typer.Option("--ramp", help=f"Colours of a .vdb file: {', '.join(RAMPS)}.")
+        str, typer.Option("--ramp", help=f"Colours of a volume: {', '.join(RAMPS)}.")
     ] = "white",
     sigma_t: Annotated[
         float | None,
-        typer.Option("--sigma-t", min=0.0, help="Extinction (1/m) of a .vdb file at value 1."),
+        typer.Option("--sigma-t", min=0.0, help="Extinction (1/m) of a volume at value 1."),
     ] = None,
     resolution: Annotated[
-        int, typer.Option("--resolution", min=2, help="Voxels along a .vdb file's longest edge.")
+        int, typer.Option("--resolution", min=2, help="Voxels along a volume's longest edge.")
     ] = 128,
+    window: Annotated[
+        tuple[float, float] | None,
+        typer.Option("--window", help="Values of a volume that count as 0 and as 1."),
+    ] = None,
     seed: SeedOption = 0,  # noqa: ARG001  a rendering draws nothing at random
     threads: ThreadsOption = 0,
     as_json: JsonOption = False,
     debug: DebugOption = False,  # noqa: ARG001
 ) -> None:
-    """Render a turntable of a recovered scene, or of the densities in a .vdb file.
+    """Render a turntable of a recovered scene, or of the densities in a volume or scan.
 
     Example: photograd render model --orbit 60 --out turntable.gif
     """
     use_threads(threads)
-    if model.suffix.lower() == ".vdb":
-        loaded = load_fog(model, ramp=ramp, sigma_t=sigma_t, resolution=resolution)
+    if model.name.lower().endswith((".vdb", *SUFFIXES)):
+        loaded = load_fog(model, ramp=ramp, sigma_t=sigma_t, resolution=resolution, window=window)
     else:
         loaded = load_model(model)
     frames = []

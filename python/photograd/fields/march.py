@@ -95,10 +95,12 @@ def march(
     seed: int,
     step: int,
     fused: bool = True,
+    t_max: Array | None = None,
 ) -> tuple[Outputs, MarchContext]:
     """Render rays through a field of the core. Shapes as in `RayBatch` and `Outputs`.
 
-    `fused=False` forces the staged form, the readable oracle of the dense grid's kernel. Raises
+    `fused=False` forces the staged form, the readable oracle of the dense grid's kernel. `t_max`
+    (R,) ends each ray at that distance, infinity included: samples beyond are left out. Raises
     Error if a parameter or an output is not finite, RangeError for rays that are not finite or
     whose directions are not of length one; they are named by their pixel.
     """
@@ -112,6 +114,9 @@ def march(
     if options.jitter:
         jitter = uniform(seed, step=step, pixel=batch.pixel, sample=0, dimension=0).astype(dtype)
     t0, samples = _core.place_samples(settings, origins, directions, jitter)
+    if t_max is not None:
+        before = np.floor(np.clip((t_max - t0) / policy.dt + 0.5, 0, samples))
+        samples = np.ascontiguousarray(before, np.int32)
     color, transmittance, depth = _core.march(
         field, parameters, settings, origins, directions, t0, samples, fused
     )

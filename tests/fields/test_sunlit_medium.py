@@ -1,0 +1,264 @@
+"""Single scattering: slabs in closed form, shadows, ends of rays, wrong adjoints, the same bits.
+
+The proofs of every representation (tests/registry/test_representations.py) cover its gradients.
+"""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from photograd.core import _core
+from photograd.errors import DtypeError, RangeError, ShapeError
+from photograd.fields import SunlitMedium
+from photograd.mesh import Bvh, Mesh
+from photograd.phase import phase_function
+from photograd.representation import Outputs, RayBatch, RenderOptions
+from photograd.sun_visibility import sun_visibility
+from photograd_course.gradcheck import check_gradient
+
+pytestmark = pytest.mark.usefixtures("core")
+
+# A slab 1 m thick, y from 0 to 1, so wide that its sides do not matter.
+BOX = np.array([[-20.0, 0.0, -20.0], [20.0, 1.0, 20.0]])
+SHAPE = (4, 64, 4)
+DT = 1 / 256
+ALBEDO, IRRADIANCE = np.array([0.9, 0.6, 0.3]), np.array([3.0, 2.5, 2.0])
+OPTIONS = RenderOptions()
+
+
+def slab(sigma_t: float, sun: Any, g: float = 0.3, **more: Any) -> SunlitMedium:
+    return SunlitMedium.homogeneous(
+        sigma_t, SHAPE, BOX, DT, albedo=ALBEDO, g=g, irradiance=IRRADIANCE, sun=sun,
+        dtype=np.float64, **more,
+    )  # fmt: skip
+
+
+def one_ray(origin: Any, direction: Any) -> RayBatch:
+    d = np.asarray(direction, float)
+    d = d / np.linalg.norm(d)
+    return RayBatch(np.array([origin], float), d[None], np.zeros(1, np.uint32))
+
+
+def radiance(medium: SunlitMedium, batch: RayBatch) -> Any:
+    return medium.render(batch, seed=0, step=0, options=OPTIONS)[0].color
+
+
+def closed_form(sigma_t: float, sun: Any, ray: Any, g: float) -> Any:
+    """Radiance of the whole slab along a ray that crosses it from outside.
+
+    With cosines m of the ray and n of the sun against +y, at height y the sun's light has crossed
+    (1 - y) / n. From above (m < 0) the camera's part is (1 - y) / |m|, from below y / m.
+    """
+    m, n = (np.asarray(v, float)[1] / np.linalg.norm(v) for v in (ray, sun))
+    cos = np.dot(ray, sun) / np.linalg.norm(ray) / np.linalg.norm(sun)
+    p = phase_function("henyey_greenstein").p(np.array([g]), np.array([cos]))[0]
+    if m < 0:
+        rate = 1 / abs(m) + 1 / n
+        share = (1 - np.exp(-sigma_t * rate)) / (rate * abs(m))
+    else:
+        rate = 1 / m - 1 / n
+        inner = sigma_t if abs(rate) < 1e-12 else (1 - np.exp(-sigma_t * rate)) / rate
+        share = np.exp(-sigma_t / n) * inner / m
+    return ALBEDO * IRRADIANCE * p * share
+
+
+SUNS = [(0, 1, 0), (0.6, 0.8, 0), (-0.3, 0.5, 0.7)]
+RAYS = [(0, -1, 0), (0, 1, 0), (0.3, -1, 0.2), (-0.4, 1, 0.5)]
+
+
+def from_outside(ray: Any, steps: float) -> RayBatch:
+    """A ray that enters the slab so many steps behind its origin."""
+    d = np.asarray(ray, float) / np.linalg.norm(ray)
+    return one_ray(np.array([0.0, 1.0 if d[1] < 0 else 0.0, 0.0]) - steps * DT * d, d)
+
+
+@pytest.mark.parametrize("sigma_t", [0.1, 1.0, 4.0])
+def test_homogeneous_slab_in_closed_form(sigma_t: float) -> None:
+    worst = 0.0
+    for sun, ray in itertools.product(SUNS, RAYS):
+        got = radiance(slab(sigma_t, sun), from_outside(ray, 256))[0]
+        expected = closed_form(sigma_t, sun, ray, 0.3)
+        assert expected.min() > 1e-3
+        worst = max(worst, float(np.abs(got / expected - 1).max()))
+    assert worst < 0.005  # measured 0.0005, 0.0005, 0.0030
+
+
+@pytest.mark.parametrize("sigma_t", [1.0, 4.0])
+def test_jitter_makes_up_for_steps_that_the_slab_cuts(sigma_t: float) -> None:
+    worst, count = 0.0, 256
+    for sun, ray in itertools.product(SUNS, RAYS):
+        one = from_outside(ray, 200.7)
+        pixel = np.arange(count, dtype=np.uint32)
+        batch = RayBatch(one.origins.repeat(count, 0), one.directions.repeat(count, 0), pixel)
+        options = RenderOptions(jitter=True)
+        color = slab(sigma_t, sun).render(batch, seed=1, step=0, options=options)[0].color
+        expected = closed_form(sigma_t, sun, ray, 0.3)
+        worst = max(worst, float(np.abs(color.mean(axis=0) / expected - 1).max()))
+    assert worst < 0.005  # measured 0.0004, 0.0030
+
+
+@pytest.mark.parametrize("up", [-1.0, 1.0])
+def test_the_error_falls_with_the_square_of_voxel_and_step(up: float) -> None:
+    # Sun and ray are upright: no lattice is cut, and what is left is the order of the method.
+    errors = []
+    for n in (8, 16, 32, 64):
+        medium = SunlitMedium.homogeneous(
+            2.0, (4, n, 4), BOX, 0.5 / n, albedo=ALBEDO, g=0.3, irradiance=IRRADIANCE,
+            sun=(0, 1, 0), dtype=np.float64,
+        )  # fmt: skip
+        got = radiance(medium, one_ray([0, 0.5 - 1.5 * up, 0], (0, up, 0)))[0, 0]
+        errors.append(abs(got / closed_form(2.0, (0, 1, 0), (0, up, 0), 0.3)[0] - 1))
+    orders = np.log2(np.array(errors[:-1]) / errors[1:])
+    np.testing.assert_allclose(orders[-2:], 2, atol=0.15)  # measured 1.97 and 1.98
+
+
+def plate(lo: Any, hi: Any, y: float) -> Mesh:
+    """A horizontal rectangle from (x, z) lo to hi."""
+    (x0, z0), (x1, z1) = lo, hi
+    vertices = np.array([[x0, y, z0], [x1, y, z0], [x1, y, z1], [x0, y, z1]], np.float32)
+    return Mesh(vertices, np.array([[0, 2, 1], [0, 3, 2]], np.uint32))
+
+
+def test_what_the_sun_does_not_see_stays_dark_and_the_rest_is_as_it_was() -> None:
+    roof = Bvh(plate((0.0, -30.0), (30.0, 30.0), 1.5))
+    shadow = sun_visibility(roof, BOX, SHAPE, (0, 1, 0))
+    np.testing.assert_array_equal(np.unique(shadow), [0, 1])
+    np.testing.assert_array_equal(shadow[:, 0, 0], [1, 1, 0, 0])
+    lit, dark = one_ray([-10, -1, 0], (0, 1, 0)), one_ray([10, -1, 0], (0, 1, 0))
+    covered = slab(1.0, (0, 1, 0), visibility=shadow)
+    assert (radiance(covered, dark) == 0).all()
+    np.testing.assert_allclose(
+        radiance(covered, lit), closed_form(1.0, (0, 1, 0), (0, 1, 0), 0.3)[None], rtol=5e-3
+    )
+
+
+def test_half_a_voxel_in_shadow_is_half_visible() -> None:
+    roof = Bvh(plate((5.0, -30.0), (30.0, 30.0), 1.5))  # x = 5 halves the third column of 10 m
+    shadow = sun_visibility(roof, BOX, SHAPE, (0, 1, 0), samples=4)
+    np.testing.assert_allclose(shadow[:, 0, 0], [1, 1, 0.5, 0])
+
+
+def test_a_ray_ends_at_a_solid() -> None:
+    # Down into the slab with a floor in its middle: what lies below is neither seen nor counted.
+    floor = Bvh(plate((-50.0, -50.0), (50.0, 50.0), 0.5))
+    medium = slab(2.0, (0, 1, 0), solids=floor)
+    outputs, _ = medium.render(one_ray([0, 3, 0], (0, -1, 0)), seed=0, step=0, options=OPTIONS)
+    np.testing.assert_allclose(outputs.opacity, 1 - np.exp(-2.0 * 0.5), rtol=1e-12)
+    p = 1 / (4 * np.pi) * (1 - 0.09) / (1 + 0.09 + 0.6) ** 1.5
+    expected = ALBEDO * IRRADIANCE * p * (1 - np.exp(-2.0 * 2 * 0.5)) / 2
+    # Light of the voxels on both sides of the floor blends over half a voxel: measured 0.0014.
+    np.testing.assert_allclose(outputs.color[0], expected, rtol=5e-3)
+
+
+def test_phase_functions_can_be_chosen() -> None:
+    batch = one_ray([0, 3, 0], (0, -1, 0))
+    names = "henyey_greenstein", "cornette_shanks"
+    one, two = (radiance(slab(1.0, (0.6, 0.8, 0), phase=name), batch) for name in names)
+    g, cos = np.array([0.3]), np.array([-0.8])
+    p_one, p_two = (phase_function(name).p(g, cos)[0] for name in names)
+    np.testing.assert_allclose(two / one, p_two / p_one, rtol=1e-12)
+
+
+class NoShadow(SunlitMedium):
+    """Forgets that the medium dims the sun."""
+
+    def _shadow_backward(self, _: Any, d_through: Any) -> Any:
+        return np.zeros_like(d_through)
+
+
+class NoVisibility(SunlitMedium):
+    """Differentiates the sun's way where it is blocked."""
+
+    def render_backward(self, context: Any, d_outputs: Outputs) -> dict[str, Any]:
+        kept, self.visibility = self.visibility, np.ones_like(self.visibility)
+        try:
+            return super().render_backward(context, d_outputs)
+        finally:
+            self.visibility = kept
+
+
+class Swapped(SunlitMedium):
+    """Takes the derivative by one factor for that by the other."""
+
+    def render_backward(self, context: Any, d_outputs: Outputs) -> dict[str, Any]:
+        d = super().render_backward(context, d_outputs)
+        return d | {"albedo": d["irradiance"], "irradiance": d["albedo"]}
+
+
+class NoPhase(SunlitMedium):
+    """Forgets the phase function on the way back into the volume."""
+
+    def render_backward(self, context: Any, d_outputs: Outputs) -> dict[str, Any]:
+        even = replace(context, p=np.ones_like(context.p))
+        d = super().render_backward(context, d_outputs)
+        return d | {"sigma_t": super().render_backward(even, d_outputs)["sigma_t"]}
+
+
+def gradients_agree(kind: type[SunlitMedium]) -> bool:
+    medium = kind.example(seed=3)
+    batch, place = medium.example_batch(seed=3), dict(medium.params)
+
+    def render(params: dict[str, Any]) -> Any:
+        medium.params = dict(params)
+        return medium.render(batch, seed=0, step=0, options=OPTIONS)
+
+    assert np.abs(render(place)[0].color).min() > 1e-4
+    return bool(
+        check_gradient(
+            lambda p: render(p)[0].color,
+            lambda p, d: medium.render_backward(render(p)[1], Outputs(d)),
+            place,
+            seed=1,
+        )
+    )
+
+
+def test_wrong_adjoints_die() -> None:
+    assert gradients_agree(SunlitMedium)
+    for wrong in (NoShadow, NoVisibility, Swapped, NoPhase):
+        assert not gradients_agree(wrong), wrong.__name__
+
+
+def test_thread_count_changes_nothing() -> None:
+    runs = []
+    for threads in (1, 2, 5):
+        _core.set_thread_count(threads)
+        medium = SunlitMedium.homogeneous(
+            1.5, (24, 24, 24), [[0, 0, 0], [1, 1, 1]], 1 / 48, g=0.4, sun=(1, 2, 0.5)
+        )
+        batch = medium.example_batch(seed=1)
+        outputs, context = medium.render(batch, seed=0, step=0, options=OPTIONS)
+        d = Outputs(np.ones_like(outputs.color))
+        runs.append([outputs.color, *medium.render_backward(context, d).values()])
+    _core.set_thread_count(0)
+    assert all(np.abs(array).max() > 0 for array in runs[0])
+    for other in runs[1:]:
+        for a, b in zip(runs[0], other, strict=True):
+            np.testing.assert_array_equal(a, b)
+
+
+def test_bad_input_is_refused() -> None:
+    good = SunlitMedium.example(seed=1).params
+    box, sun = [[0, 0, 0], [1, 1, 1]], (0, 1, 0)
+    with pytest.raises(RangeError, match="exactly"):
+        SunlitMedium({"sigma_t": good["sigma_t"]}, box, 0.1, sun=sun)
+    with pytest.raises(ShapeError, match="albedo"):
+        SunlitMedium(good | {"albedo": np.ones(1)}, box, 0.1, sun=sun)
+    with pytest.raises(ShapeError, match="sigma_t"):
+        SunlitMedium(good | {"sigma_t": np.ones((4, 1, 4))}, box, 0.1, sun=sun)
+    with pytest.raises(DtypeError, match="float32"):
+        SunlitMedium(good | {"g": np.zeros(1, np.float32)}, box, 0.1, sun=sun)
+    with pytest.raises(RangeError, match="step"):
+        SunlitMedium(good, box, 0.0, sun=sun)
+    with pytest.raises(RangeError, match="direction"):
+        SunlitMedium(good, box, 0.1, sun=(0, 0, 0))
+    with pytest.raises(RangeError, match="henyey_greenstein"):
+        SunlitMedium(good, box, 0.1, sun=sun, phase="mie")
+    with pytest.raises(ShapeError, match="visibility"):
+        SunlitMedium(good, box, 0.1, sun=sun, visibility=np.ones((2, 2, 2)))
+    with pytest.raises(RangeError, match="samples"):
+        sun_visibility(Bvh(plate((0, 0), (1, 1), 0)), box, (2, 2, 2), sun, samples=0)
