@@ -2,6 +2,7 @@
 // namespace that PHOTOGRAD_ISA names.
 #include "kernels/kernels.h"
 
+#include "kernels/blend_splats.inl"
 #include "kernels/march_dense.inl"
 #include "kernels/sample_rgb.inl"
 
@@ -15,6 +16,8 @@ extern const Kernels table{
     .march_dense_backward = &march_dense_backward,
     .march_dense_gather = &march_dense_gather,
     .sample_rgb = &sample_rgb,
+    .blend_tile = &blend_tile_float,
+    .blend_tile_backward = &blend_tile_backward_float,
 };
 
 }  // namespace photograd::PHOTOGRAD_ISA

@@ -4,6 +4,7 @@
 
 #include "kernels/march_dense.h"
 #include "kernels/sample_rgb.h"
+#include "photograd/splat/tiles.h"
 
 namespace photograd {
 
@@ -16,6 +17,9 @@ struct Kernels {
                                const std::uint32_t* order, std::int64_t count, const float* d_raw,
                                float* tile);
     bool (*sample_rgb)(const SampleRgbArgs&, std::int64_t begin, std::int64_t end);
+    void (*blend_tile)(const BlendArgs<float>&, const TilePairs&, int x, int y);
+    void (*blend_tile_backward)(const BlendArgs<float>&, const BlendBackward<float>&,
+                                const TilePairs&, int x, int y);
 };
 
 [[nodiscard]] const Kernels& kernels();
