@@ -136,7 +136,7 @@ void bind_prepared(py::module_& m, const char* name) {
              py::arg("d_background"), py::arg("d_screen"), "Adds to the arrays named d_*.")
         .def_property_readonly(
             "pairs",
-            [](const P& p) { return static_cast<std::int64_t>(p.frame.lists.splat_of.size()); },
+            [](const P& p) { return static_cast<std::int64_t>(p.frame.lists.pairs.size()); },
             "Number of pairs of splat and tile.")
         .def_property_readonly("boxes", &boxes<R>,
                                "Pixels [x0, x1) x [y0, y1) of each Gaussian, (N, 4) int32.");

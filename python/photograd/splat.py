@@ -118,7 +118,7 @@ class SplatOptions:
     alpha_min: float = 1 / 255
     alpha_max: float = 0.999
     clamped_gradient: Literal["zero", "pass"] = "zero"
-    extent_sigmas: float = 3.0
+    extent_sigmas: float = 0.0
     stop: float = 1e-4
     near: float = 0.01
     frustum_margin: float = 0.15

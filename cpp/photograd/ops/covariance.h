@@ -72,47 +72,53 @@ inline void rotation_matrix_backward(const R* n, const R (&g)[3][3], R* d_n) {
                      two * z * (g[0][0] + g[1][1]));
 }
 
-/// M = R(q / |q|) diag(exp(log_scale)).
+/// The axes of a Gaussian, as long as its standard deviations.
 template <class R>
-inline void scaled_axes(const UnitQuaternion<R>& q, const R* log_scale, R (&m)[3][3]) {
-    rotation_matrix(q.n, m);
-    for (int j = 0; j < 3; ++j) {
-        const R s = exp(log_scale[j]);
-        for (int i = 0; i < 3; ++i) m[i][j] *= s;
+struct GaussianAxes {
+    UnitQuaternion<R> q;
+    R s[3];     // exp(log_scale)
+    R m[3][3];  // R(n) diag(s)
+
+    static GaussianAxes of(const R* quat, const R* log_scale) {
+        GaussianAxes out;
+        out.q = UnitQuaternion<R>::of(quat);
+        rotation_matrix(out.q.n, out.m);
+        for (int j = 0; j < 3; ++j) {
+            out.s[j] = exp(log_scale[j]);
+            for (int i = 0; i < 3; ++i) out.m[i][j] *= out.s[j];
+        }
+        return out;
     }
-}
+};
 
 /// cov[6] = xx, xy, xz, yy, yz, zz of M M^T.
 template <class R>
-inline void covariance(const R* quat, const R* log_scale, R* cov) {
-    R m[3][3];
-    scaled_axes(UnitQuaternion<R>::of(quat), log_scale, m);
+inline void covariance(const GaussianAxes<R>& axes, R* cov) {
+    const auto& m = axes.m;
     for (int i = 0, k = 0; i < 3; ++i)
         for (int j = i; j < 3; ++j, ++k)
             cov[k] = m[i][0] * m[j][0] + m[i][1] * m[j][1] + m[i][2] * m[j][2];
 }
 template <class R>
-inline void covariance_backward(const R* quat, const R* log_scale, const R* d_cov, R* d_quat,
+inline void covariance_backward(const GaussianAxes<R>& axes, const R* d_cov, R* d_quat,
                                 R* d_log_scale) {
-    const UnitQuaternion<R> q = UnitQuaternion<R>::of(quat);
-    R m[3][3];
-    scaled_axes(q, log_scale, m);
+    const auto& m = axes.m;
     const R g[3][3] = {{R(2) * d_cov[0], d_cov[1], d_cov[2]},
                        {d_cov[1], R(2) * d_cov[3], d_cov[4]},
                        {d_cov[2], d_cov[4], R(2) * d_cov[5]}};  // 2 G
     R d_r[3][3];
     for (int j = 0; j < 3; ++j) {
-        const R s = exp(log_scale[j]);
         for (int i = 0; i < 3; ++i) {
             const R d_m = g[i][0] * m[0][j] + g[i][1] * m[1][j] + g[i][2] * m[2][j];
             d_log_scale[j] += d_m * m[i][j];
-            d_r[i][j] = d_m * s;
+            d_r[i][j] = d_m * axes.s[j];
         }
     }
+    const R* n = axes.q.n;
     R d_n[4] = {R(0), R(0), R(0), R(0)};
-    rotation_matrix_backward(q.n, d_r, d_n);
-    const R along = q.n[0] * d_n[0] + q.n[1] * d_n[1] + q.n[2] * d_n[2] + q.n[3] * d_n[3];
-    for (int i = 0; i < 4; ++i) d_quat[i] += (d_n[i] - q.n[i] * along) * q.inverse_length;
+    rotation_matrix_backward(n, d_r, d_n);
+    const R along = n[0] * d_n[0] + n[1] * d_n[1] + n[2] * d_n[2] + n[3] * d_n[3];
+    for (int i = 0; i < 4; ++i) d_quat[i] += (d_n[i] - n[i] * along) * axes.q.inverse_length;
 }
 
 }  // namespace PHOTOGRAD_ISA

@@ -12,7 +12,8 @@ struct ScreenSplat {
     R color[3];
     R depth;
     int x0, x1, y0, y1;  // pixels [x0, x1) x [y0, y1) may see it; x0 == x1: culled
-    R unused[2];
+    R sigma_max;  // where the exponent is larger, alpha is below alpha_min; a little too large
+    R unused;
 };
 
 /// Discontinuities of blending. Each can be switched off, or differences would mean nothing.

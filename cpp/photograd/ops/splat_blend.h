@@ -12,7 +12,7 @@
 //
 //   d_c = w d_color,   d_z = w d_depth
 //   d_alpha_k   = T_k v_k - (sum_{j>k} w_j v_j + d_end T_end) / (1 - alpha_k)
-//   d_opacity   = G d_raw,   d_sigma = -raw d_raw,   d_raw = d_alpha, or 0 where alpha_max holds
+//   d_opacity   = G d_raw = -d_sigma / opacity,   d_sigma = -raw d_raw,   d_raw = d_alpha, or 0 where alpha_max holds
 //   d_A = dx^2 d_sigma / 2,   d_B = dx dy d_sigma,   d_C = dy^2 d_sigma / 2
 //   d_mean = (A dx + B dy, B dx + C dy) d_sigma
 //
@@ -41,9 +41,22 @@ struct PixelRow {
     Lanes<R> live;  // 1; 0 for pixels that have ended
 };
 
+/// False where the splat is fainter than alpha_min in all pixels of the row: `splat_weights` would drop it
+/// there. The exponent is a parabola in dx, smallest at dx = -B dy / A or at an end of the row.
+template <class R>
+inline bool row_may_see(const ScreenSplat<R>& s, int x, int y) {
+    const R right = s.x - (R(x) + R(0.5)), left = right - R(lane_count - 1);
+    const R dy = s.y - (R(y) + R(0.5)), a = s.conic[0], b_dy = s.conic[1] * dy;
+    // a dx at its best place, without a division.
+    const R a_dx = clamped(-b_dy, a * left, a * right);
+    const R twice_a_sigma = a_dx * a_dx + R(2) * b_dy * a_dx + a * (s.conic[2] * (dy * dy));
+    return !(twice_a_sigma > R(2) * a * s.sigma_max);
+}
+
 template <class R>
 struct SplatWeights {
-    Lanes<R> dx, falloff, raw;
+    Lanes<R> dx;
+    Lanes<R> raw;    // opacity G
     Lanes<R> alpha;  // 0 where dropped
     Lanes<R> front;  // T in front of the splat
     Lanes<R> w;
@@ -67,16 +80,14 @@ inline void splat_weights(const ScreenSplat<R>& s, const SplatCutoffs<R>& cut, i
         // Positive but for rounding, in needles thinner than numbers can hold.
         const R sigma = larger((half_a * dx + b_dy) * dx + c_dy, R(0));
         out.dx[i] = dx;
-        out.falloff[i] = exp(-sigma);
+        out.raw[i] = opacity * exp(-sigma);
     }
     for (int i = 0; i < lane_count; ++i) {
-        const R raw = opacity * out.falloff[i];
-        const R alpha = smaller(raw, alpha_max);
+        const R alpha = smaller(out.raw[i], alpha_max);
         const R inside = (i >= first) & (i < end) & (alpha >= alpha_min) ? row.live[i] : R(0);
         const R seen_alpha = alpha * inside;
         const R T = row.T[i], next = T * (R(1) - seen_alpha);
         const R goes_on = next < stop ? R(0) : R(1);
-        out.raw[i] = raw;
         out.alpha[i] = seen_alpha;
         out.front[i] = T;
         out.seen[i] = inside * goes_on;
@@ -116,9 +127,27 @@ struct RowCotangents {
 /// What rows add up for one splat, lane by lane; `splat_partials` makes derivatives of it.
 template <class R>
 struct SplatSums {
-    Lanes<R> opacity, sx, sy, sxx, sxy, syy;  // of d_sigma, times powers of dx and dy
+    Lanes<R> s, sx, sy, sxx, sxy, syy;  // of d_sigma, times powers of dx and dy
     Lanes<R> color[3], depth;
+
+    // One set of lanes at a time: zeroed as a whole, this would be a call of memset for every pair.
+    void clear() {
+        s = sx = sy = sxx = sxy = syy = Lanes<R>::filled(R(0));
+        color[0] = color[1] = color[2] = depth = Lanes<R>::filled(R(0));
+    }
 };
+
+/// `sum` of core/lanes.h, in its order. gcc makes sixteen scalars of that one; these are vectors.
+template <class R>
+inline R sum_of(const Lanes<R>& x) {
+    return sum(x);
+}
+inline float sum_of(const Lanes<float>& x) {
+    using Four = float __attribute__((vector_size(16), may_alias));
+    const Four* part = reinterpret_cast<const Four*>(x.v);
+    const Four a = (part[0] + part[2]) + (part[1] + part[3]);
+    return (a[0] + a[2]) + (a[1] + a[3]);
+}
 
 template <class R>
 inline void blend_row_backward(const ScreenSplat<R>& s, const SplatCutoffs<R>& cut, int x, int y,
@@ -141,8 +170,8 @@ inline void blend_row_backward(const ScreenSplat<R>& s, const SplatCutoffs<R>& c
         d_raw[i] = d_alpha * (k.seen[i] * slope);
     }
     for (int i = 0; i < lane_count; ++i) {
-        sums.opacity[i] = sums.opacity[i] + k.falloff[i] * d_raw[i];
         d_sigma[i] = -(k.raw[i] * d_raw[i]);
+        sums.s[i] = sums.s[i] + d_sigma[i];
     }
     const R dy = k.dy;
     for (int i = 0; i < lane_count; ++i) {
@@ -162,15 +191,16 @@ inline void blend_row_backward(const ScreenSplat<R>& s, const SplatCutoffs<R>& c
 /// d_splat[partial_count] = the derivatives that the sums stand for.
 template <class R>
 inline void splat_partials(const ScreenSplat<R>& s, const SplatSums<R>& sums, R* d_splat) {
-    const R sx = sum(sums.sx), sy = sum(sums.sy);
+    const R sx = sum_of(sums.sx), sy = sum_of(sums.sy);
     d_splat[partial_x] = s.conic[0] * sx + s.conic[1] * sy;
     d_splat[partial_y] = s.conic[1] * sx + s.conic[2] * sy;
-    d_splat[partial_a] = R(0.5) * sum(sums.sxx);
-    d_splat[partial_b] = sum(sums.sxy);
-    d_splat[partial_c] = R(0.5) * sum(sums.syy);
-    d_splat[partial_opacity] = sum(sums.opacity);
-    for (int c = 0; c < 3; ++c) d_splat[partial_red + c] = sum(sums.color[c]);
-    d_splat[partial_depth] = sum(sums.depth);
+    d_splat[partial_a] = R(0.5) * sum_of(sums.sxx);
+    d_splat[partial_b] = sum_of(sums.sxy);
+    d_splat[partial_c] = R(0.5) * sum_of(sums.syy);
+    // G d_raw = -d_sigma / opacity; an opacity of 0 gives nothing to divide.
+    d_splat[partial_opacity] = s.opacity > R(0) ? -(sum_of(sums.s) / s.opacity) : R(0);
+    for (int c = 0; c < 3; ++c) d_splat[partial_red + c] = sum_of(sums.color[c]);
+    d_splat[partial_depth] = sum_of(sums.depth);
 }
 
 }  // namespace PHOTOGRAD_ISA

@@ -22,11 +22,11 @@ struct CovarianceOp {
 
     template <class R>
     static void forward(const R* in, R* out) {
-        covariance(in, in + 4, out);
+        covariance(GaussianAxes<R>::of(in, in + 4), out);
     }
     template <class R>
     static void backward(const R* in, const R* d_out, R* d_in) {
-        covariance_backward(in, in + 4, d_out, d_in, d_in + 4);
+        covariance_backward(GaussianAxes<R>::of(in, in + 4), d_out, d_in, d_in + 4);
     }
 };
 

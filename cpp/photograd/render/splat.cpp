@@ -91,7 +91,7 @@ void for_tiles(const SplatFrame<R>& frame, Visit&& visit) {
     parallel_for(lists.tile_count(), [&](std::int64_t tile) {
         const int x = static_cast<int>(tile % lists.columns) * tile_size;
         const int y = static_cast<int>(tile / lists.columns) * tile_size;
-        visit(lists.pairs(tile), x, y);
+        visit(lists.of(tile), x, y);
     });
 }
 
@@ -107,30 +107,29 @@ void background_backward(const BlendArgs<R>& args, const R* d_color, R* d_backgr
                  });
 }
 
-/// Stage 5: each splat adds up its pairs and differentiates its projection; view and eye in double.
+/// Stage 5: each Gaussian adds up its places and differentiates its projection; view and eye in double.
 template <class R>
 void gather_splats(const GaussianCloud<R>& cloud, const SplatFrame<R>& frame, const R* partials,
                    const GaussianGradients<R>& out) {
-    const TileLists& lists = frame.lists;
-    const auto count = static_cast<std::int64_t>(lists.sorted.size());
+    const std::vector<std::uint32_t>& places = frame.lists.places;
     std::array<double, 15> shared{};  // d_view[12], d_eye[3]
-    sum_partials(
-        tasks_for(count), std::span<double>(shared), [&](std::int64_t task, std::span<double> sum) {
-            const auto end =
-                static_cast<std::size_t>(std::min(count, (task + 1) * splats_per_task));
-            for (auto k = static_cast<std::size_t>(task * splats_per_task); k < end; ++k) {
-                R d[partial_count] = {}, own[15] = {};
-                for (std::size_t pair = lists.pair_begin[k]; pair < lists.pair_begin[k + 1]; ++pair)
-                    for (std::size_t j = 0; j < partial_count; ++j)
-                        d[j] += partials[partial_count * pair + j];
-                const std::int64_t i = lists.sorted[k];
-                with_degree(cloud.degree, [&](auto degree) {
-                    project_splat_backward<degree.value>(
-                        cloud, frame.view, i, frame.splats[lists.sorted[k]], d, out, own, own + 12);
-                });
-                for (std::size_t j = 0; j < 15; ++j) sum[j] += static_cast<double>(own[j]);
-            }
-        });
+    const auto add = [&](std::int64_t task, std::span<double> sum) {
+        const std::int64_t end = std::min(cloud.count, (task + 1) * splats_per_task);
+        for (std::int64_t i = task * splats_per_task; i < end; ++i) {
+            const auto row = static_cast<std::size_t>(i);
+            if (places[row] == places[row + 1]) continue;
+            R d[partial_count] = {}, own[15] = {};
+            for (std::size_t place = places[row]; place < places[row + 1]; ++place)
+                for (std::size_t j = 0; j < partial_count; ++j)
+                    d[j] += partials[partial_count * place + j];
+            with_degree(cloud.degree, [&](auto degree) {
+                project_splat_backward<degree.value>(cloud, frame.view, i, frame.splats[row], d,
+                                                     out, own, own + 12);
+            });
+            for (std::size_t j = 0; j < 15; ++j) sum[j] += static_cast<double>(own[j]);
+        }
+    };
+    sum_partials(tasks_for(cloud.count), std::span<double>(shared), add);
     std::array<double, 12> view{};
     std::copy_n(frame.view.view, 12, view.begin());
     eye_backward(view.data(), shared.data() + 12, shared.data());
@@ -164,9 +163,10 @@ SplatFrame<R> prepare_splats(const GaussianCloud<R>& cloud, const SplatImage& im
         if (frame.splats[i].x0 < frame.splats[i].x1)
             frame.lists.sorted.push_back(static_cast<std::uint32_t>(i));
     frame.lists.sorted = sort_by_depth(std::move(frame.lists.sorted), depth.data());
-    if (!bin_splats(frame.splats.data(), image.width, image.height, frame.lists))
+    if (!number_places(frame.splats.data(), frame.splats.size(), frame.lists.places))
         fail(ErrorKind::range, "splat", "gaussians", "fewer than 2^31 pairs of splat and tile",
              "more", "render a smaller picture, or fewer Gaussians at a time");
+    bin_splats(frame.splats.data(), image.width, image.height, frame.lists);
     return frame;
 }
 
@@ -181,7 +181,7 @@ void splats_backward(const GaussianCloud<R>& cloud, const SplatFrame<R>& frame,
                      const SplatPicture<R>& picture, const SplatPictureAdjoint<R>& adjoint,
                      const GaussianGradients<R>& out, R* d_background) {
     const BlendArgs<R> args = blend_args(frame, picture);
-    std::vector<R> partials(partial_count * frame.lists.splat_of.size());
+    std::vector<R> partials(partial_count * frame.lists.pairs.size());
     const BlendBackward<R> back{adjoint.d_color, adjoint.d_opacity, adjoint.d_depth,
                                 partials.data()};
     for_tiles(frame, [&](const TilePairs& pairs, int x, int y) {

@@ -1,10 +1,12 @@
-// Stage 3: which splats each tile must look at. A splat and a tile that its box touches are a pair; pairs
-// are numbered splat by splat in depth order, and sorted by tile with a stable counting sort, so each
-// tile's list is in depth order too.
+// Stage 3: which splats each tile must look at. A splat and a tile that its box touches are a pair. Pairs are
+// listed splat by splat in depth order and sorted by tile with a stable counting sort, so each tile's list is
+// in depth order too. The places for derivatives are numbered by row instead: a Gaussian's own lie together,
+// and Gaussians are differentiated in the order of their arrays.
 #pragma once
 
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "photograd/core/scatter.h"
@@ -15,13 +17,13 @@ namespace photograd {
 struct TileLists {
     int columns = 0, rows = 0;              // of tiles
     std::vector<std::uint32_t> sorted;      // splats by depth
-    std::vector<std::uint32_t> pair_begin;  // first pair of sorted[k]; one more at the end
-    std::vector<std::uint32_t> splat_of;    // of each pair
-    OwnerBins bins;                         // pairs by tile
+    std::vector<std::uint32_t> places;      // first place of each Gaussian; one more at the end
+    std::vector<TilePair> pairs;            // by tile
+    std::vector<std::uint32_t> pair_begin;  // first pair of each tile; one more at the end
 
-    [[nodiscard]] TilePairs pairs(std::int64_t tile) const {
+    [[nodiscard]] TilePairs of(std::int64_t tile) const {
         const auto t = static_cast<std::size_t>(tile);
-        return {bins.order.data(), splat_of.data(), bins.begin[t], bins.begin[t + 1]};
+        return {pairs.data() + pair_begin[t], pairs.data() + pair_begin[t + 1]};
     }
     [[nodiscard]] std::int64_t tile_count() const {
         return static_cast<std::int64_t>(columns) * rows;
@@ -44,37 +46,58 @@ struct TileBox {
 
 inline constexpr std::int64_t splats_per_task = 4096;
 
-/// Fills `lists` from lists.sorted; false if there are more pairs than 32 bits can number.
+/// Numbers the places of `count` Gaussians; false if there are more than 32 bits can number.
 template <class R>
-bool bin_splats(const ScreenSplat<R>* splats, int width, int height, TileLists& lists) {
+bool number_places(const ScreenSplat<R>* splats, std::size_t count,
+                   std::vector<std::uint32_t>& places) {
+    places.resize(count + 1);
+    std::int64_t sum = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        places[i] = static_cast<std::uint32_t>(sum);
+        sum += TileBox::of(splats[i]).count();
+        if (sum > std::int64_t{0x7fffffff}) return false;
+    }
+    places[count] = static_cast<std::uint32_t>(sum);
+    return true;
+}
+
+/// Fills `lists` from lists.sorted and lists.places.
+template <class R>
+void bin_splats(const ScreenSplat<R>* splats, int width, int height, TileLists& lists) {
     lists.columns = (width + tile_size - 1) / tile_size;
     lists.rows = (height + tile_size - 1) / tile_size;
     const auto count = static_cast<std::int64_t>(lists.sorted.size());
-    lists.pair_begin.resize(lists.sorted.size() + 1);
-    std::int64_t pairs = 0;
+    const std::size_t pairs = lists.places.back();
+    std::vector<std::uint32_t> first(lists.sorted.size() + 1, 0);
     for (std::size_t k = 0; k < lists.sorted.size(); ++k) {
-        lists.pair_begin[k] = static_cast<std::uint32_t>(pairs);
-        pairs += TileBox::of(splats[lists.sorted[k]]).count();
-        if (pairs > std::int64_t{0x7fffffff}) return false;
+        const std::uint32_t i = lists.sorted[k];
+        first[k + 1] = first[k] + (lists.places[i + 1] - lists.places[i]);
     }
-    lists.pair_begin.back() = static_cast<std::uint32_t>(pairs);
-    lists.splat_of.resize(static_cast<std::size_t>(pairs));
-    std::vector<std::uint32_t> tile_of(static_cast<std::size_t>(pairs));
+    std::vector<TilePair> listed(pairs);
+    std::vector<std::uint32_t> tile_of(pairs);
     parallel_for((count + splats_per_task - 1) / splats_per_task, [&](std::int64_t task) {
         const std::int64_t end = std::min(count, (task + 1) * splats_per_task);
         for (std::int64_t k = task * splats_per_task; k < end; ++k) {
             const std::uint32_t splat = lists.sorted[static_cast<std::size_t>(k)];
-            std::size_t pair = lists.pair_begin[static_cast<std::size_t>(k)];
+            std::size_t pair = first[static_cast<std::size_t>(k)];
+            std::uint32_t place = lists.places[splat];
             const TileBox box = TileBox::of(splats[splat]);
             for (int y = box.y0; y < box.y1; ++y)
                 for (int x = box.x0; x < box.x1; ++x, ++pair) {
-                    lists.splat_of[pair] = splat;
+                    listed[pair] = {splat, place++};
                     tile_of[pair] = static_cast<std::uint32_t>(y * lists.columns + x);
                 }
         }
     });
-    bin_by_owner(tile_of, static_cast<int>(lists.tile_count()), lists.bins);
-    return true;
+    OwnerBins bins;
+    bin_by_owner(tile_of, static_cast<int>(lists.tile_count()), bins);
+    lists.pair_begin = std::move(bins.begin);
+    lists.pairs.resize(pairs);
+    parallel_for(lists.tile_count(), [&](std::int64_t tile) {
+        const auto t = static_cast<std::size_t>(tile);
+        for (std::size_t k = lists.pair_begin[t]; k < lists.pair_begin[t + 1]; ++k)
+            lists.pairs[k] = listed[bins.order[k]];
+    });
 }
 
 }  // namespace photograd

@@ -41,15 +41,16 @@ struct TileRows {
     }
 };
 
-/// visit(k, splat, first row, end of rows) for the tile's splats until no pixel is left; returns where it ended.
+/// visit(pair, splat, first row, end of rows) for the tile's splats until no pixel is left; returns where
+/// it ended.
 template <class R, class Visit>
-inline std::int64_t walk_tile(const BlendArgs<R>& a, const TilePairs& pairs, int y,
-                              TileRows<R>& tile, Visit&& visit) {
-    for (std::int64_t k = pairs.begin; k < pairs.end; ++k) {
-        if ((k - pairs.begin) % rows_checked_every == 0 && !tile.check()) return k;
-        if (k + 4 < pairs.end) __builtin_prefetch(a.splats + pairs.splat_of[pairs.order[k + 4]]);
-        const ScreenSplat<R>& s = a.splats[pairs.splat_of[pairs.order[k]]];
-        visit(k, s, larger(s.y0 - y, 0), smaller(s.y1 - y, tile.rows));
+inline const TilePair* walk_tile(const BlendArgs<R>& a, const TilePairs& pairs, int y,
+                                 TileRows<R>& tile, Visit&& visit) {
+    for (const TilePair* pair = pairs.begin; pair != pairs.end; ++pair) {
+        if ((pair - pairs.begin) % rows_checked_every == 0 && !tile.check()) return pair;
+        if (pairs.end - pair > 4) __builtin_prefetch(a.splats + pair[4].splat);
+        const ScreenSplat<R>& s = a.splats[pair->splat];
+        visit(*pair, s, larger(s.y0 - y, 0), smaller(s.y1 - y, tile.rows));
     }
     return pairs.end;
 }
@@ -60,9 +61,10 @@ inline void blend_tile(const BlendArgs<R>& a, const TilePairs& pairs, int x, int
     TileRows<R> tile;
     RowSums<R> sums[tile_size] = {};
     tile.start(x, y, a.width, a.height);
-    walk_tile(a, pairs, y, tile, [&](std::int64_t, const ScreenSplat<R>& s, int first, int end) {
+    walk_tile(a, pairs, y, tile, [&](const TilePair&, const ScreenSplat<R>& s, int first, int end) {
         for (int r = first; r < end; ++r)
-            if (tile.alive[r]) blend_row(s, a.cut, x, y + r, tile.row[r], sums[r]);
+            if (tile.alive[r] && row_may_see(s, x, y + r))
+                blend_row(s, a.cut, x, y + r, tile.row[r], sums[r]);
     });
     const int columns = smaller(tile_size, a.width - x);
     for (int r = 0; r < tile.rows; ++r) {
@@ -103,17 +105,19 @@ inline void blend_tile_backward(const BlendArgs<R>& a, const BlendBackward<R>& b
     for (int r = 0; r < tile.rows; ++r)
         start_cotangents(a, b, smaller(tile_size, a.width - x),
                          static_cast<std::int64_t>(y + r) * a.width + x, back[r]);
-    const std::int64_t end = walk_tile(
-        a, pairs, y, tile, [&](std::int64_t k, const ScreenSplat<R>& s, int first, int last) {
-            SplatSums<R> sums = {};
+    const TilePair* end = walk_tile(
+        a, pairs, y, tile, [&](const TilePair& pair, const ScreenSplat<R>& s, int first, int last) {
+            SplatSums<R> sums;
+            sums.clear();
             for (int r = first; r < last; ++r)
-                if (tile.alive[r])
+                if (tile.alive[r] && row_may_see(s, x, y + r))
                     blend_row_backward(s, a.cut, x, y + r, tile.row[r], back[r], sums);
-            splat_partials(s, sums, b.partials + partial_count * pairs.order[k]);
+            splat_partials(s, sums,
+                           b.partials + partial_count * static_cast<std::int64_t>(pair.place));
         });
-    for (std::int64_t k = end; k < pairs.end; ++k)
+    for (const TilePair* pair = end; pair != pairs.end; ++pair)
         for (int j = 0; j < partial_count; ++j)
-            b.partials[partial_count * pairs.order[k] + j] = R(0);
+            b.partials[partial_count * static_cast<std::int64_t>(pair->place) + j] = R(0);
 }
 
 }  // namespace PHOTOGRAD_ISA

@@ -10,9 +10,8 @@ struct SplatOptions {
     bool antialiased = false;  // opacity compensation for the low-pass
     double alpha_min = 1.0 / 255.0;
     double alpha_max = 0.999;
-    bool pass_clamped = false;  // derivative at alpha_max: 1 instead of 0
-    double extent_sigmas =
-        3.0;  // half-size of a splat's box in standard deviations per axis; 0: off
+    bool pass_clamped = false;   // derivative at alpha_max: 1 instead of 0
+    double extent_sigmas = 0.0;  // half-size of a splat's box, in standard deviations; 0: off
     double stop = 1e-4;
     double near = 0.01;            // metres; what is closer, or behind the camera, is not drawn
     double frustum_margin = 0.15;  // widens the field of view, in image sizes, for the Jacobian

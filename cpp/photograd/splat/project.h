@@ -69,11 +69,13 @@ template <class R>
 void find_box(const SplatView<R>& view, const R* cov2d, ScreenSplat<R>& s) {
     const SplatOptions& o = view.options;
     R sigmas = R(1e6);
+    s.sigma_max = R(1e30);
     if (o.extent_sigmas > 0) sigmas = smaller(sigmas, R(o.extent_sigmas));
     if (o.alpha_min > 0) {
         const R faintest = s.opacity / R(o.alpha_min);
         if (!(faintest >= R(1))) return;
-        sigmas = smaller(sigmas, R(1.001) * std::sqrt(R(2) * std::log(faintest)) + R(1e-3));
+        s.sigma_max = R(1.01) * std::log(faintest) + R(0.05);
+        sigmas = smaller(sigmas, std::sqrt(R(2) * s.sigma_max));
     }
     const R rx = sigmas * sqrt(cov2d[0] + R(o.low_pass)),
             ry = sigmas * sqrt(cov2d[2] + R(o.low_pass));
@@ -87,6 +89,7 @@ void find_box(const SplatView<R>& view, const R* cov2d, ScreenSplat<R>& s) {
 /// Values between a Gaussian and its splat that backward needs again.
 template <class R>
 struct ProjectedGaussian {
+    GaussianAxes<R> axes;
     R cov3d[6];
     SplatProjection<R> p;
     Conic<R> conic;
@@ -102,7 +105,8 @@ ProjectedGaussian<R> project_geometry(const GaussianCloud<R>& cloud, const Splat
     view_point(view.view, mean, t);
     out.drawn = t[2] >= R(view.options.near);
     if (!out.drawn) return out;
-    covariance(cloud.quats + 4 * i, cloud.log_scales + 3 * i, out.cov3d);
+    out.axes = GaussianAxes<R>::of(cloud.quats + 4 * i, cloud.log_scales + 3 * i);
+    covariance(out.axes, out.cov3d);
     out.p = project_gaussian(view.lens, view.view, mean, out.cov3d);
     out.conic = conic_of(out.p.cov2d, R(view.options.low_pass));
     // Comparisons are false for NaN; a mean millions of pixels away is nowhere near the screen.
@@ -151,8 +155,7 @@ void project_splat_backward(const GaussianCloud<R>& cloud, const SplatView<R>& v
     conic_backward(g.p.cov2d, g.conic, d + partial_a, d_compensation, d_cov2d);
     project_gaussian_backward(view.lens, view.view, mean, g.cov3d, g.p, d + partial_x,
                               d[partial_depth], d_cov2d, out.means + 3 * i, d_cov, d_view);
-    covariance_backward(cloud.quats + 4 * i, cloud.log_scales + 3 * i, d_cov, out.quats + 4 * i,
-                        out.log_scales + 3 * i);
+    covariance_backward(g.axes, d_cov, out.quats + 4 * i, out.log_scales + 3 * i);
     if (out.screen)
         for (int k = 0; k < 2; ++k) out.screen[2 * i + k] += d[partial_x + k];
 }

@@ -11,12 +11,14 @@ namespace photograd {
 /// A tile is tile_size x tile_size pixels: a row of it is one set of lanes.
 inline constexpr int tile_size = 16;
 
-/// One tile's splats, nearest first: splat_of[order[k]] for k in [begin, end). order[k] numbers a pair
-/// of splat and tile.
+/// A splat that a tile must look at, and the place for what the tile has for it.
+struct TilePair {
+    std::uint32_t splat, place;
+};
+
+/// One tile's pairs, nearest splat first.
 struct TilePairs {
-    const std::uint32_t* order;
-    const std::uint32_t* splat_of;
-    std::int64_t begin, end;
+    const TilePair *begin, *end;
 };
 
 template <class R>
@@ -35,7 +37,7 @@ struct BlendBackward {
     const R* d_color;    // (H, W, 3)
     const R* d_opacity;  // (H, W)
     const R* d_depth;    // (H, W)
-    R* partials;         // (pairs, partial_count): each pair is written once
+    R* partials;         // (pairs, partial_count), by place: each is written once
 };
 
 }  // namespace photograd
