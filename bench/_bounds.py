@@ -55,6 +55,16 @@ def texture_bound(lookups: int) -> dict[str, Any]:
     return _row(slowest({"load_L3": 2 * lookups}), slowest({"rmw_L3": 2 * lookups}))
 
 
+def splat_bound(contributions: int) -> dict[str, Any]:
+    """W8: a pixel and a Gaussian that adds to it take 24 flop and one exp forward, 100 more back.
+
+    Sorting and projecting are not counted.
+    """
+    forward = slowest({"flop": 24 * contributions, "exp": contributions})
+    both = slowest({"flop": 124 * contributions, "exp": 2 * contributions})
+    return _row(forward, both)
+
+
 def _row(forward: tuple[float, str], both: tuple[float, str] | None) -> dict[str, Any]:
     return {
         "seconds_fwd": forward[0],

@@ -49,6 +49,7 @@ PEERS = [
     Peer("W5", "drjit-llvm", "w5_texture_drjit.py", "mi"),
     Peer("W5", "torch", "w5_texture_torch.py", "torch"),
     Peer("W5", "jax", "w5_texture_jax.py", "jax"),
+    Peer("W8", "torch-tiles", "w8_splat_torch.py", "torch"),
 ]
 
 
