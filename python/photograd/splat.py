@@ -208,8 +208,8 @@ def render(
     """The picture of Gaussians that a camera takes.
 
     Gaussians blend in the order of their means' depth along the viewing axis; of equal ones, the
-    row that comes first is in front. Non-finite projections, and those wider than 3e7 pixels, are
-    not drawn.
+    row that comes first is in front. Splats that numbers cannot hold, among them those wider than
+    10^6 pixels, are not drawn.
 
     Args:
         gaussians: N of them; none is a picture of the background.

@@ -92,6 +92,30 @@ def test_what_is_no_number_is_refused_with_its_row(name: str, bad: float) -> Non
         render(changed(name, bad), CAMERA)
 
 
+WEIRD = np.array([0, 1e-30, -1e-30, 1e30, -1e30, 1e5, -1e5, 600, -600, 88, 0.02, -0.01, 30, -30])
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_weird_numbers_in_any_combination_leave_numbers(dtype: Any) -> None:
+    random = np.random.default_rng(1)
+    drawn = 0
+    for seed in range(30):
+        g = oracle.cloud(200, seed, degree=1)
+        for array in g.arrays().values():
+            where = random.random(array.shape) < 0.3
+            array[where] = random.choice(WEIRD, int(where.sum()))
+        options = list(OPTIONS.values())[seed % 4]
+        picture, context = render(g.astype(dtype), CAMERA, options=options)
+        found = render_backward(context, *(np.ones_like(a) for a in vars(picture).values()))
+        drawn += int(context.visible.sum())
+        rest = {"view": found.camera_from_world, "background": found.background}
+        for name, array in {**vars(picture), **found.gaussians, **rest}.items():
+            assert not np.isnan(array).any(), (seed, name)
+            # The slope by a quaternion of length 1e-30 may be beyond what numbers can hold.
+            assert name == "quats" or np.isfinite(array).all(), (seed, name)
+    assert drawn > 300
+
+
 def test_no_gaussians_are_a_picture_of_the_background() -> None:
     g = oracle.cloud(1, 1)
     none = Gaussians(**{name: array[:0] for name, array in g.arrays().items()})

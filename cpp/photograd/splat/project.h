@@ -109,9 +109,10 @@ ProjectedGaussian<R> project_geometry(const GaussianCloud<R>& cloud, const Splat
     covariance(out.axes, out.cov3d);
     out.p = project_gaussian(view.lens, view.view, mean, out.cov3d);
     out.conic = conic_of(out.p.cov2d, R(view.options.low_pass));
-    // Comparisons are false for NaN; a mean millions of pixels away is nowhere near the screen.
-    out.drawn = out.conic.valid() && std::abs(out.p.mean2d[0]) < R(1e7) &&
-                std::abs(out.p.mean2d[1]) < R(1e7);
+    // Comparisons are false for NaN. A splat wider than a million pixels has a conic of nothing but
+    // rounding, and its derivatives overflow; a mean so far away is nowhere near the screen.
+    out.drawn = out.conic.valid() && out.p.cov2d[0] + out.p.cov2d[2] < R(1e12) &&
+                std::abs(out.p.mean2d[0]) < R(1e7) && std::abs(out.p.mean2d[1]) < R(1e7);
     return out;
 }
 
