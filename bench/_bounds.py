@@ -65,6 +65,14 @@ def sh_bound(points: int) -> dict[str, Any]:
     """
     forward = slowest({"byte": 216 * points, "flop": 130 * points})
     return _row(forward, slowest({"byte": 432 * points, "flop": 400 * points}))
+def splat_bound(contributions: int) -> dict[str, Any]:
+    """W8: a pixel and a Gaussian that adds to it take 24 flop and one exp forward, 100 more back.
+
+    Sorting and projecting are not counted.
+    """
+    forward = slowest({"flop": 24 * contributions, "exp": contributions})
+    both = slowest({"flop": 124 * contributions, "exp": 2 * contributions})
+    return _row(forward, both)
 
 
 def _row(forward: tuple[float, str], both: tuple[float, str] | None) -> dict[str, Any]:

@@ -23,6 +23,8 @@ RECORDED = {
     "W5 n=256 points=200000": "bed43a2402088295",
     "W6a points=2000000": "445afa5c746f01b0",
     "W6a points=1000": "002ee91ab6cb7117",
+    "W8 n=100000 res=512": "58aff03f9ae90801",
+    "W8 n=2000 res=64": "b9a1345105ac1026",
 }
 
 
@@ -216,3 +218,33 @@ def ray_sets(vertices: Array, faces: Array, res: int) -> dict[str, tuple[Array, 
         "bounce": (start, cosine_directions(inward, seed=1)),
     }
     return {name: (o.astype(np.float32), d.astype(np.float32)) for name, (o, d) in rays.items()}
+
+
+# W8: Gaussians in a ball, and a camera that sees it
+
+
+def gaussians(count: int) -> dict[str, Array]:
+    """Random Gaussians in the unit ball, float32, raw, degree 3; the more, the smaller."""
+    g = np.random.default_rng(7)
+    means = unit(g.standard_normal((count, 3))) * g.random((count, 1)) ** (1 / 3)
+    size = np.log(0.008 * (100_000 / count) ** (1 / 3))
+    log_scales = size + 0.5 * g.standard_normal((count, 3))
+    quats = unit(g.standard_normal((count, 4)))
+    opacity_logits = g.uniform(-2.0, 3.0, count)
+    flat = 0.6 * g.standard_normal((count, 1, 3))
+    sh = np.concatenate([flat, 0.08 * g.standard_normal((count, 15, 3))], axis=1)
+    arrays = {
+        "means": means, "log_scales": log_scales, "quats": quats,
+        "opacity_logits": opacity_logits, "sh": sh,
+    }  # fmt: skip
+    return {name: np.ascontiguousarray(array, np.float32) for name, array in arrays.items()}
+
+
+def splat_camera(res: int) -> tuple[Array, float]:
+    """camera_from_world (3, 4) float32 of a camera 2.6 m from the centre, and its focal length."""
+    eye = 2.6 * unit(np.array([0.5, 0.35, 0.8]))
+    forward = -unit(eye)
+    right = unit(np.cross(forward, [0, 1, 0]))
+    rotation = np.stack([right, np.cross(forward, right), forward])
+    view = np.column_stack([rotation, -rotation @ eye]).astype(np.float32)
+    return view, float(0.5 * res / np.tan(np.radians(50.0) / 2))

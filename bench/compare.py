@@ -50,6 +50,7 @@ PEERS = [
     Peer("W5", "torch", "w5_texture_torch.py", "torch"),
     Peer("W5", "jax", "w5_texture_jax.py", "jax"),
     Peer("W6a", "torch", "w6_sh_torch.py", "torch"),
+    Peer("W8", "torch-tiles", "w8_splat_torch.py", "torch"),
 ]
 
 

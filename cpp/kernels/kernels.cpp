@@ -2,6 +2,7 @@
 // namespace that PHOTOGRAD_ISA names.
 #include "kernels/kernels.h"
 
+#include "kernels/blend_splats.inl"
 #include "kernels/march_dense.inl"
 #include "kernels/sample_rgb.inl"
 #include "kernels/sh_rgb.inl"
@@ -18,6 +19,8 @@ extern const Kernels table{
     .sample_rgb = &sample_rgb,
     .sh_rgb = &sh_rgb,
     .sh_rgb_backward = &sh_rgb_backward,
+    .blend_tile = &blend_tile_float,
+    .blend_tile_backward = &blend_tile_backward_float,
 };
 
 }  // namespace photograd::PHOTOGRAD_ISA

@@ -5,6 +5,7 @@
 #include "kernels/march_dense.h"
 #include "kernels/sample_rgb.h"
 #include "kernels/sh_rgb.h"
+#include "photograd/splat/tiles.h"
 
 namespace photograd {
 
@@ -20,6 +21,9 @@ struct Kernels {
     void (*sh_rgb)(const ShRgbArgs&, std::int64_t begin, std::int64_t end, float* colors);
     void (*sh_rgb_backward)(const ShRgbArgs&, const ShRgbBackward&, std::int64_t begin,
                             std::int64_t end);
+    void (*blend_tile)(const BlendArgs<float>&, const TilePairs&, int x, int y);
+    void (*blend_tile_backward)(const BlendArgs<float>&, const BlendBackward<float>&,
+                                const TilePairs&, int x, int y);
 };
 
 [[nodiscard]] const Kernels& kernels();

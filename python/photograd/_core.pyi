@@ -15,9 +15,13 @@ __all__: list[str] = [
     "MarchSettings",
     "Octree",
     "Op",
+    "PreparedSplats32",
+    "PreparedSplats64",
     "Quadtree",
     "SparseGrid",
     "SparseStatistics",
+    "SplatImage",
+    "SplatOptions",
     "TexturePlan",
     "VoxelHash",
     "bsdf_lambert",
@@ -44,6 +48,7 @@ __all__: list[str] = [
     "phases",
     "philox4x32",
     "place_samples",
+    "prepare_splats",
     "read_vdb",
     "render_direct",
     "render_direct_backward",
@@ -632,6 +637,125 @@ class BrickTopology:
     @property
     def voxels(self) -> int: ...
 
+class SplatImage:
+    """
+    Size and focal lengths of a picture, in pixels.
+    """
+    def __init__(
+        self,
+        width: typing.SupportsInt | typing.SupportsIndex,
+        height: typing.SupportsInt | typing.SupportsIndex,
+        fx: typing.SupportsFloat | typing.SupportsIndex,
+        fy: typing.SupportsFloat | typing.SupportsIndex,
+        cx: typing.SupportsFloat | typing.SupportsIndex,
+        cy: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> None: ...
+
+class SplatOptions:
+    """
+    Policies of splatting.
+    """
+    def __init__(
+        self,
+        low_pass: typing.SupportsFloat | typing.SupportsIndex,
+        antialiased: bool,
+        alpha_min: typing.SupportsFloat | typing.SupportsIndex,
+        alpha_max: typing.SupportsFloat | typing.SupportsIndex,
+        pass_clamped: bool,
+        extent_sigmas: typing.SupportsFloat | typing.SupportsIndex,
+        stop: typing.SupportsFloat | typing.SupportsIndex,
+        near: typing.SupportsFloat | typing.SupportsIndex,
+        frustum_margin: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> None: ...
+
+class PreparedSplats32:
+    """
+    Splats of one view, sorted and in tiles.
+    """
+    def backward(
+        self,
+        means: numpy.ndarray,
+        log_scales: numpy.ndarray,
+        quats: numpy.ndarray,
+        opacity_logits: numpy.ndarray,
+        sh: numpy.ndarray,
+        color: numpy.ndarray,
+        opacity: numpy.ndarray,
+        depth: numpy.ndarray,
+        d_color: numpy.ndarray,
+        d_opacity: numpy.ndarray,
+        d_depth: numpy.ndarray,
+        d_means: numpy.ndarray,
+        d_log_scales: numpy.ndarray,
+        d_quats: numpy.ndarray,
+        d_opacity_logits: numpy.ndarray,
+        d_sh: numpy.ndarray,
+        d_camera_from_world: numpy.ndarray,
+        d_background: numpy.ndarray,
+        d_screen: numpy.ndarray,
+    ) -> None:
+        """
+        Adds to the arrays named d_*.
+        """
+    def render(self) -> tuple[typing.Any, ...]:
+        """
+        Colour (H, W, 3), opacity (H, W), depth (H, W).
+        """
+    @property
+    def boxes(self) -> numpy.typing.NDArray[numpy.int32]:
+        """
+        Pixels [x0, x1) x [y0, y1) of each Gaussian, (N, 4) int32.
+        """
+    @property
+    def pairs(self) -> int:
+        """
+        Number of pairs of splat and tile.
+        """
+
+class PreparedSplats64:
+    """
+    Splats of one view, sorted and in tiles.
+    """
+    def backward(
+        self,
+        means: numpy.ndarray,
+        log_scales: numpy.ndarray,
+        quats: numpy.ndarray,
+        opacity_logits: numpy.ndarray,
+        sh: numpy.ndarray,
+        color: numpy.ndarray,
+        opacity: numpy.ndarray,
+        depth: numpy.ndarray,
+        d_color: numpy.ndarray,
+        d_opacity: numpy.ndarray,
+        d_depth: numpy.ndarray,
+        d_means: numpy.ndarray,
+        d_log_scales: numpy.ndarray,
+        d_quats: numpy.ndarray,
+        d_opacity_logits: numpy.ndarray,
+        d_sh: numpy.ndarray,
+        d_camera_from_world: numpy.ndarray,
+        d_background: numpy.ndarray,
+        d_screen: numpy.ndarray,
+    ) -> None:
+        """
+        Adds to the arrays named d_*.
+        """
+    def render(self) -> tuple[typing.Any, ...]:
+        """
+        Colour (H, W, 3), opacity (H, W), depth (H, W).
+        """
+    @property
+    def boxes(self) -> numpy.typing.NDArray[numpy.int32]:
+        """
+        Pixels [x0, x1) x [y0, y1) of each Gaussian, (N, 4) int32.
+        """
+    @property
+    def pairs(self) -> int:
+        """
+        Number of pairs of splat and tile.
+        """
+
 def build_mips(mips: collections.abc.Sequence[numpy.ndarray]) -> None:
     """
     Fills level 1 and all after it from level 0.
@@ -746,6 +870,21 @@ def place_samples(
 ) -> tuple[typing.Any, ...]:
     """
     Per ray: t0 (R,) and the number of samples (R,) int32.
+    """
+
+def prepare_splats(
+    means: numpy.ndarray,
+    log_scales: numpy.ndarray,
+    quats: numpy.ndarray,
+    opacity_logits: numpy.ndarray,
+    sh: numpy.ndarray,
+    image: SplatImage,
+    options: SplatOptions,
+    camera_from_world: numpy.ndarray,
+    background: numpy.ndarray,
+) -> typing.Any:
+    """
+    Projects, sorts and bins; PreparedSplats32 or PreparedSplats64.
     """
 
 def read_vdb(

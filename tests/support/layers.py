@@ -21,8 +21,8 @@ ORDER: tuple[tuple[str, ...], ...] = (
 RANK = {module: rank for rank, group in enumerate(ORDER) for module in group}
 # Kernels are the vectorised twins of loops in these modules; only they may call them.
 KERNEL_USERS = {"kernels", "texture", "render", "bindings", "tests", "bench"}
-# What a kernel file may see: plain values and lanes, and the layout of a grid.
-KERNEL_SOURCES = {"kernels", "core", "ops", "grid"}
+# What a kernel file may see: plain values and lanes, the layout of a grid, the tiles of splats.
+KERNEL_SOURCES = {"kernels", "core", "ops", "grid", "splat"}
 
 # Each third-party library has one door.
 DOORS: dict[str, tuple[str, ...]] = {

@@ -12,16 +12,12 @@
 #include "photograd/ops/bilinear.h"
 #include "photograd/ops/cell_blend.h"
 #include "photograd/ops/composite.h"
+#include "photograd/ops/input_group.h"
 #include "photograd/ops/sh.h"
+#include "photograd/ops/splat_op_list.h"
 #include "photograd/ops/trilinear.h"
 
 namespace photograd {
-
-struct InputGroup {
-    const char* name;
-    int size;
-    double lo, hi;  // proofs draw inputs from here; kinks lie outside
-};
 
 template <Activation Kind>
 struct ActivationOp {
@@ -229,10 +225,11 @@ struct CompositeOp {
     }
 };
 
-using Ops =
-    TypeList<ActivationOp<Activation::relu>, ActivationOp<Activation::softplus>,
-             ActivationOp<Activation::exp>, ActivationOp<Activation::sigmoid>, BilinearOp<false>,
-             BilinearOp<true>, TrilinearOp<Border::clamp>, TrilinearOp<Border::zero>, CellBlendOp,
-             ShColorOp, CompositeOp<Quadrature::alpha>, CompositeOp<Quadrature::riemann>>;
+using Ops = TypeList<ActivationOp<Activation::relu>, ActivationOp<Activation::softplus>,
+                     ActivationOp<Activation::exp>, ActivationOp<Activation::sigmoid>,
+                     BilinearOp<false>, BilinearOp<true>, TrilinearOp<Border::clamp>,
+                     TrilinearOp<Border::zero>, CellBlendOp, ShColorOp,
+                     CompositeOp<Quadrature::alpha>, CompositeOp<Quadrature::riemann>, CovarianceOp,
+                     ProjectionOp<false>, ProjectionOp<true>, ConicOp, SplatColorOp, SplatBlendOp>;
 
 }  // namespace photograd

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Annotated
 
@@ -18,11 +19,14 @@ from photograd_course.cli import (
 from photograd_course.viz import write_frames, write_gif
 
 from photograd.commands.shared import use_threads
+from photograd.data.gaussian_ply import read_gaussian_ply
 from photograd.evaluate import display_image
 from photograd.fog import RAMPS, load_fog
 from photograd.model import load_model
 from photograd.orbit import orbit_cameras
 from photograd.volumes import SUFFIXES
+from photograd.representation import Array
+from photograd.splat_orbit import UP_AXES, orbit_splats
 
 
 def register(app: typer.Typer) -> None:
@@ -35,6 +39,7 @@ def render(
         Path,
         typer.Argument(
             help="Folder that a fit wrote, its model.npz, or a volume: .vdb, .vtk, .nii, .vol.",
+            help="Folder that a fit wrote, its model.npz, a .vdb file, or a .ply of Gaussians.",
             metavar="MODEL",
         ),
     ],
@@ -60,25 +65,48 @@ def render(
         tuple[float, float] | None,
         typer.Option("--window", help="Values of a volume that count as 0 and as 1."),
     ] = None,
+    up: Annotated[
+        str, typer.Option("--up", help=f"What is up in a .ply file: {', '.join(UP_AXES)}.")
+    ] = "-y",
     seed: SeedOption = 0,  # noqa: ARG001  a rendering draws nothing at random
     threads: ThreadsOption = 0,
     as_json: JsonOption = False,
     debug: DebugOption = False,  # noqa: ARG001
 ) -> None:
     """Render a turntable of a recovered scene, or of the densities in a volume or scan.
+    """Render a turntable of a recovered scene, of a .vdb file's densities, or of Gaussians.
 
     Example: photograd render model --orbit 60 --out turntable.gif
     """
     use_threads(threads)
     if model.name.lower().endswith((".vdb", *SUFFIXES)):
         loaded = load_fog(model, ramp=ramp, sigma_t=sigma_t, resolution=resolution, window=window)
+    if model.suffix.lower() == ".ply":
+        views = orbit_splats(read_gaussian_ply(model), orbit, size=size, elevation=elevation, up=up)
+        _save(_drawn(views, orbit), out, as_json=as_json)
+        return
+    if model.suffix.lower() == ".vdb":
+        loaded = load_fog(model, ramp=ramp, sigma_t=sigma_t, resolution=resolution)
     else:
         loaded = load_model(model)
+    cameras = orbit_cameras(loaded.field.box, orbit, size=size, elevation=elevation)
+    _save(
+        _drawn((display_image(loaded, camera) for camera in cameras), orbit), out, as_json=as_json
+    )
+
+
+def _drawn(views: Iterable[Array], count: int) -> list[Array]:
+    """All pictures, while a bar shows how many there are."""
     frames = []
-    with Progress("render", orbit, [Column("frame", "{:.0f}".format)]) as bar:
-        for camera in orbit_cameras(loaded.field.box, orbit, size=size, elevation=elevation):
-            frames.append(display_image(loaded, camera))
+    with Progress("render", count, [Column("frame", "{:.0f}".format)]) as bar:
+        for view in views:
+            frames.append(view)
             bar.update(len(frames), frame=len(frames))
+    return frames
+
+
+def _save(frames: list[Array], out: Path, *, as_json: bool) -> None:
+    """Write the frames to a .gif or a folder, and say so."""
     if out.suffix.lower() == ".gif":
         write_gif(frames, out)
     else:

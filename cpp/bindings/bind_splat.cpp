@@ -1,0 +1,176 @@
+// Gaussian splatting; photograd.splat is the typed face.
+#include <optional>
+
+#include "array_args.h"
+#include "module.h"
+#include "photograd/render/splat.h"
+
+namespace photograd {
+namespace {
+
+/// A prepared picture, in the number type of its arrays.
+template <class R>
+struct Prepared {
+    SplatFrame<R> frame;
+};
+
+int degree_of(const ArrayArgs& args) {
+    switch (args.size("K")) {
+        case 1: return 0;
+        case 4: return 1;
+        case 9: return 2;
+        case 16: return 3;
+        default:
+            args.range("sh", "1, 4, 9 or 16 coefficients (degree 0 to 3)",
+                       std::to_string(args.size("K")));
+    }
+}
+
+template <class R>
+GaussianCloud<R> cloud_of(ArrayArgs& args, const py::array& means, const py::array& log_scales,
+                          const py::array& quats, const py::array& opacity_logits,
+                          const py::array& sh) {
+    GaussianCloud<R> cloud{};
+    cloud.means = args.in<R>("means", means, "N 3");
+    cloud.log_scales = args.in<R>("log_scales", log_scales, "N 3");
+    cloud.quats = args.in<R>("quats", quats, "N 4");
+    cloud.opacity_logits = args.in<R>("opacity_logits", opacity_logits, "N");
+    cloud.sh = args.in<R>("sh", sh, "N K 3");
+    cloud.count = args.size("N");
+    if (cloud.count >= std::int64_t{1} << 31)
+        args.range("means", "fewer than 2^31 rows", std::to_string(cloud.count));
+    cloud.degree = degree_of(args);
+    return cloud;
+}
+
+py::object prepare(const py::array& means, const py::array& log_scales, const py::array& quats,
+                   const py::array& opacity_logits, const py::array& sh, const SplatImage& image,
+                   const SplatOptions& options, const py::array& camera_from_world,
+                   const py::array& background) {
+    return dispatch_real("splat", "means", means, [&](auto real) -> py::object {
+        using R = decltype(real);
+        ArrayArgs args("splat");
+        const auto cloud = cloud_of<R>(args, means, log_scales, quats, opacity_logits, sh);
+        const R* view = args.in<R>("camera_from_world", camera_from_world, "3 4");
+        const R* behind = args.in<R>("background", background, "3");
+        Prepared<R> out;
+        {
+            const py::gil_scoped_release release;
+            out.frame = prepare_splats(cloud, image, options, view, behind);
+        }
+        return py::cast(std::move(out));
+    });
+}
+
+template <class R>
+py::tuple render(const Prepared<R>& prepared) {
+    const SplatImage& image = prepared.frame.view.image;
+    py::array_t<R> color({image.height, image.width, 3}), opacity({image.height, image.width}),
+        depth({image.height, image.width});
+    const SplatPicture<R> out{color.mutable_data(), opacity.mutable_data(), depth.mutable_data()};
+    {
+        const py::gil_scoped_release release;
+        blend_splats(prepared.frame, out);
+    }
+    return py::make_tuple(color, opacity, depth);
+}
+
+template <class R>
+void backward(const Prepared<R>& prepared, const py::array& means, const py::array& log_scales,
+              const py::array& quats, const py::array& opacity_logits, const py::array& sh,
+              py::array color, py::array opacity, py::array depth, const py::array& d_color,
+              const py::array& d_opacity, const py::array& d_depth, py::array d_means,
+              py::array d_log_scales, py::array d_quats, py::array d_opacity_logits, py::array d_sh,
+              py::array d_view, py::array d_background, py::array d_screen) {
+    ArrayArgs args("splat_backward");
+    const auto cloud = cloud_of<R>(args, means, log_scales, quats, opacity_logits, sh);
+    const SplatFrame<R>& frame = prepared.frame;
+    const auto picture_axes =
+        std::to_string(frame.view.image.height) + " " + std::to_string(frame.view.image.width);
+    if (cloud.count != static_cast<std::int64_t>(frame.splats.size()))
+        args.range("means", std::to_string(frame.splats.size()) + " rows, as were rendered",
+                   std::to_string(cloud.count));
+    const SplatPicture<R> picture{args.out<R>("color", color, picture_axes + " 3"),
+                                  args.out<R>("opacity", opacity, picture_axes),
+                                  args.out<R>("depth", depth, picture_axes)};
+    const SplatPictureAdjoint<R> adjoint{args.in<R>("d_color", d_color, picture_axes + " 3"),
+                                         args.in<R>("d_opacity", d_opacity, picture_axes),
+                                         args.in<R>("d_depth", d_depth, picture_axes)};
+    const GaussianGradients<R> out{args.out<R>("d_means", d_means, "N 3"),
+                                   args.out<R>("d_log_scales", d_log_scales, "N 3"),
+                                   args.out<R>("d_quats", d_quats, "N 4"),
+                                   args.out<R>("d_opacity_logits", d_opacity_logits, "N"),
+                                   args.out<R>("d_sh", d_sh, "N K 3"),
+                                   args.out<R>("d_camera_from_world", d_view, "3 4"),
+                                   args.out<R>("d_screen", d_screen, "N 2")};
+    R* d_behind = args.out<R>("d_background", d_background, "3");
+    const py::gil_scoped_release release;
+    splats_backward(cloud, frame, picture, adjoint, out, d_behind);
+}
+
+/// The box of pixels of each Gaussian, (N, 4) int32: x0, x1, y0, y1; empty if it is culled.
+template <class R>
+py::array_t<std::int32_t> boxes(const Prepared<R>& prepared) {
+    const auto& splats = prepared.frame.splats;
+    py::array_t<std::int32_t> out({static_cast<py::ssize_t>(splats.size()), py::ssize_t{4}});
+    std::int32_t* to = out.mutable_data();
+    for (const ScreenSplat<R>& s : splats) {
+        *to++ = s.x0;
+        *to++ = s.x1;
+        *to++ = s.y0;
+        *to++ = s.y1;
+    }
+    return out;
+}
+
+template <class R>
+void bind_prepared(py::module_& m, const char* name) {
+    using P = Prepared<R>;
+    py::class_<P>(m, name, "Splats of one view, sorted and in tiles.")
+        .def("render", &render<R>, "Colour (H, W, 3), opacity (H, W), depth (H, W).")
+        .def("backward", &backward<R>, py::arg("means"), py::arg("log_scales"), py::arg("quats"),
+             py::arg("opacity_logits"), py::arg("sh"), py::arg("color"), py::arg("opacity"),
+             py::arg("depth"), py::arg("d_color"), py::arg("d_opacity"), py::arg("d_depth"),
+             py::arg("d_means"), py::arg("d_log_scales"), py::arg("d_quats"),
+             py::arg("d_opacity_logits"), py::arg("d_sh"), py::arg("d_camera_from_world"),
+             py::arg("d_background"), py::arg("d_screen"), "Adds to the arrays named d_*.")
+        .def_property_readonly(
+            "pairs",
+            [](const P& p) { return static_cast<std::int64_t>(p.frame.lists.pairs.size()); },
+            "Number of pairs of splat and tile.")
+        .def_property_readonly("boxes", &boxes<R>,
+                               "Pixels [x0, x1) x [y0, y1) of each Gaussian, (N, 4) int32.");
+}
+
+}  // namespace
+
+void bind_splat(py::module_& m) {
+    py::class_<SplatImage>(m, "SplatImage", "Size and focal lengths of a picture, in pixels.")
+        .def(py::init([](int width, int height, double fx, double fy, double cx, double cy) {
+                 if (width < 1 || height < 1 || std::int64_t{width} * height > (1 << 28))
+                     fail(ErrorKind::range, "splat", "width, height", "1 to 2^28 pixels",
+                          std::to_string(width) + " x " + std::to_string(height));
+                 return SplatImage{width, height, fx, fy, cx, cy};
+             }),
+             py::arg("width"), py::arg("height"), py::arg("fx"), py::arg("fy"), py::arg("cx"),
+             py::arg("cy"));
+    py::class_<SplatOptions>(m, "SplatOptions", "Policies of splatting.")
+        .def(py::init([](double low_pass, bool antialiased, double alpha_min, double alpha_max,
+                         bool pass_clamped, double extent_sigmas, double stop, double near,
+                         double frustum_margin) {
+                 return SplatOptions{low_pass,  antialiased,  alpha_min,
+                                     alpha_max, pass_clamped, extent_sigmas,
+                                     stop,      near,         frustum_margin};
+             }),
+             py::arg("low_pass"), py::arg("antialiased"), py::arg("alpha_min"),
+             py::arg("alpha_max"), py::arg("pass_clamped"), py::arg("extent_sigmas"),
+             py::arg("stop"), py::arg("near"), py::arg("frustum_margin"));
+    bind_prepared<float>(m, "PreparedSplats32");
+    bind_prepared<double>(m, "PreparedSplats64");
+    m.def("prepare_splats", &prepare, py::arg("means"), py::arg("log_scales"), py::arg("quats"),
+          py::arg("opacity_logits"), py::arg("sh"), py::arg("image"), py::arg("options"),
+          py::arg("camera_from_world"), py::arg("background"),
+          "Projects, sorts and bins; PreparedSplats32 or PreparedSplats64.");
+}
+
+}  // namespace photograd

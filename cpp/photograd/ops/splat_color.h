@@ -1,0 +1,58 @@
+// The colour of a Gaussian from where it is seen [Kerbl2023]: spherical harmonics of the unit direction
+// from the eye to its mean, around a middle grey, never negative.
+//
+//   o = mean - eye,  d = o / |o|
+//   color_c = max(0, 1/2 + sum_k Y_k(d) sh_kc)
+//
+// Adjoint: where the clamp holds, everything is zero (such a splat cannot come back by itself). With d_d
+// from the harmonics, d_o = (d_d - d <d, d_d>) / |o|;  d_mean = d_o,  d_eye = -d_o.
+#pragma once
+
+#include "photograd/core/dual.h"
+#include "photograd/ops/sh.h"
+
+namespace photograd {
+inline namespace PHOTOGRAD_ISA {
+
+/// d[3] = (mean - eye) / |mean - eye|; returns 1 / |mean - eye|.
+template <class R>
+inline R direction_from(const R* eye, const R* mean, R* d) {
+    R square = R(0);
+    for (int i = 0; i < 3; ++i) {
+        d[i] = mean[i] - eye[i];
+        square += d[i] * d[i];
+    }
+    const R inverse = R(1) / sqrt(square);
+    for (int i = 0; i < 3; ++i) d[i] *= inverse;
+    return inverse;
+}
+
+/// color[3]; sh is (K, 3). The mean must not be the eye.
+template <int Degree, class R>
+inline void splat_color(const R* eye, const R* mean, const R* sh, R* color) {
+    R d[3], Y[sh_count(Degree)];
+    direction_from(eye, mean, d);
+    sh_basis<Degree>(d[0], d[1], d[2], Y);
+    sh_color<Degree, 3>(Y, sh, color);
+    for (int c = 0; c < 3; ++c) color[c] = larger(color[c] + R(0.5), R(0));
+}
+/// Adds to d_eye, d_mean and d_sh; `color` is what the forward pass gave.
+template <int Degree, class R>
+inline void splat_color_backward(const R* eye, const R* mean, const R* sh, const R* color,
+                                 const R* d_color, R* d_eye, R* d_mean, R* d_sh) {
+    R d[3], Y[sh_count(Degree)], d_Y[sh_count(Degree)] = {}, d_d[3] = {R(0), R(0), R(0)}, live[3];
+    for (int c = 0; c < 3; ++c) live[c] = color[c] > R(0) ? d_color[c] : R(0);
+    const R inverse = direction_from(eye, mean, d);
+    sh_basis<Degree>(d[0], d[1], d[2], Y);
+    sh_color_backward<Degree, 3>(Y, sh, live, d_Y, d_sh);
+    sh_basis_backward<Degree>(d[0], d[1], d[2], d_Y, d_d);
+    const R along = d[0] * d_d[0] + d[1] * d_d[1] + d[2] * d_d[2];
+    for (int i = 0; i < 3; ++i) {
+        const R d_o = (d_d[i] - d[i] * along) * inverse;
+        d_mean[i] += d_o;
+        d_eye[i] -= d_o;
+    }
+}
+
+}  // namespace PHOTOGRAD_ISA
+}  // namespace photograd

@@ -1,0 +1,205 @@
+#include "photograd/render/splat.h"
+
+#include <array>
+#include <limits>
+#include <span>
+#include <string>
+
+#include "kernels/kernels.h"
+#include "photograd/core/errors.h"
+#include "photograd/core/scatter.h"
+#include "photograd/splat/blend.h"
+#include "photograd/splat/sort.h"
+
+namespace photograd {
+namespace {
+
+std::int64_t tasks_for(std::int64_t count) {
+    return (count + splats_per_task - 1) / splats_per_task;
+}
+
+template <class R>
+bool all_numbers(const R* x, std::int64_t n) {
+    int bad = 0;
+    for (std::int64_t i = 0; i < n; ++i) bad |= x[i] - x[i] == R(0) ? 0 : 1;
+    return bad == 0;
+}
+
+/// The group of row i that holds what no parameter may be; nullptr if there is none. A log-scale of minus
+/// infinity (no extent) and infinite logits (fully opaque, or absent) have a meaning.
+template <class R>
+const char* bad_group(const GaussianCloud<R>& cloud, std::int64_t i) {
+    const R* log_scale = cloud.log_scales + 3 * i;
+    const std::int64_t stride = 3 * sh_count(cloud.degree);
+    if (!all_numbers(cloud.means + 3 * i, 3)) return "means";
+    for (int k = 0; k < 3; ++k)
+        if (!(log_scale[k] < std::numeric_limits<R>::infinity())) return "log_scales";
+    if (!all_numbers(cloud.quats + 4 * i, 4)) return "quats";
+    if (std::isnan(cloud.opacity_logits[i])) return "opacity_logits";
+    if (!all_numbers(cloud.sh + stride * i, stride)) return "sh";
+    return nullptr;
+}
+
+template <class R>
+void refuse_bad_rows(const GaussianCloud<R>& cloud, const std::vector<char>& bad_task) {
+    for (std::size_t task = 0; task < bad_task.size(); ++task) {
+        if (!bad_task[task]) continue;
+        for (auto i = static_cast<std::int64_t>(task) * splats_per_task;; ++i)
+            if (const char* group = bad_group(cloud, i))
+                fail(ErrorKind::range, "splat", group, "finite numbers",
+                     "one that is not, in row " + std::to_string(i),
+                     "remove the row, or find the step that made it");
+    }
+}
+
+template <class R>
+void blend_one(const BlendArgs<R>& args, const TilePairs& pairs, int x, int y) {
+    if constexpr (std::is_same_v<R, float>)
+        kernels().blend_tile(args, pairs, x, y);
+    else
+        blend_tile(args, pairs, x, y);
+}
+
+template <class R>
+void blend_one_backward(const BlendArgs<R>& args, const BlendBackward<R>& back,
+                        const TilePairs& pairs, int x, int y) {
+    if constexpr (std::is_same_v<R, float>)
+        kernels().blend_tile_backward(args, back, pairs, x, y);
+    else
+        blend_tile_backward(args, back, pairs, x, y);
+}
+
+template <class R>
+BlendArgs<R> blend_args(const SplatFrame<R>& frame, const SplatPicture<R>& picture) {
+    const SplatOptions& o = frame.view.options;
+    BlendArgs<R> args{};
+    args.splats = frame.splats.data();
+    args.cut = {R(o.alpha_min), R(o.alpha_max), R(o.stop), o.pass_clamped ? 1 : 0};
+    std::copy_n(frame.background, 3, args.background);
+    args.width = frame.view.image.width;
+    args.height = frame.view.image.height;
+    args.color = picture.color;
+    args.opacity = picture.opacity;
+    args.depth = picture.depth;
+    return args;
+}
+
+/// visit(pairs, x, y) for each tile, in parallel.
+template <class R, class Visit>
+void for_tiles(const SplatFrame<R>& frame, Visit&& visit) {
+    const TileLists& lists = frame.lists;
+    parallel_for(lists.tile_count(), [&](std::int64_t tile) {
+        const int x = static_cast<int>(tile % lists.columns) * tile_size;
+        const int y = static_cast<int>(tile / lists.columns) * tile_size;
+        visit(lists.of(tile), x, y);
+    });
+}
+
+template <class R>
+void background_backward(const BlendArgs<R>& args, const R* d_color, R* d_background) {
+    sum_partials(args.height, std::span<R>(d_background, 3),
+                 [&](std::int64_t row, std::span<double> partial) {
+                     for (std::int64_t i = row * args.width; i < (row + 1) * args.width; ++i)
+                         for (std::size_t c = 0; c < 3; ++c)
+                             partial[c] +=
+                                 static_cast<double>(d_color[3 * i + static_cast<std::int64_t>(c)] *
+                                                     (R(1) - args.opacity[i]));
+                 });
+}
+
+/// Stage 5: each Gaussian adds up its places and differentiates its projection; view and eye in double.
+template <class R>
+void gather_splats(const GaussianCloud<R>& cloud, const SplatFrame<R>& frame, const R* partials,
+                   const GaussianGradients<R>& out) {
+    const std::vector<std::uint32_t>& places = frame.lists.places;
+    std::array<double, 15> shared{};  // d_view[12], d_eye[3]
+    const auto add = [&](std::int64_t task, std::span<double> sum) {
+        const std::int64_t end = std::min(cloud.count, (task + 1) * splats_per_task);
+        for (std::int64_t i = task * splats_per_task; i < end; ++i) {
+            const auto row = static_cast<std::size_t>(i);
+            if (places[row] == places[row + 1]) continue;
+            R d[partial_count] = {}, own[15] = {};
+            for (std::size_t place = places[row]; place < places[row + 1]; ++place)
+                for (std::size_t j = 0; j < partial_count; ++j)
+                    d[j] += partials[partial_count * place + j];
+            with_degree(cloud.degree, [&](auto degree) {
+                project_splat_backward<degree.value>(cloud, frame.view, i, frame.splats[row], d,
+                                                     out, own, own + 12);
+            });
+            for (std::size_t j = 0; j < 15; ++j) sum[j] += static_cast<double>(own[j]);
+        }
+    };
+    sum_partials(tasks_for(cloud.count), std::span<double>(shared), add);
+    std::array<double, 12> view{};
+    std::copy_n(frame.view.view, 12, view.begin());
+    eye_backward(view.data(), shared.data() + 12, shared.data());
+    for (std::size_t j = 0; j < 12; ++j) out.view[j] += static_cast<R>(shared[j]);
+}
+
+}  // namespace
+
+template <class R>
+SplatFrame<R> prepare_splats(const GaussianCloud<R>& cloud, const SplatImage& image,
+                             const SplatOptions& options, const R* camera_from_world,
+                             const R* background) {
+    SplatFrame<R> frame{SplatView<R>::of(image, options, camera_from_world), {}, {}, {}};
+    std::copy_n(background, 3, frame.background);
+    frame.splats.resize(static_cast<std::size_t>(cloud.count));
+    std::vector<char> bad(static_cast<std::size_t>(tasks_for(cloud.count)));
+    std::vector<R> depth(frame.splats.size());
+    parallel_for(tasks_for(cloud.count), [&](std::int64_t task) {
+        with_degree(cloud.degree, [&](auto degree) {
+            const std::int64_t end = std::min(cloud.count, (task + 1) * splats_per_task);
+            for (std::int64_t i = task * splats_per_task; i < end; ++i) {
+                const auto row = static_cast<std::size_t>(i);
+                if (bad_group(cloud, i)) bad[static_cast<std::size_t>(task)] = 1;
+                frame.splats[row] = project_splat<degree.value>(cloud, frame.view, i);
+                depth[row] = frame.splats[row].depth;
+            }
+        });
+    });
+    refuse_bad_rows(cloud, bad);
+    for (std::size_t i = 0; i < frame.splats.size(); ++i)
+        if (frame.splats[i].x0 < frame.splats[i].x1)
+            frame.lists.sorted.push_back(static_cast<std::uint32_t>(i));
+    frame.lists.sorted = sort_by_depth(std::move(frame.lists.sorted), depth.data());
+    if (!number_places(frame.splats.data(), frame.splats.size(), frame.lists.places))
+        fail(ErrorKind::range, "splat", "gaussians", "fewer than 2^31 pairs of splat and tile",
+             "more", "render a smaller picture, or fewer Gaussians at a time");
+    bin_splats(frame.splats.data(), image.width, image.height, frame.lists);
+    return frame;
+}
+
+template <class R>
+void blend_splats(const SplatFrame<R>& frame, const SplatPicture<R>& out) {
+    const BlendArgs<R> args = blend_args(frame, out);
+    for_tiles(frame, [&](const TilePairs& pairs, int x, int y) { blend_one(args, pairs, x, y); });
+}
+
+template <class R>
+void splats_backward(const GaussianCloud<R>& cloud, const SplatFrame<R>& frame,
+                     const SplatPicture<R>& picture, const SplatPictureAdjoint<R>& adjoint,
+                     const GaussianGradients<R>& out, R* d_background) {
+    const BlendArgs<R> args = blend_args(frame, picture);
+    std::vector<R> partials(partial_count * frame.lists.pairs.size());
+    const BlendBackward<R> back{adjoint.d_color, adjoint.d_opacity, adjoint.d_depth,
+                                partials.data()};
+    for_tiles(frame, [&](const TilePairs& pairs, int x, int y) {
+        blend_one_backward(args, back, pairs, x, y);
+    });
+    background_backward(args, adjoint.d_color, d_background);
+    gather_splats(cloud, frame, partials.data(), out);
+}
+
+#define PHOTOGRAD_INSTANTIATE(R)                                                         \
+    template SplatFrame<R> prepare_splats(const GaussianCloud<R>&, const SplatImage&,    \
+                                          const SplatOptions&, const R*, const R*);      \
+    template void blend_splats(const SplatFrame<R>&, const SplatPicture<R>&);            \
+    template void splats_backward(const GaussianCloud<R>&, const SplatFrame<R>&,         \
+                                  const SplatPicture<R>&, const SplatPictureAdjoint<R>&, \
+                                  const GaussianGradients<R>&, R*);
+PHOTOGRAD_INSTANTIATE(float)
+PHOTOGRAD_INSTANTIATE(double)
+#undef PHOTOGRAD_INSTANTIATE
+
+}  // namespace photograd

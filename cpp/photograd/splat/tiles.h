@@ -1,0 +1,43 @@
+// What blending a tile needs and gives. Plain data, because every instruction set's translation unit
+// includes it.
+#pragma once
+
+#include <cstdint>
+
+#include "photograd/ops/screen_splat.h"
+
+namespace photograd {
+
+/// A tile is tile_size x tile_size pixels: a row of it is one set of lanes.
+inline constexpr int tile_size = 16;
+
+/// A splat that a tile must look at, and the place for what the tile has for it.
+struct TilePair {
+    std::uint32_t splat, place;
+};
+
+/// One tile's pairs, nearest splat first.
+struct TilePairs {
+    const TilePair *begin, *end;
+};
+
+template <class R>
+struct BlendArgs {
+    const ScreenSplat<R>* splats;
+    SplatCutoffs<R> cut;
+    R background[3];
+    int width, height;
+    R* color;    // (H, W, 3)
+    R* opacity;  // (H, W)
+    R* depth;    // (H, W)
+};
+
+template <class R>
+struct BlendBackward {
+    const R* d_color;    // (H, W, 3)
+    const R* d_opacity;  // (H, W)
+    const R* d_depth;    // (H, W)
+    R* partials;         // (pairs, partial_count), by place: each is written once
+};
+
+}  // namespace photograd

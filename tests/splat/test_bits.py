@@ -1,0 +1,94 @@
+"""The same bits on any number of threads and every instruction set; float against double."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from typing import Any
+
+import numpy as np
+import pytest
+from photograd.core import _core
+from photograd.splat import SplatOptions, render, render_backward
+
+from tests.splat import oracle
+
+OPTIONS = {
+    "default": SplatOptions(),
+    "smooth": SplatOptions().smooth(),
+    "antialiased": SplatOptions(antialiased=True, stop=1e-2),
+}
+
+
+def run(name: str, dtype: Any = np.float32, count: int = 300) -> list[Any]:
+    """All outputs and gradients of a picture of several tiles; the last ones are not whole."""
+    g = oracle.cloud(count, 1).astype(dtype)
+    camera = oracle.camera(75, 53, 60.0)
+    picture, context = render(g, camera, background=(0.3, 0.2, 0.1), options=OPTIONS[name])
+    random = np.random.default_rng(2)
+    d = [random.uniform(-1, 1, a.shape).astype(dtype) for a in vars(picture).values()]
+    found = render_backward(context, *d)
+    return [
+        *vars(picture).values(), *found.gaussians.values(), found.background,
+        found.camera_from_world, found.screen,
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_thread_count_changes_nothing(dtype: Any) -> None:
+    results = []
+    for threads in (1, 2, 5):
+        _core.set_thread_count(threads)
+        results.append(run("default", dtype, 9000))  # three tasks of Gaussians
+    _core.set_thread_count(0)
+    for other in results[1:]:
+        for a, b in zip(results[0], other, strict=True):
+            assert a.any()
+            assert np.array_equal(a, b)
+
+
+def test_every_instruction_set_gives_the_same_bits() -> None:
+    program = (
+        "import hashlib; from photograd.core import _core; from tests.splat.test_bits "
+        "import run, OPTIONS; h = hashlib.sha256()\n"
+        "for v in OPTIONS:\n    [h.update(a.tobytes()) for a in run(v)]\n"
+        "print(_core.instruction_set(), h.hexdigest())"
+    )
+    seen = {}
+    for name in ("baseline", "v3", "v4"):
+        done = subprocess.run(
+            [sys.executable, "-c", program],
+            env={**os.environ, "PHOTOGRAD_ISA": name}, capture_output=True, text=True, check=False,
+        )  # fmt: skip
+        if done.returncode == 0:
+            kernel, digest = done.stdout.split()
+            assert kernel == name
+            seen[name] = digest
+        else:
+            assert "PHOTOGRAD_ISA" in done.stderr, done.stderr
+    assert "baseline" in seen
+    assert len(set(seen.values())) == 1, seen
+
+
+@pytest.mark.parametrize("name", OPTIONS)
+def test_float_agrees_with_double(name: str) -> None:
+    narrow, wide = run(name), run(name, np.float64)
+    for a, b in zip(narrow, wide, strict=True):
+        error = np.linalg.norm(a - b) / np.linalg.norm(b)
+        assert error <= 1e-4, (a.shape, error)
+
+
+def test_backward_twice_gives_twice() -> None:
+    g, camera = oracle.cloud(30, 1), oracle.camera()
+    picture, context = render(g, camera)
+    parameters = g.arrays()
+    names = {f"d_{k}": np.zeros_like(v) for k, v in parameters.items()}
+    names |= {"d_camera_from_world": np.zeros((3, 4)), "d_background": np.zeros(3)}
+    names |= {"d_screen": np.zeros((30, 2))}
+    d = {f"d_{k}": np.ones_like(v) for k, v in vars(picture).items()}
+    context.prepared.backward(**parameters, **vars(picture), **d, **names)
+    once = {k: v.copy() for k, v in names.items()}
+    context.prepared.backward(**parameters, **vars(picture), **d, **names)
+    for k, v in names.items():
+        np.testing.assert_allclose(v, 2 * once[k], rtol=1e-12, atol=1e-12)
