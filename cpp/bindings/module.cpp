@@ -18,4 +18,5 @@ PYBIND11_MODULE(_core, m) {
     photograd::bind_voxel_hash(m);
     photograd::bind_sparse(m);
     photograd::bind_bricks(m);
+    photograd::bind_sparse_sh(m);
 }

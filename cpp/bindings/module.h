@@ -22,5 +22,6 @@ void bind_octree(py::module_& m);
 void bind_voxel_hash(py::module_& m);
 void bind_sparse(py::module_& m);
 void bind_bricks(py::module_& m);
+void bind_sparse_sh(py::module_& m);
 
 }  // namespace photograd

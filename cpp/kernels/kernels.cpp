@@ -3,6 +3,7 @@
 #include "kernels/kernels.h"
 
 #include "kernels/march_dense.inl"
+#include "kernels/march_sparse_sh.inl"
 #include "kernels/sample_rgb.inl"
 
 namespace photograd::PHOTOGRAD_ISA {
@@ -15,6 +16,10 @@ extern const Kernels table{
     .march_dense_backward = &march_dense_backward,
     .march_dense_gather = &march_dense_gather,
     .sample_rgb = &sample_rgb,
+    .march_sparse_sh_forward = &march_sparse_sh_forward,
+    .march_sparse_sh_backward = &march_sparse_sh_backward,
+    .march_sparse_sh_weights = &march_sparse_sh_weights,
+    .march_sparse_sh_gather = &march_sparse_sh_gather,
 };
 
 }  // namespace photograd::PHOTOGRAD_ISA

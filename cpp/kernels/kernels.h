@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kernels/march_dense.h"
+#include "kernels/march_sparse_sh.h"
 #include "kernels/sample_rgb.h"
 
 namespace photograd {
@@ -16,6 +17,15 @@ struct Kernels {
                                const std::uint32_t* order, std::int64_t count, const float* d_raw,
                                float* tile);
     bool (*sample_rgb)(const SampleRgbArgs&, std::int64_t begin, std::int64_t end);
+    /// Returns the number of samples whose voxels were looked up.
+    std::int64_t (*march_sparse_sh_forward)(const MarchSparseShArgs&, std::int64_t begin,
+                                            std::int64_t end);
+    /// These two return the number of records.
+    std::int64_t (*march_sparse_sh_backward)(const MarchSparseShArgs&, const MarchSparseShBackward&,
+                                             std::int64_t begin, std::int64_t end);
+    std::int64_t (*march_sparse_sh_weights)(const MarchSparseShArgs&, const MarchSparseShBackward&,
+                                            std::int64_t begin, std::int64_t end);
+    void (*march_sparse_sh_gather)(const SparseShGather&);
 };
 
 [[nodiscard]] const Kernels& kernels();
