@@ -1,6 +1,6 @@
 """W6b: a sparse grid of density and spherical harmonics, forward, and forward and backward.
 
-A bumpy shell in n^3 voxels on [-1, 1]^3, degree 3: 49 numbers at each of its voxels. A step of 1 / n
+A bumpy shell in n^3 voxels on [-1, 1]^3, degree 3: 49 numbers at each of its voxels. A step of 1/n
 from where a ray enters; a sample counts if a voxel is at one of its corners, what lacks is zero.
 tau = max(density, 0) dt, L = sum of T tau max(1/2 + sum_k Y_k c_k, 0); the loss is the mean of
 (L - target)^2 over rays and channels, and the target is the image of other values.

@@ -8,7 +8,15 @@
 
 namespace photograd::PHOTOGRAD_ISA {
 
-using Float16 = float __attribute__((vector_size(64), aligned(4), may_alias));
+// As wide as the registers are: of wider vectors gcc makes single numbers.
+#if defined(__AVX512F__)
+inline constexpr int wide = 16;
+#elif defined(__AVX__)
+inline constexpr int wide = 8;
+#else
+inline constexpr int wide = 4;
+#endif
+using FloatWide = float __attribute__((vector_size(4 * wide), aligned(4), may_alias));
 
 struct CellBlock {
     Lanes<float> t, q[3];
@@ -87,26 +95,31 @@ static inline int locate_cells(const MarchSparseShArgs& a, std::int64_t ray, int
 
 // Rows and raw densities; false if no lane is seen. Lanes behind the last sample are not.
 static inline bool look_up_density(const MarchSparseShArgs& a, int used, CellBlock& b) {
+    // Rows, then values, then arithmetic, in loops of their own: what only loads would keep the rest from
+    // becoming lanes.
+    for (int n = 0; n < 8; ++n) {
+        const std::int32_t* rows = a.cells.rows + corner_offset(n);
+        for (int i = 0; i < lane_count; ++i) b.row[n][i] = rows[b.cell[i]];
+    }
+    Lanes<float> value[8];
+    for (int n = 0; n < 8; ++n)
+        for (int i = 0; i < lane_count; ++i) value[n][i] = a.density[larger(b.row[n][i], 0)];
     Lanes<float> raw = {}, missing = {};
     int any[lane_count] = {};
     const float background = a.background[0];
-    for (int n = 0; n < 8; ++n) {
-        const std::int32_t* rows = a.cells.rows + corner_offset(n);
+    for (int n = 0; n < 8; ++n)
         for (int i = 0; i < lane_count; ++i) {
-            const int row = rows[b.cell[i]];
-            const float here = a.density[larger(row, 0)];
+            const bool here = b.row[n][i] >= 0;
             const float w = b.w[n][i];
-            raw[i] = raw[i] + w * (row < 0 ? background : here);
-            missing[i] = missing[i] + (row < 0 ? w : 0.0f);
-            any[i] |= row < 0 ? 0 : 1;
-            b.row[n][i] = row;
+            raw[i] = raw[i] + w * (here ? value[n][i] : background);
+            missing[i] = missing[i] + (here ? 0.0f : w);
+            any[i] |= here ? 1 : 0;
         }
-    }
     const bool cuts = a.density_activation == static_cast<int>(Activation::relu);
     int count = 0;
     for (int i = 0; i < lane_count; ++i) {
         const bool cut = cuts & (raw[i] <= 0.0f);
-        b.seen[i] = any[i] != 0 && !cut && i < used ? 1 : 0;
+        b.seen[i] = (any[i] != 0) & !cut & (i < used) ? 1 : 0;
         count += b.seen[i];
     }
     b.raw[3] = raw;
@@ -114,41 +127,33 @@ static inline bool look_up_density(const MarchSparseShArgs& a, int used, CellBlo
     return count != 0;
 }
 
-// Y3[j] sum_n w_n corner[n][j], in the order of ops/sh_blend.h.
+// out[at ..] = Y3[at ..] sum_n w_n corner[n][at ..], in the order of ops/sh_blend.h.
 template <class Vector>
 static inline void blend_vector(const float* const* corner, const float* w, const float* Y3,
-                                float* out) {
-    Vector total = w[0] * *reinterpret_cast<const Vector*>(corner[0]);
-    for (int n = 1; n < 8; ++n) total = total + w[n] * *reinterpret_cast<const Vector*>(corner[n]);
-    *reinterpret_cast<Vector*>(out) = *reinterpret_cast<const Vector*>(Y3) * total;
+                                float* out, int at) {
+    Vector total = w[0] * *reinterpret_cast<const Vector*>(corner[0] + at);
+#pragma GCC unroll 8
+    for (int n = 1; n < 8; ++n)
+        total = total + w[n] * *reinterpret_cast<const Vector*>(corner[n] + at);
+    *reinterpret_cast<Vector*>(out + at) = *reinterpret_cast<const Vector*>(Y3 + at) * total;
 }
 
-template <int Count>
-static inline void blend_basis(const float* const* start, const float* w, const float* Y3,
+// What is done to a number does not depend on the width of the vector that it is in.
+template <int Count, int At = 0>
+static inline void blend_basis(const float* const* corner, const float* w, const float* Y3,
                                float* out) {
-    const float* corner[8];
-    for (int n = 0; n < 8; ++n) corner[n] = start[n];
-    const auto advance = [&](int by) {
-        for (int n = 0; n < 8; ++n) corner[n] += by;
-        Y3 += by;
-        out += by;
-    };
-    for (int v = 0; v < Count / 16; ++v) {
-        blend_vector<Float16>(corner, w, Y3, out);
-        advance(16);
-    }
-    if constexpr (Count % 16 >= 8) {
-        blend_vector<Float8>(corner, w, Y3, out);
-        advance(8);
-    }
-    if constexpr (Count % 8 >= 4) {
-        blend_vector<Float4>(corner, w, Y3, out);
-        advance(4);
-    }
-    for (int j = 0; j < Count % 4; ++j) {
-        float total = w[0] * corner[0][j];
-        for (int n = 1; n < 8; ++n) total = total + w[n] * corner[n][j];
-        out[j] = Y3[j] * total;
+    constexpr int left = Count - At;
+    if constexpr (left >= wide) {
+        blend_vector<FloatWide>(corner, w, Y3, out, At);
+        blend_basis<Count, At + wide>(corner, w, Y3, out);
+    } else if constexpr (left >= 4) {
+        blend_vector<Float4>(corner, w, Y3, out, At);
+        blend_basis<Count, At + 4>(corner, w, Y3, out);
+    } else if constexpr (left > 0) {
+        float total = w[0] * corner[0][At];
+        for (int n = 1; n < 8; ++n) total = total + w[n] * corner[n][At];
+        out[At] = Y3[At] * total;
+        blend_basis<Count, At + 1>(corner, w, Y3, out);
     }
 }
 
@@ -164,10 +169,23 @@ static inline void fold_products(const float* p, float* color) {
     }
 }
 
+// Asks for the coefficients of a sample's corners, where they are not those of the sample before. The two
+// corners along z are neighbours in memory more often than not.
+template <int Count>
+static inline void ask_for_rows(const MarchSparseShArgs& a, const CellBlock& b, int i) {
+    if (b.cell[i] == b.cell[i - 1]) return;
+    for (int n = 0; n < 8; ++n) {
+        const float* row = a.sh + static_cast<long long>(larger(b.row[n][i], 0)) * Count;
+        for (int j = 0; j < Count; j += 16) __builtin_prefetch(row + j);
+    }
+}
+
 template <int Count>
 static inline void look_up_color(const MarchSparseShArgs& a, const float* Y3, CellBlock& b) {
     for (int c = 0; c < 3; ++c) b.raw[c] = {};
+    constexpr int ahead = 3;
     for (int i = 0; i < lane_count; ++i) {
+        if (i + ahead < lane_count && b.seen[i + ahead]) ask_for_rows<Count>(a, b, i + ahead);
         if (!b.seen[i]) continue;
         const float* corner[8];
         float w[8];
@@ -376,10 +394,10 @@ static void sparse_sh_gather(const SparseShGather& g) {
             g.d_density[row] = g.d_density[row] + w * d[3];
             float* to = g.d_sh + static_cast<long long>(row) * Count;
             int j = 0;
-            for (; j + 16 <= Count; j += 16)
-                *reinterpret_cast<Float16*>(to + j) += w * *reinterpret_cast<Float16*>(D + j);
-            for (; j + 8 <= Count; j += 8)
-                *reinterpret_cast<Float8*>(to + j) += w * *reinterpret_cast<Float8*>(D + j);
+            for (; j + wide <= Count; j += wide)
+                *reinterpret_cast<FloatWide*>(to + j) += w * *reinterpret_cast<FloatWide*>(D + j);
+            for (; j + 4 <= Count; j += 4)
+                *reinterpret_cast<Float4*>(to + j) += w * *reinterpret_cast<Float4*>(D + j);
             for (; j < Count; ++j) to[j] = to[j] + w * D[j];
         }
     }

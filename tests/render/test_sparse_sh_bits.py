@@ -1,4 +1,4 @@
-"""The fused march: the bits of the staged one, on any threads and instruction set, skipping or not."""
+"""The fused march: the bits of the staged one, on any threads and instruction set."""
 
 from __future__ import annotations
 

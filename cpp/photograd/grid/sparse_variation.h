@@ -36,7 +36,7 @@ void for_neighbours(const BrickTopology& topology, std::int32_t brick, Visit&& v
             for (int side = 0; side < 2; ++side) {
                 const int local = v / stride[axis] & 7, step = side ? 1 : -1;
                 std::int32_t other = no_row;
-                if (local + step == (local + step & 7))
+                if (((local + step) & ~7) == 0)
                     other = rows[v + step * stride[axis]];
                 else if (beyond[axis][side] >= 0)
                     other = topology.rows_of(beyond[axis][side])[v - 7 * step * stride[axis]];

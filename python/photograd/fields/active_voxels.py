@@ -27,7 +27,7 @@ class ActiveVoxels:
     """
 
     def __init__(self, mask: Array) -> None:
-        """`mask` (X, Y, Z) bool. Raises Error where nothing is active, ShapeError for a bad mask."""
+        """`mask` (X, Y, Z) bool. Raises Error where nothing is active, ShapeError for others."""
         if mask.ndim != 3 or mask.dtype != np.bool_:
             raise ShapeError(
                 message("ActiveVoxels", "mask", "(X, Y, Z) bool", f"{mask.shape} {mask.dtype}")
@@ -98,7 +98,7 @@ def dilated(mask: Array, steps: int = 1) -> Array:
 
 
 def resampled_mask(mask: Array, shape: tuple[int, int, int]) -> Array:
-    """The mask on a finer grid over the same box: every voxel asks the one that its centre is in."""
+    """The mask on a finer grid over the same box: voxels ask the one that their centre is in."""
     index = [
         np.minimum(((np.arange(n) + 0.5) * m / n).astype(np.int64), m - 1)
         for n, m in zip(shape, mask.shape, strict=True)

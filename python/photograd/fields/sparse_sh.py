@@ -16,7 +16,7 @@ from photograd_course.row_map import RowMap
 
 from photograd import sh
 from photograd.core import _core
-from photograd.errors import DtypeError, Error, RangeError, ShapeError, message
+from photograd.errors import DtypeError, RangeError, ShapeError, message
 from photograd.fields.active_voxels import ActiveVoxels, dilated, resampled_mask
 from photograd.fields.march import MarchPolicy, checked_rays, checked_values, require_finite_image
 from photograd.representation import (
@@ -242,6 +242,18 @@ class SparseSh(Representation):
             d_values.reshape(n, -1),
         )  # fmt: skip
 
+    def add_prior(self, gradients: Mapping[str, Array], weight: float, u: float) -> None:
+        """Add total variation's gradient in an eighth of the bricks, which stands for the whole.
+
+        `u` in [0, 1) says which; they follow one another.
+        """
+        bricks = self.active.topology.bricks
+        some = max(1, bricks // 8)
+        start = int(u * (bricks - some + 1))
+        for group, values in self.params.items():
+            share = weight * bricks / some
+            self.add_variation(values, share, gradients[group], (start, start + some))
+
     def greatest_weights(self, batches: Iterable[RayBatch]) -> Array:
         """(N,) the greatest weight that each voxel has in any sample of these rays, 0 to 1.
 
@@ -263,7 +275,7 @@ class SparseSh(Representation):
         return most
 
     def refine(self, step: int, statistics: Mapping[str, Array]) -> RowMap | None:
-        """Drop voxels whose statistics["weight"] (N,) is below statistics["threshold"], then dilate.
+        """Drop voxels with statistics["weight"] (N,) below statistics["threshold"], then dilate.
 
         Every voxel next to one that stays is kept, or made anew with the background's density and
         no colour. Nothing happens without these statistics.
@@ -291,39 +303,43 @@ class SparseSh(Representation):
         voxel = extent.max() / resolution
         x, y, z = np.maximum(np.rint(extent / voxel).astype(int), 2).tolist()
         active = ActiveVoxels(resampled_mask(self.active.mask, (x, y, z)))
-        scale = np.array(self.active.shape) / np.array(active.shape)
-        density, coefficients = self.params["density"], self.params["sh"]
-        dtype = density.dtype
-        at = np.ascontiguousarray((active.voxels + 0.5) * scale - 0.5, dtype)
-        n = len(active)
-        fine = np.empty((n, 1), dtype), np.empty((n, coefficients[0].size), dtype)
-        for out, rows, empty in zip(
-            fine, (density, coefficients), np.split(self._background(), [1]), strict=True
-        ):
-            rows = rows.reshape(len(rows), -1)
-            _core.sample_bricks(self.active.topology, rows, np.ascontiguousarray(empty), at, out)
+        density = self._resampled(self.params["density"], active, self.background_density)
+        coefficients = self._resampled(self.params["sh"], active, 0.0)
         policy = replace(self.policy, dt=voxel / steps_per_voxel)
         return SparseSh(
-            active, fine[0][:, 0], fine[1].reshape(n, -1, 3), policy,
+            active, density, coefficients, policy,
             background_density=self.background_density, fused=self.fused,
         )  # fmt: skip
 
+    def resampled(self, rows: Array, to: SparseSh) -> Array:
+        """Rows of this grid, such as an optimiser's, at the voxels of another; 0 where none is."""
+        return self._resampled(rows, to.active, 0.0)
+
+    def _resampled(self, rows: Array, active: ActiveVoxels, fill: float) -> Array:
+        scale = np.array(self.active.shape) / np.array(active.shape)
+        at = np.ascontiguousarray((active.voxels + 0.5) * scale - 0.5, rows.dtype)
+        flat = np.ascontiguousarray(rows).reshape(len(rows), -1)
+        out = np.empty((len(active), flat.shape[1]), rows.dtype)
+        empty = np.full(flat.shape[1], fill, rows.dtype)
+        _core.sample_bricks(self.active.topology, flat, empty, at, out)
+        return out.reshape(len(active), *rows.shape[1:])
+
     def state(self) -> dict[str, Array]:
-        """The topology."""
-        return self.active.state()
+        """The topology, and what lies outside of it."""
+        return {**self.active.state(), "background_density": np.array(self.background_density)}
 
     def load_state(self, state: Mapping[str, Array]) -> None:
         """Restore the topology; the parameters are those that were saved with it."""
-        self.active = ActiveVoxels.of_state(state, "sparse_sh.load_state")
+        rest = dict(state)
+        background = rest.pop("background_density", None)
+        active = ActiveVoxels.of_state(rest, "sparse_sh.load_state")
+        if background is None:
+            raise RangeError(
+                message("sparse_sh.load_state", "state", "a background_density", f"{sorted(state)}")
+            )
+        self.active, self.background_density = active, float(background)
 
     def _background(self) -> Array:
         values = np.zeros(1 + self.params["sh"][0].size, self.params["density"].dtype)
         values[0] = self.background_density
         return values
-
-
-def require_same_rows(field: SparseSh) -> None:
-    """Raise Error if parameters and topology do not belong together."""
-    rows = {name: len(value) for name, value in field.params.items()}
-    if set(rows.values()) != {len(field.active)}:
-        raise Error(message("SparseSh", "params", f"{len(field.active)} rows", f"{rows}"))
