@@ -179,8 +179,7 @@ void adam(py::array parameter, const py::array& gradient, py::array mean, py::ar
         const R* g = args.in<R>("gradient", gradient, "N C");
         R* m = args.out<R>("mean", mean, "N C");
         R* v = args.out<R>("mean_square", mean_square, "N C");
-        const AdamStep<R> numbers{static_cast<R>(step[0]), static_cast<R>(step[1]),
-                                  static_cast<R>(step[2]), static_cast<R>(step[3])};
+        const AdamStep numbers{step[0], step[1], step[2], step[3]};
         const py::gil_scoped_release release;
         adam_rows(numbers, args.size("N"), args.size("C"), g, p, m, v);
     });

@@ -62,6 +62,7 @@ from photograd.row_adam import RowAdam
 from photograd.snapshots import save_snapshot, snapshot_steps
 
 PRUNING_RAYS = 1 << 20  # from all views; what they do not need is dropped from a sparse grid
+PRUNE_AT = 0.5  # fraction of the steps; before that, pruning goes along with refining
 
 
 class Fit:
@@ -244,6 +245,8 @@ class Fit:
 
     def _refine(self) -> None:
         """Go to a finer grid where the schedule says so; the optimiser's moments go along."""
+        if self.step_number == int(PRUNE_AT * self.options.steps):
+            self._prune()
         size = self.options.levels().get(self.step_number)
         if size is None or size == self.model.resolution:
             return

@@ -16,17 +16,20 @@
 
 namespace photograd {
 
-template <Real R>
+/// In double: 1 - 0.999 would lose five digits in float.
 struct AdamStep {
-    R beta_1, beta_2, a, e;
+    double beta_1, beta_2, a, e;
 };
 
 /// parameter, mean and mean_square (rows, width) are changed in place.
 template <Real R>
-void adam_rows(const AdamStep<R>& s, std::int64_t rows, std::int64_t width, const R* gradient,
+void adam_rows(const AdamStep& s, std::int64_t rows, std::int64_t width, const R* gradient,
                R* parameter, R* mean, R* mean_square) {
     constexpr std::int64_t rows_a_task = 2048;
-    const R rest_1 = R(1) - s.beta_1, ratio = (R(1) - s.beta_2) / rest_1;
+    const R beta_1 = static_cast<R>(s.beta_1), beta_2 = static_cast<R>(s.beta_2),
+            a = static_cast<R>(s.a), e = static_cast<R>(s.e),
+            rest_1 = static_cast<R>(1.0 - s.beta_1),
+            ratio = static_cast<R>((1.0 - s.beta_2) / (1.0 - s.beta_1));
     parallel_for((rows + rows_a_task - 1) / rows_a_task, [&](std::int64_t task) {
         const std::int64_t last = std::min(rows, (task + 1) * rows_a_task);
         for (std::int64_t row = task * rows_a_task; row < last; ++row) {
@@ -37,9 +40,9 @@ void adam_rows(const AdamStep<R>& s, std::int64_t rows, std::int64_t width, cons
             R *p = parameter + row * width, *m = mean + row * width, *v = mean_square + row * width;
             for (std::int64_t j = 0; j < width; ++j) {
                 const R part = g[j] * rest_1;
-                m[j] = m[j] * s.beta_1 + part;
-                v[j] = v[j] * s.beta_2 + (part * g[j]) * ratio;
-                p[j] = p[j] - m[j] / (std::sqrt(v[j]) + s.e) * s.a;
+                m[j] = m[j] * beta_1 + part;
+                v[j] = v[j] * beta_2 + (part * g[j]) * ratio;
+                p[j] = p[j] - m[j] / (std::sqrt(v[j]) + e) * a;
             }
         }
     });

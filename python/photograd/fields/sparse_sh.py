@@ -125,8 +125,9 @@ class SparseSh(Representation):
         if degree not in range(MOST_DEGREE + 1):
             raise RangeError(message("SparseSh.full", "degree", f"0 to {MOST_DEGREE}", degree))
         dense = DenseGrid.empty(
-            box, resolution, finest=finest, sigma_t=sigma_t, steps_per_voxel=steps_per_voxel
-        )
+            box, resolution, finest=finest, sigma_t=sigma_t, steps_per_voxel=steps_per_voxel,
+            dtype=dtype,
+        )  # fmt: skip
         policy = replace(dense.policy, border="zero", density_activation="softplus")
         active = ActiveVoxels(np.ones(dense.density.shape, bool))
         density = np.full(len(active), dense.density.flat[0], dtype)
