@@ -21,6 +21,8 @@ RECORDED = {
     "W4 n=16 res=8 views=1": "bbf2719ce201136b",
     "W5 n=512 points=1000000": "90849c1cc0c7762d",
     "W5 n=256 points=200000": "bed43a2402088295",
+    "W6b n=128 res=128 views=4": "54d7fd96b0050b75",
+    "W6b n=32 res=16 views=1": "8572acd7267ff727",
 }
 
 

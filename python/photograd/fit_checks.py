@@ -26,7 +26,7 @@ def require_startable(name: str) -> None:
         )  # fmt: skip
     if name not in FITTED:
         raise RangeError(
-            message("Fit", "representation", f"one that a capture can start: {FITTED}",
+            message("Fit", "representation", f"one that a capture can start: {' or '.join(map(repr, FITTED))}",
                     repr(name), "start it from Python, with parameters of your own")
         )  # fmt: skip
 

@@ -42,7 +42,7 @@ def describe_model(path: Path) -> dict[str, Any]:
     last = model.history[-100:, 2] if len(model.history) else np.array([np.nan])
     return {
         "kind": "model", "representation": model.field.name,
-        "shape": {name: list(values.shape) for name, values in params.items()},
+        "shape": list(model.field.shape),
         "megabytes": sum(values.nbytes for values in params.values()) / 1e6,
         "box": model.field.box, "dt": model.field.policy.dt,
         "step": model.meta["step"], "steps": model.options.steps,

@@ -118,6 +118,12 @@ class DenseGrid(Representation):
         return np.array(self.policy.box)
 
     @property
+    def shape(self) -> tuple[int, int, int, int]:
+        """Voxels along X, Y and Z, and the numbers of each."""
+        x, y, z, c = self.params["values"].shape
+        return x, y, z, c
+
+    @property
     def resolution(self) -> int:
         """Voxels along the longest edge."""
         return int(max(self.params["values"].shape[:3]))

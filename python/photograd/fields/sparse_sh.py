@@ -164,6 +164,11 @@ class SparseSh(Representation):
         return np.array(self.policy.box)
 
     @property
+    def shape(self) -> tuple[int, int, int, int]:
+        """Voxels along X, Y and Z, active or not, and the numbers of each active one."""
+        return (*self.active.shape, 1 + self.params["sh"][0].size)
+
+    @property
     def resolution(self) -> int:
         """Voxels along the longest edge."""
         return max(self.active.shape)
