@@ -11,13 +11,13 @@ namespace photograd::PHOTOGRAD_ISA {
 
 // As wide as the registers are: of wider vectors gcc makes single numbers.
 #if defined(__AVX512F__)
-inline constexpr int wide = 16;
+inline constexpr int vector_floats = 16;
 #elif defined(__AVX__)
-inline constexpr int wide = 8;
+inline constexpr int vector_floats = 8;
 #else
-inline constexpr int wide = 4;
+inline constexpr int vector_floats = 4;
 #endif
-using FloatWide = float __attribute__((vector_size(4 * wide), aligned(4), may_alias));
+using FloatWide = float __attribute__((vector_size(4 * vector_floats), aligned(4), may_alias));
 
 struct CellBlock {
     Lanes<float> t, q[3];
@@ -144,9 +144,9 @@ template <int Count, int At = 0>
 static inline void blend_basis(const float* const* corner, const float* w, const float* Y3,
                                float* out) {
     constexpr int left = Count - At;
-    if constexpr (left >= wide) {
+    if constexpr (left >= vector_floats) {
         blend_vector<FloatWide>(corner, w, Y3, out, At);
-        blend_basis<Count, At + wide>(corner, w, Y3, out);
+        blend_basis<Count, At + vector_floats>(corner, w, Y3, out);
     } else if constexpr (left >= 4) {
         blend_vector<Float4>(corner, w, Y3, out, At);
         blend_basis<Count, At + 4>(corner, w, Y3, out);

@@ -152,7 +152,7 @@ static void sparse_sh_gather(const SparseShGather& g) {
             g.d_density[row] = g.d_density[row] + w * d[3];
             float* to = g.d_sh + static_cast<long long>(row) * Count;
             int j = 0;
-            for (; j + wide <= Count; j += wide)
+            for (; j + vector_floats <= Count; j += vector_floats)
                 *reinterpret_cast<FloatWide*>(to + j) += w * *reinterpret_cast<FloatWide*>(D + j);
             for (; j + 4 <= Count; j += 4)
                 *reinterpret_cast<Float4*>(to + j) += w * *reinterpret_cast<Float4*>(D + j);

@@ -259,7 +259,7 @@ class Fit:
 
     def _prune(self) -> None:
         """Drop voxels of a sparse grid that no pixel of any view needs."""
-        if not isinstance(self.model, SparseSh):
+        if not isinstance(self.model, SparseSh) or self.options.prune == 0:
             return
         weight = self.model.greatest_weights(self.pixels.batches(PRUNING_RAYS))
         statistics = {"weight": weight, "threshold": np.array(self.options.prune)}

@@ -25,9 +25,10 @@ def require_startable(name: str) -> None:
                     "it lives on a 2D canvas; a capture can start 'dense_grid'")
         )  # fmt: skip
     if name not in FITTED:
+        known = " or ".join(map(repr, FITTED))
         raise RangeError(
-            message("Fit", "representation", f"one that a capture can start: {' or '.join(map(repr, FITTED))}",
-                    repr(name), "start it from Python, with parameters of your own")
+            message("Fit", "representation", f"one that a capture can start: {known}", repr(name),
+                    "start it from Python, with parameters of your own")
         )  # fmt: skip
 
 

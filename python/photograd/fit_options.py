@@ -35,7 +35,7 @@ class FitOptions:
     refine_at: tuple[float, float] = (0.15, 0.4)
     sigma_t: float = 0.1  # 1/m, density of the start
     degree: int = 2  # of the harmonics of a sparse grid
-    prune: float = 0.01  # a sparse grid drops voxels that weigh less in every pixel
+    prune: float = 0.02  # a sparse grid drops voxels that weigh less in every pixel; 0: none
 
     def __post_init__(self) -> None:
         """Raises RangeError, naming the option."""

@@ -20,7 +20,7 @@ from tests.fit.scene import BOX, as_model, cameras, options
 
 
 def glossy_ball() -> SparseSh:
-    """A hard grey ball whose three colours shine along three axes: degree 2 at all of its voxels."""
+    """A hard grey ball whose three colours shine along three axes, to degree 2."""
     shape = (32, 24, 28)
     axes = [BOX[0, k] + (np.arange(n) + 0.5) * 0.05 for k, n in enumerate(shape)]
     radius = np.linalg.norm(np.stack(np.meshgrid(*axes, indexing="ij"), -1), axis=-1)
