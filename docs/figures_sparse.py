@@ -149,18 +149,19 @@ def curves() -> list[Curve]:
     ]
 
 
-COLORS = (style.BLUE, style.RED, style.GREY)
+COLORS = (style.BLUE, style.RED, style.ORANGE)
 
 
 def figure(found: list[Curve]) -> Figure:
     """PSNR and active voxels over the steps, and what exists at the end, seen along Z."""
     kept, early, grown = found
     with style.house_style():
-        page = style.new_figure(3 * PANEL + 1.3, 2 * PANEL + 1.7)
+        page = style.new_figure(3 * PANEL + 1.3, 2 * PANEL + 1.5)
         quality = style.place_axes(page, 0.6, 0.35, 2 * PANEL - 0.2, PANEL - 0.1)
         voxels = style.place_axes(page, 2 * PANEL + 1.15, 0.35, PANEL - 0.1, PANEL - 0.1)
         for n, curve in enumerate(found):
-            quality.plot(curve.steps, curve.psnr, label=curve.name, color=COLORS[n])
+            line = "-" if curve is not grown else "--"  # it runs along the first
+            quality.plot(curve.steps, curve.psnr, line, label=curve.name, color=COLORS[n])
             voxels.plot(curve.steps, 100 * np.array(curve.share), color=COLORS[n])
             left = 0.2 + n * (PANEL + 0.4)
             seen = style.place_axes(page, left, PANEL + 0.95, PANEL - 0.1, PANEL - 0.1)
@@ -176,7 +177,8 @@ def figure(found: list[Curve]) -> Figure:
             f"Pruning at step {EARLY} drops what the fit has not found yet, and no gradient can "
             f"bring it back: {early.psnr[-1]:.1f} dB instead of {kept.psnr[-1]:.1f}. Pruning, but "
             f"growing by a voxel every {AGAIN} steps, ends at {grown.psnr[-1]:.1f} dB with "
-            f"{100 * grown.share[-1]:.0f} % of the voxels. Below: which exist at the end, along Z.",
+            f"{100 * grown.share[-1]:.0f} % of the voxels. Second row: those that exist at the "
+            "end, seen along Z.",
             left=0.15, right=0.15,
         )  # fmt: skip
     return page
