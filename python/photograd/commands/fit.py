@@ -70,12 +70,6 @@ def fit(
     background: Annotated[
         str, typer.Option("--background", help="auto, random, white, black or learned.")
     ] = DEFAULTS.background,
-    degree: Annotated[
-        int, typer.Option("--degree", min=0, max=3, help="Of a sparse grid's harmonics.")
-    ] = DEFAULTS.degree,
-    prune: Annotated[
-        float, typer.Option("--prune", min=0.0, help="Weight below which it drops voxels.")
-    ] = DEFAULTS.prune,
     downscale: DownscaleOption = 1,
     checkpoint_seconds: Annotated[
         float, typer.Option("--checkpoint-seconds", min=0.0, help="Time between checkpoints.")
@@ -110,7 +104,6 @@ def fit(
         options = FitOptions(
             representation=representation, steps=steps, resolution=resolution, rays=rays, seed=seed,
             learning_rate=learning_rate, total_variation=total_variation, background=background,
-            degree=degree, prune=prune,
         )  # fmt: skip
         job = Fit.start(loaded, options, allow_blind=allow_blind)
         note(f"box: {job.bounds_rule}")
