@@ -151,14 +151,15 @@ class Fit:
     def loss_and_gradients(self, chosen: Array) -> tuple[float, dict[str, Array]]:
         """Loss of the chosen pixels and its gradient by parameter group, without the prior."""
         options = RenderOptions(stop=self.options.stop, jitter=True)
-        outputs, context = self.model.render(
+        model: Any = self.model  # which takes back the context that it gave
+        outputs, context = model.render(
             self.pixels.rays(chosen), seed=self.options.seed, step=self.step_number, options=options
         )
         display = self.pixels.color_space == "display"
         background = self.background_color(len(chosen))
         loss = image_loss(outputs, self.pixels.premultiplied[chosen], background, display=display)
         d_outputs, d_background = image_loss_backward(loss)
-        gradients = self.model.render_backward(context, d_outputs)
+        gradients: dict[str, Array] = model.render_backward(context, d_outputs)
         if self.background is not None:
             gradients["background"] = learned_background_backward(self.background, d_background)
         return loss.value, gradients

@@ -29,7 +29,13 @@ class RowAdam(Adam):
         step = self._steps[name]
         root = math.sqrt(1.0 - self.beta_2**step)
         length = rate * root / (1.0 - self.beta_1**step)
-        moments = [self._moments[name][slot] for slot in self.slots]
-        flat = [a.reshape(len(a), -1) for a in (parameter, np.ascontiguousarray(gradient))]
-        flat += [moment.reshape(len(moment), -1) for moment in moments]
-        _core.adam_rows(*flat, [self.beta_1, self.beta_2, length, self.epsilon * root])
+        p, g, mean, mean_square = (
+            a.reshape(len(a), -1)
+            for a in (
+                parameter,
+                np.ascontiguousarray(gradient),
+                *(self._moments[name][slot] for slot in self.slots),
+            )
+        )
+        numbers = [self.beta_1, self.beta_2, length, self.epsilon * root]
+        _core.adam_rows(p, g, mean, mean_square, numbers)

@@ -7,6 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from photograd.checkpoint import load_checkpoint
+from photograd.commands.gradients import dense_grid
+from photograd.errors import RangeError
 from photograd.evaluate import evaluate
 from photograd.fields import SparseSh
 from photograd.fields.active_voxels import dilated
@@ -20,6 +22,8 @@ from tests.fit import scene
 from tests.fit.test_resume import assert_same, run
 
 OPTIONS = {"resolution": 32, "steps": 40, "rays": 256, "representation": "sparse_sh", "degree": 1}
+
+UNPRUNED = {"refine_at": (0.0, 0.0), "prune": 0.0}
 
 
 def test_stopped_at_each_kind_of_step(tmp_path: Path) -> None:
@@ -51,9 +55,7 @@ def test_the_scene_is_recovered_on_part_of_the_voxels(tmp_path: Path) -> None:
 def gradient_and_weight() -> tuple[SparseSh, np.ndarray, np.ndarray]:
     """A full grid half-way through a fit: |dL/d density| and greatest weight (X, Y, Z)."""
     capture = scene.capture()
-    options = scene.options(
-        **{**OPTIONS, "resolution": 24, "steps": 60, "rays": 1024, "refine_at": (0.0, 0.0)}
-    )
+    options = scene.options(**{**OPTIONS, **UNPRUNED, "resolution": 24, "steps": 60, "rays": 1024})
     fit = Fit.start(capture, options)
     while fit.step_number < options.steps:
         fit.step()
@@ -81,7 +83,7 @@ def test_pruning_then_dilating_loses_no_voxel_with_a_strong_gradient() -> None:
 
 def test_one_view_alone_would_prune_what_others_need() -> None:
     capture = scene.capture()
-    fit = Fit.start(capture, scene.options(**{**OPTIONS, "refine_at": (0.0, 0.0)}))
+    fit = Fit.start(capture, scene.options(**OPTIONS, **UNPRUNED))
     for _ in range(40):
         fit.step()
     field = fit.model
@@ -91,6 +93,11 @@ def test_one_view_alone_would_prune_what_others_need() -> None:
     one = field.greatest_weights([fit.pixels.rays(np.arange(pixels))])
     assert (one <= every).all()
     assert ((every >= 0.05) & (one < 0.05)).sum() > 0.2 * (every >= 0.05).sum()
+
+
+def test_pictures_of_dense_gradients_refuse_a_sparse_grid() -> None:
+    with pytest.raises(RangeError, match="a model of dense_grid, got 'sparse_sh'"):
+        dense_grid(SparseSh.example(seed=1))
 
 
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
