@@ -25,6 +25,8 @@ RECORDED = {
     "W6a points=1000": "002ee91ab6cb7117",
     "W8 n=100000 res=512": "58aff03f9ae90801",
     "W8 n=2000 res=64": "b9a1345105ac1026",
+    "W6b n=128 res=128 views=4": "54d7fd96b0050b75",
+    "W6b n=32 res=16 views=1": "8572acd7267ff727",
 }
 
 
@@ -103,6 +105,31 @@ def orbit_rays(res: int, views: int) -> tuple[Array, Array]:
         np.concatenate(origins).astype(np.float32),
         np.concatenate(directions).astype(np.float32),
     )
+
+
+# W6b: a sparse grid of spherical harmonics
+
+
+def sparse_shell(n: int, phase: float) -> tuple[Array, Array]:
+    """Which of n^3 voxels exist (index [z, y, x]), and their values (N, 49) float32 in C order.
+
+    A shell of radius 0.7 with bumps, 0.16 thick, values at voxel centres of [-1, 1]^3: density,
+    then 16 coefficients for each of three channels.
+    """
+    c = pixel_centres(n)
+    z, y, x = np.meshgrid(c, c, c, indexing="ij")
+    radius = np.sqrt(x * x + y * y + z * z)
+    surface = 0.7 + 0.06 * np.sin(6 * x) * np.sin(5 * y) * np.sin(7 * z)
+    occupied = np.abs(radius - surface) < 0.08
+    x, y, z = x[occupied], y[occupied], z[occupied]
+    depth = (np.abs(radius - surface) / 0.08)[occupied]
+    values = np.empty((len(x), 49), np.float32)
+    values[:, 0] = 12.0 * (1 - depth) * (0.7 + 0.3 * np.sin(4 * x + phase))
+    k = np.arange(48)
+    wave = 3 * x[:, None] * np.cos(k) + 3 * y[:, None] * np.sin(k) + 2 * z[:, None]
+    values[:, 1:] = 0.15 * np.sin(wave + 0.7 * k + phase)
+    values[:, [1, 17, 33]] += 0.8
+    return occupied, values
 
 
 # W5: a texture and points of it

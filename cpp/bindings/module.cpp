@@ -20,4 +20,5 @@ PYBIND11_MODULE(_core, m) {
     photograd::bind_sparse(m);
     photograd::bind_bricks(m);
     photograd::bind_splat(m);
+    photograd::bind_sparse_sh(m);
 }

@@ -24,5 +24,6 @@ void bind_voxel_hash(py::module_& m);
 void bind_sparse(py::module_& m);
 void bind_bricks(py::module_& m);
 void bind_splat(py::module_& m);
+void bind_sparse_sh(py::module_& m);
 
 }  // namespace photograd

@@ -4,6 +4,7 @@
 
 #include "kernels/blend_splats.inl"
 #include "kernels/march_dense.inl"
+#include "kernels/march_sparse_sh.inl"
 #include "kernels/sample_rgb.inl"
 #include "kernels/sh_rgb.inl"
 
@@ -21,6 +22,10 @@ extern const Kernels table{
     .sh_rgb_backward = &sh_rgb_backward,
     .blend_tile = &blend_tile_float,
     .blend_tile_backward = &blend_tile_backward_float,
+    .march_sparse_sh_forward = &march_sparse_sh_forward,
+    .march_sparse_sh_backward = &march_sparse_sh_backward,
+    .march_sparse_sh_weights = &march_sparse_sh_weights,
+    .march_sparse_sh_gather = &march_sparse_sh_gather,
 };
 
 }  // namespace photograd::PHOTOGRAD_ISA

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kernels/march_dense.h"
+#include "kernels/march_sparse_sh.h"
 #include "kernels/sample_rgb.h"
 #include "kernels/sh_rgb.h"
 #include "photograd/splat/tiles.h"
@@ -24,6 +25,15 @@ struct Kernels {
     void (*blend_tile)(const BlendArgs<float>&, const TilePairs&, int x, int y);
     void (*blend_tile_backward)(const BlendArgs<float>&, const BlendBackward<float>&,
                                 const TilePairs&, int x, int y);
+    /// Returns the number of samples whose voxels were looked up.
+    std::int64_t (*march_sparse_sh_forward)(const MarchSparseShArgs&, std::int64_t begin,
+                                            std::int64_t end);
+    /// These two return the number of records.
+    std::int64_t (*march_sparse_sh_backward)(const MarchSparseShArgs&, const MarchSparseShBackward&,
+                                             std::int64_t begin, std::int64_t end);
+    std::int64_t (*march_sparse_sh_weights)(const MarchSparseShArgs&, const MarchSparseShBackward&,
+                                            std::int64_t begin, std::int64_t end);
+    void (*march_sparse_sh_gather)(const SparseShGather&);
 };
 
 [[nodiscard]] const Kernels& kernels();

@@ -12,6 +12,7 @@ import typing
 __all__: list[str] = [
     "BrickTopology",
     "Bvh",
+    "CellTable",
     "MarchSettings",
     "Octree",
     "Op",
@@ -24,6 +25,7 @@ __all__: list[str] = [
     "SplatOptions",
     "TexturePlan",
     "VoxelHash",
+    "adam_rows",
     "bsdf_lambert",
     "bsdfs",
     "build_mips",
@@ -40,6 +42,8 @@ __all__: list[str] = [
     "log1p_unit",
     "march",
     "march_backward",
+    "march_sparse_sh",
+    "march_sparse_sh_backward",
     "mip_level",
     "mip_shapes",
     "ops",
@@ -61,6 +65,9 @@ __all__: list[str] = [
     "set_thread_count",
     "sh_colors",
     "sh_colors_backward",
+    "sparse_sh_weights",
+    "sparse_variation",
+    "sparse_variation_backward",
     "square_to_cap",
     "square_to_cosine_hemisphere",
     "square_to_disk",
@@ -755,6 +762,35 @@ class PreparedSplats64:
         """
         Number of pairs of splat and tile.
         """
+class CellTable:
+    """
+    The cells of a sparse grid, for marching.
+    """
+    def __init__(
+        self,
+        topology: BrickTopology,
+        shape: typing.Annotated[
+            collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex], "FixedSize(3)"
+        ],
+        memory_limit: typing.SupportsInt | typing.SupportsIndex,
+    ) -> None: ...
+    @property
+    def memory(self) -> int: ...
+    @property
+    def tiles(self) -> int: ...
+
+def adam_rows(
+    parameter: numpy.ndarray,
+    gradient: numpy.ndarray,
+    mean: numpy.ndarray,
+    mean_square: numpy.ndarray,
+    step: typing.Annotated[
+        collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(4)"
+    ],
+) -> None:
+    """
+    Adam on the rows with a gradient; step is beta_1, beta_2, length, epsilon.
+    """
 
 def build_mips(mips: collections.abc.Sequence[numpy.ndarray]) -> None:
     """
@@ -838,6 +874,52 @@ def march_backward(
 ) -> None:
     """
     Adds to d_parameters and, where given, to d_origins and d_directions.
+    """
+
+def march_sparse_sh(
+    table: CellTable,
+    density: numpy.ndarray,
+    sh: numpy.ndarray,
+    background: numpy.ndarray,
+    settings: MarchSettings,
+    color_offset: typing.SupportsFloat | typing.SupportsIndex,
+    origins: numpy.ndarray,
+    directions: numpy.ndarray,
+    t0: numpy.ndarray,
+    samples: numpy.ndarray,
+    fused: bool = True,
+    skip: bool = True,
+) -> tuple[typing.Any, ...]:
+    """
+    Colour without background (R, 3), transmittance (R,), depth (R,), samples looked up.
+    """
+
+def march_sparse_sh_backward(
+    table: CellTable,
+    density: numpy.ndarray,
+    sh: numpy.ndarray,
+    background: numpy.ndarray,
+    settings: MarchSettings,
+    color_offset: typing.SupportsFloat | typing.SupportsIndex,
+    origins: numpy.ndarray,
+    directions: numpy.ndarray,
+    t0: numpy.ndarray,
+    samples: numpy.ndarray,
+    color: numpy.ndarray,
+    transmittance: numpy.ndarray,
+    depth: numpy.ndarray,
+    d_color: numpy.ndarray,
+    d_transmittance: numpy.ndarray,
+    d_depth: numpy.ndarray,
+    d_density: numpy.ndarray,
+    d_sh: numpy.ndarray,
+    d_background: numpy.ndarray,
+    d_origins: numpy.ndarray | None = None,
+    d_directions: numpy.ndarray | None = None,
+    fused: bool = True,
+) -> None:
+    """
+    Adds to d_density, d_sh, d_background and, where given, d_origins and d_directions.
     """
 
 def mip_level(
@@ -1035,6 +1117,39 @@ def sh_colors_backward(
 ) -> None:
     """
     Adds the derivatives to d_directions (N, 3) and d_coefficients (N, K, C); with add=False overwrites what stands there, without reading it.
+    """
+
+def sparse_sh_weights(
+    table: CellTable,
+    density: numpy.ndarray,
+    sh: numpy.ndarray,
+    background: numpy.ndarray,
+    settings: MarchSettings,
+    origins: numpy.ndarray,
+    directions: numpy.ndarray,
+    t0: numpy.ndarray,
+    samples: numpy.ndarray,
+    most: numpy.ndarray,
+) -> None:
+    """
+    Raises most (N,) to the greatest weight of each voxel over these rays.
+    """
+
+def sparse_variation(topology: BrickTopology, values: numpy.ndarray) -> float:
+    """
+    Squared total variation of values (N, C) over pairs of active neighbours.
+    """
+
+def sparse_variation_backward(
+    topology: BrickTopology,
+    values: numpy.ndarray,
+    d_value: typing.SupportsFloat | typing.SupportsIndex,
+    first: typing.SupportsInt | typing.SupportsIndex,
+    last: typing.SupportsInt | typing.SupportsIndex,
+    d_values: numpy.ndarray,
+) -> None:
+    """
+    Adds to the rows of d_values that belong to bricks first .. last - 1.
     """
 
 def square_to_cap(

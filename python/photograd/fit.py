@@ -16,13 +16,12 @@ import time
 from collections.abc import Callable
 from dataclasses import asdict
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from photograd_course.atomic_io import remove_leftovers
 from photograd_course.optim import Adam
-from photograd_course.priors import total_variation_squared_backward
 from photograd_course.random import uniform
-from photograd_course.resample import upsample_trilinear
 from photograd_course.schedules import exponential
 
 from photograd.backgrounds import (
@@ -44,7 +43,8 @@ from photograd.core import _core
 from photograd.data.bounds import estimate_bounds
 from photograd.data.capture import Capture
 from photograd.data.visibility import require_views_of
-from photograd.fields.dense_grid import DenseGrid
+from photograd.fields.fitted import FittedField, start_field
+from photograd.fields.sparse_sh import SparseSh
 from photograd.fit_checks import (
     require_finite,
     require_finite_loss,
@@ -58,7 +58,11 @@ from photograd.imaging import image_loss, image_loss_backward
 from photograd.model import model_of
 from photograd.pixels import TrainingPixels
 from photograd.representation import Array, RenderOptions
+from photograd.row_adam import RowAdam
 from photograd.snapshots import save_snapshot, snapshot_steps
+
+PRUNING_RAYS = 1 << 20  # from all views; what they do not need is dropped from a sparse grid
+PRUNE_AT = 0.5  # fraction of the steps; before that, pruning goes along with refining
 
 
 class Fit:
@@ -69,7 +73,7 @@ class Fit:
     """
 
     def __init__(
-        self, capture: Capture, options: FitOptions, model: DenseGrid, background: Array | None
+        self, capture: Capture, options: FitOptions, model: FittedField, background: Array | None
     ) -> None:
         """Use `start` or `resume`."""
         self.capture = capture
@@ -77,7 +81,8 @@ class Fit:
         self.model = model
         self.background = background  # raw (3,) if learned, see photograd.backgrounds
         self.pixels = TrainingPixels(capture.train, capture.color_space)
-        self.optimiser = Adam(threads=max(1, _core.thread_count()))
+        method = RowAdam if isinstance(model, SparseSh) else Adam
+        self.optimiser = method(threads=max(1, _core.thread_count()))
         self.bounds_rule = "that of the checkpoint"
         self.step_number = 0
         self.history: list[tuple[float, float, float]] = []
@@ -93,10 +98,7 @@ class Fit:
         bounds = estimate_bounds(capture)
         if not allow_blind:
             require_views_of(capture.train, bounds.box)
-        model = DenseGrid.empty(
-            bounds.box, options.levels()[0], finest=options.resolution, sigma_t=options.sigma_t,
-            steps_per_voxel=options.steps_per_voxel,
-        )  # fmt: skip
+        model = start_field(bounds.box, options)
         learned = background_kind(options.background, has_alpha=capture.has_alpha) == "learned"
         fit = cls(capture, options, model, None)
         if learned:
@@ -149,14 +151,15 @@ class Fit:
     def loss_and_gradients(self, chosen: Array) -> tuple[float, dict[str, Array]]:
         """Loss of the chosen pixels and its gradient by parameter group, without the prior."""
         options = RenderOptions(stop=self.options.stop, jitter=True)
-        outputs, context = self.model.render(
+        model: Any = self.model  # which takes back the context that it gave
+        outputs, context = model.render(
             self.pixels.rays(chosen), seed=self.options.seed, step=self.step_number, options=options
         )
         display = self.pixels.color_space == "display"
         background = self.background_color(len(chosen))
         loss = image_loss(outputs, self.pixels.premultiplied[chosen], background, display=display)
         d_outputs, d_background = image_loss_backward(loss)
-        gradients = self.model.render_backward(context, d_outputs)
+        gradients: dict[str, Array] = model.render_backward(context, d_outputs)
         if self.background is not None:
             gradients["background"] = learned_background_backward(self.background, d_background)
         return loss.value, gradients
@@ -202,7 +205,7 @@ class Fit:
                 on_step(
                     Progress(
                         self.step_number, self.options.steps, *self.history[-1][1:],
-                        max(self.model.params["values"].shape[:3]),
+                        self.model.resolution,
                         self.options.rays / max(now - before, 1e-9),
                     )
                 )  # fmt: skip
@@ -243,22 +246,32 @@ class Fit:
 
     def _refine(self) -> None:
         """Go to a finer grid where the schedule says so; the optimiser's moments go along."""
+        if self.step_number == int(PRUNE_AT * self.options.steps):
+            self._prune()
         size = self.options.levels().get(self.step_number)
-        if size is None or size == max(self.model.params["values"].shape[:3]):
+        if size is None or size == self.model.resolution:
             return
-        self.model = self.model.refined(size, steps_per_voxel=self.options.steps_per_voxel)
-        x, y, z = self.model.params["values"].shape[:3]
-        self.optimiser.resample("values", lambda moment: upsample_trilinear(moment, (x, y, z)))
+        self._prune()
+        before: Any = self.model
+        after = before.refined(size, steps_per_voxel=self.options.steps_per_voxel)
+        for group in before.params:
+            self.optimiser.resample(group, lambda moment: before.resampled(moment, after))
+        self.model = after
+
+    def _prune(self) -> None:
+        """Drop voxels of a sparse grid that no pixel of any view needs."""
+        if not isinstance(self.model, SparseSh) or self.options.prune == 0:
+            return
+        weight = self.model.greatest_weights(self.pixels.batches(PRUNING_RAYS))
+        statistics = {"weight": weight, "threshold": np.array(self.options.prune)}
+        rows = self.model.refine(self.step_number, statistics)
+        if rows is not None:
+            self.optimiser.apply_row_map(rows, self.model.params)
 
     def _add_prior(self, gradients: dict[str, Array]) -> None:
-        """Total variation on a random slab of an eighth of the grid, which stands for the whole."""
+        """Total variation on a random part of the grid, which stands for the whole."""
         weight = self.options.total_variation
         if weight == 0:
             return
-        values = self.model.params["values"]
-        planes = max(2, len(values) // 8)
         u = uniform(self.options.seed, step=self.step_number, pixel=0, sample=2, dimension=0)
-        start = int(u * (len(values) - planes + 1))
-        total_variation_squared_backward(
-            values[start : start + planes], weight, gradients["values"][start : start + planes]
-        )
+        self.model.add_prior(gradients, weight, float(u))

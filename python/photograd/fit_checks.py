@@ -10,7 +10,7 @@ import numpy as np
 from photograd.checkpoint import Checkpoint
 from photograd.data.capture import Capture
 from photograd.errors import Error, IoError, RangeError, message
-from photograd.fields.dense_grid import DenseGrid
+from photograd.fields.fitted import FITTED
 from photograd.representation import Array, representation
 
 _SAME = "resume with the capture, and the --downscale, that the fit was started on"
@@ -24,10 +24,11 @@ def require_startable(name: str) -> None:
             message("Fit", "representation", "one that is seen along rays", repr(name),
                     "it lives on a 2D canvas; a capture can start 'dense_grid'")
         )  # fmt: skip
-    if kind is not DenseGrid:
+    if name not in FITTED:
+        known = " or ".join(map(repr, FITTED))
         raise RangeError(
-            message("Fit", "representation", "one that a capture can start: 'dense_grid'",
-                    repr(name), "start it from Python, with parameters of your own")
+            message("Fit", "representation", f"one that a capture can start: {known}", repr(name),
+                    "start it from Python, with parameters of your own")
         )  # fmt: skip
 
 

@@ -34,6 +34,8 @@ class FitOptions:
     steps_per_voxel: float = 1.5
     refine_at: tuple[float, float] = (0.15, 0.4)
     sigma_t: float = 0.1  # 1/m, density of the start
+    degree: int = 2  # of the harmonics of a sparse grid
+    prune: float = 0.02  # a sparse grid drops voxels that weigh less in every pixel; 0: none
 
     def __post_init__(self) -> None:
         """Raises RangeError, naming the option."""
@@ -51,7 +53,7 @@ class FitOptions:
                 raise RangeError(
                     message("FitOptions", name, "a positive number", f"{getattr(self, name)}")
                 )
-        for name in ("total_variation", "stop"):
+        for name in ("total_variation", "stop", "prune"):
             if not 0 <= getattr(self, name) < math.inf:
                 raise RangeError(
                     message("FitOptions", name, "zero or more", f"{getattr(self, name)}")

@@ -10,7 +10,7 @@ import numpy as np
 
 from photograd.checkpoint import Checkpoint, load_checkpoint
 from photograd.errors import IoError, message
-from photograd.fields.dense_grid import DenseGrid
+from photograd.fields.fitted import FittedField, saved_field
 from photograd.fields.march import MarchPolicy
 from photograd.fit_options import FitOptions
 from photograd.representation import Array
@@ -20,7 +20,7 @@ from photograd.representation import Array
 class Model:
     """A field with the linear background (3,) that was learned with it, or None."""
 
-    field: DenseGrid
+    field: FittedField
     background: Array | None
     options: FitOptions
     meta: dict[str, Any]
@@ -42,8 +42,9 @@ def model_of(saved: Checkpoint, path: Path) -> Model:
         policy["box"] = tuple(tuple(corner) for corner in policy["box"])
         stored = dict(saved.meta["options"])
         stored["refine_at"] = tuple(stored["refine_at"])
-        field = DenseGrid(saved.params["values"], MarchPolicy(**policy))
         options = FitOptions(**stored)
+        kind = options.representation
+        field = saved_field(saved.params, saved.state, MarchPolicy(**policy), kind)
     except (KeyError, TypeError) as failure:
         raise IoError(
             message("load_model", f"{path}", "a checkpoint with policy, options and values",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +14,8 @@ from photograd_course.random import uniform_int
 from photograd.data.view import View
 from photograd.errors import IoError, RangeError, message
 from photograd.representation import Array, RayBatch
+
+_RAYS_AT_ONCE = 1 << 16
 
 
 class TrainingPixels:
@@ -55,6 +57,12 @@ class TrainingPixels:
         """`count` pixel numbers, uniform with replacement: a function of seed and step alone."""
         draw = np.arange(count)
         return uniform_int(seed, len(self), step=step, pixel=draw, sample=0, dimension=0)
+
+    def batches(self, most: int) -> Iterator[RayBatch]:
+        """Rays of all views, at most about `most`: every pixel, or every second, third, ..."""
+        chosen = np.arange(0, len(self), max(1, -(-len(self) // most)))
+        for start in range(0, len(chosen), _RAYS_AT_ONCE):
+            yield self.rays(chosen[start : start + _RAYS_AT_ONCE])
 
     def rays(self, chosen: NDArray[np.int64]) -> RayBatch:
         """The rays through the centres of the chosen pixels."""

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from photograd.checkpoint import Checkpoint, load_checkpoint, make_folder, save_checkpoint
-from photograd.fields.dense_grid import DenseGrid
+from photograd.fields.fitted import FittedField
 from photograd.fit_options import FitOptions
 from photograd.model import model_of
 
@@ -25,16 +25,17 @@ def snapshot_file(folder: Path, step: int) -> Path:
     return folder / "snapshots" / f"step_{step:06d}.npz"
 
 
-def save_snapshot(folder: Path, field: DenseGrid, options: FitOptions, step: int) -> None:
+def save_snapshot(folder: Path, field: FittedField, options: FitOptions, step: int) -> None:
     """Write the field as it is now."""
     meta = {"policy": asdict(field.policy), "options": asdict(options), "step": step}
     make_folder(folder / "snapshots")
     save_checkpoint(
-        snapshot_file(folder, step), Checkpoint(meta, dict(field.params), {}, {}, np.zeros((0, 3)))
+        snapshot_file(folder, step),
+        Checkpoint(meta, dict(field.params), {}, field.state(), np.zeros((0, 3))),
     )
 
 
-def load_snapshots(folder: Path) -> dict[int, DenseGrid]:
+def load_snapshots(folder: Path) -> dict[int, FittedField]:
     """{step: field} of all snapshots of a fit, in order; empty if it kept none."""
     place = folder if folder.is_dir() else folder.parent
     found = {}

@@ -28,7 +28,10 @@ from tests.fit import scene
         ("zebra", r"got 'zebra' \(choose one of these\)"),
         ("texture_2d", r"one that is seen along rays, got 'texture_2d' \(it lives on a 2D canvas"),
         ("toy_blobs", "it lives on a 2D canvas; a capture can start 'dense_grid'"),
-        ("tiny_network", "one that a capture can start: 'dense_grid', got 'tiny_network'"),
+        (
+            "tiny_network",
+            "one that a capture can start: 'dense_grid' or 'sparse_sh', got 'tiny_network'",
+        ),
     ],
 )
 def test_representations_that_cannot_be_fitted_to_a_capture(name: str, words: str) -> None:

@@ -18,12 +18,14 @@ template <Real R>
 struct SampleBatch {
     std::vector<Lanes<R>> t;
     std::vector<Lanes<R>> position[3];
+    std::vector<R> direction[3];  // of the ray: unit, away from the camera
     std::vector<int> used;
 
     [[nodiscard]] std::size_t groups() const { return t.size(); }
     void resize(std::size_t groups) {
         t.resize(groups);
         for (auto& axis : position) axis.resize(groups);
+        for (auto& axis : direction) axis.resize(groups);
         used.resize(groups);
     }
 };
@@ -51,6 +53,8 @@ struct FieldOptions {
 
 /// A radiance field: batch calls, never virtual per sample. `Cache` is what backward needs of eval, and
 /// `Sink` collects parameter gradients for a slab of rays; the marcher calls sink.finish() after it.
+/// A field whose colour depends on direction takes one more argument in backward: d_direction[axis],
+/// one number a group, added to.
 template <class F>
 concept Field =
     requires(const F field, const SampleBatch<typename F::Scalar>& batch, typename F::Cache& cache,

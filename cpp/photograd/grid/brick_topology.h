@@ -32,6 +32,13 @@ public:
         return static_cast<std::int64_t>(4 * (top_.size() + rows_.size() + origins_.size()));
     }
 
+    /// (B, 3) the lowest voxel of each brick.
+    [[nodiscard]] const std::vector<std::int32_t>& origins() const { return origins_; }
+    /// Rows of the 8^3 voxels of a brick, in C order.
+    [[nodiscard]] const std::int32_t* rows_of(std::int32_t brick) const {
+        return rows_.data() + static_cast<std::size_t>(brick) * voxels_a_brick;
+    }
+
     /// Number of the brick that holds voxel (i, j, k), or -1.
     [[nodiscard]] std::int32_t brick_of(int i, int j, int k) const {
         const int at[3] = {(i >> 3) - lowest_[0], (j >> 3) - lowest_[1], (k >> 3) - lowest_[2]};

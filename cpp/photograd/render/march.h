@@ -82,6 +82,7 @@ void place_wave(const RayBatch<R>& rays, R dt, std::int32_t k0, Wave<R>& wave) {
         for (int axis = 0; axis < 3; ++axis)
             for (int i = 0; i < lane_count; ++i)
                 wave.batch.position[axis][g][i] = o[axis] + t[i] * d[axis];
+        for (int axis = 0; axis < 3; ++axis) wave.batch.direction[axis][g] = d[axis];
         wave.batch.used[g] = std::min(lane_count, rays.samples[ray] - k0);
     }
 }
@@ -147,11 +148,13 @@ struct BackwardPass {
     std::vector<RayCotangents<R>> rays;
     SampleValues<R> d_values{};
     std::vector<Lanes<R>> d_position[3]{};
+    std::vector<R> d_direction[3]{};  // through the colour; that through the positions comes below
 
     R ray(std::int64_t ray, const Wave<R>& wave, std::size_t g) {
         if (g == 0) {
             d_values.assign_zero(wave.rays.size());
             for (auto& axis : d_position) axis.assign(wave.rays.size(), Lanes<R>{});
+            for (auto& axis : d_direction) axis.assign(wave.rays.size(), R(0));
         }
         RayCotangents<R>& cotangents = rays[static_cast<std::size_t>(ray - begin)];
         const Gather<R> in(wave.values, g);
@@ -164,7 +167,14 @@ struct BackwardPass {
     template <class Cache>
     void wave(const Wave<R>& wave, const Cache& cache) {
         const bool camera = adjoints.d_origins != nullptr;
-        field.backward(wave.batch, cache, d_values, sink, chunk, camera ? d_position : nullptr);
+        auto* d_p = camera ? d_position : nullptr;
+        auto* d_d = camera ? d_direction : nullptr;
+        if constexpr (requires {
+                          field.backward(wave.batch, cache, d_values, sink, chunk, d_p, d_d);
+                      })
+            field.backward(wave.batch, cache, d_values, sink, chunk, d_p, d_d);
+        else
+            field.backward(wave.batch, cache, d_values, sink, chunk, d_p);
         if (!camera) return;
         // p = o + t d with t fixed:  d_o = sum d_p,  d_d = sum t d_p.
         for (std::size_t g = 0; g < wave.rays.size(); ++g)
@@ -173,7 +183,7 @@ struct BackwardPass {
                 for (int i = 0; i < lane_count; ++i)
                     along[i] = wave.batch.t[g][i] * d_position[axis][g][i];
                 adjoints.d_origins[3 * wave.rays[g] + axis] += sum(d_position[axis][g]);
-                adjoints.d_directions[3 * wave.rays[g] + axis] += sum(along);
+                adjoints.d_directions[3 * wave.rays[g] + axis] += sum(along) + d_direction[axis][g];
             }
     }
 };

@@ -29,7 +29,9 @@ from photograd.commands.shared import (
 from photograd.data.capture import Capture
 from photograd.data.load import load_capture
 from photograd.density_gradient import density_gradient
+from photograd.errors import RangeError, message
 from photograd.fields.dense_grid import DenseGrid
+from photograd.fields.fitted import FittedField
 from photograd.model import Model, load_model
 from photograd.pixels import TrainingPixels
 from photograd.representation import Array
@@ -111,7 +113,8 @@ def gradients_of_steps(
 ) -> tuple[dict[int, Array], dict[int, DenseGrid]]:
     """{step: dL/dsigma_t} and {step: field} of every snapshot of a fit, under a progress bar."""
     pixels = TrainingPixels(capture.train, capture.color_space)
-    snapshots = load_snapshots(folder) or {int(model.meta["step"]): model.field}
+    found_fields = load_snapshots(folder) or {int(model.meta["step"]): model.field}
+    snapshots = {step: dense_grid(field) for step, field in found_fields.items()}
     fields: dict[int, Array] = {}
     with Progress("gradients", len(snapshots), [Column("loss", "{:.2e}".format)]) as bar:
         for number, (step, field) in enumerate(snapshots.items()):
@@ -121,6 +124,13 @@ def gradients_of_steps(
             fields[step] = found.d_sigma_t
             bar.update(number + 1, loss=found.loss)
     return fields, snapshots
+
+
+def dense_grid(field: FittedField) -> DenseGrid:
+    """The field, if it is one whose gradient can be drawn voxel by voxel; else RangeError."""
+    if not isinstance(field, DenseGrid):
+        raise RangeError(message("gradients", "model", "a model of dense_grid", repr(field.name)))
+    return field
 
 
 def curves_of(model: Model) -> viz.FitCurves:

@@ -38,11 +38,13 @@ def info(
 def describe_model(path: Path) -> dict[str, Any]:
     """Step, size, box and options of a model."""
     model = load_model(path)
-    values = model.field.params["values"]
+    params = model.field.params
     last = model.history[-100:, 2] if len(model.history) else np.array([np.nan])
     return {
-        "kind": "model", "representation": model.field.name, "shape": list(values.shape),
-        "megabytes": values.nbytes / 1e6, "box": model.field.box, "dt": model.field.policy.dt,
+        "kind": "model", "representation": model.field.name,
+        "shape": list(model.field.shape),
+        "megabytes": sum(values.nbytes for values in params.values()) / 1e6,
+        "box": model.field.box, "dt": model.field.policy.dt,
         "step": model.meta["step"], "steps": model.options.steps,
         "batch_psnr": float(last.mean()), "capture": model.meta["capture"],
         "split": model.meta["split"], "seed": model.options.seed,

@@ -117,6 +117,34 @@ class DenseGrid(Representation):
         """(2, 3) corners of the box in world metres."""
         return np.array(self.policy.box)
 
+    @property
+    def shape(self) -> tuple[int, int, int, int]:
+        """Voxels along X, Y and Z, and the numbers of each."""
+        x, y, z, c = self.params["values"].shape
+        return x, y, z, c
+
+    @property
+    def resolution(self) -> int:
+        """Voxels along the longest edge."""
+        return int(max(self.params["values"].shape[:3]))
+
+    def resampled(self, rows: Array, to: DenseGrid) -> Array:
+        """Values on this grid, such as an optimiser's, on the grid of another."""
+        x, y, z = to.params["values"].shape[:3]
+        return upsample_trilinear(rows, (x, y, z))
+
+    def add_prior(self, gradients: Mapping[str, Array], weight: float, u: float) -> None:
+        """Add total variation's gradient on a slab of an eighth, which stands for the whole.
+
+        `u` in [0, 1) says where the slab lies.
+        """
+        values = self.params["values"]
+        planes = max(2, len(values) // 8)
+        start = int(u * (len(values) - planes + 1))
+        priors.total_variation_squared_backward(
+            values[start : start + planes], weight, gradients["values"][start : start + planes]
+        )
+
     def refined(self, resolution: int, *, steps_per_voxel: float = 2.0) -> DenseGrid:
         """The same field on a finer grid over the same box, by trilinear interpolation."""
         extent = self.box[1] - self.box[0]

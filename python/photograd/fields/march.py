@@ -104,11 +104,7 @@ def march(
     Error if a parameter or an output is not finite, RangeError for rays that are not finite or
     whose directions are not of length one; they are named by their pixel.
     """
-    dtype = parameters.dtype
-    _check_parameters(parameters)
-    _check_rays(batch)
-    origins = np.ascontiguousarray(batch.origins, dtype)
-    directions = np.ascontiguousarray(batch.directions, dtype)
+    checked_values("march", "parameters", parameters)
     settings = policy.settings(options.stop)
     jitter = None
     if options.jitter:
@@ -117,10 +113,13 @@ def march(
     if t_max is not None:
         before = np.floor(np.clip((t_max - t0) / policy.dt + 0.5, 0, samples))
         samples = np.ascontiguousarray(before, np.int32)
+    origins, directions, t0, samples = checked_rays(
+        batch, settings, options, parameters.dtype, seed=seed, step=step
+    )
     color, transmittance, depth = _core.march(
         field, parameters, settings, origins, directions, t0, samples, fused
     )
-    _check_finite(color, transmittance, batch)
+    require_finite_image(color, transmittance, batch)
     context = MarchContext(
         field, parameters, settings, origins, directions, t0, samples,
         color, transmittance, depth, options.camera_adjoint, fused,
@@ -153,14 +152,37 @@ def march_backward(context: MarchContext, d_outputs: Outputs) -> dict[str, Array
     return gradients
 
 
-def _check_parameters(parameters: Array) -> None:
+def checked_rays(
+    batch: RayBatch,
+    settings: Any,
+    options: RenderOptions,
+    dtype: np.dtype[Any],
+    *,
+    seed: int,
+    step: int,
+) -> tuple[Array, Array, Array, Array]:
+    """Origins, directions (R, 3), t0 and samples (R,) of a batch, with its jitter.
+
+    Raises RangeError for rays that are not finite or whose directions are not of length one.
+    """
+    _check_rays(batch)
+    origins = np.ascontiguousarray(batch.origins, dtype)
+    directions = np.ascontiguousarray(batch.directions, dtype)
+    jitter = None
+    if options.jitter:
+        jitter = uniform(seed, step=step, pixel=batch.pixel, sample=0, dimension=0).astype(dtype)
+    t0, samples = _core.place_samples(settings, origins, directions, jitter)
+    return origins, directions, t0, samples
+
+
+def checked_values(function: str, argument: str, values: Array) -> None:
     """Kernels may assume finite numbers, and would hide others; one pass over them, done here."""
     with np.errstate(over="ignore", invalid="ignore"):
-        if np.isfinite(parameters.sum()):
+        if np.isfinite(values.sum()):
             return
-    count = parameters.size - int(np.isfinite(parameters).sum())
+    count = values.size - int(np.isfinite(values).sum())
     if count:  # else only the sum itself overflowed
-        raise Error(message("march", "parameters", "finite values", f"{count} that are not"))
+        raise Error(message(function, argument, "finite values", f"{count} that are not"))
 
 
 def _check_rays(batch: RayBatch) -> None:
@@ -175,7 +197,8 @@ def _check_rays(batch: RayBatch) -> None:
     raise RangeError(message("march", "batch", "finite origins and unit directions", got))
 
 
-def _check_finite(color: Array, transmittance: Array, batch: RayBatch) -> None:
+def require_finite_image(color: Array, transmittance: Array, batch: RayBatch) -> None:
+    """Raise Error, naming the first pixel, if a ray is not finite."""
     if np.isfinite(color.sum()) and np.isfinite(transmittance.sum()):
         return
     bad = ~(np.isfinite(color).all(axis=1) & np.isfinite(transmittance))

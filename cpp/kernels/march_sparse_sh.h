@@ -1,0 +1,58 @@
+// The fused march through a sparse grid of density and spherical harmonics (float): what the kernel gets
+// and gives. The staged form is photograd/field/sparse_sh.h with photograd/render/march.h; the two are
+// tested to agree bit for bit.
+#pragma once
+
+#include "kernels/march_dense.h"
+#include "photograd/grid/cell_view.h"
+
+namespace photograd {
+
+/// Floats of a ray's basis in memory: Y of degree 3, three times each.
+inline constexpr int sh_basis_stride = 48;
+
+struct MarchSparseShArgs {
+    CellView cells;
+    const float* density;     // (N,) N >= 1
+    const float* sh;          // (N, K, 3)
+    const float* background;  // (1 + 3 K,)
+    int degree;
+    float lo[3], scale[3];  // voxel coordinate q = (p - lo) * scale - 0.5
+    int density_activation, color_activation, quadrature;
+    float density_scale, color_offset;
+    float dt;
+    float tau_stop;
+    int skip;                   // 0 places every sample, also where no voxel is near
+    const float* origins;       // (R, 3)
+    const float* directions;    // (R, 3)
+    const float* t0;            // (R,)
+    const std::int32_t* count;  // (R,)
+    float* color;               // (R, 3) without background
+    float* transmittance;       // (R,)
+    float* depth;               // (R,)
+};
+
+struct MarchSparseShBackward {
+    const float* d_color;          // (R, 3)
+    const float* d_depth;          // (R,)
+    const float* d_transmittance;  // (R,)
+    std::int64_t first_ray;        // of the slab: records count rays from here
+    float* basis;                  // (rays of the slab, sh_basis_stride), written
+    CellRecord<float>* records;    // of this chunk: room for all its samples
+    double* lost;                  // (1 + 3 K,) what reaches corners without a row, added to
+};
+
+/// One brick's share of the records.
+struct SparseShGather {
+    const CellRecord<float>* records;
+    const std::uint32_t* order;  // (count,)
+    std::int64_t count;
+    const float* basis;        // (rays of the slab, sh_basis_stride)
+    const std::int32_t* rows;  // (8, 8, 8) of the brick
+    int origin[3];
+    int degree;
+    float* d_density;
+    float* d_sh;
+};
+
+}  // namespace photograd

@@ -1,0 +1,183 @@
+// The fused march through a sparse grid: forward, records of its adjoint, and their sums by brick.
+#pragma once
+
+#include "kernels/cell_block.inl"
+
+namespace photograd::PHOTOGRAD_ISA {
+
+template <int Degree>
+static std::int64_t sparse_sh_forward(const MarchSparseShArgs& a, std::int64_t begin,
+                                      std::int64_t end) {
+    const Quadrature form = static_cast<Quadrature>(a.quadrature);
+    RayTotals<float> totals[march_chunk];
+    alignas(64) float basis[march_chunk][sh_basis_stride];
+    for (std::int64_t ray = begin; ray < end; ++ray)
+        sh_basis_by_channel<Degree>(a.directions + 3 * ray, basis[ray - begin]);
+    const std::int64_t looked_up = walk_cells(a, begin, end, [&](int i, CellBlock& b) {
+        evaluate_cells<Degree>(a, basis[i], b);
+        composite(form, b.sigma_t, b.rgb, b.t, a.dt, totals[i]);
+        return totals[i].tau;
+    });
+    for (std::int64_t ray = begin; ray < end; ++ray) {
+        const RayTotals<float>& total = totals[ray - begin];
+        for (int c = 0; c < 3; ++c) a.color[3 * ray + c] = sum(total.color[c]);
+        a.transmittance[ray] = exp(-total.tau);
+        a.depth[ray] = sum(total.depth);
+    }
+    return looked_up;
+}
+
+static inline RayCotangents<float> start_sparse(const MarchSparseShArgs& a,
+                                                const MarchSparseShBackward& back,
+                                                std::int64_t ray) {
+    RayCotangents<float> c;
+    for (int k = 0; k < 3; ++k) c.d_color[k] = back.d_color[3 * ray + k];
+    c.d_depth = back.d_depth[ray];
+    c.end_term = -(back.d_transmittance[ray] * a.transmittance[ray]);
+    c.remainder = ((c.d_color[0] * a.color[3 * ray] + c.d_color[1] * a.color[3 * ray + 1]) +
+                   c.d_color[2] * a.color[3 * ray + 2]) +
+                  c.d_depth * a.depth[ray];
+    return c;
+}
+
+// d[c][i]: adjoint of raw colour and raw density, zero where nothing is seen.
+static inline void differentiate_cells(const MarchSparseShArgs& a, const CellBlock& b,
+                                       RayCotangents<float>& ray, Lanes<float>* d) {
+    Lanes<float> d_sigma_t = {}, d_rgb[3] = {};
+    composite_backward(static_cast<Quadrature>(a.quadrature), b.sigma_t, b.rgb, b.t, a.dt, ray,
+                       d_sigma_t, d_rgb);
+    for (int c = 0; c < 3; ++c)
+        activate_lanes_backward(static_cast<Activation>(a.color_activation), b.raw[c], d_rgb[c],
+                                d[c]);
+    for (int i = 0; i < lane_count; ++i) d_sigma_t[i] = a.density_scale * d_sigma_t[i];
+    activate_lanes_backward(static_cast<Activation>(a.density_activation), b.raw[3], d_sigma_t,
+                            d[3]);
+    for (int c = 0; c < 4; ++c)
+        for (int i = 0; i < lane_count; ++i) d[c][i] = b.seen[i] ? d[c][i] : 0.0f;
+}
+
+static inline void add_lost(const CellBlock& b, const Lanes<float>* d, const float* Y3, int count,
+                            double* lost) {
+    float total[4];
+    for (int c = 0; c < 4; ++c) {
+        Lanes<float> part;
+        for (int i = 0; i < lane_count; ++i) part[i] = b.missing[i] * d[c][i];
+        total[c] = sum(part);
+    }
+    lost[0] += static_cast<double>(total[3]);
+    for (int j = 0; j < count; ++j)
+        lost[1 + j] += static_cast<double>(Y3[j]) * static_cast<double>(total[j % 3]);
+}
+
+template <int Degree>
+static std::int64_t sparse_sh_backward(const MarchSparseShArgs& a,
+                                       const MarchSparseShBackward& back, std::int64_t begin,
+                                       std::int64_t end) {
+    RayCotangents<float> cotangents[march_chunk];
+    float* basis = back.basis + (begin - back.first_ray) * sh_basis_stride;
+    for (std::int64_t ray = begin; ray < end; ++ray) {
+        cotangents[ray - begin] = start_sparse(a, back, ray);
+        sh_basis_by_channel<Degree>(a.directions + 3 * ray,
+                                    basis + (ray - begin) * sh_basis_stride);
+    }
+    CellRecord<float>* next = back.records;
+    walk_cells(a, begin, end, [&](int i, CellBlock& b) {
+        const float* Y3 = basis + i * sh_basis_stride;
+        evaluate_cells<Degree>(a, Y3, b);
+        Lanes<float> d[4] = {};
+        differentiate_cells(a, b, cotangents[i], d);
+        bool lacks = false;
+        for (int j = 0; j < lane_count; ++j) {
+            lacks |= b.seen[j] && b.missing[j] > 0.0f;
+            if (!b.seen[j]) continue;
+            *next++ = {{b.q[0][j], b.q[1][j], b.q[2][j]},
+                       static_cast<std::uint32_t>(begin - back.first_ray + i),
+                       {d[0][j], d[1][j], d[2][j], d[3][j]}};
+        }
+        if (lacks) add_lost(b, d, Y3, 3 * sh_count(Degree), back.lost);
+        return cotangents[i].tau;
+    });
+    return next - back.records;
+}
+
+// Weight of every sample, as d[0] of a record: what pruning asks for. Colours are not needed.
+static std::int64_t march_sparse_sh_weights(const MarchSparseShArgs& a,
+                                            const MarchSparseShBackward& back, std::int64_t begin,
+                                            std::int64_t end) {
+    const Quadrature form = static_cast<Quadrature>(a.quadrature);
+    float tau[march_chunk] = {};
+    CellRecord<float>* next = back.records;
+    walk_cells(a, begin, end, [&](int i, CellBlock& b) {
+        activate_lanes(static_cast<Activation>(a.density_activation), b.raw[3], b.sigma_t);
+        for (int j = 0; j < lane_count; ++j)
+            b.sigma_t[j] = b.seen[j] ? a.density_scale * b.sigma_t[j] : 0.0f;
+        const SampleWeights<float> found = composite_weights(form, tau[i], b.sigma_t, a.dt);
+        for (int j = 0; j < lane_count; ++j)
+            if (b.seen[j])
+                *next++ = {{b.q[0][j], b.q[1][j], b.q[2][j]}, 0, {found.w[j], 0.0f, 0.0f, 0.0f}};
+        tau[i] = found.tau_end;
+        return tau[i];
+    });
+    return next - back.records;
+}
+
+// to[j] += w Y3[j] d[j mod 3] for the corners that this brick owns.
+template <int Count>
+static void sparse_sh_gather(const SparseShGather& g) {
+    for (std::int64_t e = 0; e < g.count; ++e) {
+        if (e + 8 < g.count) __builtin_prefetch(g.records + g.order[e + 8]);
+        const CellRecord<float>& record = g.records[g.order[e]];
+        const float* Y3 = g.basis + static_cast<long long>(record.ray) * sh_basis_stride;
+        const float* d = record.d;
+        const float around[sh_fold] = {d[0], d[1], d[2], d[0], d[1], d[2],
+                                       d[0], d[1], d[2], d[0], d[1], d[2]};
+        alignas(64) float D[sh_basis_stride];
+        for (int j = 0; j < Count; ++j) D[j] = Y3[j] * around[j % sh_fold];
+        int base[3];
+        float end[3][2];
+        for (int axis = 0; axis < 3; ++axis) {
+            const float q = record.q[axis];
+            const int cut = static_cast<int>(q);
+            const int floor = cut - (q < static_cast<float>(cut) ? 1 : 0);
+            base[axis] = floor - g.origin[axis];
+            end[axis][1] = q - static_cast<float>(floor);
+            end[axis][0] = 1.0f - end[axis][1];
+        }
+        for (int n = 0; n < 8; ++n) {
+            const int x = base[0] + (n >> 2), y = base[1] + (n >> 1 & 1), z = base[2] + (n & 1);
+            if (((x | y | z) & ~7) != 0) continue;
+            const int row = g.rows[(x * 8 + y) * 8 + z];
+            if (row < 0) continue;
+            const float w = (end[0][n >> 2] * end[1][n >> 1 & 1]) * end[2][n & 1];
+            g.d_density[row] = g.d_density[row] + w * d[3];
+            float* to = g.d_sh + static_cast<long long>(row) * Count;
+            int j = 0;
+            for (; j + vector_floats <= Count; j += vector_floats)
+                *reinterpret_cast<FloatWide*>(to + j) += w * *reinterpret_cast<FloatWide*>(D + j);
+            for (; j + 4 <= Count; j += 4)
+                *reinterpret_cast<Float4*>(to + j) += w * *reinterpret_cast<Float4*>(D + j);
+            for (; j < Count; ++j) to[j] = to[j] + w * D[j];
+        }
+    }
+}
+
+static std::int64_t march_sparse_sh_forward(const MarchSparseShArgs& a, std::int64_t begin,
+                                            std::int64_t end) {
+    std::int64_t result = 0;
+    with_sh_degree(a.degree, [&]<int D>() { result = sparse_sh_forward<D>(a, begin, end); });
+    return result;
+}
+
+static std::int64_t march_sparse_sh_backward(const MarchSparseShArgs& a,
+                                             const MarchSparseShBackward& back, std::int64_t begin,
+                                             std::int64_t end) {
+    std::int64_t result = 0;
+    with_sh_degree(a.degree, [&]<int D>() { result = sparse_sh_backward<D>(a, back, begin, end); });
+    return result;
+}
+
+static void march_sparse_sh_gather(const SparseShGather& g) {
+    with_sh_degree(g.degree, [&]<int D>() { sparse_sh_gather<3 * sh_count(D)>(g); });
+}
+
+}  // namespace photograd::PHOTOGRAD_ISA

@@ -1,0 +1,256 @@
+// Plenoxels: density and spherical-harmonic colour at the active voxels of a sparse grid
+// [FridovichKeil2022].
+//
+//   q       = (p - lo) / voxel - 1/2                       voxel i has its value at q = i
+//   raw     = sum_n w_n density_n                          over the 8 corners of the cell of q
+//   color_c = offset + sum_k Y_k(d) sum_n w_n sh_nkc
+//   sigma_t = density_scale density_activation(raw),   rgb = color_activation(color)
+//
+// A corner without a row reads the background. A cell without any row is vacuum: sigma_t = 0, whatever
+// the background says, so that a march may skip it without changing a bit.
+//
+//   d_density_n += w_n d_raw,    d_sh_nkc += w_n Y_k d_color_c,    d_background likewise, over corners
+//   d_q_axis     = sum_n (d w_n / d q_axis) (d_raw density_n + sum_kc d_color_c Y_k sh_nkc)
+//   d_Y_k        = sum_c d_color_c sum_n w_n sh_nkc,   and from there d_direction (ops/sh.h)
+//
+// Topology is held constant: what a gradient cannot say about voxels that do not exist reaches
+// d_background, where it can be seen. The colour of a sample whose density relu has cut off is not
+// computed: it has no weight, and its derivatives vanish.
+#pragma once
+
+#include <array>
+
+#include "photograd/core/scatter.h"
+#include "photograd/field/samples.h"
+#include "photograd/grid/cell_gather.h"
+#include "photograd/ops/sh_blend.h"
+
+namespace photograd {
+
+template <Real R>
+struct SparseSh {
+    using Scalar = R;
+    static constexpr const char* name = "sparse_sh";
+    static constexpr int most_numbers = 3 * sh_count(3);
+
+    const CellTable* table = nullptr;
+    const R* density = nullptr;     // (N,)
+    const R* sh = nullptr;          // (N, K, 3)
+    const R* background = nullptr;  // (1 + 3 K,) density, coefficients
+    int degree = 0;
+    R lo[3]{}, scale[3]{}, density_scale{}, color_offset{};
+    FieldOptions options;
+
+    [[nodiscard]] int numbers() const { return 3 * sh_count(degree); }
+
+    /// Fits lo and scale to the box of the options; the rest is set by the caller.
+    void place() {
+        density_scale = static_cast<R>(options.density_scale);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const double extent = options.box[1][axis] - options.box[0][axis];
+            lo[axis] = static_cast<R>(options.box[0][axis]);
+            scale[axis] = static_cast<R>(table->shape()[axis] / extent);
+        }
+    }
+
+    /// Rows of the corners of a cell, no_row where nothing is active; false in vacuum.
+    bool rows(const int* base, std::int32_t* row) const {
+        const CellView view = table->view();
+        const int entry = tile_entry(view, base[0], base[1], base[2]);
+        const std::int32_t tile = entry < 0 ? 0 : std::max(view.top[entry], 0);
+        const std::int32_t* at = view.rows + std::int64_t(tile) * cell_tile_voxels +
+                                 place_in_tile(base[0], base[1], base[2]);
+        bool any = false;
+        for (int n = 0; n < 8; ++n) {
+            row[n] = at[corner_offset(n)];
+            any |= row[n] >= 0;
+        }
+        return any;
+    }
+
+    /// Sample i of group g with all that its value needs.
+    struct Lookup {
+        CellPoint<R> at;
+        R q[3], density[8];
+        const R* corner[8];
+        R missing = R(0);  // weight of the corners without a row
+        bool any;
+    };
+    Lookup look_up(const SampleBatch<R>& batch, std::size_t g, int i) const {
+        Lookup found;
+        for (int axis = 0; axis < 3; ++axis)
+            found.q[axis] = (batch.position[axis][g][i] - lo[axis]) * scale[axis] - R(0.5);
+        found.at = CellPoint<R>::of(found.q);
+        std::int32_t row[8];
+        found.any = rows(found.at.base, row);
+        for (int n = 0; n < 8; ++n) {
+            const bool here = row[n] >= 0;
+            found.density[n] = here ? density[row[n]] : background[0];
+            found.corner[n] = here ? sh + std::int64_t(row[n]) * numbers() : background + 1;
+            found.missing = found.missing + (here ? R(0) : found.at.w[n]);
+        }
+        return found;
+    }
+    [[nodiscard]] bool is_cut(R raw) const {
+        return options.density_activation == Activation::relu && raw <= R(0);
+    }
+    void basis(const SampleBatch<R>& batch, std::size_t g, R* Y3) const {
+        const R d[3] = {batch.direction[0][g], batch.direction[1][g], batch.direction[2][g]};
+        with_sh_degree(degree, [&]<int D>() { sh_basis_by_channel<D>(d, Y3); });
+    }
+
+    struct Cache {
+        std::vector<std::array<Lanes<R>, 4>> raw;        // colour with its offset, raw density
+        std::vector<std::array<bool, lane_count>> seen;  // neither vacuum nor cut off
+    };
+
+    void eval(const SampleBatch<R>& batch, Cache& cache, SampleValues<R>& out) const {
+        cache.raw.assign(batch.groups(), {});
+        cache.seen.assign(batch.groups(), {});
+        for (std::size_t g = 0; g < batch.groups(); ++g) {
+            R Y3[most_numbers], b[most_numbers], color[3];
+            basis(batch, g, Y3);
+            for (int i = 0; i < lane_count; ++i) {
+                const Lookup found = look_up(batch, g, i);
+                R raw = R(0);
+                for (int n = 0; n < 8; ++n) raw = raw + found.at.w[n] * found.density[n];
+                if (!found.any || is_cut(raw)) continue;  // all values of the batch begin as 0
+                blend_corners(found.corner, found.at.w, numbers(), b);
+                fold_color(b, Y3, numbers(), color);
+                const auto lane = static_cast<std::size_t>(i);
+                cache.seen[g][lane] = true;
+                cache.raw[g][3][i] = raw;
+                out.sigma_t[g][i] = density_scale * activate(options.density_activation, raw);
+                for (std::size_t c = 0; c < 3; ++c) {
+                    cache.raw[g][c][i] = color_offset + color[c];
+                    out.rgb[c][g][i] = activate(options.color_activation, cache.raw[g][c][i]);
+                }
+            }
+        }
+    }
+
+    /// Contributions of a slab, chunk by chunk in the order of the walk; finish() adds them up by owner.
+    struct Sink {
+        Sink(const SparseSh& its_field, const SparseShGradients<R>& its_gradients)
+            : field(its_field), gradients(its_gradients) {}
+
+        struct Chunk {
+            std::vector<CellRecord<R>> records;
+            std::vector<std::array<R, most_numbers>> basis;
+            std::array<double, 1 + most_numbers> lost{};
+        };
+        const SparseSh& field;
+        SparseShGradients<R> gradients;
+        std::vector<Chunk> chunks;
+
+        void begin(int count) { chunks.assign(static_cast<std::size_t>(count), {}); }
+        void finish();
+    };
+
+    /// Adds to `sink` and, where asked, to d_position[axis] and d_direction[axis].
+    void backward(const SampleBatch<R>& batch, const Cache& cache, const SampleValues<R>& d_out,
+                  Sink& sink, int chunk, std::vector<Lanes<R>>* d_position,
+                  std::vector<R>* d_direction = nullptr) const {
+        typename Sink::Chunk& to = sink.chunks[static_cast<std::size_t>(chunk)];
+        for (std::size_t g = 0; g < batch.groups(); ++g) {
+            to.basis.emplace_back();
+            basis(batch, g, to.basis.back().data());
+            Lanes<R> lost[4] = {};
+            R d_Y[sh_count(3)] = {};
+            for (int i = 0; i < batch.used[g]; ++i) {
+                if (!cache.seen[g][static_cast<std::size_t>(i)]) continue;
+                R d[4] = {};
+                for (std::size_t c = 0; c < 3; ++c)
+                    activate_backward(options.color_activation, cache.raw[g][c][i],
+                                      d_out.rgb[c][g][i], d[c]);
+                activate_backward(options.density_activation, cache.raw[g][3][i],
+                                  density_scale * d_out.sigma_t[g][i], d[3]);
+                const Lookup found = look_up(batch, g, i);
+                to.records.push_back({{found.q[0], found.q[1], found.q[2]},
+                                      static_cast<std::uint32_t>(to.basis.size() - 1),
+                                      {d[0], d[1], d[2], d[3]}});
+                for (int c = 0; c < 4; ++c) lost[c][i] = found.missing * d[c];
+                if (d_position) {
+                    R d_q[3] = {};
+                    camera_backward(found, to.basis.back().data(), d, d_q, d_Y);
+                    for (int axis = 0; axis < 3; ++axis)
+                        d_position[axis][g][i] += d_q[axis] * scale[axis];
+                }
+            }
+            to.lost[0] += double(sum(lost[3]));
+            for (int j = 0; j < numbers(); ++j)
+                to.lost[static_cast<std::size_t>(1 + j)] +=
+                    double(to.basis.back()[static_cast<std::size_t>(j)]) * double(sum(lost[j % 3]));
+            if (d_direction) {
+                const R x = batch.direction[0][g], y = batch.direction[1][g],
+                        z = batch.direction[2][g];
+                R d[3] = {};
+                with_sh_degree(degree, [&]<int D>() { sh_basis_backward<D>(x, y, z, d_Y, d); });
+                for (int axis = 0; axis < 3; ++axis) d_direction[axis][g] += d[axis];
+            }
+        }
+    }
+
+private:
+    /// Adds d_q (3,) and d_Y (K,) of one sample.
+    void camera_backward(const Lookup& found, const R* Y3, const R* d, R* d_q, R* d_Y) const {
+        const R* f = found.at.fraction;
+        const R x[2] = {R(1) - f[0], f[0]}, y[2] = {R(1) - f[1], f[1]}, z[2] = {R(1) - f[2], f[2]};
+        for (int n = 0; n < 8; ++n) {
+            R along = d[3] * found.density[n];
+            for (int j = 0; j < numbers(); ++j) along += (Y3[j] * d[j % 3]) * found.corner[n][j];
+            d_q[0] += (n >> 2 ? along : -along) * (y[n >> 1 & 1] * z[n & 1]);
+            d_q[1] += (n >> 1 & 1 ? along : -along) * (x[n >> 2] * z[n & 1]);
+            d_q[2] += (n & 1 ? along : -along) * (x[n >> 2] * y[n >> 1 & 1]);
+        }
+        R b[most_numbers];
+        blend_corners(found.corner, found.at.w, numbers(), b);
+        for (int j = 0; j < numbers(); ++j) d_Y[j / 3] += d[j % 3] * b[j];
+    }
+};
+
+template <Real R>
+void SparseSh<R>::Sink::finish() {
+    const BrickTopology& topology = field.table->topology();
+    const int numbers = field.numbers();
+    struct Item {
+        std::uint32_t brick, chunk, record;
+    };
+    std::vector<Item> items;
+    std::vector<std::uint32_t> owner;
+    for (std::uint32_t c = 0; c < chunks.size(); ++c)
+        for (std::uint32_t r = 0; r < chunks[c].records.size(); ++r) {
+            std::int32_t brick[8];
+            const CellPoint<R> at = CellPoint<R>::of(chunks[c].records[r].q);
+            const int count = bricks_of_cell(topology, at.base, brick);
+            for (int n = 0; n < count; ++n) {
+                items.push_back({static_cast<std::uint32_t>(brick[n]), c, r});
+                owner.push_back(static_cast<std::uint32_t>(brick[n]));
+            }
+        }
+    OwnerBins bins;
+    bin_by_owner(owner, topology.bricks(), bins);
+    parallel_for(topology.bricks(), [&](std::int64_t brick) {
+        const auto b = static_cast<std::size_t>(brick);
+        for (std::uint32_t j = bins.begin[b]; j < bins.begin[b + 1]; ++j) {
+            const Item& item = items[bins.order[j]];
+            const Chunk& from = chunks[item.chunk];
+            const CellRecord<R>& record = from.records[item.record];
+            const auto& Y3 = from.basis[record.ray];
+            R D[most_numbers];
+            for (int k = 0; k < numbers; ++k)
+                D[k] = Y3[static_cast<std::size_t>(k)] * record.d[k % 3];
+            gather_record(topology, static_cast<std::int32_t>(brick), record, D, numbers,
+                          gradients);
+        }
+    });
+    for (int j = 0; j < 1 + numbers; ++j) {
+        double total = 0.0;
+        for (const Chunk& chunk : chunks) total += chunk.lost[static_cast<std::size_t>(j)];
+        gradients.d_background[j] += static_cast<R>(total);
+    }
+}
+
+static_assert(Field<SparseSh<float>> && Field<SparseSh<double>>);
+
+}  // namespace photograd

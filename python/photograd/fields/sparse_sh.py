@@ -1,0 +1,351 @@
+"""Plenoxels: density and spherical-harmonic colour at the active voxels of a sparse grid.
+
+No network and no dense memory: [FridovichKeil2022]. The mathematics is in
+cpp/photograd/field/sparse_sh.h.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar
+
+import numpy as np
+from photograd_course.random import uniform
+from photograd_course.row_map import RowMap
+
+from photograd import sh
+from photograd.core import _core
+from photograd.errors import DtypeError, RangeError, ShapeError, message
+from photograd.fields.active_voxels import ActiveVoxels, dilated, resampled_mask
+from photograd.fields.march import MarchPolicy, checked_rays, checked_values, require_finite_image
+from photograd.representation import (
+    Array,
+    Outputs,
+    ParamSpec,
+    Prior,
+    RayBatch,
+    RenderOptions,
+    Representation,
+    register,
+)
+
+MOST_DEGREE = 3
+START_COLOR = 0.18  # linear colour of a start, as in the dense grid
+Y_0 = 0.28209479177387814  # the constant harmonic
+
+
+@dataclass(frozen=True)
+class SparseContext:
+    """What the backward pass needs, topology included: it cannot change under a rendering."""
+
+    active: ActiveVoxels
+    density: Array
+    sh: Array
+    settings: Any
+    origins: Array
+    directions: Array
+    t0: Array
+    samples: Array
+    color: Array
+    transmittance: Array
+    depth: Array
+    camera_adjoint: bool
+    looked_up: int  # samples whose voxels were read; the others were skipped
+
+
+@register
+class SparseSh(Representation):
+    """A radiance field on the active voxels of an X x Y x Z grid (trilinear in between).
+
+    params["density"] (N,) raw density and params["sh"] (N, K, 3) coefficients, one row for each
+    active voxel: sigma_t = density_scale * density_activation(density) in 1/m,
+    rgb = color_activation(sum_k Y_k(direction) sh_k), linear Rec. 709; direction is that of the
+    ray, away from the camera. What is not active has raw density `background_density` and no
+    colour of its own; a cell without any active corner is empty. `lost` (1 + 3 K,), after a
+    backward pass, is what the loss would have told voxels that do not exist.
+    """
+
+    name: ClassVar[str] = "sparse_sh"
+    capabilities: ClassVar[frozenset[str]] = frozenset({"rays"})
+
+    def __init__(
+        self,
+        active: ActiveVoxels,
+        density: Array,
+        coefficients: Array,
+        policy: MarchPolicy,
+        *,
+        background_density: float = 0.0,
+        fused: bool = True,
+    ) -> None:
+        """Raises ShapeError, DtypeError, RangeError (degree) or Error (not finite)."""
+        checked_values("SparseSh", "density", density)
+        checked_values("SparseSh", "sh", coefficients)
+        if density.shape != (len(active),):
+            raise ShapeError(message("SparseSh", "density", f"({len(active)},)", density.shape))
+        if coefficients.ndim != 3 or coefficients.shape[::2] != (len(active), 3):
+            expected = f"({len(active)}, K, 3)"
+            raise ShapeError(message("SparseSh", "sh", expected, coefficients.shape))
+        if coefficients.dtype != density.dtype:
+            raise DtypeError(message("SparseSh", "sh", density.dtype, coefficients.dtype))
+        if coefficients.shape[1] not in (1, 4, 9, 16):
+            expected = f"1, 4, 9 or 16 coefficients (degree 0 to {MOST_DEGREE})"
+            raise RangeError(message("SparseSh", "sh", expected, coefficients.shape[1]))
+        if policy.border != "zero":
+            raise RangeError(message("SparseSh", "policy.border", "'zero'", repr(policy.border)))
+        self.active = active
+        self.params = {
+            "density": np.ascontiguousarray(density),
+            "sh": np.ascontiguousarray(coefficients),
+        }
+        self.policy = policy
+        self.background_density = background_density
+        self.fused = fused
+        self.lost: Array = np.zeros(1 + 3 * coefficients.shape[1], density.dtype)
+
+    @classmethod
+    def full(
+        cls,
+        box: Array,
+        resolution: int,
+        *,
+        degree: int = 2,
+        finest: int | None = None,
+        sigma_t: float = 0.1,
+        steps_per_voxel: float = 2.0,
+        dtype: type[np.floating[Any]] = np.float32,
+    ) -> SparseSh:
+        """A grid of cubic voxels over `box` (2, 3) in which every voxel is active, nearly empty.
+
+        Arguments as for `DenseGrid.empty`; `degree` 0 to 3. Raises RangeError.
+        """
+        from photograd.fields.dense_grid import DenseGrid
+
+        if degree not in range(MOST_DEGREE + 1):
+            raise RangeError(message("SparseSh.full", "degree", f"0 to {MOST_DEGREE}", degree))
+        dense = DenseGrid.empty(
+            box, resolution, finest=finest, sigma_t=sigma_t, steps_per_voxel=steps_per_voxel,
+            dtype=dtype,
+        )  # fmt: skip
+        policy = replace(dense.policy, border="zero", density_activation="softplus")
+        active = ActiveVoxels(np.ones(dense.density.shape, bool))
+        density = np.full(len(active), dense.density.flat[0], dtype)
+        coefficients = np.zeros((len(active), sh.count(degree), 3), dtype)
+        coefficients[:, 0] = np.log(START_COLOR / (1 - START_COLOR)) / Y_0
+        start = float(dense.density.flat[0])
+        return cls(active, density, coefficients, policy, background_density=start)
+
+    @classmethod
+    def example(cls, *, seed: int, dtype: type[np.floating[Any]] = np.float64) -> SparseSh:
+        """Two thirds of 11 x 9 x 10 voxels with random values, degree 2."""
+        shape = (11, 9, 10)
+        voxel = np.arange(int(np.prod(shape)))
+        chosen = uniform(seed, step=1, pixel=voxel, sample=0, dimension=0) < 2 / 3
+        active = ActiveVoxels(chosen.reshape(shape))
+        index = np.arange(28 * len(active))
+        u = 2 * uniform(seed, step=0, pixel=index, sample=0, dimension=0).reshape(-1, 28) - 1
+        policy = MarchPolicy(((-1.0, -0.8, -1.2), (1.0, 0.8, 1.2)), 0.11, border="zero")
+        coefficients = u[:, 1:].reshape(-1, 9, 3)
+        return cls(
+            active, u[:, 0].astype(dtype), coefficients.astype(dtype), policy,
+            background_density=-2.0,
+        )  # fmt: skip
+
+    def example_batch(self, *, seed: int) -> RayBatch:
+        """As that of the dense grid."""
+        from photograd.fields.dense_grid import DenseGrid
+
+        return DenseGrid.example(seed=seed).example_batch(seed=seed)
+
+    @property
+    def box(self) -> Array:
+        """(2, 3) corners of the box in world metres."""
+        return np.array(self.policy.box)
+
+    @property
+    def shape(self) -> tuple[int, int, int, int]:
+        """Voxels along X, Y and Z, active or not, and the numbers of each active one."""
+        return (*self.active.shape, 1 + self.params["sh"][0].size)
+
+    @property
+    def resolution(self) -> int:
+        """Voxels along the longest edge."""
+        return max(self.active.shape)
+
+    def param_groups(self) -> Mapping[str, ParamSpec]:
+        """Density and coefficients; Adam moves an entry by about its rate."""
+        shapes = {name: value.shape for name, value in self.params.items()}
+        return {
+            "density": ParamSpec(shapes["density"], "1", (-20.0, 1e4), 0.5, "grid"),
+            "sh": ParamSpec(shapes["sh"], "1", (-100.0, 100.0), 0.2, "grid"),
+        }
+
+    def render(
+        self, batch: RayBatch, *, seed: int, step: int, options: RenderOptions
+    ) -> tuple[Outputs, SparseContext]:
+        """Colour (R, 3) linear, premultiplied, without background; opacity (R,); depth (R,) m."""
+        density, coefficients = self.params["density"], self.params["sh"]
+        checked_values("SparseSh.render", "density", density)
+        checked_values("SparseSh.render", "sh", coefficients)
+        settings = self.policy.settings(options.stop)
+        rays = checked_rays(batch, settings, options, density.dtype, seed=seed, step=step)
+        color, transmittance, depth, looked_up = _core.march_sparse_sh(
+            self.active.table, density, coefficients, self._background(), settings, 0.0, *rays,
+            fused=self.fused,
+        )  # fmt: skip
+        require_finite_image(color, transmittance, batch)
+        context = SparseContext(
+            self.active, density, coefficients, settings, *rays, color, transmittance, depth,
+            options.camera_adjoint, looked_up,
+        )  # fmt: skip
+        return Outputs(color, 1 - transmittance, depth), context
+
+    def render_backward(self, context: SparseContext, d_outputs: Outputs) -> dict[str, Array]:
+        """{"density", "sh"}, and "origins", "directions" (R, 3) if the options asked."""
+        c = context
+        dtype = c.density.dtype
+        none = np.zeros(len(c.t0), dtype)
+        d_opacity = none if d_outputs.opacity is None else d_outputs.opacity
+        d_depth = none if d_outputs.depth is None else d_outputs.depth
+        gradients = {"density": np.zeros_like(c.density), "sh": np.zeros_like(c.sh)}
+        if c.camera_adjoint:
+            gradients["origins"] = np.zeros_like(c.origins)
+            gradients["directions"] = np.zeros_like(c.directions)
+        self.lost = np.zeros_like(self._background())
+        _core.march_sparse_sh_backward(
+            c.active.table, c.density, c.sh, self._background(), c.settings, 0.0,
+            c.origins, c.directions, c.t0, c.samples, c.color, c.transmittance, c.depth,
+            np.ascontiguousarray(d_outputs.color, dtype), np.ascontiguousarray(-d_opacity, dtype),
+            np.ascontiguousarray(d_depth, dtype), gradients["density"], gradients["sh"], self.lost,
+            gradients.get("origins"), gradients.get("directions"), self.fused,
+        )  # fmt: skip
+        return gradients
+
+    def priors(self) -> Sequence[Prior]:
+        """Total variation of each group: active neighbours should agree."""
+        return tuple(
+            Prior(f"total_variation_{group}", group, self._variation, self._variation_backward)
+            for group in ("density", "sh")
+        )
+
+    def _variation(self, values: Array) -> float:
+        flat = np.ascontiguousarray(values).reshape(len(values), -1)
+        return float(_core.sparse_variation(self.active.topology, flat))
+
+    def _variation_backward(self, values: Array, d_value: float = 1.0) -> Array:
+        d_values = np.zeros_like(values)
+        self.add_variation(values, d_value, d_values, (0, self.active.topology.bricks))
+        return d_values
+
+    def add_variation(
+        self, values: Array, d_value: float, d_values: Array, bricks: tuple[int, int]
+    ) -> None:
+        """Add the adjoint of the variation to the rows of bricks first .. last - 1."""
+        n = len(values)
+        _core.sparse_variation_backward(
+            self.active.topology, np.ascontiguousarray(values).reshape(n, -1), d_value, *bricks,
+            d_values.reshape(n, -1),
+        )  # fmt: skip
+
+    def add_prior(self, gradients: Mapping[str, Array], weight: float, u: float) -> None:
+        """Add total variation's gradient in an eighth of the bricks, which stands for the whole.
+
+        `u` in [0, 1) says which; they follow one another.
+        """
+        bricks = self.active.topology.bricks
+        some = max(1, bricks // 8)
+        start = int(u * (bricks - some + 1))
+        for group, values in self.params.items():
+            share = weight * bricks / some
+            self.add_variation(values, share, gradients[group], (start, start + some))
+
+    def greatest_weights(self, batches: Iterable[RayBatch]) -> Array:
+        """(N,) the greatest weight that each voxel has in any sample of these rays, 0 to 1.
+
+        A sample's weight in its pixel times the voxel's trilinear weight in the sample. Give it all
+        views: a voxel that this batch does not see may matter to the next.
+        """
+        density = np.ascontiguousarray(self.params["density"], np.float32)
+        coefficients = np.ascontiguousarray(self.params["sh"], np.float32)
+        background = self._background().astype(np.float32)
+        settings = self.policy.settings(0.0)
+        most = np.zeros(len(self.active), np.float32)
+        for batch in batches:
+            rays = checked_rays(
+                batch, settings, RenderOptions(), np.dtype(np.float32), seed=0, step=0
+            )
+            _core.sparse_sh_weights(
+                self.active.table, density, coefficients, background, settings, *rays, most
+            )
+        return most
+
+    def refine(self, step: int, statistics: Mapping[str, Array]) -> RowMap | None:
+        """Drop voxels with statistics["weight"] (N,) below statistics["threshold"], then dilate.
+
+        Every voxel next to one that stays is kept, or made anew with the background's density and
+        no colour. Nothing happens without these statistics.
+        """
+        del step
+        if "weight" not in statistics:
+            return None
+        stays = statistics["weight"] >= statistics["threshold"]
+        mask = np.zeros(self.active.shape, bool)
+        i, j, k = self.active.voxels[stays].T
+        mask[i, j, k] = True
+        after = ActiveVoxels(dilated(mask))
+        i, j, k = after.voxels.T
+        source = RowMap(self.active.rows[i, j, k], len(self.active))
+        self.params = {
+            "density": source.apply(self.params["density"], fill=self.background_density),
+            "sh": source.apply(self.params["sh"]),
+        }
+        self.active = after
+        return source
+
+    def refined(self, resolution: int, *, steps_per_voxel: float = 2.0) -> SparseSh:
+        """The same field on a finer grid over the same box, by trilinear interpolation."""
+        extent = self.box[1] - self.box[0]
+        voxel = extent.max() / resolution
+        x, y, z = np.maximum(np.rint(extent / voxel).astype(int), 2).tolist()
+        active = ActiveVoxels(resampled_mask(self.active.mask, (x, y, z)))
+        density = self._resampled(self.params["density"], active, self.background_density)
+        coefficients = self._resampled(self.params["sh"], active, 0.0)
+        policy = replace(self.policy, dt=voxel / steps_per_voxel)
+        return SparseSh(
+            active, density, coefficients, policy,
+            background_density=self.background_density, fused=self.fused,
+        )  # fmt: skip
+
+    def resampled(self, rows: Array, to: SparseSh) -> Array:
+        """Rows of this grid, such as an optimiser's, at the voxels of another; 0 where none is."""
+        return self._resampled(rows, to.active, 0.0)
+
+    def _resampled(self, rows: Array, active: ActiveVoxels, fill: float) -> Array:
+        scale = np.array(self.active.shape) / np.array(active.shape)
+        at = np.ascontiguousarray((active.voxels + 0.5) * scale - 0.5, rows.dtype)
+        flat = np.ascontiguousarray(rows).reshape(len(rows), -1)
+        out = np.empty((len(active), flat.shape[1]), rows.dtype)
+        empty = np.full(flat.shape[1], fill, rows.dtype)
+        _core.sample_bricks(self.active.topology, flat, empty, at, out)
+        return out.reshape(len(active), *rows.shape[1:])
+
+    def state(self) -> dict[str, Array]:
+        """The topology, and what lies outside of it."""
+        return {**self.active.state(), "background_density": np.array(self.background_density)}
+
+    def load_state(self, state: Mapping[str, Array]) -> None:
+        """Restore the topology; the parameters are those that were saved with it."""
+        rest = dict(state)
+        background = rest.pop("background_density", None)
+        active = ActiveVoxels.of_state(rest, "sparse_sh.load_state")
+        if background is None:
+            raise RangeError(
+                message("sparse_sh.load_state", "state", "a background_density", f"{sorted(state)}")
+            )
+        self.active, self.background_density = active, float(background)
+
+    def _background(self) -> Array:
+        values = np.zeros(1 + self.params["sh"][0].size, self.params["density"].dtype)
+        values[0] = self.background_density
+        return values

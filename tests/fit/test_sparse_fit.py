@@ -1,0 +1,123 @@
+"""A sparse grid fitted from photographs: resumed to the bit, and pruned without loss."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from photograd.checkpoint import load_checkpoint
+from photograd.commands.gradients import dense_grid
+from photograd.errors import RangeError
+from photograd.evaluate import evaluate
+from photograd.fields import SparseSh
+from photograd.fields.active_voxels import dilated
+from photograd.fit import Fit
+from photograd.model import load_model
+from photograd.row_adam import RowAdam
+from photograd.snapshots import load_snapshots
+from photograd_course.optim import Adam
+
+from tests.fit import scene
+from tests.fit.test_resume import assert_same, run
+
+OPTIONS = {"resolution": 32, "steps": 40, "rays": 256, "representation": "sparse_sh", "degree": 1}
+
+UNPRUNED = {"refine_at": (0.0, 0.0), "prune": 0.0}
+
+
+def test_stopped_at_each_kind_of_step(tmp_path: Path) -> None:
+    capture = scene.capture()
+    run(Fit.start(capture, scene.options(**OPTIONS)), tmp_path / "straight")
+    run(Fit.start(capture, scene.options(**OPTIONS)), tmp_path / "stopped", until=4)
+    for until in (6, 7, 16, 25, 40):
+        fit = Fit.resume(capture, tmp_path / "stopped")
+        run(fit, tmp_path / "stopped", until=until)
+        assert fit.step_number == until
+    straight = load_checkpoint(tmp_path / "straight")
+    assert straight.state["shape"].tolist() == [32, 24, 28]
+    assert np.abs(straight.optimiser["mean/sh"]).max() > 0
+    assert_same(tmp_path / "straight", tmp_path / "stopped")
+    assert list(load_snapshots(tmp_path / "stopped")) == [0, 1, 4, 12, 40]
+
+
+def test_the_scene_is_recovered_on_part_of_the_voxels(tmp_path: Path) -> None:
+    capture = scene.capture()
+    options = scene.options(**{**OPTIONS, "steps": 300, "rays": 1024, "prune": 0.02})
+    run(Fit.start(capture, options), tmp_path)
+    model = load_model(tmp_path)
+    assert isinstance(model.field, SparseSh)
+    share = len(model.field.active) / model.field.active.mask.size
+    assert 0.05 < share < 0.7  # the balls fill 9 %; measured: 0.5
+    assert evaluate(model, capture.test).psnr > 32  # measured: 34
+
+
+def gradient_and_weight() -> tuple[SparseSh, np.ndarray, np.ndarray]:
+    """A full grid half-way through a fit: |dL/d density| and greatest weight (X, Y, Z)."""
+    capture = scene.capture()
+    options = scene.options(**{**OPTIONS, **UNPRUNED, "resolution": 24, "steps": 60, "rays": 1024})
+    fit = Fit.start(capture, options)
+    while fit.step_number < options.steps:
+        fit.step()
+    field = fit.model
+    assert isinstance(field, SparseSh)
+    assert field.active.mask.all()
+    _, gradients = fit.loss_and_gradients(np.arange(len(fit.pixels)))
+    i, j, k = field.active.voxels.T
+    gradient, weight = np.zeros((2, *field.active.shape))
+    gradient[i, j, k] = np.abs(gradients["density"])
+    weight[i, j, k] = field.greatest_weights(fit.pixels.batches(1 << 20))
+    return field, gradient, weight
+
+
+def test_pruning_then_dilating_loses_no_voxel_with_a_strong_gradient() -> None:
+    _, gradient, weight = gradient_and_weight()
+    strong = gradient > 0.05 * gradient.max()
+    kept = weight >= 0.003
+    assert strong.sum() > 500
+    assert kept.mean() < 0.5  # measured: 0.37
+    # Without dilation the rim would be lost: measured 124 of 1815. With it, none is.
+    assert (strong & ~kept).sum() > 50
+    assert (strong & ~dilated(kept)).sum() == 0
+
+
+def test_one_view_alone_would_prune_what_others_need() -> None:
+    capture = scene.capture()
+    fit = Fit.start(capture, scene.options(**OPTIONS, **UNPRUNED))
+    for _ in range(40):
+        fit.step()
+    field = fit.model
+    assert isinstance(field, SparseSh)
+    every = field.greatest_weights(fit.pixels.batches(1 << 20))
+    pixels = len(fit.pixels) // len(capture.train)
+    one = field.greatest_weights([fit.pixels.rays(np.arange(pixels))])
+    assert (one <= every).all()
+    assert ((every >= 0.05) & (one < 0.05)).sum() > 0.2 * (every >= 0.05).sum()
+
+
+def test_pictures_of_dense_gradients_refuse_a_sparse_grid() -> None:
+    with pytest.raises(RangeError, match="a model of dense_grid, got 'sparse_sh'"):
+        dense_grid(SparseSh.example(seed=1))
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_adam_on_rows_is_adam_with_the_rows_named(dtype: type) -> None:
+    g = np.random.default_rng(1)
+    params = [{"a": np.ones((5000, 9, 3), dtype), "b": np.ones(5000, dtype)} for _ in range(2)]
+    mine, theirs = RowAdam(), Adam()
+    for step in range(5):
+        full = {name: g.normal(size=p.shape).astype(dtype) for name, p in params[0].items()}
+        rows = np.flatnonzero(g.random(5000) < 0.3)
+        for gradient in full.values():
+            gradient[np.setdiff1d(np.arange(5000), rows)] = 0
+        named = {name: (rows, gradient[rows]) for name, gradient in full.items()}
+        mine.step(params[0], full, {"a": 0.1, "b": 0.3})
+        theirs.step(params[1], named, {"a": 0.1, "b": 0.3})
+        assert step >= 0
+    for name in ("a", "b"):
+        assert np.abs(params[0][name] - 1).max() > 0.1
+        assert np.array_equal(params[0][name], params[1][name])
+    state = mine.state()
+    again = RowAdam()
+    again.load_state(state)
+    assert all(np.array_equal(again.state()[key], value) for key, value in state.items())
