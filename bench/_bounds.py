@@ -65,6 +65,8 @@ def sh_bound(points: int) -> dict[str, Any]:
     """
     forward = slowest({"byte": 216 * points, "flop": 130 * points})
     return _row(forward, slowest({"byte": 432 * points, "flop": 400 * points}))
+
+
 def splat_bound(contributions: int) -> dict[str, Any]:
     """W8: a pixel and a Gaussian that adds to it take 24 flop and one exp forward, 100 more back.
 

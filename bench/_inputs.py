@@ -23,10 +23,10 @@ RECORDED = {
     "W5 n=256 points=200000": "bed43a2402088295",
     "W6a points=2000000": "445afa5c746f01b0",
     "W6a points=1000": "002ee91ab6cb7117",
-    "W8 n=100000 res=512": "58aff03f9ae90801",
-    "W8 n=2000 res=64": "b9a1345105ac1026",
     "W6b n=128 res=128 views=4": "54d7fd96b0050b75",
     "W6b n=32 res=16 views=1": "8572acd7267ff727",
+    "W8 n=100000 res=512": "58aff03f9ae90801",
+    "W8 n=2000 res=64": "b9a1345105ac1026",
 }
 
 

@@ -50,9 +50,9 @@ PEERS = [
     Peer("W5", "torch", "w5_texture_torch.py", "torch"),
     Peer("W5", "jax", "w5_texture_jax.py", "jax"),
     Peer("W6a", "torch", "w6_sh_torch.py", "torch"),
-    Peer("W8", "torch-tiles", "w8_splat_torch.py", "torch"),
     Peer("W6b", "taichi", "w6_plenoxel_taichi.py", "ti"),
     Peer("W6b", "torch", "w6_plenoxel_torch.py", "torch"),
+    Peer("W8", "torch-tiles", "w8_splat_torch.py", "torch"),
 ]
 
 
@@ -145,7 +145,6 @@ def add_theirs(table: Table, line: Row) -> None:
 def compare(script: Path, args: argparse.Namespace, table: Table, notes: list[str]) -> bool:
     """Measure one workload and add it to the table; False if our own script failed."""
     workload = script.stem.split("_")[0].replace("w", "W", 1)  # "w6a_sh" measures W6a
-    workload = script.stem.split("_")[0].replace("w", "W", 1)  # w6b_plenoxel measures W6b
     ours, others = measure(workload, script, args)
     if args.results:
         others += group(read_rows(args.results), workload, same_run=False)

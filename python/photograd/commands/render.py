@@ -24,9 +24,9 @@ from photograd.evaluate import display_image
 from photograd.fog import RAMPS, load_fog
 from photograd.model import load_model
 from photograd.orbit import orbit_cameras
-from photograd.volumes import SUFFIXES
 from photograd.representation import Array
 from photograd.splat_orbit import UP_AXES, orbit_splats
+from photograd.volumes import SUFFIXES
 
 
 def register(app: typer.Typer) -> None:
@@ -38,8 +38,8 @@ def render(
     model: Annotated[
         Path,
         typer.Argument(
-            help="Folder that a fit wrote, its model.npz, or a volume: .vdb, .vtk, .nii, .vol.",
-            help="Folder that a fit wrote, its model.npz, a .vdb file, or a .ply of Gaussians.",
+            help="Folder that a fit wrote, its model.npz; a volume: .vdb, .vtk, .nii, .vol; or a "
+            ".ply of Gaussians.",
             metavar="MODEL",
         ),
     ],
@@ -73,20 +73,17 @@ def render(
     as_json: JsonOption = False,
     debug: DebugOption = False,  # noqa: ARG001
 ) -> None:
-    """Render a turntable of a recovered scene, or of the densities in a volume or scan.
-    """Render a turntable of a recovered scene, of a .vdb file's densities, or of Gaussians.
+    """Render a turntable of a recovered scene, of a volume or scan, or of Gaussians.
 
     Example: photograd render model --orbit 60 --out turntable.gif
     """
     use_threads(threads)
-    if model.name.lower().endswith((".vdb", *SUFFIXES)):
-        loaded = load_fog(model, ramp=ramp, sigma_t=sigma_t, resolution=resolution, window=window)
     if model.suffix.lower() == ".ply":
         views = orbit_splats(read_gaussian_ply(model), orbit, size=size, elevation=elevation, up=up)
         _save(_drawn(views, orbit), out, as_json=as_json)
         return
-    if model.suffix.lower() == ".vdb":
-        loaded = load_fog(model, ramp=ramp, sigma_t=sigma_t, resolution=resolution)
+    if model.name.lower().endswith((".vdb", *SUFFIXES)):
+        loaded = load_fog(model, ramp=ramp, sigma_t=sigma_t, resolution=resolution, window=window)
     else:
         loaded = load_model(model)
     cameras = orbit_cameras(loaded.field.box, orbit, size=size, elevation=elevation)

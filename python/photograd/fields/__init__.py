@@ -4,11 +4,18 @@ from __future__ import annotations
 
 from photograd.fields.dense_grid import DenseGrid
 from photograd.fields.octree_sh import OctreeSh
-from photograd.fields.sunlit_medium import SunlitMedium
 from photograd.fields.sparse_sh import SparseSh
+from photograd.fields.sunlit_medium import SunlitMedium
 from photograd.fields.texture_2d import Texture2D
 from photograd.fields.tiny_network import TinyNetwork
 from photograd.fields.toy_blobs import ToyBlobs
 
-__all__ = ["DenseGrid", "OctreeSh", "SunlitMedium", "Texture2D", "TinyNetwork", "ToyBlobs"]
-__all__ = ["DenseGrid", "OctreeSh", "SparseSh", "Texture2D", "TinyNetwork", "ToyBlobs"]
+__all__ = [
+    "DenseGrid",
+    "OctreeSh",
+    "SparseSh",
+    "SunlitMedium",
+    "Texture2D",
+    "TinyNetwork",
+    "ToyBlobs",
+]

@@ -106,16 +106,12 @@ def march(
     """
     checked_values("march", "parameters", parameters)
     settings = policy.settings(options.stop)
-    jitter = None
-    if options.jitter:
-        jitter = uniform(seed, step=step, pixel=batch.pixel, sample=0, dimension=0).astype(dtype)
-    t0, samples = _core.place_samples(settings, origins, directions, jitter)
-    if t_max is not None:
-        before = np.floor(np.clip((t_max - t0) / policy.dt + 0.5, 0, samples))
-        samples = np.ascontiguousarray(before, np.int32)
     origins, directions, t0, samples = checked_rays(
         batch, settings, options, parameters.dtype, seed=seed, step=step
     )
+    if t_max is not None:
+        before = np.floor(np.clip((t_max - t0) / policy.dt + 0.5, 0, samples))
+        samples = np.ascontiguousarray(before, np.int32)
     color, transmittance, depth = _core.march(
         field, parameters, settings, origins, directions, t0, samples, fused
     )
