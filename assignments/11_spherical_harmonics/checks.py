@@ -533,7 +533,15 @@ def the_adjoint_at_random_values(t):
 
 @check("11.3.cost", task="11.3", points=2, calls=("sh_color_adjoint",), needs=("sh_basis",),
        visibility="hidden", tolerance=EXACT,
-       kills=())  # fmt: skip
+       kills=("adjoint_differences", "d_coefficients_at_v", "d_coefficients_of_all",
+              "d_coefficients_summed", "d_coefficients_without_g", "degree_weights",
+              "factorials_upside_down", "length_forgotten", "length_squared",
+              "mean_not_integral", "no_factorials", "no_phase", "no_projection", "no_root",
+              "no_root_two", "no_slope_by_waves", "no_slope_by_z", "phase_of_degree",
+              "projection_added", "projection_only_divided", "pull_first_channel", "pull_mean",
+              "pull_without_g", "recurrence_sign", "recurrence_undivided", "root_two_everywhere",
+              "start_of_ones", "wave_slope_not_lowered", "wave_slope_sign",
+              "wave_slope_without_m", "wave_slopes_swapped", "z_slope_same_order",))  # fmt: skip
 def the_adjoint_is_cheap(t):
     """For 60 colours of degree 4 the adjoint is right, and costs a few forward calls."""
     c, v, g = colours(t.rng, 60, 4, 3)
