@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+from collections.abc import Callable
 from types import SimpleNamespace
 
 import numpy as np
@@ -84,3 +86,19 @@ def test_remembered_answers_do_not_belong_to_the_arguments(trial: Trial) -> None
 def test_a_slow_forward_function_does_not_help(trial: Trial) -> None:
     with pytest.raises(CheckFailed, match="3000 forward calls should"):
         price(trial, "slow_forward", "by_steps")
+
+
+def in_steps(clock: Callable[[], float], step: float) -> Callable[[], float]:
+    """A clock that counts in steps, as kernels do that count processor time by their timer."""
+    return lambda: np.floor(clock() / step) * step
+
+
+@pytest.mark.parametrize("attempt", range(2))
+def test_a_clock_of_coarse_steps_changes_no_verdict(
+    trial: Trial, monkeypatch: pytest.MonkeyPatch, attempt: int
+) -> None:
+    del attempt  # the steps fall differently each time
+    monkeypatch.setattr(time, "process_time", in_steps(time.process_time, 0.004))
+    price(trial, "forward", "backward")
+    with pytest.raises(CheckFailed, match="forward calls, allowed 20"):
+        price(trial, "forward", "by_steps")

@@ -25,6 +25,10 @@ COST_RATIO = 20.0  # an adjoint costs 2 to 5 forward calls, differences one for 
 # complex steps for 4,000 parameters 9,000. An honest loop must never fail, hence nearer to those.
 REFERENCE_RATIO = 3000.0
 SHORTEST = 2e-5  # seconds; below it a call is all overhead
+# Under a limit of processor time some kernels count it by their timer, in steps of 4 ms (measured);
+# five of them, or this many calls, make one measurement.
+LEAST_SECONDS = 0.02
+MOST_CALLS = 400
 VARIATION = 0.01
 AGREEMENT = 1e-6  # relative; two ways to write the same sum differ by some 1e-15
 
@@ -53,8 +57,8 @@ def require_cheap(trial: Trial, forward: Call, backward: Call, ratio: float = CO
     if (plain := _reference_seconds(trial, forward)) is not None:
         most = REFERENCE_RATIO * max(plain, SHORTEST)
     for _ in range(2):
-        once = [_cost(trial, forward, repeats=4) for _ in range(3)]
-        back = statistics.median([_cost(trial, backward, repeats=1) for _ in range(3)])
+        once = [_cost(trial, forward) for _ in range(3)]
+        back = statistics.median([_cost(trial, backward) for _ in range(3)])
         measured = back / max(statistics.median(once), SHORTEST)
         if measured <= ratio and back <= most:
             return
@@ -70,16 +74,18 @@ def require_cheap(trial: Trial, forward: Call, backward: Call, ratio: float = CO
     )
 
 
-def _cost(trial: Trial, call: Call, *, repeats: int) -> float:
+def _cost(trial: Trial, call: Call) -> float:
+    """Processor seconds of a call, over as many calls as the clock needs to tell."""
     function, args, spec = call
-    seconds = 0.0
-    for _ in range(repeats):
+    seconds, calls = 0.0, 0
+    while seconds < LEAST_SECONDS and calls < MOST_CALLS:
         varied = [_varied(trial, value) for value in args]
         before = trial.cpu_seconds() or 0.0
         answer = trial.call(function, *varied, returns=spec)
         seconds += (trial.cpu_seconds() or 0.0) - before
+        calls += 1
         _require_fresh(trial, function, varied, answer)
-    return seconds / repeats
+    return seconds / calls
 
 
 def _varied(trial: Trial, value: Any) -> Any:
@@ -111,12 +117,15 @@ def _reference_seconds(trial: Trial, call: Call) -> float | None:
     reference = _reference(trial, function, args)
     if reference is None:
         return None
-    times = []
-    for _ in range(5):
-        before = time.process_time()
+    return statistics.median([_reference_cost(reference, args) for _ in range(3)])
+
+
+def _reference_cost(reference: Callable[..., Any], args: Sequence[Any]) -> float:
+    began, calls = time.process_time(), 0
+    while time.process_time() - began < LEAST_SECONDS and calls < MOST_CALLS:
         reference(*args)
-        times.append(time.process_time() - before)
-    return statistics.median(times)
+        calls += 1
+    return (time.process_time() - began) / calls
 
 
 def _agree(got: Any, expected: Any) -> bool:
