@@ -80,6 +80,15 @@ def test_a_failure_names_the_worst_index_and_hides_the_value() -> None:
     assert "0.0625" in str(failure(trial("public"), [3.0], [-0.0625], reveal=True))
 
 
+def test_numbers_that_differ_are_never_shown_as_equal() -> None:
+    told = str(
+        failure(trial("public", Tolerance(1e-12, "tight")), [1.0 + 1e-9], [1.0], reveal=True)
+    )
+    assert "is 1.000000001, expected 1" in told
+    short = str(failure(trial("public"), [3.0], [2.5], reveal=True))
+    assert "is 3, expected 2.5" in short
+
+
 def test_what_the_grader_does_wrong_is_its_fault() -> None:
     with pytest.raises(GraderFault, match="without a tolerance"):
         trial(tolerance=None).close("x", 1.0, 1.0)

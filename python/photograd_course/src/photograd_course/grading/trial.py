@@ -207,13 +207,23 @@ class Trial:
     ) -> str:
         at = f" at index {tuple(int(i) for i in worst)}" if right.ndim else ""
         head = f"{what}: relative error {error:.1e}, allowed {bound.relative:.0e}"
-        mine = f"yours{at} is {float(got[worst]):.6g}"
+        told = _told_apart(float(got[worst]), float(right[worst]))
         if reveal and self.check.visibility == "public":
-            return f"{head}; {mine}, expected {float(right[worst]):.6g}"
+            return f"{head}; yours{at} is {told[0]}, expected {told[1]}"
+        mine = f"yours{at} is {float(got[worst]):.6g}"
         expected = _sign_and_size(float(right[worst]))
         if expected == _sign_and_size(float(got[worst])):
-            return f"{head}; {mine}, which has the right sign and order, and is wrong"
+            return f"{head}; {mine}, of the right sign and order of magnitude, but wrong"
         return f"{head}; {mine}, expected something {expected}"
+
+
+def _told_apart(a: float, b: float) -> tuple[str, str]:
+    """Two numbers with six digits, or with as many more as show that they differ."""
+    for digits in range(6, 18):
+        texts = f"{a:.{digits}g}", f"{b:.{digits}g}"
+        if texts[0] != texts[1]:
+            break
+    return texts
 
 
 def fingerprint(what: str, answer: ArrayLike) -> str:

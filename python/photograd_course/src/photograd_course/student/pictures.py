@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from pathlib import Path
 from typing import Any
 
@@ -23,7 +24,8 @@ def draw_failure(outcome: Outcome, folder: Path) -> Path | None:
         return None
     with house_style():
         figure = _lines(got, expected) if got.squeeze().ndim < 2 else _planes(got, expected)
-        figure.suptitle(f"{outcome.id}: {outcome.title}", fontsize=9)
+        title = textwrap.wrap(f"{outcome.id}: {outcome.title}", 80)
+        figure.suptitle("\n".join(title), fontsize=9)
         return save_figure(figure, picture_path(outcome, folder))
 
 
@@ -40,9 +42,11 @@ def picture_path(outcome: Outcome, folder: Path) -> Path:
 def _lines(got: Array, expected: Array) -> Figure:
     figure = Figure(figsize=(6.0, 3.0), layout="constrained")
     axes = figure.add_subplot()
-    axes.plot(expected.ravel(), color="0.6", linewidth=4, label="expected")
-    axes.plot(got.ravel(), "o-", color="C0", markersize=3, linewidth=1, label="yours")
-    axes.set_xlabel("index")
+    # Points: neighbours need have nothing to do with one another.
+    axes.plot(expected.ravel(), "o", color="0.6", markersize=8, label="expected")
+    axes.plot(got.ravel(), "o", color="C0", markersize=3.5, label="yours")
+    axes.set(xlabel="index", ylabel="value")
+    axes.locator_params(axis="x", integer=True)
     axes.legend()
     return figure
 
@@ -57,7 +61,9 @@ def _planes(got: Array, expected: Array) -> Figure:
             plane, cmap=signed_colour_map(), vmin=-top, vmax=top, interpolation="nearest"
         )
         axes.set_title(name, fontsize=9)
+        axes.set_xlabel("second index")
         axes.locator_params(integer=True)
+    figure.axes[0].set_ylabel("first index")
     figure.colorbar(image, ax=figure.axes, shrink=0.8)
     return figure
 

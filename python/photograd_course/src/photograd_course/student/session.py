@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 import typer
@@ -13,6 +14,7 @@ from ..assignment.questions import LETTERS, Question
 from ..atomic_io import atomic_write
 from ..cli.output import emit
 from ..errors import SceneError, message
+from ..grading.check import Check
 from ..grading.outcome import Outcome, Status
 from .checking import check_here, select
 from .folder import LOCK_NAME, WorkFolder, find_folder
@@ -54,9 +56,22 @@ def run_check_command(
         next_command = f"photograd course handin {bundle.manifest.id}"
         first = "Answer the questions, then: " if bundle.questions else "Next: "
         console.print(f"All green. {first}{next_command}", soft_wrap=True)
+    if not passed and (earlier := earlier_functions(checks)):
+        console.print(
+            f"Only this task was looked at; it uses {', '.join(earlier)}. If it puzzles you, run "
+            f"photograd course check {bundle.manifest.id}: begin with what fails first.",
+            soft_wrap=True,
+        )
     if as_json:
         emit(as_result(bundle, outcomes), as_json=True)
     return passed
+
+
+def earlier_functions(checks: Sequence[Check]) -> list[str]:
+    """What these checks need of earlier tasks that none of them looks at."""
+    looked_at = {function for check in checks for function in check.calls}
+    needed = dict.fromkeys(function for check in checks for function in check.needs)
+    return [function for function in needed if function not in looked_at]
 
 
 def as_result(bundle: Bundle, outcomes: list[Outcome]) -> dict[str, object]:

@@ -40,13 +40,16 @@ def register(course: typer.Typer) -> None:
         console = Console(highlight=False)
         console.print(f"{kit.manifest.id} {kit.manifest.title}: ready in {target}", soft_wrap=True)
         console.print("Next:", soft_wrap=True)
-        for line in _next_steps(kit.manifest.id, kit.manifest.module, target):
+        predicts = any(q.kind == "prediction" for q in kit.bundle.questions)
+        for line in _next_steps(kit.manifest.id, kit.manifest.module, target, predicts=predicts):
             console.print(f"  {line}", soft_wrap=True)
 
 
-def _next_steps(number: str, module: str, target: Path) -> list[str]:
+def _next_steps(number: str, module: str, target: Path, *, predicts: bool) -> list[str]:
+    first = [f"photograd course predict {number}   (before you read on)"] if predicts else []
     return [
         f"cd {target}",
+        *first,
         "read README.md",
         f"photograd course check {number}     (red at first)",
         f"write {module}.py, and check again until all is green",
