@@ -762,6 +762,7 @@ class PreparedSplats64:
         """
         Number of pairs of splat and tile.
         """
+
 class CellTable:
     """
     The cells of a sparse grid, for marching.
