@@ -33,7 +33,7 @@ def test_two_contenders_are_fitted_scored_and_drawn(
         assert 5 < score["psnr"] < 60
         assert score["train_seconds"] > 0
         assert score["frame_ms"] > 0
-        assert "held-out views" in score["protocol"]
+    assert "held-out views" in done.result()["protocols"][0]
     table = (tmp_path / "table.md").read_text(encoding="utf-8")
     assert table.count("dense_grid") == 2
     assert f"**{max(coarse['psnr'], fine['psnr']):.2f}**" in table
@@ -64,6 +64,20 @@ def test_a_built_in_scene_is_photographed_once(photograd: Photograd, tmp_path: P
     made = photographs.stat().st_mtime_ns
     assert photograd(*words).code == 0
     assert photographs.stat().st_mtime_ns == made
+
+
+def test_a_dense_and_a_sparse_contender(
+    photograd: Photograd, capture_folder: Path, tmp_path: Path
+) -> None:
+    pair = "dense_grid:16,sparse_sh:16"
+    words = ("compare", capture_folder, "--contenders", pair, "--out", tmp_path, *FEW, "--json")
+    done = photograd(*words)
+    assert done.code == 0, done.err
+    dense, sparse = done.result()["scores"]
+    assert [dense["contender"], sparse["contender"]] == pair.split(",")
+    saved = load_checkpoint(tmp_path / capture_folder.name / "sparse_sh_16")
+    assert sparse["parameter_bytes"] >= sum(a.nbytes for a in saved.params.values()) > 0
+    assert 5 < sparse["psnr"] < 60
 
 
 @pytest.mark.parametrize(

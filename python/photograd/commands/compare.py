@@ -52,7 +52,7 @@ def compare(
     ),
     contenders: Annotated[
         str, typer.Option("--contenders", help="Representations, each with its resolution.")
-    ] = "dense_grid:64,dense_grid:128",
+    ] = "dense_grid:64,dense_grid:128,sparse_sh:128",
     steps: Annotated[int, typer.Option("--steps", min=1, help="Steps of each fit.")] = 1000,
     rays: Annotated[int, typer.Option("--rays", min=1, help="Rays a step.")] = DEFAULTS.rays,
     views: Annotated[int, typer.Option("--views", min=2, help="Of a built-in scene.")] = 60,
@@ -69,7 +69,7 @@ def compare(
     Writes OUT/table.md, one picture a capture (its worst held-out view), and each model in
     OUT/CAPTURE/. Stopped by Ctrl-C, the same command line goes on where it was.
 
-    Example: photograd compare foliage fur --contenders dense_grid:64,dense_grid:128
+    Example: photograd compare foliage fur --contenders dense_grid:128,sparse_sh:128
     """
     use_threads(threads)
     candidates = parse_contenders(contenders)
@@ -86,8 +86,10 @@ def compare(
             draw([evaluation for _, evaluation in found], candidates, name, pictures[-1])
     table = out / "table.md"
     atomic_write(table, markdown(scores).encode())
+    rows = [asdict(score) for score in scores]
+    protocols = sorted({row.pop("protocol") for row in rows})
     emit(
-        {"scores": [asdict(s) for s in scores], "table": table, "pictures": pictures},
+        {"scores": rows, "protocols": protocols, "table": table, "pictures": pictures},
         as_json=as_json, title="compare",
     )  # fmt: skip
 
