@@ -20,6 +20,8 @@ EXACT = Tolerance(
 SUMS = Tolerance(
     1e-10, "right ones differ by at most 8e-15, the nearest wrong one (T_end_forgotten) by 3e-5"
 )
+# The same for what must be 0, in units of the box.
+BOXES = Tolerance(EXACT.relative, EXACT.evidence, floor=1.0)
 GATE = Tolerance(
     1e-6, "differences leave 1e-10, the nearest wrong one (adjoint_inclusive) 1.7e-4 in thin air"
 )
@@ -30,6 +32,7 @@ ORDER = Tolerance(
 # it, stand 5 to 8 to one, what goes through the pipe included; one that walks all later steps for
 # each step, 100 to one or more.
 RAY_COST = 30.0
+DIGITS = "for tiny x, 1 - exp(-x) keeps only the digits of x that 1 + x has: see np.expm1"
 
 
 def seen(rays, channels):
@@ -66,7 +69,7 @@ def one_medium_in_closed_form(t):
     sigma, length = t.rng.uniform(0.5, 2.0), t.rng.uniform(0.5, 1.5)
     color, background = t.rng.uniform(0.0, 1.0, (2, 3))
     through = math.exp(-sigma * length)
-    for n in (1, 2, 7, 100):
+    for n in (7, 1, 2, 100):  # 1 or 2 steps first would hide which T the end takes
         pixel, T_end = t.call("composite", np.full((1, n), sigma), np.tile(color, (1, n, 1)),
                               np.full((1, n), length / n), background,
                               returns=seen(1, 3))  # fmt: skip
@@ -147,7 +150,7 @@ def cutting_a_step_changes_nothing(t):
               "equal_steps", "inclusive", "last_step_opaque", "lecture", "no_occlusion",
               "no_step", "normalised", "one_minus_exp", "product_of_rests", "riemann",
               "riemann_inclusive", "weight_without_step",),
-       hint="for tiny x, 1 - exp(-x) keeps only the digits of x that 1 + x has: see np.expm1",
+       hint="mend the checks above first; if they pass: handout, end of section 1",
        sole="all digits, from thin air to a wall")  # fmt: skip
 def thin_air_and_walls(t):
     """Air so thin that it can hardly be seen, and a wall that hides what is behind it."""
@@ -157,8 +160,13 @@ def thin_air_and_walls(t):
     pixel, _ = t.call("composite", thin, color, dt, np.zeros(2), returns=seen(1, 2))
     # To first order s, to second what stands before and half of itself; the third is below 1e-23.
     s = thin * dt
-    second = s * (np.cumsum(s) - s / 2)
-    t.close("pixel of thin air", pixel, np.einsum("rs,rsc->rc", s - second, color), reveal=True)
+    before = np.cumsum(s) - s
+    second = s * (before + s / 2)
+    # Of 1 - exp(-s) only digits are lost that 1 + s cannot hold: is that what came?
+    rounded = np.einsum("rs,rsc->rc", (1 - np.exp(-s)) * (1 - before), color)
+    lost = np.allclose(pixel, rounded, rtol=1e-13, atol=0.0)
+    t.close("pixel of thin air", pixel, np.einsum("rs,rsc->rc", s - second, color), reveal=True,
+            hint=DIGITS if lost else "")  # fmt: skip
     wall = np.array([[0.3, 2000.0, 0.5, 1.0]])
     pixel, _ = t.call("composite", wall, color, dt, np.full(2, 9.0), returns=seen(1, 2))
     nearer = math.exp(-0.3 * dt[0, 0])
@@ -228,7 +236,8 @@ def against_differences(t, sigma, color, dt, background, groups=("sigma", "color
               "adjoint_occlusion_added", "adjoint_off_by_one", "adjoint_one_too_many",
               "adjoint_only_occlusion", "adjoint_riemann", "adjoint_sign",
               "adjoint_slope_is_opacity", "adjoint_without_pixel",),
-       hint="handout, section 2: first d_color and d_background, then the two parts of d_sigma",
+       hint="handout, section 2: first d_color and d_background, then the two parts of d_sigma; "
+            "order of results: d_sigma, d_color, d_background",
        sole="the gradient itself, without the reference")  # fmt: skip
 def agrees_with_differences(t):
     """Moving one number a little moves your pixels and T_end as your adjoint says."""
@@ -328,7 +337,8 @@ def centimetres_instead_of_metres(t):
               "adjoint_off_by_one", "adjoint_one_minus_exp", "adjoint_one_too_many",
               "adjoint_only_occlusion", "adjoint_riemann", "adjoint_sign",
               "adjoint_slope_is_opacity", "adjoint_without_pixel",),
-       hint="behind a wall T is 0: nothing may be divided by T or by 1 - alpha",
+       hint="mend 08.2.differences first; if it passes: behind a wall T is 0, which cannot be "
+            "divided by, and in thin air 1 - exp(-x) loses digits",
        sole="finite numbers where a formula divides 0 by 0")  # fmt: skip
 def walls_and_thin_air(t):
     """Steps of optical depth 50 and 2000, and of 1e-8: finite, and as differences say."""
@@ -400,10 +410,10 @@ def ends_lie_on_the_surface(t):
     aim = (inside - origins) * length
     near, far = t.call("ray_box", low, high, origins, aim, returns=spans(40))
     t.require(bool((near < far).all()), "rays through the box must have t_near < t_far")
-    # 1 + distance: what is compared must not be zero.
     for name, at in (("t_near", near), ("t_far", far)):
-        t.close(f"1 + distance of the surface at {name}",
-                1 + on_face(origins + at[:, None] * aim, low, high), np.ones(40))  # fmt: skip
+        t.close(f"distance from the surface at {name}, in sizes of the box",
+                on_face(origins + at[:, None] * aim, low, high), np.zeros(40), BOXES,
+                reveal=True)  # fmt: skip
     t.require(bool((near * length[:, 0] < 1).all() and (far * length[:, 0] > 0).all()),
               "the point aimed at must lie between t_near and t_far")  # fmt: skip
 
@@ -420,8 +430,9 @@ def starts_inside_or_behind(t):
     direction = t.rng.normal(size=(12, 3))
     near, far = t.call("ray_box", low, high, inside, direction, returns=spans(12))
     t.require(not near.any(), "from inside, t_near must be 0")
-    t.close("1 + distance of the surface at t_far",
-            1 + on_face(inside + far[:, None] * direction, low, high), np.ones(12))  # fmt: skip
+    t.close("distance from the surface at t_far, in sizes of the box",
+            on_face(inside + far[:, None] * direction, low, high), np.zeros(12), BOXES,
+            reveal=True)  # fmt: skip
     away = inside + 9.0 * direction / np.linalg.norm(direction, axis=1)[:, None]
     beside = direction - (direction @ np.ones(3) / 3)[:, None]  # never nears the far corner
     origins = np.concatenate([away, np.tile(high + 0.1, (12, 1))])
@@ -433,7 +444,8 @@ def starts_inside_or_behind(t):
 @check("08.3.parallel", task="08.3", points=2, calls=("ray_box",), tolerance=EXACT,
        kills=("box_first_entry", "box_length", "box_not_a_number", "box_open",
               "box_parallel_hits", "box_parallel_misses", "box_two_axes",),
-       hint="a component of 0 never crosses its two planes: either it is between them or it misses",
+       hint="a component of 0 never crosses its two planes: either it is between them (faces "
+            "belong to the box) or it misses",
        sole="the case in which 0 is divided by 0")  # fmt: skip
 def parallel_to_faces(t):
     """Directions with components of 0: between the faces, outside them, and within a face."""

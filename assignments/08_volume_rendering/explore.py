@@ -52,14 +52,19 @@ for k in range(steps):
     up, down = (mine.composite(fog + way * nudge, shine, width, sky)[0] for way in (1, -1))
     differences[k] = (up - down)[0, 0] / 2e-5
 seen, through = mine.composite(fog, shine, width, sky)
-off = np.linalg.norm(slope[0] - differences) / max(np.linalg.norm(differences), 1e-300)
+length = max(np.linalg.norm(differences), 1e-300)
+off = np.linalg.norm(slope[0] - differences) / length
+# The last digit of the pixel, divided by 2e-5: what rounding leaves of it in each difference.
+rounding = np.finfo(float).eps * np.sqrt(steps) * abs(seen[0, 0]) / 2e-5 / length
 print(f"ray:    pixel {seen[0, 0]:.4f}, T_end {through[0]:.4f}, {steps} steps")
 print(f"        your derivative is {off:.1e} from differences")
+if rounding > 1e-7:
+    print(f"        (slopes are tiny here: rounding alone puts differences {rounding:.0e} off)")
 figure = Figure(figsize=(9, 7), layout="constrained")
 top, centre, bottom = figure.subplots(3, 1, sharex=True)
-top.step(middle, fog[0], where="mid", color="0.4")
+top.stairs(fog[0], ends, color="0.4")
 top.set(title="extinction [1/m]: a dark cloud, then a bright one")
-centre.step(middle, weights[0, :, 0], where="mid", color="tab:blue")
+centre.stairs(weights[0, :, 0], ends, color="tab:blue")
 centre.set(title="weight of each step")
 bottom.axhline(0, color="0.7")
 bottom.plot(middle, slope[0], color="black", label="your derivative by extinction")
@@ -114,7 +119,7 @@ for length in (1, 10, 100):
     moved = guess - length * d_guess
     moved[..., 3] = np.maximum(moved[..., 3], 0)
     after = mine.render_rays(moved, *rays)
-    print(f"        length {length}: {np.sum((after - photograph) ** 2) / len(after):.4f}")
+    print(f"        step length {length}: {np.sum((after - photograph) ** 2) / len(after):.4f}")
 
 # %% [markdown]
 # ## The C++ core on the same volume
@@ -169,7 +174,8 @@ panels = figure.subplots(1, 4)
 shown(panels[0], photograph, "photograph")
 shown(panels[1], picture, "guess")
 end = max(np.abs(d_guess[..., 3].sum(axis=2)).max(), 1e-300)
-signed(panels[2], d_guess[..., 3], end, "your derivative by extinction\nblue: add, red: take away")
+signed(panels[2], d_guess[..., 3], end, "your derivative by extinction")
+panels[2].set_xlabel("blue: add, red: take away")
 if core_slope is None:
     panels[3].text(0.5, 0.5, "core not installed", ha="center")
     panels[3].set_axis_off()

@@ -75,8 +75,9 @@ def ray_box(low, high, origins, directions):
         directions: (R, 3), of any length above zero; single components may be zero.
 
     Returns:
-        (t_near, t_far): (R,) each, 0 <= t_near < t_far, t in units of the direction; where a ray
-        has no stretch of the box before it, both are 0. Handout equations (13) to (15).
+        (t_near, t_far): (R,) each, in units of the direction. Where a ray hits the box:
+        0 <= t_near < t_far; where no stretch of the box lies before it, both are 0. Handout
+        equations (13) to (15).
     """
     # >>> solution 08.3
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -1,4 +1,4 @@
-"""You clip sigma dt at 1 for an opacity: it is 1 - exp(-sigma dt)."""
+"""Your opacity is sigma dt, clipped or not: it is 1 - exp(-sigma dt), which never passes 1."""
 
 TASKS = ("08.1",)
 LOSES = (

@@ -14,7 +14,7 @@ REPLACE = [
         "T_end = np.exp(-behind[:, -1])",
         (
             "T_end = np.exp(-behind[:, -1])\n"
-            "    w = w / np.maximum(np.sum(w, axis=1, keepdims=True), 1e-300) * 1"
+            "    w = w / np.maximum(np.sum(w, axis=1, keepdims=True), 1e-12)"
         ),
     ),
 ]

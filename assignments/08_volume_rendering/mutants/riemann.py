@@ -1,4 +1,4 @@
-"""Your weight is T sigma dt: a step's opacity is 1 - exp(-sigma dt), never above 1."""
+"""Your opacity is sigma dt, clipped or not: it is 1 - exp(-sigma dt), which never passes 1."""
 
 TASKS = ("08.1",)
 LOSES = (
