@@ -11,7 +11,7 @@ from photograd_course.grading.adjoint_gate import (
     require_zero_for_zero,
 )
 
-# Evidence: worst of the solution and three alternatives, against the nearest of 86 named wrong
+# Evidence: worst of the solution and three alternatives, against the nearest of 87 named wrong
 # solutions.
 EXACT = Tolerance(
     1e-11,
@@ -182,7 +182,9 @@ def what_is_left_is_orthogonal(t):
     got = t.call("sh_project", d, weights, f, 2, returns=Array((9, 2)))
     Y = basis(t, d, 2)
     left = Y.T @ (weights[:, None] * (f - Y @ got))
-    t.close("parts along the harmonics", left + got, got)
+    size = float(np.linalg.norm(Y.T @ (weights[:, None] * f)))
+    t.close("integrals of the rest times each harmonic", left, 0 * left,
+            Tolerance(EXACT.relative, EXACT.evidence, floor=size), reveal=True)  # fmt: skip
 
 
 # 11.3 ---------------------------------------------------------------------------------------------
@@ -253,7 +255,9 @@ def length_does_not_matter(t):
     d_c, d_v = adjoint(t, c, v, g)
     along = np.sum(d_v * v, axis=1)
     size = np.linalg.norm(d_v, axis=1) * np.linalg.norm(v, axis=1)
-    t.close("v . d_v, plus |v| |d_v|", along + size, size)
+    floor = max(float(np.linalg.norm(size)), 1e-12)
+    t.close("v . d_v", along, 0 * along, Tolerance(EXACT.relative, EXACT.evidence, floor=floor),
+            reveal=True)  # fmt: skip
     twice_c, twice = adjoint(t, c, 2 * v, g)
     t.close("d_v at 2 v", twice, d_v / 2)
     t.close("d_coefficients at 2 v", twice_c, d_c)
@@ -409,7 +413,8 @@ EARLIER = ("sh_basis", "sh_color_adjoint")
        tolerance=EXACT,
        kills=("refined_by_repetition", "refined_coefficients_lost", "refined_density_halved",
               "refined_edge_to_edge", "refined_off_centre",),
-       hint="handout, equation (21): where do the eight new cells lie in the old ones?",
+       hint="handout, equation (21): where do the eight new cells lie in the old ones? An array "
+            "twice too large: refinement stands between levels, not after the last",
        sole="asks about the refinement alone")  # fmt: skip
 def refinement_keeps_what_is_even(t):
     """Without steps, two levels only refine: even slopes stay, the border holds."""
@@ -428,12 +433,13 @@ def refinement_keeps_what_is_even(t):
 
 @check("11.6.first", task="11.6", points=2, calls=("fit_plenoxels",), needs=EARLIER,
        tolerance=CHAINED,
-       kills=("coefficients_cut", "coefficients_frozen", "density_first", "density_frozen",
-              "density_mirrored", "density_uncut", "losses_late", "uphill",),
-       hint="handout, equations (22) and (23)",
-       sole="asks about the first step alone")  # fmt: skip
-def the_first_step(t):
-    """The first step of Adam has the length RATE against the gradient; no density below 0."""
+       kills=("adam_each_step", "coefficients_cut", "coefficients_frozen", "density_cut_late",
+              "density_first", "density_frozen", "density_mirrored", "density_uncut",
+              "losses_late", "uphill",),
+       hint="handout, equations (22) and (23), both in each step",
+       sole="asks about the first two steps alone")  # fmt: skip
+def the_first_steps(t):
+    """Adam's first step has the length RATE against the gradient; none sees a density below 0."""
     density, c, rays, target = small_case(t.rng)
     density = density / 10
     parts = Items(Number(), Array(density.shape), Array(c.shape),
@@ -446,12 +452,21 @@ def the_first_step(t):
     t.close("coefficients", got[1], c - 0.1 * d_c / (np.abs(d_c) + 1e-8))
     t.close("density", got[0], np.maximum(moved, 0))
     t.close("losses", got[2], loss[None])
+    given = t.call("adapters.gradient", *got[:2], rays, target, returns=parts)
+    then = fitted(t, density, c, rays, target, 1, 2)
+    for name, k, first in (("density", 0, d_density), ("coefficients", 1, d_c)):
+        second = np.asarray(given[k + 1])
+        m = (0.09 * first + 0.1 * second) / (1 - 0.9**2)
+        v = (0.0099 * first**2 + 0.01 * second**2) / (1 - 0.99**2)
+        moved = got[k] - 0.1 * m / (np.sqrt(v) + 1e-8)
+        expected = np.maximum(moved, 0) if name == "density" else moved
+        t.close(f"{name} after two steps", then[k], expected)
 
 
 @check("11.6.chain", task="11.6", points=2, calls=("fit_plenoxels",), needs=EARLIER,
        tolerance=CHAINED,
        kills=("steps_at_last_level",),
-       hint="each level: its own march, Adam from anew, `steps` steps; then refine",
+       hint="refine before every level but the first; then march, two new Adams, `steps` steps",
        sole="counts levels, steps and losses")  # fmt: skip
 def levels_can_be_chained(t):
     """Two levels are one level, a refinement, and one level more."""

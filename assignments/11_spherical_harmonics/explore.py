@@ -107,6 +107,8 @@ fixed, fixed_seconds = recover(cells, 1)
 for name, volume, took in (("coarse to fine", fine, seconds), ("fixed grid", fixed, fixed_seconds)):
     own, new = decibels(seen(volume, rays), target), decibels(seen(volume, unseen), truth)
     print(f"{name}: {took:.1f} s, {own:.1f} dB on the photographs, {new:.1f} dB on new views")
+    pairs = zip(np.split(seen(volume, unseen), 8), np.split(truth, 8), strict=True)
+    print("  each new view:", *(f"{decibels(a, b):.1f}" for a, b in pairs), "dB")
 
 # %% [markdown]
 # ## The C++ core
@@ -156,7 +158,7 @@ else:
 # %% [markdown]
 # ## Pictures
 # Glyphs: what a step against your derivative will do to the brightness of a cell, by direction
-# within the slice; red brightens, blue darkens. The volume is still grey there.
+# within the slice (radii are roots); red brightens, blue darkens. The volume is still grey there.
 
 
 # %%
@@ -174,7 +176,7 @@ def glyphs(axes, volume):
         for sign, colour in ((1, "#b2182b"), (-1, "#2166ac")):
             r = np.where(sign * change[i, k] > 0, size[i, k], 0)
             axes.fill(i + r * ring[:, 0], k + r * ring[:, 2], color=colour, linewidth=0.2)
-    axes.set(xticks=[], yticks=[], title="a step against your derivative")
+    axes.set(xticks=[], yticks=[], title="a step: red brightens, blue darkens")
 
 
 figure = Figure(figsize=(12, 7), layout="constrained")

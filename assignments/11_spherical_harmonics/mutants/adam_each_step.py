@@ -1,7 +1,7 @@
-"""You make a new Adam for each step: it forgets what it has seen."""
+"""You make a new Adam for each step, which forgets what it has seen: a new one for each level."""
 
 TASKS = ("11.6",)
-LOSES = ("11.6.hidden",)
+LOSES = ("11.6.first", "11.6.hidden")
 REPLACE = [
     (("        of_density, of_coefficients = Adam(), Adam()\n"), ("")),
     (

@@ -1,4 +1,4 @@
-"""Your orders m and -m have changed places: m > 0 goes with the real part."""
+"""Your columns of m and -m are exchanged, or x and y in equation (6)."""
 
 TASKS = ("11.1",)
 LOSES = ("11.1.first", "11.1.signs", "11.1.hidden")

@@ -1,4 +1,4 @@
-"""Your fine cells lie a quarter cell off: equation (21) is about centres."""
+"""Your fine cells lie a quarter of a coarse cell (half a fine one) off: see equation (21)."""
 
 TASKS = ("11.6",)
 LOSES = ("11.6.refine", "11.6.hidden")

@@ -1,4 +1,4 @@
-"""x and y have changed places: the angle runs from x to y."""
+"""Your columns of m and -m are exchanged, or x and y in equation (6)."""
 
 TASKS = ("11.1",)
 LOSES = ("11.1.first", "11.1.signs", "11.1.hidden")
