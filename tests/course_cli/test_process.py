@@ -97,6 +97,8 @@ def test_ctrl_c_exits_with_130(plugin_folder: Path) -> None:
         stderr=subprocess.PIPE,
         text=True,
         env=environment,
+        # Tests may run in the background, where shells have programs ignore it.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # noqa: PLW1509
     ) as process:
         assert process.stdout is not None
         assert process.stderr is not None
