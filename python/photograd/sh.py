@@ -19,6 +19,8 @@ from photograd.errors import RangeError, ShapeError, message
 Array = NDArray[Any]
 Convention = Literal["splat", "no_phase"]
 MAX_DEGREE = 4
+Y_0 = 0.28209479177387814
+"""The constant harmonic, 1/2 sqrt(1/pi), as in cpp/photograd/ops/sh.h."""
 # Lambert's cosine lobe in zonal harmonics, degree by degree [Ramamoorthi2001, Eq. 8]: pi, 2 pi / 3,
 # pi / 4, 0, -pi / 24.
 COSINE_LOBE = np.array([np.pi, 2 * np.pi / 3, np.pi / 4, 0.0, -np.pi / 24])

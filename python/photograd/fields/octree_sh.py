@@ -45,8 +45,6 @@ from photograd.representation import (
     register,
 )
 
-Y_0 = 0.28209479177387814  # the constant harmonic
-
 
 @dataclass(frozen=True)
 class Walk:
@@ -135,7 +133,7 @@ class OctreeSh(Representation):
         mean = -np.log1p(-np.minimum(held[occupied, 0], 1.0 - 1e-6)) / cell
         color = np.clip(held[occupied, 1:], 1e-4, 1.0 - 1e-4)
         coefficients = np.zeros((int(occupied.sum()), sh.count(degree), 3))
-        coefficients[:, 0] = np.log(color / (1.0 - color)) / Y_0
+        coefficients[:, 0] = np.log(color / (1.0 - color)) / sh.Y_0
         density = np.log(np.expm1(np.minimum(mean / scale, 500.0)))
         kind = field.params["values"].dtype
         return cls(tree, row, density.astype(kind), coefficients.astype(kind), density_scale=scale)

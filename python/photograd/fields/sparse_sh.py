@@ -18,6 +18,7 @@ from photograd import sh
 from photograd.core import _core
 from photograd.errors import DtypeError, RangeError, ShapeError, message
 from photograd.fields.active_voxels import ActiveVoxels, dilated, resampled_mask
+from photograd.fields.dense_grid import START_COLOR, DenseGrid
 from photograd.fields.march import MarchPolicy, checked_rays, checked_values, require_finite_image
 from photograd.representation import (
     Array,
@@ -31,8 +32,6 @@ from photograd.representation import (
 )
 
 MOST_DEGREE = 3
-START_COLOR = 0.18  # linear colour of a start, as in the dense grid
-Y_0 = 0.28209479177387814  # the constant harmonic
 
 
 @dataclass(frozen=True)
@@ -120,8 +119,6 @@ class SparseSh(Representation):
 
         Arguments as for `DenseGrid.empty`; `degree` 0 to 3. Raises RangeError.
         """
-        from photograd.fields.dense_grid import DenseGrid
-
         if degree not in range(MOST_DEGREE + 1):
             raise RangeError(message("SparseSh.full", "degree", f"0 to {MOST_DEGREE}", degree))
         dense = DenseGrid.empty(
@@ -132,7 +129,7 @@ class SparseSh(Representation):
         active = ActiveVoxels(np.ones(dense.density.shape, bool))
         density = np.full(len(active), dense.density.flat[0], dtype)
         coefficients = np.zeros((len(active), sh.count(degree), 3), dtype)
-        coefficients[:, 0] = np.log(START_COLOR / (1 - START_COLOR)) / Y_0
+        coefficients[:, 0] = np.log(START_COLOR / (1 - START_COLOR)) / sh.Y_0
         start = float(dense.density.flat[0])
         return cls(active, density, coefficients, policy, background_density=start)
 
@@ -154,8 +151,6 @@ class SparseSh(Representation):
 
     def example_batch(self, *, seed: int) -> RayBatch:
         """As that of the dense grid."""
-        from photograd.fields.dense_grid import DenseGrid
-
         return DenseGrid.example(seed=seed).example_batch(seed=seed)
 
     @property
