@@ -29,8 +29,9 @@ class Capture:
         has_alpha: every view carries alpha.
         background: linear or display (3,) colour to composite over, as `color_space` says; None if
             there is no alpha.
-        points, point_colors: sparse points (N, 3) and their 8-bit colours (N, 3), if the file has
-            any.
+        points, point_colors: sparse points (N, 3) in the world of the cameras, and their 8-bit
+            display colours (N, 3), from formats that have them: COLMAP, OpenSfM, and nerfstudio
+            with a ply_file_path. There may be points without colours.
         bounds: (2, 3) lower and upper corner that the file declares, else None.
         depth_range: nearest and farthest depth that the file declares, else None.
         world_from_source: (4, 4) turn from the file's world into ours.
@@ -60,10 +61,19 @@ class Capture:
         if count > 1:
             got = f"{name!r} {count} times"
             raise IoError(message("Capture", str(self.source), "different names of views", got))
-        if self.points is not None and (self.points.ndim != 2 or self.points.shape[1] != 3):
-            raise ShapeError(message("Capture", "points", "shape (N, 3)", self.points.shape))
+        self._check_points()
         if self.bounds is not None:
             check_box("Capture", "bounds", self.bounds)
+
+    def _check_points(self) -> None:
+        if self.points is not None and (self.points.ndim != 2 or self.points.shape[1] != 3):
+            raise ShapeError(message("Capture", "points", "shape (N, 3)", self.points.shape))
+        colors = self.point_colors
+        shape = None if self.points is None else self.points.shape
+        if colors is not None and (colors.shape != shape or colors.dtype != np.uint8):
+            got = f"{colors.dtype} of shape {colors.shape}"
+            expected = f"uint8 of shape {shape} as points"
+            raise ShapeError(message("Capture", "point_colors", expected, got))
 
     @property
     def views(self) -> tuple[View, ...]:

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
+import numpy.typing as npt
 from photograd_course.errors import IoError, message
 
 from .assemble import (
@@ -16,19 +18,22 @@ from .assemble import (
     check_size,
     common_color,
     find_photograph,
+    is_file,
     make_camera,
+    transform_points,
     unused_images,
 )
 from .capture import Capture
 from .convention import check_convention
-from .frames import OPENGL_FROM_OPENCV, check_pose, world_from_estimated_up
+from .frames import OPENGL_FROM_OPENCV, FloatArray, check_pose, world_from_estimated_up
 from .intrinsics import read_intrinsics
 from .json_node import JsonNode, read_json
+from .point_ply import read_point_ply
 from .splits import hold_out
 from .view import View
 
 _NAME = "load_nerfstudio"
-_IGNORED = ("aabb_scale", "scale", "offset", "ply_file_path", "depth_unit_scale_factor")
+_IGNORED = ("aabb_scale", "scale", "offset", "depth_unit_scale_factor")
 _SPLITS = ("train", "val", "test")
 
 
@@ -62,6 +67,7 @@ def load_nerfstudio(path: Path, *, trust_poses: bool = False) -> Capture:
     if not trust_poses:
         lines.extend(check_convention(_NAME, views, world_from_source, up_is_known=False))
     splits, split_line = _split(root, views)
+    points, colors, point_lines = _read_points(root, path.parent, world_from_source)
     return Capture(
         train=splits["train"],
         test=splits["test"],
@@ -71,8 +77,10 @@ def load_nerfstudio(path: Path, *, trust_poses: bool = False) -> Capture:
         color_space=color_space,
         has_alpha=has_alpha,
         background=background_of(has_alpha),
+        points=points,
+        point_colors=colors,
         world_from_source=world_from_source,
-        conversions=(*lines, split_line),
+        conversions=(*lines, *point_lines, split_line),
     )
 
 
@@ -103,6 +111,21 @@ def _read_frame(root: JsonNode, node: JsonNode, folder: Path) -> tuple[View, Pho
         mask_file=mask_file,
     )
     return view, photograph
+
+
+def _read_points(
+    root: JsonNode, folder: Path, world_from_source: FloatArray
+) -> tuple[FloatArray | None, npt.NDArray[np.uint8] | None, list[str]]:
+    """Points of `ply_file_path`, which lie in the world of the poses, moved with them into ours."""
+    if "ply_file_path" not in root:
+        return None, None, []
+    reference = root["ply_file_path"].text()
+    if not is_file(folder / reference):
+        return None, None, [f"ply_file_path: no file {reference}, so no sparse points"]
+    positions, colors = read_point_ply(folder / reference)
+    if not len(positions):
+        return None, None, [f"ply_file_path: no points in {reference}"]
+    return transform_points(world_from_source, positions), colors, []
 
 
 def _remarks(root: JsonNode, views: list[View]) -> list[str]:
