@@ -23,7 +23,7 @@ from typing import Any
 import numpy as np
 import pytest
 from photograd_course.assignment.bundle import Bundle, read_folder
-from photograd_course.assignment.checks_file import load_module
+from photograd_course.assignment.checks_file import load_beside, load_module
 from photograd_course.grading.local import LocalStudent
 from photograd_course.grading.outcome import Outcome, Status
 from photograd_course.grading.runner import run_checks
@@ -92,7 +92,7 @@ def starter(folder: Path) -> str:
 def judge(folder: Path, source_text: str | None = None, *, secret: bytes = SECRET) -> list[Outcome]:
     """The outcome of every check for a text; by default for the solution."""
     bundle = read_folder(folder, secret=secret)
-    hand = bundle.hand({f"{bundle.manifest.module}.py": (source_text or source(folder)).encode()})
+    hand = bundle.hand(bundle.solution_files(source_text or source(folder)))
     return run_checks(bundle.checks, bundle.setting, lambda given: _open(hand.sources, given))
 
 
@@ -114,7 +114,8 @@ def load_figures(folder: Path) -> ModuleType:
 def draw(folder: Path, mutant: str | None = None, only: str | None = None) -> dict[str, Any]:
     """(figure, facts) by figure, computed from the solution or from a mutant."""
     text = source(folder) if mutant is None else apply_mutant(folder, mutant)
-    module = load_module(read_folder(folder).manifest.module, text)
+    bundle = read_folder(folder)
+    module = load_beside(bundle.manifest.module, text, bundle.brought)
     made: dict[str, Callable[[ModuleType], Any]] = load_figures(folder).FIGURES
     with np.errstate(all="ignore" if mutant else "warn"):
         return {name: make(module) for name, make in made.items() if only in (None, name)}

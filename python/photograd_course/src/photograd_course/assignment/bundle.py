@@ -17,7 +17,8 @@ from types import ModuleType
 from ..grading.check import Check
 from ..grading.remote import Hand
 from ..grading.runner import Setting
-from .checks_file import load_checks, load_module
+from .brought import brought_sources
+from .checks_file import load_beside, load_checks, load_module
 from .manifest import Manifest, read_manifest
 from .questions import Question, read_questions
 
@@ -35,6 +36,7 @@ class Bundle:
         keys: `answers.py` as a module, with a function for each generated question; or None.
         adapters: text of `adapters.py`, which runs beside the hand-in; or None.
         hints: the table of known mistakes.
+        brought: earlier modules that the solution builds upon, by name; empty in a public bundle.
     """
 
     manifest: Manifest
@@ -45,6 +47,7 @@ class Bundle:
     keys: ModuleType | None = None
     adapters: str | None = None
     hints: Mapping[str, str] = field(default_factory=dict)
+    brought: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def is_public(self) -> bool:
@@ -69,11 +72,17 @@ class Bundle:
         Raises:
             UnicodeDecodeError: the module is not UTF-8.
         """
-        module = self.manifest.module
-        sources = {module: files[f"{module}.py"].decode("utf-8")}
+        # A brought module that was forgotten has no functions.
+        own = (*self.manifest.brought, self.manifest.module)
+        sources = {name: files.get(f"{name}.py", b"").decode("utf-8") for name in own}
         if self.adapters is not None:
             sources["adapters"] = self.adapters
-        return Hand(sources, (module,), self.manifest.imports)
+        return Hand(sources, own, self.manifest.imports)
+
+    def solution_files(self, text: str) -> dict[str, bytes]:
+        """A trusted text of the graded module as a hand-in, with the solutions it builds upon."""
+        files = {f"{name}.py": source.encode() for name, source in self.brought.items()}
+        return {**files, f"{self.manifest.module}.py": text.encode()}
 
 
 def read_folder(folder: Path, *, secret: bytes = PUBLIC_SECRET) -> Bundle:
@@ -84,9 +93,10 @@ def read_folder(folder: Path, *, secret: bytes = PUBLIC_SECRET) -> Bundle:
     """
     manifest = read_manifest(folder)
     module = folder / f"{manifest.module}.py"
-    reference = None
+    reference, brought = None, {}
     if module.exists():
-        reference = load_module(manifest.module, module.read_text(encoding="utf-8"))
+        brought = brought_sources(folder, manifest)
+        reference = load_beside(manifest.module, module.read_text(encoding="utf-8"), brought)
     keys = folder / "answers.py"
     adapters, hints = folder / "adapters.py", folder / "hints.json"
     return Bundle(
@@ -98,4 +108,5 @@ def read_folder(folder: Path, *, secret: bytes = PUBLIC_SECRET) -> Bundle:
         keys=load_module("answers", keys.read_text(encoding="utf-8")) if keys.exists() else None,
         adapters=adapters.read_text(encoding="utf-8") if adapters.exists() else None,
         hints=json.loads(hints.read_text(encoding="utf-8")) if hints.exists() else {},
+        brought=brought,
     )

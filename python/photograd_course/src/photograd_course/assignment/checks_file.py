@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Mapping
 from pathlib import Path
 from types import ModuleType
 
 from ..errors import SceneError, message
 from ..grading.check import Check
+from ..worker.modules import SourceFinder
 from .manifest import Manifest
 
 
@@ -17,6 +19,18 @@ def load_module(name: str, text: str, extra: Mapping[str, object] | None = None)
     module.__dict__.update(extra or {})
     exec(compile(text, f"{name}.py", "exec", dont_inherit=True), module.__dict__)
     return module
+
+
+def load_beside(name: str, text: str, brought: Mapping[str, str]) -> ModuleType:
+    """`load_module` for a text that may import the brought modules while it is loaded."""
+    finder = SourceFinder(brought)
+    for each in brought:
+        sys.modules.pop(each, None)
+    sys.meta_path.insert(0, finder)
+    try:
+        return load_module(name, text)
+    finally:
+        finder.remove()
 
 
 def load_checks(manifest: Manifest, path: Path | None = None) -> list[Check]:

@@ -71,6 +71,12 @@ class Manifest:
         """Such as "01_gradient_descent"."""
         return f"{self.id}_{self.name}"
 
+    @property
+    def brought(self) -> tuple[str, ...]:
+        """Modules of earlier assignments in a hand-in, without ".py"; see `brought`."""
+        names = (name.removesuffix(".py") for name in self.handin if name.endswith(".py"))
+        return tuple(name for name in names if name != self.module)
+
 
 _KEYS: dict[str, Any] = {
     "id": str, "name": str, "title": str, "module": str, "handin": list, "prerequisites": list,

@@ -55,7 +55,7 @@ def judge(job: Mapping[str, Any], results: TextIO) -> None:
         results: gets a JSON object a line.
     """
     bundle = read_folder(Path(job["folder"]), secret=bytes.fromhex(job["secret"]))
-    sources = {bundle.manifest.module: job["text"]}
+    sources = {**bundle.brought, bundle.manifest.module: job["text"]}
     if bundle.adapters is not None:
         sources["adapters"] = bundle.adapters
     known = set(job["passed"]) | set(job["failed"])

@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from ..assignment.brought import brought_sources
 from ..assignment.manifest import read_manifest
 from ..atomic_io import atomic_write
 from ..errors import Error, message
@@ -186,6 +187,7 @@ class Judge:
                 for path in paths
                 if path.exists()
             ]
+            parts += brought_sources(self.folder, read_manifest(self.folder)).values()
             self._known = "|".join(parts)
         return self._known
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from ..assignment.brought import brought_sources
 from ..assignment.manifest import Manifest, read_manifest
 from ..assignment.toml import read_toml
 from .notebook import notebook_of
@@ -26,8 +27,9 @@ def kit_files(folder: Path) -> dict[str, bytes]:
         folder: an assignment's source folder.
 
     Returns:
-        The stub module, README.md (the handout) with figures/ and data/, answers.toml to fill in,
-        explore.py with its notebook, adapters.py; each only where the source has it.
+        The stub module, stubs of earlier modules that students bring along, README.md (the
+        handout) with figures/ and data/, answers.toml to fill in, explore.py with its notebook,
+        adapters.py; each only where the source has it.
 
     Raises:
         IoError, SceneError: the manifest, a question or a marker is wrong.
@@ -35,6 +37,8 @@ def kit_files(folder: Path) -> dict[str, bytes]:
     manifest = read_manifest(folder)
     module = f"{manifest.module}.py"
     files = {module: _encode(strip_solution(_text(folder / module), module))}
+    for name, text in brought_sources(folder, manifest).items():
+        files[f"{name}.py"] = _encode(strip_solution(text, f"{name}.py"))
     if "answers.toml" in manifest.handin:
         files["answers.toml"] = _encode(answers_template(manifest))
     if (folder / "handout.md").exists():

@@ -16,6 +16,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from ..assignment.brought import brought_sources
 from ..assignment.bundle import Bundle
 from ..assignment.manifest import read_manifest
 from ..errors import IoError, SceneError, message
@@ -40,6 +41,8 @@ def bundle_files(folder: Path, hints: Mapping[str, str]) -> dict[str, bytes]:
     """
     names = [*FILES, f"{read_manifest(folder).module}.py"]
     files = {name: (folder / name).read_bytes() for name in names if (folder / name).exists()}
+    for name, text in brought_sources(folder, read_manifest(folder)).items():
+        files[f"{name}.py"] = text.encode()
     return {**files, "hints.json": json.dumps(dict(hints), indent=1, sort_keys=True).encode()}
 
 

@@ -88,8 +88,8 @@ def grade_solution(folder: Path) -> dict[str, Any]:
     """
     loaded = load(folder.name, folder)
     bundle = loaded.read()
-    module = f"{bundle.manifest.module}.py"
-    hand_in = HandIn({module: (folder / module).read_bytes()})
+    module = folder / f"{bundle.manifest.module}.py"
+    hand_in = HandIn(bundle.solution_files(module.read_text(encoding="utf-8")))
     with isolated_workers(bundle.manifest, None, (folder,)) as workers:
         report = grade_one(Case("solution", hand_in, bundle, loaded.digest), workers)
     findings = [

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from ..assignment.brought import brought_sources
 from ..assignment.bundle import PUBLIC_SECRET, Bundle, read_folder
 from ..assignment.manifest import Manifest, read_manifest
 from ..build.kits import find_kit, kit_files, match_folder, source_folders
@@ -101,10 +102,13 @@ def _starter(path: Path, manifest: Manifest) -> str:
 
 def _folder_digest(folder: Path, secret: bytes) -> str:
     total = hashlib.sha256(_of_secret(secret))
-    for name in sorted({*JUDGING, f"{read_manifest(folder).module}.py"}):
-        if (folder / name).is_file():
-            data = (folder / name).read_bytes()
-            total.update(f"{name}\0{len(data)}\0".encode() + data)
+    manifest = read_manifest(folder)
+    names = sorted({*JUDGING, f"{manifest.module}.py"})
+    data = {name: (folder / name).read_bytes() for name in names if (folder / name).is_file()}
+    for name, text in brought_sources(folder, manifest).items():
+        data[f"{name}.py"] = text.encode()
+    for name, content in data.items():
+        total.update(f"{name}\0{len(content)}\0".encode() + content)
     return total.hexdigest()
 
 

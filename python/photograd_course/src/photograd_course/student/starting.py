@@ -5,8 +5,31 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
+from ..assignment.manifest import Manifest
 from ..atomic_io import atomic_write
 from ..errors import IoError, message
+
+
+def with_own_modules(
+    files: Mapping[str, bytes], manifest: Manifest, target: Path
+) -> tuple[dict[str, bytes], list[Path]]:
+    """A kit with the student's own earlier modules, where they lie in a folder beside the target.
+
+    Args:
+        files: of the kit; brought modules are stubs there.
+        manifest: of the assignment.
+        target: the folder in which the kit will lie.
+
+    Returns:
+        The files, and the paths of those taken.
+    """
+    found, taken = dict(files), []
+    for name in manifest.brought:
+        for path in sorted(target.resolve().parent.glob(f"[0-9][0-9]_*/{name}.py")):
+            if path.parent.name < manifest.folder_name:
+                found[path.name] = path.read_bytes()
+                taken.append(path)
+    return found, taken
 
 
 def lay_out(files: Mapping[str, bytes], target: Path) -> list[Path]:

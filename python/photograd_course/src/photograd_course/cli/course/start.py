@@ -32,12 +32,15 @@ def register(course: typer.Typer) -> None:
         from rich.console import Console
 
         from ...build.kits import find_kit
-        from ...student.starting import lay_out
+        from ...student.starting import lay_out, with_own_modules
 
         kit = find_kit(assignment)
         target = folder or Path(kit.manifest.folder_name)
-        lay_out(kit.files, target)
+        files, taken = with_own_modules(kit.files, kit.manifest, target)
+        lay_out(files, target)
         console = Console(highlight=False)
+        for path in taken:
+            console.print(f"Taken along: your {path}", soft_wrap=True)
         console.print(f"{kit.manifest.id} {kit.manifest.title}: ready in {target}", soft_wrap=True)
         console.print("Next:", soft_wrap=True)
         predicts = any(q.kind == "prediction" for q in kit.bundle.questions)

@@ -1,0 +1,137 @@
+"""An assignment may build upon the student's own module of an earlier one."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+from photograd_course.assignment.bundle import Bundle, read_folder
+from photograd_course.build.judging import Job, Judge
+from photograd_course.build.kits import bundle_of
+from photograd_course.build.public import kit_files, public_files
+from photograd_course.build.seal import bundle_files, open_bundle, seal_bundle
+from photograd_course.errors import SceneError
+from photograd_course.grading.local import LocalStudent
+from photograd_course.grading.outcome import Outcome, Status
+from photograd_course.grading.runner import run_checks
+from photograd_course.student.starting import with_own_modules
+
+from .support import TOY
+
+MANIFEST = """
+id = "91"
+name = "twice"
+title = "Twice the weighted sum"
+module = "twice"
+handin = ["twice.py", "toy.py"]
+prerequisites = ["90"]
+hours = 1
+imports = ["numpy"]
+points = { code = 2, questions = 0 }
+
+[[tasks]]
+id = "91.1"
+title = "Twice"
+functions = ["double"]
+"""
+MODULE = '''"""Builds upon assignment 90."""
+
+from toy import weighted_sum
+
+
+def double(w, x):
+    """Twice the weighted sum."""
+    # >>> solution 91.1
+    return 2 * weighted_sum(w, x)
+    # <<< solution
+'''
+CHECKS = '''"""Checks."""
+
+import numpy as np
+from photograd_course.grading import Number, Tolerance, check
+
+CLOSE = Tolerance(1e-12, "exact")
+
+
+@check("91.1.brought", task="91.1", points=1, calls=("weighted_sum",), tolerance=CLOSE)
+def brought(t):
+    """What you bring is right."""
+    t.close("s", t.call("weighted_sum", np.ones(3), np.zeros(3), returns=Number()), 3.0)
+
+
+@check("91.1.double", task="91.1", points=1, calls=("double",), needs=("weighted_sum",),
+       tolerance=CLOSE)  # fmt: skip
+def double(t):
+    """It is twice."""
+    t.close("s", t.call("double", np.ones(3), np.zeros(3), returns=Number()), 6.0)
+'''
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """An assignment 91 beside a copy of 90."""
+    shutil.copytree(TOY, tmp_path / "90_toy")
+    made = tmp_path / "91_twice"
+    made.mkdir()
+    for name, text in (("assignment.toml", MANIFEST), ("twice.py", MODULE), ("checks.py", CHECKS)):
+        (made / name).write_text(text, encoding="utf-8")
+    return made
+
+
+def judged(bundle: Bundle, files: dict[str, bytes]) -> list[Outcome]:
+    sources = bundle.hand(files).sources
+    return run_checks(bundle.checks, bundle.setting, lambda given: LocalStudent(sources, given))
+
+
+def test_the_solution_finds_what_it_builds_upon(folder: Path) -> None:
+    bundle = read_folder(folder)
+    assert bundle.reference is not None
+    assert bundle.reference.double(np.ones(2), np.zeros(2)) == 4.0
+    assert bundle.hand(bundle.solution_files(MODULE)).graded == ("toy", "twice")
+    statuses = [each.status for each in judged(bundle, bundle.solution_files(MODULE))]
+    assert statuses == [Status.PASSED] * 2
+    outcomes = Judge(folder).judge(Job(MODULE)).outcomes
+    assert [each["status"] for each in outcomes] == ["passed"] * 2
+
+
+def test_kits_hold_stubs_and_sealed_bundles_the_solution(folder: Path) -> None:
+    assert b"NotImplementedError" in kit_files(folder)["toy.py"]
+    assert b"np.exp" not in kit_files(folder)["toy.py"]
+    assert "toy.py" not in public_files(folder)
+    assert bundle_of(public_files(folder), "91").brought == {}
+    sealed = open_bundle(seal_bundle(bundle_files(folder, {}), b"secret"), b"secret")
+    assert sealed.reference is not None
+    assert sealed.reference.double(np.ones(2), np.zeros(2)) == 4.0
+
+
+def test_a_wrong_earlier_module_costs_its_own_points_alone(folder: Path) -> None:
+    bundle = read_folder(folder)
+    wrong = {
+        **bundle.solution_files(MODULE),
+        "toy.py": b"def weighted_sum(w, x):\n    return 7.0\n",
+    }
+    first, second = judged(bundle, wrong)
+    assert first.status is Status.FAILED
+    assert second.status is Status.PASSED
+    assert "reference" in second.text
+
+
+def test_a_students_own_module_is_taken_along(folder: Path, tmp_path: Path) -> None:
+    manifest = read_folder(folder).manifest
+    work = tmp_path / "work"
+    files, taken = with_own_modules(kit_files(folder), manifest, work / "91_twice")
+    assert taken == []
+    (work / "90_toy").mkdir(parents=True)
+    (work / "90_toy" / "toy.py").write_text("mine", encoding="utf-8")
+    files, taken = with_own_modules(kit_files(folder), manifest, work / "91_twice")
+    assert files["toy.py"] == b"mine"
+    assert [path.parent.name for path in taken] == ["90_toy"]
+
+
+def test_a_module_that_nobody_has_is_named(folder: Path) -> None:
+    text = MANIFEST.replace('"toy.py"', '"nobody.py"')
+    (folder / "assignment.toml").write_text(text, encoding="utf-8")
+    with pytest.raises(SceneError, match=r"nobody\.py"):
+        read_folder(folder)
