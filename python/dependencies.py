@@ -13,7 +13,7 @@ from typing import Any
 
 REQUIREMENTS = [
     "numpy>=1.26", "matplotlib>=3.7", "rich>=13", "typer>=0.12", "pillow>=10", "OpenEXR>=3.3",
-    "plyfile>=1.0",
+    "plyfile>=1.0", "zstandard>=0.22",
 ]  # fmt: skip
 
 

@@ -7,10 +7,20 @@ from __future__ import annotations
 
 import typer
 
-from photograd.commands import capture, compare, demo, evaluate, fit, gradients, info, render
+from photograd.commands import (
+    capture,
+    compare,
+    convert,
+    demo,
+    evaluate,
+    fit,
+    gradients,
+    info,
+    render,
+)
 
 
 def register(app: typer.Typer) -> None:
     """Add the core's commands to the command line."""
-    for module in (capture, fit, render, evaluate, gradients, compare, demo, info):
+    for module in (capture, fit, render, convert, evaluate, gradients, compare, demo, info):
         module.register(app)

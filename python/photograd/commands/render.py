@@ -15,11 +15,12 @@ from photograd_course.cli import (
     SeedOption,
     ThreadsOption,
     emit,
+    note,
 )
 from photograd_course.viz import write_frames, write_gif
 
 from photograd.commands.shared import use_threads
-from photograd.data.gaussian_ply import read_gaussian_ply
+from photograd.data.gaussian_files import holds_gaussians, read_gaussians
 from photograd.evaluate import display_image
 from photograd.fog import RAMPS, load_fog
 from photograd.model import load_model
@@ -39,7 +40,7 @@ def render(
         Path,
         typer.Argument(
             help="Folder that a fit wrote, its model.npz; a volume: .vdb, .vtk, .nii, .vol; or a "
-            ".ply of Gaussians.",
+            "file of Gaussians: .ply, .splat, .spz, .npz.",
             metavar="MODEL",
         ),
     ],
@@ -66,7 +67,7 @@ def render(
         typer.Option("--window", help="Values of a volume that count as 0 and as 1."),
     ] = None,
     up: Annotated[
-        str, typer.Option("--up", help=f"What is up in a .ply file: {', '.join(UP_AXES)}.")
+        str, typer.Option("--up", help=f"What is up among Gaussians: {', '.join(UP_AXES)}.")
     ] = "-y",
     seed: SeedOption = 0,  # noqa: ARG001  a rendering draws nothing at random
     threads: ThreadsOption = 0,
@@ -78,8 +79,11 @@ def render(
     Example: photograd render model --orbit 60 --out turntable.gif
     """
     use_threads(threads)
-    if model.suffix.lower() == ".ply":
-        views = orbit_splats(read_gaussian_ply(model), orbit, size=size, elevation=elevation, up=up)
+    if holds_gaussians(model):
+        found = read_gaussians(model)
+        for line in found.conversions:
+            note(line)
+        views = orbit_splats(found.gaussians, orbit, size=size, elevation=elevation, up=up)
         _save(_drawn(views, orbit), out, as_json=as_json)
         return
     if model.name.lower().endswith((".vdb", *SUFFIXES)):

@@ -8,7 +8,6 @@ frame of the file, which is usually that of a structure-from-motion program, y d
 
 from __future__ import annotations
 
-import io
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +16,7 @@ from numpy.typing import NDArray
 from photograd_course.atomic_io import atomic_write
 from plyfile import PlyData, PlyElement
 
+from photograd.data.ply_elements import read_ply
 from photograd.errors import IoError, message
 from photograd.splat import Gaussians
 
@@ -83,17 +83,10 @@ def write_gaussian_ply(path: Path, gaussians: Gaussians) -> None:
 
 
 def _vertices(path: Path) -> Array:
-    if not path.is_file():
-        raise _refusal(path, "a file", "none")
-    try:
-        # From memory: of a file, the parser leaves a second handle open.
-        data = PlyData.read(io.BytesIO(path.read_bytes()), mmap=False)
-        return np.asarray(data["vertex"].data)
-    except KeyError as failure:
-        raise _refusal(path, "an element 'vertex'", "none") from failure
-    except Exception as failure:  # the parser raises a dozen kinds for damaged headers
-        text = " ".join(str(failure).split())[:120] or type(failure).__name__
-        raise _refusal(path, "a readable .ply file", text) from failure
+    elements = read_ply("read_gaussian_ply", path)
+    if "vertex" not in elements:
+        raise _refusal(path, "an element 'vertex'", "none")
+    return elements["vertex"]
 
 
 def _columns(path: Path, vertex: Array, names: tuple[str, ...]) -> Array:
@@ -113,5 +106,5 @@ def _columns(path: Path, vertex: Array, names: tuple[str, ...]) -> Array:
     return out
 
 
-def _refusal(path: Path, expected: str, got: str, remedy: str = "") -> IoError:
+def _refusal(path: Path, expected: str, got: str, remedy: str | None = None) -> IoError:
     return IoError(message("read_gaussian_ply", f"{path}", expected, got, remedy))

@@ -16,8 +16,10 @@ from plyfile import PlyData
 
 from photograd.errors import IoError, message
 
+from .file_bytes import read_file
+
 Table = NDArray[Any]
-LONGEST_HEADER = 1 << 20
+LONGEST_HEADER = 1 << 16
 _COUNT = re.compile(rb"^\s*element\s+(\S+)\s+(\d+)\s*$", re.MULTILINE)
 
 
@@ -31,24 +33,25 @@ def read_ply(function: str, path: Path) -> dict[str, Table]:
     Raises:
         IoError: no file, a damaged one, or a header that promises more than the file holds.
     """
-    try:
-        found = path.is_file()
-        content = path.read_bytes() if found else b""
-    except (OSError, ValueError) as failure:
-        raise IoError(message(function, f"{path}", "a readable file", failure)) from failure
-    if not found:
-        raise IoError(message(function, f"{path}", "a file", "none"))
-    header = content[:LONGEST_HEADER].partition(b"end_header")[0]
+    header = read_file(function, path, LONGEST_HEADER).partition(b"end_header")[0]
+    size = path.stat().st_size
     for name, digits in _COUNT.findall(header):
         # The shortest row there is takes a byte.
-        if len(digits) > 18 or int(digits) > len(content):
+        if len(digits) > 18 or int(digits) > size:
             expected = "a readable .ply file"
-            got = f"{digits[:24].decode()} rows of {name[:24]!r} promised in {len(content)} bytes"
+            got = f"{digits[:24].decode()} rows of {name[:24]!r} promised in {size} bytes"
             raise IoError(message(function, f"{path}", expected, got))
     try:
-        # From memory: of a file, the parser leaves a second handle open.
-        data = PlyData.read(io.BytesIO(content), mmap=False)
-        return {element.name: np.asarray(element.data) for element in data.elements}
+        if b"binary_" not in header:
+            # Text: from memory, since the parser leaves a second handle of a file open.
+            return _arrays(PlyData.read(io.BytesIO(read_file(function, path)), mmap=False))
+        with path.open("rb") as stream:
+            # Mapped, or the parser would go row by row; copied, so that the map is closed.
+            return _arrays(PlyData.read(stream, mmap="c"))
     except Exception as failure:  # the parser raises a dozen kinds for damaged headers
         text = " ".join(str(failure).split())[:120] or type(failure).__name__
         raise IoError(message(function, f"{path}", "a readable .ply file", text)) from failure
+
+
+def _arrays(data: PlyData) -> dict[str, Table]:
+    return {element.name: np.array(element.data) for element in data.elements}

@@ -36,7 +36,7 @@ class Volume:
         return np.asarray(self.values.mean(axis=3, dtype=np.float32))
 
 
-def refuse(path: Path, expected: str, got: object, remedy: str = "") -> IoError:
+def refuse(path: Path, expected: str, got: object, remedy: str | None = None) -> IoError:
     """The error of a file that is not what it should be, ready to be raised."""
     return IoError(message("read_volume", f"{path}", expected, f"{got}", remedy))
 

@@ -1,0 +1,84 @@
+"""`photograd convert`: Gaussians from one file format to another, and what that has changed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from photograd_course.cli import DebugOption, JsonOption, emit
+
+from photograd.data.gaussian_coding import differences
+from photograd.data.gaussian_files import (
+    SUFFIXES,
+    WRITABLE,
+    codings_of,
+    read_gaussians,
+    write_gaussians,
+)
+from photograd.errors import IoError, message
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command."""
+    app.command("convert")(convert)
+
+
+def convert(
+    source: Annotated[
+        Path, typer.Argument(help=f"File of Gaussians: {', '.join(SUFFIXES)}.", metavar="IN")
+    ],
+    target: Annotated[
+        Path, typer.Argument(help=f"File to write: {', '.join(WRITABLE)}.", metavar="OUT")
+    ],
+    spz_version: Annotated[
+        int, typer.Option("--spz-version", min=2, max=4, help="Version of an .spz file.")
+    ] = 3,
+    as_json: JsonOption = False,
+    debug: DebugOption = False,  # noqa: ARG001  read by the command line's frame
+) -> None:
+    """Convert a file of Gaussians, and say by how much each attribute was rounded.
+
+    Example: photograd convert scene.ply scene.spz
+    """
+    emit(convert_file(source, target, spz_version), as_json=as_json, title="convert")
+
+
+def convert_file(source: Path, target: Path, spz_version: int) -> dict[str, Any]:
+    """Convert and read back; returns what the command reports.
+
+    Raises:
+        IoError: a bad file, or the same for both.
+    """
+    if target.exists() and source.exists() and target.samefile(source):
+        expected = "another file than IN"
+        raise IoError(message("convert", "OUT", expected, f"{target}", "choose another name"))
+    before = read_gaussians(source)
+    write_gaussians(target, before.gaussians, spz_version=spz_version)
+    after = read_gaussians(target)
+    lost = before.gaussians.degree - after.gaussians.degree
+    notes = [{"reading": source.name, "note": line} for line in before.conversions]
+    notes += [{"reading": target.name, "note": line} for line in after.conversions]
+    if lost:
+        degrees = f"{after.gaussians.degree + 1} to {before.gaussians.degree}"
+        notes.append({"reading": target.name, "note": f"harmonics of degree {degrees} are dropped"})
+    codings = codings_of(target, before.gaussians, spz_version=spz_version)
+    changes = [
+        {
+            "attribute": each.attribute,
+            "unit": each.unit,
+            "largest_change": float(f"{each.largest:.4g}"),
+            "format_allows": float(f"{each.bound:.4g}"),
+            "clamped": each.clamped,
+        }
+        for each in differences(before.gaussians, after.gaussians, codings)
+    ]
+    return {
+        "gaussians": len(before.gaussians),
+        "degree": after.gaussians.degree,
+        "bytes_in": source.stat().st_size,
+        "bytes_out": target.stat().st_size,
+        "out": target,
+        "changes": changes,
+        "notes": notes,
+    }
