@@ -14,6 +14,7 @@
 #include "photograd/texture/mip_chain.h"
 #include "photograd/texture/mip_sample.h"
 #include "photograd/texture/sample.h"
+#include "photograd/texture/ssim.h"
 #include "photograd/texture/texture_plan.h"
 
 namespace photograd {
@@ -244,6 +245,43 @@ double plan_loss(const TexturePlan<R>& plan, const py::array& texture, py::array
     return plan.loss_and_gradient(view.texels, d_texels);
 }
 
+/// Two pictures (H, W, C) that the window of structural similarity fits into; the second's numbers.
+template <class R>
+std::pair<ImageView<const R>, const R*> pictures_in(ArrayArgs& args, const py::array& x,
+                                                    const py::array& y) {
+    const R* first = args.in<R>("x", x, "H W C");
+    const R* second = args.in<R>("y", y, "H W C");
+    const TextureShape shape = checked_shape(args, "x");
+    if (std::min(shape.height, shape.width) < ssim_window)
+        args.range("x", "at least 11 x 11 pixels",
+                   std::to_string(shape.height) + " x " + std::to_string(shape.width));
+    return {{first, shape, static_cast<int>(args.size("C"))}, second};
+}
+
+double ssim_any(const py::array& x, const py::array& y) {
+    double value = 0;
+    dispatch_real("ssim", "x", x, [&](auto real) {
+        ArrayArgs args("ssim");
+        const auto [view, other] = pictures_in<decltype(real)>(args, x, y);
+        const py::gil_scoped_release release;
+        value = ssim(view, other);
+    });
+    return value;
+}
+
+double ssim_any_backward(const py::array& x, const py::array& y, double d_value, py::array d_x) {
+    double value = 0;
+    dispatch_real("ssim_backward", "x", x, [&](auto real) {
+        using R = decltype(real);
+        ArrayArgs args("ssim_backward");
+        const auto [view, other] = pictures_in<R>(args, x, y);
+        R* d_pixels = args.out<R>("d_x", d_x, "H W C");
+        const py::gil_scoped_release release;
+        value = ssim_backward(view, other, d_value, d_pixels);
+    });
+    return value;
+}
+
 }  // namespace
 
 void bind_texture(py::module_& m) {
@@ -271,6 +309,10 @@ void bind_texture(py::module_& m) {
     m.def("sample_mips_backward", &sample_mips_any_backward, py::arg("mips"), py::arg("uv"),
           py::arg("level"), py::arg("d_color"), py::arg("d_mips"), py::arg("d_uv"),
           py::arg("d_level"), "Adds to all levels of d_mips, d_uv (N, 2) and d_level (N,).");
+    m.def("ssim", &ssim_any, py::arg("x"), py::arg("y"),
+          "Mean structural similarity of two pictures (H, W, C) in 0 .. 1.");
+    m.def("ssim_backward", &ssim_any_backward, py::arg("x"), py::arg("y"), py::arg("d_value"),
+          py::arg("d_x"), "Adds d_value times its derivative to d_x (H, W, C); returns the value.");
     py::class_<BoundPlan>(m, "TexturePlan", "Points sorted by tile, with their colours.")
         .def(py::init(&make_plan), py::arg("height"), py::arg("width"), py::arg("uv"),
              py::arg("colors"))

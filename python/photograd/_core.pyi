@@ -71,6 +71,8 @@ __all__: list[str] = [
     "square_to_cap",
     "square_to_cosine_hemisphere",
     "square_to_disk",
+    "ssim",
+    "ssim_backward",
     "thread_count",
     "tiny_network_parameters",
     "uniform",
@@ -1168,6 +1170,21 @@ def square_to_cosine_hemisphere(u2: numpy.ndarray) -> numpy.ndarray:
 def square_to_disk(u2: numpy.ndarray) -> numpy.ndarray:
     """
     Uniform points (N, 2) of the unit disk from uniform u2 (N, 2).
+    """
+
+def ssim(x: numpy.ndarray, y: numpy.ndarray) -> float:
+    """
+    Mean structural similarity of two pictures (H, W, C) in 0 .. 1.
+    """
+
+def ssim_backward(
+    x: numpy.ndarray,
+    y: numpy.ndarray,
+    d_value: typing.SupportsFloat | typing.SupportsIndex,
+    d_x: numpy.ndarray,
+) -> float:
+    """
+    Adds d_value times its derivative to d_x (H, W, C); returns the value.
     """
 
 def thread_count() -> int: ...

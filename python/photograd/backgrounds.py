@@ -21,9 +21,11 @@ def background_kind(option: str, *, has_alpha: bool) -> str:
     return option
 
 
-def first_background(premultiplied: Array) -> Array:
-    """Raw parameter (3,) float32 to start a learned background from: the mean of pixels (P, 4)."""
-    mean = premultiplied.mean(axis=0, dtype=np.float64)
+def first_background(mean: Array) -> Array:
+    """Raw parameter (3,) float32 to start a learned background from.
+
+    `mean` (4,) is the mean pixel: linear premultiplied colour, and alpha.
+    """
     color = np.clip(mean[:3] / max(mean[3], 1e-6), 0.02, 0.98)
     raw: Array = np.log(color / (1 - color)).astype(np.float32)
     return raw

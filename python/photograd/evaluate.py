@@ -19,7 +19,7 @@ from photograd.data.camera import Camera
 from photograd.data.view import View
 from photograd.errors import RangeError, message
 from photograd.model import Model
-from photograd.representation import Array, RayBatch, RenderOptions
+from photograd.representation import Array, ImageBatch, RayBatch, RenderOptions
 
 RAYS_AT_ONCE = 1 << 16
 
@@ -56,16 +56,23 @@ class Evaluation:
 def render_camera(
     model: Model, camera: Camera, *, stop: float = 1e-4
 ) -> tuple[Array, Array, Array]:
-    """Premultiplied linear colour (H, W, 3), opacity (H, W) and depth (H, W) seen by a camera."""
-    parts = []
+    """Premultiplied colour (H, W, 3), opacity (H, W) and depth (H, W) seen by a camera.
+
+    Colours are linear or display values, as the field's `color_space` says.
+    """
     options = RenderOptions(stop=stop)
+    size = (camera.height, camera.width)
+    field: Any = model.field
+    if "rays" not in field.capabilities:
+        whole, _ = field.render(ImageBatch(camera), seed=0, step=0, options=options)
+        return whole.color.reshape(*size, 3), whole.opacity.reshape(size), whole.depth.reshape(size)
+    parts = []
     for start in range(0, camera.width * camera.height, RAYS_AT_ONCE):
         ids = np.arange(start, min(start + RAYS_AT_ONCE, camera.width * camera.height))
         origins, directions = camera.rays(ids)
         batch = RayBatch(origins, directions, ids.astype(np.uint32))
-        outputs, _ = model.field.render(batch, seed=0, step=0, options=options)
+        outputs, _ = field.render(batch, seed=0, step=0, options=options)
         parts.append((outputs.color, outputs.opacity, outputs.depth))
-    size = (camera.height, camera.width)
     color, opacity, depth = (np.concatenate(part) for part in zip(*parts, strict=True))
     return color.reshape(*size, 3), opacity.reshape(size), depth.reshape(size)
 
@@ -73,6 +80,10 @@ def render_camera(
 def display_image(model: Model, camera: Camera) -> Array:
     """The model (H, W, 3) in display values, over white or its learned background."""
     color, opacity, _ = render_camera(model, camera)
+    if model.field.color_space == "display":
+        behind = 1.0 if model.background is None else srgb_encode(model.background)
+        over = color + (1 - opacity[..., None]) * behind
+        return round_to_8_bits(over.astype(np.float64))
     if model.background is not None:
         over = color + (1 - opacity[..., None]) * model.background
         return round_to_8_bits(srgb_encode(over.astype(np.float64)))

@@ -1,8 +1,9 @@
-"""The fit: render random rays, compare with the photographs, step downhill.
+"""The fit: render random rays or a random view, compare with the photographs, step downhill.
 
-    rays, truth   = pixels drawn by (seed, step)
+    rays, truth   = pixels drawn by (seed, step); a whole view for what is splatted
     image         = render(rays), over a background
-    loss          = mean squared error on display-encoded values (linear for linear captures)
+    loss          = mean squared error on display-encoded values (linear for linear captures);
+                    absolute error and SSIM for whole views
     gradient      = render_backward(d_loss), plus the prior's
     parameters   -= Adam step
 
@@ -24,14 +25,7 @@ from photograd_course.optim import Adam
 from photograd_course.random import uniform
 from photograd_course.schedules import exponential
 
-from photograd.backgrounds import (
-    background_kind,
-    constant_background,
-    first_background,
-    learned_background,
-    learned_background_backward,
-    random_background,
-)
+from photograd.backgrounds import background_kind, first_background
 from photograd.checkpoint import (
     FILE_NAME,
     Checkpoint,
@@ -43,9 +37,12 @@ from photograd.core import _core
 from photograd.data.bounds import estimate_bounds
 from photograd.data.capture import Capture
 from photograd.data.visibility import require_views_of
+from photograd.fields.dense_grid import DenseGrid
 from photograd.fields.fitted import FittedField, start_field
+from photograd.fields.gaussians import GaussianScene
 from photograd.fields.sparse_sh import SparseSh
 from photograd.fit_checks import (
+    require_background_of,
     require_finite,
     require_finite_loss,
     require_pixels_of,
@@ -53,13 +50,15 @@ from photograd.fit_checks import (
     require_startable,
 )
 from photograd.fit_options import FitOptions
+from photograd.fit_rays import background_color, ray_slope
 from photograd.fit_result import FitResult, Progress
-from photograd.imaging import image_loss, image_loss_backward
+from photograd.fit_views import view_slope
 from photograd.model import model_of
 from photograd.pixels import TrainingPixels
-from photograd.representation import Array, RenderOptions
+from photograd.representation import Array
 from photograd.row_adam import RowAdam
 from photograd.snapshots import save_snapshot, snapshot_steps
+from photograd.training_views import TrainingViews
 
 PRUNING_RAYS = 1 << 20  # from all views; what they do not need is dropped from a sparse grid
 PRUNE_AT = 0.5  # fraction of the steps; before that, pruning goes along with refining
@@ -80,11 +79,13 @@ class Fit:
         self.options = options
         self.model = model
         self.background = background  # raw (3,) if learned, see photograd.backgrounds
-        self.pixels = TrainingPixels(capture.train, capture.color_space)
-        method = RowAdam if isinstance(model, SparseSh) else Adam
+        self.pixels = training_set(capture, model)
+        method = Adam if isinstance(model, DenseGrid) else RowAdam
         self.optimiser = method(threads=max(1, _core.thread_count()))
-        self.bounds_rule = "that of the checkpoint"
+        self.start_rule = "that of the checkpoint"
+        self.background_kind = background_kind(options.background, has_alpha=capture.has_alpha)
         self.step_number = 0
+        self.batch_psnr = float("nan")  # dB, of the last step's pixels
         self.history: list[tuple[float, float, float]] = []
 
     @classmethod
@@ -98,12 +99,12 @@ class Fit:
         bounds = estimate_bounds(capture)
         if not allow_blind:
             require_views_of(capture.train, bounds.box)
-        model = start_field(bounds.box, options)
-        learned = background_kind(options.background, has_alpha=capture.has_alpha) == "learned"
+        require_background_of(capture, options)
+        model, rule = start_field(capture, bounds, options)
         fit = cls(capture, options, model, None)
-        if learned:
-            fit.background = first_background(fit.pixels.premultiplied)
-        fit.bounds_rule = bounds.rule
+        if fit.background_kind == "learned":
+            fit.background = first_background(fit.pixels.mean_color())
+        fit.start_rule = rule
         return fit
 
     @classmethod
@@ -127,8 +128,7 @@ class Fit:
     def step(self) -> float:
         """One step of gradient descent; returns the loss before it."""
         self._refine()
-        chosen = self.pixels.draw(self.options.rays, seed=self.options.seed, step=self.step_number)
-        loss, gradients = self.loss_and_gradients(chosen)
+        loss, gradients = self.loss_and_gradients(self.draw())
         require_finite_loss(loss, self.step_number)
         self._add_prior(gradients)
         rate = self.options.learning_rate * exponential(
@@ -143,38 +143,39 @@ class Fit:
             rates["background"] = 0.02 * rate
         with np.errstate(over="ignore", invalid="ignore"):  # looked for where it is saved and used
             self.optimiser.step(params, gradients, rates)
-        psnr = -10 * np.log10(max(loss, 1e-12))
-        self.history.append((self.step_number, loss, float(psnr)))
+        if isinstance(self.model, GaussianScene):
+            self.model.explore(rates["means"], self.step_number)
+        self.history.append((self.step_number, loss, self.batch_psnr))
         self.step_number += 1
         return loss
 
-    def loss_and_gradients(self, chosen: Array) -> tuple[float, dict[str, Array]]:
-        """Loss of the chosen pixels and its gradient by parameter group, without the prior."""
-        options = RenderOptions(stop=self.options.stop, jitter=True)
-        model: Any = self.model  # which takes back the context that it gave
-        outputs, context = model.render(
-            self.pixels.rays(chosen), seed=self.options.seed, step=self.step_number, options=options
-        )
-        display = self.pixels.color_space == "display"
-        background = self.background_color(len(chosen))
-        loss = image_loss(outputs, self.pixels.premultiplied[chosen], background, display=display)
-        d_outputs, d_background = image_loss_backward(loss)
-        gradients: dict[str, Array] = model.render_backward(context, d_outputs)
-        if self.background is not None:
-            gradients["background"] = learned_background_backward(self.background, d_background)
-        return loss.value, gradients
+    def draw(self) -> Any:
+        """What this step looks at: numbers of pixels, or of a view."""
+        seed, step = self.options.seed, self.step_number
+        if isinstance(self.pixels, TrainingViews):
+            return self.pixels.draw(seed=seed, step=step)
+        return self.pixels.draw(self.options.rays, seed=seed, step=step)
+
+    def loss_and_gradients(self, chosen: Any) -> tuple[float, dict[str, Array]]:
+        """Loss of the chosen pixels, or view, and its gradient by group, without the prior."""
+        rest = (self.background, self.background_kind, self.options, self.step_number)
+        model = self.model
+        if isinstance(self.pixels, TrainingViews):
+            assert isinstance(model, GaussianScene)
+            slope = view_slope(model, self.pixels.views[chosen], *rest)
+            self.batch_psnr = slope.psnr
+            return slope.loss, slope.gradients
+        assert not isinstance(model, GaussianScene)
+        loss, gradients = ray_slope(model, self.pixels, chosen, *rest)
+        self.batch_psnr = float(-10 * np.log10(max(loss, 1e-12)))
+        return loss, gradients
 
     def background_color(self, count: int) -> Array:
-        """Linear background of each ray of a batch, (R, 3) or (3,).
-
-        Random ones are a function of the seed and the step.
-        """
-        kind = background_kind(self.options.background, has_alpha=self.capture.has_alpha)
-        if self.background is not None:
-            return learned_background(self.background)
-        if kind == "random":
-            return random_background(count, seed=self.options.seed, step=self.step_number)
-        return constant_background(kind)
+        """Linear background of each ray of a batch, (R, 3) or (3,)."""
+        return background_color(
+            self.background, self.background_kind, count,
+            seed=self.options.seed, step=self.step_number,
+        )  # fmt: skip
 
     def run(
         self,
@@ -206,7 +207,7 @@ class Fit:
                     Progress(
                         self.step_number, self.options.steps, *self.history[-1][1:],
                         self.model.resolution,
-                        self.options.rays / max(now - before, 1e-9),
+                        self._rays() / max(now - before, 1e-9),
                     )
                 )  # fmt: skip
             if now - saved > checkpoint_seconds:
@@ -244,8 +245,20 @@ class Fit:
             Checkpoint(meta, params, self.optimiser.state(), self.model.state(), history),
         )
 
+    def _rays(self) -> int:
+        """Pixels a step, on average."""
+        if isinstance(self.pixels, TrainingViews):
+            return self.pixels.mean_size()
+        return self.options.rays
+
     def _refine(self) -> None:
-        """Go to a finer grid where the schedule says so; the optimiser's moments go along."""
+        """Change the resolution, or the Gaussians, where the schedule says so.
+
+        The optimiser's moments go along.
+        """
+        if isinstance(self.model, GaussianScene):
+            self._refine_gaussians(self.model)
+            return
         if self.step_number == int(PRUNE_AT * self.options.steps):
             self._prune()
         size = self.options.levels().get(self.step_number)
@@ -258,10 +271,21 @@ class Fit:
             self.optimiser.resample(group, lambda moment: before.resampled(moment, after))
         self.model = after
 
+    def _refine_gaussians(self, scene: GaussianScene) -> None:
+        """Draw higher harmonics, and whatever the density control decides."""
+        scene.active_degree = self.options.active_degree(self.step_number)
+        rows = scene.refine(self.step_number, {})
+        if rows is None:
+            return
+        self.optimiser.apply_row_map(rows, scene.params)
+        for group in scene.cleared:
+            self.optimiser.resample(group, np.zeros_like)
+
     def _prune(self) -> None:
         """Drop voxels of a sparse grid that no pixel of any view needs."""
         if not isinstance(self.model, SparseSh) or self.options.prune == 0:
             return
+        assert isinstance(self.pixels, TrainingPixels)
         weight = self.model.greatest_weights(self.pixels.batches(PRUNING_RAYS))
         statistics = {"weight": weight, "threshold": np.array(self.options.prune)}
         rows = self.model.refine(self.step_number, statistics)
@@ -271,7 +295,14 @@ class Fit:
     def _add_prior(self, gradients: dict[str, Array]) -> None:
         """Total variation on a random part of the grid, which stands for the whole."""
         weight = self.options.total_variation
-        if weight == 0:
+        if weight == 0 or isinstance(self.model, GaussianScene):
             return
         u = uniform(self.options.seed, step=self.step_number, pixel=0, sample=2, dimension=0)
         self.model.add_prior(gradients, weight, float(u))
+
+
+def training_set(capture: Capture, model: FittedField) -> TrainingPixels | TrainingViews:
+    """The photographs in the form that the model learns from."""
+    if isinstance(model, GaussianScene):
+        return TrainingViews(capture.train)
+    return TrainingPixels(capture.train, capture.color_space)

@@ -11,6 +11,7 @@ from photograd.checkpoint import Checkpoint
 from photograd.data.capture import Capture
 from photograd.errors import Error, IoError, RangeError, message
 from photograd.fields.fitted import FITTED
+from photograd.fit_options import FitOptions
 from photograd.representation import Array, representation
 
 _SAME = "resume with the capture, and the --downscale, that the fit was started on"
@@ -19,7 +20,7 @@ _SAME = "resume with the capture, and the --downscale, that the fit was started 
 def require_startable(name: str) -> None:
     """Raise RangeError unless a capture can start the representation called `name`."""
     kind = representation(name)
-    if "rays" not in kind.capabilities:
+    if not kind.capabilities & {"rays", "image"}:
         raise RangeError(
             message("Fit", "representation", "one that is seen along rays", repr(name),
                     "it lives on a 2D canvas; a capture can start 'dense_grid'")
@@ -29,6 +30,16 @@ def require_startable(name: str) -> None:
         raise RangeError(
             message("Fit", "representation", f"one that a capture can start: {known}", repr(name),
                     "start it from Python, with parameters of your own")
+        )  # fmt: skip
+
+
+def require_background_of(capture: Capture, options: FitOptions) -> None:
+    """Raise RangeError for a learned background of whole pictures with alpha, which show it."""
+    image = "image" in representation(options.representation).capabilities
+    if image and options.background == "learned" and capture.has_alpha:
+        raise RangeError(
+            message("Fit", "background", "random, white or black for photographs with alpha",
+                    "'learned'")
         )  # fmt: skip
 
 

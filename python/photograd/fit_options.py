@@ -11,6 +11,8 @@ from dataclasses import dataclass
 from photograd.errors import RangeError, message
 
 BACKGROUNDS = ("random", "white", "black", "learned")
+DENSITY_CONTROLS = ("mcmc", "default", "none")
+"""Of Gaussians: a fixed number that wanders, clone-split-prune, or none."""
 
 
 @dataclass(frozen=True)
@@ -36,6 +38,9 @@ class FitOptions:
     sigma_t: float = 0.1  # 1/m, density of the start
     degree: int = 2  # of the harmonics of a sparse grid
     prune: float = 0.02  # a sparse grid drops voxels that weigh less in every pixel; 0: none
+    gaussians: int = 30_000  # at most so many
+    density_control: str = "mcmc"  # see DENSITY_CONTROLS
+    ssim_weight: float = 0.2  # share of 1 - SSIM in the loss of whole pictures
 
     def __post_init__(self) -> None:
         """Raises RangeError, naming the option."""
@@ -47,6 +52,7 @@ class FitOptions:
             "final_rate",
             "steps_per_voxel",
             "sigma_t",
+            "gaussians",
         )
         for name in positive:
             if not 0 < getattr(self, name) < math.inf:
@@ -58,6 +64,13 @@ class FitOptions:
                 raise RangeError(
                     message("FitOptions", name, "zero or more", f"{getattr(self, name)}")
                 )
+        if not 0 <= self.ssim_weight <= 1:
+            raise RangeError(message("FitOptions", "ssim_weight", "0 to 1", f"{self.ssim_weight}"))
+        if self.density_control not in DENSITY_CONTROLS:
+            raise RangeError(
+                message("FitOptions", "density_control", f"one of {DENSITY_CONTROLS}",
+                        repr(self.density_control))
+            )  # fmt: skip
         if self.background not in (*BACKGROUNDS, "auto"):
             raise RangeError(
                 message("FitOptions", "background", f"one of {BACKGROUNDS}", repr(self.background))
@@ -68,6 +81,10 @@ class FitOptions:
                     "FitOptions", "refine_at", "two rising fractions below 1", f"{self.refine_at}"
                 )
             )
+
+    def active_degree(self, step: int) -> int:
+        """Harmonics that Gaussians have at a step: one degree more every tenth of the steps."""
+        return min(self.degree, 10 * step // self.steps)
 
     def levels(self) -> dict[int, int]:
         """{first step: resolution} of the coarse-to-fine schedule; never below 8 voxels."""

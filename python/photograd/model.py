@@ -11,7 +11,6 @@ import numpy as np
 from photograd.checkpoint import Checkpoint, load_checkpoint
 from photograd.errors import IoError, message
 from photograd.fields.fitted import FittedField, saved_field
-from photograd.fields.march import MarchPolicy
 from photograd.fit_options import FitOptions
 from photograd.representation import Array
 
@@ -38,13 +37,10 @@ def model_of(saved: Checkpoint, path: Path) -> Model:
     Raises IoError if the checkpoint's contents do not fit together.
     """
     try:
-        policy = dict(saved.meta["policy"])
-        policy["box"] = tuple(tuple(corner) for corner in policy["box"])
         stored = dict(saved.meta["options"])
         stored["refine_at"] = tuple(stored["refine_at"])
         options = FitOptions(**stored)
-        kind = options.representation
-        field = saved_field(saved.params, saved.state, MarchPolicy(**policy), kind)
+        field = saved_field(saved.params, saved.state, saved.meta["policy"], options)
     except (KeyError, TypeError) as failure:
         raise IoError(
             message("load_model", f"{path}", "a checkpoint with policy, options and values",

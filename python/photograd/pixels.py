@@ -38,7 +38,7 @@ class TrainingPixels:
         self._intrinsics = np.array([[c.fx, c.fy, c.cx, c.cy] for c in cameras])
         self._rotation = np.stack([c.world_from_camera[:3, :3] for c in cameras])
         self._position = np.stack([c.world_from_camera[:3, 3] for c in cameras])
-        self.digest = _digest(views)
+        self.digest = digest_of(views)
         colors, owners, ids = [], [], []
         for index, view in enumerate(views):
             rgba = view.rgba().reshape(-1, 4)
@@ -57,6 +57,11 @@ class TrainingPixels:
         """`count` pixel numbers, uniform with replacement: a function of seed and step alone."""
         draw = np.arange(count)
         return uniform_int(seed, len(self), step=step, pixel=draw, sample=0, dimension=0)
+
+    def mean_color(self) -> Array:
+        """(4,) mean of premultiplied linear colour and alpha."""
+        mean: Array = self.premultiplied.mean(axis=0, dtype=np.float64)
+        return mean
 
     def batches(self, most: int) -> Iterator[RayBatch]:
         """Rays of all views, at most about `most`: every pixel, or every second, third, ..."""
@@ -79,7 +84,7 @@ class TrainingPixels:
         return RayBatch(self._position[view], directions, chosen.astype(np.uint32))
 
 
-def _digest(views: Sequence[View]) -> str:
+def digest_of(views: Sequence[View]) -> str:
     """Of stored bytes rather than decoded pixels, so that it is the same on every machine."""
     total = hashlib.blake2b(digest_size=6)
     for view in views:

@@ -18,6 +18,7 @@ from photograd_course.optim import Gradient
 from photograd_course.row_map import RowMap
 from photograd_course.suggest import nearest
 
+from photograd.data.camera import Camera
 from photograd.errors import RangeError, ShapeError, message
 
 Array: TypeAlias = NDArray[Any]
@@ -78,21 +79,40 @@ class CanvasBatch:
             )
 
 
+@dataclass(frozen=True, eq=False)
+class ImageBatch:
+    """All pixels of a camera, row by row: for what is drawn a picture at a time.
+
+    `camera_from_world` (3, 4) stands in for the camera's pose where a proof moves it.
+    """
+
+    camera: Camera
+    camera_from_world: Array | None = None
+
+    def __post_init__(self) -> None:
+        if self.camera_from_world is not None and self.camera_from_world.shape != (3, 4):
+            found = f"{self.camera_from_world.shape}"
+            raise ShapeError(message("ImageBatch", "camera_from_world", "shape (3, 4)", found))
+
+
 @dataclass(frozen=True)
 class RenderOptions:
     """Policies of one rendering. The defaults are those of proofs: no early stop, no jitter."""
 
     stop: float = 0.0  # transmittance below which a ray ends; 0 is off
     jitter: bool = False  # move each ray's lattice by a random fraction of a step
-    camera_adjoint: bool = False  # also dL/d "origins" and "directions", or "points" of a canvas
+    camera_adjoint: bool = False  # also dL/d "origins" and "directions", "points" of a canvas, or
+    # "camera_from_world" of a picture
 
 
 @dataclass(frozen=True)
 class Outputs:
-    """One rendering of R rays or points. `color` (R, 3) is premultiplied, without background.
+    """One rendering of R rays, pixels or points. `color` (R, 3) is premultiplied, without
+    background.
 
-    opacity (R,); depth (R,) is the sum of weight * distance in metres: divide by opacity for a mean
-    distance. Both are None where the representation has no such thing, as on a canvas.
+    opacity (R,); depth (R,) is the sum of weight * distance in metres, along the ray or, of
+    pictures, along the viewing axis: divide by opacity for a mean distance. Both are None where the
+    representation has no such thing, as on a canvas.
     """
 
     color: Array

@@ -141,3 +141,21 @@ def test_bad_input_is_refused() -> None:
         random.choice(0, 3, 4)
     with pytest.raises(RangeError, match="bound"):
         random.uniform_int(0, 0)
+
+
+def test_normal_vectors_are_normal_and_addressed_by_row() -> None:
+    rows = np.arange(40_000)
+    found = random.normal_vectors(7, step=3, row=rows, sample=2)
+    assert found.shape == (40_000, 3)
+    # Five sigma: the mean has 1 / sqrt(40,000), a variance sqrt(2 / 40,000).
+    np.testing.assert_allclose(found.mean(axis=0), 0, atol=0.025)
+    np.testing.assert_allclose(np.cov(found.T), np.eye(3), atol=0.036)
+    inside = (np.abs(found) < 1).mean()
+    assert inside == pytest.approx(0.682689, abs=5 * np.sqrt(0.68 * 0.32 / found.size))
+    np.testing.assert_array_equal(
+        random.normal_vectors(7, step=3, row=rows[5:9], sample=2), found[5:9]
+    )
+    for other in ({"step": 4, "sample": 2}, {"step": 3, "sample": 1}):
+        assert not np.isclose(random.normal_vectors(7, row=rows[:9], **other), found[:9]).any()
+    with pytest.raises(DtypeError, match="normal_vectors: row"):
+        random.normal_vectors(7, row=np.zeros(3))

@@ -30,7 +30,8 @@ from tests.fit import scene
         ("toy_blobs", "it lives on a 2D canvas; a capture can start 'dense_grid'"),
         (
             "tiny_network",
-            "one that a capture can start: 'dense_grid' or 'sparse_sh', got 'tiny_network'",
+            "one that a capture can start: 'dense_grid' or 'sparse_sh' or 'gaussians', "
+            "got 'tiny_network'",
         ),
     ],
 )

@@ -12,6 +12,7 @@ from photograd.core import _core
 from photograd.errors import RangeError, ShapeError
 from photograd.representation import (
     CanvasBatch,
+    ImageBatch,
     Outputs,
     RayBatch,
     RenderOptions,
@@ -62,6 +63,8 @@ class Proof:
     def camera(self) -> dict[str, Any]:
         if isinstance(self.batch, CanvasBatch):
             return {"points": self.batch.points}
+        if isinstance(self.batch, ImageBatch):
+            return {"camera_from_world": self.batch.camera_from_world}
         return {"origins": self.batch.origins, "directions": self.batch.directions}
 
     def forward_camera(self, camera: dict[str, Any]) -> dict[str, Any]:

@@ -106,7 +106,7 @@ def fit(
             learning_rate=learning_rate, total_variation=total_variation, background=background,
         )  # fmt: skip
         job = Fit.start(loaded, options, allow_blind=allow_blind)
-        note(f"box: {job.bounds_rule}")
+        note(job.start_rule)
     with stop_on_signals() as stopping:
         result = run_with_bar(job, out, stopping, checkpoint_seconds)
     emit(summary(result), as_json=as_json, title="fit")

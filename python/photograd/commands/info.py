@@ -11,7 +11,8 @@ from photograd_course.cli import DebugOption, JsonOption, SeedOption, ThreadsOpt
 
 from photograd.data.bounds import estimate_bounds
 from photograd.data.load import load_capture
-from photograd.model import load_model
+from photograd.fields.march import MarchPolicy
+from photograd.model import Model, load_model
 
 
 def register(app: typer.Typer) -> None:
@@ -44,11 +45,17 @@ def describe_model(path: Path) -> dict[str, Any]:
         "kind": "model", "representation": model.field.name,
         "shape": list(model.field.shape),
         "megabytes": sum(values.nbytes for values in params.values()) / 1e6,
-        "box": model.field.box, "dt": model.field.policy.dt,
+        "box": model.field.box, **step_of(model),
         "step": model.meta["step"], "steps": model.options.steps,
         "batch_psnr": float(last.mean()), "capture": model.meta["capture"],
         "split": model.meta["split"], "seed": model.options.seed,
     }  # fmt: skip
+
+
+def step_of(model: Model) -> dict[str, float]:
+    """Distance of samples along a ray, in metres, of what is marched."""
+    policy = model.field.policy
+    return {"dt": policy.dt} if isinstance(policy, MarchPolicy) else {}
 
 
 def describe_capture(path: Path) -> dict[str, Any]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from photograd.fields.dense_grid import DenseGrid
+from photograd.fields.gaussians import GaussianScene
 from photograd.fields.octree_sh import OctreeSh
 from photograd.fields.sparse_sh import SparseSh
 from photograd.fields.sunlit_medium import SunlitMedium
@@ -12,6 +13,7 @@ from photograd.fields.toy_blobs import ToyBlobs
 
 __all__ = [
     "DenseGrid",
+    "GaussianScene",
     "OctreeSh",
     "SparseSh",
     "SunlitMedium",

@@ -110,6 +110,35 @@ def uniform(
     return np.asarray((words >> np.uint32(8)) * np.float64(2.0**-24))
 
 
+def normal_vectors(
+    seed: int, *, step: int = 0, row: Address = 0, sample: int = 0
+) -> NDArray[np.float64]:
+    """(N, 3) normally distributed numbers, mean 0 and variance 1, three for each row.
+
+    The four words at pixel = row, dimension = 0 .. 3 make two pairs of a radius and an angle
+    [Box1958]; the last of their four numbers is not used. None is farther out than 5.8, since a
+    uniform number is 0 or at least 2**-24.
+
+    Args:
+        seed: 0 .. 2**64 - 1.
+        row: (N,) integers in 0 .. 2**32 - 1.
+        step, sample: addresses.
+
+    Raises:
+        DtypeError, RangeError: as for `uniform`.
+    """
+    address = _address("normal_vectors", "row", row).reshape(-1)
+    rest = [_address("normal_vectors", n, v) for n, v in (("sample", sample), ("step", step))]
+    columns = [address, *(np.broadcast_to(part, address.shape) for part in rest)]
+    counter = np.stack([*columns, np.zeros_like(address)], axis=-1)
+    words = philox4x32(counter, _key("normal_vectors", seed))
+    u = (words >> np.uint32(8)) * np.float64(2.0**-24)
+    radius = np.sqrt(-2.0 * np.log1p(-u[:, 0::2]))
+    angle = 2.0 * np.pi * u[:, 1::2]
+    pairs = np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=-1)
+    return pairs.reshape(-1, 4)[:, :3]
+
+
 def uniform_int(
     seed: int,
     bound: int,

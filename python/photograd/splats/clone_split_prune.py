@@ -1,0 +1,139 @@
+"""The default density control: clone, split, prune, and now and then make everything faint.
+
+A Gaussian under pressure (see `pressure`) covers too much or too little. A small one is cloned: its
+twin is free to go elsewhere. A large one is split in two, drawn from itself, each smaller by 1.6.
+Faint ones are dropped. From time to time all opacities are lowered: what is needed recovers, what
+only fogs the view in front of a camera does not [Kerbl2023].
+
+Two Gaussians of opacity a at one place cover like one of 1 - (1 - a)^2. A clone and its original
+therefore get
+
+    a' = 1 - sqrt(1 - a)
+
+which keeps the middle of the splat as it was [Bulo2024]; where its falloff is g, the two cover more
+by a'^2 g (1 - g). The original code leaves a to both, and doubles the matter.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+from photograd_course.random import normal_vectors
+from photograd_course.row_map import RowMap
+
+from photograd.quaternions import rotation_matrices
+from photograd.representation import Array
+from photograd.splats.density import (
+    Change,
+    DensityControl,
+    Params,
+    Schedule,
+    logits,
+    opacities,
+    rebuilt,
+)
+from photograd.splats.pressure import Pressure
+
+SPLIT = 1.6
+"""A part of a split Gaussian is smaller by this."""
+
+
+@dataclass(frozen=True)
+class CloneSplitPrune(DensityControl):
+    """Attributes:
+    budget: there are never more Gaussians; those under the highest pressure go first.
+    seed: of the places of split Gaussians.
+    schedule: of cloning, splitting and pruning.
+    threshold: pressure above which a Gaussian is cloned or split.
+    small: in extents; Gaussians whose longest scale is below are cloned, others split.
+    faint: opacity below which a Gaussian is dropped.
+    large: in extents; Gaussians with a longer scale are dropped.
+    reset_every: steps between two times that opacities are lowered to `reset_to`; 0: never.
+    """
+
+    budget: int
+    seed: int = 0
+    schedule: Schedule = field(default_factory=Schedule)
+    threshold: float = 2e-4
+    small: float = 0.01
+    faint: float = 0.005
+    large: float = 0.1
+    reset_every: int = 3000
+    reset_to: float = 0.01
+
+    def change(
+        self, params: Params, pressure: Pressure, *, extent: float, step: int
+    ) -> Change | None:
+        """Rows kept in their order, then clones, then the parts of split ones."""
+        reset = self._resets(step)
+        if not self.schedule.due(step):
+            return self._faded(params) if reset else None
+        alpha = opacities(params)
+        longest = np.exp(params["log_scales"].astype(np.float64)).max(axis=1)
+        pruned = (alpha < self.faint) | (longest > self.large * extent)
+        if pruned.all():
+            pruned[np.argmax(alpha)] = False  # an empty scene has no gradient to grow from
+        chosen = self._under_pressure(pressure.mean(), pruned)
+        small = longest <= self.small * extent
+        cloned, split = np.flatnonzero(chosen & small), np.flatnonzero(chosen & ~small)
+        before = _with_clones_thinned(params, cloned)
+        added = _concatenated(_rows(before, cloned), self._parts(before, split, step))
+        kept = np.flatnonzero(~pruned & ~(chosen & ~small))
+        after, row_map = rebuilt(before, kept, added)
+        if not reset:
+            return Change(after, row_map)
+        faded = self._faded(after)
+        return Change(faded.params, row_map, faded.cleared)
+
+    def _resets(self, step: int) -> bool:
+        every = self.reset_every
+        return every > 0 and 0 < step < self.schedule.last and step % every == 0
+
+    def _under_pressure(self, pressure: Array, pruned: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """(N,) those above the threshold, the most pressed first while the budget lasts."""
+        wanted = np.flatnonzero((pressure >= self.threshold) & ~pruned)
+        room = max(0, self.budget - int((~pruned).sum()))
+        order = np.argsort(-pressure[wanted], kind="stable")[:room]
+        chosen = np.zeros(len(pressure), np.bool_)
+        chosen[wanted[order]] = True
+        return chosen
+
+    def _parts(self, params: Params, rows: Array, step: int) -> dict[str, Array]:
+        """Two parts of each row, at places drawn from the Gaussian itself."""
+        parts = _rows(params, np.concatenate([rows, rows]))
+        unit = normal_vectors(self.seed, step=step, row=np.arange(2 * len(rows)), sample=3)
+        local = unit * np.exp(parts["log_scales"].astype(np.float64))
+        turn = rotation_matrices(parts["quats"])
+        parts["means"] = parts["means"] + np.einsum("nij,nj->ni", turn, local)
+        parts["log_scales"] = parts["log_scales"] - np.log(SPLIT)
+        return parts
+
+    def _faded(self, params: Params) -> Change:
+        """Opacities held below `reset_to`; Adam's moments of the logits begin anew."""
+        after = dict(params)
+        top = logits(np.array(self.reset_to))
+        after["opacity_logits"] = np.minimum(
+            params["opacity_logits"], top.astype(params["opacity_logits"].dtype)
+        )
+        rows = np.arange(len(after["means"]), dtype=np.int64)
+        return Change(after, RowMap(rows, source_count=len(rows)), ("opacity_logits",))
+
+
+def _rows(params: Params, rows: Array) -> dict[str, Array]:
+    return {name: array[rows] for name, array in params.items()}
+
+
+def _concatenated(one: Params, two: Params) -> dict[str, Array]:
+    return {name: np.concatenate([one[name], two[name]]) for name in one}
+
+
+def _with_clones_thinned(params: Params, cloned: Array) -> dict[str, Array]:
+    """A copy in which the rows that get a twin have the opacity of which two make the old one."""
+    after = dict(params)
+    raw = params["opacity_logits"].copy()
+    alpha = 1 / (1 + np.exp(-raw[cloned].astype(np.float64)))
+    raw[cloned] = logits(1 - np.sqrt(1 - alpha))
+    after["opacity_logits"] = raw
+    return after

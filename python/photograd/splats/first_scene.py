@@ -1,0 +1,48 @@
+"""What a fit of Gaussians begins with, from its options."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from photograd.data.capture import Capture
+from photograd.fields.gaussians import GaussianScene
+from photograd.fit_options import FitOptions
+from photograd.representation import Array
+from photograd.splats.clone_split_prune import CloneSplitPrune
+from photograd.splats.density import DensityControl, NoControl, Schedule
+from photograd.splats.markov_chain import MarkovChain
+from photograd.splats.start import start_gaussians
+
+FIRST_SHARE = 1 / 3
+"""Of the budget, at the start."""
+
+
+def first_scene(capture: Capture, box: Array, options: FitOptions) -> tuple[GaussianScene, str]:
+    """A scene of constant colours, and a sentence on where its Gaussians come from."""
+    control = scene_control(options)
+    share = 1.0 if isinstance(control, NoControl) else FIRST_SHARE
+    count = max(1, int(share * options.gaussians))
+    gaussians, rule = start_gaussians(capture, box, count, degree=options.degree, seed=options.seed)
+    extent = scene_extent(capture, box)
+    return GaussianScene(gaussians, extent=extent, control=control, active_degree=0), rule
+
+
+def scene_control(options: FitOptions) -> DensityControl:
+    """The density control that the options name, from a tenth to three quarters of the steps."""
+    schedule = Schedule(first=min(500, options.steps // 10), last=3 * options.steps // 4, every=100)
+    if options.density_control == "mcmc":
+        return MarkovChain(options.gaussians, seed=options.seed, schedule=schedule)
+    if options.density_control == "default":
+        return CloneSplitPrune(options.gaussians, seed=options.seed, schedule=schedule)
+    return NoControl()
+
+
+def scene_extent(capture: Capture, box: Array) -> float:
+    """1.1 times the greatest distance of a camera from their mean, in metres [Kerbl2023].
+
+    Cameras that all stand in one place say nothing: then half the diagonal of the box.
+    """
+    places = np.array([view.camera.position for view in capture.train])
+    spread = float(np.linalg.norm(places - places.mean(axis=0), axis=1).max())
+    diagonal = float(np.linalg.norm(box[1] - box[0]))
+    return 1.1 * spread if spread > 0.05 * diagonal else 0.5 * diagonal

@@ -1,0 +1,188 @@
+"""Where Gaussians begin: at the points that cameras were found with, or anywhere they can be.
+
+Each begins round, as large as the distance to its neighbours, faint, and of one colour from all
+sides [Kerbl2023].
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from photograd_course.color import srgb_encode
+from photograd_course.random import uniform
+
+from photograd import sh
+from photograd.data.camera import Camera
+from photograd.data.capture import Capture
+from photograd.data.hull import mean_coverage, silhouettes_of
+from photograd.data.view import View
+from photograd.errors import RangeError, message
+from photograd.representation import Array
+from photograd.splat import Gaussians
+from photograd.splats.density import logits
+
+NEIGHBOURS = 3
+FEWEST_POINTS = 100
+"""A capture with fewer sparse points says too little about where the scene is."""
+
+RANDOM_DISTANCE = 0.7524
+"""Of points at random, one in a unit of volume: the root mean square distance to the nearest three.
+
+The k-th neighbour's squared distance is (3 / 4 pi)^(2/3) Gamma(k + 2/3) / Gamma(k) on average.
+"""
+
+FIRST_OPACITY = 0.1
+CARVED = 0.6
+"""Silhouettes that cover less of the pictures than this say where the scene is."""
+
+MOST_TRIES = 64
+"""A hull that holds less than this share of its box gets fewer points."""
+
+_ROWS_AT_ONCE = 1 << 10
+
+
+def start_gaussians(
+    capture: Capture, box: Array, count: int, *, degree: int, seed: int
+) -> tuple[Gaussians, str]:
+    """Gaussians in float32 to begin a fit with, and one sentence on where they come from.
+
+    From the capture's sparse points if it has a hundred; else `count` random points of the box
+    (2, 3), where the photographs have alpha only those that no silhouette excludes.
+
+    Raises:
+        RangeError: `count` below 1, or a degree that splats do not have.
+    """
+    if count < 1:
+        raise RangeError(message("start_gaussians", "count", "at least 1", count))
+    if capture.points is not None and len(capture.points) >= FEWEST_POINTS:
+        points, colors = _some_points(capture, count, seed)
+        size = neighbour_distance(points)
+        rule = f"{len(points)} of the {len(capture.points)} points of the capture"
+    else:
+        points, volume, rule = random_points(capture, box, count, seed=seed)
+        colors = mean_colors(capture.train, points)
+        size = np.full(len(points), RANDOM_DISTANCE * np.cbrt(volume / len(points)))
+    return around(points, size, colors, degree=degree), rule
+
+
+def around(points: Array, size: Array, colors: Array, *, degree: int) -> Gaussians:
+    """Round, faint Gaussians at points (N, 3) with scales (N,), of display colours (N, 3).
+
+    In float32.
+
+    Raises:
+        RangeError: a degree that splats do not have.
+    """
+    harmonics = np.zeros((len(points), sh.count(degree), 3))
+    harmonics[:, 0] = (colors - 0.5) / sh.Y_0
+    return Gaussians(
+        means=np.array(points, np.float64),
+        log_scales=np.repeat(np.log(size)[:, None], 3, axis=1),
+        quats=np.tile([1.0, 0.0, 0.0, 0.0], (len(points), 1)),
+        opacity_logits=np.full(len(points), float(logits(np.array(FIRST_OPACITY)))),
+        sh=harmonics,
+    ).astype(np.float32)
+
+
+def neighbour_distance(points: Array) -> Array:
+    """(N,) root mean square distance to the nearest three other points, in metres, exact.
+
+    Points that coincide get a distance of 1e-7 of the whole cloud's size.
+    """
+    points = np.asarray(points, np.float64)
+    if len(points) <= NEIGHBOURS:
+        spread = float(np.ptp(points, axis=0).max()) if len(points) > 1 else 1.0
+        return np.full(len(points), max(spread, 1e-7))
+    middle = points - points.mean(axis=0)
+    square = np.einsum("nk,nk->n", middle, middle)
+    found = np.empty(len(points))
+    for start in range(0, len(points), _ROWS_AT_ONCE):
+        part = slice(start, start + _ROWS_AT_ONCE)
+        distance = square[part, None] + square - 2 * middle[part] @ middle.T
+        near = np.partition(distance, NEIGHBOURS, axis=1)[:, : NEIGHBOURS + 1]
+        near.sort(axis=1)
+        found[part] = np.maximum(near[:, 1:], 0).mean(axis=1)  # the nearest is the point itself
+    least = 1e-7 * max(float(np.sqrt(square.max())), 1e-7)
+    return np.maximum(np.sqrt(found), least)
+
+
+def random_points(
+    capture: Capture, box: Array, count: int, *, seed: int
+) -> tuple[Array, float, str]:
+    """`count` points (N, 3) uniform in the box, or in the visual hull inside of it.
+
+    Also the volume that they fill, in cubic metres, and a sentence on them.
+    """
+    silhouettes = silhouettes_of(capture.train) if capture.has_alpha else []
+    carve = bool(silhouettes) and mean_coverage(silhouettes) < CARVED
+    seen = _occupied(capture.train) if carve else []
+    kept: list[Array] = []
+    have = tried = 0
+    while have < count and tried < MOST_TRIES * count:
+        pixel = np.arange(tried, tried + count)[:, None]
+        u = uniform(seed, step=0, pixel=pixel, sample=6, dimension=np.arange(3))
+        points = box[0] + u * (box[1] - box[0])
+        kept.append(points[_inside(seen, points)])
+        have, tried = have + len(kept[-1]), tried + count
+    whole = float(np.prod(box[1] - box[0]))
+    if have == 0:
+        return points, whole, f"{count} random points of the box"
+    found = np.concatenate(kept)[:count]
+    where = "in the silhouettes of all views" if carve else "of the box"
+    return found, whole * have / tried, f"{len(found)} random points {where}"
+
+
+def mean_colors(views: Sequence[View], points: Array, *, most: int = 24) -> Array:
+    """(N, 3) display colours: the mean of the pixels that points (N, 3) land on; grey for none.
+
+    Nothing is hidden by anything here, which is good enough to begin with.
+    """
+    total, weight = np.zeros((len(points), 3)), np.zeros(len(points))
+    for view in views[:: max(1, len(views) // most)]:
+        rows, column, row = _landing(view.camera, points)
+        rgba = view.rgba()[row, column].astype(np.float64)
+        color = rgba[:, :3] if view.color_space == "display" else srgb_encode(rgba[:, :3])
+        total[rows] += color * rgba[:, 3:]
+        weight[rows] += rgba[:, 3]
+    found: Array = np.where(weight[:, None] > 0, total / np.maximum(weight, 1e-9)[:, None], 0.5)
+    return found
+
+
+def _occupied(views: Sequence[View]) -> list[tuple[Camera, Array]]:
+    """Each camera with its pixels (H, W) that may show the object."""
+    return [(view.camera, (view.rgba()[..., 3] > 0) | ~view.valid_mask()) for view in views]
+
+
+def _inside(seen: Sequence[tuple[Camera, Array]], points: Array) -> Array:
+    """(N,) whether every picture that shows a point may show the object there."""
+    alive = np.ones(len(points), np.bool_)
+    for camera, occupied in seen:
+        rows, column, row = _landing(camera, points)
+        alive[rows] &= occupied[row, column]
+    return alive
+
+
+def _landing(camera: Camera, points: Array) -> tuple[Array, Array, Array]:
+    """Rows of the points that land in the picture, with their pixels' columns and rows."""
+    pixels, depth = camera.project(points)
+    with np.errstate(invalid="ignore"):
+        shown = (depth > 0) & (pixels >= 0).all(axis=1)
+        shown &= (pixels < [camera.width, camera.height]).all(axis=1)
+    place = pixels[shown].astype(np.int64)
+    return np.flatnonzero(shown), place[:, 0], place[:, 1]
+
+
+def _some_points(capture: Capture, count: int, seed: int) -> tuple[Array, Array]:
+    """At most `count` of the capture's points, and their display colours."""
+    assert capture.points is not None
+    points = np.asarray(capture.points, np.float64)
+    if capture.point_colors is None:
+        colors = np.full(points.shape, 0.5)
+    else:
+        colors = capture.point_colors / 255.0
+    if len(points) <= count:
+        return points, colors
+    key = uniform(seed, step=0, pixel=np.arange(len(points)), sample=7)
+    rows = np.sort(np.argsort(key, kind="stable")[:count])
+    return points[rows], colors[rows]

@@ -1,0 +1,40 @@
+"""A small capture: a ball of one colour, seen from twelve sides."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+from photograd.data.capture import Capture
+from photograd.data.view import View
+from photograd.orbit import orbit_cameras
+
+COLOR = (0.8, 0.4, 0.2)
+RADIUS = 0.5
+SIZE = 40
+
+
+@cache
+def ball_capture(size: int = SIZE) -> Capture:
+    """Ten training views and two held out; display values, striped in height."""
+    box = np.array([[-0.6, -0.6, -0.6], [0.6, 0.6, 0.6]])
+    views = []
+    for turn, elevation in ((6, 30.0), (6, -30.0)):
+        for camera in orbit_cameras(box, turn, size=size, elevation=elevation):
+            origins, directions = camera.rays()
+            along = -(origins * directions).sum(axis=1)
+            nearest = origins + along[:, None] * directions
+            miss = RADIUS**2 - (nearest**2).sum(axis=1)
+            hit = nearest - np.sqrt(np.maximum(miss, 0))[:, None] * directions
+            pixels = np.zeros((size * size, 4), np.float32)
+            stripes = np.where(np.sin(12 * hit[:, 1:2]) > 0, 1.2, 0.8)
+            pixels[:, :3] = np.array(COLOR) * stripes
+            pixels[:, 3] = miss > 0
+            views.append(
+                View(f"{elevation:+.0f}_{len(views)}", camera, pixels.reshape(size, size, 4))
+            )
+    return Capture(
+        train=tuple(views[:5] + views[6:11]), test=(views[5], views[11]), format="test",
+        source=Path("ball"), color_space="display", has_alpha=True,
+    )  # fmt: skip
