@@ -131,16 +131,10 @@ class Fit:
         loss, gradients = self.loss_and_gradients(self.draw())
         require_finite_loss(loss, self.step_number)
         self._add_prior(gradients)
-        rate = self.options.learning_rate * exponential(
-            self.options.final_rate, self.options.steps
-        )(self.step_number)
-        rates = {
-            name: spec.learning_rate * rate for name, spec in self.model.param_groups().items()
-        }
+        rates = self._rates()
         params = dict(self.model.params)
         if self.background is not None:
             params["background"] = self.background
-            rates["background"] = 0.02 * rate
         with np.errstate(over="ignore", invalid="ignore"):  # looked for where it is saved and used
             self.optimiser.step(params, gradients, rates)
         if isinstance(self.model, GaussianScene):
@@ -244,6 +238,19 @@ class Fit:
             folder / FILE_NAME,
             Checkpoint(meta, params, self.optimiser.state(), self.model.state(), history),
         )
+
+    def _rates(self) -> dict[str, float]:
+        """Learning rate of every group at this step."""
+        options, scene = self.options, isinstance(self.model, GaussianScene)
+        fall, fall_of_means = (
+            options.learning_rate * exponential(final, options.steps)(self.step_number)
+            for final in (options.final_rate, options.final_mean_rate)
+        )
+        rates = {
+            name: spec.learning_rate * (fall_of_means if scene and name == "means" else fall)
+            for name, spec in self.model.param_groups().items()
+        }
+        return rates | {"background": 0.02 * fall}
 
     def _rays(self) -> int:
         """Pixels a step, on average."""

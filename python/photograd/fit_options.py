@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 from photograd.errors import RangeError, message
 
@@ -19,8 +20,10 @@ DENSITY_CONTROLS = ("mcmc", "default", "none")
 class FitOptions:
     """Options of `photograd.fit.Fit`; the defaults suit 128^3 voxels and a hundred 200 x 200 views.
 
-    Coarse to fine: the fit starts at `resolution` / 4, and is refined to / 2 and to the whole at
-    the fractions `refine_at` of its steps.
+    `options_for` has the defaults of each representation.
+
+    Grids go from coarse to fine: the fit starts at `resolution` / 4, and is refined to / 2 and to
+    the whole at the fractions `refine_at` of its steps.
     """
 
     representation: str = "dense_grid"
@@ -40,6 +43,7 @@ class FitOptions:
     prune: float = 0.02  # a sparse grid drops voxels that weigh less in every pixel; 0: none
     gaussians: int = 30_000  # at most so many
     density_control: str = "mcmc"  # see DENSITY_CONTROLS
+    final_mean_rate: float = 0.01  # final_rate of the Gaussians' means, which must come to rest
     ssim_weight: float = 0.2  # share of 1 - SSIM in the loss of whole pictures
 
     def __post_init__(self) -> None:
@@ -53,6 +57,7 @@ class FitOptions:
             "steps_per_voxel",
             "sigma_t",
             "gaussians",
+            "final_mean_rate",
         )
         for name in positive:
             if not 0 < getattr(self, name) < math.inf:
@@ -83,7 +88,7 @@ class FitOptions:
             )
 
     def active_degree(self, step: int) -> int:
-        """Harmonics that Gaussians have at a step: one degree more every tenth of the steps."""
+        """Degree of a Gaussian's harmonics at a step: one more every tenth of the steps."""
         return min(self.degree, 10 * step // self.steps)
 
     def levels(self) -> dict[int, int]:
@@ -94,3 +99,17 @@ class FitOptions:
         for start, size in zip(starts, sizes, strict=True):
             levels[start] = min(max(size, 8), self.resolution)
         return levels
+
+
+DEFAULTS_OF: dict[str, dict[str, Any]] = {"gaussians": {"steps": 4000, "degree": 3}}
+"""What representations do otherwise than `FitOptions` itself."""
+
+
+def options_for(representation: str, **given: Any) -> FitOptions:
+    """The options of a representation: its defaults, but for what is given and not None.
+
+    Raises RangeError for a value without meaning, TypeError for a name that is no option.
+    """
+    chosen = {name: value for name, value in given.items() if value is not None}
+    defaults = DEFAULTS_OF.get(representation, {})
+    return FitOptions(**{"representation": representation, **defaults, **chosen})

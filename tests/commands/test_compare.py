@@ -117,3 +117,15 @@ def test_the_best_of_each_capture_is_bold() -> None:
     assert "| a | y | 20.00 |" in text
     assert "| b | x | **25.00** |" in text
     assert text.endswith("2 threads.\n8 held-out views.\n")
+
+
+def test_gaussians_stand_beside_grids(
+    photograd: Photograd, capture_folder: Path, tmp_path: Path
+) -> None:
+    words = ("--contenders", "dense_grid:8,gaussians:120", "--out", tmp_path, *FEW, "--json")
+    done = photograd("compare", capture_folder, *words)
+    assert done.code == 0, done.err
+    score = done.result()["scores"][1]
+    assert score["contender"] == "gaussians:120"
+    assert score["parameter_bytes"] == 4 * 120 * (3 + 3 + 4 + 1 + 3 * 16)
+    assert 5 < score["psnr"] < 60

@@ -1,7 +1,8 @@
-"""A small capture: a ball of one colour, seen from twelve sides."""
+"""Small captures seen from twelve sides: a striped ball, a cloud of Gaussians."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -9,6 +10,7 @@ import numpy as np
 from photograd.data.capture import Capture
 from photograd.data.view import View
 from photograd.orbit import orbit_cameras
+from photograd.splat import Gaussians, render
 
 COLOR = (0.8, 0.4, 0.2)
 RADIUS = 0.5
@@ -38,3 +40,29 @@ def ball_capture(size: int = SIZE) -> Capture:
         train=tuple(views[:5] + views[6:11]), test=(views[5], views[11]), format="test",
         source=Path("ball"), color_space="display", has_alpha=True,
     )  # fmt: skip
+
+
+@cache
+def cloud_capture(size: int = SIZE) -> Capture:
+    """Forty Gaussians of many colours in the same places of views, which Gaussians can explain."""
+    g = np.random.default_rng(11)
+    truth = Gaussians(
+        means=g.uniform(-0.4, 0.4, (40, 3)),
+        log_scales=np.log(0.1) + 0.3 * g.normal(size=(40, 3)),
+        quats=g.normal(size=(40, 4)),
+        opacity_logits=g.uniform(0, 3, 40),
+        sh=g.uniform(-1.7, 1.7, (40, 1, 3)),
+    )
+    ball = ball_capture(size)
+    return replace(
+        ball, train=tuple(_painted(view, truth) for view in ball.train),
+        test=tuple(_painted(view, truth) for view in ball.test),
+    )  # fmt: skip
+
+
+def _painted(view: View, truth: Gaussians) -> View:
+    """What the view's camera sees of the Gaussians, with straight alpha."""
+    picture, _ = render(truth, view.camera)
+    alpha = picture.opacity[..., None]
+    straight = np.clip(picture.color / np.maximum(alpha, 1e-6), 0, 1)
+    return replace(view, image=np.concatenate([straight, alpha], axis=-1).astype(np.float32))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, replace
+from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated
 
@@ -51,8 +51,8 @@ def compare(
         Path("out/compare")
     ),
     contenders: Annotated[
-        str, typer.Option("--contenders", help="Representations, each with its resolution.")
-    ] = "dense_grid:64,dense_grid:128,sparse_sh:128",
+        str, typer.Option("--contenders", help="Representations with their resolution, or number.")
+    ] = "dense_grid:64,dense_grid:128,sparse_sh:128,gaussians:20000",
     steps: Annotated[int, typer.Option("--steps", min=1, help="Steps of each fit.")] = 1000,
     rays: Annotated[int, typer.Option("--rays", min=1, help="Rays a step.")] = DEFAULTS.rays,
     views: Annotated[int, typer.Option("--views", min=2, help="Of a built-in scene.")] = 60,
@@ -111,9 +111,7 @@ def contest(
         note(f"{name}: {candidate.label}")
         result = compare_one(
             name, capture, candidate, out / candidate.label.replace(":", "_"),
-            replace(
-                shared, representation=candidate.representation, resolution=candidate.resolution
-            ),
+            candidate.options(shared),
             lambda job, folder: run_with_bar(job, folder, stopping),
         )  # fmt: skip
         if result is None:

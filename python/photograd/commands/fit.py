@@ -19,6 +19,20 @@ from photograd_course.cli import (
 from photograd_course.cli import Progress as Bar
 
 from photograd.checkpoint import FILE_NAME
+from photograd.commands.fit_arguments import (
+    AllowBlindOption,
+    BackgroundOption,
+    CheckpointOption,
+    DensityControlOption,
+    GaussiansOption,
+    LearningRateOption,
+    RaysOption,
+    RepresentationOption,
+    ResolutionOption,
+    ResumeOption,
+    StepsOption,
+    TotalVariationOption,
+)
 from photograd.commands.shared import (
     CaptureArgument,
     DownscaleOption,
@@ -27,18 +41,25 @@ from photograd.commands.shared import (
     use_threads,
 )
 from photograd.data.capture import Capture
+from photograd.data.gaussian_ply import write_gaussian_ply
 from photograd.data.load import load_capture
 from photograd.errors import RangeError, message
+from photograd.fields.gaussians import GaussianScene
 from photograd.fit import Fit
-from photograd.fit_options import FitOptions
+from photograd.fit_options import FitOptions, options_for
 from photograd.fit_result import FitResult, Progress, summary
 
+PLY_NAME = "gaussians.ply"
 DEFAULTS = FitOptions()
 COLUMNS = (
     Column("loss", "{:.2e}".format),
     Column("psnr", "{:.2f} dB".format, label="PSNR"),
     Column("grid", "{:.0f}".format),
     Column("rate", "{:.2e}".format, label="rays/s"),
+)
+SPLAT_COLUMNS = tuple(
+    Column("grid", "{:.0f}".format, label="Gaussians") if column.name == "grid" else column
+    for column in COLUMNS
 )
 
 
@@ -51,35 +72,19 @@ def fit(
     context: typer.Context,
     capture: CaptureArgument,
     out: Annotated[Path, typer.Option("--out", help="Folder for the model and its checkpoints.")],
-    representation: Annotated[
-        str, typer.Option("--representation", help="How the scene is stored.")
-    ] = DEFAULTS.representation,
-    steps: Annotated[
-        int, typer.Option("--steps", min=1, help="Steps of gradient descent.")
-    ] = DEFAULTS.steps,
-    resolution: Annotated[
-        int, typer.Option("--resolution", min=8, help="Voxels along the longest edge.")
-    ] = DEFAULTS.resolution,
-    rays: Annotated[int, typer.Option("--rays", min=1, help="Rays a step.")] = DEFAULTS.rays,
-    learning_rate: Annotated[
-        float, typer.Option("--learning-rate", help="Factor on the built-in rates.")
-    ] = DEFAULTS.learning_rate,
-    total_variation: Annotated[
-        float, typer.Option("--total-variation", min=0.0, help="Weight of the smoothness prior.")
-    ] = DEFAULTS.total_variation,
-    background: Annotated[
-        str, typer.Option("--background", help="auto, random, white, black or learned.")
-    ] = DEFAULTS.background,
+    representation: RepresentationOption = DEFAULTS.representation,
+    steps: StepsOption = None,
+    resolution: ResolutionOption = DEFAULTS.resolution,
+    rays: RaysOption = DEFAULTS.rays,
+    learning_rate: LearningRateOption = DEFAULTS.learning_rate,
+    total_variation: TotalVariationOption = DEFAULTS.total_variation,
+    gaussians: GaussiansOption = DEFAULTS.gaussians,
+    density_control: DensityControlOption = DEFAULTS.density_control,
+    background: BackgroundOption = DEFAULTS.background,
     downscale: DownscaleOption = 1,
-    checkpoint_seconds: Annotated[
-        float, typer.Option("--checkpoint-seconds", min=0.0, help="Time between checkpoints.")
-    ] = 30.0,
-    allow_blind: Annotated[
-        bool, typer.Option("--allow-blind", help="Fit even if some cameras do not see the scene.")
-    ] = False,
-    resume: Annotated[
-        bool, typer.Option("--resume", help="Continue the fit in --out; its options are kept.")
-    ] = False,
+    checkpoint_seconds: CheckpointOption = 30.0,
+    allow_blind: AllowBlindOption = False,
+    resume: ResumeOption = False,
     seed: SeedOption = 0,
     threads: ThreadsOption = 0,
     as_json: JsonOption = False,
@@ -88,7 +93,8 @@ def fit(
     """Recover a scene from photographs with known cameras.
 
     Writes OUT/model.npz: every 30 seconds, on Ctrl-C or SIGTERM, and at the end. --resume continues
-    and ends with the same bits as a fit that was never interrupted.
+    and ends with the same bits as a fit that was never interrupted. A fit of Gaussians also leaves
+    OUT/gaussians.ply, which other viewers of splats read.
 
     Example: photograd fit photos --out model --steps 1500 --resolution 128
     """
@@ -101,18 +107,27 @@ def fit(
         refuse_other_options(context, job.options)
         note(f"resumed at step {job.step_number} of {job.options.steps}")
     else:
-        options = FitOptions(
-            representation=representation, steps=steps, resolution=resolution, rays=rays, seed=seed,
+        options = options_for(
+            representation, steps=steps, resolution=resolution, rays=rays, seed=seed,
             learning_rate=learning_rate, total_variation=total_variation, background=background,
+            gaussians=gaussians, density_control=density_control,
         )  # fmt: skip
         job = Fit.start(loaded, options, allow_blind=allow_blind)
         note(job.start_rule)
     with stop_on_signals() as stopping:
         result = run_with_bar(job, out, stopping, checkpoint_seconds)
-    emit(summary(result), as_json=as_json, title="fit")
+    emit(summary(result) | exported(job, out), as_json=as_json, title="fit")
     if not result.finished:
         note(f"stopped at step {result.step}; continue with --resume")
         raise typer.Exit(stopping.exit_code or 1)
+
+
+def exported(job: Fit, out: Path) -> dict[str, str]:
+    """Write finished Gaussians for other viewers; {"gaussians": path} if there are any."""
+    if job.step_number < job.options.steps or not isinstance(job.model, GaussianScene):
+        return {}
+    write_gaussian_ply(out / PLY_NAME, job.model.gaussians)
+    return {"gaussians": str(out / PLY_NAME)}
 
 
 def refuse_to_overwrite(out: Path) -> None:
@@ -155,7 +170,8 @@ def run_with_bar(
     job: Fit, out: Path, stopping: StopRequest, checkpoint_seconds: float = 30.0
 ) -> FitResult:
     """Run a fit under a live progress bar on stderr."""
-    with Bar("fit", job.options.steps, COLUMNS) as bar:
+    columns = SPLAT_COLUMNS if isinstance(job.model, GaussianScene) else COLUMNS
+    with Bar("fit", job.options.steps, columns) as bar:
 
         def on_step(now: Progress) -> None:
             bar.update(

@@ -14,13 +14,13 @@ from photograd.splats.markov_chain import MarkovChain
 from photograd.splats.start import start_gaussians
 
 FIRST_SHARE = 1 / 3
-"""Of the budget, at the start."""
+"""Of the budget, before cloning and splitting; a fixed number begins complete."""
 
 
 def first_scene(capture: Capture, box: Array, options: FitOptions) -> tuple[GaussianScene, str]:
     """A scene of constant colours, and a sentence on where its Gaussians come from."""
     control = scene_control(options)
-    share = 1.0 if isinstance(control, NoControl) else FIRST_SHARE
+    share = FIRST_SHARE if isinstance(control, CloneSplitPrune) else 1.0
     count = max(1, int(share * options.gaussians))
     gaussians, rule = start_gaussians(capture, box, count, degree=options.degree, seed=options.seed)
     extent = scene_extent(capture, box)
@@ -28,8 +28,14 @@ def first_scene(capture: Capture, box: Array, options: FitOptions) -> tuple[Gaus
 
 
 def scene_control(options: FitOptions) -> DensityControl:
-    """The density control that the options name, from a tenth to three quarters of the steps."""
-    schedule = Schedule(first=min(500, options.steps // 10), last=3 * options.steps // 4, every=100)
+    """The density control that the options name, from a tenth to three quarters of the steps.
+
+    It acts some thirty times, and in long fits every 100 steps, as the authors' do.
+    """
+    steps = options.steps
+    schedule = Schedule(
+        first=min(500, steps // 10), last=3 * steps // 4, every=min(100, max(1, steps // 40))
+    )
     if options.density_control == "mcmc":
         return MarkovChain(options.gaussians, seed=options.seed, schedule=schedule)
     if options.density_control == "default":

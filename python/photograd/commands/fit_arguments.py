@@ -1,0 +1,54 @@
+"""The options of `photograd fit`, with their help."""
+
+from __future__ import annotations
+
+from typing import Annotated, TypeAlias
+
+import typer
+
+from photograd.fields.fitted import FITTED
+from photograd.fit_options import BACKGROUNDS, DEFAULTS_OF, DENSITY_CONTROLS, FitOptions
+
+_STEPS = f"{FitOptions().steps}; " + ", ".join(
+    f"{name}: {given['steps']}" for name, given in DEFAULTS_OF.items()
+)
+
+RepresentationOption: TypeAlias = Annotated[
+    str, typer.Option("--representation", help=f"How the scene is stored: {', '.join(FITTED)}.")
+]
+StepsOption: TypeAlias = Annotated[
+    int | None,
+    typer.Option("--steps", min=1, help="Steps of gradient descent.", show_default=_STEPS),
+]
+ResolutionOption: TypeAlias = Annotated[
+    int, typer.Option("--resolution", min=8, help="Voxels along the longest edge.")
+]
+RaysOption: TypeAlias = Annotated[
+    int, typer.Option("--rays", min=1, help="Rays a step; Gaussians take whole views.")
+]
+LearningRateOption: TypeAlias = Annotated[
+    float, typer.Option("--learning-rate", help="Factor on the built-in rates.")
+]
+TotalVariationOption: TypeAlias = Annotated[
+    float,
+    typer.Option("--total-variation", min=0.0, help="Weight of the smoothness prior of grids."),
+]
+GaussiansOption: TypeAlias = Annotated[
+    int, typer.Option("--gaussians", min=1, help="Most Gaussians that there may be.")
+]
+DensityControlOption: TypeAlias = Annotated[
+    str,
+    typer.Option("--density-control", help=f"Of Gaussians: {', '.join(DENSITY_CONTROLS)}."),
+]
+BackgroundOption: TypeAlias = Annotated[
+    str, typer.Option("--background", help=f"auto, {', '.join(BACKGROUNDS)}.")
+]
+CheckpointOption: TypeAlias = Annotated[
+    float, typer.Option("--checkpoint-seconds", min=0.0, help="Time between checkpoints.")
+]
+AllowBlindOption: TypeAlias = Annotated[
+    bool, typer.Option("--allow-blind", help="Fit even if some cameras do not see the scene.")
+]
+ResumeOption: TypeAlias = Annotated[
+    bool, typer.Option("--resume", help="Continue the fit in --out; its options are kept.")
+]
