@@ -1,4 +1,4 @@
-"""`photograd capture`: photographs of a built-in scene, so that a fresh machine has input."""
+"""`photograd capture`: input for a fit, from a built-in scene or from one's own photographs."""
 
 from __future__ import annotations
 
@@ -16,11 +16,18 @@ from photograd_course.cli import (
     emit,
 )
 
+from photograd.commands.photo_capture import (
+    MaxSizeOption,
+    PairsOption,
+    capture_photographs,
+    refuse_mixture,
+)
 from photograd.commands.shared import use_threads
 from photograd.data.write import write_blender_capture
 from photograd.scenes.capture import capture_scene
 from photograd.scenes.registry import scene as build_scene
 from photograd.scenes.registry import scenes
+from photograd.sfm.engine import Settings
 from photograd.tracer import TracedScene
 
 DEFAULT_SCENE = next(iter(scenes()))
@@ -32,7 +39,15 @@ def register(app: typer.Typer) -> None:
 
 
 def capture(
-    out: Annotated[Path, typer.Option("--out", help="Folder to create.")],
+    context: typer.Context,
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", help="Folder to create; beside the photographs if they are given."),
+    ] = None,
+    photos: Annotated[
+        Path | None,
+        typer.Option("--photos", help="Folder of your own photographs, instead of a scene."),
+    ] = None,
     scene: Annotated[
         str, typer.Option("--scene", help=f"One of: {', '.join(scenes())}.")
     ] = DEFAULT_SCENE,
@@ -40,24 +55,40 @@ def capture(
     test_views: Annotated[int, typer.Option("--test-views", min=0, help="Held-out views.")] = 8,
     size: Annotated[int, typer.Option("--size", min=8, help="Pixels along an edge.")] = 128,
     spp: Annotated[int, typer.Option("--spp", min=1, help="Samples a pixel.")] = 64,
+    max_size: MaxSizeOption = Settings.max_size,
+    pairs: PairsOption = "auto",
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace what OUT holds.")] = False,
     seed: SeedOption = 0,
     threads: ThreadsOption = 0,
     as_json: JsonOption = False,
     debug: DebugOption = False,  # noqa: ARG001  read by the command line's frame
 ) -> None:
-    """Render photographs of a built-in scene with direct light and soft shadows.
+    """Make a capture: render a built-in scene, or recover the cameras of your own photographs.
 
-    Writes OUT in the NeRF/Blender layout: transforms_train.json, transforms_test.json, PNG images
-    with alpha (display values) and EXR images (linear radiance).
+    Of a scene, with direct light and soft shadows, OUT is in the NeRF/Blender layout:
+    transforms_train.json, transforms_test.json, PNG images with alpha (display values) and EXR
+    images (linear radiance). Of photographs, OUT holds a COLMAP model with points, and a picture of
+    the cameras; if interrupted, the same command goes on. Large reconstructions, of more than
+    50,000 observations, are the same to the bit with --threads 1 only.
 
     Example: photograd capture --scene textured --views 60 --test-views 8 --out my_capture
+
+    Example: photograd capture --photos my_photographs
     """
     use_threads(threads)
-    result = make_capture(
-        scene, out, views=views, test_views=test_views, size=size, spp=spp, seed=seed,
-        overwrite=overwrite,
-    )  # fmt: skip
+    refuse_mixture(context, photos)
+    if photos is not None:
+        result = capture_photographs(
+            photos, out or photos.with_name(f"{photos.resolve().name}_capture"), pairs=pairs,
+            max_size=max_size, seed=seed, threads=threads, overwrite=overwrite,
+        )  # fmt: skip
+    elif out is None:
+        raise typer.BadParameter("a scene needs one", param_hint="--out")
+    else:
+        result = make_capture(
+            scene, out, views=views, test_views=test_views, size=size, spp=spp, seed=seed,
+            overwrite=overwrite,
+        )  # fmt: skip
     emit(result, as_json=as_json, title="capture")
 
 
