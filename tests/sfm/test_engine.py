@@ -74,6 +74,14 @@ def test_without_pycolmap_the_command_to_install_it_is_named(
     assert not (tmp_path / "out").exists()  # said before anything is copied
 
 
+def test_an_old_pycolmap_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "pycolmap", SimpleNamespace(__version__="3.10"))  # type: ignore[arg-type]
+    with pytest.raises(
+        IoError, match=r"from 4\.2 on, got 3\.10 \(pip install --upgrade pycolmap\)"
+    ):
+        open_engine(tmp_path, tmp_path, Settings(), 0)
+
+
 def test_the_alignment_is_right() -> None:
     g = np.random.default_rng(1)
     points = g.normal(size=(7, 3))

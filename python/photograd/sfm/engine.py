@@ -18,7 +18,7 @@ from typing import Any, Protocol
 
 from photograd.errors import IoError, SceneError, message
 
-INSTALL = "pip install pycolmap"
+INSTALL, UPGRADE = "pip install pycolmap", "pip install --upgrade pycolmap"
 _POLL_S = 0.1
 
 
@@ -91,21 +91,15 @@ def open_engine(folder: Path, photographs: Path, settings: Settings, threads: in
     return _Pycolmap(_import(), folder / "database.db", photographs, settings, threads)
 
 
-def version() -> str:
-    """Version of pycolmap.
-
-    Raises:
-        IoError: it is not installed.
-    """
-    return str(_import().__version__)
-
-
 def _import() -> Any:
     try:
         import pycolmap
     except ImportError as failure:
         expected = "the package pycolmap, which recovers cameras"
         raise IoError(message("capture", "--photos", expected, "none", INSTALL)) from failure
+    if not hasattr(pycolmap, "CancellationToken"):
+        got = getattr(pycolmap, "__version__", "another")
+        raise IoError(message("capture", "--photos", "pycolmap from 4.2 on", got, UPGRADE))
     return pycolmap
 
 
