@@ -62,7 +62,7 @@ def read_gaussians(path: Path, *, memory_limit: int | None = None) -> GaussianFi
     start = head[:4]
     if start[:3] == b"ply":
         return _read_ply(path, head, memory_limit)
-    if start[:2] == GZIP or start == MAGIC:
+    if start[:3] == GZIP or start == MAGIC:
         gaussians, lines = read_gaussian_spz(path, memory_limit=memory_limit)
         return GaussianFile(gaussians, "spz", (*lines, *_misnamed(path, ".spz")))
     if start == b"PK\x03\x04":

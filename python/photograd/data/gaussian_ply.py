@@ -42,7 +42,7 @@ def read_gaussian_ply(path: Path) -> Gaussians:
     names = set(vertex.dtype.names or ())
     missing = [name for group in REQUIRED.values() for name in group if name not in names]
     if missing:
-        remedy = "a file of points, a mesh, or a compressed splat is read elsewhere"
+        remedy = "a file of points or a mesh holds no Gaussians"
         found = f"no {', '.join(missing[:3])}" + (" ..." if len(missing) > 3 else "")
         raise _refusal(path, "the properties of 3D Gaussians", found, remedy)
     rest = sum(name.startswith("f_rest_") for name in names)

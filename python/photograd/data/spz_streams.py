@@ -23,7 +23,7 @@ from typing import Any
 
 from photograd.errors import IoError, message
 
-MAGIC, GZIP = b"NGSP", b"\x1f\x8b"
+MAGIC, GZIP = b"NGSP", b"\x1f\x8b\x08"
 VERSIONS = (2, 3, 4)
 STREAMS = ("positions", "alphas", "colors", "scales", "rotations", "harmonics")
 FLAG_ANTIALIASED, FLAG_EXTENSIONS = 1, 2
@@ -65,7 +65,7 @@ def read_header(path: Path, content: bytes) -> SpzHeader:
         IoError: not an .spz file, another version, or values without meaning.
     """
     start = content[: _HEADER.size]
-    if content[:2] == GZIP:
+    if content[:3] == GZIP:
         start, _ = _inflate(path, content, _HEADER.size)
     if len(start) < _HEADER.size or start[:4] != MAGIC:
         got = repr(bytes(start[:4])) if start else "an empty file"
@@ -91,7 +91,7 @@ def read_streams(path: Path, content: bytes, header: SpzHeader) -> dict[str, byt
         return _read_zstd(path, content, header)
     sizes = header.sizes()
     wanted = _HEADER.size + sum(sizes.values())
-    if content[:2] == GZIP:
+    if content[:3] == GZIP:
         data, end = _inflate(path, content, wanted)
     else:
         data, end = content[:wanted], "whole" if len(content) <= wanted else "more"
