@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 from photograd.commands.fit import PLY_NAME
 from photograd.data.gaussian_ply import read_gaussian_ply
+from photograd.data.images import read_image
 from photograd_course.cli.entry import run
 
 from tests.commands.conftest import Photograd
@@ -52,6 +53,16 @@ def test_a_model_is_scored_and_drawn(
     assert strips.stat().st_size > 1000
     drawn = photograd("render", model, "--orbit", 2, "--size", 32, "--out", turn, "--json")
     assert drawn.result()["frames"] == 2
+
+
+def test_the_gradient_is_drawn(
+    photograd: Photograd, model: Path, capture_folder: Path, tmp_path: Path
+) -> None:
+    done = photograd("gradients", model, capture_folder, "--out", tmp_path, "--json").result()
+    assert done["steps"] == [0, 6, 60]
+    for name in ("gaussian_gradients", "curves"):
+        picture = read_image(Path(done[name]))
+        assert picture[..., :3].std() > 0.05
 
 
 def test_a_fit_goes_on_with_its_own_options(

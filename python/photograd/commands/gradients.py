@@ -32,11 +32,16 @@ from photograd.density_gradient import density_gradient
 from photograd.errors import RangeError, message
 from photograd.fields.dense_grid import DenseGrid
 from photograd.fields.fitted import FittedField
+from photograd.fields.gaussians import GaussianScene
 from photograd.model import Model, load_model
 from photograd.pixels import TrainingPixels
 from photograd.representation import Array
 from photograd.sign_claim import sign_claim
 from photograd.snapshots import load_snapshots
+from photograd.splats.clone_split_prune import CloneSplitPrune
+from photograd.splats.drawings import draw_gaussian_gradients
+from photograd.splats.view_gradients import pressure_picture, view_gradients
+from photograd.training_views import TrainingViews
 
 EXPLAIN = "Blue: more density lowers the loss. Red: less density does. White: no effect."
 
@@ -59,6 +64,8 @@ def gradients(
 ) -> None:
     """Draw the gradient of the loss in every voxel, from the start of the fit to its end.
 
+    Of Gaussians: where their means are pulled, which should be denser, and which will be split.
+
     Example: photograd gradients model photos --out pictures
     """
     use_threads(threads)
@@ -73,6 +80,8 @@ def draw_gradients(
 ) -> dict[str, Any]:
     """All pictures of one fit; returns the files and, where alpha tells, the sign shares."""
     make_folder(out)
+    if isinstance(model.field, GaussianScene):
+        return draw_gaussians(model, folder, capture, out)
     fields, starts = gradients_of_steps(model, folder, capture, rays, seed)
     first = min(fields)
     start, gradient = starts[first], fields[first]
@@ -108,6 +117,33 @@ def draw_gradients(
     return result
 
 
+def draw_gaussians(model: Model, folder: Path, capture: Capture, out: Path) -> dict[str, Any]:
+    """The picture of a fit of Gaussians at three of its steps, and its curves."""
+    views = TrainingViews(capture.train)
+    found: dict[int, Any] = load_snapshots(folder) or {int(model.meta["step"]): model.field}
+    steps = sorted(found)
+    chosen = sorted({steps[0], steps[len(steps) // 2], steps[-1]})
+    rows = {}
+    with Progress("gradients", len(chosen), [Column("loss", "{:.2e}".format)]) as bar:
+        for number, step in enumerate(chosen):
+            scene: GaussianScene = found[step]
+            here = view_gradients(scene, views, 0, ssim_weight=model.options.ssim_weight)
+            camera = views.views[0].camera
+            rows[step] = here, pressure_picture(scene.gaussians, here.pressure, camera)
+            bar.update(number + 1, loss=here.loss)
+    pictures = {
+        "gaussian_gradients": draw_gaussian_gradients(
+            rows, threshold=CloneSplitPrune.threshold, title="What the loss asks of each Gaussian"
+        )
+    }
+    if len(model.history) > 1:
+        pictures["curves"] = viz.fit_curves(curves_of(model), title="How the fit went")
+    files = {
+        name: viz.save_figure(figure, out / f"{name}.png") for name, figure in pictures.items()
+    }
+    return {"out": out, "steps": chosen, **files}
+
+
 def gradients_of_steps(
     model: Model, folder: Path, capture: Capture, rays: int, seed: int
 ) -> tuple[dict[int, Array], dict[int, DenseGrid]]:
@@ -136,5 +172,6 @@ def dense_grid(field: FittedField) -> DenseGrid:
 def curves_of(model: Model) -> viz.FitCurves:
     """The history of a fit as curves, with its refinements marked."""
     steps, loss, psnr = np.asarray(model.history).T
-    events = {s: f"{r}³" for s, r in model.options.levels().items() if 0 < s <= steps[-1]}
+    levels = {} if isinstance(model.field, GaussianScene) else model.options.levels()
+    events = {s: f"{r}³" for s, r in levels.items() if 0 < s <= steps[-1]}
     return viz.FitCurves(steps=steps.astype(int), loss=loss, psnr=psnr, events=events)

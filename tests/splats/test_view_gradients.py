@@ -1,0 +1,82 @@
+"""What is drawn of the gradient of Gaussians is what it says."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from photograd.data.camera import Camera
+from photograd.fields.gaussians import GaussianScene
+from photograd.fit import Fit
+from photograd.fit_options import options_for
+from photograd.splat import Gaussians, SplatOptions, render
+from photograd.splats.drawings import draw_gaussian_gradients
+from photograd.splats.view_gradients import (
+    pressure_picture,
+    screen_covariances,
+    view_gradients,
+)
+from photograd.training_views import TrainingViews
+
+from tests.splats.scene import cloud_capture
+
+
+@pytest.fixture(scope="module")
+def scene() -> GaussianScene:
+    fit = Fit.start(cloud_capture(), options_for("gaussians", steps=40, gaussians=150, degree=0))
+    for _ in range(15):
+        fit.step()
+    assert isinstance(fit.model, GaussianScene)
+    return fit.model
+
+
+def test_loss_falls_along_what_is_drawn(scene: GaussianScene) -> None:
+    views = TrainingViews(cloud_capture().train)
+    found = view_gradients(scene, views, 2)
+    before = scene.params["opacity_logits"].copy()
+    # Ten views of ten are looked at, so that the mean loss is that of `found`.
+    scene.params["opacity_logits"] = (before - 2e3 * found.d_logit).astype(np.float32)
+    after = view_gradients(scene, views, 2)
+    scene.params["opacity_logits"] = before
+    assert after.loss < found.loss
+    wish = np.square(found.d_logit).sum()
+    assert found.loss - after.loss == pytest.approx(2e3 * wish, rel=0.3)
+
+
+def test_one_splat_has_the_moments_of_its_ellipse() -> None:
+    g: Any = Gaussians(
+        means=np.array([[0.1, -0.05, 2.0]]), log_scales=np.log([[0.05, 0.12, 0.08]]),
+        quats=np.array([[0.9, 0.3, -0.2, 0.4]]), opacity_logits=np.array([-5.0]),
+        sh=np.ones((1, 1, 3)),
+    )  # fmt: skip
+    camera = Camera(96, 96, 120.0, 120.0, 48.0, 48.0, np.eye(4))
+    options = SplatOptions(low_pass=0.0).smooth()
+    weight = render(g, camera, options=options)[0].opacity
+    weight /= weight.sum()
+    v, u = np.mgrid[:96, :96] + 0.5
+    mean = np.array([(weight * u).sum(), (weight * v).sum()])
+    offset = np.stack([u - mean[0], v - mean[1]])
+    measured = np.einsum("hw,ahw,bhw->ab", weight, offset, offset)
+    np.testing.assert_allclose(screen_covariances(g, camera)[0], measured, rtol=0.01, atol=0.02)
+
+
+def test_pressure_is_seen_where_it_is(scene: GaussianScene) -> None:
+    views = TrainingViews(cloud_capture().train)
+    camera = views.views[3].camera
+    pressure = np.zeros(scene.resolution)
+    pixels, _ = camera.project(scene.params["means"].astype(np.float64))
+    middle = int(np.argmin(np.abs(pixels - [20, 20]).sum(axis=1)))
+    pressure[middle] = 0.5
+    drawn = pressure_picture(scene.gaussians, pressure, camera)
+    row, column = np.unravel_index(drawn.argmax(), drawn.shape)
+    assert np.hypot(column + 0.5 - pixels[middle, 0], row + 0.5 - pixels[middle, 1]) < 3
+    assert 0 < drawn.max() <= 0.5
+
+
+def test_a_figure_is_drawn_also_of_nothing(scene: GaussianScene) -> None:
+    views = TrainingViews(cloud_capture().train)
+    found = view_gradients(scene, views, 0)
+    pressure = pressure_picture(scene.gaussians, found.pressure, views.views[0].camera)
+    figure = draw_gaussian_gradients({0: (found, pressure), 9: (found, 0 * pressure)}, threshold=1)
+    assert len(figure.axes) == 2 * (3 + 2)
