@@ -60,7 +60,7 @@ def _draw(axes: Axes, capture: Capture, right: int, up: int) -> None:
     axes.set_aspect("equal")
     axes.grid(visible=True)
     axes.set_axisbelow(True)
-    axes.legend(loc="upper right")
+    axes.legend(loc="upper right", frameon=True, framealpha=0.85, edgecolor="none")
 
 
 def _wedge(view: View, length: float) -> FloatArray:
