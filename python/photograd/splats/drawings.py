@@ -1,4 +1,4 @@
-"""Pictures of the gradient of Gaussians: where they are pulled, what should be denser, what splits."""
+"""Pictures of the gradient of Gaussians: where they are pulled, which get denser, which split."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def draw_gaussian_gradients(
             left = LEFT
             axes = _panel(figure, left, top, height, found.picture)
             axes.set_ylabel(f"step {step}\nloss {found.loss:.3g}")
-            _arrows(axes, found)
+            draw_arrows(axes, found)
             left += PANEL + GAP
             middle = _panel(figure, left, top, height, found.picture)
             bar = (left + PANEL + 0.06, top, 0.1, height)
@@ -73,12 +73,19 @@ def draw_gaussian_gradients(
 def _panel(figure: Figure, left: float, top: float, height: float, picture: Array | None) -> Axes:
     """Axes in pixels, with the picture paled so that marks stand out."""
     axes = style.place_axes(figure, left, top, PANEL, height)
-    axes.set_xticks([])
-    axes.set_yticks([])
-    if picture is not None:
-        paled = 0.55 + 0.45 * np.clip(picture, 0, 1)
-        axes.imshow(paled, extent=(0, picture.shape[1], picture.shape[0], 0))
+    if picture is None:
+        axes.set(xticks=[], yticks=[])
+    else:
+        draw_picture(axes, picture, pale=True)
     return axes
+
+
+def draw_picture(axes: Axes, picture: Array, *, pale: bool) -> None:
+    """A picture (H, W, 3) of display values in axes that count its pixels; pale ones bear marks."""
+    shown = np.clip(picture, 0, 1)
+    height, width = picture.shape[:2]
+    axes.imshow(0.55 + 0.45 * shown if pale else shown, extent=(0, width, height, 0))
+    axes.set(xticks=[], yticks=[])
 
 
 def _frame(found: ViewGradients) -> tuple[float, float, float, float]:
@@ -88,14 +95,14 @@ def _frame(found: ViewGradients) -> tuple[float, float, float, float]:
     if not len(seen):
         return 0.0, float(width), float(height), 0.0
     low, high = np.quantile(seen, [0.01, 0.99], axis=0)
-    zoom = min(1.0, 1.3 * float(((high - low) / [width, height]).max()) + 0.02)
+    zoom = min(1.0, 1.45 * float(((high - low) / [width, height]).max()) + 0.02)
     half = 0.5 * zoom * np.array([width, height])
     middle = np.clip((low + high) / 2, half, np.array([width, height]) - half)
     (left, up), (right, down) = middle - half, middle + half
     return float(left), float(right), float(down), float(up)
 
 
-def _arrows(axes: Axes, found: ViewGradients) -> None:
+def draw_arrows(axes: Axes, found: ViewGradients) -> None:
     """Downhill, for the most pulled Gaussians of this view."""
     strength = np.hypot(found.screen[:, 0], found.screen[:, 1])
     strength = np.where(found.visible, strength, 0)
@@ -116,7 +123,7 @@ def _arrows(axes: Axes, found: ViewGradients) -> None:
 def _ellipses(
     figure: Figure, axes: Axes, found: ViewGradients, bar: tuple[float, float, float, float]
 ) -> None:
-    """One standard deviation of the Gaussians of this view, those with the strongest wish on top."""
+    """One standard deviation of each Gaussian of this view, the strongest wishes on top."""
     wish = np.where(found.visible, found.d_logit, 0)
     rows = np.argsort(np.abs(wish), kind="stable")[-ELLIPSES:]
     rows = rows[wish[rows] != 0]
