@@ -22,8 +22,8 @@ def payload(version: int, *, degree: int = 1, flags: int = 0, count: int = 1) ->
     """One Gaussian at (1.5, -2, 0.25) of the file's frame, written by hand."""
     header = struct.pack("<4sIIBBBB", b"NGSP", version, count, degree, 4, flags, 0)
     positions = three_bytes(24) + three_bytes(-32) + three_bytes(4)
-    # Half a turn about y, a little towards z: the largest of x y z w is y, at place 1.
-    word = 1 << 30 | 0 << 20 | (1 << 9 | 73) << 10 | 0
+    # About half a turn about y, towards x and z: the largest of x y z w is y, at place 1.
+    word = 1 << 30 | 100 << 20 | (1 << 9 | 73) << 10 | 0
     rotation = bytes([127, 255, 127]) if version == 2 else struct.pack("<I", word)
     harmonics = bytes([*range(129, 138)]) if degree else b""
     rest = bytes([204]) + bytes([255, 0, 128]) + bytes([160, 0, 255]) + rotation + harmonics
@@ -46,8 +46,8 @@ def test_each_byte_means_what_the_format_says(tmp_path: Path, version: int) -> N
     stored = np.arange(1, 10).reshape(3, 3) / 128
     np.testing.assert_allclose(g.sh[0, 1:], stored * [[-1], [-1], [1]], rtol=1e-6)
     if version == 3:
-        z = -73 / 511 * np.sqrt(0.5)
-        expected = np.array([0.0, 0.0, np.sqrt(1 - z * z), z]) * [1, 1, -1, -1]
+        x, z = 100 / 511 * np.sqrt(0.5), -73 / 511 * np.sqrt(0.5)
+        expected = np.array([0.0, x, np.sqrt(1 - x * x - z * z), z]) * [1, 1, -1, -1]
         np.testing.assert_allclose(g.quats[0], expected, atol=1e-6)
     else:
         angle = 2 * np.degrees(np.arccos(abs(g.quats[0, 2])))
