@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from photograd.commands.photo_capture import beside
 from photograd.sfm import reconstruct
 
 from tests.commands.conftest import Photograd
@@ -35,6 +36,12 @@ def test_a_folder_of_photographs_becomes_a_capture_beside_it(
         assert f"{stage} " in done.err
     seen = photograd("info", out, "--json").result()
     assert (seen["kind"], seen["points"]) == ("capture", 40)
+
+
+def test_the_folder_one_stands_in_has_a_name(source: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(source)
+    assert beside(Path()) == source.with_name("trip_capture")
+    assert beside(Path("a/b")) == Path("a/b_capture")
 
 
 def test_options_of_the_other_kind_are_refused(photograd: Photograd, source: Path) -> None:

@@ -19,6 +19,7 @@ from photograd_course.cli import (
 from photograd.commands.photo_capture import (
     MaxSizeOption,
     PairsOption,
+    beside,
     capture_photographs,
     refuse_mixture,
 )
@@ -79,7 +80,7 @@ def capture(
     refuse_mixture(context, photos)
     if photos is not None:
         result = capture_photographs(
-            photos, out or photos.with_name(f"{photos.resolve().name}_capture"), pairs=pairs,
+            photos, out or beside(photos), pairs=pairs,
             max_size=max_size, seed=seed, threads=threads, overwrite=overwrite,
         )  # fmt: skip
     elif out is None:

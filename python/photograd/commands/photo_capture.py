@@ -46,6 +46,12 @@ def refuse_mixture(context: typer.Context, photos: Path | None) -> None:
             raise typer.BadParameter(f"has no meaning {other}", param_hint=option)
 
 
+def beside(photos: Path) -> Path:
+    """Where the capture goes by default; a folder may also be called "." or ".."."""
+    folder = photos if photos.name not in ("", "..") else photos.resolve()
+    return folder.parent / f"{folder.name}_capture"
+
+
 def capture_photographs(
     photos: Path, out: Path, *, pairs: str, max_size: int, seed: int, threads: int, overwrite: bool
 ) -> dict[str, Any]:
