@@ -16,6 +16,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import asdict
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -45,6 +46,7 @@ from photograd.fit_checks import (
     require_background_of,
     require_finite,
     require_finite_loss,
+    require_gaussians,
     require_pixels_of,
     require_split_of,
     require_startable,
@@ -53,11 +55,12 @@ from photograd.fit_options import FitOptions
 from photograd.fit_rays import background_color, ray_slope
 from photograd.fit_result import FitResult, Progress
 from photograd.fit_views import view_slope
-from photograd.model import model_of
+from photograd.model import Model, model_of
 from photograd.pixels import TrainingPixels
 from photograd.representation import Array
 from photograd.row_adam import RowAdam
 from photograd.snapshots import save_snapshot, snapshot_steps
+from photograd.splats.surface_points import surface_points
 from photograd.training_views import TrainingViews
 
 PRUNING_RAYS = 1 << 20  # from all views; what they do not need is dropped from a sparse grid
@@ -89,8 +92,15 @@ class Fit:
         self.history: list[tuple[float, float, float]] = []
 
     @classmethod
-    def start(cls, capture: Capture, options: FitOptions, *, allow_blind: bool = False) -> Fit:
-        """Begin from nearly empty space.
+    def start(
+        cls,
+        capture: Capture,
+        options: FitOptions,
+        *,
+        allow_blind: bool = False,
+        start_from: Model | None = None,
+    ) -> Fit:
+        """Begin from nearly empty space, or with Gaussians on what `start_from` shows.
 
         Raises RangeError for an unknown or unfit representation, SceneError naming the training
         cameras that do not see the scene's box (with `allow_blind` only if none does).
@@ -100,7 +110,11 @@ class Fit:
         if not allow_blind:
             require_views_of(capture.train, bounds.box)
         require_background_of(capture, options)
-        model, rule = start_field(capture, bounds, options)
+        points = None
+        if start_from is not None:
+            require_gaussians(options.representation)
+            points = partial(surface_points, start_from, capture, seed=options.seed)
+        model, rule = start_field(capture, bounds, options, points)
         fit = cls(capture, options, model, None)
         if fit.background_kind == "learned":
             fit.background = first_background(fit.pixels.mean_color())

@@ -11,6 +11,7 @@ from photograd.checkpoint import Checkpoint
 from photograd.data.capture import Capture
 from photograd.errors import Error, IoError, RangeError, message
 from photograd.fields.fitted import FITTED
+from photograd.fields.gaussians import GaussianScene
 from photograd.fit_options import FitOptions
 from photograd.representation import Array, representation
 
@@ -41,6 +42,15 @@ def require_background_of(capture: Capture, options: FitOptions) -> None:
             message("Fit", "background", "random, white or black for photographs with alpha",
                     "'learned'")
         )  # fmt: skip
+
+
+def require_gaussians(name: str) -> None:
+    """Raise RangeError unless what starts from another model is Gaussians."""
+    if name != GaussianScene.name:
+        expected = f"none, or {GaussianScene.name!r} to fit"
+        raise RangeError(
+            message("Fit.start", "start_from", expected, repr(name), "grids start empty")
+        )
 
 
 def require_split_of(saved: Checkpoint, capture: Capture) -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from photograd.core import _core
-from photograd.errors import RangeError
+from photograd.errors import RangeError, SceneError
 from photograd.evaluate import evaluate
 from photograd.fields.gaussians import GaussianScene
 from photograd.fit import Fit
@@ -116,3 +116,28 @@ def test_options_have_the_defaults_of_their_representation() -> None:
     assert options_for("gaussians", steps=7, degree=None) == replace(
         options_for("gaussians"), steps=7
     )
+
+
+def test_gaussians_begin_on_what_a_model_shows() -> None:
+    capture = cloud_capture()
+    grid = Fit.start(capture, FitOptions(resolution=24, steps=80, rays=1024))
+    for _ in range(80):
+        grid.step()
+    seen = Model(grid.model, None, grid.options, {}, np.zeros((0, 3)))
+    fit = Fit.start(capture, OPTIONS, start_from=seen)
+    assert fit.start_rule == "Gaussians: 250 points that a fitted model shows"
+    means = fit.model.params["means"]
+    # The forty Gaussians of the truth fill a cube of 0.8 m, the grid's box is a quarter wider.
+    assert np.abs(means).max() < 0.75
+    assert fit.model.params["means"].std(axis=0).min() > 0.1
+    again = Fit.start(
+        capture, OPTIONS, start_from=Model(fit.model, None, OPTIONS, {}, np.zeros((0, 3)))
+    )
+    assert len(again.model.params["means"]) > 100  # a scene of Gaussians shows surfaces, too
+    with pytest.raises(RangeError, match="start_from: expected none, or 'gaussians' to fit"):
+        Fit.start(capture, grid.options, start_from=seen)
+    empty = Fit.start(capture, FitOptions(resolution=16, sigma_t=1e-6)).model
+    with pytest.raises(SceneError, match="empty pictures"):
+        Fit.start(
+            capture, OPTIONS, start_from=Model(empty, None, grid.options, {}, np.zeros((0, 3)))
+        )

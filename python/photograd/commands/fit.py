@@ -30,6 +30,7 @@ from photograd.commands.fit_arguments import (
     RepresentationOption,
     ResolutionOption,
     ResumeOption,
+    StartFromOption,
     StepsOption,
     TotalVariationOption,
 )
@@ -48,6 +49,7 @@ from photograd.fields.gaussians import GaussianScene
 from photograd.fit import Fit
 from photograd.fit_options import FitOptions, options_for
 from photograd.fit_result import FitResult, Progress, summary
+from photograd.model import load_model
 
 PLY_NAME = "gaussians.ply"
 DEFAULTS = FitOptions()
@@ -80,6 +82,7 @@ def fit(
     total_variation: TotalVariationOption = DEFAULTS.total_variation,
     gaussians: GaussiansOption = DEFAULTS.gaussians,
     density_control: DensityControlOption = DEFAULTS.density_control,
+    start_from: StartFromOption = None,
     background: BackgroundOption = DEFAULTS.background,
     downscale: DownscaleOption = 1,
     checkpoint_seconds: CheckpointOption = 30.0,
@@ -112,7 +115,8 @@ def fit(
             learning_rate=learning_rate, total_variation=total_variation, background=background,
             gaussians=gaussians, density_control=density_control,
         )  # fmt: skip
-        job = Fit.start(loaded, options, allow_blind=allow_blind)
+        first = load_model(start_from) if start_from else None
+        job = Fit.start(loaded, options, allow_blind=allow_blind, start_from=first)
         note(job.start_rule)
     with stop_on_signals() as stopping:
         result = run_with_bar(job, out, stopping, checkpoint_seconds)

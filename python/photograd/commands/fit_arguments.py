@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated, TypeAlias
 
 import typer
@@ -39,6 +40,10 @@ GaussiansOption: TypeAlias = Annotated[
 DensityControlOption: TypeAlias = Annotated[
     str,
     typer.Option("--density-control", help=f"Of Gaussians: {', '.join(DENSITY_CONTROLS)}."),
+]
+StartFromOption: TypeAlias = Annotated[
+    Path | None,
+    typer.Option("--start-from", help="Model on whose surfaces Gaussians begin.", metavar="MODEL"),
 ]
 BackgroundOption: TypeAlias = Annotated[
     str, typer.Option("--background", help=f"auto, {', '.join(BACKGROUNDS)}.")

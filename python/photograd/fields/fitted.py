@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any, TypeAlias
 
 from photograd.data.bounds import Bounds
@@ -22,14 +22,19 @@ FittedField: TypeAlias = FittedGrid | GaussianScene
 FITTED = (DenseGrid.name, SparseSh.name, GaussianScene.name)
 
 
-def start_field(capture: Capture, bounds: Bounds, options: FitOptions) -> tuple[FittedField, str]:
+def start_field(
+    capture: Capture,
+    bounds: Bounds,
+    options: FitOptions,
+    points: Callable[[int], tuple[Array, Array]] | None = None,
+) -> tuple[FittedField, str]:
     """What a fit begins with, and a sentence on where it comes from.
 
     Grids: nearly empty space in the box, at the coarsest level of the options. Gaussians: a part of
-    the budget, at the capture's points or at random.
+    the budget, at what `points(count)` returns, at the capture's points or at random.
     """
     if options.representation == GaussianScene.name:
-        scene, rule = first_scene(capture, bounds.box, options)
+        scene, rule = first_scene(capture, bounds.box, options, points)
         return scene, f"Gaussians: {rule}"
     size, finest = options.levels()[0], options.resolution
     if options.representation == SparseSh.name:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from photograd.data.capture import Capture
@@ -17,12 +19,23 @@ FIRST_SHARE = 1 / 3
 """Of the budget, before cloning and splitting; a fixed number begins complete."""
 
 
-def first_scene(capture: Capture, box: Array, options: FitOptions) -> tuple[GaussianScene, str]:
-    """A scene of constant colours, and a sentence on where its Gaussians come from."""
+def first_scene(
+    capture: Capture,
+    box: Array,
+    options: FitOptions,
+    points: Callable[[int], tuple[Array, Array]] | None = None,
+) -> tuple[GaussianScene, str]:
+    """A scene of constant colours, and a sentence on where its Gaussians come from.
+
+    `points(count)` may give places (N, 3) and display colours (N, 3) to begin with.
+    """
     control = scene_control(options)
     share = FIRST_SHARE if isinstance(control, CloneSplitPrune) else 1.0
     count = max(1, int(share * options.gaussians))
-    gaussians, rule = start_gaussians(capture, box, count, degree=options.degree, seed=options.seed)
+    gaussians, rule = start_gaussians(
+        capture, box, count, degree=options.degree, seed=options.seed,
+        given=points(count) if points else None,
+    )  # fmt: skip
     extent = scene_extent(capture, box)
     return GaussianScene(gaussians, extent=extent, control=control, active_degree=0), rule
 

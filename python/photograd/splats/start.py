@@ -43,19 +43,30 @@ _ROWS_AT_ONCE = 1 << 10
 
 
 def start_gaussians(
-    capture: Capture, box: Array, count: int, *, degree: int, seed: int
+    capture: Capture,
+    box: Array,
+    count: int,
+    *,
+    degree: int,
+    seed: int,
+    given: tuple[Array, Array] | None = None,
 ) -> tuple[Gaussians, str]:
     """Gaussians in float32 to begin a fit with, and one sentence on where they come from.
 
-    From the capture's sparse points if it has a hundred; else `count` random points of the box
-    (2, 3), where the photographs have alpha only those that no silhouette excludes.
+    At the points (N, 3) with display colours (N, 3) that are `given`; else at the capture's sparse
+    points if it has a hundred; else at `count` random points of the box (2, 3), where the
+    photographs have alpha only those that no silhouette excludes.
 
     Raises:
         RangeError: `count` below 1, or a degree that splats do not have.
     """
     if count < 1:
         raise RangeError(message("start_gaussians", "count", "at least 1", count))
-    if capture.points is not None and len(capture.points) >= FEWEST_POINTS:
+    if given is not None:
+        points, colors = given
+        size = neighbour_distance(points)
+        rule = f"{len(points)} points that a fitted model shows"
+    elif capture.points is not None and len(capture.points) >= FEWEST_POINTS:
         points, colors = _some_points(capture, count, seed)
         size = neighbour_distance(points)
         rule = f"{len(points)} of the {len(capture.points)} points of the capture"
