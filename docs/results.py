@@ -18,7 +18,11 @@ from typing import Any
 ROOT = Path(__file__).resolve().parent.parent
 RESULTS = ROOT / "docs" / "results.md"
 CAPTURES = {"nerf_synthetic_chair": 1, "banana": 2, "opensfm_berlin": 8}  # name -> downscale
-RESOLUTIONS = (64, 128, 192)
+CONTENDERS = (
+    "dense_grid:64", "dense_grid:128", "dense_grid:192",
+    "sparse_sh:128", "sparse_sh:192", "gaussians:30000",
+)  # fmt: skip
+"""Representations with their voxels along the longest edge, or their number of Gaussians."""
 
 
 def command(*words: str) -> dict[str, Any]:
@@ -41,28 +45,34 @@ def command(*words: str) -> dict[str, Any]:
     return {**result, "wall": os.times().elapsed - before.elapsed, "gib": usage.ru_maxrss / 2**20}
 
 
-def measure(data: Path, out: Path, name: str, resolution: int) -> str:
+def measure(data: Path, out: Path, name: str, contender: str) -> str:
     """One row of the table."""
     capture, downscale = str(data / name), str(CAPTURES[name])
-    model = out / f"{name}_{resolution}"
+    representation, size = contender.split(":")
+    model = out / f"{name}_{representation}_{size}"
+    option = "--gaussians" if representation == "gaussians" else "--resolution"
     fit = command(
-        "fit",
-        capture,
-        "--out",
-        str(model),
-        "--resolution",
-        str(resolution),
-        "--downscale",
-        downscale,
-    )
+        "fit", capture, "--out", str(model), "--downscale", downscale,
+        "--representation", representation, option, size,
+    )  # fmt: skip
     picture = model / "comparison.png"
     score = command(
         "evaluate", str(model), capture, "--downscale", downscale, "--out", str(picture)
     )
     return (
-        f"| {name} | {resolution} | {fit['step']} | {fit['seconds']:.0f} | {fit['gib']:.2f} "
-        f"| {score['psnr']:.2f} | {score['ssim']:.3f} | {len(score['views'])} |"
+        f"| {name} | {representation} | {int(size):,} | {fit['step']} | {fit['seconds']:.0f} "
+        f"| {fit['gib']:.2f} | {score['psnr']:.2f} | {score['ssim']:.3f} | {len(score['views'])} |"
     )
+
+
+def stored_rows(text: str) -> dict[tuple[str, str, str], str]:
+    """The rows of the table that stands in the page, by capture, representation and size."""
+    rows = {}
+    for line in text.splitlines():
+        cells = [cell.strip() for cell in line.strip("| ").split("|")]
+        if line.startswith("| ") and len(cells) == 9 and cells[0] != "capture":
+            rows[cells[0], cells[1], cells[2]] = line
+    return rows
 
 
 def main() -> None:
@@ -71,22 +81,25 @@ def main() -> None:
     parser.add_argument("data", type=Path)
     parser.add_argument("--out", type=Path, default=ROOT / "out" / "results")
     parser.add_argument("--captures", nargs="*", default=list(CAPTURES))
-    parser.add_argument("--resolutions", nargs="*", type=int, default=list(RESOLUTIONS))
+    parser.add_argument("--contenders", nargs="*", default=list(CONTENDERS))
     given = parser.parse_args()
-    rows = [
-        measure(given.data, given.out, name, size)
-        for name in given.captures
-        for size in given.resolutions
-    ]
     text = RESULTS.read_text() if RESULTS.exists() else "<!-- table -->\n<!-- end -->\n"
     head, rest = text.split("<!-- table -->", 1)
-    tail = rest.split("<!-- end -->", 1)[1]
-    table = [
+    table, tail = rest.split("<!-- end -->", 1)
+    rows = stored_rows(table)
+    for name in given.captures:
+        for contender in given.contenders:
+            row = measure(given.data, given.out, name, contender)
+            rows |= stored_rows(row)
+            print(row, flush=True)  # noqa: T201  a long run says what it has
+    lines = [
         "", f"Measured on {platform.machine()}, {os.cpu_count()} cores.", "",
-        "| capture | voxels | steps | fit, s | peak, GiB | PSNR, dB | SSIM | test views |",
-        "|---|---|---|---|---|---|---|---|", *rows, "",
+        "| capture | representation | voxels, or number | steps | fit, s | peak, GiB | PSNR, dB "
+        "| SSIM | test views |",
+        "|---|---|---|---|---|---|---|---|---|",
+        *(row for name in CAPTURES for key, row in rows.items() if key[0] == name), "",
     ]  # fmt: skip
-    RESULTS.write_text(head + "<!-- table -->" + "\n".join(table) + "<!-- end -->" + tail)
+    RESULTS.write_text(head + "<!-- table -->" + "\n".join(lines) + "<!-- end -->" + tail)
 
 
 if __name__ == "__main__":
