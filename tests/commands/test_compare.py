@@ -37,8 +37,10 @@ def test_two_contenders_are_fitted_scored_and_drawn(
     table = (tmp_path / "table.md").read_text(encoding="utf-8")
     assert table.count("dense_grid") == 2
     assert f"**{max(coarse['psnr'], fine['psnr']):.2f}**" in table
-    (picture,) = done.result()["pictures"]
-    assert read_image(Path(picture))[..., :3].std() > 0.05
+    pictures = [Path(name) for name in done.result()["pictures"]]
+    assert [path.name for path in pictures] == [f"{capture_folder.name}.png", "ranking.png"]
+    for picture in pictures:
+        assert read_image(picture)[..., :3].std() > 0.05
 
     again = photograd(*words)  # nothing is fitted twice, and nothing changes but the frame's time
     assert again.code == 0

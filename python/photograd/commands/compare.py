@@ -28,6 +28,7 @@ from photograd.data.load import load_capture
 from photograd.errors import RangeError, SceneError, message
 from photograd.evaluate import Evaluation
 from photograd.fit_options import FitOptions
+from photograd.ranking import ranking
 from photograd.scenes.registry import scenes
 
 DEFAULTS = FitOptions()
@@ -66,8 +67,9 @@ def compare(
 ) -> None:
     """Fit several representations to the same photographs and put the results side by side.
 
-    Writes OUT/table.md, one picture a capture (its worst held-out view), and each model in
-    OUT/CAPTURE/. Stopped by Ctrl-C, the same command line goes on where it was.
+    Writes OUT/table.md, OUT/ranking.png (quality against bytes), one picture a capture (its worst
+    held-out view), and each model in OUT/CAPTURE/. Stopped by Ctrl-C, the same command line goes
+    on where it was.
 
     Example: photograd compare foliage fur --contenders dense_grid:128,sparse_sh:128
     """
@@ -84,6 +86,7 @@ def compare(
             scores += [score for score, _ in found]
             pictures.append(out / f"{name}.png")
             draw([evaluation for _, evaluation in found], candidates, name, pictures[-1])
+    pictures.append(save_figure(ranking(scores), out / "ranking.png"))
     table = out / "table.md"
     atomic_write(table, markdown(scores).encode())
     rows = [asdict(score) for score in scores]
