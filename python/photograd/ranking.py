@@ -13,6 +13,7 @@ from photograd.compare import Score
 PANEL, GAP, LEFT, TOP = 2.5, 0.6, 0.6, 0.75  # inches
 ROW = 0.145  # of a legend's line
 COLORS = (style.BLUE, style.ORANGE, style.RED, "#1b7837", "#762a83", style.GREY)
+_ROUND = [digit * 10.0**power for power in range(-3, 5) for digit in (1, 2, 5)]
 MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 
 
@@ -64,6 +65,11 @@ def _panel(axes: Axes, scores: Sequence[Score], looks: dict[str, tuple[str, str]
             f"{score.train_seconds:.0f} s", (x, score.psnr), xytext=(5, 3),
             textcoords="offset points", fontsize=style.SMALL_SIZE,
         )  # fmt: skip
+    low, high = axes.get_xlim()
+    marks = [mark for mark in _ROUND if 0.5 * low < mark < 2 * high]
+    axes.set_xticks(marks, labels=[f"{mark:g}" for mark in marks])
+    axes.minorticks_off()
+    axes.set_xlim(low / 1.4, high * 2)
     axes.grid(visible=True)
     axes.set_axisbelow(True)
-    axes.margins(0.25)
+    axes.margins(y=0.2)
