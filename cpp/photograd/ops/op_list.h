@@ -12,6 +12,7 @@
 #include "photograd/ops/bilinear.h"
 #include "photograd/ops/cell_blend.h"
 #include "photograd/ops/composite.h"
+#include "photograd/ops/facet_op_list.h"
 #include "photograd/ops/input_group.h"
 #include "photograd/ops/sh.h"
 #include "photograd/ops/splat_op_list.h"
@@ -225,11 +226,13 @@ struct CompositeOp {
     }
 };
 
-using Ops = TypeList<ActivationOp<Activation::relu>, ActivationOp<Activation::softplus>,
-                     ActivationOp<Activation::exp>, ActivationOp<Activation::sigmoid>,
-                     BilinearOp<false>, BilinearOp<true>, TrilinearOp<Border::clamp>,
-                     TrilinearOp<Border::zero>, CellBlendOp, ShColorOp,
-                     CompositeOp<Quadrature::alpha>, CompositeOp<Quadrature::riemann>, CovarianceOp,
-                     ProjectionOp<false>, ProjectionOp<true>, ConicOp, SplatColorOp, SplatBlendOp>;
+using Ops =
+    TypeList<ActivationOp<Activation::relu>, ActivationOp<Activation::softplus>,
+             ActivationOp<Activation::exp>, ActivationOp<Activation::sigmoid>, BilinearOp<false>,
+             BilinearOp<true>, TrilinearOp<Border::clamp>, TrilinearOp<Border::zero>, CellBlendOp,
+             ShColorOp, CompositeOp<Quadrature::alpha>, CompositeOp<Quadrature::riemann>,
+             CovarianceOp, ProjectionOp<false>, ProjectionOp<true>, ConicOp, SplatColorOp,
+             SplatBlendOp, ErfOp, SchlickOp, DielectricOp<false>, DielectricOp<true>, ConductorOp,
+             GgxOp, BeckmannOp, CharlieOp>;
 
 }  // namespace photograd
