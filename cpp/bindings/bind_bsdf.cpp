@@ -1,4 +1,6 @@
-// Every model of bsdf/registry.h as a class of static functions on arrays, and {name: class} as _core.bsdfs.
+// Every model of bsdf/registry.h as a class of static functions on arrays, and {name: class} as _core.bsdfs; the same
+// for perfectly smooth ones as _core.delta_bsdfs.
+#include "bind_delta.h"
 #include "model_args.h"
 #include "module.h"
 #include "photograd/bsdf/registry.h"
@@ -124,7 +126,10 @@ struct BoundBsdf {
             },
             "What is claimed of the directional albedo: (conserving, lossy or gains; its bound).");
         type.def_static(
-            "reciprocal", [] { return T::reciprocal; }, "Whether f(wo, wi) = f(wi, wo).");
+            "reciprocal", [] { return T::reciprocal; },
+            "Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.");
+        type.def_static(
+            "transmits", [] { return transmits<T>(); }, "Whether light may pass the surface.");
         return type;
     }
 };
@@ -136,6 +141,10 @@ void bind_bsdf(py::module_& m) {
     Bsdfs::for_each(
         [&]<template <class> class M>() { registry[M<double>::name] = BoundBsdf<M>::bind(m); });
     m.attr("bsdfs") = registry;
+    py::dict deltas;
+    DeltaBsdfs::for_each(
+        [&]<template <class> class M>() { deltas[M<double>::name] = BoundDelta<M>::bind(m); });
+    m.attr("delta_bsdfs") = deltas;
 }
 
 }  // namespace photograd

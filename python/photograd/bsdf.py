@@ -42,7 +42,9 @@ class BsdfModel:
         name: in the registry.
         parameters: in the order in which the core packs them.
         energy: ("conserving" | "lossy" | "gains", bound on the directional albedo).
-        reciprocal: whether f(wo, wi) = f(wi, wo).
+        reciprocal: whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; the index is 1
+            above the surface, and `eta` below it in models that transmit.
+        transmits: whether light may pass; wo and wi may then lie on either side.
         core: the core's class of static functions.
     """
 
@@ -50,6 +52,7 @@ class BsdfModel:
     parameters: tuple[Parameter, ...]
     energy: tuple[str, float]
     reciprocal: bool
+    transmits: bool
     core: Any
 
     def pack(self, parameters: Parameters, dtype: npt.DTypeLike = np.float64) -> Array:
@@ -59,41 +62,11 @@ class BsdfModel:
             RangeError: a name that is missing or unknown, or values that are not finite.
             ShapeError: a value of another shape, or different numbers of rows.
         """
-        names = [parameter.name for parameter in self.parameters]
-        if set(parameters) != set(names):
-            got = sorted(parameters)
-            raise RangeError(message(self.name, "parameters", f"exactly {names}", got))
-        columns = [
-            self._column(parameter, parameters[parameter.name]) for parameter in self.parameters
-        ]
-        rows = max(len(column) for column in columns)
-        if any(len(column) not in (1, rows) for column in columns):
-            counts = [len(column) for column in columns]
-            raise ShapeError(message(self.name, "parameters", "one number of rows", counts))
-        wide = [np.broadcast_to(column, (rows, column.shape[1])) for column in columns]
-        return np.ascontiguousarray(np.concatenate(wide, axis=1), dtype)
-
-    def _column(self, parameter: Parameter, value: Any) -> Array:
-        column = np.asarray(value, np.float64)
-        one = (parameter.size,) if parameter.size > 1 else ()
-        if column.shape != one and (column.ndim != len(one) + 1 or column.shape[1:] != one):
-            expected = f"shape {one} or {('N', *one)}"
-            raise ShapeError(message(self.name, parameter.name, expected, column.shape))
-        if not np.isfinite(column).all():
-            raise RangeError(
-                message(self.name, parameter.name, "finite numbers", "NaN or infinity")
-            )
-        rows: Array = column.reshape(-1, parameter.size)
-        return rows
+        return pack_rows(self.name, self.parameters, parameters, dtype)
 
     def unpack(self, rows: Array) -> dict[str, Array]:
         """Rows (N, P) as {name: (N,) or (N, size)}."""
-        ends = np.cumsum([parameter.size for parameter in self.parameters])[:-1]
-        parts = np.split(rows, ends, axis=1)
-        return {
-            parameter.name: part[:, 0] if parameter.size == 1 else part
-            for parameter, part in zip(self.parameters, parts, strict=True)
-        }
+        return unpack_rows(self.parameters, rows)
 
     def f(self, parameters: Parameters, wo: Array, wi: Array) -> Array:
         """Value (N, 3) without the cosine, in the dtype of `wo`.
@@ -101,7 +74,7 @@ class BsdfModel:
         Raises:
             DtypeError, ShapeError: directions not float32 or float64, or not (N, 3).
         """
-        wo, wi = _directions(wo, wi)
+        wo, wi = checked_directions(wo, wi)
         value: Array = self.core.f(self.pack(parameters, wo.dtype), wo, wi)
         return value
 
@@ -109,21 +82,21 @@ class BsdfModel:
         self, parameters: Parameters, wo: Array, wi: Array, d_f: Array
     ) -> dict[str, Array]:
         """dL/dparameters of d_f (N, 3) as {name: (N,) or (N, size)}; (1, ...) for shared values."""
-        wo, wi = _directions(wo, wi)
+        wo, wi = checked_directions(wo, wi)
         rows = self.pack(parameters, wo.dtype)
         d_f = np.ascontiguousarray(d_f, wo.dtype)
         return self.unpack(self.core.f_backward(rows, wo, wi, d_f, np.zeros_like(rows)))
 
     def sample(self, parameters: Parameters, wo: Array, u2: Array) -> Array:
         """Directions wi (N, 3), drawn from uniform u2 (N, 2) with the density `pdf`."""
-        (wo,) = _directions(wo)
+        (wo,) = checked_directions(wo)
         u2 = np.ascontiguousarray(u2, wo.dtype)
         wi: Array = self.core.sample(self.pack(parameters, wo.dtype), wo, u2)
         return wi
 
     def pdf(self, parameters: Parameters, wo: Array, wi: Array) -> Array:
         """Density (N,) of `sample` over solid angle."""
-        wo, wi = _directions(wo, wi)
+        wo, wi = checked_directions(wo, wi)
         density: Array = self.core.pdf(self.pack(parameters, wo.dtype), wo, wi)
         return density
 
@@ -138,6 +111,43 @@ class BsdfModel:
         return values
 
 
+def pack_rows(
+    model: str, described: tuple[Parameter, ...], values: Parameters, dtype: npt.DTypeLike
+) -> Array:
+    """Named values as rows (1, P) or (N, P) of scalars in the order of the description."""
+    names = [parameter.name for parameter in described]
+    if set(values) != set(names):
+        raise RangeError(message(model, "parameters", f"exactly {names}", sorted(values)))
+    columns = [_column(model, parameter, values[parameter.name]) for parameter in described]
+    rows = max(len(column) for column in columns)
+    if any(len(column) not in (1, rows) for column in columns):
+        counts = [len(column) for column in columns]
+        raise ShapeError(message(model, "parameters", "one number of rows", counts))
+    wide = [np.broadcast_to(column, (rows, column.shape[1])) for column in columns]
+    return np.ascontiguousarray(np.concatenate(wide, axis=1), dtype)
+
+
+def unpack_rows(described: tuple[Parameter, ...], rows: Array) -> dict[str, Array]:
+    """Rows (N, P) as {name: (N,) or (N, size)}."""
+    ends = np.cumsum([parameter.size for parameter in described])[:-1]
+    return {
+        parameter.name: part[:, 0] if parameter.size == 1 else part
+        for parameter, part in zip(described, np.split(rows, ends, axis=1), strict=True)
+    }
+
+
+def _column(model: str, parameter: Parameter, value: Any) -> Array:
+    column = np.asarray(value, np.float64)
+    one = (parameter.size,) if parameter.size > 1 else ()
+    if column.shape != one and (column.ndim != len(one) + 1 or column.shape[1:] != one):
+        expected = f"shape {one} or {('N', *one)}"
+        raise ShapeError(message(model, parameter.name, expected, column.shape))
+    if not np.isfinite(column).all():
+        raise RangeError(message(model, parameter.name, "finite numbers", "NaN or infinity"))
+    rows: Array = column.reshape(-1, parameter.size)
+    return rows
+
+
 def registry(core: ModuleType | Any = _core) -> dict[str, BsdfModel]:
     """All reflectance models of a compiled module, by name."""
     return {
@@ -146,13 +156,15 @@ def registry(core: ModuleType | Any = _core) -> dict[str, BsdfModel]:
             tuple(Parameter(*row) for row in model.parameters()),
             model.energy(),
             model.reciprocal(),
+            model.transmits(),
             model,
         )
         for name, model in core.bsdfs.items()
     }
 
 
-def _directions(*arrays: Array) -> tuple[Array, ...]:
+def checked_directions(*arrays: Array) -> tuple[Array, ...]:
+    """The arrays, contiguous, if they are directions (N, 3) of one shape and floating dtype."""
     for array in arrays:
         if not isinstance(array, np.ndarray) or array.dtype not in (np.float32, np.float64):
             got = getattr(array, "dtype", type(array).__name__)

@@ -37,7 +37,8 @@ def gallery_picture(model: BsdfModel, path: Path) -> None:
         lobe = figure.add_subplot(2, 4, 5 + column, projection="polar")
         angle, value = _lobe(model, parameters)
         lobe.plot(np.pi / 2 - angle, value, lw=1.5)
-        lobe.set_xlim(0.0, np.pi)
+        if not model.transmits:
+            lobe.set_xlim(0.0, np.pi)
         lobe.tick_params(labelsize=6)
     figure.suptitle(model.name)
     figure.savefig(path, dpi=110, metadata={"Software": None})
@@ -67,7 +68,8 @@ def _sphere(model: BsdfModel, parameters: dict[str, Array], size: int = 160) -> 
 
 def _lobe(model: BsdfModel, parameters: dict[str, Array]) -> tuple[Array, Array]:
     """Angles from the normal (A,) and f cos, mean over channels (A,), in the plane of incidence."""
-    angle = np.linspace(-np.pi / 2, np.pi / 2, 361)
+    reach = np.pi if model.transmits else np.pi / 2
+    angle = np.linspace(-reach, reach, 361)
     wo = np.stack([np.sin(angle), np.zeros_like(angle), np.cos(angle)], axis=1)
     wi = np.broadcast_to([-np.sqrt(0.5), 0.0, np.sqrt(0.5)], wo.shape).copy()
     return angle, model.f(parameters, wo, wi).mean(axis=1) * np.sqrt(0.5)

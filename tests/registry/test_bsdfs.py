@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable
 from pathlib import Path
 
@@ -79,7 +80,7 @@ class Wrong:
 )
 def test_the_physics_proofs_see_faults(fault: str, proof: Callable[[BsdfModel], None]) -> None:
     right = MODELS["lambert"]
-    wrong = BsdfModel(right.name, right.parameters, right.energy, right.reciprocal, Wrong(fault))
+    wrong = dataclasses.replace(right, core=Wrong(fault))
     with pytest.raises(AssertionError):
         proof(wrong)
 

@@ -12,19 +12,21 @@ import numpy.typing as npt
 Array = npt.NDArray[Any]
 
 
-def sphere_cell_masses(pdf: Callable[[Array], Array], z: Array, columns: int) -> Array:
-    """Integral of pdf over each cell (Z - 1, columns) of height and azimuth: Gauss-Legendre, 5 x 5.
+def sphere_cell_masses(
+    pdf: Callable[[Array], Array], z: Array, columns: int, *, order: int = 5
+) -> Array:
+    """Integral of pdf over each cell (Z - 1, columns) of height and azimuth, by Gauss-Legendre.
 
-    `z` (Z,) are the edges of the rows; area on the sphere is dz dphi.
+    `z` (Z,) are the edges of the rows; area on the sphere is dz dphi. A cell has order^2 nodes.
     """
-    nodes, weights = np.polynomial.legendre.leggauss(5)
+    nodes, weights = np.polynomial.legendre.leggauss(order)
     phi = np.linspace(0.0, 2.0 * np.pi, columns + 1)
     high = 0.5 * (z[:-1, None] + z[1:, None]) + 0.5 * np.diff(z)[:, None] * nodes
     turn = 0.5 * (phi[:-1, None] + phi[1:, None]) + 0.5 * np.diff(phi)[:, None] * nodes
     h, t = np.meshgrid(high.ravel(), turn.ravel(), indexing="ij")
     s = np.sqrt(np.clip(1.0 - h * h, 0.0, 1.0))
     w = np.stack([s * np.cos(t), s * np.sin(t), h], axis=-1).reshape(-1, 3)
-    values = pdf(np.ascontiguousarray(w)).reshape(len(z) - 1, 5, columns, 5)
+    values = pdf(np.ascontiguousarray(w)).reshape(len(z) - 1, order, columns, order)
     sums = np.einsum("iajb,a,b->ij", values, weights, weights)
     masses: Array = sums * (0.25 * np.diff(z)[:, None] * np.diff(phi)[None, :])
     return masses

@@ -29,6 +29,16 @@ concept BsdfValue = requires(const T& model, T& d_model, const Vec3<R>& w) {
     { model.f_backward(w, w, w, d_model) } -> std::same_as<void>;
 };
 
+/// Models that refract as well say `transmits`, and have the index inside over outside as a parameter `eta`: their
+/// wo and wi may lie on either side. All others are 0 unless both are above.
+template <class T>
+constexpr bool transmits() {
+    if constexpr (requires { T::transmits; })
+        return T::transmits;
+    else
+        return false;
+}
+
 /// Sampling is detached: it needs no Dual numbers. `sample(wo, u2)` returns wi, `pdf` its density.
 template <class T, class R>
 concept BsdfSampler = requires(const T& model, const Vec3<R>& w, const Vec2<R>& u2) {

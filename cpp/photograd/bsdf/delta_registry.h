@@ -1,0 +1,12 @@
+// All perfectly smooth surfaces. A new one: its header, and its name here.
+#pragma once
+
+#include "photograd/bsdf/glass.h"
+#include "photograd/bsdf/mirror.h"
+#include "photograd/bsdf/thin_glass.h"
+
+namespace photograd {
+
+using DeltaBsdfs = ModelList<Mirror, Glass, ThinGlass>;
+
+}  // namespace photograd
