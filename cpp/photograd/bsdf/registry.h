@@ -2,10 +2,12 @@
 // and gallery pictures follow.
 #pragma once
 
+#include "photograd/bsdf/blinn_phong.h"
 #include "photograd/bsdf/lambert.h"
+#include "photograd/bsdf/phong.h"
 
 namespace photograd {
 
-using Bsdfs = ModelList<Lambert>;
+using Bsdfs = ModelList<Lambert, Phong, PhongReciprocal, BlinnPhong, BlinnPhongFitted>;
 
 }  // namespace photograd
