@@ -3,11 +3,14 @@
 #pragma once
 
 #include "photograd/bsdf/blinn_phong.h"
+#include "photograd/bsdf/burley_diffuse.h"
 #include "photograd/bsdf/lambert.h"
+#include "photograd/bsdf/oren_nayar.h"
 #include "photograd/bsdf/phong.h"
 
 namespace photograd {
 
-using Bsdfs = ModelList<Lambert, Phong, PhongReciprocal, BlinnPhong, BlinnPhongFitted>;
+using Bsdfs = ModelList<Lambert, Phong, PhongReciprocal, BlinnPhong, BlinnPhongFitted,
+                        OrenNayarQualitative, BurleyDiffuse>;
 
 }  // namespace photograd
