@@ -4,6 +4,7 @@
 
 #include "photograd/bsdf/blinn_phong.h"
 #include "photograd/bsdf/burley_diffuse.h"
+#include "photograd/bsdf/cook_torrance.h"
 #include "photograd/bsdf/lambert.h"
 #include "photograd/bsdf/oren_nayar.h"
 #include "photograd/bsdf/phong.h"
@@ -11,6 +12,6 @@
 namespace photograd {
 
 using Bsdfs = ModelList<Lambert, Phong, PhongReciprocal, BlinnPhong, BlinnPhongFitted,
-                        OrenNayarQualitative, BurleyDiffuse>;
+                        OrenNayarQualitative, BurleyDiffuse, CookTorrance>;
 
 }  // namespace photograd
