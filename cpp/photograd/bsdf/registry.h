@@ -4,14 +4,17 @@
 
 #include "photograd/bsdf/blinn_phong.h"
 #include "photograd/bsdf/burley_diffuse.h"
+#include "photograd/bsdf/conductor.h"
 #include "photograd/bsdf/cook_torrance.h"
+#include "photograd/bsdf/ggx_metal.h"
 #include "photograd/bsdf/lambert.h"
 #include "photograd/bsdf/oren_nayar.h"
 #include "photograd/bsdf/phong.h"
 
 namespace photograd {
 
-using Bsdfs = ModelList<Lambert, Phong, PhongReciprocal, BlinnPhong, BlinnPhongFitted,
-                        OrenNayarQualitative, BurleyDiffuse, CookTorrance>;
+using Bsdfs =
+    ModelList<Lambert, Phong, PhongReciprocal, BlinnPhong, BlinnPhongFitted, OrenNayarQualitative,
+              BurleyDiffuse, CookTorrance, GgxMetal, GgxConductor, BeckmannConductor>;
 
 }  // namespace photograd
