@@ -4,19 +4,22 @@
 
 #include "photograd/bsdf/blinn_phong.h"
 #include "photograd/bsdf/burley_diffuse.h"
+#include "photograd/bsdf/clearcoat.h"
 #include "photograd/bsdf/conductor.h"
 #include "photograd/bsdf/cook_torrance.h"
+#include "photograd/bsdf/ggx_anisotropic.h"
 #include "photograd/bsdf/ggx_metal.h"
 #include "photograd/bsdf/gltf.h"
 #include "photograd/bsdf/lambert.h"
 #include "photograd/bsdf/oren_nayar.h"
 #include "photograd/bsdf/phong.h"
+#include "photograd/bsdf/sheen.h"
 #include "photograd/bsdf/standard.h"
 
 namespace photograd {
 
 using Bsdfs = ModelList<Lambert, Phong, PhongReciprocal, BlinnPhong, BlinnPhongFitted,
                         OrenNayarQualitative, BurleyDiffuse, CookTorrance, GgxMetal, GgxConductor,
-                        BeckmannConductor, Standard, Gltf>;
+                        BeckmannConductor, GgxAnisotropic, Standard, Gltf, Clearcoat, Sheen>;
 
 }  // namespace photograd
