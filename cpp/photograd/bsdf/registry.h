@@ -13,13 +13,15 @@
 #include "photograd/bsdf/lambert.h"
 #include "photograd/bsdf/oren_nayar.h"
 #include "photograd/bsdf/phong.h"
+#include "photograd/bsdf/rough_dielectric.h"
 #include "photograd/bsdf/sheen.h"
 #include "photograd/bsdf/standard.h"
 
 namespace photograd {
 
-using Bsdfs = ModelList<Lambert, Phong, PhongReciprocal, BlinnPhong, BlinnPhongFitted,
-                        OrenNayarQualitative, BurleyDiffuse, CookTorrance, GgxMetal, GgxConductor,
-                        BeckmannConductor, GgxAnisotropic, Standard, Gltf, Clearcoat, Sheen>;
+using Bsdfs =
+    ModelList<Lambert, Phong, PhongReciprocal, BlinnPhong, BlinnPhongFitted, OrenNayarQualitative,
+              BurleyDiffuse, CookTorrance, GgxMetal, GgxConductor, BeckmannConductor,
+              GgxAnisotropic, Standard, Gltf, Clearcoat, Sheen, RoughDielectric>;
 
 }  // namespace photograd
