@@ -31,7 +31,7 @@ def gallery_picture(model: BsdfModel, path: Path) -> None:
     for column, fraction in enumerate(_FRACTIONS):
         parameters = model.at(fraction)
         sphere = figure.add_subplot(2, 4, 1 + column)
-        sphere.imshow(srgb_encode(np.clip(_sphere(model, parameters), 0.0, 1.0)))
+        sphere.imshow(srgb_encode(np.clip(sphere_picture(model, parameters), 0.0, 1.0)))
         sphere.axis("off")
         sphere.set_title(_caption(parameters), fontsize=7)
         lobe = figure.add_subplot(2, 4, 5 + column, projection="polar")
@@ -49,8 +49,12 @@ def _caption(parameters: dict[str, Array]) -> str:
     return "\n".join(parts)
 
 
-def _sphere(model: BsdfModel, parameters: dict[str, Array], size: int = 160) -> Array:
-    """Radiance (size, size, 3) of a sphere on a transparent-white ground."""
+def sphere_directions(size: int) -> tuple[Array, Array, Array]:
+    """A ball that fills a square picture, seen from +Z, under one distant light up to the left.
+
+    Returns:
+        Where the ball is (size, size), and wo and wi (N, 3) in the shading frames of its N pixels.
+    """
     x = (np.arange(size) + 0.5) / size * 2.2 - 1.1
     right, up = np.meshgrid(x, -x)
     inside = right**2 + up**2 < 1.0
@@ -59,10 +63,14 @@ def _sphere(model: BsdfModel, parameters: dict[str, Array], size: int = 160) -> 
     tangent = np.cross([0.0, 1.0, 0.0], normal)
     tangent /= np.linalg.norm(tangent, axis=1, keepdims=True) + 1e-12
     frame = np.stack([tangent, np.cross(normal, tangent), normal], axis=1)
-    wo, wi = frame @ view, frame @ _LIGHT
-    value = model.f(parameters, wo, wi) * np.pi * np.clip(wi[:, 2:], 0.0, None)
+    return inside, frame @ view, frame @ _LIGHT
+
+
+def sphere_picture(model: BsdfModel, parameters: dict[str, Any], size: int = 160) -> Array:
+    """Radiance (size, size, 3) of that ball under irradiance pi, on a white ground."""
+    inside, wo, wi = sphere_directions(size)
     image = np.ones((size, size, 3))
-    image[inside] = value
+    image[inside] = model.f(parameters, wo, wi) * np.pi * np.clip(wi[:, 2:], 0.0, None)
     return image
 
 

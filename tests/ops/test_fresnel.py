@@ -54,12 +54,13 @@ def test_a_metal_straight_on_and_at_the_horizon() -> None:
         assert reflectance("fresnel_conductor", eta, k, 0.0) == pytest.approx(1.0, rel=1e-13)
 
 
-def test_schlick_is_within_three_percent_of_glass() -> None:
+def test_schlick_is_within_four_percent_of_glass() -> None:
     cosines = np.linspace(0.0, 1.0, 1001)
     exact = np.array([reflectance("fresnel_dielectric", 1.5, c) for c in cosines])
     ramp = np.array([reflectance("fresnel_schlick", 0.04, 1.0, c) for c in cosines])
     gap = np.abs(ramp - exact)
-    assert 0.02 < gap.max() < 0.03
+    # The largest gap lies at 85 degrees from the normal.
+    assert gap.max() == pytest.approx(0.0357, abs=1e-4)
     assert ramp[-1] == pytest.approx(exact[-1], rel=1e-14)
     assert ramp[0] == 1.0
 
@@ -80,18 +81,20 @@ def test_facets_cover_the_surface_once(name: str, alpha: float) -> None:
         checked = _core.ops["beckmann"].forward(np.array([alpha]))[0]
         expected = np.exp(-((0.28 / 0.96 / alpha) ** 2)) / (np.pi * alpha**2 * 0.96**4)
         assert checked == pytest.approx(expected, rel=1e-12)
-    else:
-        D = (2 + 1 / alpha) * (tangent * cosine) ** (1 / alpha) / (2 * np.pi)
+    else:  # by the sine x: dw cos = 2 pi x dx
+        D = (2 + 1 / alpha) * x ** (1 / alpha) / (2 * np.pi)
         checked = _core.ops["charlie"].forward(np.array([alpha]))[0]
         expected = (2 + 1 / alpha) * 0.9 ** (1 / alpha) / (2 * np.pi)
         assert checked == pytest.approx(expected, rel=1e-12)
+        assert (D * 2 * np.pi * x).mean() == pytest.approx(1.0, abs=1e-4)
+        return
     total = (np.array(D) * cosine * 2 * np.pi * cosine**3 * tangent * slope).mean()
     assert total == pytest.approx(1.0, abs=1e-4)
 
 
 def test_ggx_in_float_is_exact_where_the_lobe_is_highest() -> None:
     # alpha = 1e-3 (roughness 0.03), half an alpha from the peak: (alpha^2 - 1) h_z^2 + 1 keeps
-    # hardly a digit there.
+    # two digits there.
     alpha, x = 1e-3, 5e-4
     inputs = np.array([x, 0, np.sqrt(1 - x * x), 0, 0, 1, 0, 0, 1, alpha, alpha])
     wide = _core.ops["ggx"].forward(inputs)[0]
@@ -99,4 +102,4 @@ def test_ggx_in_float_is_exact_where_the_lobe_is_highest() -> None:
     assert _core.ops["ggx"].forward(inputs.astype("f4"))[0] == pytest.approx(wide, rel=1e-6)
     z = np.float32(inputs[2])
     usual = np.float32(alpha**2 - 1) * z * z + np.float32(1)
-    assert abs(alpha**2 / (np.pi * float(usual) ** 2) / wide - 1) > 0.03
+    assert abs(alpha**2 / (np.pi * float(usual) ** 2) / wide - 1) > 2e-3

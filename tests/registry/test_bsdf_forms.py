@@ -169,3 +169,16 @@ def test_beckmann_has_shorter_tails_than_ggx() -> None:
     assert (ratio < 0.02).all()
     near = value("beckmann_conductor", up, up, **metal) / value("ggx_conductor", up, up, **metal)
     np.testing.assert_allclose(near, 1.0, rtol=0.05)
+
+
+def test_more_roughness_dims_the_middle_of_a_highlight_and_lights_a_ring_around_it() -> None:
+    angle = np.linspace(0.0, 0.8, 17)
+    wo = np.tile([0.0, 0.0, 1.0], (17, 1))
+    wi = np.stack([np.sin(angle), np.zeros(17), np.cos(angle)], axis=1)
+    rows = {"base_color": np.full((17, 3), 0.5), "metalness": np.zeros(17)}
+    parameters = {**rows, "roughness": np.full(17, 0.35)}
+    slope = MODELS["gltf"].f_backward(parameters, wo, wi, np.ones((17, 3)))["roughness"]
+    signs = np.sign(slope)
+    assert signs[0] == -1
+    assert signs[-1] == 1
+    assert (np.diff(signs) != 0).sum() == 1

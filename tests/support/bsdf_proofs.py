@@ -213,7 +213,7 @@ def prove_sampling(model: BsdfModel, *, seed: int = 4, level: float = 0.01) -> N
         kept = wi[:, 2] != 0.0 if model.transmits else wi[:, 2] >= 0.0
         lost = 1.0 - kept.mean()
         # As many nodes as a narrow lobe, or the sharp edge of the cone of refracted rays, needs.
-        for order in (15, 45) if model.transmits else (5, 15, 45):
+        for order in (15, 30) if model.transmits else (5, 15, 30):
             masses = sphere_cell_masses(
                 lambda w, p=parameters, c=cosine: model.pdf(p, towards(c, len(w)), w),
                 z, 40, order=order,
