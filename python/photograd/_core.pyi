@@ -26,12 +26,32 @@ __all__: list[str] = [
     "TexturePlan",
     "VoxelHash",
     "adam_rows",
+    "bsdf_beckmann_conductor",
+    "bsdf_blinn_phong",
+    "bsdf_blinn_phong_fitted",
+    "bsdf_burley_diffuse",
+    "bsdf_clearcoat",
+    "bsdf_cook_torrance",
+    "bsdf_ggx_anisotropic",
+    "bsdf_ggx_conductor",
+    "bsdf_ggx_metal",
+    "bsdf_gltf",
     "bsdf_lambert",
+    "bsdf_oren_nayar_qualitative",
+    "bsdf_phong",
+    "bsdf_phong_reciprocal",
+    "bsdf_rough_dielectric",
+    "bsdf_sheen",
+    "bsdf_standard",
     "bsdfs",
     "build_mips",
     "build_mips_backward",
     "cap_to_square",
     "cosine_hemisphere_to_square",
+    "delta_bsdf_glass",
+    "delta_bsdf_mirror",
+    "delta_bsdf_thin_glass",
+    "delta_bsdfs",
     "disk_to_square",
     "exp",
     "expm1",
@@ -229,12 +249,1059 @@ class bsdf_lambert:
     @staticmethod
     def reciprocal() -> bool:
         """
-        Whether f(wo, wi) = f(wi, wo).
+        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
         """
     @staticmethod
     def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
         """
         wi (N, 3) from uniform u2 (N, 2).
+        """
+    @staticmethod
+    def transmits() -> bool:
+        """
+        Whether light may pass the surface.
+        """
+
+class bsdf_phong:
+    """
+    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
+    """
+    @staticmethod
+    def energy() -> tuple[str, float]:
+        """
+        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
+        """
+    @staticmethod
+    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Value without the cosine, (N, 3).
+        """
+    @staticmethod
+    def f_backward(
+        parameters: numpy.ndarray,
+        wo: numpy.ndarray,
+        wi: numpy.ndarray,
+        d_f: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
+        """
+    @staticmethod
+    def jvp(
+        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        Exact derivative of f along v, (N, 3), float64.
+        """
+    @staticmethod
+    def parameters() -> list[tuple[str, int, float, float, str]]:
+        """
+        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
+        """
+    @staticmethod
+    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Density of `sample` over solid angle, (N,).
+        """
+    @staticmethod
+    def reciprocal() -> bool:
+        """
+        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
+        """
+    @staticmethod
+    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
+        """
+        wi (N, 3) from uniform u2 (N, 2).
+        """
+    @staticmethod
+    def transmits() -> bool:
+        """
+        Whether light may pass the surface.
+        """
+
+class bsdf_phong_reciprocal:
+    """
+    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
+    """
+    @staticmethod
+    def energy() -> tuple[str, float]:
+        """
+        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
+        """
+    @staticmethod
+    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Value without the cosine, (N, 3).
+        """
+    @staticmethod
+    def f_backward(
+        parameters: numpy.ndarray,
+        wo: numpy.ndarray,
+        wi: numpy.ndarray,
+        d_f: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
+        """
+    @staticmethod
+    def jvp(
+        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        Exact derivative of f along v, (N, 3), float64.
+        """
+    @staticmethod
+    def parameters() -> list[tuple[str, int, float, float, str]]:
+        """
+        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
+        """
+    @staticmethod
+    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Density of `sample` over solid angle, (N,).
+        """
+    @staticmethod
+    def reciprocal() -> bool:
+        """
+        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
+        """
+    @staticmethod
+    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
+        """
+        wi (N, 3) from uniform u2 (N, 2).
+        """
+    @staticmethod
+    def transmits() -> bool:
+        """
+        Whether light may pass the surface.
+        """
+
+class bsdf_blinn_phong:
+    """
+    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
+    """
+    @staticmethod
+    def energy() -> tuple[str, float]:
+        """
+        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
+        """
+    @staticmethod
+    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Value without the cosine, (N, 3).
+        """
+    @staticmethod
+    def f_backward(
+        parameters: numpy.ndarray,
+        wo: numpy.ndarray,
+        wi: numpy.ndarray,
+        d_f: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
+        """
+    @staticmethod
+    def jvp(
+        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        Exact derivative of f along v, (N, 3), float64.
+        """
+    @staticmethod
+    def parameters() -> list[tuple[str, int, float, float, str]]:
+        """
+        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
+        """
+    @staticmethod
+    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Density of `sample` over solid angle, (N,).
+        """
+    @staticmethod
+    def reciprocal() -> bool:
+        """
+        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
+        """
+    @staticmethod
+    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
+        """
+        wi (N, 3) from uniform u2 (N, 2).
+        """
+    @staticmethod
+    def transmits() -> bool:
+        """
+        Whether light may pass the surface.
+        """
+
+class bsdf_blinn_phong_fitted:
+    """
+    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
+    """
+    @staticmethod
+    def energy() -> tuple[str, float]:
+        """
+        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
+        """
+    @staticmethod
+    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Value without the cosine, (N, 3).
+        """
+    @staticmethod
+    def f_backward(
+        parameters: numpy.ndarray,
+        wo: numpy.ndarray,
+        wi: numpy.ndarray,
+        d_f: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
+        """
+    @staticmethod
+    def jvp(
+        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        Exact derivative of f along v, (N, 3), float64.
+        """
+    @staticmethod
+    def parameters() -> list[tuple[str, int, float, float, str]]:
+        """
+        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
+        """
+    @staticmethod
+    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Density of `sample` over solid angle, (N,).
+        """
+    @staticmethod
+    def reciprocal() -> bool:
+        """
+        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
+        """
+    @staticmethod
+    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
+        """
+        wi (N, 3) from uniform u2 (N, 2).
+        """
+    @staticmethod
+    def transmits() -> bool:
+        """
+        Whether light may pass the surface.
+        """
+
+class bsdf_oren_nayar_qualitative:
+    """
+    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
+    """
+    @staticmethod
+    def energy() -> tuple[str, float]:
+        """
+        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
+        """
+    @staticmethod
+    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Value without the cosine, (N, 3).
+        """
+    @staticmethod
+    def f_backward(
+        parameters: numpy.ndarray,
+        wo: numpy.ndarray,
+        wi: numpy.ndarray,
+        d_f: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
+        """
+    @staticmethod
+    def jvp(
+        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        Exact derivative of f along v, (N, 3), float64.
+        """
+    @staticmethod
+    def parameters() -> list[tuple[str, int, float, float, str]]:
+        """
+        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
+        """
+    @staticmethod
+    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Density of `sample` over solid angle, (N,).
+        """
+    @staticmethod
+    def reciprocal() -> bool:
+        """
+        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
+        """
+    @staticmethod
+    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
+        """
+        wi (N, 3) from uniform u2 (N, 2).
+        """
+    @staticmethod
+    def transmits() -> bool:
+        """
+        Whether light may pass the surface.
+        """
+
+class bsdf_burley_diffuse:
+    """
+    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
+    """
+    @staticmethod
+    def energy() -> tuple[str, float]:
+        """
+        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
+        """
+    @staticmethod
+    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Value without the cosine, (N, 3).
+        """
+    @staticmethod
+    def f_backward(
+        parameters: numpy.ndarray,
+        wo: numpy.ndarray,
+        wi: numpy.ndarray,
+        d_f: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
+        """
+    @staticmethod
+    def jvp(
+        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        Exact derivative of f along v, (N, 3), float64.
+        """
+    @staticmethod
+    def parameters() -> list[tuple[str, int, float, float, str]]:
+        """
+        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
+        """
+    @staticmethod
+    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Density of `sample` over solid angle, (N,).
+        """
+    @staticmethod
+    def reciprocal() -> bool:
+        """
+        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
+        """
+    @staticmethod
+    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
+        """
+        wi (N, 3) from uniform u2 (N, 2).
+        """
+    @staticmethod
+    def transmits() -> bool:
+        """
+        Whether light may pass the surface.
+        """
+
+class bsdf_cook_torrance:
+    """
+    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
+    """
+    @staticmethod
+    def energy() -> tuple[str, float]:
+        """
+        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
+        """
+    @staticmethod
+    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Value without the cosine, (N, 3).
+        """
+    @staticmethod
+    def f_backward(
+        parameters: numpy.ndarray,
+        wo: numpy.ndarray,
+        wi: numpy.ndarray,
+        d_f: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
+        """
+    @staticmethod
+    def jvp(
+        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        Exact derivative of f along v, (N, 3), float64.
+        """
+    @staticmethod
+    def parameters() -> list[tuple[str, int, float, float, str]]:
+        """
+        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
+        """
+    @staticmethod
+    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Density of `sample` over solid angle, (N,).
+        """
+    @staticmethod
+    def reciprocal() -> bool:
+        """
+        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
+        """
+    @staticmethod
+    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
+        """
+        wi (N, 3) from uniform u2 (N, 2).
+        """
+    @staticmethod
+    def transmits() -> bool:
+        """
+        Whether light may pass the surface.
+        """
+
+class bsdf_ggx_metal:
+    """
+    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
+    """
+    @staticmethod
+    def energy() -> tuple[str, float]:
+        """
+        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
+        """
+    @staticmethod
+    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Value without the cosine, (N, 3).
+        """
+    @staticmethod
+    def f_backward(
+        parameters: numpy.ndarray,
+        wo: numpy.ndarray,
+        wi: numpy.ndarray,
+        d_f: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
+        """
+    @staticmethod
+    def jvp(
+        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        Exact derivative of f along v, (N, 3), float64.
+        """
+    @staticmethod
+    def parameters() -> list[tuple[str, int, float, float, str]]:
+        """
+        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
+        """
+    @staticmethod
+    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Density of `sample` over solid angle, (N,).
+        """
+    @staticmethod
+    def reciprocal() -> bool:
+        """
+        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
+        """
+    @staticmethod
+    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
+        """
+        wi (N, 3) from uniform u2 (N, 2).
+        """
+    @staticmethod
+    def transmits() -> bool:
+        """
+        Whether light may pass the surface.
+        """
+
+class bsdf_ggx_conductor:
+    """
+    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
+    """
+    @staticmethod
+    def energy() -> tuple[str, float]:
+        """
+        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
+        """
+    @staticmethod
+    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Value without the cosine, (N, 3).
+        """
+    @staticmethod
+    def f_backward(
+        parameters: numpy.ndarray,
+        wo: numpy.ndarray,
+        wi: numpy.ndarray,
+        d_f: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
+        """
+    @staticmethod
+    def jvp(
+        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        Exact derivative of f along v, (N, 3), float64.
+        """
+    @staticmethod
+    def parameters() -> list[tuple[str, int, float, float, str]]:
+        """
+        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
+        """
+    @staticmethod
+    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Density of `sample` over solid angle, (N,).
+        """
+    @staticmethod
+    def reciprocal() -> bool:
+        """
+        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
+        """
+    @staticmethod
+    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
+        """
+        wi (N, 3) from uniform u2 (N, 2).
+        """
+    @staticmethod
+    def transmits() -> bool:
+        """
+        Whether light may pass the surface.
+        """
+
+class bsdf_beckmann_conductor:
+    """
+    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
+    """
+    @staticmethod
+    def energy() -> tuple[str, float]:
+        """
+        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
+        """
+    @staticmethod
+    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Value without the cosine, (N, 3).
+        """
+    @staticmethod
+    def f_backward(
+        parameters: numpy.ndarray,
+        wo: numpy.ndarray,
+        wi: numpy.ndarray,
+        d_f: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
+        """
+    @staticmethod
+    def jvp(
+        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        Exact derivative of f along v, (N, 3), float64.
+        """
+    @staticmethod
+    def parameters() -> list[tuple[str, int, float, float, str]]:
+        """
+        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
+        """
+    @staticmethod
+    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Density of `sample` over solid angle, (N,).
+        """
+    @staticmethod
+    def reciprocal() -> bool:
+        """
+        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
+        """
+    @staticmethod
+    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
+        """
+        wi (N, 3) from uniform u2 (N, 2).
+        """
+    @staticmethod
+    def transmits() -> bool:
+        """
+        Whether light may pass the surface.
+        """
+
+class bsdf_ggx_anisotropic:
+    """
+    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
+    """
+    @staticmethod
+    def energy() -> tuple[str, float]:
+        """
+        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
+        """
+    @staticmethod
+    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Value without the cosine, (N, 3).
+        """
+    @staticmethod
+    def f_backward(
+        parameters: numpy.ndarray,
+        wo: numpy.ndarray,
+        wi: numpy.ndarray,
+        d_f: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
+        """
+    @staticmethod
+    def jvp(
+        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        Exact derivative of f along v, (N, 3), float64.
+        """
+    @staticmethod
+    def parameters() -> list[tuple[str, int, float, float, str]]:
+        """
+        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
+        """
+    @staticmethod
+    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Density of `sample` over solid angle, (N,).
+        """
+    @staticmethod
+    def reciprocal() -> bool:
+        """
+        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
+        """
+    @staticmethod
+    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
+        """
+        wi (N, 3) from uniform u2 (N, 2).
+        """
+    @staticmethod
+    def transmits() -> bool:
+        """
+        Whether light may pass the surface.
+        """
+
+class bsdf_standard:
+    """
+    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
+    """
+    @staticmethod
+    def energy() -> tuple[str, float]:
+        """
+        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
+        """
+    @staticmethod
+    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Value without the cosine, (N, 3).
+        """
+    @staticmethod
+    def f_backward(
+        parameters: numpy.ndarray,
+        wo: numpy.ndarray,
+        wi: numpy.ndarray,
+        d_f: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
+        """
+    @staticmethod
+    def jvp(
+        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        Exact derivative of f along v, (N, 3), float64.
+        """
+    @staticmethod
+    def parameters() -> list[tuple[str, int, float, float, str]]:
+        """
+        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
+        """
+    @staticmethod
+    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Density of `sample` over solid angle, (N,).
+        """
+    @staticmethod
+    def reciprocal() -> bool:
+        """
+        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
+        """
+    @staticmethod
+    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
+        """
+        wi (N, 3) from uniform u2 (N, 2).
+        """
+    @staticmethod
+    def transmits() -> bool:
+        """
+        Whether light may pass the surface.
+        """
+
+class bsdf_gltf:
+    """
+    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
+    """
+    @staticmethod
+    def energy() -> tuple[str, float]:
+        """
+        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
+        """
+    @staticmethod
+    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Value without the cosine, (N, 3).
+        """
+    @staticmethod
+    def f_backward(
+        parameters: numpy.ndarray,
+        wo: numpy.ndarray,
+        wi: numpy.ndarray,
+        d_f: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
+        """
+    @staticmethod
+    def jvp(
+        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        Exact derivative of f along v, (N, 3), float64.
+        """
+    @staticmethod
+    def parameters() -> list[tuple[str, int, float, float, str]]:
+        """
+        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
+        """
+    @staticmethod
+    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Density of `sample` over solid angle, (N,).
+        """
+    @staticmethod
+    def reciprocal() -> bool:
+        """
+        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
+        """
+    @staticmethod
+    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
+        """
+        wi (N, 3) from uniform u2 (N, 2).
+        """
+    @staticmethod
+    def transmits() -> bool:
+        """
+        Whether light may pass the surface.
+        """
+
+class bsdf_clearcoat:
+    """
+    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
+    """
+    @staticmethod
+    def energy() -> tuple[str, float]:
+        """
+        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
+        """
+    @staticmethod
+    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Value without the cosine, (N, 3).
+        """
+    @staticmethod
+    def f_backward(
+        parameters: numpy.ndarray,
+        wo: numpy.ndarray,
+        wi: numpy.ndarray,
+        d_f: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
+        """
+    @staticmethod
+    def jvp(
+        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        Exact derivative of f along v, (N, 3), float64.
+        """
+    @staticmethod
+    def parameters() -> list[tuple[str, int, float, float, str]]:
+        """
+        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
+        """
+    @staticmethod
+    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Density of `sample` over solid angle, (N,).
+        """
+    @staticmethod
+    def reciprocal() -> bool:
+        """
+        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
+        """
+    @staticmethod
+    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
+        """
+        wi (N, 3) from uniform u2 (N, 2).
+        """
+    @staticmethod
+    def transmits() -> bool:
+        """
+        Whether light may pass the surface.
+        """
+
+class bsdf_sheen:
+    """
+    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
+    """
+    @staticmethod
+    def energy() -> tuple[str, float]:
+        """
+        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
+        """
+    @staticmethod
+    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Value without the cosine, (N, 3).
+        """
+    @staticmethod
+    def f_backward(
+        parameters: numpy.ndarray,
+        wo: numpy.ndarray,
+        wi: numpy.ndarray,
+        d_f: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
+        """
+    @staticmethod
+    def jvp(
+        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        Exact derivative of f along v, (N, 3), float64.
+        """
+    @staticmethod
+    def parameters() -> list[tuple[str, int, float, float, str]]:
+        """
+        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
+        """
+    @staticmethod
+    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Density of `sample` over solid angle, (N,).
+        """
+    @staticmethod
+    def reciprocal() -> bool:
+        """
+        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
+        """
+    @staticmethod
+    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
+        """
+        wi (N, 3) from uniform u2 (N, 2).
+        """
+    @staticmethod
+    def transmits() -> bool:
+        """
+        Whether light may pass the surface.
+        """
+
+class bsdf_rough_dielectric:
+    """
+    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
+    """
+    @staticmethod
+    def energy() -> tuple[str, float]:
+        """
+        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
+        """
+    @staticmethod
+    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Value without the cosine, (N, 3).
+        """
+    @staticmethod
+    def f_backward(
+        parameters: numpy.ndarray,
+        wo: numpy.ndarray,
+        wi: numpy.ndarray,
+        d_f: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
+        """
+    @staticmethod
+    def jvp(
+        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        Exact derivative of f along v, (N, 3), float64.
+        """
+    @staticmethod
+    def parameters() -> list[tuple[str, int, float, float, str]]:
+        """
+        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
+        """
+    @staticmethod
+    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Density of `sample` over solid angle, (N,).
+        """
+    @staticmethod
+    def reciprocal() -> bool:
+        """
+        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
+        """
+    @staticmethod
+    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
+        """
+        wi (N, 3) from uniform u2 (N, 2).
+        """
+    @staticmethod
+    def transmits() -> bool:
+        """
+        Whether light may pass the surface.
+        """
+
+class delta_bsdf_mirror:
+    """
+    A perfectly smooth surface. Parameters (N, P), or (1, P) for all rows; wo (N, 3) in the shading frame, normal +Z, on either side.
+    """
+    @staticmethod
+    def jvp(
+        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray
+    ) -> tuple[typing.Any, ...]:
+        """
+        Exact derivatives of (wi, weight) along v, float64.
+        """
+    @staticmethod
+    def lobe_count() -> int:
+        """
+        L.
+        """
+    @staticmethod
+    def lobes(parameters: numpy.ndarray, wo: numpy.ndarray) -> tuple[typing.Any, ...]:
+        """
+        (wi, weight), (N, L, 3) each: L(wo) is the sum of weight L(wi).
+        """
+    @staticmethod
+    def lobes_backward(
+        parameters: numpy.ndarray,
+        wo: numpy.ndarray,
+        d_wi: numpy.ndarray,
+        d_weight: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
+        """
+    @staticmethod
+    def parameters() -> list[tuple[str, int, float, float, str]]:
+        """
+        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
+        """
+
+class delta_bsdf_glass:
+    """
+    A perfectly smooth surface. Parameters (N, P), or (1, P) for all rows; wo (N, 3) in the shading frame, normal +Z, on either side.
+    """
+    @staticmethod
+    def jvp(
+        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray
+    ) -> tuple[typing.Any, ...]:
+        """
+        Exact derivatives of (wi, weight) along v, float64.
+        """
+    @staticmethod
+    def lobe_count() -> int:
+        """
+        L.
+        """
+    @staticmethod
+    def lobes(parameters: numpy.ndarray, wo: numpy.ndarray) -> tuple[typing.Any, ...]:
+        """
+        (wi, weight), (N, L, 3) each: L(wo) is the sum of weight L(wi).
+        """
+    @staticmethod
+    def lobes_backward(
+        parameters: numpy.ndarray,
+        wo: numpy.ndarray,
+        d_wi: numpy.ndarray,
+        d_weight: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
+        """
+    @staticmethod
+    def parameters() -> list[tuple[str, int, float, float, str]]:
+        """
+        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
+        """
+
+class delta_bsdf_thin_glass:
+    """
+    A perfectly smooth surface. Parameters (N, P), or (1, P) for all rows; wo (N, 3) in the shading frame, normal +Z, on either side.
+    """
+    @staticmethod
+    def jvp(
+        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray
+    ) -> tuple[typing.Any, ...]:
+        """
+        Exact derivatives of (wi, weight) along v, float64.
+        """
+    @staticmethod
+    def lobe_count() -> int:
+        """
+        L.
+        """
+    @staticmethod
+    def lobes(parameters: numpy.ndarray, wo: numpy.ndarray) -> tuple[typing.Any, ...]:
+        """
+        (wi, weight), (N, L, 3) each: L(wo) is the sum of weight L(wi).
+        """
+    @staticmethod
+    def lobes_backward(
+        parameters: numpy.ndarray,
+        wo: numpy.ndarray,
+        d_wi: numpy.ndarray,
+        d_weight: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
+        """
+    @staticmethod
+    def parameters() -> list[tuple[str, int, float, float, str]]:
+        """
+        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
         """
 
 class light_sun:
@@ -1215,7 +2282,30 @@ def write_vdb(
 ) -> None: ...
 
 __version__: str = "0.1.0"
-bsdfs: dict[str, typing.Any] = {"lambert": bsdf_lambert}
+bsdfs: dict[str, typing.Any] = {
+    "lambert": bsdf_lambert,
+    "phong": bsdf_phong,
+    "phong_reciprocal": bsdf_phong_reciprocal,
+    "blinn_phong": bsdf_blinn_phong,
+    "blinn_phong_fitted": bsdf_blinn_phong_fitted,
+    "oren_nayar_qualitative": bsdf_oren_nayar_qualitative,
+    "burley_diffuse": bsdf_burley_diffuse,
+    "cook_torrance": bsdf_cook_torrance,
+    "ggx_metal": bsdf_ggx_metal,
+    "ggx_conductor": bsdf_ggx_conductor,
+    "beckmann_conductor": bsdf_beckmann_conductor,
+    "ggx_anisotropic": bsdf_ggx_anisotropic,
+    "standard": bsdf_standard,
+    "gltf": bsdf_gltf,
+    "clearcoat": bsdf_clearcoat,
+    "sheen": bsdf_sheen,
+    "rough_dielectric": bsdf_rough_dielectric,
+}
+delta_bsdfs: dict[str, typing.Any] = {
+    "mirror": delta_bsdf_mirror,
+    "glass": delta_bsdf_glass,
+    "thin_glass": delta_bsdf_thin_glass,
+}
 lights: dict[str, typing.Any] = {"sun": light_sun, "sky": light_sky}
 ops: dict[str, typing.Any]
 phases: dict[str, typing.Any] = {
