@@ -182,3 +182,13 @@ def test_more_roughness_dims_the_middle_of_a_highlight_and_lights_a_ring_around_
     assert signs[0] == -1
     assert signs[-1] == 1
     assert (np.diff(signs) != 0).sum() == 1
+
+
+@pytest.mark.parametrize("name", ["phong", "phong_reciprocal", "blinn_phong", "blinn_phong_fitted"])
+def test_exponents_near_one_are_differentiated_too(name: str) -> None:
+    # There 2^(-n/2) in the exact norm counts; the proof of all models draws larger exponents.
+    color = {"diffuse": np.full(3, 0.3), "specular": np.full(3, 0.5)}
+    n, h = 1.5, 1e-5
+    ends = [value(name, exponent=e, **color).sum() for e in (n + h, n - h)]
+    exact = MODELS[name].f_backward({**color, "exponent": n}, WO, WI, np.ones((200, 3)))
+    assert exact["exponent"][0] == pytest.approx((ends[0] - ends[1]) / (2 * h), rel=1e-7)
