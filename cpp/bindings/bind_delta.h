@@ -94,6 +94,7 @@ struct BoundDelta {
         using T = M<double>;
         py::class_<BoundDelta> type(
             m, (std::string("delta_bsdf_") + T::name).c_str(),
+            py::module_local(),  // tests load a second module with the same models
             "A perfectly smooth surface. Parameters (N, P), or (1, P) for all rows; "
             "wo (N, 3) in the shading frame, normal +Z, on either side.");
         type.def_static("lobes", &lobes, py::arg("parameters"), py::arg("wo"),
