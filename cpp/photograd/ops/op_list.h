@@ -13,6 +13,7 @@
 #include "photograd/ops/cell_blend.h"
 #include "photograd/ops/composite.h"
 #include "photograd/ops/input_group.h"
+#include "photograd/ops/ray_op_list.h"
 #include "photograd/ops/sh.h"
 #include "photograd/ops/splat_op_list.h"
 #include "photograd/ops/trilinear.h"
@@ -225,11 +226,12 @@ struct CompositeOp {
     }
 };
 
-using Ops = TypeList<ActivationOp<Activation::relu>, ActivationOp<Activation::softplus>,
-                     ActivationOp<Activation::exp>, ActivationOp<Activation::sigmoid>,
-                     BilinearOp<false>, BilinearOp<true>, TrilinearOp<Border::clamp>,
-                     TrilinearOp<Border::zero>, CellBlendOp, ShColorOp,
-                     CompositeOp<Quadrature::alpha>, CompositeOp<Quadrature::riemann>, CovarianceOp,
-                     ProjectionOp<false>, ProjectionOp<true>, ConicOp, SplatColorOp, SplatBlendOp>;
+using Ops =
+    TypeList<ActivationOp<Activation::relu>, ActivationOp<Activation::softplus>,
+             ActivationOp<Activation::exp>, ActivationOp<Activation::sigmoid>, BilinearOp<false>,
+             BilinearOp<true>, TrilinearOp<Border::clamp>, TrilinearOp<Border::zero>, CellBlendOp,
+             ShColorOp, CompositeOp<Quadrature::alpha>, CompositeOp<Quadrature::riemann>,
+             CovarianceOp, ProjectionOp<false>, ProjectionOp<true>, ConicOp, SplatColorOp,
+             SplatBlendOp, RayGaussianOp, RayColorOp, RayBlendOp>;
 
 }  // namespace photograd
