@@ -5,6 +5,7 @@ from __future__ import annotations
 from photograd.fields.dense_grid import DenseGrid
 from photograd.fields.gaussians import GaussianScene
 from photograd.fields.octree_sh import OctreeSh
+from photograd.fields.points import Points
 from photograd.fields.sparse_sh import SparseSh
 from photograd.fields.sunlit_medium import SunlitMedium
 from photograd.fields.texture_2d import Texture2D
@@ -15,6 +16,7 @@ __all__ = [
     "DenseGrid",
     "GaussianScene",
     "OctreeSh",
+    "Points",
     "SparseSh",
     "SunlitMedium",
     "Texture2D",
