@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from photograd.fields.dense_grid import DenseGrid
 from photograd.fields.gaussians import GaussianScene
+from photograd.fields.gaussians_2d import Gaussians2D
 from photograd.fields.octree_sh import OctreeSh
 from photograd.fields.points import Points
 from photograd.fields.sparse_sh import SparseSh
@@ -15,6 +16,7 @@ from photograd.fields.toy_blobs import ToyBlobs
 __all__ = [
     "DenseGrid",
     "GaussianScene",
+    "Gaussians2D",
     "OctreeSh",
     "Points",
     "SparseSh",
