@@ -16,9 +16,12 @@ __all__: list[str] = [
     "MarchSettings",
     "Octree",
     "Op",
+    "PreparedRays32",
+    "PreparedRays64",
     "PreparedSplats32",
     "PreparedSplats64",
     "Quadtree",
+    "RayOptions",
     "SparseGrid",
     "SparseStatistics",
     "SplatImage",
@@ -72,6 +75,7 @@ __all__: list[str] = [
     "phases",
     "philox4x32",
     "place_samples",
+    "prepare_splat_rays",
     "prepare_splats",
     "read_vdb",
     "render_direct",
@@ -1832,6 +1836,110 @@ class PreparedSplats64:
         Number of pairs of splat and tile.
         """
 
+class RayOptions:
+    """
+    Policies of casting rays at Gaussians.
+    """
+    def __init__(
+        self,
+        alpha_min: typing.SupportsFloat | typing.SupportsIndex,
+        alpha_max: typing.SupportsFloat | typing.SupportsIndex,
+        stop: typing.SupportsFloat | typing.SupportsIndex,
+        t_min: typing.SupportsFloat | typing.SupportsIndex,
+    ) -> None: ...
+
+class PreparedRays32:
+    """
+    Rays, and Gaussians in a tree of boxes.
+    """
+    def backward(
+        self,
+        means: numpy.ndarray,
+        log_scales: numpy.ndarray,
+        quats: numpy.ndarray,
+        opacity_logits: numpy.ndarray,
+        sh: numpy.ndarray,
+        color: numpy.ndarray,
+        opacity: numpy.ndarray,
+        depth: numpy.ndarray,
+        d_color: numpy.ndarray,
+        d_opacity: numpy.ndarray,
+        d_depth: numpy.ndarray,
+        d_means: numpy.ndarray,
+        d_log_scales: numpy.ndarray,
+        d_quats: numpy.ndarray,
+        d_opacity_logits: numpy.ndarray,
+        d_sh: numpy.ndarray,
+        d_background: numpy.ndarray,
+        d_origins: typing.Any,
+        d_directions: typing.Any,
+    ) -> None:
+        """
+        Adds to the arrays named d_*; those of the rays may both be None.
+        """
+    def render(
+        self,
+        means: numpy.ndarray,
+        log_scales: numpy.ndarray,
+        quats: numpy.ndarray,
+        opacity_logits: numpy.ndarray,
+        sh: numpy.ndarray,
+    ) -> tuple[typing.Any, ...]:
+        """
+        Colour (R, 3), opacity (R,), depth (R,); the Gaussians are those prepared.
+        """
+    @property
+    def crossings(self) -> numpy.typing.NDArray[numpy.uint32]:
+        """
+        How many Gaussians each ray blended, (R,) uint32, a copy.
+        """
+
+class PreparedRays64:
+    """
+    Rays, and Gaussians in a tree of boxes.
+    """
+    def backward(
+        self,
+        means: numpy.ndarray,
+        log_scales: numpy.ndarray,
+        quats: numpy.ndarray,
+        opacity_logits: numpy.ndarray,
+        sh: numpy.ndarray,
+        color: numpy.ndarray,
+        opacity: numpy.ndarray,
+        depth: numpy.ndarray,
+        d_color: numpy.ndarray,
+        d_opacity: numpy.ndarray,
+        d_depth: numpy.ndarray,
+        d_means: numpy.ndarray,
+        d_log_scales: numpy.ndarray,
+        d_quats: numpy.ndarray,
+        d_opacity_logits: numpy.ndarray,
+        d_sh: numpy.ndarray,
+        d_background: numpy.ndarray,
+        d_origins: typing.Any,
+        d_directions: typing.Any,
+    ) -> None:
+        """
+        Adds to the arrays named d_*; those of the rays may both be None.
+        """
+    def render(
+        self,
+        means: numpy.ndarray,
+        log_scales: numpy.ndarray,
+        quats: numpy.ndarray,
+        opacity_logits: numpy.ndarray,
+        sh: numpy.ndarray,
+    ) -> tuple[typing.Any, ...]:
+        """
+        Colour (R, 3), opacity (R,), depth (R,); the Gaussians are those prepared.
+        """
+    @property
+    def crossings(self) -> numpy.typing.NDArray[numpy.uint32]:
+        """
+        How many Gaussians each ray blended, (R,) uint32, a copy.
+        """
+
 class CellTable:
     """
     The cells of a sparse grid, for marching.
@@ -2022,6 +2130,21 @@ def place_samples(
 ) -> tuple[typing.Any, ...]:
     """
     Per ray: t0 (R,) and the number of samples (R,) int32.
+    """
+
+def prepare_splat_rays(
+    means: numpy.ndarray,
+    log_scales: numpy.ndarray,
+    quats: numpy.ndarray,
+    opacity_logits: numpy.ndarray,
+    sh: numpy.ndarray,
+    options: RayOptions,
+    origins: numpy.ndarray,
+    directions: numpy.ndarray,
+    background: numpy.ndarray,
+) -> typing.Any:
+    """
+    Whitens and boxes the Gaussians; PreparedRays32 or PreparedRays64.
     """
 
 def prepare_splats(

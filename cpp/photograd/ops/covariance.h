@@ -72,6 +72,17 @@ inline void rotation_matrix_backward(const R* n, const R (&g)[3][3], R* d_n) {
                      two * z * (g[0][0] + g[1][1]));
 }
 
+/// The same for R(q / |q|): adds dL/dq to d_quat[4].
+template <class R>
+inline void rotation_of_quaternion_backward(const UnitQuaternion<R>& q, const R (&d_r)[3][3],
+                                            R* d_quat) {
+    const R* n = q.n;
+    R d_n[4] = {R(0), R(0), R(0), R(0)};
+    rotation_matrix_backward(n, d_r, d_n);
+    const R along = n[0] * d_n[0] + n[1] * d_n[1] + n[2] * d_n[2] + n[3] * d_n[3];
+    for (int i = 0; i < 4; ++i) d_quat[i] += (d_n[i] - n[i] * along) * q.inverse_length;
+}
+
 /// The axes of a Gaussian, as long as its standard deviations.
 template <class R>
 struct GaussianAxes {
@@ -114,11 +125,7 @@ inline void covariance_backward(const GaussianAxes<R>& axes, const R* d_cov, R* 
             d_r[i][j] = d_m * axes.s[j];
         }
     }
-    const R* n = axes.q.n;
-    R d_n[4] = {R(0), R(0), R(0), R(0)};
-    rotation_matrix_backward(n, d_r, d_n);
-    const R along = n[0] * d_n[0] + n[1] * d_n[1] + n[2] * d_n[2] + n[3] * d_n[3];
-    for (int i = 0; i < 4; ++i) d_quat[i] += (d_n[i] - n[i] * along) * axes.q.inverse_length;
+    rotation_of_quaternion_backward(axes.q, d_r, d_quat);
 }
 
 }  // namespace PHOTOGRAD_ISA

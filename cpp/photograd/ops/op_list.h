@@ -14,6 +14,7 @@
 #include "photograd/ops/composite.h"
 #include "photograd/ops/facet_op_list.h"
 #include "photograd/ops/input_group.h"
+#include "photograd/ops/ray_op_list.h"
 #include "photograd/ops/sh.h"
 #include "photograd/ops/splat_op_list.h"
 #include "photograd/ops/trilinear.h"
@@ -232,7 +233,7 @@ using Ops =
              BilinearOp<true>, TrilinearOp<Border::clamp>, TrilinearOp<Border::zero>, CellBlendOp,
              ShColorOp, CompositeOp<Quadrature::alpha>, CompositeOp<Quadrature::riemann>,
              CovarianceOp, ProjectionOp<false>, ProjectionOp<true>, ConicOp, SplatColorOp,
-             SplatBlendOp, ErfOp, SchlickOp, DielectricOp<false>, DielectricOp<true>, ConductorOp,
-             GgxOp, BeckmannOp, CharlieOp>;
+             SplatBlendOp, RayGaussianOp, RayColorOp, RayBlendOp, ErfOp, SchlickOp,
+             DielectricOp<false>, DielectricOp<true>, ConductorOp, GgxOp, BeckmannOp, CharlieOp>;
 
 }  // namespace photograd

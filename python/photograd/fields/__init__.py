@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from photograd.fields.dense_grid import DenseGrid
 from photograd.fields.gaussians import GaussianScene
+from photograd.fields.gaussians_2d import Gaussians2D
 from photograd.fields.octree_sh import OctreeSh
+from photograd.fields.points import Points
 from photograd.fields.sparse_sh import SparseSh
 from photograd.fields.sunlit_medium import SunlitMedium
 from photograd.fields.texture_2d import Texture2D
@@ -14,7 +16,9 @@ from photograd.fields.toy_blobs import ToyBlobs
 __all__ = [
     "DenseGrid",
     "GaussianScene",
+    "Gaussians2D",
     "OctreeSh",
+    "Points",
     "SparseSh",
     "SunlitMedium",
     "Texture2D",

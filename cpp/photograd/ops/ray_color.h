@@ -1,0 +1,57 @@
+// The colour that a ray sees of a Gaussian: spherical harmonics of the ray's own direction, around a middle
+// grey, never negative [MoenneLoccoz2024].
+//
+//   n = d / |d|,   Y_k = Y_k(n),   color_c = max(0, 1/2 + sum_k Y_k sh_kc)
+//
+// Splatting takes the direction from the eye to the Gaussian's mean instead (ops/splat_color.h). A ray has
+// one n, so that its Y_k are computed once for all that it crosses.
+//
+// Adjoint: zero where the clamp holds, else d_Y_k = sum_c sh_kc d_color_c (the ray's share), d_sh_kc = Y_k
+// d_color_c (the Gaussian's);  d_d = (d_n - n <n, d_n>) / |d|, which has no part along d.
+#pragma once
+
+#include "photograd/core/dual.h"
+#include "photograd/ops/sh.h"
+
+namespace photograd {
+inline namespace PHOTOGRAD_ISA {
+
+/// n[3] = d / |d|; returns 1 / |d|. d must not be zero.
+template <class R>
+inline R unit_direction(const R* d, R* n) {
+    const R inverse = R(1) / sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+    for (int i = 0; i < 3; ++i) n[i] = d[i] * inverse;
+    return inverse;
+}
+/// Adds to d_d[3].
+template <class R>
+inline void unit_direction_backward(const R* n, R inverse, const R* d_n, R* d_d) {
+    const R along = n[0] * d_n[0] + n[1] * d_n[1] + n[2] * d_n[2];
+    for (int i = 0; i < 3; ++i) d_d[i] += (d_n[i] - n[i] * along) * inverse;
+}
+
+/// color[3] from Y[K] and sh (K, 3).
+template <int Degree, class R>
+inline void ray_color(const R* Y, const R* sh, R* color) {
+    sh_color<Degree, 3>(Y, sh, color);
+    for (int c = 0; c < 3; ++c) color[c] = larger(color[c] + R(0.5), R(0));
+}
+/// The ray's share: adds to d_Y[K].
+template <int Degree, class R>
+inline void ray_color_backward_ray(const R* sh, const R* color, const R* d_color, R* d_Y) {
+    for (int c = 0; c < 3; ++c) {
+        const R live = color[c] > R(0) ? d_color[c] : R(0);
+        for (int k = 0; k < sh_count(Degree); ++k) d_Y[k] += sh[3 * k + c] * live;
+    }
+}
+/// The Gaussian's share: adds to d_sh (K, 3). `Sum` may be wider than R.
+template <int Degree, class R, class Sum>
+inline void ray_color_backward_gaussian(const R* Y, const R* color, const R* d_color, Sum* d_sh) {
+    for (int c = 0; c < 3; ++c) {
+        const R live = color[c] > R(0) ? d_color[c] : R(0);
+        for (int k = 0; k < sh_count(Degree); ++k) d_sh[3 * k + c] += Sum(Y[k] * live);
+    }
+}
+
+}  // namespace PHOTOGRAD_ISA
+}  // namespace photograd

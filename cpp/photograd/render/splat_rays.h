@@ -1,0 +1,57 @@
+// Gaussians along rays of any kind, not only those of a pinhole camera [MoenneLoccoz2024]; and the adjoint.
+//
+// Both passes walk a ray with splat/ray_walk.h and keep nothing of it. Backward has two owners. A ray owns
+// the derivatives by where it starts and goes. A Gaussian owns its own: the ray's second walk leaves a
+// record of three numbers for each crossing, the records of a slab of rays are sorted by Gaussian, and each
+// Gaussian adds up its records in the order of the rays. No two threads write one number, and no sum
+// depends on the number of threads.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "photograd/splat/ray_cloud.h"
+
+namespace photograd {
+
+/// What both passes share. Holds copies of rays and shapes, so that the second walk cannot differ from the
+/// first.
+template <class R>
+struct RayFrame {
+    RayCloud<R> cloud;
+    R background[3];
+    std::vector<R> origins, directions;    // (R, 3)
+    std::vector<std::uint32_t> crossings;  // (R,) how many Gaussians each ray blended
+
+    [[nodiscard]] std::int64_t rays() const { return static_cast<std::int64_t>(crossings.size()); }
+};
+
+/// colour with background (R, 3), opacity (R,), depth (R,): weight times distance, in metres.
+template <class R>
+struct RayPicture {
+    R *color, *opacity, *depth;
+};
+
+template <class R>
+struct RayPictureAdjoint {
+    const R *d_color, *d_opacity, *d_depth;
+};
+
+/// Derivatives, added to. Those of the rays are left out where the pointers are null.
+template <class R>
+struct RayGradients {
+    GaussianGradients<R> gaussians;  // without view and screen
+    R* background;                   // (3,)
+    R *origins, *directions;         // (R, 3)
+};
+
+/// Draws into `out` and counts the crossings of frame.
+template <class R>
+void blend_rays(const GaussianCloud<R>& cloud, RayFrame<R>& frame, const RayPicture<R>& out);
+/// `picture` is what blend_rays wrote.
+template <class R>
+void blend_rays_backward(const GaussianCloud<R>& cloud, const RayFrame<R>& frame,
+                         const RayPicture<R>& picture, const RayPictureAdjoint<R>& adjoint,
+                         const RayGradients<R>& out);
+
+}  // namespace photograd

@@ -1,0 +1,118 @@
+"""The same bits on any number of threads and every instruction set; float against double."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from photograd.core import _core
+from photograd.splat_rays import RayOptions, render, render_backward
+
+from tests.splat import oracle, ray_oracle
+
+OPTIONS = {
+    "default": RayOptions(),
+    "smooth": RayOptions().smooth(),
+    "short": replace(RayOptions(), stop=0.2),
+}
+
+
+def run(name: str, dtype: Any = np.float32, count: int = 300, rays: int = 700) -> list[Any]:
+    """All outputs and gradients of several tasks of rays and Gaussians."""
+    g = oracle.cloud(count, 1).astype(dtype)
+    origins, directions = ray_oracle.rays(rays, 4)
+    # Both number types start from the same values.
+    origins, directions = origins.astype(np.float32), directions.astype(np.float32)
+    picture, context = render(
+        g, origins, directions, background=(0.25, 0.5, 0.125), options=OPTIONS[name]
+    )
+    random = np.random.default_rng(2)
+    d = [random.uniform(-1, 1, a.shape).astype(dtype) for a in vars(picture).values()]
+    found = render_backward(context, *d, rays=True)
+    return [
+        *vars(picture).values(), *found.gaussians.values(), found.background, found.origins,
+        found.directions,
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_thread_count_changes_nothing(dtype: Any) -> None:
+    results = []
+    for threads in (1, 2, 5):
+        _core.set_thread_count(threads)
+        results.append(run("default", dtype, 5000))  # two tasks of preparation
+    _core.set_thread_count(0)
+    for other in results[1:]:
+        for a, b in zip(results[0], other, strict=True):
+            assert a.any()
+            assert np.array_equal(a, b)
+
+
+def test_several_slabs_add_up_to_one_picture() -> None:
+    # 1.2 million crossings are two slabs; the same rays in two batches are one slab each.
+    g = oracle.cloud(300, 1, degree=0).astype(np.float32)
+    origins, directions = ray_oracle.rays(4400, 4)
+    d = np.random.default_rng(2).uniform(0, 1, (4400, 3)).astype(np.float32)
+
+    def gradients(part: slice) -> Any:
+        _, context = render(g, origins[part], directions[part], options=OPTIONS["smooth"])
+        return context.crossings, render_backward(context, d[part]).gaussians
+
+    crossings, whole = gradients(slice(None))
+    assert crossings.sum() > 2**20
+    halves = [gradients(part)[1] for part in (slice(0, 2200), slice(2200, None))]
+    for name, array in whole.items():
+        np.testing.assert_allclose(
+            halves[0][name] + halves[1][name], array, rtol=1e-5, atol=1e-5 * np.abs(array).max()
+        )
+
+
+def test_every_instruction_set_gives_the_same_bits() -> None:
+    program = (
+        "import hashlib; from photograd.core import _core; from tests.splat.test_rays_bits "
+        "import run, OPTIONS; h = hashlib.sha256()\n"
+        "for v in OPTIONS:\n    [h.update(a.tobytes()) for a in run(v)]\n"
+        "print(_core.instruction_set(), h.hexdigest())"
+    )
+    seen = {}
+    for name in ("baseline", "v3", "v4"):
+        done = subprocess.run(
+            [sys.executable, "-c", program],
+            env={**os.environ, "PHOTOGRAD_ISA": name}, capture_output=True, text=True, check=False,
+        )  # fmt: skip
+        if done.returncode == 0:
+            kernel, digest = done.stdout.split()
+            assert kernel == name
+            seen[name] = digest
+        else:
+            assert "PHOTOGRAD_ISA" in done.stderr, done.stderr
+    assert "baseline" in seen
+    assert len(set(seen.values())) == 1, seen
+
+
+@pytest.mark.parametrize("name", OPTIONS)
+def test_float_agrees_with_double(name: str) -> None:
+    narrow, wide = run(name), run(name, np.float64)
+    for a, b in zip(narrow, wide, strict=True):
+        error = np.linalg.norm(a - b) / np.linalg.norm(b)
+        assert error <= 1e-4, (a.shape, error)
+
+
+def test_backward_twice_gives_twice() -> None:
+    g, (origins, directions) = oracle.cloud(30, 1), ray_oracle.rays(50, 1)
+    picture, context = render(g, origins, directions)
+    parameters = g.arrays()
+    names = {f"d_{k}": np.zeros_like(v) for k, v in parameters.items()}
+    names |= {"d_background": np.zeros(3)}
+    names |= {"d_origins": np.zeros((50, 3)), "d_directions": np.zeros((50, 3))}
+    d = {f"d_{k}": np.ones_like(v) for k, v in vars(picture).items()}
+    context.prepared.backward(**parameters, **vars(picture), **d, **names)
+    once = {k: v.copy() for k, v in names.items()}
+    context.prepared.backward(**parameters, **vars(picture), **d, **names)
+    for k, v in names.items():
+        np.testing.assert_allclose(v, 2 * once[k], rtol=1e-12, atol=1e-12)
