@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from photograd.fields.dense_grid import DenseGrid
+from photograd.fields.dense_sh import DenseSh
 from photograd.fields.gaussians import GaussianScene
 from photograd.fields.gaussians_2d import Gaussians2D
 from photograd.fields.octree_sh import OctreeSh
@@ -15,6 +16,7 @@ from photograd.fields.toy_blobs import ToyBlobs
 
 __all__ = [
     "DenseGrid",
+    "DenseSh",
     "GaussianScene",
     "Gaussians2D",
     "OctreeSh",
