@@ -1,6 +1,6 @@
 // Sub-blocks of a march through a sparse grid: where the samples lie, what they see, which are jumped over.
-// Positions, cells and densities take lane_count samples of a ray side by side; the colour of a sample
-// takes its coefficients side by side, 3 K of each corner.
+// Positions, cells and densities take lane_count samples of a ray side by side; the colour of a voxel takes
+// its 3 K coefficients side by side, once for all samples of the sub-block that have it as a corner.
 #pragma once
 
 #include "kernels/march_dense.inl"
@@ -22,11 +22,11 @@ using FloatWide = float __attribute__((vector_size(4 * vector_floats), aligned(4
 struct CellBlock {
     Lanes<float> t, q[3];
     Lanes<float> w[8];
-    int row[8][lane_count];
-    int cell[lane_count];  // of the lowest voxel, in the rows of all tiles
-    int seen[lane_count];  // neither vacuum nor cut off
-    Lanes<float> missing;  // weight of the corners without a row
-    Lanes<float> raw[4];   // colour with its offset, density before activation
+    int cell[lane_count];    // of the lowest voxel, in the rows of all tiles
+    int parity[lane_count];  // of the lowest voxel's coordinates, as the number of a corner
+    int seen[lane_count];    // neither vacuum nor cut off
+    Lanes<float> missing;    // weight of the corners without a row
+    Lanes<float> raw[4];     // colour with its offset, density before activation
     Lanes<float> sigma_t, rgb[3];
 };
 
@@ -82,6 +82,7 @@ static inline int locate_cells(const MarchSparseShArgs& a, std::int64_t ray, int
         const int entry = inside ? (x * extent[1] + y) * extent[2] + z : 0;
         const int tile = inside ? larger(a.cells.top[entry], 0) : 0;
         b.cell[i] = tile * cell_tile_voxels + place_in_tile(base[0][i], base[1][i], base[2][i]);
+        b.parity[i] = (base[0][i] & 1) * 4 + (base[1][i] & 1) * 2 + (base[2][i] & 1);
         in_tile += (tile > 0) & (i < used) ? 1 : 0;
     }
     if (in_tile == 0) return 0;
@@ -94,33 +95,33 @@ static inline int locate_cells(const MarchSparseShArgs& a, std::int64_t ray, int
     return in_tile;
 }
 
-// Rows and raw densities; false if no lane is seen. Lanes behind the last sample are not.
+// Raw densities; false if no lane is seen. Lanes behind the last sample are not.
 static inline bool look_up_density(const MarchSparseShArgs& a, int used, CellBlock& b) {
-    // Rows, then values, then arithmetic, in loops of their own: what only loads would keep the rest from
-    // becoming lanes.
-    for (int n = 0; n < 8; ++n) {
-        const std::int32_t* rows = a.cells.rows + corner_offset(n);
-        for (int i = 0; i < lane_count; ++i) b.row[n][i] = rows[b.cell[i]];
+    // Bits of corners, then values, then arithmetic, in loops of their own: what only loads would keep the
+    // rest from becoming lanes.
+    int corners[lane_count], any = 0;
+    for (int i = 0; i < lane_count; ++i) {
+        corners[i] = a.cells.active[b.cell[i]];
+        any |= i < used ? corners[i] : 0;
     }
+    if (any == 0) return false;
     Lanes<float> value[8];
-    for (int n = 0; n < 8; ++n)
-        for (int i = 0; i < lane_count; ++i) value[n][i] = a.density[larger(b.row[n][i], 0)];
+    for (int n = 0; n < 8; ++n) {
+        const float* density = a.density + corner_offset(n);
+        for (int i = 0; i < lane_count; ++i) value[n][i] = density[b.cell[i]];
+    }
     Lanes<float> raw = {}, missing = {};
-    int any[lane_count] = {};
-    const float background = a.background[0];
     for (int n = 0; n < 8; ++n)
         for (int i = 0; i < lane_count; ++i) {
-            const bool here = b.row[n][i] >= 0;
             const float w = b.w[n][i];
-            raw[i] = raw[i] + w * (here ? value[n][i] : background);
-            missing[i] = missing[i] + (here ? 0.0f : w);
-            any[i] |= here ? 1 : 0;
+            raw[i] = raw[i] + w * value[n][i];
+            missing[i] = missing[i] + ((corners[i] >> n & 1) != 0 ? 0.0f : w);
         }
     const bool cuts = a.density_activation == static_cast<int>(Activation::relu);
     int count = 0;
     for (int i = 0; i < lane_count; ++i) {
         const bool cut = cuts & (raw[i] <= 0.0f);
-        b.seen[i] = (any[i] != 0) & !cut & (i < used) ? 1 : 0;
+        b.seen[i] = (corners[i] != 0) & !cut & (i < used) ? 1 : 0;
         count += b.seen[i];
     }
     b.raw[3] = raw;
@@ -128,77 +129,86 @@ static inline bool look_up_density(const MarchSparseShArgs& a, int used, CellBlo
     return count != 0;
 }
 
-// out[at ..] = Y3[at ..] sum_n w_n corner[n][at ..], in the order of ops/sh_blend.h.
-template <class Vector>
-static inline void blend_vector(const float* const* corner, const float* w, const float* Y3,
-                                float* out, int at) {
-    Vector total = w[0] * *reinterpret_cast<const Vector*>(corner[0] + at);
-#pragma GCC unroll 8
-    for (int n = 1; n < 8; ++n)
-        total = total + w[n] * *reinterpret_cast<const Vector*>(corner[n] + at);
-    *reinterpret_cast<Vector*>(out + at) = *reinterpret_cast<const Vector*>(Y3 + at) * total;
+// The voxels at the corners of a sub-block's samples.
+struct CornerVoxels {
+    int count;
+    int row[8 * lane_count];                     // -1: the background
+    int number[lane_count][8];                   // corner n of sample i is voxel number[i][n]
+    alignas(16) float color[8 * lane_count][4];  // that a voxel shows along the ray; three are used
+};
+
+// Gives each voxel a number. The eight corners of a cell differ in the parity of their coordinates, so that
+// eight places, one a parity, hold what the sample before had: along a ray a voxel leaves its place only
+// when no sample to come has it. The coefficients are asked for at once: they are needed when all voxels have
+// their numbers, and to wait for memory is most of what a colour costs.
+template <int Count>
+static inline void number_corners(const MarchSparseShArgs& a, const CellBlock& b, CornerVoxels& v) {
+    int held[8], number[8] = {}, count = 0, last = -1;
+    for (int s = 0; s < 8; ++s) held[s] = -2;  // no voxel, and not the background either
+    for (int i = 0; i < lane_count; ++i) {
+        if (!b.seen[i]) continue;
+        const int parity = b.parity[i];
+        for (int n = 0; n < 8 && b.cell[i] != last; ++n) {
+            const int s = n ^ parity, row = a.cells.rows[b.cell[i] + corner_offset(n)];
+            if (held[s] == row) continue;
+            held[s] = row;
+            number[s] = count;
+            v.row[count++] = row;
+            const float* values = a.sh + static_cast<long long>(larger(row, 0)) * Count;
+            for (int j = 0; j < Count; j += 16) __builtin_prefetch(values + j);
+        }
+        last = b.cell[i];
+        for (int n = 0; n < 8; ++n) v.number[i][n] = number[n ^ parity];
+    }
+    v.count = count;
 }
 
-// What is done to a number does not depend on the width of the vector that it is in.
-template <int Count, int At = 0>
-static inline void blend_basis(const float* const* corner, const float* w, const float* Y3,
-                               float* out) {
-    constexpr int left = Count - At;
-    if constexpr (left >= vector_floats) {
-        blend_vector<FloatWide>(corner, w, Y3, out, At);
-        blend_basis<Count, At + vector_floats>(corner, w, Y3, out);
-    } else if constexpr (left >= 4) {
-        blend_vector<Float4>(corner, w, Y3, out, At);
-        blend_basis<Count, At + 4>(corner, w, Y3, out);
-    } else if constexpr (left > 0) {
-        float total = w[0] * corner[0][At];
-        for (int n = 1; n < 8; ++n) total = total + w[n] * corner[n][At];
-        out[At] = Y3[At] * total;
-        blend_basis<Count, At + 1>(corner, w, Y3, out);
+static inline Float4 float4_at(const float* p) { return *reinterpret_cast<const Float4*>(p); }
+
+// fold_color of ops/sh_blend.h. Nothing behind the last coefficient is read.
+template <int Count>
+static inline Float4 fold_color_lanes(const float* v, const float* Y3) {
+    if constexpr (Count < sh_fold) {
+        return Float4{Y3[0] * v[0], Y3[1] * v[1], Y3[2] * v[2], 0.0f};
+    } else {
+        constexpr int whole = Count / sh_fold * sh_fold;
+        Float4 part[3];
+        for (int k = 0; k < 3; ++k) part[k] = float4_at(Y3 + 4 * k) * float4_at(v + 4 * k);
+        for (int j = sh_fold; j < whole; j += sh_fold)
+            for (int k = 0; k < 3; ++k)
+                part[k] = part[k] + float4_at(Y3 + j + 4 * k) * float4_at(v + j + 4 * k);
+        const Float4 second = __builtin_shufflevector(part[0], part[1], 3, 4, 5, 6);
+        const Float4 third = __builtin_shufflevector(part[1], part[2], 2, 3, 4, 5);
+        const Float4 fourth = __builtin_shufflevector(part[2], part[2], 1, 2, 3, 3);
+        Float4 color = ((part[0] + second) + third) + fourth;
+        if constexpr (whole < Count) {  // one harmonic is left: read from one float before it
+            const Float4 rest = float4_at(Y3 + whole - 1) * float4_at(v + whole - 1);
+            color = color + __builtin_shufflevector(rest, rest, 1, 2, 3, 3);
+        }
+        return color;
     }
 }
 
 template <int Count>
-static inline void fold_products(const float* p, float* color) {
-    constexpr int whole = Count / sh_fold * sh_fold;
-    float part[sh_fold] = {};
-    for (int block = 0; block < whole; block += sh_fold)
-        for (int j = 0; j < sh_fold; ++j) part[j] = part[j] + p[block + j];
-    for (int c = 0; c < 3; ++c) {
-        color[c] = ((part[c] + part[3 + c]) + part[6 + c]) + part[9 + c];
-        if constexpr (whole < Count) color[c] = color[c] + p[whole + c];
-    }
-}
-
-// Asks for the coefficients of a sample's corners, where they are not those of the sample before. The two
-// corners along z are neighbours in memory more often than not.
-template <int Count>
-static inline void ask_for_rows(const MarchSparseShArgs& a, const CellBlock& b, int i) {
-    if (b.cell[i] == b.cell[i - 1]) return;
-    for (int n = 0; n < 8; ++n) {
-        const float* row = a.sh + static_cast<long long>(larger(b.row[n][i], 0)) * Count;
-        for (int j = 0; j < Count; j += 16) __builtin_prefetch(row + j);
+static inline void color_corners(const MarchSparseShArgs& a, const float* Y3, CornerVoxels& v) {
+    for (int m = 0; m < v.count; ++m) {
+        const long long row = v.row[m];
+        const float* values = row < 0 ? a.background + 1 : a.sh + row * Count;
+        *reinterpret_cast<Float4*>(v.color[m]) = fold_color_lanes<Count>(values, Y3);
     }
 }
 
 template <int Count>
 static inline void look_up_color(const MarchSparseShArgs& a, const float* Y3, CellBlock& b) {
+    CornerVoxels voxels;
+    number_corners<Count>(a, b, voxels);
+    color_corners<Count>(a, Y3, voxels);
     for (int c = 0; c < 3; ++c) b.raw[c] = {};
-    constexpr int ahead = 3;
     for (int i = 0; i < lane_count; ++i) {
-        if (i + ahead < lane_count && b.seen[i + ahead]) ask_for_rows<Count>(a, b, i + ahead);
         if (!b.seen[i]) continue;
-        const float* corner[8];
-        float w[8];
-        alignas(64) float product[sh_basis_stride];
-        float color[3];
-        for (int n = 0; n < 8; ++n) {
-            const int row = b.row[n][i];
-            corner[n] = row < 0 ? a.background + 1 : a.sh + static_cast<long long>(row) * Count;
-            w[n] = b.w[n][i];
-        }
-        blend_basis<Count>(corner, w, Y3, product);
-        fold_products<Count>(product, color);
+        const int* number = voxels.number[i];
+        Float4 color = b.w[0][i] * float4_at(voxels.color[number[0]]);
+        for (int n = 1; n < 8; ++n) color = color + b.w[n][i] * float4_at(voxels.color[number[n]]);
         for (int c = 0; c < 3; ++c) b.raw[c][i] = a.color_offset + color[c];
     }
 }

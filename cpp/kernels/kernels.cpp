@@ -3,6 +3,7 @@
 #include "kernels/kernels.h"
 
 #include "kernels/blend_splats.inl"
+#include "kernels/gather_sparse_sh.inl"
 #include "kernels/march_dense.inl"
 #include "kernels/march_sparse_sh.inl"
 #include "kernels/sample_rgb.inl"

@@ -28,11 +28,10 @@ struct Kernels {
     /// Returns the number of samples whose voxels were looked up.
     std::int64_t (*march_sparse_sh_forward)(const MarchSparseShArgs&, std::int64_t begin,
                                             std::int64_t end);
-    /// These two return the number of records.
-    std::int64_t (*march_sparse_sh_backward)(const MarchSparseShArgs&, const MarchSparseShBackward&,
-                                             std::int64_t begin, std::int64_t end);
-    std::int64_t (*march_sparse_sh_weights)(const MarchSparseShArgs&, const MarchSparseShBackward&,
-                                            std::int64_t begin, std::int64_t end);
+    void (*march_sparse_sh_backward)(const MarchSparseShArgs&, const MarchSparseShBackward&,
+                                     std::int64_t begin, std::int64_t end);
+    void (*march_sparse_sh_weights)(const MarchSparseShArgs&, const MarchSparseShBackward&,
+                                    std::int64_t begin, std::int64_t end);
     void (*march_sparse_sh_gather)(const SparseShGather&);
 };
 

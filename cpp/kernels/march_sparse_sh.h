@@ -13,7 +13,7 @@ inline constexpr int sh_basis_stride = 48;
 
 struct MarchSparseShArgs {
     CellView cells;
-    const float* density;     // (N,) N >= 1
+    const float* density;     // (T, 9, 9, 9) of the tiles' voxels, the background's where none is
     const float* sh;          // (N, K, 3)
     const float* background;  // (1 + 3 K,)
     int degree;
@@ -38,13 +38,20 @@ struct MarchSparseShBackward {
     const float* d_transmittance;  // (R,)
     std::int64_t first_ray;        // of the slab: records count rays from here
     float* basis;                  // (rays of the slab, sh_basis_stride), written
-    CellRecord<float>* records;    // of this chunk: room for all its samples
+    CellRecord<float>* records;    // of this chunk: room for all samples of each ray, ray by ray
+    std::int32_t* found;           // (rays of the chunk,) how many records a ray has got, written
     double* lost;                  // (1 + 3 K,) what reaches corners without a row, added to
+};
+
+/// Consecutive records of one ray that have corners in one brick.
+struct CellRun {
+    const CellRecord<float>* records;
+    std::int64_t count;
 };
 
 /// One brick's share of the records.
 struct SparseShGather {
-    const CellRecord<float>* records;
+    const CellRun* runs;
     const std::uint32_t* order;  // (count,)
     std::int64_t count;
     const float* basis;        // (rays of the slab, sh_basis_stride)

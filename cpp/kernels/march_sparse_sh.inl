@@ -69,10 +69,27 @@ static inline void add_lost(const CellBlock& b, const Lanes<float>* d, const flo
         lost[1 + j] += static_cast<double>(Y3[j]) * static_cast<double>(total[j % 3]);
 }
 
+// Where the next record of each ray goes: rays advance together, but each has its room to itself.
+struct RecordEnds {
+    CellRecord<float>* next[march_chunk];
+    CellRecord<float>* first[march_chunk];
+
+    RecordEnds(const MarchSparseShArgs& a, CellRecord<float>* records, std::int64_t begin,
+               std::int64_t end) {
+        for (std::int64_t ray = begin; ray < end; ++ray) {
+            first[ray - begin] = next[ray - begin] = records;
+            records += larger(a.count[ray], 0);
+        }
+    }
+    void count(std::int64_t rays, std::int32_t* found) const {
+        for (std::int64_t i = 0; i < rays; ++i)
+            found[i] = static_cast<std::int32_t>(next[i] - first[i]);
+    }
+};
+
 template <int Degree>
-static std::int64_t sparse_sh_backward(const MarchSparseShArgs& a,
-                                       const MarchSparseShBackward& back, std::int64_t begin,
-                                       std::int64_t end) {
+static void sparse_sh_backward(const MarchSparseShArgs& a, const MarchSparseShBackward& back,
+                               std::int64_t begin, std::int64_t end) {
     RayCotangents<float> cotangents[march_chunk];
     float* basis = back.basis + (begin - back.first_ray) * sh_basis_stride;
     for (std::int64_t ray = begin; ray < end; ++ray) {
@@ -80,7 +97,7 @@ static std::int64_t sparse_sh_backward(const MarchSparseShArgs& a,
         sh_basis_by_channel<Degree>(a.directions + 3 * ray,
                                     basis + (ray - begin) * sh_basis_stride);
     }
-    CellRecord<float>* next = back.records;
+    RecordEnds ends(a, back.records, begin, end);
     walk_cells(a, begin, end, [&](int i, CellBlock& b) {
         const float* Y3 = basis + i * sh_basis_stride;
         evaluate_cells<Degree>(a, Y3, b);
@@ -90,23 +107,22 @@ static std::int64_t sparse_sh_backward(const MarchSparseShArgs& a,
         for (int j = 0; j < lane_count; ++j) {
             lacks |= b.seen[j] && b.missing[j] > 0.0f;
             if (!b.seen[j]) continue;
-            *next++ = {{b.q[0][j], b.q[1][j], b.q[2][j]},
-                       static_cast<std::uint32_t>(begin - back.first_ray + i),
-                       {d[0][j], d[1][j], d[2][j], d[3][j]}};
+            *ends.next[i]++ = {{b.q[0][j], b.q[1][j], b.q[2][j]},
+                               static_cast<std::uint32_t>(begin - back.first_ray + i),
+                               {d[0][j], d[1][j], d[2][j], d[3][j]}};
         }
         if (lacks) add_lost(b, d, Y3, 3 * sh_count(Degree), back.lost);
         return cotangents[i].tau;
     });
-    return next - back.records;
+    ends.count(end - begin, back.found);
 }
 
 // Weight of every sample, as d[0] of a record: what pruning asks for. Colours are not needed.
-static std::int64_t march_sparse_sh_weights(const MarchSparseShArgs& a,
-                                            const MarchSparseShBackward& back, std::int64_t begin,
-                                            std::int64_t end) {
+static void march_sparse_sh_weights(const MarchSparseShArgs& a, const MarchSparseShBackward& back,
+                                    std::int64_t begin, std::int64_t end) {
     const Quadrature form = static_cast<Quadrature>(a.quadrature);
     float tau[march_chunk] = {};
-    CellRecord<float>* next = back.records;
+    RecordEnds ends(a, back.records, begin, end);
     walk_cells(a, begin, end, [&](int i, CellBlock& b) {
         activate_lanes(static_cast<Activation>(a.density_activation), b.raw[3], b.sigma_t);
         for (int j = 0; j < lane_count; ++j)
@@ -114,51 +130,12 @@ static std::int64_t march_sparse_sh_weights(const MarchSparseShArgs& a,
         const SampleWeights<float> found = composite_weights(form, tau[i], b.sigma_t, a.dt);
         for (int j = 0; j < lane_count; ++j)
             if (b.seen[j])
-                *next++ = {{b.q[0][j], b.q[1][j], b.q[2][j]}, 0, {found.w[j], 0.0f, 0.0f, 0.0f}};
+                *ends.next[i]++ = {
+                    {b.q[0][j], b.q[1][j], b.q[2][j]}, 0, {found.w[j], 0.0f, 0.0f, 0.0f}};
         tau[i] = found.tau_end;
         return tau[i];
     });
-    return next - back.records;
-}
-
-// to[j] += w Y3[j] d[j mod 3] for the corners that this brick owns.
-template <int Count>
-static void sparse_sh_gather(const SparseShGather& g) {
-    for (std::int64_t e = 0; e < g.count; ++e) {
-        if (e + 8 < g.count) __builtin_prefetch(g.records + g.order[e + 8]);
-        const CellRecord<float>& record = g.records[g.order[e]];
-        const float* Y3 = g.basis + static_cast<long long>(record.ray) * sh_basis_stride;
-        const float* d = record.d;
-        const float around[sh_fold] = {d[0], d[1], d[2], d[0], d[1], d[2],
-                                       d[0], d[1], d[2], d[0], d[1], d[2]};
-        alignas(64) float D[sh_basis_stride];
-        for (int j = 0; j < Count; ++j) D[j] = Y3[j] * around[j % sh_fold];
-        int base[3];
-        float end[3][2];
-        for (int axis = 0; axis < 3; ++axis) {
-            const float q = record.q[axis];
-            const int cut = static_cast<int>(q);
-            const int floor = cut - (q < static_cast<float>(cut) ? 1 : 0);
-            base[axis] = floor - g.origin[axis];
-            end[axis][1] = q - static_cast<float>(floor);
-            end[axis][0] = 1.0f - end[axis][1];
-        }
-        for (int n = 0; n < 8; ++n) {
-            const int x = base[0] + (n >> 2), y = base[1] + (n >> 1 & 1), z = base[2] + (n & 1);
-            if (((x | y | z) & ~7) != 0) continue;
-            const int row = g.rows[(x * 8 + y) * 8 + z];
-            if (row < 0) continue;
-            const float w = (end[0][n >> 2] * end[1][n >> 1 & 1]) * end[2][n & 1];
-            g.d_density[row] = g.d_density[row] + w * d[3];
-            float* to = g.d_sh + static_cast<long long>(row) * Count;
-            int j = 0;
-            for (; j + vector_floats <= Count; j += vector_floats)
-                *reinterpret_cast<FloatWide*>(to + j) += w * *reinterpret_cast<FloatWide*>(D + j);
-            for (; j + 4 <= Count; j += 4)
-                *reinterpret_cast<Float4*>(to + j) += w * *reinterpret_cast<Float4*>(D + j);
-            for (; j < Count; ++j) to[j] = to[j] + w * D[j];
-        }
-    }
+    ends.count(end - begin, back.found);
 }
 
 static std::int64_t march_sparse_sh_forward(const MarchSparseShArgs& a, std::int64_t begin,
@@ -168,16 +145,9 @@ static std::int64_t march_sparse_sh_forward(const MarchSparseShArgs& a, std::int
     return result;
 }
 
-static std::int64_t march_sparse_sh_backward(const MarchSparseShArgs& a,
-                                             const MarchSparseShBackward& back, std::int64_t begin,
-                                             std::int64_t end) {
-    std::int64_t result = 0;
-    with_sh_degree(a.degree, [&]<int D>() { result = sparse_sh_backward<D>(a, back, begin, end); });
-    return result;
-}
-
-static void march_sparse_sh_gather(const SparseShGather& g) {
-    with_sh_degree(g.degree, [&]<int D>() { sparse_sh_gather<3 * sh_count(D)>(g); });
+static void march_sparse_sh_backward(const MarchSparseShArgs& a, const MarchSparseShBackward& back,
+                                     std::int64_t begin, std::int64_t end) {
+    with_sh_degree(a.degree, [&]<int D>() { sparse_sh_backward<D>(a, back, begin, end); });
 }
 
 }  // namespace photograd::PHOTOGRAD_ISA

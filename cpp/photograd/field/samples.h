@@ -20,6 +20,7 @@ struct SampleBatch {
     std::vector<Lanes<R>> position[3];
     std::vector<R> direction[3];  // of the ray: unit, away from the camera
     std::vector<int> used;
+    std::vector<std::uint32_t> ray;  // which of the chunk's, 0 to march_chunk - 1
 
     [[nodiscard]] std::size_t groups() const { return t.size(); }
     void resize(std::size_t groups) {
@@ -27,6 +28,7 @@ struct SampleBatch {
         for (auto& axis : position) axis.resize(groups);
         for (auto& axis : direction) axis.resize(groups);
         used.resize(groups);
+        ray.resize(groups);
     }
 };
 

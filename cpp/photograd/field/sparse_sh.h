@@ -3,14 +3,14 @@
 //
 //   q       = (p - lo) / voxel - 1/2                       voxel i has its value at q = i
 //   raw     = sum_n w_n density_n                          over the 8 corners of the cell of q
-//   color_c = offset + sum_k Y_k(d) sum_n w_n sh_nkc
+//   color_c = offset + sum_n w_n p_nc,  p_nc = sum_k Y_k(d) sh_nkc
 //   sigma_t = density_scale density_activation(raw),   rgb = color_activation(color)
 //
 // A corner without a row reads the background. A cell without any row is vacuum: sigma_t = 0, whatever
 // the background says, so that a march may skip it without changing a bit.
 //
 //   d_density_n += w_n d_raw,    d_sh_nkc += w_n Y_k d_color_c,    d_background likewise, over corners
-//   d_q_axis     = sum_n (d w_n / d q_axis) (d_raw density_n + sum_kc d_color_c Y_k sh_nkc)
+//   d_q_axis     = sum_n (d w_n / d q_axis) (d_raw density_n + sum_c d_color_c p_nc)
 //   d_Y_k        = sum_c d_color_c sum_n w_n sh_nkc,   and from there d_direction (ops/sh.h)
 //
 // Topology is held constant: what a gradient cannot say about voxels that do not exist reaches
@@ -108,15 +108,15 @@ struct SparseSh {
         cache.raw.assign(batch.groups(), {});
         cache.seen.assign(batch.groups(), {});
         for (std::size_t g = 0; g < batch.groups(); ++g) {
-            R Y3[most_numbers], b[most_numbers], color[3];
+            R Y3[most_numbers];
             basis(batch, g, Y3);
             for (int i = 0; i < lane_count; ++i) {
                 const Lookup found = look_up(batch, g, i);
                 R raw = R(0);
                 for (int n = 0; n < 8; ++n) raw = raw + found.at.w[n] * found.density[n];
                 if (!found.any || is_cut(raw)) continue;  // all values of the batch begin as 0
-                blend_corners(found.corner, found.at.w, numbers(), b);
-                fold_color(b, Y3, numbers(), color);
+                R color[3];
+                blend_colors(found, Y3, color);
                 const auto lane = static_cast<std::size_t>(i);
                 cache.seen[g][lane] = true;
                 cache.raw[g][3][i] = raw;
@@ -135,8 +135,8 @@ struct SparseSh {
             : field(its_field), gradients(its_gradients) {}
 
         struct Chunk {
-            std::vector<CellRecord<R>> records;
-            std::vector<std::array<R, most_numbers>> basis;
+            std::vector<CellRecord<R>> records;              // `ray` is the number within the chunk
+            std::vector<std::array<R, most_numbers>> basis;  // of each ray
             std::array<double, 1 + most_numbers> lost{};
         };
         const SparseSh& field;
@@ -153,8 +153,10 @@ struct SparseSh {
                   std::vector<R>* d_direction = nullptr) const {
         typename Sink::Chunk& to = sink.chunks[static_cast<std::size_t>(chunk)];
         for (std::size_t g = 0; g < batch.groups(); ++g) {
-            to.basis.emplace_back();
-            basis(batch, g, to.basis.back().data());
+            const std::size_t ray = batch.ray[g];
+            if (to.basis.size() <= ray) to.basis.resize(ray + 1);
+            R* Y3 = to.basis[ray].data();
+            basis(batch, g, Y3);
             Lanes<R> lost[4] = {};
             R d_Y[sh_count(3)] = {};
             for (int i = 0; i < batch.used[g]; ++i) {
@@ -166,13 +168,12 @@ struct SparseSh {
                 activate_backward(options.density_activation, cache.raw[g][3][i],
                                   density_scale * d_out.sigma_t[g][i], d[3]);
                 const Lookup found = look_up(batch, g, i);
-                to.records.push_back({{found.q[0], found.q[1], found.q[2]},
-                                      static_cast<std::uint32_t>(to.basis.size() - 1),
-                                      {d[0], d[1], d[2], d[3]}});
+                to.records.push_back(
+                    {{found.q[0], found.q[1], found.q[2]}, batch.ray[g], {d[0], d[1], d[2], d[3]}});
                 for (int c = 0; c < 4; ++c) lost[c][i] = found.missing * d[c];
                 if (d_position) {
                     R d_q[3] = {};
-                    camera_backward(found, to.basis.back().data(), d, d_q, d_Y);
+                    camera_backward(found, Y3, d, d_q, d_Y);
                     for (int axis = 0; axis < 3; ++axis)
                         d_position[axis][g][i] += d_q[axis] * scale[axis];
                 }
@@ -180,7 +181,7 @@ struct SparseSh {
             to.lost[0] += double(sum(lost[3]));
             for (int j = 0; j < numbers(); ++j)
                 to.lost[static_cast<std::size_t>(1 + j)] +=
-                    double(to.basis.back()[static_cast<std::size_t>(j)]) * double(sum(lost[j % 3]));
+                    double(Y3[j]) * double(sum(lost[j % 3]));
             if (d_direction) {
                 const R x = batch.direction[0][g], y = batch.direction[1][g],
                         z = batch.direction[2][g];
@@ -192,13 +193,23 @@ struct SparseSh {
     }
 
 private:
+    void blend_colors(const Lookup& found, const R* Y3, R* color) const {
+        for (int n = 0; n < 8; ++n) {
+            const R w = found.at.w[n];
+            R p[3];
+            fold_color(found.corner[n], Y3, numbers(), p);
+            for (int c = 0; c < 3; ++c) color[c] = n == 0 ? w * p[c] : color[c] + w * p[c];
+        }
+    }
     /// Adds d_q (3,) and d_Y (K,) of one sample.
     void camera_backward(const Lookup& found, const R* Y3, const R* d, R* d_q, R* d_Y) const {
         const R* f = found.at.fraction;
         const R x[2] = {R(1) - f[0], f[0]}, y[2] = {R(1) - f[1], f[1]}, z[2] = {R(1) - f[2], f[2]};
         for (int n = 0; n < 8; ++n) {
+            R p[3];
+            fold_color(found.corner[n], Y3, numbers(), p);
             R along = d[3] * found.density[n];
-            for (int j = 0; j < numbers(); ++j) along += (Y3[j] * d[j % 3]) * found.corner[n][j];
+            for (int c = 0; c < 3; ++c) along += d[c] * p[c];
             d_q[0] += (n >> 2 ? along : -along) * (y[n >> 1 & 1] * z[n & 1]);
             d_q[1] += (n >> 1 & 1 ? along : -along) * (x[n >> 2] * z[n & 1]);
             d_q[2] += (n & 1 ? along : -along) * (x[n >> 2] * y[n >> 1 & 1]);
@@ -213,35 +224,35 @@ template <Real R>
 void SparseSh<R>::Sink::finish() {
     const BrickTopology& topology = field.table->topology();
     const int numbers = field.numbers();
-    struct Item {
-        std::uint32_t brick, chunk, record;
+    struct Run {
+        std::uint32_t chunk;
+        std::int64_t first, count;
     };
-    std::vector<Item> items;
+    std::vector<Run> runs;
     std::vector<std::uint32_t> owner;
-    for (std::uint32_t c = 0; c < chunks.size(); ++c)
-        for (std::uint32_t r = 0; r < chunks[c].records.size(); ++r) {
-            std::int32_t brick[8];
-            const CellPoint<R> at = CellPoint<R>::of(chunks[c].records[r].q);
-            const int count = bricks_of_cell(topology, at.base, brick);
-            for (int n = 0; n < count; ++n) {
-                items.push_back({static_cast<std::uint32_t>(brick[n]), c, r});
-                owner.push_back(static_cast<std::uint32_t>(brick[n]));
-            }
+    for (std::uint32_t c = 0; c < chunks.size(); ++c) {
+        auto& records = chunks[c].records;
+        const auto by_ray = [](const auto& a, const auto& b) { return a.ray < b.ray; };
+        std::stable_sort(records.begin(), records.end(), by_ray);
+        for (auto from = records.begin(), to = from; from != records.end(); from = to) {
+            to = std::upper_bound(from, records.end(), *from, by_ray);
+            for_brick_runs(topology, &*from, to - from,
+                           [&](std::int32_t brick, std::int64_t first, std::int64_t count) {
+                               owner.push_back(static_cast<std::uint32_t>(brick));
+                               runs.push_back({c, from - records.begin() + first, count});
+                           });
         }
+    }
     OwnerBins bins;
     bin_by_owner(owner, topology.bricks(), bins);
     parallel_for(topology.bricks(), [&](std::int64_t brick) {
         const auto b = static_cast<std::size_t>(brick);
         for (std::uint32_t j = bins.begin[b]; j < bins.begin[b + 1]; ++j) {
-            const Item& item = items[bins.order[j]];
-            const Chunk& from = chunks[item.chunk];
-            const CellRecord<R>& record = from.records[item.record];
-            const auto& Y3 = from.basis[record.ray];
-            R D[most_numbers];
-            for (int k = 0; k < numbers; ++k)
-                D[k] = Y3[static_cast<std::size_t>(k)] * record.d[k % 3];
-            gather_record(topology, static_cast<std::int32_t>(brick), record, D, numbers,
-                          gradients);
+            const Run& run = runs[bins.order[j]];
+            const Chunk& from = chunks[run.chunk];
+            const CellRecord<R>* records = from.records.data() + run.first;
+            gather_run(topology, static_cast<std::int32_t>(brick), records, run.count,
+                       from.basis[records->ray].data(), numbers, gradients);
         }
     });
     for (int j = 0; j < 1 + numbers; ++j) {

@@ -1,9 +1,15 @@
-// Gradients of a sparse grid from records of samples: every brick adds what concerns its own rows, in the
-// order of the records, so that a row is summed as a plain loop would sum it, on any number of threads.
+// Gradients of a sparse grid from records of samples: every brick adds what concerns its own rows, ray by
+// ray in a fixed order, so that a row has the same sum on any number of threads.
+//
+// A ray's share of a voxel is summed first, over the samples along the ray, and is then multiplied by the
+// harmonics of the ray's direction (ops/sh_blend.h).
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "photograd/grid/cell_table.h"
 
@@ -69,15 +75,66 @@ void for_own_corners(const BrickTopology& topology, std::int32_t brick, const Ce
     }
 }
 
-/// Adds the part of one record that belongs to a brick; D (3 K) is Y_k d_color_c.
+/// use(brick, first, count) for the runs of one ray's records: each is a longest piece in which every record
+/// has corners in `brick`. Coordinates rise or fall along a ray, so that a brick gets one run of a ray.
+template <class R, class Use>
+void for_brick_runs(const BrickTopology& topology, const CellRecord<R>* records, std::int64_t count,
+                    Use&& use) {
+    struct Open {
+        std::int32_t brick;
+        std::int64_t first;
+    };
+    std::array<Open, 8> open{};  // the bricks of the record before
+    std::size_t opened = 0;
+    std::int32_t brick[8];
+    int base[3], bricks = 0;
+    for (std::int64_t r = 0; r < count; ++r) {
+        int at[3];
+        for (int axis = 0; axis < 3; ++axis) {  // rounded down, without a call
+            const R q = records[r].q[axis];
+            const int cut = static_cast<int>(q);
+            at[axis] = cut - (q < static_cast<R>(cut) ? 1 : 0);
+        }
+        if (r > 0 && std::equal(at, at + 3, base)) continue;  // the same bricks
+        std::copy_n(at, 3, base);
+        bricks = bricks_of_cell(topology, base, brick);
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < opened; ++i)
+            if (std::find(brick, brick + bricks, open[i].brick) != brick + bricks)
+                open[kept++] = open[i];
+            else
+                use(open[i].brick, open[i].first, r - open[i].first);
+        opened = kept;
+        for (int n = 0; n < bricks; ++n)
+            if (std::none_of(open.begin(), open.begin() + kept,
+                             [&](const Open& one) { return one.brick == brick[n]; }))
+                open[opened++] = {brick[n], r};
+    }
+    for (std::size_t i = 0; i < opened; ++i)
+        use(open[i].brick, open[i].first, count - open[i].first);
+}
+
+/// Adds the part of a run of one ray that belongs to a brick; Y3 (3 K) is the basis of its direction.
 template <class R>
-void gather_record(const BrickTopology& topology, std::int32_t brick, const CellRecord<R>& record,
-                   const R* D, int numbers, const SparseShGradients<R>& to) {
-    for_own_corners(topology, brick, record, [&](std::int32_t row, R w) {
-        to.d_density[row] = to.d_density[row] + w * record.d[3];
-        R* d_sh = to.d_sh + std::int64_t(row) * numbers;
-        for (int j = 0; j < numbers; ++j) d_sh[j] = d_sh[j] + w * D[j];
-    });
+void gather_run(const BrickTopology& topology, std::int32_t brick, const CellRecord<R>* records,
+                std::int64_t count, const R* Y3, int numbers, const SparseShGradients<R>& to) {
+    struct Share {
+        std::int32_t row;
+        R d[4];
+    };
+    std::vector<Share> shares;
+    for (std::int64_t r = 0; r < count; ++r)
+        for_own_corners(topology, brick, records[r], [&](std::int32_t row, R w) {
+            auto share = std::find_if(shares.begin(), shares.end(),
+                                      [&](const Share& one) { return one.row == row; });
+            if (share == shares.end()) share = shares.insert(share, Share{row, {}});
+            for (int c = 0; c < 4; ++c) share->d[c] = share->d[c] + w * records[r].d[c];
+        });
+    for (const Share& share : shares) {
+        to.d_density[share.row] = to.d_density[share.row] + share.d[3];
+        R* d_sh = to.d_sh + std::int64_t(share.row) * numbers;
+        for (int j = 0; j < numbers; ++j) d_sh[j] = d_sh[j] + Y3[j] * share.d[j % 3];
+    }
 }
 
 /// most[row] = max(most[row], trilinear weight times record.d[0]).

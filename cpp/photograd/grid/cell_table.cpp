@@ -52,7 +52,7 @@ CellTable::CellTable(const BrickTopology& topology, std::array<int, 3> shape,
                               std::size_t(extent_[2]) +
                           std::size_t(at[2]));
         }
-    const double bytes = 4.0 * (double(entries) + double(places.size() + 1) * cell_tile_voxels);
+    const double bytes = 4.0 * double(entries) + 5.0 * double(places.size() + 1) * cell_tile_voxels;
     if (bytes > static_cast<double>(memory_limit))
         fail(ErrorKind::range, "CellTable", "memory_limit",
              "room for " + std::to_string(static_cast<std::int64_t>(bytes)) + " bytes",
@@ -68,7 +68,23 @@ CellTable::CellTable(const BrickTopology& topology, std::array<int, 3> shape,
         top_[place] = static_cast<std::int32_t>(rows_.size() / cell_tile_voxels);
         rows_.insert(rows_.end(), tile.begin(), tile.end());
     }
+    mark_active();
     measure_distances();
+}
+
+void CellTable::mark_active() {
+    active_.assign(rows_.size(), 0);
+    parallel_for(tiles() + 1, [&](std::int64_t tile) {
+        for (int i = 0; i < 8; ++i)
+            for (int j = 0; j < 8; ++j)
+                for (int k = 0; k < 8; ++k) {
+                    const auto cell =
+                        static_cast<std::size_t>(tile * cell_tile_voxels + place_in_tile(i, j, k));
+                    for (int n = 0; n < 8; ++n)
+                        if (rows_[cell + std::size_t(corner_offset(n))] >= 0)
+                            active_[cell] |= static_cast<std::uint8_t>(1 << n);
+                }
+    });
 }
 
 // The longest of |dx|, |dy|, |dz| to the nearest tile: the least over y and z of the greater of that of a

@@ -15,6 +15,7 @@
 #include <array>
 #include <vector>
 
+#include "photograd/core/parallel.h"
 #include "photograd/grid/brick_topology.h"
 #include "photograd/grid/cell_view.h"
 
@@ -27,14 +28,24 @@ public:
     CellTable(const BrickTopology& topology, std::array<int, 3> shape, std::int64_t memory_limit);
 
     [[nodiscard]] CellView view() const {
-        return {top_.data(), rows_.data(), {extent_[0], extent_[1], extent_[2]}};
+        return {top_.data(), rows_.data(), active_.data(), {extent_[0], extent_[1], extent_[2]}};
     }
     [[nodiscard]] std::array<int, 3> shape() const { return shape_; }
     [[nodiscard]] std::int64_t tiles() const {
         return static_cast<std::int64_t>(rows_.size()) / cell_tile_voxels - 1;
     }
     [[nodiscard]] std::int64_t memory() const {
-        return static_cast<std::int64_t>(4 * (top_.size() + rows_.size()));
+        return static_cast<std::int64_t>(4 * (top_.size() + rows_.size()) + active_.size());
+    }
+    /// out (T + 1, 9, 9, 9): the value of each row of a tile, or `missing` where there is none.
+    template <class R>
+    void spread(const R* values, R missing, R* out) const {
+        parallel_for(tiles() + 1, [&](std::int64_t tile) {
+            for (std::int64_t v = tile * cell_tile_voxels; v < (tile + 1) * cell_tile_voxels; ++v) {
+                const std::int32_t row = rows_[static_cast<std::size_t>(v)];
+                out[v] = row < 0 ? missing : values[row];
+            }
+        });
     }
 
     // Owners of gradients: the bricks of the topology, whose rows follow one another.
@@ -42,10 +53,12 @@ public:
 
 private:
     void measure_distances();
+    void mark_active();
 
     BrickTopology topology_;
     std::array<int, 3> shape_, extent_;
     std::vector<std::int32_t> top_, rows_;
+    std::vector<std::uint8_t> active_;
 };
 
 }  // namespace photograd

@@ -11,8 +11,9 @@ inline constexpr int cell_tile_side = 9;
 inline constexpr int cell_tile_voxels = cell_tile_side * cell_tile_side * cell_tile_side;
 
 struct CellView {
-    const std::int32_t* top;   // (X, Y, Z) tiles, the first of which begins at cell (-8, -8, -8)
-    const std::int32_t* rows;  // (T, 9, 9, 9)
+    const std::int32_t* top;     // (X, Y, Z) tiles, the first of which begins at cell (-8, -8, -8)
+    const std::int32_t* rows;    // (T, 9, 9, 9)
+    const std::uint8_t* active;  // (T, 9, 9, 9) bit n: corner n of the cell has a row
     int extent[3];
 };
 

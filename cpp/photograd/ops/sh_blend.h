@@ -1,8 +1,12 @@
-// Colour of a point in a sparse cell: blend the coefficients of eight corners, then sum over the basis.
+// Colour of a point in a sparse cell: what each of the eight corners shows in the ray's direction, blended.
 //
-//   b_kc = sum_n w_n v_nkc,   color_c = sum_k Y_k b_kc        v_n: the K x 3 coefficients of corner n
+//   p_nc = sum_k Y_k v_nkc,   color_c = sum_n w_n p_nc         v_n: the K x 3 coefficients of corner n
 //
-//   d_v_nkc = w_n Y_k d_color_c
+//   d_v_nkc = Y_k (w_n d_color_c)
+//
+// A ray has one direction, so p_n is the same for all of its samples around a voxel, and so is Y in the
+// derivative: both are sums over (ray, voxel) instead of (sample, corner), of which there are three times
+// as many.
 //
 // Coefficients lie as [k][c], so that the 3 K numbers of a corner are one run of memory. The sum over k
 // is kept apart for 12 neighbouring numbers (four k, three channels) and folded at the end: the order in
@@ -36,6 +40,21 @@ inline void with_sh_degree(int degree, Visit&& visit) {
     }
 }
 
+/// color[c] = sum_k Y_k v_kc, folded as described above; `count` is 3 K.
+template <class R>
+inline void fold_color(const R* v, const R* Y3, int count, R* color) {
+    R part[sh_fold] = {};
+    const int whole = count / sh_fold * sh_fold;
+    for (int j = 0; j < whole; ++j) {
+        R& p = part[j % sh_fold];
+        p = p + Y3[j] * v[j];
+    }
+    for (int c = 0; c < 3; ++c) {
+        color[c] = ((part[c] + part[3 + c]) + part[6 + c]) + part[9 + c];
+        if (whole < count) color[c] = color[c] + Y3[whole + c] * v[whole + c];
+    }
+}
+
 /// b[0 .. count) = sum over corners of w_n corner[n], in the order of n.
 template <class R>
 inline void blend_corners(const R* const* corner, const R* w, int count, R* b) {
@@ -43,21 +62,6 @@ inline void blend_corners(const R* const* corner, const R* w, int count, R* b) {
         R total = w[0] * corner[0][j];
         for (int n = 1; n < 8; ++n) total = total + w[n] * corner[n][j];
         b[j] = total;
-    }
-}
-
-/// color[c] = sum_k Y_k b_kc, folded as described above; `count` is 3 K.
-template <class R>
-inline void fold_color(const R* b, const R* Y3, int count, R* color) {
-    R part[sh_fold] = {};
-    const int whole = count / sh_fold * sh_fold;
-    for (int j = 0; j < whole; ++j) {
-        R& p = part[j % sh_fold];
-        p = p + Y3[j] * b[j];
-    }
-    for (int c = 0; c < 3; ++c) {
-        color[c] = ((part[c] + part[3 + c]) + part[6 + c]) + part[9 + c];
-        if (whole < count) color[c] = color[c] + Y3[whole + c] * b[whole + c];
     }
 }
 

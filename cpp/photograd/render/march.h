@@ -70,7 +70,7 @@ struct Wave {
 };
 
 template <Real R>
-void place_wave(const RayBatch<R>& rays, R dt, std::int32_t k0, Wave<R>& wave) {
+void place_wave(const RayBatch<R>& rays, R dt, std::int64_t begin, std::int32_t k0, Wave<R>& wave) {
     wave.batch.resize(wave.rays.size());
     wave.values.assign_zero(wave.rays.size());
     for (std::size_t g = 0; g < wave.rays.size(); ++g) {
@@ -84,6 +84,7 @@ void place_wave(const RayBatch<R>& rays, R dt, std::int32_t k0, Wave<R>& wave) {
                 wave.batch.position[axis][g][i] = o[axis] + t[i] * d[axis];
         for (int axis = 0; axis < 3; ++axis) wave.batch.direction[axis][g] = d[axis];
         wave.batch.used[g] = std::min(lane_count, rays.samples[ray] - k0);
+        wave.batch.ray[g] = static_cast<std::uint32_t>(ray - begin);
     }
 }
 
@@ -98,7 +99,7 @@ void walk(const F& field, const RayBatch<R>& rays, const MarchOptions& options, 
     for (std::int64_t ray = begin; ray < end; ++ray)
         if (rays.samples[ray] > 0) wave.rays.push_back(ray);
     for (std::int32_t k0 = 0; !wave.rays.empty(); k0 += lane_count) {
-        place_wave(rays, dt, k0, wave);
+        place_wave(rays, dt, begin, k0, wave);
         field.eval(wave.batch, cache, wave.values);
         std::vector<std::int64_t> alive;
         for (std::size_t g = 0; g < wave.rays.size(); ++g) {
