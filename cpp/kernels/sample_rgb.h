@@ -10,9 +10,8 @@ namespace photograd {
 struct SampleRgbArgs {
     const float* texels;  // (H, W, 3), at least two columns
     int height, width;
-    const float* uv;     // (N, 2)
-    float* color;        // (N, 3)
-    std::int64_t count;  // N
+    const float* uv;  // (N, 2)
+    float* color;     // (N, 3)
 };
 
 }  // namespace photograd

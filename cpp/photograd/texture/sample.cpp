@@ -40,9 +40,9 @@ bool sample(const ImageView<const R>& texture, const R* uv, std::int64_t count, 
             bool good = false;
             if constexpr (std::is_same_v<R, float>) {
                 if (fast)
-                    good = kernels().sample_rgb({texture.texels, texture.shape.height,
-                                                 texture.shape.width, uv, color, count},
-                                                begin, end);
+                    good = kernels().sample_rgb(
+                        {texture.texels, texture.shape.height, texture.shape.width, uv, color},
+                        begin, end);
             }
             if (!fast) good = sample_chunk<R, C>(texture, uv, begin, end, color);
             if (!good) finite = false;
