@@ -39,6 +39,7 @@ from photograd.data.bounds import estimate_bounds
 from photograd.data.capture import Capture
 from photograd.data.visibility import require_views_of
 from photograd.fields.dense_grid import DenseGrid
+from photograd.fields.dense_sh import DenseSh
 from photograd.fields.fitted import FittedField, start_field
 from photograd.fields.gaussians import GaussianScene
 from photograd.fields.sparse_sh import SparseSh
@@ -304,7 +305,9 @@ class Fit:
 
     def _prune(self) -> None:
         """Drop voxels of a sparse grid that no pixel of any view needs."""
-        if not isinstance(self.model, SparseSh) or self.options.prune == 0:
+        if not isinstance(self.model, SparseSh) or isinstance(self.model, DenseSh):
+            return
+        if self.options.prune == 0:
             return
         assert isinstance(self.pixels, TrainingPixels)
         weight = self.model.greatest_weights(self.pixels.batches(PRUNING_RAYS))

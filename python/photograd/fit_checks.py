@@ -24,14 +24,17 @@ def require_startable(name: str) -> None:
     if not kind.capabilities & {"rays", "image"}:
         raise RangeError(
             message("Fit", "representation", "one that is seen along rays", repr(name),
-                    "it lives on a 2D canvas; a capture can start 'dense_grid'")
+                    f"it lives on a 2D canvas; a capture can start {_known()}")
         )  # fmt: skip
     if name not in FITTED:
-        known = " or ".join(map(repr, FITTED))
         raise RangeError(
-            message("Fit", "representation", f"one that a capture can start: {known}", repr(name),
-                    "start it from Python, with parameters of your own")
+            message("Fit", "representation", f"one that a capture can start: {_known()}",
+                    repr(name), "start it from Python, with parameters of your own")
         )  # fmt: skip
+
+
+def _known() -> str:
+    return " or ".join(map(repr, FITTED))
 
 
 def require_background_of(capture: Capture, options: FitOptions) -> None:

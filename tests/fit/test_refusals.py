@@ -27,11 +27,15 @@ from tests.fit import scene
         ),
         ("zebra", r"got 'zebra' \(choose one of these\)"),
         ("texture_2d", r"one that is seen along rays, got 'texture_2d' \(it lives on a 2D canvas"),
-        ("toy_blobs", "it lives on a 2D canvas; a capture can start 'dense_grid'"),
+        (
+            "toy_blobs",
+            "it lives on a 2D canvas; a capture can start "
+            "'dense_grid' or 'sparse_sh' or 'dense_sh' or 'gaussians'",
+        ),
         (
             "tiny_network",
-            "one that a capture can start: 'dense_grid' or 'sparse_sh' or 'gaussians', "
-            "got 'tiny_network'",
+            "one that a capture can start: "
+            "'dense_grid' or 'sparse_sh' or 'dense_sh' or 'gaussians', got 'tiny_network'",
         ),
     ],
 )

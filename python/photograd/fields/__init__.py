@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from photograd.fields.dense_grid import DenseGrid
+from photograd.fields.dense_sh import DenseSh
 from photograd.fields.gaussians import GaussianScene
 from photograd.fields.octree_sh import OctreeSh
 from photograd.fields.sparse_sh import SparseSh
@@ -13,6 +14,7 @@ from photograd.fields.toy_blobs import ToyBlobs
 
 __all__ = [
     "DenseGrid",
+    "DenseSh",
     "GaussianScene",
     "OctreeSh",
     "SparseSh",

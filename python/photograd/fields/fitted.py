@@ -9,6 +9,7 @@ from photograd.data.bounds import Bounds
 from photograd.data.capture import Capture
 from photograd.fields.active_voxels import ActiveVoxels
 from photograd.fields.dense_grid import DenseGrid
+from photograd.fields.dense_sh import DenseSh
 from photograd.fields.gaussians import GaussianScene
 from photograd.fields.march import MarchPolicy
 from photograd.fields.sparse_sh import SparseSh
@@ -19,7 +20,8 @@ from photograd.splats.first_scene import first_scene, scene_control
 
 FittedGrid: TypeAlias = DenseGrid | SparseSh
 FittedField: TypeAlias = FittedGrid | GaussianScene
-FITTED = (DenseGrid.name, SparseSh.name, GaussianScene.name)
+HARMONIC_GRIDS: dict[str, type[SparseSh]] = {SparseSh.name: SparseSh, DenseSh.name: DenseSh}
+FITTED = (DenseGrid.name, *HARMONIC_GRIDS, GaussianScene.name)
 
 
 def start_field(
@@ -37,12 +39,12 @@ def start_field(
         scene, rule = first_scene(capture, bounds.box, options, points)
         return scene, f"Gaussians: {rule}"
     size, finest = options.levels()[0], options.resolution
-    if options.representation == SparseSh.name:
-        sparse = SparseSh.full(
+    if options.representation in HARMONIC_GRIDS:
+        harmonic = HARMONIC_GRIDS[options.representation].full(
             bounds.box, size, degree=options.degree, finest=finest, sigma_t=options.sigma_t,
             steps_per_voxel=options.steps_per_voxel,
         )  # fmt: skip
-        return sparse, f"box: {bounds.rule}"
+        return harmonic, f"box: {bounds.rule}"
     dense = DenseGrid.empty(
         bounds.box, size, finest=finest, sigma_t=options.sigma_t,
         steps_per_voxel=options.steps_per_voxel,
@@ -62,9 +64,9 @@ def saved_field(
             params, state, policy=SplatOptions(**policy), control=scene_control(options)
         )
     march = MarchPolicy(**{**policy, "box": tuple(tuple(corner) for corner in policy["box"])})
-    if options.representation == SparseSh.name:
+    if options.representation in HARMONIC_GRIDS:
         rest = {key: value for key, value in state.items() if key != "background_density"}
-        return SparseSh(
+        return HARMONIC_GRIDS[options.representation](
             ActiveVoxels.of_state(rest, "load_model"), params["density"], params["sh"], march,
             background_density=float(state["background_density"]),
         )  # fmt: skip

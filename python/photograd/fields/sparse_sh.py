@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Self
 
 import numpy as np
 from photograd_course.random import uniform
@@ -93,6 +93,7 @@ class SparseSh(Representation):
             raise RangeError(message("SparseSh", "sh", expected, coefficients.shape[1]))
         if policy.border != "zero":
             raise RangeError(message("SparseSh", "policy.border", "'zero'", repr(policy.border)))
+        self._check_active(active)
         self.active = active
         self.params = {
             "density": np.ascontiguousarray(density),
@@ -114,7 +115,7 @@ class SparseSh(Representation):
         sigma_t: float = 0.1,
         steps_per_voxel: float = 2.0,
         dtype: type[np.floating[Any]] = np.float32,
-    ) -> SparseSh:
+    ) -> Self:
         """A grid of cubic voxels over `box` (2, 3) in which every voxel is active, nearly empty.
 
         Arguments as for `DenseGrid.empty`; `degree` 0 to 3. Raises RangeError.
@@ -134,7 +135,7 @@ class SparseSh(Representation):
         return cls(active, density, coefficients, policy, background_density=start)
 
     @classmethod
-    def example(cls, *, seed: int, dtype: type[np.floating[Any]] = np.float64) -> SparseSh:
+    def example(cls, *, seed: int, dtype: type[np.floating[Any]] = np.float64) -> Self:
         """Two thirds of 11 x 9 x 10 voxels with random values, degree 2."""
         shape = (11, 9, 10)
         voxel = np.arange(int(np.prod(shape)))
@@ -298,7 +299,7 @@ class SparseSh(Representation):
         self.active = after
         return source
 
-    def refined(self, resolution: int, *, steps_per_voxel: float = 2.0) -> SparseSh:
+    def refined(self, resolution: int, *, steps_per_voxel: float = 2.0) -> Self:
         """The same field on a finer grid over the same box, by trilinear interpolation."""
         extent = self.box[1] - self.box[0]
         voxel = extent.max() / resolution
@@ -307,7 +308,7 @@ class SparseSh(Representation):
         density = self._resampled(self.params["density"], active, self.background_density)
         coefficients = self._resampled(self.params["sh"], active, 0.0)
         policy = replace(self.policy, dt=voxel / steps_per_voxel)
-        return SparseSh(
+        return type(self)(
             active, density, coefficients, policy,
             background_density=self.background_density, fused=self.fused,
         )  # fmt: skip
@@ -338,7 +339,11 @@ class SparseSh(Representation):
             raise RangeError(
                 message("sparse_sh.load_state", "state", "a background_density", f"{sorted(state)}")
             )
+        self._check_active(active)
         self.active, self.background_density = active, float(background)
+
+    def _check_active(self, active: ActiveVoxels) -> None:
+        """Any topology will do."""
 
     def _background(self) -> Array:
         values = np.zeros(1 + self.params["sh"][0].size, self.params["density"].dtype)
