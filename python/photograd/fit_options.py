@@ -15,6 +15,10 @@ BACKGROUNDS = ("random", "white", "black", "learned")
 DENSITY_CONTROLS = ("mcmc", "default", "none")
 """Of Gaussians: a fixed number that wanders, clone-split-prune, or none."""
 
+MOST_DEGREE = 3
+USERS_OF = {"degree": ("sparse_sh", "dense_sh", "gaussians"), "prune": ("sparse_sh",)}
+"""Options that mean nothing to other representations than these."""
+
 
 @dataclass(frozen=True)
 class FitOptions:
@@ -39,7 +43,7 @@ class FitOptions:
     steps_per_voxel: float = 1.5
     refine_at: tuple[float, float] = (0.15, 0.4)
     sigma_t: float = 0.1  # 1/m, density of the start
-    degree: int = 2  # of the harmonics of a sparse grid
+    degree: int = 2  # of the harmonics, 0 to MOST_DEGREE
     prune: float = 0.02  # a sparse grid drops voxels that weigh less in every pixel; 0: none
     gaussians: int = 30_000  # at most so many
     density_control: str = "mcmc"  # see DENSITY_CONTROLS
@@ -69,6 +73,10 @@ class FitOptions:
                 raise RangeError(
                     message("FitOptions", name, "zero or more", f"{getattr(self, name)}")
                 )
+        if self.degree not in range(MOST_DEGREE + 1):
+            raise RangeError(
+                message("FitOptions", "degree", f"0 to {MOST_DEGREE}", f"{self.degree}")
+            )
         if not 0 <= self.ssim_weight <= 1:
             raise RangeError(message("FitOptions", "ssim_weight", "0 to 1", f"{self.ssim_weight}"))
         if self.density_control not in DENSITY_CONTROLS:

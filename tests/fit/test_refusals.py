@@ -71,6 +71,8 @@ def test_a_box_that_no_camera_sees_is_refused_whatever_is_allowed() -> None:
     [
         ({"steps": 0}, "FitOptions: steps: expected a positive number, got 0"),
         ({"learning_rate": float("nan")}, "learning_rate: expected a positive number, got nan"),
+        ({"degree": 4}, "FitOptions: degree: expected 0 to 3, got 4"),
+        ({"prune": -0.1}, "FitOptions: prune: expected zero or more, got -0.1"),
         ({"total_variation": -1.0}, "total_variation: expected zero or more, got -1.0"),
         ({"background": "grey"}, r"background: expected one of .*, got 'grey'"),
         ({"refine_at": (0.5, 0.2)}, "refine_at: expected two rising fractions below 1"),

@@ -23,9 +23,11 @@ from photograd.commands.fit_arguments import (
     AllowBlindOption,
     BackgroundOption,
     CheckpointOption,
+    DegreeOption,
     DensityControlOption,
     GaussiansOption,
     LearningRateOption,
+    PruneOption,
     RaysOption,
     RepresentationOption,
     ResolutionOption,
@@ -47,7 +49,7 @@ from photograd.data.load import load_capture
 from photograd.errors import RangeError, message
 from photograd.fields.gaussians import GaussianScene
 from photograd.fit import Fit
-from photograd.fit_options import FitOptions, options_for
+from photograd.fit_options import USERS_OF, FitOptions, options_for
 from photograd.fit_result import FitResult, Progress, summary
 from photograd.model import load_model
 
@@ -80,6 +82,8 @@ def fit(
     rays: RaysOption = DEFAULTS.rays,
     learning_rate: LearningRateOption = DEFAULTS.learning_rate,
     total_variation: TotalVariationOption = DEFAULTS.total_variation,
+    degree: DegreeOption = None,
+    prune: PruneOption = DEFAULTS.prune,
     gaussians: GaussiansOption = DEFAULTS.gaussians,
     density_control: DensityControlOption = DEFAULTS.density_control,
     start_from: StartFromOption = None,
@@ -110,10 +114,11 @@ def fit(
         refuse_other_options(context, job.options)
         note(f"resumed at step {job.step_number} of {job.options.steps}")
     else:
+        refuse_without_effect(context, representation)
         options = options_for(
             representation, steps=steps, resolution=resolution, rays=rays, seed=seed,
             learning_rate=learning_rate, total_variation=total_variation, background=background,
-            gaussians=gaussians, density_control=density_control,
+            degree=degree, prune=prune, gaussians=gaussians, density_control=density_control,
         )  # fmt: skip
         first = load_model(start_from) if start_from else None
         job = Fit.start(loaded, options, allow_blind=allow_blind, start_from=first)
@@ -153,6 +158,17 @@ def load_and_describe(folder: Path, downscale: int) -> Capture:
         f"split {loaded.split_hash()}"
     )
     return loaded
+
+
+def refuse_without_effect(context: typer.Context, representation: str) -> None:
+    """Raise RangeError for an option that is given and means nothing to the representation."""
+    for name, users in USERS_OF.items():
+        source = context.get_parameter_source(name)
+        if source is not None and source.name == "COMMANDLINE" and representation not in users:
+            raise RangeError(
+                message("fit", f"--{name}", f"a fit of {' or '.join(users)}", repr(representation),
+                        "leave it out, it has no effect here")
+            )  # fmt: skip
 
 
 def refuse_other_options(context: typer.Context, stored: FitOptions) -> None:

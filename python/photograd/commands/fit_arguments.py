@@ -8,18 +8,34 @@ from typing import Annotated, TypeAlias
 import typer
 
 from photograd.fields.fitted import FITTED
-from photograd.fit_options import BACKGROUNDS, DEFAULTS_OF, DENSITY_CONTROLS, FitOptions
-
-_STEPS = f"{FitOptions().steps}; " + ", ".join(
-    f"{name}: {given['steps']}" for name, given in DEFAULTS_OF.items()
+from photograd.fit_options import (
+    BACKGROUNDS,
+    DEFAULTS_OF,
+    DENSITY_CONTROLS,
+    MOST_DEGREE,
+    USERS_OF,
+    FitOptions,
 )
+
+
+def _defaults(option: str) -> str:
+    """The default of an option, and of what has one of its own."""
+    others = ", ".join(f"{name}: {given[option]}" for name, given in DEFAULTS_OF.items())
+    return f"{getattr(FitOptions(), option)}; {others}"
+
+
+def _users(option: str) -> str:
+    return ", ".join(USERS_OF[option])
+
 
 RepresentationOption: TypeAlias = Annotated[
     str, typer.Option("--representation", help=f"How the scene is stored: {', '.join(FITTED)}.")
 ]
 StepsOption: TypeAlias = Annotated[
     int | None,
-    typer.Option("--steps", min=1, help="Steps of gradient descent.", show_default=_STEPS),
+    typer.Option(
+        "--steps", min=1, help="Steps of gradient descent.", show_default=_defaults("steps")
+    ),
 ]
 ResolutionOption: TypeAlias = Annotated[
     int, typer.Option("--resolution", min=8, help="Voxels along the longest edge.")
@@ -34,6 +50,16 @@ TotalVariationOption: TypeAlias = Annotated[
     float,
     typer.Option("--total-variation", min=0.0, help="Weight of the smoothness prior of grids."),
 ]
+DegreeOption: TypeAlias = Annotated[
+    int | None,
+    typer.Option("--degree", min=0, max=MOST_DEGREE, show_default=_defaults("degree"),
+                 help=f"Degree of the harmonics of {_users('degree')}."),
+]  # fmt: skip
+PruneOption: TypeAlias = Annotated[
+    float,
+    typer.Option("--prune", min=0.0,
+                 help=f"Drop voxels of {_users('prune')} that weigh less in every pixel; 0: none."),
+]  # fmt: skip
 GaussiansOption: TypeAlias = Annotated[
     int, typer.Option("--gaussians", min=1, help="Most Gaussians that there may be.")
 ]
