@@ -39,16 +39,17 @@ mine.TV = option("tv", mine.TV)
 # %%
 def scene(n):
     """A volume of n x n x n voxels."""
-    x = (np.stack(np.indices((n, n, n)), axis=-1) + 0.5) / n * 2 - 1
+    places = (np.stack(np.indices((n, n, n)), axis=-1) + 0.5) / n * 2 - 1
     grid = np.full((n, n, n, 4), 0.5)
     grid[..., 3] = 0.0
     for middle, size, paint in (
         ((-0.25, 0.0, 0.1), 0.45, (0.95, 0.55, 0.4)),
         ((0.4, 0.25, -0.25), 0.3, (0.5, 0.75, 0.95)),
     ):
-        solid = np.clip((size - np.linalg.norm(x - np.array(middle), axis=-1)) * n / 3 + 0.5, 0, 1)
+        away = np.linalg.norm(places - np.array(middle), axis=-1)
+        solid = np.clip((size - away) * n / 3 + 0.5, 0, 1)
         own = solid > grid[..., 3] / 10
-        stripes = 0.75 + 0.25 * np.sin(x[own] @ np.array([6.0, 8.0, 3.0]))
+        stripes = 0.75 + 0.25 * np.sin(places[own] @ np.array([6.0, 8.0, 3.0]))
         grid[own, :3] = stripes[:, None] * paint
         grid[..., 3] = np.maximum(grid[..., 3], 10 * solid)
     return grid
@@ -57,10 +58,10 @@ def scene(n):
 def camera(place):
     """The pose of a camera at a place that looks at the origin; y is down."""
     z = -place / np.linalg.norm(place)
-    x = np.cross(z, [0.0, 1.0, 0.0])
-    x /= np.linalg.norm(x)
+    right = np.cross(z, [0.0, 1.0, 0.0])
+    right /= np.linalg.norm(right)
     matrix = np.eye(4)
-    matrix[:3, :3], matrix[:3, 3] = np.stack([x, np.cross(z, x), z], axis=1), place
+    matrix[:3, :3], matrix[:3, 3] = np.stack([right, np.cross(z, right), z], axis=1), place
     return matrix
 
 
