@@ -1,0 +1,301 @@
+# %% [markdown]
+# # A scene from its photographs
+# Photographs a scene drawn by formulas, shows what the photographs want of fog, and recovers the
+# scene with your functions, next to the C++ core where that is installed. Never graded. `python
+# explore.py` takes `--views`, `--pixels`, `--voxels`, `--steps`, `--tv` (the weight of total
+# variation) and `--capture DIR`: a folder with `transforms.json` and its pictures. Of these,
+# `--box` says how far the box reaches from the origin.
+
+# %%
+from __future__ import annotations
+
+import importlib
+import json
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import volume_recovery as mine
+from matplotlib.figure import Figure
+from PIL import Image
+
+
+def option(name, default):
+    """The value after --name on the command line; the default in a notebook."""
+    words = sys.argv[1:]
+    return type(default)(words[words.index(f"--{name}") + 1]) if f"--{name}" in words else default
+
+
+count, pixels, voxels = option("views", 12), option("pixels", 24), option("voxels", 20)
+steps, capture = option("steps", 60), option("capture", "")
+mine.TV = option("tv", mine.TV)
+
+# %% [markdown]
+# ## A scene, and its photographs
+# A striped ball and a small one, in a box of 2 m, seen by cameras all around.
+
+
+# %%
+def scene(n):
+    """A volume of n x n x n voxels."""
+    places = (np.stack(np.indices((n, n, n)), axis=-1) + 0.5) / n * 2 - 1
+    grid = np.full((n, n, n, 4), 0.5)
+    grid[..., 3] = 0.0
+    for middle, size, paint in (
+        ((-0.25, 0.0, 0.1), 0.45, (0.95, 0.55, 0.4)),
+        ((0.4, 0.25, -0.25), 0.3, (0.5, 0.75, 0.95)),
+    ):
+        away = np.linalg.norm(places - np.array(middle), axis=-1)
+        solid = np.clip((size - away) * n / 3 + 0.5, 0, 1)
+        own = solid > grid[..., 3] / 10
+        stripes = 0.75 + 0.25 * np.sin(places[own] @ np.array([6.0, 8.0, 3.0]))
+        grid[own, :3] = stripes[:, None] * paint
+        grid[..., 3] = np.maximum(grid[..., 3], 10 * solid)
+    return grid
+
+
+def camera(place):
+    """The pose of a camera at a place that looks at the origin; y is down."""
+    z = -place / np.linalg.norm(place)
+    right = np.cross(z, [0.0, 1.0, 0.0])
+    right /= np.linalg.norm(right)
+    matrix = np.eye(4)
+    matrix[:3, :3], matrix[:3, 3] = np.stack([right, np.cross(z, right), z], axis=1), place
+    return matrix
+
+
+def photographs(grid, number, size, turn=0.0):
+    """Views of a volume by your own renderer."""
+    height = 1 - (np.arange(number) + 0.5) * 2 / number
+    phi, ring = np.arange(number) * 2.399963 + turn, np.sqrt(1 - height**2)
+    places = 3.2 * np.stack([ring * np.cos(phi), height, ring * np.sin(phi)], axis=1)
+    views = {
+        "pictures": np.zeros((number, size, size, 3)), "focal": 1.25 * size,
+        "world_from_camera": np.stack([camera(place) for place in places]),
+        "low": np.full(3, -1.0), "high": np.full(3, 1.0),
+        "background": np.array([0.04, 0.05, 0.08]),
+    }  # fmt: skip
+    views["pictures"] = shown(grid, views)
+    return views
+
+
+def shown(grid, views, samples=32):
+    """All pictures of a volume."""
+    shape = views["pictures"].shape
+    origins, directions, _ = mine.ray_batch(views, np.arange(int(np.prod(shape[:3]))))
+    box = views["low"], views["high"]
+    seen = mine.render_rays(grid, *box, origins, directions, samples, views["background"])
+    return seen.reshape(shape)
+
+
+def gradient(grid, views):
+    """The derivative of the loss of all photographs by each number of a volume."""
+    everything = np.arange(views["pictures"][..., 0].size)
+    origins, directions, truth = mine.ray_batch(views, everything)
+    asked = (views["low"], views["high"], origins, directions, mine.SAMPLES, views["background"])
+    _, cotangent = mine.mse_and_cotangent(mine.render_rays(grid, *asked), truth)
+    return mine.render_adjoint(grid, *asked, cotangent)[0]
+
+
+def some(views, which):
+    """Some of the views."""
+    names = ("pictures", "world_from_camera")
+    return {**views, **{name: views[name][which] for name in names}}
+
+
+def recover(views, n, number):
+    """(volume, losses, seconds) of a fit from fog."""
+    before = time.perf_counter()
+    start = mine.fog((n, n, n))
+    grid, losses = mine.fit_volume(views, start, number, np.random.default_rng(0))
+    return grid, losses, time.perf_counter() - before
+
+
+truth = scene(24)
+views, unseen = photographs(truth, count, pixels), photographs(truth, 4, pixels, 1.0)
+fog = mine.fog((voxels,) * 3)
+print(f"scene:  {count} photographs of {pixels} x {pixels}, a volume of {voxels}^3")
+print(f"        fog has {mine.psnr(shown(fog, unseen), unseen['pictures']):.1f} dB on new views")
+
+# %% [markdown]
+# ## Your signs, your fit
+
+# %%
+slope, signs = gradient(fog, views)[..., 3], mine.gradient_sign_map(fog, views)
+print(f"signs:  {np.mean(signs < 0):.0%} of all voxels want more, {np.mean(signs > 0):.0%} less")
+found, losses, seconds = recover(views, voxels, steps)
+own = mine.psnr(shown(found, views), views["pictures"])
+new = mine.psnr(shown(found, unseen), unseen["pictures"])
+print(f"fit:    {steps} steps in {seconds:.1f} s, {own:.1f} dB on the photographs, "
+      f"{new:.1f} dB on new views")  # fmt: skip
+
+# %% [markdown]
+# ## The C++ core
+# Its renderer and its adjoint in the place of yours. It steps along a ray by equal lengths, where
+# 08 takes equal numbers of steps: the derivatives differ as two quadratures do, the less the finer
+# the steps. They are compared with a hundred and more on each ray.
+
+
+# %%
+def of_the_core():
+    """(render_rays, render_adjoint) by the core."""
+    grids = importlib.import_module("photograd.fields.dense_grid")
+    marches = importlib.import_module("photograd.fields.march")
+    base = importlib.import_module("photograd.representation")
+
+    def asked(grid, low, high, origins, directions, n):
+        policy = marches.MarchPolicy(
+            box=(tuple(low), tuple(high)), dt=float(np.max(high - low)) / n, lattice="entry",
+            density_activation="identity", color_activation="identity",
+        )  # fmt: skip
+        aims = directions / np.linalg.norm(directions, axis=1, keepdims=True)
+        numbers = np.arange(len(origins), dtype=np.uint32)
+        batch = base.RayBatch(np.ascontiguousarray(origins), aims, numbers)
+        field = grids.DenseGrid(grid.copy(), policy)
+        return field, *field.render(batch, options=base.RenderOptions(), seed=0, step=0), base
+
+    def render(grid, low, high, origins, directions, n, background):
+        _, out, _, _ = asked(grid, low, high, origins, directions, n)
+        opacity = np.asarray(out.opacity).reshape(-1, 1)
+        return np.asarray(out.color) + (1 - opacity) * background
+
+    def adjoint(grid, low, high, origins, directions, n, background, d_pixel):
+        field, out, context, base = asked(grid, low, high, origins, directions, n)
+        back = base.Outputs(d_pixel, -(d_pixel @ background), None)
+        d_grid = np.asarray(field.render_backward(context, back)["values"])
+        opacity = np.asarray(out.opacity).reshape(-1, 1)
+        return d_grid.reshape(grid.shape), np.sum((1 - opacity) * d_pixel, axis=0)
+
+    render(fog, views["low"], views["high"], np.zeros((1, 3)), np.ones((1, 3)), 4, np.zeros(3))
+    return render, adjoint
+
+
+FINE = 160
+
+
+def finely(grid, views):
+    """The derivative by extinction with many samples on each ray."""
+    samples, mine.SAMPLES = mine.SAMPLES, FINE
+    slope = gradient(grid, views)[..., 3]
+    mine.SAMPLES = samples
+    return slope
+
+
+core = None
+try:
+    functions = of_the_core()
+except (ImportError, AttributeError, TypeError):  # none, or another than this was written for
+    print("core not installed")
+else:
+    kept = mine.render_rays, mine.render_adjoint
+    mine.render_rays, mine.render_adjoint = functions
+    core_slope = gradient(fog, views)[..., 3]
+    core_fine = finely(fog, some(views, slice(0, 2)))
+    core, _, core_seconds = recover(views, voxels, steps)
+    mine.render_rays, mine.render_adjoint = kept
+    fine = finely(fog, some(views, slice(0, 2)))
+    gap = np.linalg.norm(core_fine - fine) / np.linalg.norm(core_fine)
+    score = mine.psnr(shown(core, unseen), unseen["pictures"])
+    print(f"core:   its derivative is {gap:.2%} from yours at {FINE} steps a ray; "
+          f"{score:.1f} dB on new views in {core_seconds:.1f} s")  # fmt: skip
+
+
+# %% [markdown]
+# ## Pictures
+
+
+# %%
+def signed(axes, values, title):
+    """The middle slice of a volume: blue negative (add), red positive (take away); roots."""
+    flat = values[:, :, values.shape[2] // 2].T
+    root = np.sign(flat) * np.sqrt(np.abs(flat) / max(np.abs(flat).max(), 1e-300))
+    axes.imshow(root, cmap="RdBu_r", vmin=-1, vmax=1, origin="lower")
+    axes.set(title=title, xticks=[], yticks=[])
+
+
+def light(axes, picture, title):
+    """A picture of linear light."""
+    axes.imshow(np.clip(picture, 0, 1) ** (1 / 2.2))
+    axes.set(title=title, xticks=[], yticks=[])
+
+
+def absent(axes):
+    axes.text(0.5, 0.5, "core not installed", ha="center")
+    axes.set_axis_off()
+
+
+figure = Figure(figsize=(13, 6.5), layout="constrained")
+panels = figure.subplots(2, 4)
+large = photographs(truth, 4, 48, 1.0)
+light(panels[0, 0], large["pictures"][1], "a new view: the truth")
+light(panels[0, 1], shown(found, large)[1], "your fit")
+if core is None:
+    absent(panels[0, 2])
+    absent(panels[1, 1])
+else:
+    light(panels[0, 2], shown(core, large)[1], "with the core's renderer")
+    signed(panels[1, 1], core_slope, "the core's")
+panels[0, 3].semilogy(np.maximum(losses, 1e-12))
+panels[0, 3].set(title="your losses", xlabel="step")
+signed(panels[1, 0], slope, "your derivative by σ, from fog")
+signed(panels[1, 2], signs, "your sign map, from fog")
+signed(panels[1, 3], gradient(found, views)[..., 3], "your derivative after the fit")
+figure.savefig("recovery.png", dpi=100)
+print("recovery.png: a new view, your derivative, what was recovered")
+
+
+# %% [markdown]
+# ## Photographs of your own
+# `transforms.json` has the cameras (x to the right, y up, looking along -z: columns of a matrix)
+# and an angle of view or a focal length in pixels. The background counts as the mean of the
+# pictures' borders. The last photograph is kept back.
+
+
+# %%
+def taken(folder, size):
+    """Views of a capture, its pictures made small."""
+    file = folder / "transforms.json"
+    file = file if file.exists() else folder / "transforms_train.json"
+    told = json.loads(file.read_text(encoding="utf-8"))
+    frames = told["frames"]
+    frames = frames[:: max(1, len(frames) // max(2, count))]
+    pictures, poses = [], []
+    for frame in frames:
+        file = folder / frame["file_path"]
+        image = Image.open(file if file.suffix else file.with_suffix(".png"))
+        wide, tall = image.size
+        given = frame.get("fl_x", told.get("fl_x"))
+        angle = frame.get("camera_angle_x", told.get("camera_angle_x"))
+        focal = given / told.get("w", wide) if given else 0.5 / np.tan(angle / 2)
+        small = image.convert("RGBA").resize((size, max(1, round(size * tall / wide))))
+        values = np.asarray(small, np.float64) / 255
+        pictures.append(values[..., :3] ** 2.2 * values[..., 3:])
+        # From y up and -z forward to y down and z forward.
+        poses.append(np.array(frame["transform_matrix"], np.float64) @ np.diag([1.0, -1, -1, 1]))
+    pictures = np.stack(pictures)
+    rims = [pictures[:, 0], pictures[:, -1], pictures[:, :, 0], pictures[:, :, -1]]
+    reach = np.full(3, option("box", 1.0))
+    return {
+        "pictures": pictures, "world_from_camera": np.stack(poses), "focal": focal * size,
+        "low": -reach, "high": reach,
+        "background": np.concatenate([rim.reshape(-1, 3) for rim in rims]).mean(axis=0),
+    }  # fmt: skip
+
+
+if capture:
+    photos = taken(Path(capture), max(pixels, 16))
+    train, last = some(photos, slice(0, -1)), some(photos, slice(-1, None))
+    volume, _, seconds = recover(train, voxels, steps)
+    kept_back, guess = last["pictures"], shown(volume, last)
+    print(f"capture: {len(train['pictures'])} photographs, {steps} steps in {seconds:.1f} s; "
+          f"{mine.psnr(guess, kept_back):.1f} dB on the one kept back")  # fmt: skip
+    figure = Figure(figsize=(13, 3.4), layout="constrained")
+    panels = figure.subplots(1, 5)
+    light(panels[0], train["pictures"][0], "a photograph")
+    light(panels[1], shown(volume, train)[0], "recovered")
+    light(panels[2], kept_back[0], "kept back")
+    light(panels[3], guess[0], "recovered")
+    signed(panels[4], gradient(mine.fog(volume.shape[:3]), train)[..., 3], "derivative, from fog")
+    figure.savefig("capture.png", dpi=100)
+    print("capture.png: your photographs, what was recovered, what they wanted of fog")

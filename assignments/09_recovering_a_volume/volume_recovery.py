@@ -1,0 +1,195 @@
+"""Recovering a volume from photographs, by descent along the adjoint that you wrote in 08.
+
+A volume is an array (X, Y, Z, 4), as in assignment 08: r, g, b and sigma, the extinction in 1/m,
+which is never negative; colours lie between 0 and 1. *Views* are a dict of what the photographs are
+and how they were taken, all numbers float64:
+
+    "pictures"            (V, H, W, 3), linear colours, row 0 on top
+    "world_from_camera"   (V, 4, 4), the pose of each camera: x to the right, y down, z forward
+    "focal"               the focal length of all cameras, in pixels
+    "low", "high"         (3,) each, opposite corners of the box that holds the volume
+    "background"          (3,), the colour behind everything
+
+Your tasks are six functions, one section of the handout each; `photograd course check 09` tells how
+far you are. `volume_rendering.py`, beside this file, must be yours of assignment 08.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from volume_rendering import render_adjoint, render_rays
+
+SAMPLES = 16  # on each ray
+RAYS = 192  # in each step of a fit
+SMOOTH = 0.1  # eps of the total variation, and its weight in a fit
+TV = 1e-2
+FLOOR = 1e-6  # of the largest derivative: what is below it has no sign
+RATES = np.array([0.05, 0.05, 0.05, 0.5])  # of Adam, for r, g, b and sigma
+
+
+def psnr(picture, truth):
+    """How alike two pictures are, in decibels: more is better.
+
+    Args:
+        picture, truth: of the same shape, any; colours with a peak of 1.
+
+    Returns:
+        a float, infinite for equal pictures; handout equation (3).
+    """
+    # >>> solution 09.1
+    return float(-10 * np.log10(np.mean((picture - truth) ** 2)))
+    # <<< solution
+
+
+def ray_batch(views, chosen):
+    """Rays through the middles of some pixels, and what the photographs show there.
+
+    Args:
+        views: V photographs of H x W pixels.
+        chosen: (R,), integers: pixels of all photographs, counted from 0 as they lie in memory.
+
+    Returns:
+        (origins, directions, truth): (R, 3) each, rays in the world and colours; directions may
+        have any length above zero. Handout equations (4) to (6).
+    """
+    # >>> solution 09.2
+    pictures = views["pictures"]
+    view, row, col = np.unravel_index(chosen, pictures.shape[:3])
+    right = (col + 0.5 - pictures.shape[2] / 2) / views["focal"]
+    down = (row + 0.5 - pictures.shape[1] / 2) / views["focal"]
+    pose = views["world_from_camera"][view]
+    aim = np.stack([right, down, np.ones(len(chosen))], axis=1)
+    return pose[:, :3, 3], np.einsum("rij,rj->ri", pose[:, :3, :3], aim), pictures[view, row, col]
+    # <<< solution
+
+
+def mse_and_cotangent(pixels, truth):
+    """The loss of a batch of rays, and its derivative by each pixel.
+
+    Args:
+        pixels: (R, 3), what the volume shows.
+        truth: (R, 3), what the photographs show.
+
+    Returns:
+        (loss, d_pixels): a float, and (R, 3); handout equation (7).
+    """
+    # >>> solution 09.3
+    residual = pixels - truth
+    return float(np.sum(residual**2) / len(residual)), 2 / len(residual) * residual
+    # <<< solution
+
+
+# >>> solution 09.4
+
+
+def _ahead(grid, axis):
+    """The next value along an axis minus the own one; zero at the far border."""
+    return np.diff(grid, axis=axis, append=grid.take([-1], axis=axis))
+
+
+# <<< solution
+
+
+def tv_loss_adjoint(grid, eps):
+    """How rough a volume is, and the derivative of that by each of its numbers.
+
+    Args:
+        grid: (X, Y, Z, C); any X, Y, Z, C from 1 upwards.
+        eps: above zero; differences far below it hardly count.
+
+    Returns:
+        (loss, d_grid): a float, and (X, Y, Z, C); handout equations (8) to (10).
+    """
+    # >>> solution 09.4
+    ahead = np.stack([_ahead(grid, axis) for axis in range(3)])
+    length = np.sqrt(eps**2 + np.sum(ahead**2, axis=0))
+    count = grid[..., 0].size
+    pull = ahead / length / count
+    d_grid = -pull.sum(axis=0)
+    for axis in range(3):
+        # What voxel i pulls its neighbour by, arrives at i + 1.
+        moved = np.roll(pull[axis], 1, axis=axis)
+        d_grid += moved
+    return float(np.sum(length - eps) / count), d_grid
+    # <<< solution
+
+
+class Adam:
+    """Steps of Adam for one volume, as in assignment 01, with beta 0.9 and 0.99."""
+
+    def __init__(self):
+        self.m = self.v = self.k = 0
+
+    def step(self, grid, d_grid):
+        """The volume after one step of RATES; grid itself stays as it is."""
+        self.k += 1
+        self.m = 0.9 * self.m + 0.1 * d_grid
+        self.v = 0.99 * self.v + 0.01 * d_grid**2
+        m, v = self.m / (1 - 0.9**self.k), self.v / (1 - 0.99**self.k)
+        return grid - RATES * m / (np.sqrt(v) + 1e-8)
+
+
+def fog(shape):
+    """Given: where a fit may begin, thin grey fog of a shape (X, Y, Z)."""
+    grid = np.full((*shape, 4), 0.5)
+    grid[..., 3] = 0.1
+    return grid
+
+
+def draw(views, rng):
+    """Given: the pixels of one step, RAYS different ones at random; all, where there are fewer."""
+    total = views["pictures"][..., 0].size
+    return rng.choice(total, min(RAYS, total), replace=False)
+
+
+def gradient_sign_map(grid, views):
+    """What all photographs together want of each voxel's extinction.
+
+    Args:
+        grid: (X, Y, Z, 4).
+        views: as above; all of their pixels count.
+
+    Returns:
+        (X, Y, Z), float64: -1 where descent would raise sigma, 1 where it would lower it, 0 where
+        the derivative says next to nothing; handout equations (11) and (12).
+    """
+    # >>> solution 09.5
+    slope = np.zeros_like(grid[..., 3])
+    each = views["pictures"][0, ..., 0].size
+    for view in range(len(views["pictures"])):
+        origins, directions, truth = ray_batch(views, np.arange(view * each, (view + 1) * each))
+        rays = (views["low"], views["high"], origins, directions, SAMPLES, views["background"])
+        _, d_pixels = mse_and_cotangent(render_rays(grid, *rays), truth)
+        slope += render_adjoint(grid, *rays, d_pixels)[0][..., 3]
+    return np.where(np.abs(slope) > FLOOR * np.abs(slope).max(), np.sign(slope), 0.0)
+    # <<< solution
+
+
+def fit_volume(views, grid, steps, rng):
+    """Recover a volume from photographs.
+
+    Args:
+        views: as above.
+        grid: (X, Y, Z, 4), where the descent starts; this array must not change.
+        steps: how many, from 0 upwards.
+        rng: a numpy.random.Generator, for `draw` alone.
+
+    Returns:
+        (grid, losses): (X, Y, Z, 4), and (steps,), the loss that each step starts from; handout
+        equations (13) to (16).
+    """
+    # >>> solution 09.6
+    losses = np.zeros(steps)
+    adam = Adam()
+    for step in range(steps):
+        origins, directions, truth = ray_batch(views, draw(views, rng))
+        rays = (views["low"], views["high"], origins, directions, SAMPLES, views["background"])
+        loss, d_pixels = mse_and_cotangent(render_rays(grid, *rays), truth)
+        d_grid, _ = render_adjoint(grid, *rays, d_pixels)
+        roughness, d_rough = tv_loss_adjoint(grid, SMOOTH)
+        losses[step] = loss + TV * roughness
+        grid = adam.step(grid, d_grid + TV * d_rough)
+        grid[..., :3] = np.clip(grid[..., :3], 0.0, 1.0)
+        grid[..., 3] = np.maximum(grid[..., 3], 0.0)
+    return grid.copy(), losses
+    # <<< solution

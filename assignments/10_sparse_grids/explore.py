@@ -1,0 +1,353 @@
+# %% [markdown]
+# # A sparse scene, recovered
+# Photographs a scene drawn by formulas and recovers it with your functions three ways: with all
+# voxels, pruned early, and pruned and grown. Where the C++ core is installed, its derivative and
+# its own recovery stand beside yours, and your voxels go through an OpenVDB file. Never graded.
+# `python explore.py` takes `--voxels` (of a side, a power of two), `--steps` and `--rounds`,
+# `--threshold`, `--views`, `--size` (pixels of a side), and `--capture DIR`: a folder with
+# `transforms.json` and its pictures, of a scene that reaches `--box` from the origin.
+
+# %%
+from __future__ import annotations
+
+import importlib
+import json
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+import sparse_grids as mine
+from matplotlib.figure import Figure
+from PIL import Image
+
+
+def option(name, default):
+    """The value after --name on the command line; the default in a notebook."""
+    words = sys.argv[1:]
+    return type(default)(words[words.index(f"--{name}") + 1]) if f"--{name}" in words else default
+
+
+n, rounds, steps = option("voxels", 16), option("rounds", 8), option("steps", 5)
+threshold, views, size = option("threshold", 0.05), option("views", 16), option("size", 10)
+capture = option("capture", "")
+
+# %% [markdown]
+# ## A scene
+# A ball, a ring around it, and a pole.
+
+
+# %%
+def scene(n):
+    """(voxels, values) of those voxels that hold something."""
+    every = np.argwhere(np.ones((n, n, n), bool))
+    x = (every + 0.5) / n * 2 - 1
+    around = np.hypot(x[:, 0] + 0.2, x[:, 1] + 0.1)
+    distance = {
+        (0.9, 0.6, 0.2): 0.42 - np.linalg.norm(x - np.array([-0.2, -0.1, 0.0]), axis=1),
+        (0.2, 0.5, 0.9): 0.12 - np.hypot(around - 0.65, x[:, 2]),
+        (0.3, 0.8, 0.3): np.where(abs(x[:, 2]) < 0.8, 0.12 - np.hypot(*(x[:, :2] - 0.65).T), -1),
+    }
+    values = np.zeros((len(x), 4))
+    for paint, depth in distance.items():
+        solid = 8 * np.clip(depth * n / 3 + 0.5, 0, 1)
+        values[solid > values[:, 3], :3] = paint
+        values[:, 3] = np.maximum(values[:, 3], solid)
+    return every[values[:, 3] > 0], values[values[:, 3] > 0]
+
+
+def cameras(count, size, turned=0.0):
+    """Rays (2, count size^2, 3) of cameras all around the scene."""
+    height = 1 - (np.arange(count) + 0.5) * 2 / count
+    phi = np.arange(count) * 2.399963 + turned
+    ring = np.sqrt(1 - height**2)
+    tangent = ((np.arange(size) + 0.5) / size * 2 - 1) * 0.38
+    origins, directions = [], []
+    for place in np.stack([ring * np.cos(phi), ring * np.sin(phi), height], axis=1):
+        right = np.cross([0.0, 0.0, 1.0], place)
+        right /= np.linalg.norm(right)
+        up = np.cross(place, right)
+        d = -place - tangent[:, None, None] * up + tangent[None, :, None] * right
+        directions.append((d / np.linalg.norm(d, axis=-1, keepdims=True)).reshape(-1, 3))
+        origins.append(np.tile(3.2 * place, (size**2, 1)))
+    return np.stack([np.concatenate(origins), np.concatenate(directions)])
+
+
+def table_of(voxels):
+    """A table in which voxel v has row v."""
+    empty = mine.new_table(len(voxels))
+    return mine.voxel_hash_insert(empty, voxels, np.arange(len(voxels)))
+
+
+def seen(n, voxels, values, rays):
+    """Colours of rays through a sparse grid."""
+    return mine.render(values, mine.march(n, voxels, table_of(voxels), rays))
+
+
+def decibels(a, b):
+    return -10 * np.log10(max(float(np.mean((a - b) ** 2)), 1e-30))
+
+
+truth = scene(2 * n)
+rays, unseen = cameras(views, size), cameras(6, 16, 1.0)
+target, hidden = seen(2 * n, *truth, rays), seen(2 * n, *truth, unseen)
+print(f"scene: {views} photographs of {size} x {size}, all voxels {n**3}")
+
+# %% [markdown]
+# ## What it costs
+# Bytes of the scene itself, in four forms. The dense form holds no structure; the sparse one needs
+# the octree, the table and the values together.
+
+# %%
+voxels, values = scene(n)
+full = np.zeros((n, n, n), bool)
+full[tuple(voxels.T)] = True
+tree = mine.octree_from_dense(full)
+dense, *sparse = mine.active_stats(n, tree, table_of(voxels), values)
+leaves = int((tree <= 0).sum())
+print(f"bytes:  dense {dense}; octree {sparse[0]}, table {sparse[1]}, values {sparse[2]}")
+wanted, *_ = mine.march(n, voxels, table_of(voxels), unseen)
+print(f"samples read: {wanted.mean():.0%} of all; octree: {len(tree)} nodes, {leaves} leaves")
+
+# %% [markdown]
+# ## Three recoveries
+
+# %%
+every = np.argwhere(np.ones((n, n, n), bool))
+start = np.tile(mine.START, (len(every), 1))
+plans = {
+    "all voxels": (1, rounds * steps, 0.0, 0),
+    "pruned": (rounds, steps, threshold, 0),
+    "pruned and grown": (rounds, steps, threshold, 1),
+}
+found = {}
+for name, plan in plans.items():
+    before = time.perf_counter()
+    found[name] = mine.fit_sparse(n, every, start, rays, target, *plan)
+    seconds = time.perf_counter() - before
+    print(f"{name}: {len(found[name][0])} voxels, {seconds:.1f} s, "
+          f"{decibels(seen(n, *found[name][:2], unseen), hidden):.1f} dB on new views")  # fmt: skip
+
+# %% [markdown]
+# ## Your derivative
+# A guess that lacks the ring and the pole, and the derivative by extinction that its photographs
+# give: of the voxels that exist, and of all of them, had they the colour of START.
+
+# %%
+across = (np.arange(32) + 0.5) / 16 - 1
+v, u = np.meshgrid(-across, across, indexing="ij")
+ahead = np.stack([u.ravel(), v.ravel(), np.full(1024, 3.0)], axis=1)
+parallel = np.stack([ahead, np.tile([0.0, 0.0, -1.0], (1024, 1))])
+photograph = seen(2 * n, *truth, parallel)
+ball = values[:, 0] > 0.5
+guess = voxels[ball], values[ball]
+samples = mine.march(n, guess[0], table_of(guess[0]), parallel)
+_, slope = mine.loss_and_grad(guess[1], samples, photograph)
+filled = start * [1, 1, 1, 0]
+filled[mine.voxel_hash_find(table_of(every), guess[0])] = guess[1]
+_, told = mine.loss_and_grad(filled, mine.march(n, every, table_of(every), parallel), photograph)
+
+# %% [markdown]
+# ## The C++ core
+# The same sparse grid as a field of the core: spherical harmonics of degree 0, nothing activated.
+
+
+# %%
+def core_field(n, voxels, values):
+    """A field of the core with these voxels, and the rows that they have there."""
+    fields = importlib.import_module("photograd.fields.sparse_sh")
+    marches = importlib.import_module("photograd.fields.march")
+    active = importlib.import_module("photograd.fields.active_voxels")
+    sh = importlib.import_module("photograd.sh")
+    mask = np.zeros((n, n, n), bool)
+    mask[tuple(voxels.T)] = True
+    kept = active.ActiveVoxels(mask)
+    rows = kept.rows[tuple(voxels.T)]
+    density, color = np.zeros(len(rows)), np.zeros((len(rows), 1, 3))
+    density[rows], color[rows, 0] = values[:, 3], values[:, :3] / sh.Y_0
+    policy = marches.MarchPolicy(
+        box=((-1.0,) * 3, (1.0,) * 3), dt=1 / n * (1 - 1e-12), lattice="entry", border="zero",
+        density_activation="identity", color_activation="identity",
+    )  # fmt: skip
+    return fields.SparseSh(kept, density, color, policy), rows, sh.Y_0
+
+
+def core_loss_and_grad(n, voxels, values, rays, target):
+    """(loss, derivative (V, 4), largest share of each voxel (V,)) by the core."""
+    base = importlib.import_module("photograd.representation")
+    field, rows, unit = core_field(n, voxels, values)
+    batch = base.RayBatch(*rays, np.arange(rays.shape[1], dtype=np.uint32))
+    out, context = field.render(batch, options=base.RenderOptions(), seed=0, step=0)
+    residual = out.color - target
+    back = base.Outputs(2 * residual / residual.size, None, None)
+    gradient = field.render_backward(context, back)
+    d_values = np.column_stack([gradient["sh"][rows, 0] / unit, gradient["density"][rows]])
+    return np.mean(residual**2), d_values, field.greatest_weights([batch])[rows]
+
+
+def core_fit(n, voxels, numbers, rays, target, rounds, steps, threshold):
+    """The recovery with the core's derivatives and shares, and its way to prune and grow."""
+    existing = importlib.import_module("photograd.fields.active_voxels")
+    for left in reversed(range(rounds)):
+        optimiser = mine.Adam()
+        for _ in range(steps):
+            slope = core_loss_and_grad(n, voxels, numbers, rays, target)[1]
+            numbers = optimiser.step(numbers, slope)
+            numbers[:, 3] = np.clip(numbers[:, 3], 0, None)
+        if left:
+            most = core_loss_and_grad(n, voxels, numbers, rays, target)[2]
+            mask, dense = np.zeros((n, n, n), bool), np.tile(mine.START, (n, n, n, 1))
+            mask[tuple(voxels[most > threshold].T)] = True
+            dense[tuple(voxels.T)] = numbers
+            voxels = np.argwhere(existing.dilated(mask))
+            numbers = dense[tuple(voxels.T)]
+    return voxels, numbers
+
+
+def through_openvdb(n, voxels, values):
+    """The values (V, 4), written to .vdb files and read again, as float32."""
+    sparse = importlib.import_module("photograd.sparse")
+    vdb = importlib.import_module("photograd.vdb")
+    world = np.diag([2 / n, 2 / n, 2 / n, 1.0])
+    world[:3, 3] = 1 / n - 1
+    grids = []
+    for name, part in (("color", values[:, :3]), ("density", values[:, 3:])):
+        shape = (1, 1, 1, part.shape[1]) if part.shape[1] > 1 else (1, 1, 1)
+        grid = sparse.SparseGrid.from_dense(
+            np.zeros(shape, np.float32), world_from_index=world, name=name
+        )
+        grid.activate(voxels, part.astype(np.float32))
+        grids.append(grid)
+    with tempfile.TemporaryDirectory() as folder:
+        vdb.write_vdb(Path(folder) / "scene.vdb", grids)
+        file = vdb.read_vdb(Path(folder) / "scene.vdb")
+        print(f"OpenVDB: {(Path(folder) / 'scene.vdb').stat().st_size} bytes", end="; ")
+    parts = [file.grid(name).values_at(voxels) for name in ("color", "density")]
+    print("all voxels active" if all(on.all() for _, on in parts) else "voxels were lost", end="; ")
+    return np.concatenate([part for part, _ in parts], axis=1)
+
+
+core_slope = core_found = None
+try:
+    octrees = importlib.import_module("photograd.octree")
+    _, core_slope, core_worth = core_loss_and_grad(n, *guess, parallel, photograph)
+except (ImportError, AttributeError, TypeError):  # none, or another than this was written for
+    print("core not installed")
+else:
+    off = np.linalg.norm(core_slope - slope) / max(np.linalg.norm(core_slope), 1e-300)
+    row, share = mine.shares(guess[1], samples)
+    largest, order = np.zeros(len(guess[0]) + 1), np.argsort(share, axis=None)
+    largest[row.ravel()[order]] = share.ravel()[order]  # the largest is written last
+    print(f"core: its derivative is {off:.1e} from yours, "
+          f"its largest shares {np.abs(core_worth - largest[:-1]).max():.1e}")  # fmt: skip
+    its = octrees.Octree.from_dense(full[..., None]).statistics().leaves
+    print(f"core: its octree has {its} leaves, yours {leaves}")
+    again = through_openvdb(n, *found["pruned and grown"][:2])
+    same = np.array_equal(again, found["pruned and grown"][1].astype(np.float32))
+    print("values as they were" if same else "values differ")
+    before = time.perf_counter()
+    core_found = core_fit(n, every, start, rays, target, rounds, steps, threshold)
+    print(f"core, pruned and grown: {len(core_found[0])} voxels, "
+          f"{time.perf_counter() - before:.1f} s, "
+          f"{decibels(seen(n, *core_found, unseen), hidden):.1f} dB on new views")  # fmt: skip
+
+# %% [markdown]
+# ## Pictures
+
+
+# %%
+def shown(axes, colours, title):
+    """A square picture of linear light."""
+    side = round(len(colours) ** 0.5)
+    axes.imshow(np.clip(colours, 0, 1).reshape(side, side, 3) ** (1 / 2.2))
+    axes.set(title=title, xticks=[], yticks=[])
+
+
+def signed(axes, voxels, values, end, title):
+    """Values summed along the line of sight: blue negative, red positive."""
+    flat = np.zeros((n, n))
+    np.add.at(flat, tuple(voxels[:, :2].T), values)
+    axes.imshow(flat.T, origin="lower", cmap="RdBu_r", vmin=-end, vmax=end)
+    axes.set(title=title, xticks=[], yticks=[])
+
+
+figure = Figure(figsize=(15, 6.4), layout="constrained")
+panels = figure.subplots(2, 5)
+view = cameras(3, 48, 0.5)[:, 2304:4608]
+shown(panels[0, 0], seen(2 * n, *truth, view), "truth, a new view")
+for axes, (name, given) in zip(panels[0, 1:], found.items(), strict=False):
+    shown(axes, seen(n, *given[:2], view), f"yours: {name}")
+if core_found is None:
+    panels[0, 4].text(0.5, 0.5, "core not installed", ha="center")
+    panels[0, 4].set_axis_off()
+else:
+    shown(panels[0, 4], seen(n, *core_found, view), "the core's: pruned and grown")
+shown(panels[1, 0], photograph, "photograph")
+shown(panels[1, 1], seen(n, *guess, parallel), "a guess")
+end = max(np.abs(slope[:, 3]).max() * 4, 1e-300)
+signed(panels[1, 2], guess[0], slope[:, 3], end, "your derivative by extinction")
+if core_slope is None:
+    panels[1, 3].text(0.5, 0.5, "core not installed", ha="center")
+    panels[1, 3].set_axis_off()
+else:
+    signed(panels[1, 3], guess[0], core_slope[:, 3], end, "the core's, on the same scale")
+end = max(np.abs(told[:, 3]).max() * 4, 1e-300)
+signed(panels[1, 4], every, told[:, 3], end, "if all existed, in grey")
+figure.savefig("sparse.png", dpi=90)
+print("sparse.png: look at it")
+
+# %% [markdown]
+# ## Photographs of your own
+# `transforms.json` has the cameras (x to the right, y up, looking along -z: columns of a matrix)
+# and an angle of view or a focal length in pixels. What is transparent counts as black.
+
+
+# %%
+def photographs(folder, reach):
+    """Rays (2, R, 3), scaled so that the scene fills the cube, colours (R, 3), picture sizes."""
+    file = folder / "transforms.json"
+    file = file if file.exists() else folder / "transforms_train.json"
+    told = json.loads(file.read_text(encoding="utf-8"))
+    origins, directions, colours, sizes = [], [], [], []
+    for frame in told["frames"][:: max(1, len(told["frames"]) // max(1, views))]:
+        file = folder / frame["file_path"]
+        image = Image.open(file if file.suffix else file.with_suffix(".png"))
+        wide, tall = image.size
+        focal = frame.get("fl_x", told.get("fl_x"))
+        angle = frame.get("camera_angle_x", told.get("camera_angle_x"))
+        focal = focal / told.get("w", wide) if focal else 0.5 / np.tan(angle / 2)
+        a, b = 2 * size, max(1, round(2 * size * tall / wide))
+        light = np.asarray(image.convert("RGBA").resize((a, b)), np.float64) / 255
+        colours.append((light[..., :3] ** 2.2 * light[..., 3:]).reshape(-1, 3))
+        v, u = np.meshgrid(np.arange(b) + 0.5, np.arange(a) + 0.5, indexing="ij")
+        flat = [(u / a - 0.5) / focal, -(v - b / 2) / a / focal, -np.ones(u.shape)]
+        pose = np.array(frame["transform_matrix"], np.float64)
+        aim = np.stack(flat, axis=2).reshape(-1, 3) @ pose[:3, :3].T
+        directions.append(aim / np.linalg.norm(aim, axis=1, keepdims=True))
+        origins.append(np.tile(pose[:3, 3] / reach, (len(aim), 1)))
+        sizes.append((b, a))
+    rays = np.stack([np.concatenate(origins), np.concatenate(directions)])
+    return rays, np.concatenate(colours), sizes
+
+
+if capture:
+    rays, target, sizes = photographs(Path(capture), option("box", 1.0))
+    plan = (rounds, steps, threshold, 1)
+    own = mine.fit_sparse(n, every, start, rays, target, *plan)
+    again = seen(n, *own[:2], rays)
+    print(f"capture: {len(sizes)} photographs, {len(own[0])} of {n**3} voxels, "
+          f"{decibels(0 * target, target):.1f} dB for black, "
+          f"{decibels(again, target):.1f} dB recovered")  # fmt: skip
+    figure = Figure(figsize=(9, 6), layout="constrained")
+    panels = figure.subplots(2, 3)
+    ends = np.cumsum([0] + [a * b for a, b in sizes])
+    for column, k in enumerate(np.linspace(0, len(sizes) - 1, 3).astype(int)):
+        for axes, colours, title in zip(
+            panels[:, column], (target, again), ("photograph", "recovered"), strict=True
+        ):
+            picture = colours[ends[k] : ends[k + 1]].reshape(*sizes[k], 3)
+            axes.imshow(np.clip(picture, 0, 1) ** (1 / 2.2))
+            axes.set(xticks=[], yticks=[], title=title)
+    figure.savefig("capture.png", dpi=90)
+    print("capture.png: photographs, and the same views of what was recovered")

@@ -1,0 +1,395 @@
+"""Volumes of which only the part that matters is stored: octree, voxel hash, skipping, growing.
+
+A volume fills the cube from -1 to 1 in x, y and z with n x n x n voxels, n a power of two. Places
+are given in *cells*: (0, 0, 0) is one corner of the cube and (n, n, n) the opposite one; cell
+(i, j, k) reaches from i to i + 1 along x and so on, and voxel (i, j, k) has its value in the middle
+of it. A *sparse grid* is a list of active voxels (V, 3), their values (V, 4) with channels r, g, b
+and sigma, the extinction for each unit of length, and a hash table that tells the row of a voxel.
+What is not in the list is empty: all four numbers are 0 there, outside the cube as well.
+
+Your tasks are six functions, one section of the handout each; `photograd course check 10` tells how
+far you are. The other functions are given and stay as they are. Values are float64, indices int64.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+EMPTY, FULL = 0, -1  # leaves of an octree
+START = np.array([0.5, 0.5, 0.5, 0.1])  # a new voxel: grey, and hardly there
+RATES = np.array([0.05, 0.05, 0.05, 0.4])  # of Adam, by channel
+
+
+def octree_from_dense(full):
+    """The octree of a cube of cells that are full or empty.
+
+    Args:
+        full: (n, n, n) of bool, n a power of two; 1 is one.
+
+    Returns:
+        tree (N,) of int64. Node 0 is the whole cube. tree[node] is EMPTY or FULL for a leaf, a
+        cube of equal cells that is as large as can be; otherwise it is the number of the first of
+        the node's eight children, which follow one another: child 4 a + 2 b + c, where a, b and c
+        are 1 in the upper half along x, y and z. Handout equations (4) to (6).
+    """
+    # >>> solution 10.1
+    tree = [EMPTY]
+
+    def cut(node, block):
+        if block.all():
+            tree[node] = FULL
+        elif block.any():
+            first = tree[node] = len(tree)
+            tree.extend([EMPTY] * 8)
+            half = len(block) // 2
+            for octant, upper in enumerate(np.ndindex(2, 2, 2)):
+                parts = tuple(slice(half * up, half * up + half) for up in upper)
+                cut(first + octant, block[parts])
+
+    cut(0, full)
+    return np.array(tree)
+    # <<< solution
+
+
+def octree_leaf(tree, n, places):
+    """The leaves that places lie in.
+
+    Args:
+        tree: (N,), of `octree_from_dense`.
+        n: cells along a side of the cube.
+        places: (M, 3), in cells, inside the cube.
+
+    Returns:
+        (full, low, side): (M,) of bool; (M, 3), the leaf's lower corner in cells; (M,), its side.
+        A place on a common face belongs to the upper leaf.
+    """
+    node = np.zeros(len(places), np.int64)
+    low, side = np.zeros(places.shape), np.full(len(places), float(n))
+    while (inner := tree[node] > 0).any():
+        side = np.where(inner, side / 2, side)
+        upper = (places >= low + side[:, None]) & inner[:, None]
+        low = low + upper * side[:, None]
+        node = np.where(inner, tree[node] + upper @ np.array([4, 2, 1]), node)
+    return tree[node] == FULL, low, side
+
+
+def skip_empty(leaf, first, stride, count):
+    """Which samples of rays lie in full leaves, found by jumping from leaf to leaf.
+
+    Args:
+        leaf: a function from places (M, 3) to (full, low, side), as `octree_leaf` gives them. It
+            is what costs: ask it for as few places as you can.
+        first: (R, 3), the place of each ray's sample 0, in cells.
+        stride: (R, 3), from one sample to the next; single components may be zero.
+        count: samples of each ray; all lie inside the cube.
+
+    Returns:
+        (R, count) of bool; handout equations (7) and (8).
+    """
+    # >>> solution 10.2
+    wanted = np.zeros((len(first), count), bool)
+    k = np.zeros(len(first), np.int64)
+    live = np.arange(len(first))
+    for _ in range(count):  # each round passes one sample or more
+        here, step = first[live] + k[live, None] * stride[live], stride[live]
+        full, low, side = leaf(here)
+        face = low + np.where(step > 0, side[:, None], 0.0)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ahead = np.where(step == 0, np.inf, (face - here) / step)
+        jump = np.ceil(np.minimum(ahead.min(axis=1), count))
+        after = np.minimum(k[live] + np.maximum(jump, 1).astype(np.int64), count)
+        number = np.arange(count)
+        within = (number >= k[live, None]) & (number < after[:, None])
+        wanted[live] |= within & full[:, None]
+        k[live] = after
+        live = live[after < count]
+    return wanted
+    # <<< solution
+
+
+def new_table(count):
+    """A hash table with room for `count` voxels twice over, in which every slot is free.
+
+    A table is an array (slots, 4) of int64: x, y, z of a voxel and its row; row -1: a free slot.
+    """
+    table = np.zeros((2 * count + 1, 4), np.int64)
+    table[:, 3] = -1
+    return table
+
+
+def hash_slot(voxels, slots):
+    """Where to look first: the slot (M,) of voxels (M, 3), any whole numbers."""
+    x, y, z = voxels.T
+    return (x * 73856093 ^ y * 19349663 ^ z * 83492791) % slots
+
+
+def voxel_hash_find(table, voxels):
+    """The rows (M,) of voxels (M, 3); -1 for those that are not in the table.
+
+    A search looks at slot `hash_slot`, then at the next ones, after the last at slot 0, until it
+    meets the voxel or a free slot.
+    """
+    rows, looking = np.full(len(voxels), -1, np.int64), np.arange(len(voxels))
+    slot = hash_slot(voxels, len(table))
+    for _ in range(len(table)):
+        entry = table[slot]
+        taken = entry[:, 3] >= 0
+        same = taken & (entry[:, :3] == voxels[looking]).all(axis=1)
+        rows[looking[same]] = entry[same, 3]
+        on = taken & ~same
+        looking, slot = looking[on], (slot[on] + 1) % len(table)
+        if not len(looking):
+            break
+    return rows
+
+
+def voxel_hash_insert(table, voxels, rows):
+    """Put voxels into a hash table, so that `voxel_hash_find` finds their rows.
+
+    Args:
+        table: (slots, 4); it stays as it is.
+        voxels: (M, 3); one that is in the table already, or occurs twice, gets the latest row.
+        rows: (M,), 0 or more.
+
+    Returns:
+        the new table, of the same shape; handout equation (9).
+
+    Raises:
+        ValueError: a voxel is new and no slot is free.
+    """
+    # >>> solution 10.3
+    table = table.copy()
+    slots = hash_slot(voxels, len(table))
+    for voxel, row, slot in zip(voxels, rows, slots, strict=True):
+        for probe in range(len(table)):
+            entry = table[(slot + probe) % len(table)]
+            if entry[3] < 0 or (entry[:3] == voxel).all():
+                entry[:3], entry[3] = voxel, row
+                break
+        else:
+            raise ValueError("no slot is free")
+    return table
+    # <<< solution
+
+
+def corners(table, places):
+    """The eight voxels around each place: (row, weight), both (8, M); row -1 where there is none.
+
+    Values sit in the middles of cells; weights are trilinear and sum to 1.
+    """
+    low = np.floor(places - 0.5).astype(np.int64)
+    part = places - 0.5 - low
+    row, weight = [], []
+    for corner in np.ndindex(2, 2, 2):
+        row.append(voxel_hash_find(table, low + corner))
+        weight.append(np.prod(np.where(corner, part, 1 - part), axis=1))
+    return np.stack(row), np.stack(weight)
+
+
+def sample_sparse(values, row, weight):
+    """Values (M, C) at places with these `corners`; a voxel that is not there counts as 0.
+
+    Args:
+        values: (V, C), one row for each active voxel.
+        row, weight: (8, M); row -1 where a voxel is missing.
+    """
+    padded = np.concatenate([values, np.zeros((1, values.shape[1]))])  # row -1 is the last one
+    return np.einsum("em,emc->mc", weight, padded[row])
+
+
+def sample_sparse_adjoint(count, row, weight, g):
+    """The transpose of `sample_sparse`: each sample's number goes back to the voxels it came from.
+
+    Args:
+        count: V, how many voxels are active.
+        row, weight: (8, M), as `sample_sparse` had them; row -1 where a voxel is missing.
+        g: (M, C), the derivative of some loss by each sample.
+
+    Returns:
+        (V, C), the derivative of that loss by each value; handout equations (10) and (11).
+    """
+    # >>> solution 10.4
+    known = row >= 0
+    d_values = np.zeros((count, g.shape[1]))
+    parts = weight[:, :, None] * g
+    np.add.at(d_values, row[known], parts[known])
+    return d_values
+    # <<< solution
+
+
+def prune_and_dilate(n, voxels, row, share, threshold, steps):
+    """The voxels that matter, and all around them.
+
+    Args:
+        n: voxels along a side of the cube.
+        voxels: (V, 3), the active ones, in any order.
+        row, share: (8, M) or any other shape: sample after sample, which row was read and how much
+            it counts in a pixel; row -1 where a voxel is missing. Rows may occur many times, or
+            never.
+        threshold: a voxel stays if its *largest* share is more than this.
+        steps: then it brings along all voxels of the cube whose three indices differ from its own
+            by at most this; 0 or more.
+
+    Returns:
+        (W, 3) of int64, each voxel once, ordered by x, then y, then z; handout equations (12) and
+        (13).
+    """
+    # >>> solution 10.5
+    worth = np.zeros(len(voxels))
+    np.maximum.at(worth, row[row >= 0], share[row >= 0])
+    stays = voxels[worth > threshold]
+    active = np.zeros((n, n, n), bool)
+    for away in np.ndindex(3 * (2 * steps + 1,)):
+        moved = stays + np.array(away) - steps
+        inside = ((moved >= 0) & (moved < n)).all(axis=1)
+        active[tuple(moved[inside].T)] = True
+    return np.argwhere(active).astype(np.int64)
+    # <<< solution
+
+
+def march(n, voxels, table, rays):
+    """Where rays read a sparse grid: samples in cells that an active voxel reaches, no others.
+
+    A ray is cut into 2 n equal steps from where it enters the cube to where it leaves it, with a
+    sample in the middle of each.
+
+    Args:
+        n: voxels along a side.
+        voxels: (V, 3), the active ones.
+        table: tells their rows.
+        rays: (2, R, 3), origins and unit directions; rays that miss the cube have no samples.
+
+    Returns:
+        a tuple for `render`, `loss_and_grad` and `shares`: (wanted (R, 2 n) of bool, which of a
+        ray's samples are read; step (R,), their lengths; row and weight (8, M), `corners` of the
+        wanted samples, ray after ray).
+    """
+    origin, direction = rays
+    with np.errstate(divide="ignore"):
+        ends = (np.array([[[-1.0]], [[1.0]]]) - origin) / direction
+    near = np.maximum(ends.min(axis=0).max(axis=1), 0)
+    step = np.maximum(ends.max(axis=0).min(axis=1) - near, 0) / (2 * n)
+    first = (origin + (near + step / 2)[:, None] * direction + 1) * (n / 2)
+    stride = step[:, None] * direction * (n / 2)
+    # A sample reads voxels up to a cell away: nothing is pruned here, all grow by one.
+    alone = np.arange(len(voxels))[None]
+    reached = prune_and_dilate(n, voxels, alone, np.ones(alone.shape), 0.0, 1)
+    touched = np.zeros((n, n, n), bool)
+    touched[tuple(reached.T)] = True
+    tree = octree_from_dense(touched)
+    wanted, hits = np.zeros((len(step), 2 * n), bool), step > 0
+    wanted[hits] = skip_empty(
+        lambda places: octree_leaf(tree, n, places), first[hits], stride[hits], 2 * n
+    )
+    ray, k = np.nonzero(wanted)
+    return wanted, step, *corners(table, first[ray] + k[:, None] * stride[ray])
+
+
+def _along_rays(values, samples):
+    """What both passes need: values at samples, weights, and what is left behind each."""
+    wanted, step, row, weight = samples
+    at = np.zeros((*wanted.shape, 4))
+    at[wanted] = sample_sparse(values, row, weight)
+    kept = np.exp(-np.cumsum(at[:, :, 3] * step[:, None], axis=1))
+    T = np.concatenate([np.ones((len(step), 1)), kept[:, :-1]], axis=1)
+    return at, T - kept, kept
+
+
+def render(values, samples):
+    """Colours (R, 3) of rays through a sparse grid before a black background.
+
+    Args:
+        values: (V, 4), one row for each active voxel.
+        samples: of `march`, for the same voxels.
+    """
+    at, w, _ = _along_rays(values, samples)
+    return np.einsum("rs,rsc->rc", w, at[:, :, :3])
+
+
+def loss_and_grad(values, samples, target):
+    """Mean squared error of the rays' colours, and its derivative.
+
+    Args:
+        values, samples: as for `render`.
+        target: (R, 3), measured colours.
+
+    Returns:
+        (loss, d_values), the derivative (V, 4).
+    """
+    wanted, step, row, weight = samples
+    at, w, kept = _along_rays(values, samples)
+    residual = np.einsum("rs,rsc->rc", w, at[:, :, :3]) - target
+    d_pixel = 2 * residual / residual.size
+    d_at = np.zeros(at.shape)
+    d_at[:, :, :3] = w[:, :, None] * d_pixel[:, None]
+    d_w = np.einsum("rsc,rc->rs", at[:, :, :3], d_pixel)
+    behind = np.cumsum((w * d_w)[:, ::-1], axis=1)[:, ::-1] - w * d_w
+    d_at[:, :, 3] = step[:, None] * (kept * d_w - behind)
+    d_values = sample_sparse_adjoint(len(values), row, weight, d_at[wanted])
+    return float(np.mean(residual**2)), d_values
+
+
+def shares(values, samples):
+    """(row, share), both (8, M): how much each voxel counts in a pixel, sample after sample.
+
+    A share is the sample's weight in its pixel times the voxel's weight in the sample.
+    """
+    wanted, _, row, weight = samples
+    return row, weight * _along_rays(values, samples)[1][wanted]
+
+
+class Adam:
+    """Steps of Adam for one array, as in assignment 01, with beta 0.9 and 0.99."""
+
+    def __init__(self):
+        self.m = self.v = self.k = 0
+
+    def step(self, x, d_x):
+        """The array after one step of RATES; x itself stays as it is."""
+        self.k += 1
+        self.m = 0.9 * self.m + 0.1 * d_x
+        self.v = 0.99 * self.v + 0.01 * d_x**2
+        m, v = self.m / (1 - 0.9**self.k), self.v / (1 - 0.99**self.k)
+        return x - RATES * m / (np.sqrt(v) + 1e-10)
+
+
+def fit_sparse(n, voxels, values, rays, target, rounds, steps, threshold, grow):
+    """Recover a sparse grid, and with it which voxels there are.
+
+    Args:
+        n: voxels along a side of the cube.
+        voxels: (V, 3), active at the start, ordered in any way.
+        values: (V, 4), their values at the start; these arrays must not change.
+        rays: (2, R, 3), origins and unit directions.
+        target: (R, 3), the measured colours.
+        rounds: 1 or more; between two of them the list of voxels is made anew.
+        steps: of Adam in each round, 0 or more.
+        threshold, grow: of `prune_and_dilate`.
+
+    Returns:
+        (voxels, values, losses): of the last round; losses (rounds steps,), of each point that a
+        step starts from. Handout equations (14) to (16).
+    """
+    # >>> solution 10.6
+    losses = []
+    for number in range(rounds):
+        table = voxel_hash_insert(new_table(len(voxels)), voxels, np.arange(len(voxels)))
+        samples = march(n, voxels, table, rays)
+        adam = Adam()
+        for _ in range(steps):
+            value, d_values = loss_and_grad(values, samples, target)
+            values = adam.step(values, d_values)
+            values[:, 3] = np.maximum(values[:, 3], 0)
+            losses.append(value)
+        if number < rounds - 1:
+            chosen = prune_and_dilate(n, voxels, *shares(values, samples), threshold, grow)
+            old = voxel_hash_find(table, chosen)
+            values = np.where(old[:, None] >= 0, values[old], START)
+            voxels = chosen
+    return voxels, values, np.array(losses)
+    # <<< solution
+
+
+def active_stats(n, tree, table, values):
+    """Bytes of a volume: (dense, octree, hash table, values); 8 for each number of any kind."""
+    return 8 * 4 * n**3, 8 * tree.size, 8 * table.size, 8 * values.size
