@@ -217,32 +217,6 @@ def test_resuming_with_other_options(
     assert photograd("fit", capture_folder, "--out", tmp_path, "--resume", *FEW).code == 0
 
 
-@pytest.mark.parametrize(
-    ("representation", "words", "says"),
-    [
-        ("dense_grid", ("--degree", 1), "--degree: expected a fit of sparse_sh or dense_sh or gau"),
-        ("dense_sh", ("--prune", 0.1), "--prune: expected a fit of sparse_sh, got 'dense_sh'"),
-    ],
-)
-def test_options_without_effect_are_refused(
-    photograd: Photograd, capture_folder: Path, tmp_path: Path, representation: str, words: Any,
-    says: str,
-) -> None:  # fmt: skip
-    kind = ("--representation", representation)
-    done = photograd("fit", capture_folder, "--out", tmp_path, *kind, *words, *FEW)
-    assert_one_line(done, says, "leave it out")
-    assert not (tmp_path / "model.npz").exists()
-
-
-def test_a_degree_that_there_is_not(
-    photograd: Photograd, capture_folder: Path, tmp_path: Path
-) -> None:
-    done = photograd("fit", capture_folder, "--out", tmp_path, "--degree", 4, *FEW)
-    assert done.code == 2
-    assert "Invalid value for '--degree'" in done.err
-    assert "3" in done.err
-
-
 def test_resuming_what_is_not_there(
     photograd: Photograd, capture_folder: Path, tmp_path: Path
 ) -> None:

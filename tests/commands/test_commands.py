@@ -52,22 +52,6 @@ def test_fit_tells_people_on_stderr_and_scripts_on_stdout(
     ]
 
 
-def test_harmonics_and_pruning_are_options_of_a_fit(
-    photograd: Photograd, capture_folder: Path, tmp_path: Path
-) -> None:
-    few = ("--representation", "sparse_sh", "--steps", 24, "--resolution", 16, "--rays", 256)
-    for name, words in {"all": ("--prune", 0), "few": ("--prune", 0.01, "--degree", 0)}.items():
-        assert photograd("fit", capture_folder, "--out", tmp_path / name, *few, *words).code == 0
-    every, some = (load_checkpoint(tmp_path / name) for name in ("all", "few"))
-    assert every.params["sh"].shape[1:] == (9, 3)
-    assert some.params["sh"].shape[1:] == (1, 3)
-    assert len(some.params["density"]) < len(every.params["density"]) == 16 * 12 * 14
-    assert (every.meta["options"]["degree"], some.meta["options"]["degree"]) == (2, 0)
-    done = photograd("fit", capture_folder, "--out", tmp_path / "few", "--resume", "--prune", 0.2)
-    assert done.code == 1
-    assert "--prune: expected 0.01, which the checkpoint was started with" in done.err
-
-
 def test_fit_prints_a_table_without_json(
     photograd: Photograd, capture_folder: Path, tmp_path: Path
 ) -> None:
