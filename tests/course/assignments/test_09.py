@@ -37,7 +37,6 @@ POSE = np.array([[0, 0, -1, 3], [0, -1, 0, 0.5], [-1, 0, 0, 0.2], [0, 0, 0, 1.0]
 
 class TestRecoveringAVolume(AssignmentTests):
     folder = FOLDER
-    mutants_by_task = True
 
 
 @pytest.fixture(scope="module")

@@ -26,8 +26,20 @@ def grade(capsys: pytest.CaptureFixture[str], *words: object) -> tuple[int, dict
     return code, json.loads(out.splitlines()[-1]) if out else {}, err
 
 
-def test_one_hand_in(hand_in: Path, toy: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    code, result, said = grade(capsys, hand_in, "--bundle", toy, "--mode", "E")
+@pytest.fixture
+def patient(toy: Path, tmp_path: Path) -> Path:
+    """The toy with more time: to measure the price of an adjoint is slow beside other programs."""
+    folder = tmp_path / "patient" / toy.name
+    shutil.copytree(toy, folder)
+    manifest = folder / "assignment.toml"
+    text, limits = manifest.read_text(), "limits = { seconds = 6, cpu_seconds = 4 }"
+    assert limits in text
+    manifest.write_text(text.replace(limits, "limits = { seconds = 60, cpu_seconds = 20 }"))
+    return folder
+
+
+def test_one_hand_in(hand_in: Path, patient: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    code, result, said = grade(capsys, hand_in, "--bundle", patient, "--mode", "E")
     assert code == 0
     assert (result["score"], result["max_score"], result["student"]) == (15, 21, "Ada")
     assert {"id", "status", "points", "max"} <= set(result["checks"][0])
@@ -79,16 +91,16 @@ def test_wrong_calls(
 
 
 def test_a_sealed_bundle_opens_with_its_secret_only(
-    hand_in: Path, toy: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    hand_in: Path, patient: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     secret, other = tmp_path / "secret.txt", tmp_path / "other.txt"
     secret.write_text("a secret of the whole course\n")
     other.write_text("a secret of another course\n")
     sealed = tmp_path / "hidden.zip"
-    sealed.write_bytes(seal_bundle(bundle_files(toy, {}), secret.read_bytes().strip()))
+    sealed.write_bytes(seal_bundle(bundle_files(patient, {}), secret.read_bytes().strip()))
     words = (hand_in, "--bundle", sealed, "--mode", "E", "--secret-file")
-    code, result, _ = grade(capsys, *words, secret)
-    assert (code, result["score"], result["max_score"]) == (0, 15, 21)
+    code, result, said = grade(capsys, *words, secret)
+    assert (code, result["score"], result["max_score"]) == (0, 15, 21), said
     code, _, said = grade(capsys, *words, other)
     assert code == 1
     assert "seal of this course's secret" in said
