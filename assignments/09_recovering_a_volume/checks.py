@@ -181,7 +181,8 @@ def points_of_a_ray_are_seen_in_its_pixel(t):
         point = origins + t.rng.uniform(1.0, 3.0, (9, 1)) * directions
         pose = views["world_from_camera"][view]
         seen = np.einsum("rji,rj->ri", pose[:, :3, :3], point - pose[:, :3, 3])
-        t.require(bool((seen[:, 2] > 0).all()), "a ray goes backwards: forward is +z")
+        t.require(bool((seen[:, 2] > 0).all()), "a ray goes backwards: forward is +z",
+                  hint="if 09.2.middle fails too, look there first")  # fmt: skip
         places = views["focal"] * seen[:, :2] / seen[:, 2:] + [columns / 2, rows / 2]
         t.close("where points are seen (column, row)", places,
                 np.stack([column + 0.5, row + 0.5], axis=1), reveal=True)  # fmt: skip

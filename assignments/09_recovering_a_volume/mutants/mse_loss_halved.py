@@ -1,4 +1,4 @@
-"""Loss and derivative do not belong together: the derivative is that of twice your loss."""
+"""Your loss is half of equation (7), which has no factor before it."""
 
 TASKS = ("09.3",)
 LOSES = (
