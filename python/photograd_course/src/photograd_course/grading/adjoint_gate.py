@@ -64,17 +64,8 @@ def require_gradients(
     point: Mapping[str, Any],
     d_output: Array,
     tolerance: Tolerance = DIFFERENCES,
-    *,
-    hint: str = "",
 ) -> None:
     """Compare each group of ``got`` with central differences of ``forward``.
-
-    Args:
-        trial: of the check.
-        got: the gradient by each group.
-        forward, point, d_output: as `central_differences` has them.
-        tolerance: of the relative norm of the difference.
-        hint: said on failure.
 
     Raises:
         CheckFailed: a group is off, or its true gradient is zero (the place proves nothing).
@@ -83,7 +74,7 @@ def require_gradients(
         expected = central_differences(forward, point, group, d_output)
         if not expected.any():
             raise CheckFailed(f"d_{group}: differences of the forward function are all zero")
-        trial.close(f"d_{group}", gradient, expected, tolerance, hint=hint)
+        trial.close(f"d_{group}", gradient, expected, tolerance)
 
 
 def require_transpose(
