@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from photograd_course.grading import Array, Items, Number, Tolerance, Truth, check
 from photograd_course.grading.adjoint_gate import (
+    central_differences,
     require_cheap,
     require_gradients,
     require_zero_for_zero,
@@ -147,14 +148,15 @@ def one_mean_for_all(t):
 
 @check("09.2.middle", task="09.2", points=3, calls=("ray_batch",), tolerance=EXACT,
        kills=("rays_backwards", "rays_columns_first", "rays_corner", "rays_first_camera",
-              "rays_place_turned_back", "rays_sorted", "rays_square_pictures", "rays_translated",
-              "rays_turned_back", "rays_unturned",),
+              "rays_height_as_width", "rays_place_turned_back", "rays_sorted",
+              "rays_square_pictures", "rays_translated", "rays_turned_back", "rays_unturned",),
        hint="handout, section 2: the pose's columns are right, down, forward, and the place",
        sole="names the part of the pose that is misread")  # fmt: skip
 def the_middle_pixel_looks_forward(t):
-    """The middle pixel's ray starts at the camera and follows its forward axis."""
+    """With odd H and W the middle ray starts at the camera and follows its forward axis."""
     views = random_views(t, 3, 5, 7)
     poses = views["world_from_camera"]
+    poses[:, :3, 3] += t.rng.normal(size=(3, 3))  # or o would lie along the forward axis
     middle = np.array([k * 35 + 2 * 7 + 3 for k in (2, 0, 1)])
     origins, directions, _ = t.call("ray_batch", views, middle, returns=batch(3))
     t.close("origins", origins, poses[[2, 0, 1], :3, 3], reveal=True)
@@ -164,9 +166,9 @@ def the_middle_pixel_looks_forward(t):
 
 @check("09.2.projected", task="09.2", points=4, calls=("ray_batch",), tolerance=EXACT,
        kills=("rays_backwards", "rays_columns_first", "rays_corner", "rays_first_camera",
-              "rays_focal_multiplied", "rays_place_turned_back", "rays_rows_as_columns",
-              "rays_sorted", "rays_square_pictures", "rays_translated", "rays_turned_back",
-              "rays_unturned", "rays_y_up",),
+              "rays_focal_multiplied", "rays_height_as_width", "rays_place_turned_back",
+              "rays_rows_as_columns", "rays_sorted", "rays_square_pictures", "rays_translated",
+              "rays_turned_back", "rays_unturned", "rays_y_up",),
        hint="handout, equations (4) to (6): what projects to the middle of that pixel?",
        sole="needs no formula for a ray: only that it is seen where it should be")  # fmt: skip
 def points_of_a_ray_are_seen_in_its_pixel(t):
@@ -179,7 +181,8 @@ def points_of_a_ray_are_seen_in_its_pixel(t):
         point = origins + t.rng.uniform(1.0, 3.0, (9, 1)) * directions
         pose = views["world_from_camera"][view]
         seen = np.einsum("rji,rj->ri", pose[:, :3, :3], point - pose[:, :3, 3])
-        t.require(bool((seen[:, 2] > 0).all()), "a ray goes backwards: forward is +z")
+        t.require(bool((seen[:, 2] > 0).all()), "a ray goes backwards: forward is +z",
+                  hint="if 09.2.middle fails too, look there first")  # fmt: skip
         places = views["focal"] * seen[:, :2] / seen[:, 2:] + [columns / 2, rows / 2]
         t.close("where points are seen (column, row)", places,
                 np.stack([column + 0.5, row + 0.5], axis=1), reveal=True)  # fmt: skip
@@ -206,7 +209,7 @@ def loss_and_slope(shape):
 
 
 @check("09.3.values", task="09.3", points=3, calls=("mse_and_cotangent",), tolerance=EXACT,
-       kills=("mse_absolute", "mse_mean_of_channels", "mse_root", "mse_sum",),
+       kills=("mse_absolute", "mse_loss_halved", "mse_mean_of_channels", "mse_root", "mse_sum",),
        hint="handout, equation (7): over which axis is the mean, over which the sum?",
        sole="small enough to work out by hand")  # fmt: skip
 def the_loss_of_known_errors(t):
@@ -221,29 +224,55 @@ def the_loss_of_known_errors(t):
     require_zero_for_zero(t, {"pixels": d})
 
 
+ROOT = "You return the root of the loss."
+APART = ("Loss and derivative do not belong together: one of them divides by something that the "
+         "other does not. See 09.3.values.")  # fmt: skip
+
+
+def advice_on_loss(t):
+    """What is wrong with the loss itself, by errors whose loss can be worked out by hand."""
+    error = np.array([0.3, -0.4, 1.2])
+    shown = loss_and_slope((5, 3))
+    loss, _ = t.call("mse_and_cotangent", np.tile(error, (5, 1)), np.zeros((5, 3)), returns=shown)
+    if abs(loss - error @ error) < 1e-9:
+        return ""
+    return ROOT if abs(loss**2 - error @ error) < 1e-9 else APART
+
+
+def slope_of_loss(t, pixels, truth):
+    """The derivative of `mse_and_cotangent`, and what differences of its loss say it is."""
+    shown = loss_and_slope(pixels.shape)
+    _, d = t.call("mse_and_cotangent", pixels, truth, returns=shown)
+
+    def forward(point):
+        given = point["pixels"], truth
+        return np.array(t.call("mse_and_cotangent", *given, returns=shown)[0])
+
+    return d, central_differences(forward, {"pixels": pixels}, "pixels", np.ones(()))
+
+
 @check("09.3.differences", task="09.3", points=3, calls=("mse_and_cotangent",), tolerance=GATE,
-       kills=("mse_cotangent_by_size", "mse_cotangent_of_sum", "mse_no_two", "mse_root",
-              "mse_sign",),
+       kills=("mse_cotangent_by_size", "mse_cotangent_of_sum", "mse_loss_halved", "mse_no_two",
+              "mse_root", "mse_sign",),
        hint="differentiate equation (7) by one number of one ray",
        sole="the derivative itself, without the reference")  # fmt: skip
 def the_cotangent_agrees_with_differences(t):
     """Moving a pixel by a little moves your loss as your derivative says."""
-    pixels, truth = t.rng.uniform(0.0, 1.0, (2, 5, 3))
-    _, d = t.call("mse_and_cotangent", pixels, truth, returns=loss_and_slope((5, 3)))
+    d, expected = slope_of_loss(t, *t.rng.uniform(0.0, 1.0, (2, 5, 3)))
+    t.require(bool(expected.any()), "your loss does not change with the pixels")
+    t.close("d_pixels", d, expected, GATE, hint=advice_on_loss(t))
 
-    def forward(point):
-        given = point["pixels"], truth
-        return np.array(t.call("mse_and_cotangent", *given, returns=loss_and_slope((5, 3)))[0])
 
-    require_gradients(t, {"pixels": d}, forward, {"pixels": pixels}, np.ones(()), GATE)
+RENDERER = ("your cotangent is right: what lies between it and the voxels is volume_rendering.py; "
+            "photograd course check 08")  # fmt: skip
 
 
 @check("09.3.chain", task="09.3", points=4,
        calls=("mse_and_cotangent", "render_rays", "render_adjoint"), needs=("ray_batch",),
        tolerance=GATE, seconds=PATIENCE,
-       kills=("mse_cotangent_by_size", "mse_cotangent_of_sum", "mse_no_two", "mse_root",
-              "mse_sign",),
-       hint="if the checks above pass, look at volume_rendering.py: photograd course check 08",
+       kills=("mse_cotangent_by_size", "mse_cotangent_of_sum", "mse_loss_halved", "mse_no_two",
+              "mse_root", "mse_sign",),
+       hint="mend what fails above first",
        sole="no fit before the gradient is proved: with your renderer of 08")  # fmt: skip
 def from_photographs_to_voxels(t):
     """Moving one voxel moves the loss of your photographs as your adjoint of 08 says."""
@@ -258,7 +287,14 @@ def from_photographs_to_voxels(t):
 
     point = {"color": grid[..., :3], "sigma": grid[..., 3]}
     slopes = {"color": d_grid[..., :3], "sigma": d_grid[..., 3]}
-    require_gradients(t, slopes, forward, point, np.ones(()), GATE)
+    d, expected = slope_of_loss(t, *t.rng.uniform(0.0, 1.0, (2, 5, 3)))
+    begins_well = np.linalg.norm(d - expected) <= GATE.relative * np.linalg.norm(expected)
+    for name, slope in slopes.items():
+        right = central_differences(forward, point, name, np.ones(()))
+        t.require(bool(right.any()), f"your loss does not change with {name}")
+        # Another name where 08 is to blame: its mistakes may give the numbers of known ones of 09.
+        what = f"d_{name} by volume_rendering.py" if begins_well else f"d_{name}"
+        t.close(what, slope, right, hint=RENDERER if begins_well else advice_on_loss(t))
 
 
 # 09.4 ---------------------------------------------------------------------------------------------
@@ -269,14 +305,17 @@ def rough(t, grid, eps):
     return t.call("tv_loss_adjoint", grid, eps, returns=loss_and_slope(grid.shape))
 
 
+ROUGHNESS = ("handout, equations (8) and (9): three differences under one root; none at the far "
+             "border; the mean over voxels, the sum over channels")  # fmt: skip
+
+
 @check("09.4.values", task="09.4", points=4, calls=("tv_loss_adjoint",), tolerance=EXACT,
        kills=("tv_axes_apart", "tv_channels_together", "tv_dark_border", "tv_eps_not_squared",
               "tv_mean_of_channels", "tv_not_zero_when_flat", "tv_squared", "tv_sum", "tv_wraps",),
-       hint="handout, equations (8) and (9): three differences under one root; none at the far "
-            "border; the mean over voxels, the sum over channels",
+       hint=ROUGHNESS,
        sole="small enough to work out by hand")  # fmt: skip
 def the_roughness_of_ramps(t):
-    """Even slopes have a closed form: inside, on a border, along an edge; what is flat has 0."""
+    """The loss of even slopes has a closed form: inside, on a border, along an edge; flat has 0."""
     flat, slope = rough(t, np.full((3, 2, 4, 2), 0.7), 0.1)
     t.require(abs(flat) < 1e-14, "the roughness of what is flat must be 0")
     t.require(not np.abs(slope).max() > 1e-14, "the derivative of what is flat must be 0")
@@ -295,8 +334,8 @@ def the_roughness_of_ramps(t):
 
 
 @check("09.4.differences", task="09.4", points=5, calls=("tv_loss_adjoint",), tolerance=GATE,
-       kills=("tv_dark_border", "tv_ends_added", "tv_no_length", "tv_other_end_only",
-              "tv_own_end_only", "tv_sign", "tv_to_the_voxel_before",),
+       kills=("tv_dark_border", "tv_derivative_of_sum", "tv_ends_added", "tv_no_length",
+              "tv_other_end_only", "tv_own_end_only", "tv_sign", "tv_to_the_voxel_before",),
        hint="handout, section 4: a value is in its own difference and in that of the voxel before",
        sole="the gradient itself, without the reference")  # fmt: skip
 def the_slope_of_roughness_agrees_with_differences(t):
@@ -321,15 +360,17 @@ def derivatives_of_a_channel_sum_to_zero(t):
     grid = t.rng.uniform(0.0, 1.0, (3, 4, 5, 3))
     loss, d_grid = rough(t, grid, 0.2)
     lifted = rough(t, grid + np.array([0.3, -0.2, 1.0]), 0.2)
-    t.close("loss of a lifted volume", lifted[0], loss)
+    t.close("loss of a lifted volume", lifted[0], loss, hint=ROUGHNESS)
     size = float(np.linalg.norm(d_grid))
     total = d_grid.sum(axis=(0, 1, 2))
     bound = Tolerance(EXACT.relative, EXACT.evidence, floor=max(size, 1e-300))
     t.close("sum over voxels", total, 0 * total, bound, reveal=True)
     alone = [rough(t, grid[..., c : c + 1], 0.2) for c in range(3)]
-    t.close("loss, channel by channel", sum(each[0] for each in alone), loss)
+    total = sum(each[0] for each in alone)
+    t.close("loss, channel by channel", total, loss, hint=ROUGHNESS)
     t.close("derivative, channel by channel",
-            np.concatenate([each[1] for each in alone], axis=3), d_grid)  # fmt: skip
+            np.concatenate([each[1] for each in alone], axis=3), d_grid,
+            hint="each channel goes by itself: no derivative reads another channel")  # fmt: skip
 
 
 # 09.5 ---------------------------------------------------------------------------------------------
@@ -343,6 +384,9 @@ def sign_map(t, grid, views):
     signs = t.call("gradient_sign_map", grid, views, returns=Array(shape))
     t.require(bool(np.isin(signs, (-1.0, 0.0, 1.0)).all()), "only -1, 0 and 1 may occur")
     return signs
+
+
+SHARE = "handout, equation (12): compare with the largest derivative before you take signs"
 
 
 @check("09.5.differences", task="09.5", points=3, calls=("gradient_sign_map",), needs=EARLIER,
@@ -364,31 +408,43 @@ def signs_agree_with_differences(t):
     clear = np.abs(change) > 1e-3 * np.abs(change).max()
     t.require(bool((change[clear] > 0).any() and (change[clear] < 0).any()), "not telling")
     signs = sign_map(t, grid, views)
-    wrong = int(np.sum(signs[clear] != np.sign(change[clear])))
-    t.require(wrong == 0, f"{wrong} of {int(clear.sum())} voxels have the wrong sign")
+    right = np.sign(change)
+    t.require(not np.array_equal(signs[clear], -right[clear]), "all signs are turned round",
+              hint="-1 is where descent adds: it goes against the derivative")  # fmt: skip
+    wrong = [tuple(map(int, at)) for at in np.argwhere(clear & (signs != right))]
+    told = f"{len(wrong)} of {int(clear.sum())} voxels have the wrong sign"
+    if wrong:
+        told += f"; at {wrong[0]} yours is {signs[wrong[0]]:g}, expected {right[wrong[0]]:g}"
+    t.require(not wrong, told)
     origins, directions, truth = t.call("ray_batch", views, np.arange(60), returns=batch(60))
     seen = t.call("render_rays", grid, views["low"], views["high"], origins, directions, 16,
                   views["background"], returns=Array((60, 3)))  # fmt: skip
     views["pictures"] = (seen + 1e-6 * (truth - seen)).reshape(3, 4, 5, 3)
     same = np.array_equal(signs, sign_map(t, grid, views))
-    t.require(same, "the signs have changed when all errors became a millionth of what they were")
+    t.require(same, "the signs have changed when all errors became a millionth of what they were",
+              hint=SHARE)  # fmt: skip
 
 
 @check("09.5.silent", task="09.5", points=2, calls=("gradient_sign_map",), needs=EARLIER,
-       kills=("map_no_floor", "map_of_votes",),
-       hint="handout, equation (12): compare with the largest derivative before you take signs",
+       kills=("map_floor_of_largest", "map_no_floor", "map_of_votes",),
+       hint=SHARE,
        sole="where nothing is known")  # fmt: skip
 def no_sign_where_nothing_is_known(t):
     """Voxels that no ray passes, and voxels behind a wall, get 0."""
-    grid = np.full((5, 5, 5, 4), 0.2)
-    grid[:, :, 3] = (0.9, 0.8, 0.7, 100.0)  # a wall, with fog before and behind it
     camera = looking(np.array([0.0, 0.0, 9.0]))
-    pictures = t.rng.uniform(0.3, 0.6, (1, 4, 4, 3))
-    views = views_of(pictures, camera[None], np.zeros(3), focal=60.0)
-    signs = sign_map(t, grid, views)
-    t.require(bool((signs[1:4, 1:4, 3:] != 0).any()), "the wall is seen, and has no sign")
-    t.require(not signs[0].any() and not signs[:, 4].any(), "a voxel that no ray passes has a sign")
-    t.require(not signs[:, :, :2].any(), "a voxel that lies hidden behind the wall has a sign")
+    # In the second case everything should be brighter: no derivative is positive.
+    cases = (0.2, (0.9, 0.8, 0.7), 0.3, 0.6), (0.7, (0.3, 0.2, 0.1), 0.9, 1.0)
+    for fog, paint, low, high in cases:
+        grid = np.full((5, 5, 5, 4), fog)
+        grid[..., 3] = 0.2
+        grid[:, :, 3] = (*paint, 100.0)  # a wall, with fog before and behind it
+        pictures = t.rng.uniform(low, high, (1, 4, 4, 3))
+        views = views_of(pictures, camera[None], np.zeros(3), focal=60.0)
+        signs = sign_map(t, grid, views)
+        t.require(bool((signs[1:4, 1:4, 3:] != 0).any()), "the wall is seen, and has no sign")
+        t.require(not signs[0].any() and not signs[:, 4].any(),
+                  "a voxel that no ray passes has a sign")  # fmt: skip
+        t.require(not signs[:, :, :2].any(), "a voxel that lies hidden behind the wall has a sign")
 
 
 # 09.6 ---------------------------------------------------------------------------------------------
@@ -422,8 +478,9 @@ def small_start(t, shape=(3, 2, 4)):
 
 @check("09.6.first", task="09.6", points=4, calls=("fit_volume",), needs=ALL, tolerance=CHAINED,
        kills=("fit_black_background", "fit_colors_free", "fit_colors_frozen",
-              "fit_new_adam_each_step", "fit_plain_descent", "fit_sigma_below_one",
-              "fit_sigma_free", "fit_sigma_reflected", "fit_tv_at_full_weight",
+              "fit_eps_is_the_weight", "fit_limits_kept_at_the_end", "fit_new_adam_each_step",
+              "fit_plain_descent", "fit_sigma_below_one", "fit_sigma_free",
+              "fit_sigma_kept_at_the_end", "fit_sigma_reflected", "fit_tv_at_full_weight",
               "fit_tv_not_in_loss", "fit_uphill", "fit_without_tv",),
        hint="handout, equations (13) to (16), in this order",
        sole="asks about the first two steps alone")  # fmt: skip
@@ -448,9 +505,11 @@ def the_first_steps(t):
 
 
 @check("09.6.draws", task="09.6", points=3, calls=("fit_volume",), needs=ALL, tolerance=CHAINED,
-       kills=("fit_black_background", "fit_one_draw", "fit_own_generator", "fit_tv_not_in_loss",
-              "fit_two_draws",),
-       hint="one draw in each step, all of it used, and rng for nothing else",
+       kills=("fit_black_background", "fit_eps_is_the_weight", "fit_limits_kept_at_the_end",
+              "fit_one_draw", "fit_own_generator", "fit_sigma_kept_at_the_end",
+              "fit_tv_not_in_loss", "fit_two_draws",),
+       hint="if 09.6.first fails too, look there first; one draw in each step, all of it used, and "
+            "rng for nothing else",
        sole="asks which pixels a step sees")  # fmt: skip
 def each_step_draws_its_own_pixels(t):
     """Where there are more pixels than RAYS, each step's loss is that of its own draw."""
@@ -523,9 +582,9 @@ def decibels_of_random_pictures(t):
 @check("09.2.hidden", task="09.2", points=3, calls=("ray_batch",), visibility="hidden",
        tolerance=EXACT,
        kills=("rays_backwards", "rays_columns_first", "rays_corner", "rays_first_camera",
-              "rays_focal_multiplied", "rays_place_turned_back", "rays_rows_as_columns",
-              "rays_sorted", "rays_square_pictures", "rays_translated", "rays_turned_back",
-              "rays_unturned", "rays_y_up",),
+              "rays_focal_multiplied", "rays_height_as_width", "rays_place_turned_back",
+              "rays_rows_as_columns", "rays_sorted", "rays_square_pictures", "rays_translated",
+              "rays_turned_back", "rays_unturned", "rays_y_up",),
        sole="the same mistakes at cameras that are not known beforehand")  # fmt: skip
 def rays_of_random_cameras(t):
     """Rays and colours are right for random cameras and pixels."""
@@ -542,7 +601,7 @@ def rays_of_random_cameras(t):
 
 @check("09.3.hidden", task="09.3", points=2, calls=("mse_and_cotangent",), visibility="hidden",
        tolerance=EXACT,
-       kills=("mse_absolute", "mse_cotangent_by_size", "mse_cotangent_of_sum",
+       kills=("mse_absolute", "mse_cotangent_by_size", "mse_cotangent_of_sum", "mse_loss_halved",
               "mse_mean_of_channels", "mse_no_two", "mse_root", "mse_sign", "mse_sum",),
        sole="the same mistakes at values that are not known beforehand")  # fmt: skip
 def losses_of_random_batches(t):
@@ -557,10 +616,10 @@ def losses_of_random_batches(t):
 
 @check("09.4.hidden", task="09.4", points=4, calls=("tv_loss_adjoint",), needs=("psnr",),
        visibility="hidden", tolerance=EXACT,
-       kills=("tv_axes_apart", "tv_channels_together", "tv_dark_border", "tv_differences",
-              "tv_ends_added", "tv_eps_not_squared", "tv_mean_of_channels", "tv_no_length",
-              "tv_not_zero_when_flat", "tv_other_end_only", "tv_own_end_only", "tv_sign",
-              "tv_squared", "tv_sum", "tv_to_the_voxel_before", "tv_wraps",),
+       kills=("tv_axes_apart", "tv_channels_together", "tv_dark_border", "tv_derivative_of_sum",
+              "tv_differences", "tv_ends_added", "tv_eps_not_squared", "tv_mean_of_channels",
+              "tv_no_length", "tv_not_zero_when_flat", "tv_other_end_only", "tv_own_end_only",
+              "tv_sign", "tv_squared", "tv_sum", "tv_to_the_voxel_before", "tv_wraps",),
        sole="the same mistakes at volumes that are not known beforehand")  # fmt: skip
 def the_roughness_of_random_volumes(t):
     """Roughness and its derivative are right for random volumes, and cheap."""
@@ -658,8 +717,9 @@ def inside_more_and_outside_less(t):
 @check("09.6.hidden", task="09.6", points=3, calls=("fit_volume",), needs=ALL, visibility="hidden",
        tolerance=CHAINED,
        kills=("fit_black_background", "fit_colors_free", "fit_colors_frozen",
-              "fit_new_adam_each_step", "fit_one_draw", "fit_own_generator", "fit_plain_descent",
-              "fit_sigma_below_one", "fit_sigma_free", "fit_sigma_reflected",
+              "fit_eps_is_the_weight", "fit_limits_kept_at_the_end", "fit_new_adam_each_step",
+              "fit_one_draw", "fit_own_generator", "fit_plain_descent", "fit_sigma_below_one",
+              "fit_sigma_free", "fit_sigma_kept_at_the_end", "fit_sigma_reflected",
               "fit_tv_at_full_weight", "fit_tv_not_in_loss", "fit_two_draws", "fit_uphill",
               "fit_without_tv",),
        sole="the same mistakes at scenes that are not known beforehand")  # fmt: skip
@@ -675,9 +735,10 @@ def fits_of_random_scenes(t):
 
 @check("09.6.recovers", task="09.6", points=6, calls=("fit_volume",), needs=ALL,
        visibility="hidden", seconds=60.0,
-       kills=("fit_black_background", "fit_colors_frozen", "fit_new_adam_each_step", "fit_one_draw",
-              "fit_plain_descent", "fit_sigma_below_one", "fit_sigma_free", "fit_tv_at_full_weight",
-              "fit_uphill", "fit_without_tv",),
+       kills=("fit_black_background", "fit_colors_frozen", "fit_limits_kept_at_the_end",
+              "fit_new_adam_each_step", "fit_one_draw", "fit_plain_descent", "fit_sigma_below_one",
+              "fit_sigma_free", "fit_sigma_kept_at_the_end", "fit_tv_at_full_weight", "fit_uphill",
+              "fit_without_tv",),
        sole="the whole: a scene that nobody has seen, from its photographs")  # fmt: skip
 def an_unseen_scene_is_recovered(t):
     """Your fit is run on a new scene, and judged by photographs that it never got."""

@@ -1,4 +1,4 @@
-"""You add the camera's place to the direction: only points are moved, directions are turned."""
+"""You add the camera's place to the direction: (6) for a direction has no o."""
 
 TASKS = ("09.2",)
 LOSES = (

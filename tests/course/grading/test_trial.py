@@ -156,3 +156,16 @@ def test_a_service_may_give_the_verdict_whatever_the_hand_in_makes_of_it() -> No
         t = Trial(whole, LocalStudent({"m": code}), seed=(1,), module="m")
         with pytest.raises(CheckFailed, match="too often"):
             t.call(function, stop, returns=Number())
+
+
+def test_a_zero_is_a_plain_zero() -> None:
+    revealed = str(failure(trial("public"), [-0.0, 2.0], [1.0, 2.0], reveal=True))
+    assert "is 0, expected 1" in revealed
+    hidden = str(failure(trial("hidden"), [1.0, 2.0], [-0.0, 2.0]))
+    assert hidden.endswith("is 1, expected zero")
+
+
+def test_a_large_error_is_of_no_right_order_of_magnitude() -> None:
+    assert "right sign and order of magnitude" in str(failure(trial("hidden"), [2.0], [1.5]))
+    told = str(failure(trial("hidden"), [9.0], [1.5]))
+    assert told.endswith("of the right sign, but wrong")

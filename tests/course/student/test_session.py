@@ -5,12 +5,17 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import pytest
 from matplotlib.image import imread
+from photograd_course.assignment.manifest import read_manifest
 from photograd_course.cli.course.start import _next_steps
+from photograd_course.errors import IoError
 from photograd_course.grading import Check, Trial, check
 from photograd_course.grading.outcome import Outcome, Status
-from photograd_course.student.pictures import draw_failure
-from photograd_course.student.session import earlier_functions
+from photograd_course.student.pictures import _planes, draw_failure, slice_name, worst_index
+from photograd_course.student.session import earlier_functions, require_brought
+
+from support.tree import ROOT
 
 
 def made(task: str, calls: tuple[str, ...], needs: tuple[str, ...] = ()) -> Check:
@@ -26,6 +31,17 @@ def test_one_task_alone_names_what_it_builds_upon() -> None:
     assert earlier_functions([first]) == []
     assert earlier_functions([second]) == ["f"]
     assert earlier_functions([first, second]) == []
+    # What a check calls of an earlier assignment is used as well.
+    chained = made("1.2", ("g", "render"), ("f",))
+    assert earlier_functions([chained], {"f", "g"}) == ["f", "render"]
+    assert earlier_functions([first, chained], {"f", "g"}) == ["render"]
+
+
+def test_a_missing_file_of_an_earlier_assignment_is_named() -> None:
+    manifest = read_manifest(ROOT / "assignments" / "09_recovering_a_volume")
+    require_brought(manifest, {"volume_recovery.py", "volume_rendering.py"})
+    with pytest.raises(IoError, match=r"volume_rendering\.py: expected .* assignment 08 beside"):
+        require_brought(manifest, {"volume_recovery.py"})
 
 
 def test_predictions_come_before_reading() -> None:
@@ -49,3 +65,23 @@ def test_a_long_title_and_both_kinds_of_arrays_are_drawn(tmp_path: Path) -> None
         # The title keeps away from both sides.
         assert (picture[:30, :3] == 1.0).all()
         assert (picture[:30, -3:] == 1.0).all()
+
+
+def test_the_slice_with_the_worst_entry_is_drawn_named_and_marked() -> None:
+    right = np.zeros((3, 4, 2, 1))
+    got = right.copy()
+    got[2, 1, 1, 0] = 5.0
+    got[0, 0, 0, 0] = 1.0
+    worst = worst_index(got, right)
+    assert worst == (2, 1, 1, 0)
+    assert slice_name(got.shape, worst) == " (slice [:, :, 1, 0])"
+    yours = _planes(got, right).axes[0]
+    (image,) = yours.get_images()
+    np.testing.assert_array_equal(np.asarray(image.get_array()), got[:, :, 1, 0])
+    (frame,) = yours.patches
+    assert frame.get_xy() == (0.5, 1.5)  # around row 2, column 1
+    # An axis of length 1 is no slice; what is not finite is furthest off.
+    assert slice_name((1, 3, 4), (0, 2, 1)) == ""
+    assert slice_name((1, 3, 4, 3), (0, 2, 1, 2)) == " (slice [0, :, :, 2])"
+    got[1, 0, 0, 0] = np.nan
+    assert worst_index(got, right) == (1, 0, 0, 0)

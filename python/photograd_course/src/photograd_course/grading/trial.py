@@ -207,14 +207,15 @@ class Trial:
     ) -> str:
         at = f" at index {tuple(int(i) for i in worst)}" if right.ndim else ""
         head = f"{what}: relative error {error:.1e}, allowed {bound.relative:.0e}"
-        told = _told_apart(float(got[worst]), float(right[worst]))
+        told = _told_apart(float(got[worst]) + 0.0, float(right[worst]) + 0.0)  # no minus zero
         if reveal and self.check.visibility == "public":
             return f"{head}; yours{at} is {told[0]}, expected {told[1]}"
-        mine = f"yours{at} is {float(got[worst]):.6g}"
+        mine = f"yours{at} is {float(got[worst]) + 0.0:.6g}"
         expected = _sign_and_size(float(right[worst]))
         if expected == _sign_and_size(float(got[worst])):
-            return f"{head}; {mine}, of the right sign and order of magnitude, but wrong"
-        return f"{head}; {mine}, expected something {expected}"
+            alike = "sign and order of magnitude" if error < 1 else "sign"
+            return f"{head}; {mine}, of the right {alike}, but wrong"
+        return f"{head}; {mine}, expected {expected}"
 
 
 def _told_apart(a: float, b: float) -> tuple[str, str]:
@@ -241,7 +242,7 @@ def fingerprint(what: str, answer: ArrayLike) -> str:
 def _sign_and_size(value: float) -> str:
     """As much as may be said of a hidden value."""
     sign = {1.0: "positive", -1.0: "negative"}.get(float(np.sign(value)), "zero")
-    return f"{sign}, of the order {_power_of_ten(value)}" if value else sign
+    return f"something {sign}, of the order {_power_of_ten(value)}" if value else sign
 
 
 def _power_of_ten(value: float) -> str:

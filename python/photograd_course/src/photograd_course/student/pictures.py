@@ -8,9 +8,10 @@ from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
 
 from ..grading.outcome import Outcome
-from ..viz.style import house_style, save_figure, signed_colour_map
+from ..viz.style import INK, house_style, save_figure, signed_colour_map
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
@@ -23,8 +24,10 @@ def draw_failure(outcome: Outcome, folder: Path) -> Path | None:
     if got.ndim == 0 or got.size < 3:
         return None
     with house_style():
-        figure = _lines(got, expected) if got.squeeze().ndim < 2 else _planes(got, expected)
-        title = textwrap.wrap(f"{outcome.id}: {outcome.title}", 80)
+        flat = got.squeeze().ndim < 2
+        figure = _lines(got, expected) if flat else _planes(got, expected)
+        where = "" if flat else slice_name(got.shape, worst_index(got, expected))
+        title = textwrap.wrap(f"{outcome.id}: {outcome.title}{where}", 80)
         figure.suptitle("\n".join(title), fontsize=9)
         return save_figure(figure, picture_path(outcome, folder))
 
@@ -52,7 +55,11 @@ def _lines(got: Array, expected: Array) -> Figure:
 
 
 def _planes(got: Array, expected: Array) -> Figure:
-    shown = [_plane(array) for array in (got, expected, got - expected)]
+    worst = worst_index(got, expected)
+    axes_shown = _drawn(got.shape)
+    cut = tuple(slice(None) if axis in axes_shown else at for axis, at in enumerate(worst))
+    row, column = (worst[axis] for axis in axes_shown)
+    shown = [array[cut] for array in (got, expected, got - expected)]
     top = max(float(np.abs(plane).max()) for plane in shown[:2]) or 1.0
     figure = Figure(figsize=(7.5, 2.8), layout="constrained")
     for k, (plane, name) in enumerate(zip(shown, ("yours", "expected", "difference"), strict=True)):
@@ -60,17 +67,30 @@ def _planes(got: Array, expected: Array) -> Figure:
         image = axes.imshow(
             plane, cmap=signed_colour_map(), vmin=-top, vmax=top, interpolation="nearest"
         )
+        frame = Rectangle((column - 0.5, row - 0.5), 1, 1, fill=False, edgecolor=INK, linewidth=1.5)
+        axes.add_patch(frame)  # the entry that the message names
         axes.set_title(name, fontsize=9)
-        axes.set_xlabel("second index")
+        axes.set_xlabel(f"axis {axes_shown[1]}")
         axes.locator_params(integer=True)
-    figure.axes[0].set_ylabel("first index")
+    figure.axes[0].set_ylabel(f"axis {axes_shown[0]}")
     figure.colorbar(image, ax=figure.axes, shrink=0.8)
     return figure
 
 
-def _plane(array: Array) -> Array:
-    """Two axes of an array: the first channel of pictures, the first slice of what is larger."""
-    plane = array.squeeze()
-    while plane.ndim > 2:
-        plane = plane[..., 0]
-    return plane
+def worst_index(got: Array, expected: Array) -> tuple[int, ...]:
+    """The entry that is furthest off; what is not finite is."""
+    off = np.nan_to_num(np.abs(got - expected), nan=np.inf)
+    return tuple(int(i) for i in np.unravel_index(int(np.argmax(off)), off.shape))
+
+
+def slice_name(shape: tuple[int, ...], worst: tuple[int, ...]) -> str:
+    """Which slice is drawn, as in " (slice [:, :, 1, 0])"; nothing where it is the whole array."""
+    if sum(n > 1 for n in shape) <= 2:
+        return ""
+    at = [":" if axis in _drawn(shape) else str(i) for axis, i in enumerate(worst)]
+    return f" (slice [{', '.join(at)}])"
+
+
+def _drawn(shape: tuple[int, ...]) -> list[int]:
+    """The two axes that are drawn: the first two that are longer than 1."""
+    return [axis for axis, n in enumerate(shape) if n > 1][:2]

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Collection, Container, Sequence
 from pathlib import Path
 
 import typer
 from rich.console import Console
 
 from ..assignment.bundle import Bundle
+from ..assignment.manifest import Manifest
 from ..assignment.questions import LETTERS, Question
 from ..atomic_io import atomic_write
 from ..cli.output import emit
-from ..errors import SceneError, message
+from ..errors import IoError, SceneError, message
 from ..grading.check import Check
 from ..grading.outcome import Outcome, Status
 from .checking import check_here, select
@@ -39,6 +40,7 @@ def run_check_command(
     folder = find_folder(bundle.manifest, given)
     checks = select(bundle.checks, task)
     files = folder.files()
+    require_brought(bundle.manifest, files)
     lock_predictions(bundle, folder, console)
 
     def show(outcome: Outcome) -> None:
@@ -56,7 +58,8 @@ def run_check_command(
         next_command = f"photograd course handin {bundle.manifest.id}"
         first = "Answer the questions, then: " if bundle.questions else "Next: "
         console.print(f"All green. {first}{next_command}", soft_wrap=True)
-    if not passed and (earlier := earlier_functions(checks)):
+    own = {function for each in bundle.manifest.tasks for function in each.functions}
+    if not passed and (earlier := earlier_functions(checks, own)):
         console.print(
             f"Only this task was looked at; it uses {', '.join(earlier)}. If it puzzles you, run "
             f"photograd course check {bundle.manifest.id}: begin with what fails first.",
@@ -67,11 +70,31 @@ def run_check_command(
     return passed
 
 
-def earlier_functions(checks: Sequence[Check]) -> list[str]:
-    """What these checks need of earlier tasks that none of them looks at."""
-    looked_at = {function for check in checks for function in check.calls}
+def require_brought(manifest: Manifest, files: Container[str]) -> None:
+    """Every module of an earlier assignment must be there: without it nothing can be imported.
+
+    Raises:
+        IoError: one is missing.
+    """
+    for name in manifest.brought:
+        if f"{name}.py" not in files:
+            number = " or ".join(manifest.prerequisites)
+            expected = f"your file of assignment {number} beside {manifest.module}.py"
+            raise IoError(message("check", f"{name}.py", expected, "none", "put it there"))
+
+
+def earlier_functions(checks: Sequence[Check], own: Collection[str] | None = None) -> list[str]:
+    """What these checks need of earlier tasks that none of them looks at.
+
+    Args:
+        checks: those of one task.
+        own: the functions of this assignment; what a check calls besides was brought along from
+            an earlier one. By default nothing was.
+    """
+    called = dict.fromkeys(function for check in checks for function in check.calls)
+    brought = [function for function in called if own is not None and function not in own]
     needed = dict.fromkeys(function for check in checks for function in check.needs)
-    return [function for function in needed if function not in looked_at]
+    return [each for each in needed if each not in called] + brought
 
 
 def as_result(bundle: Bundle, outcomes: list[Outcome]) -> dict[str, object]:
