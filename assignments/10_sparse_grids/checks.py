@@ -51,12 +51,12 @@ def same_counts(t, what, got, right, hint=""):
         raise
 
 
-def recognised(failure, text, hint):
+def recognised(failure, more, hint):
     """The verdict on a hand-in that raised an exception whose cause is known."""
     details = {"advice": hint, "exception": failure.private}  # which public checks may show
     if failure.line is not None:
         details["line"] = list(failure.line)
-    return CheckFailed(text, details)
+    return CheckFailed(f"{failure.text}{more}", details)
 
 
 def blocks(t, n, cut=0.75):
@@ -159,7 +159,7 @@ def one_cell_costs_eight_nodes_a_level(t):
        hint="handout, equation (4): a cube of equal cells, full or empty, is one leaf",
        sole="what an octree is for: counted, not timed")  # fmt: skip
 def leaves_are_as_large_as_can_be(t):
-    """As many leaves as there are largest equal cubes; a plane costs a few n^2 leaves, not n^3."""
+    """As many leaves as there are largest equal cubes; a plane costs at most a few n^2 leaves."""
     for n in (4, 8):
         full = blocks(t, n, 1.0)
         full[:2, :2, :2], full[2:, 2:, 2:] = True, False
@@ -346,8 +346,7 @@ def insert(t, table, voxels, rows):
             raise
         # With a slot for each, even for those that come twice, only the way around is left.
         twice = kind == "ValueError" and (table[:, 3] >= 0).sum() + len(voxels) > len(table)
-        raise recognised(failure, "voxel_hash_insert raised an exception, though there is room",
-                         THERE if twice else AROUND) from None  # fmt: skip
+        raise recognised(failure, ", though there is room", THERE if twice else AROUND) from None
 
 
 def require_sound(t, table, voxels, rows):
@@ -785,7 +784,7 @@ def two_rounds(t, *given):
             raise
         raise recognised(
             failure,
-            "fit_sparse raised an exception in two rounds with steps; without steps it did not",
+            "; two rounds without steps passed",
             "begin each round with a new Adam, table and samples: the old ones are of other voxels",
         ) from None
 
