@@ -3,9 +3,10 @@
 A volume fills the cube from -1 to 1 in x, y and z with n x n x n voxels, n a power of two. Places
 are given in *cells*: (0, 0, 0) is one corner of the cube and (n, n, n) the opposite one; cell
 (i, j, k) reaches from i to i + 1 along x and so on, and voxel (i, j, k) has its value in the middle
-of it. A *sparse grid* is a list of active voxels (V, 3), their values (V, 4) with channels r, g, b
-and sigma, the extinction for each unit of length, and a hash table that tells the row of a voxel.
-What is not in the list is empty: all four numbers are 0 there, outside the cube as well.
+of it. Rays, which `march` and `fit_sparse` take, are in the units of the cube instead. A *sparse
+grid* is a list of active voxels (V, 3), their values (V, 4) with channels r, g, b and sigma, the
+extinction for each unit of length, and a hash table that tells the row of a voxel. What is not in
+the list is empty: all four numbers are 0 there, outside the cube as well.
 
 Your tasks are six functions, one section of the handout each; `photograd course check 10` tells how
 far you are. The other functions are given and stay as they are. Values are float64, indices int64.
@@ -24,7 +25,7 @@ def octree_from_dense(full):
     """The octree of a cube of cells that are full or empty.
 
     Args:
-        full: (n, n, n) of bool, n a power of two; 1 is one.
+        full: (n, n, n) of bool, n a power of two; n = 1 is allowed.
 
     Returns:
         tree (N,) of int64. Node 0 is the whole cube. tree[node] is EMPTY or FULL for a leaf, a
@@ -257,7 +258,8 @@ def march(n, voxels, table, rays):
         n: voxels along a side.
         voxels: (V, 3), the active ones.
         table: tells their rows.
-        rays: (2, R, 3), origins and unit directions; rays that miss the cube have no samples.
+        rays: (2, R, 3), origins and unit directions, in the units of the cube from -1 to 1, not in
+            cells; rays that miss the cube have no samples.
 
     Returns:
         a tuple for `render`, `loss_and_grad` and `shares`: (wanted (R, 2 n) of bool, which of a
@@ -360,14 +362,14 @@ def fit_sparse(n, voxels, values, rays, target, rounds, steps, threshold, grow):
         n: voxels along a side of the cube.
         voxels: (V, 3), active at the start, ordered in any way.
         values: (V, 4), their values at the start; these arrays must not change.
-        rays: (2, R, 3), origins and unit directions.
+        rays: (2, R, 3), origins and unit directions, in the units of the cube, as for `march`.
         target: (R, 3), the measured colours.
         rounds: 1 or more; between two of them the list of voxels is made anew.
         steps: of Adam in each round, 0 or more.
         threshold, grow: of `prune_and_dilate`.
 
     Returns:
-        (voxels, values, losses): of the last round; losses (rounds steps,), of each point that a
+        (voxels, values, losses): of the last round; losses (rounds * steps,), of each point that a
         step starts from. Handout equations (14) to (16).
     """
     # >>> solution 10.6

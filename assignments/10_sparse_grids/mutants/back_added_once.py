@@ -1,4 +1,4 @@
-"""d_values[row] += adds once where a row occurs twice: all of them must add up."""
+"""A row that occurs twice gets only its last contribution: `d[row] += ...` does not add up."""
 
 TASKS = ("10.4",)
 LOSES = (

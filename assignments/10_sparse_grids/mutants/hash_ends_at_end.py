@@ -1,4 +1,4 @@
-"""After the last slot comes slot 0."""
+"""After the last slot comes slot 0: (9) is mod S."""
 
 TASKS = ("10.3",)
 LOSES = (

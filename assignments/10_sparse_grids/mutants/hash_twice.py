@@ -1,4 +1,4 @@
-"""A voxel that is in the table already is put in a second time."""
+"""The voxel is there already: overwrite its slot, take no second one."""
 
 TASKS = ("10.3",)
 LOSES = ("10.3.again",)

@@ -18,8 +18,10 @@ from course.assignments.support import (
     SECRET,
     AssignmentTests,
     apply_mutant,
+    judge,
     load_figures,
     load_module,
+    source,
 )
 
 FOLDER = ASSIGNMENTS / "10_sparse_grids"
@@ -220,6 +222,29 @@ def test_generated_questions_have_the_answers_that_their_reasons_give() -> None:
             for s in drawn["10.g3"]["s"]:
                 right = (min(i, s) + s + 1) * (min(15 - j, s) + s + 1) * (2 * s + 1)
                 assert keys.voxels_after_growth(reference, i, j, s) == right
+
+
+ADD = "np.add.at(d_values, row[known], parts[known])"
+ENTRY = "entry = table[(slot + probe) % len(table)]"
+OLD = "old = voxel_hash_find(table, chosen)"
+# Mistakes that no mutant's fingerprint meets, as everybody makes them a little differently.
+LIKELY = {
+    "add up": ("10.4.transpose", ADD, "for c in range(8):\n        d_values[row[c]] += parts[c]"),
+    "mod S": ("10.3.found", ENTRY, "entry = table[slot + probe]"),
+    "old table": ("10.6.chain", OLD, "old = np.arange(len(chosen)); old[len(voxels):] = -1"),
+    "stands still": ("10.2.faces", "np.maximum(jump, 1)", "jump"),
+}
+
+
+@pytest.mark.parametrize("said", LIKELY)
+def test_likely_mistakes_are_recognised(said: str) -> None:
+    check, right, wrong = LIKELY[said]
+    text = source(FOLDER).replace("for _ in range(count):  #", "while len(live):  #")
+    assert text.count(right) == 1
+    outcomes = {
+        each.id: each for each in judge(FOLDER, text.replace(right, wrong), tasks=[check[:4]])
+    }
+    assert said in outcomes[check].hint
 
 
 def capture(folder: Path) -> None:
