@@ -16,7 +16,7 @@ from photograd_course.color import srgb_encode, unpremultiply
 from photograd_course.metrics import psnr, round_to_8_bits, ssim
 
 from photograd.data.camera import Camera
-from photograd.data.view import View
+from photograd.data.view import View, display_color
 from photograd.errors import RangeError, message
 from photograd.model import Model
 from photograd.representation import Array, ImageBatch, RayBatch, RenderOptions
@@ -94,7 +94,7 @@ def display_image(model: Model, camera: Camera) -> Array:
 def truth_image(view: View) -> Array:
     """The photograph (H, W, 3) under the same protocol."""
     rgba = view.rgba().astype(np.float64)
-    color = srgb_encode(rgba[..., :3]) if view.color_space == "linear" else rgba[..., :3]
+    color = display_color(rgba[..., :3], view.color_space)
     return over_white(color, rgba[..., 3])
 
 

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from photograd_course.color import srgb_decode, srgb_encode
+from photograd_course.color import srgb_decode
 from photograd_course.random import permutation
 
 from photograd.data.camera import Camera
-from photograd.data.view import View
+from photograd.data.view import View, display_color
 from photograd.errors import RangeError, message
 from photograd.pixels import digest_of
 from photograd.representation import Array
@@ -74,7 +74,7 @@ class TrainingViews:
 
 def _training_view(view: View) -> TrainingView:
     rgba = view.rgba()
-    color = srgb_encode(rgba[..., :3]) if view.color_space == "linear" else rgba[..., :3]
+    color = display_color(rgba[..., :3], view.color_space)
     alpha = rgba[..., 3:]
     valid = view.valid_mask()
     pixels = np.concatenate([color * alpha, alpha], axis=-1, dtype=np.float32)

@@ -4,15 +4,22 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+from photograd_course.color import srgb_encode
 from photograd_course.errors import IoError, message
 
 from .camera import Camera
 from .frames import FloatArray
 from .images import ColorSpace, ImageArray, downscale_image, read_image
 from .undistort import Distortion, undistort_image
+
+
+def display_color(color: npt.NDArray[Any], color_space: ColorSpace) -> npt.NDArray[Any]:
+    """Colours of a view in display values: encoded if they are linear. Same shape and dtype."""
+    return srgb_encode(color) if color_space == "linear" else color
 
 
 @dataclass(frozen=True, eq=False)

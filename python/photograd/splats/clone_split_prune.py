@@ -133,7 +133,7 @@ def _with_clones_thinned(params: Params, cloned: Array) -> dict[str, Array]:
     """A copy in which the rows that get a twin have the opacity of which two make the old one."""
     after = dict(params)
     raw = params["opacity_logits"].copy()
-    alpha = 1 / (1 + np.exp(-raw[cloned].astype(np.float64)))
+    alpha = opacities(params)[cloned]
     raw[cloned] = logits(1 - np.sqrt(1 - alpha))
     after["opacity_logits"] = raw
     return after

@@ -9,14 +9,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from photograd_course.color import srgb_encode
 from photograd_course.random import uniform
 
 from photograd import sh
 from photograd.data.camera import Camera
 from photograd.data.capture import Capture
 from photograd.data.hull import mean_coverage, silhouettes_of
-from photograd.data.view import View
+from photograd.data.view import View, display_color
 from photograd.errors import RangeError, message
 from photograd.representation import Array
 from photograd.splat import Gaussians
@@ -153,7 +152,7 @@ def mean_colors(views: Sequence[View], points: Array, *, most: int = 24) -> Arra
     for view in views[:: max(1, len(views) // most)]:
         rows, column, row = _landing(view.camera, points)
         rgba = view.rgba()[row, column].astype(np.float64)
-        color = rgba[:, :3] if view.color_space == "display" else srgb_encode(rgba[:, :3])
+        color = display_color(rgba[:, :3], view.color_space)
         total[rows] += color * rgba[:, 3:]
         weight[rows] += rgba[:, 3]
     found: Array = np.where(weight[:, None] > 0, total / np.maximum(weight, 1e-9)[:, None], 0.5)

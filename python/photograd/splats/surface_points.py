@@ -7,11 +7,10 @@ says that there is something at that depth along its ray; its colour is the phot
 from __future__ import annotations
 
 import numpy as np
-from photograd_course.color import srgb_encode
 from photograd_course.random import choice
 
 from photograd.data.capture import Capture
-from photograd.data.view import View
+from photograd.data.view import View, display_color
 from photograd.errors import SceneError, message
 from photograd.evaluate import render_camera
 from photograd.model import Model
@@ -59,5 +58,5 @@ def _points_of(
     if "rays" not in model.field.capabilities:  # whose depth is along the viewing axis
         distance = distance / (directions @ view.camera.forward)
     rgba = view.rgba().reshape(-1, 4)[rows].astype(np.float64)
-    color = rgba[:, :3] if view.color_space == "display" else srgb_encode(rgba[:, :3])
+    color = display_color(rgba[:, :3], view.color_space)
     return origins + distance[:, None] * directions, color
