@@ -7,6 +7,7 @@ What must not be left (processes of the worker's user, its folder) is asserted b
 from __future__ import annotations
 
 import textwrap
+from typing import Any
 
 import pytest
 from photograd_course.grading import StudentFailure
@@ -172,6 +173,32 @@ def test_a_worker_that_stops_reading_cannot_block_the_grader(mode: str, home: Wo
         assert caught.value.reason == "timeout"
     finally:
         student.close()
+
+
+@pytest.mark.parametrize(
+    "body",
+    ["while True: f(x)", "import numpy\nx = numpy.ones(700_000)\nwhile True: f(x)"],
+    ids=["small questions, large answers", "large questions"],
+)
+def test_what_passes_through_a_function_is_limited(body: str, mode: str, home: WorkerHome) -> None:
+    import numpy as np
+    from photograd_course.worker.process import MOST_SERVED
+
+    kept: list[int] = []
+
+    def asked(x: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+        answer = np.ones(300_000 if len(x) == 1 else 1)
+        kept.append(x.nbytes + answer.nbytes)
+        return answer
+
+    student = hand_in(module(body).replace("def f(x)", "def g(f, x)"), home, mode)
+    try:
+        with pytest.raises(StudentFailure) as caught:
+            student.call("toy.g", [asked, np.ones(1)], seconds=CALL_SECONDS)
+        assert caught.value.reason == "protocol"
+    finally:
+        student.close()
+    assert 0.9 * MOST_SERVED < sum(kept) < MOST_SERVED + max(kept)
 
 
 def test_import_time_counts(strict: str, home: WorkerHome) -> None:

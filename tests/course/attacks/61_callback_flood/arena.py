@@ -18,6 +18,7 @@ def ask(function, arguments):
 def descend(gradient, x0, tau, n):
     signal.alarm(0)
     strange = [np.ones(3), np.full(3, np.nan), "x" * 1000, None, [[]] * 100, np.ones((1000, 3))]
+    strange += [np.ones((1_000_000, 3))]
     try:
         threading.Thread(target=ask, args=(gradient, strange), daemon=True).start()
     except RuntimeError:

@@ -23,7 +23,7 @@ PREFIX = struct.Struct(">4sIQ")
 # The only element types that cross; little endian whatever the machine is.
 DTYPES = {"f4": "<f4", "f8": "<f8", "i4": "<i4", "i8": "<i8", "u1": "|u1", "bool": "|b1"}
 NAMES = {np.dtype(code): name for name, code in DTYPES.items()}
-MAX_HEADER = 8 << 20  # parsed as JSON it takes some twenty times as much memory
+MAX_HEADER = 8 << 20  # parsed as JSON it takes up to twenty-two times as much memory
 MAX_BODY = 256 << 20
 MAX_DEPTH = 24
 
@@ -34,11 +34,15 @@ class FrameError(ValueError):
 
 @dataclass(frozen=True)
 class Frame:
-    """One decoded frame; functions of the other side are still ``FunctionId``."""
+    """One decoded frame; functions of the other side are still ``FunctionId``.
+
+    ``size`` is the number of bytes that came.
+    """
 
     kind: str
     number: int
     value: Any
+    size: int = 0
 
 
 @dataclass(frozen=True)
@@ -93,7 +97,7 @@ def decode(read: Callable[[int], bytes], *, max_body: int = MAX_BODY) -> Frame:
         kind, number = header["kind"], header["number"]
         if not (isinstance(kind, str) and isinstance(number, int)):
             raise FrameError("kind or number missing")
-        return Frame(kind, number, _restore(header["value"], arrays, 0))
+        return Frame(kind, number, _restore(header["value"], arrays, 0), head_size + body_size)
     except FrameError:
         raise
     except (KeyError, TypeError, ValueError, IndexError, RecursionError, MemoryError) as error:
@@ -189,7 +193,9 @@ def _restore(tree: Any, arrays: list[Any], depth: int) -> Any:
     if depth > MAX_DEPTH:
         raise FrameError("nested too deeply")
     if isinstance(tree, list):
-        return [_restore(item, arrays, depth + 1) for item in tree]
+        for k, item in enumerate(tree):  # in place: a copy would double what a frame can cost us
+            tree[k] = _restore(item, arrays, depth + 1)
+        return tree
     if not isinstance(tree, dict):
         return tree
     if len(tree) != 1:

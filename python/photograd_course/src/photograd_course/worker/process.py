@@ -28,6 +28,7 @@ __all__ = [
 
 LONGEST_LOG = 64 << 10  # bytes of stderr kept
 HEARTBEAT = 0.2  # seconds between looks at the clock while a write is blocked
+MOST_SERVED = 64 << 20  # bytes, arguments and values, through the functions of one request
 LAST_WORDS = 5.0  # seconds that the system may take to bury a killed process
 
 
@@ -117,7 +118,8 @@ class WorkerProcess:
         Args:
             kind, value: as for ``codec.encode``; the worker can call functions in ``value``.
             seconds: wall-clock limit of the whole exchange.
-            callbacks: how many calls of such functions are served.
+            callbacks: how many calls of such functions are served. What passes through them is
+                limited too: a check may keep all that it was asked.
 
         Raises:
             WorkerTimeout, WorkerDied, WorkerLied: no valid answer came.
@@ -126,6 +128,7 @@ class WorkerProcess:
         deadline = min(self._deadline, time.monotonic() + seconds)
         self._request_deadline = deadline
         self._send(encode(kind, self._number, value, self._name))
+        served = 0
         for _ in range(callbacks + 1):
             frame = self._next(deadline)
             if frame.number != self._number:
@@ -133,7 +136,12 @@ class WorkerProcess:
             if frame.kind != "callback":
                 self._request_deadline = self._deadline
                 return frame
-            self._serve(frame)
+            reply = self._reply(frame) if frame.size <= MOST_SERVED else b""
+            served += frame.size + len(reply)
+            if served > MOST_SERVED:
+                most = f"{MOST_SERVED >> 20} MB"
+                raise WorkerLied(f"more than {most} through the functions it was given")
+            self._send(reply)
         raise WorkerLied(f"more than {callbacks} calls of the functions it was given")
 
     def cpu_seconds(self) -> float | None:
@@ -173,15 +181,14 @@ class WorkerProcess:
         self._functions[len(self._functions)] = function
         return len(self._functions) - 1
 
-    def _serve(self, frame: Frame) -> None:
+    def _reply(self, frame: Frame) -> bytes:
         try:
             function = self._functions[frame.value["function"]]
-            reply = encode("reply", self._number, function(*frame.value["args"]))
+            return encode("reply", self._number, function(*frame.value["args"]))
         except Exception as error:
             # Our exception's own text may hold what the hand-in must not see.
             said = f"a function given to you cannot take these arguments ({type(error).__name__})"
-            reply = encode("refusal", self._number, said)
-        self._send(reply)
+            return encode("refusal", self._number, said)
 
     def _send(self, data: bytes) -> None:
         stream = self._process.stdin

@@ -85,6 +85,8 @@ def the_mean_keeps_its_fireflies(t):
     drawn = []
 
     def draw(n):
+        if not 0 <= n <= 4000:  # what it makes stays in our memory
+            raise ValueError(n)
         drawn.append(t.rng.pareto(1.5, int(n)))
         return drawn[-1]
 
