@@ -9,7 +9,11 @@ import pytest
 from photograd.checkpoint import load_checkpoint
 from photograd.compare import Contender, Score, markdown, parse_contenders
 from photograd.data.images import read_image
+from photograd.data.load import load_capture
 from photograd.errors import RangeError
+from photograd.evaluate import evaluate
+from photograd.fit import Fit
+from photograd.model import load_model
 
 from tests.commands.conftest import Photograd
 
@@ -46,6 +50,27 @@ def test_two_contenders_are_fitted_scored_and_drawn(
     assert again.code == 0
     for before, after in zip((coarse, fine), again.result()["scores"], strict=True):
         assert {**after, "frame_ms": 0} == {**before, "frame_ms": 0}
+
+
+def test_validation_scores_training_views_that_the_fit_did_not_see(
+    photograd: Photograd, capture_folder: Path, tmp_path: Path
+) -> None:
+    whole = load_capture(capture_folder)
+    split = whole.validating()
+    names = [{view.name for view in part} for part in (split.train, split.test, whole.test)]
+    assert names[0] | names[1] == {view.name for view in whole.train}
+    assert all(names)
+    assert not names[0] & names[1]
+    assert not names[1] & names[2]
+    words = ("compare", capture_folder, "--contenders", "dense_grid:8", "--out", tmp_path, *FEW)
+    done = photograd(*words, "--validate", "--json")
+    assert done.code == 0, done.err
+    (score,) = done.result()["scores"]
+    assert score["capture"] == f"{capture_folder.name}_validation"
+    model = tmp_path / score["capture"] / "dense_grid_8"
+    job = Fit.resume(split, model)
+    assert score["psnr"] == pytest.approx(evaluate(load_model(model), split.test).psnr)
+    assert job.step_number == 15
 
 
 def test_a_folder_of_other_options_is_not_taken_for_these(

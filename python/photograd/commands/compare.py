@@ -60,6 +60,14 @@ def compare(
     size: Annotated[int, typer.Option("--size", min=8, help="Its pixels along an edge.")] = 128,
     spp: Annotated[int, typer.Option("--spp", min=1, help="Its samples a pixel.")] = 64,
     downscale: DownscaleOption = 1,
+    validate: Annotated[
+        bool,
+        typer.Option(
+            "--validate",
+            help="To choose an option: score on every eighth training view, held out from the fit. "
+            "The test views are not looked at.",
+        ),
+    ] = False,
     seed: SeedOption = 0,
     threads: ThreadsOption = 0,
     as_json: JsonOption = False,
@@ -82,6 +90,8 @@ def compare(
         for given in captures or CONTRASTS:
             folder = photographs_of(given, out, views=views, size=size, spp=spp, seed=seed)
             name, capture = Path(given).name, load_capture(folder, downscale=downscale)
+            if validate:
+                name, capture = f"{name}_validation", capture.validating()
             found = contest(name, capture, candidates, shared, out / name, stopping)
             scores += [score for score, _ in found]
             pictures.append(out / f"{name}.png")

@@ -14,6 +14,7 @@ from photograd_course.errors import IoError, RangeError, ShapeError, message
 
 from .frames import FloatArray
 from .images import ColorSpace
+from .splits import hold_out
 from .view import View
 
 
@@ -92,6 +93,23 @@ class Capture:
     def with_line(self, line: str) -> Capture:
         """The same capture with one more sentence in its log."""
         return replace(self, conversions=(*self.conversions, line))
+
+    def validating(self) -> Capture:
+        """The training views alone, every eighth of them held out; the test views are put away.
+
+        For choosing a resolution or another option: a choice that looked at the test views would
+        make their score say more than it knows.
+
+        Raises:
+            RangeError: fewer than two training views.
+        """
+        train, test, _ = hold_out(self.train)
+        if not test:
+            raise RangeError(message("validating", "capture", "two training views or more", "one"))
+        line = (
+            f"{len(test)} training views held out to choose by, {len(self.test)} test views unseen"
+        )
+        return replace(self, train=train, test=test, val=(), conversions=(*self.conversions, line))
 
     def downscaled(self, factor: int) -> Capture:
         """The same capture with every image reduced by an integer box average.

@@ -174,3 +174,6 @@ def test_what_shingles_tell() -> None:
     assert says_something(("gain", "*", "slope", "+", "offset"))
     assert not says_something(("np", ".", "exp", "(", "x"))
     assert not says_something(("for", "i", "in", "range", "("))
+    assert says_something(("i", ",", "j", ",", "gain"))
+    assert not says_something(("i", ",", "j", ",", "k"))
+    assert not says_something(("linalg", ".", "norm", "(", "x"))

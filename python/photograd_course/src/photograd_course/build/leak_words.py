@@ -2,7 +2,8 @@
 
 A *shingle* is five consecutive tokens of Python without comments, docstrings and layout; names and
 numbers are kept as they are, texts become one token. It is evidence only if it holds at least three
-different names that carry meaning: no keywords, no builtins, not ``np``, ``numpy`` or ``self``.
+different names that carry meaning, one of them longer than an index: no keywords, no builtins, not
+``np``, ``numpy``, ``linalg`` or ``self``.
 What the starter, code in the handout, or well-known sources (a fixed list of modules of Python and
 NumPy) say as well is no evidence either.
 """
@@ -23,7 +24,7 @@ from pathlib import Path
 LENGTH = 5
 NAMES = 3
 SHORTEST = 3  # a name of one or two characters is an index or a symbol of the formula
-COMMON = frozenset({*keyword.kwlist, *dir(builtins), "np", "numpy", "self"})
+COMMON = frozenset({*keyword.kwlist, *dir(builtins), "np", "numpy", "linalg", "self"})
 WELL_KNOWN = (
     "bisect", "collections", "colorsys", "fractions", "functools", "graphlib", "heapq", "itertools",
     "operator", "queue", "random", "statistics", "numpy._core.numeric", "numpy._core.fromnumeric",
@@ -65,7 +66,7 @@ def shingles_of(text: str) -> set[Shingle]:
 def says_something(shingle: Shingle) -> bool:
     """Whether it holds enough names of its own."""
     names = {each for each in shingle if each.isidentifier() and each not in COMMON}
-    return len(names) >= NAMES
+    return len(names) >= NAMES and any(len(each) >= SHORTEST for each in names)
 
 
 def fenced_code(markdown: str) -> str:
