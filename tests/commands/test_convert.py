@@ -74,6 +74,7 @@ def test_bad_conversions_end_in_one_line(photograd: Photograd, scene: Path) -> N
         ((scene, scene), "another file than IN"),
         ((scene, scene.with_name("a.zip")), "a name that ends in one of"),
         ((scene.with_name("none.ply"), scene.with_name("b.spz")), "expected a file, got none"),
+        ((scene, scene.with_name("b.ply"), "--spz-version", 2), "a file .spz to write"),
     ]:
         done = photograd("convert", *words)
         assert done.code == 1

@@ -16,7 +16,9 @@ from photograd.data.gaussian_files import (
     read_gaussians,
     write_gaussians,
 )
-from photograd.errors import IoError, message
+from photograd.errors import IoError, RangeError, message
+
+SPZ_VERSION = 3
 
 
 def register(app: typer.Typer) -> None:
@@ -32,8 +34,9 @@ def convert(
         Path, typer.Argument(help=f"File to write: {', '.join(WRITABLE)}.", metavar="OUT")
     ],
     spz_version: Annotated[
-        int, typer.Option("--spz-version", min=2, max=4, help="Version of an .spz file.")
-    ] = 3,
+        int | None,
+        typer.Option("--spz-version", min=2, max=4, help="Version of an .spz file; by default 3."),
+    ] = None,
     as_json: JsonOption = False,
     debug: DebugOption = False,  # noqa: ARG001  read by the command line's frame
 ) -> None:
@@ -41,7 +44,11 @@ def convert(
 
     Example: photograd convert scene.ply scene.spz
     """
-    emit(convert_file(source, target, spz_version), as_json=as_json, title="convert")
+    if spz_version is not None and target.suffix.lower() != ".spz":
+        expected = "a file .spz to write with --spz-version"
+        raise RangeError(message("convert", "OUT", expected, target.name, "leave the option out"))
+    version = SPZ_VERSION if spz_version is None else spz_version
+    emit(convert_file(source, target, version), as_json=as_json, title="convert")
 
 
 def convert_file(source: Path, target: Path, spz_version: int) -> dict[str, Any]:

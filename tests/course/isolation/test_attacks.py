@@ -7,13 +7,14 @@ What must not be left (processes of the worker's user, its folder) is asserted b
 from __future__ import annotations
 
 import textwrap
+from dataclasses import replace
 from typing import Any
 
 import pytest
 from photograd_course.grading import StudentFailure
 from photograd_course.worker.home import WorkerHome
 
-from course.isolation.support import CALL_SECONDS, hand_in
+from course.isolation.support import CALL_SECONDS, LIMITS, hand_in
 
 # Frames as `worker/codec.py` describes them, sent on every open descriptor but the standard ones.
 FORGE = """
@@ -175,6 +176,17 @@ def test_a_worker_that_stops_reading_cannot_block_the_grader(mode: str, home: Wo
         student.close()
 
 
+def test_the_end_of_a_whole_life_is_told_from_a_slow_answer(home: WorkerHome) -> None:
+    student = hand_in(module("time.sleep(1000)"), home, "E", replace(LIMITS, seconds=6.0))
+    try:
+        with pytest.raises(StudentFailure) as caught:
+            student.call("toy.f", [1.0], seconds=60.0)
+    finally:
+        student.close()
+    assert caught.value.reason == "timeout"
+    assert "the time of the whole process is used up" in caught.value.text
+
+
 @pytest.mark.parametrize(
     "body",
     ["while True: f(x)", "import numpy\nx = numpy.ones(700_000)\nwhile True: f(x)"],
@@ -210,8 +222,6 @@ def test_import_time_counts(strict: str, home: WorkerHome) -> None:
 
 def test_the_flood_is_drained_and_cut(strict: str, home: WorkerHome) -> None:
     from photograd_course.worker.launch import open_worker
-
-    from course.isolation.support import LIMITS
 
     worker = open_worker(home, strict, LIMITS)
     source = {"toy": "def f():\n    for _ in range(300): print('\\xff\\x1b' * 10_000)"}

@@ -205,17 +205,23 @@ class WorkerProcess:
         try:
             item = self._frames.get(timeout=max(0.0, deadline - time.monotonic()))
         except queue.Empty:
-            raise WorkerTimeout from None
+            raise self._late() from None
         if isinstance(item, FrameError):
             raise WorkerLied(str(item))
         if isinstance(item, Exception):
             raise self._cause_of_death()
         return item
 
+    def _late(self) -> WorkerTimeout:
+        """Whose time is over: one answer's, or that of the whole process."""
+        if time.monotonic() >= self._deadline:
+            return WorkerTimeout("the time of the whole process is used up")
+        return WorkerTimeout()
+
     def _cause_of_death(self) -> WorkerTimeout | WorkerDied:
         """Why the pipe is closed: the clock, the limit on processor time, or the hand-in."""
         if time.monotonic() >= self._request_deadline:
-            return WorkerTimeout()
+            return self._late()
         with contextlib.suppress(subprocess.TimeoutExpired):
             self._process.wait(HEARTBEAT)
         status = self._process.returncode
