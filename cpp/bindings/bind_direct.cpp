@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "array_args.h"
+#include "camera_args.h"
 #include "module.h"
 #include "photograd/render/direct.h"
 
@@ -12,20 +12,6 @@ namespace {
 
 /// (kind, first entry, width, height) of each mesh, as Python hands them over.
 using Layouts = std::vector<std::tuple<int, std::int64_t, int, int>>;
-
-Pinhole pinhole(const py::tuple& numbers) {
-    Pinhole camera{};
-    camera.width = numbers[0].cast<int>();
-    camera.height = numbers[1].cast<int>();
-    camera.fx = numbers[2].cast<double>();
-    camera.fy = numbers[3].cast<double>();
-    camera.cx = numbers[4].cast<double>();
-    camera.cy = numbers[5].cast<double>();
-    const auto pose = numbers[6].cast<std::array<std::array<double, 4>, 3>>();
-    for (std::size_t i = 0; i < 3; ++i)
-        std::copy(pose[i].begin(), pose[i].end(), camera.world_from_camera[i]);
-    return camera;
-}
 
 std::vector<AlbedoLayout> layouts_of(const ArrayArgs& args, const Bvh& bvh, const Layouts& given,
                                      std::int64_t entries) {

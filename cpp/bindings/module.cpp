@@ -12,6 +12,7 @@ PYBIND11_MODULE(_core, m) {
     photograd::bind_light(m);
     photograd::bind_phase(m);
     photograd::bind_direct(m);
+    photograd::bind_path(m);
     photograd::bind_sampling(m);
     photograd::bind_sh(m);
     photograd::bind_texture(m);

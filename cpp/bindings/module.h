@@ -16,6 +16,7 @@ void bind_bsdf(py::module_& m);
 void bind_light(py::module_& m);
 void bind_phase(py::module_& m);
 void bind_direct(py::module_& m);
+void bind_path(py::module_& m);
 void bind_sampling(py::module_& m);
 void bind_sh(py::module_& m);
 void bind_texture(py::module_& m);

@@ -81,6 +81,15 @@ void keep_message(void* message, RTCError, const char* text) {
     if (kept.empty() && text) kept = text;
 }
 
+void check_spheres(const std::vector<Sphere>& spheres) {
+    for (std::size_t i = 0; i < spheres.size(); ++i) {
+        const Sphere& s = spheres[i];
+        if (!std::isfinite(s.x + s.y + s.z + s.radius) || !(s.radius > 0))
+            fail(ErrorKind::scene, "bvh", "spheres", "finite centres and radii above 0",
+                 "radius " + std::to_string(s.radius) + " in sphere " + std::to_string(i));
+    }
+}
+
 }  // namespace
 
 struct Bvh::Tree {
@@ -131,6 +140,16 @@ struct Bvh::Tree {
         rtcCommitGeometry(g);
         check("meshes");
     }
+    /// All spheres as one geometry, in the scene under the number `id`.
+    void add_spheres(const std::vector<Sphere>& spheres, unsigned id) {
+        const RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_SPHERE_POINT);
+        rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, spheres.data(),
+                                   0, sizeof(Sphere), spheres.size());
+        rtcCommitGeometry(g);
+        rtcAttachGeometryByID(scene, g, id);
+        rtcReleaseGeometry(g);
+        check("spheres");
+    }
     /// Puts mesh `it.mesh` into the scene under the number `id`; without a transformation directly,
     /// which saves a level of the hierarchy.
     void add_instance(const Instance& it, unsigned id) {
@@ -157,11 +176,14 @@ struct Bvh::Tree {
     }
 };
 
-Bvh::Bvh(std::vector<Mesh> meshes, std::vector<Instance> instances)
+Bvh::Bvh(std::vector<Mesh> meshes, std::vector<Instance> instances, std::vector<Sphere> spheres)
     : meshes_(std::move(meshes)),
       instances_(std::move(instances)),
+      spheres_(std::move(spheres)),
       tree_(std::make_unique<Tree>()) {
-    if (instances_.empty()) fail(ErrorKind::scene, "bvh", "instances", "at least one", "none");
+    if (instances_.empty() && spheres_.empty())
+        fail(ErrorKind::scene, "bvh", "instances", "at least one", "none");
+    check_spheres(spheres_);
     for (const Mesh& mesh : meshes_) tree_->add_mesh(mesh);
     tree_->mesh_scenes.resize(meshes_.size(), nullptr);
     for (std::size_t i = 0; i < instances_.size(); ++i) {
@@ -177,6 +199,7 @@ Bvh::Bvh(std::vector<Mesh> meshes, std::vector<Instance> instances)
                  "determinant " + std::to_string(volume) + " in " + name);
         tree_->add_instance(it, static_cast<unsigned>(i));
     }
+    if (!spheres_.empty()) tree_->add_spheres(spheres_, static_cast<unsigned>(instances_.size()));
     rtcCommitScene(tree_->scene);
     tree_->check("instances");
     RTCBounds b;

@@ -12,6 +12,7 @@
 #include "photograd/geometry/affine.h"
 #include "photograd/geometry/mesh.h"
 #include "photograd/geometry/ray_order.h"
+#include "photograd/geometry/sphere.h"
 #include "photograd/geometry/triangle.h"
 
 namespace photograd {
@@ -59,7 +60,10 @@ struct SurfaceSpan {
 
 class Bvh {
 public:
-    Bvh(std::vector<Mesh> meshes, std::vector<Instance> instances);
+    /// Spheres have no instances: all of them answer under one number, `sphere_instance()`, and the
+    /// primitive is the number of the sphere. Functions that speak of triangles do not take theirs.
+    Bvh(std::vector<Mesh> meshes, std::vector<Instance> instances,
+        std::vector<Sphere> spheres = {});
     ~Bvh();
     Bvh(Bvh&&) noexcept;
 
@@ -121,12 +125,17 @@ public:
     }
     [[nodiscard]] std::span<const Mesh> meshes() const { return meshes_; }
     [[nodiscard]] std::span<const Instance> instances() const { return instances_; }
+    [[nodiscard]] std::span<const Sphere> spheres() const { return spheres_; }
+    [[nodiscard]] std::int32_t sphere_instance() const {
+        return static_cast<std::int32_t>(instances_.size());
+    }
     [[nodiscard]] const Box& bounds() const { return bounds_; }
 
 private:
     struct Tree;  // Embree's handles
     std::vector<Mesh> meshes_;
     std::vector<Instance> instances_;
+    std::vector<Sphere> spheres_;
     std::unique_ptr<Tree> tree_;
     Box bounds_;
 };

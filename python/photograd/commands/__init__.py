@@ -17,10 +17,22 @@ from photograd.commands import (
     gradients,
     info,
     render,
+    trace,
 )
 
 
 def register(app: typer.Typer) -> None:
     """Add the core's commands to the command line."""
-    for module in (capture, fit, render, convert, evaluate, gradients, compare, demo, info):
+    for module in (
+        capture,
+        fit,
+        render,
+        trace,
+        convert,
+        evaluate,
+        gradients,
+        compare,
+        demo,
+        info,
+    ):
         module.register(app)

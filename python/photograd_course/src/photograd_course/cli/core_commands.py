@@ -14,6 +14,7 @@ CORE_COMMANDS: tuple[tuple[str, str], ...] = (
     ("capture", "Render photographs of a built-in scene."),
     ("fit", "Recover a scene from photographs."),
     ("render", "Render a recovered scene, for example as a turntable."),
+    ("trace", "Path trace a described scene."),
     ("convert", "Convert a file of Gaussians to another format."),
     ("evaluate", "Compare a recovered scene with held-out photographs."),
     ("gradients", "Draw where the loss wants matter to appear and to vanish."),

@@ -1,0 +1,249 @@
+// Path tracing: scenes of shapes and materials, pictures, derivatives, single paths.
+#include <optional>
+
+#include "camera_args.h"
+#include "model_args.h"
+#include "module.h"
+#include "photograd/render/ambient_occlusion.h"
+#include "photograd/render/path.h"
+
+namespace photograd {
+namespace {
+
+/// vertices (V, 3), faces (F, 3), shading normals (V, 3) or None.
+using MeshArrays = std::tuple<py::array, py::array, std::optional<py::array>>;
+/// (strategy, heuristic, max_depth, roulette_from, seed)
+using Options = std::tuple<int, int, int, int, std::uint64_t>;
+
+std::shared_ptr<PathGeometry> build(const std::vector<MeshArrays>& meshes, const py::array& spheres,
+                                    const py::array& material, const py::array& emission,
+                                    bool has_environment) {
+    std::vector<Mesh> built;
+    std::vector<Instance> instances;
+    std::vector<std::vector<float>> normals;
+    for (const auto& [vertices, faces, shading] : meshes) {
+        ArrayArgs args("PathTracer");
+        const float* v = args.in<float>("vertices", vertices, "V 3");
+        const std::uint32_t* f = args.in<std::uint32_t>("faces", faces, "F 3");
+        const auto V = static_cast<std::size_t>(args.size("V")),
+                   F = static_cast<std::size_t>(args.size("F"));
+        normals.emplace_back();
+        if (shading) {
+            const float* n = args.in<float>("normals", *shading, "V 3");
+            normals.back().assign(n, n + 3 * V);
+        }
+        const int index = static_cast<int>(built.size());
+        built.emplace_back(std::span<const float>(v, 3 * V),
+                           std::span<const std::uint32_t>(f, 3 * F), std::span<const float>(),
+                           index);
+        instances.push_back({index, Affine{}});
+    }
+    ArrayArgs args("PathTracer");
+    const float* s = args.in<float>("spheres", spheres, "K 4");
+    const std::int32_t* m = args.in<std::int32_t>("material", material, "S");
+    const double* e = args.in<double>("emission", emission, "S 3");
+    const auto K = static_cast<std::size_t>(args.size("K")),
+               S = static_cast<std::size_t>(args.size("S"));
+    if (S != built.size() + K)
+        args.range("material", std::to_string(built.size() + K) + ", one a shape",
+                   std::to_string(S));
+    std::vector<Sphere> balls;
+    for (std::size_t i = 0; i < K; ++i)
+        balls.push_back({s[4 * i], s[4 * i + 1], s[4 * i + 2], s[4 * i + 3]});
+    const py::gil_scoped_release release;
+    return std::make_shared<PathGeometry>(
+        Bvh(std::move(built), std::move(instances), std::move(balls)),
+        std::vector<std::int32_t>(m, m + S), std::move(normals), std::span<const double>(e, 3 * S),
+        has_environment);
+}
+
+/// Checked numbers of a scene, and the materials that they describe.
+template <class R>
+struct SceneNumbers {
+    std::vector<Material<R>> drawn, sampling;
+    PathScene<R> scene;
+
+    SceneNumbers(ArrayArgs& args, const PathGeometry& geometry,
+                 const std::vector<std::string>& models, const py::array& parameters,
+                 const std::optional<py::array>& sampling_parameters, const py::array& emission,
+                 const py::array& sky) {
+        for (const std::int32_t m : geometry.material)
+            if (m < 0 || m >= static_cast<std::int32_t>(models.size()))
+                args.range("material", "numbers below " + std::to_string(models.size()),
+                           std::to_string(m));
+        read(args, models, "parameters", parameters, drawn);
+        if (sampling_parameters)
+            read(args, models, "sampling_parameters", *sampling_parameters, sampling);
+        const R* e =
+            args.in<R>("emission", emission, std::to_string(geometry.shape_count()) + " 3");
+        const R* s = args.in<R>("sky", sky, "3 3");
+        scene = {&geometry,
+                 drawn,
+                 sampling_parameters ? sampling : drawn,
+                 e,
+                 {vec3_at(s, 0), vec3_at(s, 1), vec3_at(s, 2)}};
+    }
+
+private:
+    static void read(ArrayArgs& args, const std::vector<std::string>& models, const char* name,
+                     const py::array& parameters, std::vector<Material<R>>& out) {
+        const R* row = args.in<R>(name, parameters, "P");
+        std::int64_t used = 0;
+        for (const std::string& model : models) {
+            // The first reading only counts; the row may end before this model's parameters do.
+            static constexpr R zeros[64] = {};
+            const int count = Material<R>::read(model, zeros).parameter_count();
+            if (used + count > args.size("P"))
+                args.range(name, "the parameters of all materials", "too few");
+            out.push_back(Material<R>::read(model, row + used));
+            used += count;
+        }
+        if (used != args.size("P")) args.range(name, std::to_string(used), "too many");
+    }
+};
+
+PathOptions options_of(const ArrayArgs& args, const Options& given) {
+    const auto [strategy, heuristic, max_depth, roulette_from, seed] = given;
+    if (strategy < 0 || strategy > 2 || heuristic < 0 || heuristic > 1)
+        args.range("options", "a strategy and a heuristic", "others");
+    if (max_depth < 1 || max_depth > 4096)
+        args.range("max_depth", "1 to 4096 segments", std::to_string(max_depth));
+    if (roulette_from < 0) args.range("roulette_from", "at least 0", std::to_string(roulette_from));
+    return {static_cast<Strategy>(strategy), static_cast<Heuristic>(heuristic), max_depth,
+            roulette_from, seed};
+}
+
+void trace(const PathGeometry& geometry, const std::vector<std::string>& models,
+           const py::array& parameters, const std::optional<py::array>& sampling_parameters,
+           const py::array& emission, const py::array& sky, const py::tuple& camera_numbers,
+           const Options& given, std::uint32_t first, std::uint32_t count, py::array radiance,
+           py::array squares) {
+    dispatch_real("trace_paths", "parameters", parameters, [&](auto real) {
+        using R = decltype(real);
+        ArrayArgs args("trace_paths");
+        const SceneNumbers<R> numbers(args, geometry, models, parameters, sampling_parameters,
+                                      emission, sky);
+        const Pinhole camera = pinhole(camera_numbers);
+        const std::string axes =
+            std::to_string(camera.height) + " " + std::to_string(camera.width) + " 3";
+        const PathSums sums{args.out<double>("radiance", radiance, axes),
+                            args.out<double>("squares", squares, axes)};
+        const PathOptions options = options_of(args, given);
+        const py::gil_scoped_release release;
+        trace_paths(numbers.scene, camera, options, {first, count}, sums);
+    });
+}
+
+void trace_backward(const PathGeometry& geometry, const std::vector<std::string>& models,
+                    const py::array& parameters, const py::array& emission, const py::array& sky,
+                    const py::tuple& camera_numbers, const Options& given, std::uint32_t first,
+                    std::uint32_t count, const py::array& d_image, py::array d_parameters,
+                    py::array d_emission, py::array d_sky) {
+    dispatch_real("trace_paths_backward", "parameters", parameters, [&](auto real) {
+        using R = decltype(real);
+        ArrayArgs args("trace_paths_backward");
+        const SceneNumbers<R> numbers(args, geometry, models, parameters, std::nullopt, emission,
+                                      sky);
+        const Pinhole camera = pinhole(camera_numbers);
+        const double* d = args.in<double>(
+            "d_image", d_image,
+            std::to_string(camera.height) + " " + std::to_string(camera.width) + " 3");
+        R* to_parameters = args.out<R>("d_parameters", d_parameters, "P");
+        R* to_emission =
+            args.out<R>("d_emission", d_emission, std::to_string(geometry.shape_count()) + " 3");
+        R* to_sky = args.out<R>("d_sky", d_sky, "3 3");
+        const PathOptions options = options_of(args, given);
+        if (count < 1) args.range("count", "at least 1 sample", "0");
+        const py::gil_scoped_release release;
+        trace_paths_backward(numbers.scene, camera, options, {first, count}, d, to_parameters,
+                             to_emission, to_sky);
+    });
+}
+
+py::list colors(const Vec3<double>& v) {
+    py::list out;
+    for (int c = 0; c < 3; ++c) out.append(v[c]);
+    return out;
+}
+
+/// One path as a list of dictionaries, double precision.
+py::list path(const PathGeometry& geometry, const std::vector<std::string>& models,
+              const py::array& parameters, const py::array& emission, const py::array& sky,
+              const py::tuple& camera_numbers, const Options& given, std::uint32_t pixel,
+              std::uint32_t sample) {
+    ArrayArgs args("trace_path");
+    const SceneNumbers<double> numbers(args, geometry, models, parameters, std::nullopt, emission,
+                                       sky);
+    const Pinhole camera = pinhole(camera_numbers);
+    py::list out;
+    for (const PathVertex<double>& v :
+         trace_path(numbers.scene, camera, options_of(args, given), pixel, sample)) {
+        py::dict row;
+        row["shape"] = v.shape;
+        row["direction"] = colors(v.direction);
+        row["emitted"] = colors(numbers.scene.emitted(v.shape, v.direction));
+        row["emission_weight"] = v.emission_weight;
+        row["pdf"] = v.pdf;
+        row["light_pdf"] = v.light_pdf;
+        row["light_shape"] = v.light.shape;
+        row["light_f"] = colors(v.light.f);
+        row["light_emitted"] = v.light.weight > 0
+                                   ? colors(numbers.scene.emitted(v.light.shape, v.light.direction))
+                                   : colors(Vec3<double>(0));
+        row["light_weight"] = v.light.weight;
+        row["light_cosine"] = std::abs(v.light.wi.z);
+        row["light_chosen_pdf"] = v.light.pdf;
+        row["light_scatter_pdf"] = v.light.scatter_pdf;
+        row["wo"] = colors(v.wo);
+        row["wi"] = colors(v.wi);
+        row["value"] = colors(v.value);
+        row["lobe"] = v.lobe;
+        row["weight"] = v.weight;
+        row["survival"] = v.survival;
+        out.append(row);
+    }
+    return out;
+}
+
+void ambient_occlusion(const PathGeometry& geometry, const py::tuple& camera_numbers, double radius,
+                       std::uint64_t seed, std::uint32_t first, std::uint32_t count,
+                       py::array sums) {
+    ArrayArgs args("ambient_occlusion");
+    const Pinhole camera = pinhole(camera_numbers);
+    double* out = args.out<double>(
+        "sums", sums, std::to_string(camera.height) + " " + std::to_string(camera.width));
+    if (!(radius > 0)) args.range("radius", "above 0 m", std::to_string(radius));
+    const py::gil_scoped_release release;
+    trace_ambient_occlusion<double>(geometry, camera, radius, seed, {first, count}, out);
+}
+
+}  // namespace
+
+void bind_path(py::module_& m) {
+    py::class_<PathGeometry, std::shared_ptr<PathGeometry>>(
+        m, "PathGeometry", "Shapes of a scene: meshes first, then spheres.")
+        .def(py::init(&build), py::arg("meshes"), py::arg("spheres"), py::arg("material"),
+             py::arg("emission"), py::arg("has_environment"),
+             "Meshes as (vertices (V, 3) float32, faces (F, 3) uint32, normals (V, 3) float32 or "
+             "None);\nspheres (K, 4) float32; material (S,) int32 and emission (S, 3) float64 of "
+             "each shape.");
+    m.def("trace_paths", &trace, py::arg("geometry"), py::arg("models"), py::arg("parameters"),
+          py::arg("sampling_parameters"), py::arg("emission"), py::arg("sky"), py::arg("camera"),
+          py::arg("options"), py::arg("first"), py::arg("count"), py::arg("radiance"),
+          py::arg("squares"),
+          "Adds samples to radiance (H, W, 3) and squares (H, W, 3), float64. options: (strategy, "
+          "heuristic, max_depth, roulette_from, seed).");
+    m.def("trace_paths_backward", &trace_backward, py::arg("geometry"), py::arg("models"),
+          py::arg("parameters"), py::arg("emission"), py::arg("sky"), py::arg("camera"),
+          py::arg("options"), py::arg("first"), py::arg("count"), py::arg("d_image"),
+          py::arg("d_parameters"), py::arg("d_emission"), py::arg("d_sky"),
+          "Adds to d_parameters (P,), d_emission (S, 3), d_sky (3, 3) for dL/d(mean radiance).");
+    m.def("trace_path", &path, py::arg("geometry"), py::arg("models"), py::arg("parameters"),
+          py::arg("emission"), py::arg("sky"), py::arg("camera"), py::arg("options"),
+          py::arg("pixel"), py::arg("sample"), "One path, a dictionary a vertex.");
+    m.def("ambient_occlusion", &ambient_occlusion, py::arg("geometry"), py::arg("camera"),
+          py::arg("radius"), py::arg("seed"), py::arg("first"), py::arg("count"), py::arg("sums"),
+          "Adds the free part of each sample to sums (H, W), float64.");
+}
+
+}  // namespace photograd

@@ -1,0 +1,77 @@
+#include "photograd/render/ambient_occlusion.h"
+
+#include <limits>
+
+#include "photograd/core/parallel.h"
+#include "photograd/render/ray_lanes.h"
+#include "photograd/sampling/warp.h"
+
+namespace photograd {
+namespace {
+
+constexpr int width = RayPacket::width;
+
+/// Up to sixteen samples of one pixel: how many of them are free.
+template <class R>
+int free_samples(const PathGeometry& scene, const Pinhole& camera, double radius, RandomKey key,
+                 int count) {
+    RayPacket packet{};
+    Ray<R> rays[width];
+    RandomKey keys[width];
+    for (int k = 0; k < width; ++k) {
+        packet.active[k] = false;
+        if (k >= count) continue;
+        keys[k] = key;
+        keys[k].sample += static_cast<std::uint32_t>(k);
+        rays[k] = camera_ray<R>(camera, keys[k]);
+        set_lane(packet, k, rays[k].origin, rays[k].direction,
+                 std::numeric_limits<float>::infinity());
+    }
+    PacketHits found;
+    scene.bvh.trace(packet, true, found);
+    int open = count;
+    for (int k = 0; k < count; ++k) {
+        packet.active[k] = false;
+        if (found.primitive[k] < 0) continue;
+        const SurfaceHit<R> hit =
+            surface_hit(scene, rays[k], found.instance[k], found.primitive[k], found.t[k]);
+        const SurfaceSide<R> side(hit, -rays[k].direction, false);
+        const Philox4 words = random_block(keys[k], 1);
+        const Vec3<R> w = Frame<R>::from_normal(side.normal)
+                              .to_world(square_to_cosine_hemisphere(
+                                  Vec2<R>(uniform_from<R>(words[0]), uniform_from<R>(words[1]))));
+        set_lane(packet, k, side.start(hit.position, w, scene.offset), w,
+                 static_cast<float>(radius));
+    }
+    bool blocked[width];
+    scene.bvh.occluded(packet, false, blocked);
+    for (int k = 0; k < count; ++k) open -= blocked[k] ? 1 : 0;
+    return open;
+}
+
+}  // namespace
+
+template <Real R>
+void trace_ambient_occlusion(const PathGeometry& scene, const Pinhole& camera, double radius,
+                             std::uint64_t seed, const SampleRange& samples, double* sums) {
+    constexpr std::int64_t chunk_pixels = 64;
+    const std::int64_t pixels = static_cast<std::int64_t>(camera.width) * camera.height;
+    parallel_for((pixels + chunk_pixels - 1) / chunk_pixels, [&](std::int64_t chunk) {
+        const std::int64_t end = std::min((chunk + 1) * chunk_pixels, pixels);
+        for (std::int64_t pixel = chunk * chunk_pixels; pixel < end; ++pixel)
+            for (std::uint32_t first = 0; first < samples.count; first += width) {
+                const RandomKey key{seed, 0, static_cast<std::uint32_t>(pixel),
+                                    samples.first + first};
+                const int count = static_cast<int>(std::min<std::uint32_t>(
+                    static_cast<std::uint32_t>(width), samples.count - first));
+                sums[pixel] += free_samples<R>(scene, camera, radius, key, count);
+            }
+    });
+}
+
+template void trace_ambient_occlusion<float>(const PathGeometry&, const Pinhole&, double,
+                                             std::uint64_t, const SampleRange&, double*);
+template void trace_ambient_occlusion<double>(const PathGeometry&, const Pinhole&, double,
+                                              std::uint64_t, const SampleRange&, double*);
+
+}  // namespace photograd

@@ -1,0 +1,46 @@
+// Path tracing: the light that reaches a camera after any number of bounces, and its derivatives.
+//
+// A pixel is the mean of gather(path) over its samples; path_walk.h samples the paths, path_vertex.h sums them up. Both
+// passes walk the same paths for the same seed. A loss of the picture should be differentiated with paths of another
+// seed than the picture's: where d_image and the derivative share their noise, the mean of their product is not the
+// product of their means.
+//
+// Geometry is held fixed: edges of shadows and silhouettes do not move in this derivative, nor do the directions into
+// which smooth surfaces refract.
+#pragma once
+
+#include "photograd/camera/pinhole.h"
+#include "photograd/render/path_options.h"
+#include "photograd/render/path_vertex.h"
+
+namespace photograd {
+
+/// Samples `first` to `first + count - 1` of each pixel.
+struct SampleRange {
+    std::uint32_t first = 0, count = 16;
+};
+
+/// Sums over samples (H, W, 3), of the radiance and of its square: mean and variance, whatever samples come later. Calls
+/// may be cut anywhere between samples; the bits are the same only for the same cuts, since the tracer may name either
+/// triangle at a common edge, depending on the rays beside.
+struct PathSums {
+    double *radiance, *squares;
+};
+
+template <Real R>
+void trace_paths(const PathScene<R>& scene, const Pinhole& camera, const PathOptions& options,
+                 const SampleRange& samples, const PathSums& sums);
+
+/// Adds derivatives for dL/d(mean radiance) (H, W, 3) of these samples: d_parameters, the parameters of all materials
+/// one after another; d_emission (S, 3); d_sky (3, 3), zenith, horizon and ground.
+template <Real R>
+void trace_paths_backward(const PathScene<R>& scene, const Pinhole& camera,
+                          const PathOptions& options, const SampleRange& samples,
+                          const double* d_image, R* d_parameters, R* d_emission, R* d_sky);
+
+/// One path, for those who want to look at its vertices.
+template <Real R>
+Path<R> trace_path(const PathScene<R>& scene, const Pinhole& camera, const PathOptions& options,
+                   std::uint32_t pixel, std::uint32_t sample);
+
+}  // namespace photograd

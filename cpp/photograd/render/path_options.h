@@ -1,0 +1,33 @@
+// How a path tracer estimates: which directions it tries, how it weighs them, and when it stops.
+#pragma once
+
+#include <cstdint>
+
+namespace photograd {
+
+/// Both ways to find a light, alone and together. `light` asks a light, and counts what a path meets by chance only
+/// where no light can be asked (seen by the camera, or through a smooth surface); `bsdf` counts what it meets, and
+/// asks none; `mis` does both and shares out the weight [Veach1995].
+enum class Strategy : int { light = 0, bsdf = 1, mis = 2 };
+
+/// Weight of a sample of density p that the other strategy would have drawn with density q: p / (p + q), or
+/// p^2 / (p^2 + q^2), which trusts the better one more [Veach1995, Sec. 3.4].
+enum class Heuristic : int { balance = 0, power = 1 };
+
+template <class R>
+R mis_weight(Heuristic heuristic, R p, R q) {
+    if (!(p > R(0))) return R(0);
+    const R r = q / p;  // p^2 would overflow a float long before p does
+    return R(1) / (R(1) + (heuristic == Heuristic::balance ? r : r * r));
+}
+
+struct PathOptions {
+    Strategy strategy = Strategy::mis;
+    Heuristic heuristic = Heuristic::power;
+    int max_depth = 64;  // segments of the longest path; 1 sees lights alone, 2 is direct light
+    int roulette_from =
+        4;  // the first vertex at which a path may end by chance; max_depth: none does
+    std::uint64_t seed = 0;
+};
+
+}  // namespace photograd

@@ -1,0 +1,114 @@
+// A path as a list of vertices, the radiance it carries, and the derivative of that radiance.
+//
+// A path is sampled first (path_walk.h) and summed up afterwards. Vertex k has emission Le_k with a weight w_k, one
+// sample of a light with value f^l_k, weight w^l_k and radiance L^l_k, and one direction in which the path goes on, with
+// value f_k and weight s_k. The radiance that leaves it towards vertex k - 1 is
+//
+//   L_k = w_k Le_k + w^l_k f^l_k L^l_k + s_k f_k L_{k+1}          L_n = 0        [Kajiya1986]
+//
+// All weights hold 1 / pdf, the cosine, the weight of multiple importance sampling and that of roulette. They say where
+// was looked and how often: they are detached, and L_0 is a polynomial in f, Le and L^l. Its derivatives:
+//
+//   dL/dLe_k = d_k w_k     dL/df^l_k = d_k w^l_k L^l_k     dL/dL^l_k = d_k w^l_k f^l_k     dL/df_k = d_k s_k L_{k+1}
+//   d_0 = dL/dL_0,         d_{k+1} = d_k s_k f_k
+//
+// A path that is held as a whole needs no division by f to find out what arrived from ahead (black surfaces have
+// derivatives too), and no subtraction from a total. It is replayed from its random numbers when the derivative is
+// wanted [Vicini2021], so memory is that of one path a thread.
+#pragma once
+
+#include <vector>
+
+#include "photograd/scene/path_scene.h"
+
+namespace photograd {
+
+template <class R>
+struct LightVertex {
+    std::int32_t shape = Emitters::none;  // that emits, or Emitters::environment
+    Vec3<R> direction{R(0)}, wi{R(0)};    // world, shading frame
+    Vec3<R> f{R(0)};
+    R weight = R(0);                   // 0 where something stands in front of it
+    R pdf = R(0), scatter_pdf = R(0);  // of the light's choice; of the BSDF for the same direction
+};
+
+template <class R>
+struct PathVertex {
+    std::int32_t shape = Emitters::environment;
+    Vec3<R> direction{R(0)};  // world, of the ray that arrived here
+    R emission_weight = R(0);
+    R pdf = R(0),
+      light_pdf =
+          R(0);  // of arriving here: by the BSDF before; by choosing this light. 0: by no chance
+    LightVertex<R> light;
+    Vec3<R> wo{R(0)}, wi{R(0)};  // shading frame; wi is where the path goes on
+    Vec3<R> value{R(0)};         // f, or the weight of a smooth surface's lobe
+    int lobe = -1;
+    R weight = R(0);    // 0: the path ends here
+    R survival = R(1);  // probability of roulette, which `weight` is divided by
+};
+
+template <class R>
+using Path = std::vector<PathVertex<R>>;
+
+/// Derivatives by everything that a scene lets change.
+template <Real R>
+struct PathGradient {
+    std::vector<Material<R>> materials;
+    std::vector<Vec3<R>> emission;
+    Sky<R> sky{Vec3<R>(R(0)), Vec3<R>(R(0)), Vec3<R>(R(0))};
+
+    explicit PathGradient(const PathScene<R>& scene)
+        : emission(scene.geometry->shape_count(), Vec3<R>(R(0))) {
+        for (const Material<R>& m : scene.materials) materials.push_back(m.zero());
+    }
+    void add_emitted(std::int32_t shape, const Vec3<R>& direction, const Vec3<R>& d_L) {
+        if (shape < 0)
+            Sky<R>{}.L_backward(direction, d_L, sky);
+        else
+            emission[static_cast<std::size_t>(shape)] += d_L;
+    }
+};
+
+/// L_0. Fills ahead[k] with L_{k+1}, which the derivative needs, unless it is null.
+template <Real R>
+Vec3<R> gather(const PathScene<R>& scene, const Path<R>& path, Vec3<R>* ahead) {
+    Vec3<R> L(R(0));
+    for (std::size_t k = path.size(); k-- > 0;) {
+        const PathVertex<R>& v = path[k];
+        if (ahead) ahead[k] = L;
+        L *= v.value * v.weight;
+        if (v.light.weight > R(0))
+            L += v.light.f * scene.emitted(v.light.shape, v.light.direction) * v.light.weight;
+        if (v.emission_weight > R(0)) L += scene.emitted(v.shape, v.direction) * v.emission_weight;
+    }
+    return L;
+}
+
+/// Adds the derivatives of <d_L, L_0> to d_scene.
+template <Real R>
+void gather_backward(const PathScene<R>& scene, const Path<R>& path, const Vec3<R>* ahead,
+                     Vec3<R> d_L, PathGradient<R>& d_scene) {
+    for (std::size_t k = 0; k < path.size(); ++k) {
+        const PathVertex<R>& v = path[k];
+        if (v.emission_weight > R(0))
+            d_scene.add_emitted(v.shape, v.direction, d_L * v.emission_weight);
+        if (v.shape < 0) return;
+        const auto m =
+            static_cast<std::size_t>(scene.geometry->material[static_cast<std::size_t>(v.shape)]);
+        const Material<R>& material = scene.materials[m];
+        if (v.light.weight > R(0)) {
+            const Vec3<R> d = d_L * v.light.weight;
+            d_scene.add_emitted(v.light.shape, v.light.direction, d * v.light.f);
+            material.value_backward(v.wo, v.light.wi, -1,
+                                    d * scene.emitted(v.light.shape, v.light.direction),
+                                    d_scene.materials[m]);
+        }
+        if (!(v.weight > R(0))) return;
+        material.value_backward(v.wo, v.wi, v.lobe, d_L * ahead[k] * v.weight,
+                                d_scene.materials[m]);
+        d_L *= v.value * v.weight;
+    }
+}
+
+}  // namespace photograd

@@ -1,0 +1,228 @@
+// Sampling paths from the camera, sixteen side by side: the one loop of the picture and of its derivative.
+//
+// Each round finds what the rays hit, weighs the emission met there, asks a light (and casts a shadow ray), and lets
+// the material choose where to go on; roulette [Arvo1990] ends paths that carry little. Everything is decided by
+// `scene.sampling` and by random numbers that are a function of seed, pixel, sample and vertex: vertex k owns dimensions
+// 4 + 8 k to 11 + 8 k (light: piece and point; roulette; direction and lobe), whatever the path has done before.
+#pragma once
+
+#include <algorithm>
+#include <limits>
+
+#include "photograd/render/path_options.h"
+#include "photograd/render/path_vertex.h"
+#include "photograd/render/ray_lanes.h"
+
+namespace photograd {
+
+template <Real R>
+class PathWalk {
+public:
+    static constexpr int width = RayPacket::width;
+
+    /// `stop_when_black` gives up paths whose weight is 0: right for a picture, wrong for a derivative.
+    PathWalk(const PathScene<R>& scene, const PathOptions& options, bool stop_when_black)
+        : scene_(scene), options_(options), stop_when_black_(stop_when_black) {}
+
+    /// Samples the paths of `count` <= 16 camera rays; they are then in path(0), path(1), ...
+    void trace(const Ray<R>* rays, const RandomKey* keys, int count) {
+        for (int k = 0; k < width; ++k) {
+            Lane& lane = lanes_[k];
+            lane.alive = k < count;
+            lane.path.clear();
+            if (!lane.alive) continue;
+            lane.ray = rays[k];
+            lane.previous = rays[k].origin;
+            lane.key = keys[k];
+            lane.beta = Vec3<R>(R(1));
+            lane.pdf = R(0);
+        }
+        for (int depth = 0; depth < options_.max_depth && find_hits(depth); ++depth) {
+            if (depth + 1 == options_.max_depth) break;
+            if (options_.strategy != Strategy::bsdf && !scene_.geometry->emitters.empty())
+                ask_lights(depth);
+            for (Lane& lane : lanes_)
+                if (lane.alive) go_on(lane, depth);
+        }
+    }
+    [[nodiscard]] const Path<R>& path(int k) const { return lanes_[k].path; }
+
+private:
+    struct Lane {
+        bool alive = false, shadow = false;
+        Ray<R> ray;
+        Vec3<R> previous;  // the vertex that the ray comes from; the ray starts beside it
+        RandomKey key;
+        Vec3<R> beta;  // what the path would multiply by ahead, as `sampling` has it
+        R pdf = R(0);  // of the ray's direction; 0 from the camera and from smooth surfaces
+        SurfaceHit<R> hit;
+        SurfaceSide<R> side;
+        Path<R> path;
+    };
+
+    /// Follows the rays; returns whether any met a surface.
+    bool find_hits(int depth) {
+        RayPacket packet{};
+        for (int k = 0; k < width; ++k) {
+            const Lane& lane = lanes_[k];
+            packet.active[k] = false;
+            if (lane.alive)
+                set_lane(packet, k, lane.ray.origin, lane.ray.direction,
+                         std::numeric_limits<float>::infinity());
+        }
+        PacketHits found;
+        scene_.geometry->bvh.trace(packet, depth == 0, found);
+        bool any = false;
+        for (int k = 0; k < width; ++k) {
+            if (!lanes_[k].alive) continue;
+            arrive(lanes_[k], found.instance[k], found.primitive[k], found.t[k]);
+            any = any || lanes_[k].alive;
+        }
+        return any;
+    }
+
+    /// A new vertex: what is there, and how much its emission counts.
+    void arrive(Lane& lane, std::int32_t instance, std::int32_t primitive, float t) {
+        const PathGeometry& geometry = *scene_.geometry;
+        PathVertex<R>& v = lane.path.emplace_back();
+        v.direction = lane.ray.direction;
+        v.pdf = lane.pdf;
+        if (primitive < 0) {
+            v.light_pdf = R(geometry.emitters.environment_pmf()) * scene_.sky.pdf(v.direction);
+            v.emission_weight = emission_weight(v);
+            lane.alive = false;
+            return;
+        }
+        lane.hit = surface_hit(geometry, lane.ray, instance, primitive, t);
+        v.shape = lane.hit.shape;
+        const Material<R>& material = sampling_of(lane);
+        lane.side = SurfaceSide<R>(lane.hit, -v.direction, material.transmits());
+        v.wo = lane.side.wo;
+        const R cosine = -dot(lane.hit.outside, v.direction);
+        if (!(cosine > R(0))) return;  // the back of a light is dark
+        const Vec3<R> way = lane.hit.position - lane.previous;
+        v.light_pdf =
+            R(geometry.emitters.density(v.shape, lane.hit.primitive)) * dot(way, way) / cosine;
+        v.emission_weight = emission_weight(v);
+    }
+    R emission_weight(const PathVertex<R>& v) const {
+        if (v.pdf == R(0) || v.light_pdf == R(0) || options_.strategy == Strategy::bsdf)
+            return R(1);
+        if (options_.strategy == Strategy::light) return R(0);
+        return mis_weight(options_.heuristic, v.pdf, v.light_pdf);
+    }
+
+    void ask_lights(int depth) {
+        RayPacket packet{};
+        for (int k = 0; k < width; ++k) {
+            Lane& lane = lanes_[k];
+            packet.active[k] = false;
+            lane.shadow = lane.alive && !sampling_of(lane).is_delta() && choose_light(lane, depth);
+            if (!lane.shadow) continue;
+            const Vec3<R> start = lane.side.start(
+                lane.hit.position, lane.path.back().light.direction, scene_.geometry->offset);
+            if (lane.path.back().light.shape < 0)
+                set_lane(packet, k, start, lane.path.back().light.direction,
+                         std::numeric_limits<float>::infinity());
+            else
+                set_lane(packet, k, start, light_end_[k] - start, 1.0f);
+        }
+        bool blocked[width];
+        scene_.geometry->bvh.occluded(packet, false, blocked);
+        for (int k = 0; k < width; ++k)
+            if (lanes_[k].shadow && blocked[k]) lanes_[k].path.back().light.weight = R(0);
+    }
+
+    /// Draws a point of a light and its weight, shadow aside; returns whether it can count at all.
+    bool choose_light(Lane& lane, int depth) {
+        const PathGeometry& geometry = *scene_.geometry;
+        const Philox4 words = random_block(lane.key, 1 + 2 * static_cast<std::uint32_t>(depth));
+        const Vec2<R> u2(uniform_from<R>(words[1]), uniform_from<R>(words[2]));
+        const int piece = geometry.emitters.choose(uniform_from<double>(words[0]));
+        LightVertex<R>& light = lane.path.back().light;
+        if (piece == Emitters::environment) {
+            light.shape = piece;
+            light.direction = scene_.sky.sample(u2);
+            light.pdf = R(geometry.emitters.environment_pmf()) * scene_.sky.pdf(light.direction);
+        } else {
+            const EmitterPiece& it = geometry.emitters.pieces()[static_cast<std::size_t>(piece)];
+            const EmitterPoint<R> point = geometry.emitters.point(geometry.bvh, piece, u2);
+            const Vec3<R> way = point.position - lane.hit.position;
+            const R squared = dot(way, way);
+            if (!(squared > R(0))) return false;
+            light.shape = it.shape;
+            light.direction = way * (R(1) / std::sqrt(squared));
+            const R cosine = -dot(point.normal, light.direction);
+            if (!(cosine > R(0))) return false;
+            light.pdf = R(it.pmf / it.area) * squared / cosine;
+            light_end_[&lane - lanes_] = point.position + point.normal * R(geometry.offset);
+        }
+        return weigh_light(lane, light);
+    }
+    bool weigh_light(const Lane& lane, LightVertex<R>& light) const {
+        light.wi = lane.side.frame.to_local(light.direction);
+        if (!lane.side.agrees(light.direction, light.wi) || !(light.pdf > R(0))) return false;
+        const Vec3<R>& wo = lane.path.back().wo;
+        light.f = drawn_as(lane).f(wo, light.wi);
+        if (stop_when_black_ && is_black(light.f)) return false;
+        light.scatter_pdf = sampling_of(lane).pdf(wo, light.wi);
+        const R share = options_.strategy == Strategy::light
+                            ? R(1)
+                            : mis_weight(options_.heuristic, light.pdf, light.scatter_pdf);
+        light.weight = share * std::abs(light.wi.z) / light.pdf;
+        return true;
+    }
+
+    /// Lets the material choose a direction; ends the path where it has none, or by roulette.
+    void go_on(Lane& lane, int depth) {
+        lane.alive = false;
+        PathVertex<R>& v = lane.path.back();
+        const auto vertex = static_cast<std::uint32_t>(depth);
+        const Philox4 words = random_block(lane.key, 2 + 2 * vertex);
+        const ScatterSample<R> next = sampling_of(lane).sample(
+            v.wo, Vec2<R>(uniform_from<R>(words[0]), uniform_from<R>(words[1])),
+            uniform_from<R>(words[2]));
+        if (!(next.pdf > R(0))) return;
+        const Vec3<R> direction = lane.side.frame.to_world(next.wi);
+        if (!lane.side.agrees(direction, next.wi)) return;
+        v.wi = next.wi;
+        v.lobe = next.lobe;
+        v.value = scene_.drawn_as_sampled() ? next.value : drawn_as(lane).value(v.wo, v.wi, v.lobe);
+        const R weight = (next.lobe < 0 ? std::abs(next.wi.z) : R(1)) / next.pdf;
+        lane.beta *= next.value * weight;
+        if (stop_when_black_ && is_black(lane.beta)) return;
+        if (depth >= options_.roulette_from) {
+            const R largest = std::max({lane.beta.x, lane.beta.y, lane.beta.z});
+            v.survival = std::clamp(largest, R(0.05), R(0.95));
+            const Philox4 own = random_block(lane.key, 1 + 2 * vertex);
+            if (uniform_from<R>(own[3]) >= v.survival) return;
+            lane.beta *= R(1) / v.survival;
+        }
+        v.weight = weight / v.survival;
+        lane.pdf = next.lobe < 0 ? next.pdf : R(0);
+        lane.previous = lane.hit.position;
+        lane.ray = {lane.side.start(lane.hit.position, direction, scene_.geometry->offset),
+                    direction};
+        lane.alive = true;
+    }
+
+    static bool is_black(const Vec3<R>& v) { return v.x == R(0) && v.y == R(0) && v.z == R(0); }
+    std::size_t material_of(const Lane& lane) const {
+        return static_cast<std::size_t>(
+            scene_.geometry->material[static_cast<std::size_t>(lane.hit.shape)]);
+    }
+    const Material<R>& sampling_of(const Lane& lane) const {
+        return scene_.sampling[material_of(lane)];
+    }
+    const Material<R>& drawn_as(const Lane& lane) const {
+        return scene_.materials[material_of(lane)];
+    }
+
+    const PathScene<R>& scene_;
+    PathOptions options_;
+    bool stop_when_black_;
+    Lane lanes_[width];
+    Vec3<R> light_end_[width];
+};
+
+}  // namespace photograd

@@ -1,0 +1,127 @@
+// What a path tracer walks through: shapes with a material each, shapes that emit, and what lies behind them.
+//
+// A shape is a mesh or a sphere; meshes come first, and a mesh's shape number is that of its instance. Geometry is
+// built once; materials, emission and environment are numbers that may change between renderings.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include "photograd/core/frame.h"
+#include "photograd/light/sky.h"
+#include "photograd/scene/emitters.h"
+#include "photograd/scene/material.h"
+
+namespace photograd {
+
+struct PathGeometry {
+    Bvh bvh;
+    std::vector<std::int32_t> material;       // of each shape
+    std::vector<std::vector<float>> normals;  // of each mesh: (V, 3) shading normals, or none
+    Emitters emitters;
+    double offset;  // by which rays start away from a surface, metres
+
+    PathGeometry(Bvh hierarchy, std::vector<std::int32_t> materials,
+                 std::vector<std::vector<float>> shading, std::span<const double> emission,
+                 bool has_environment)
+        : bvh(std::move(hierarchy)),
+          material(std::move(materials)),
+          normals(std::move(shading)),
+          emitters(bvh, emission, has_environment) {
+        // The tracer calculates in float: its error is a few 6e-8 of the largest coordinate.
+        double largest = 0;
+        for (int k = 0; k < 3; ++k)
+            largest = std::max({largest, std::abs(double(bvh.bounds().lo[k])),
+                                std::abs(double(bvh.bounds().hi[k]))});
+        offset = 1e-5 * largest;
+    }
+    [[nodiscard]] std::size_t shape_count() const { return material.size(); }
+};
+
+/// `sampling` decides where paths go, `materials` how bright what they find is. They are the same but for proofs:
+/// a finite difference of `materials` alone is that of the detached estimate, whose derivative `gather_backward` gives.
+template <Real R>
+struct PathScene {
+    const PathGeometry* geometry;
+    std::span<const Material<R>> materials, sampling;
+    const R* emission;  // (S, 3)
+    Sky<R> sky;
+
+    [[nodiscard]] Vec3<R> emitted(std::int32_t shape, const Vec3<R>& direction) const {
+        if (shape < 0) return sky.L(direction);
+        const R* L = emission + 3 * static_cast<std::size_t>(shape);
+        return {L[0], L[1], L[2]};
+    }
+    [[nodiscard]] bool drawn_as_sampled() const { return materials.data() == sampling.data(); }
+};
+
+/// Where a ray met a shape. `outside` is the unit normal of the triangle's winding, or out of the sphere; `shading` is
+/// the interpolated one, on the same side.
+template <class R>
+struct SurfaceHit {
+    std::int32_t shape, primitive;
+    Vec3<R> position, outside, shading;
+};
+
+template <class R>
+SurfaceHit<R> surface_hit(const PathGeometry& scene, const Ray<R>& ray, std::int32_t instance,
+                          std::int32_t primitive, float found_t) {
+    if (instance == scene.bvh.sphere_instance()) {
+        const Sphere& sphere = scene.bvh.spheres()[static_cast<std::size_t>(primitive)];
+        const SpherePoint<R> p = sphere_point(ray, sphere, R(found_t));
+        return {instance + primitive, primitive, p.position, p.normal, p.normal};
+    }
+    const TrianglePoint<R> p = scene.bvh.surface_point(ray, instance, primitive);
+    SurfaceHit<R> hit{instance, primitive, p.position, p.normal, p.normal};
+    const std::vector<float>& normals = scene.normals[static_cast<std::size_t>(instance)];
+    if (normals.empty()) return hit;
+    const std::uint32_t* corner =
+        scene.bvh.mesh_of(instance).corners(static_cast<std::uint32_t>(primitive));
+    const R weight[3] = {R(1) - p.u - p.v, p.u, p.v};
+    Vec3<R> sum(R(0));
+    for (int k = 0; k < 3; ++k) {
+        const float* n = normals.data() + 3 * static_cast<std::size_t>(corner[k]);
+        sum += weight[k] * Vec3<R>(R(n[0]), R(n[1]), R(n[2]));
+    }
+    const R size = length(sum);
+    if (!(size > R(1e-3))) return hit;  // normals that cancel say nothing
+    hit.shading = sum * ((dot(sum, p.normal) < R(0) ? R(-1) : R(1)) / size);
+    return hit;
+}
+
+/// The side of a surface that a path sees: shading frame, and the geometric normal that keeps it honest.
+///
+/// Opaque surfaces are turned towards the viewer. Interpolated or bent normals disagree with the surface near its
+/// silhouette: a viewer in front of it may stand behind the shading normal, and a direction above one of them lie
+/// below the other. The first case falls back to the geometric normal (no black seams); a direction of the second kind
+/// is refused by `agrees` (no light through closed surfaces). What remains is f cos over a part of the hemisphere of
+/// one unit normal, so no more light leaves than the model returns.
+template <class R>
+struct SurfaceSide {
+    Vec3<R> normal;  // geometric
+    Frame<R> frame;
+    Vec3<R> wo;  // in the frame
+
+    SurfaceSide() = default;
+    SurfaceSide(const SurfaceHit<R>& hit, const Vec3<R>& viewer, bool has_inside) {
+        const bool turn = !has_inside && dot(hit.outside, viewer) < R(0);
+        normal = turn ? -hit.outside : hit.outside;
+        Vec3<R> shading = turn ? -hit.shading : hit.shading;
+        if (!(dot(shading, viewer) * dot(normal, viewer) > R(0))) shading = normal;
+        frame = Frame<R>::from_normal(shading);
+        wo = frame.to_local(viewer);
+    }
+    /// Whether a direction lies on the same side of the surface as of the shading normal.
+    [[nodiscard]] bool agrees(const Vec3<R>& world, const Vec3<R>& local) const {
+        return dot(normal, world) * local.z > R(0);
+    }
+    /// A start for rays along `direction` that does not meet the surface again.
+    [[nodiscard]] Vec3<R> start(const Vec3<R>& position, const Vec3<R>& direction,
+                                double offset) const {
+        return position + normal * R(dot(normal, direction) > R(0) ? offset : -offset);
+    }
+};
+
+}  // namespace photograd

@@ -1,0 +1,187 @@
+"""`photograd trace`: a picture of a described scene, by path tracing."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+import time
+import warnings
+from dataclasses import asdict
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+import typer
+from photograd_course.cli import (
+    Column,
+    DebugOption,
+    JsonOption,
+    Progress,
+    SeedOption,
+    ThreadsOption,
+    emit,
+    note,
+)
+from photograd_course.color import srgb_encode
+
+from photograd.commands.shared import StopRequest, stop_on_signals, use_threads
+from photograd.data.image_write import write_exr, write_png
+from photograd.errors import IoError, RangeError, message
+from photograd.transport.accumulation import Accumulation, load_accumulation
+from photograd.transport.builtin import BUILTIN, builtin_scene
+from photograd.transport.scene import Scene
+from photograd.transport.scene_file import read_scene
+from photograd.transport.tracer import HEURISTICS, STRATEGIES, PathOptions, PathTracer
+
+PASS_SPP = 8
+"""Samples between two looks at the clock; a resumed picture is cut at the same places."""
+SAVE_SECONDS = 10.0
+INTEGRATORS = ("path", "direct", "occlusion")
+
+
+SceneArgument = Annotated[
+    str,
+    typer.Argument(
+        help=f"A scene file (.toml), or a built-in scene: {', '.join(BUILTIN)}.", metavar="SCENE"
+    ),
+]
+OutOption = Annotated[Path, typer.Option("--out", help="The picture: .exr, or .png alone.")]
+SppOption = Annotated[int, typer.Option("--spp", min=1, help="Samples a pixel.")]
+SizeOption = Annotated[
+    int, typer.Option("--size", min=1, help="Pixels along an edge of a built-in scene.")
+]
+IntegratorOption = Annotated[
+    str, typer.Option("--integrator", help=f"What is estimated: {', '.join(INTEGRATORS)}.")
+]
+StrategyOption = Annotated[
+    str, typer.Option("--strategy", help=f"How lights are found: {', '.join(STRATEGIES)}.")
+]
+HeuristicOption = Annotated[
+    str, typer.Option("--heuristic", help=f"How mis weighs: {', '.join(HEURISTICS)}.")
+]
+DepthOption = Annotated[
+    int, typer.Option("--max-depth", min=1, help="Segments of the longest path.")
+]
+RadiusOption = Annotated[
+    float, typer.Option("--radius", help="Metres within which a surface occludes.")
+]
+ResumeOption = Annotated[
+    bool, typer.Option("--resume", help="Add samples to those of an earlier run.")
+]
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command."""
+    app.command("trace")(trace)
+
+
+def trace(
+    scene: SceneArgument,
+    out: OutOption = Path("image.exr"),
+    spp: SppOption = 64,
+    size: SizeOption = 256,
+    integrator: IntegratorOption = "path",
+    strategy: StrategyOption = "mis",
+    heuristic: HeuristicOption = "power",
+    max_depth: DepthOption = 64,
+    radius: RadiusOption = math.inf,
+    resume: ResumeOption = False,
+    seed: SeedOption = 0,
+    threads: ThreadsOption = 0,
+    as_json: JsonOption = False,
+    debug: DebugOption = False,  # noqa: ARG001  read by the command line's frame
+) -> None:
+    """Path trace a scene.
+
+    Writes the picture as linear EXR, a PNG preview beside it every ten seconds, and OUT.sums.npz,
+    from which --resume goes on: after Ctrl-C, or for more samples.
+
+    Example: photograd trace cornell-box --spp 256 --out cornell.exr
+    """
+    use_threads(threads)
+    if integrator not in INTEGRATORS:
+        raise RangeError(message("trace", "--integrator", INTEGRATORS, integrator))
+    if out.suffix.lower() not in (".exr", ".png"):
+        raise IoError(message("trace", "--out", "a name that ends in .exr or .png", out))
+    options = PathOptions(strategy, heuristic, 2 if integrator == "direct" else max_depth)
+    described, fingerprint = _load(scene, size)
+    key = {
+        "scene": fingerprint, "seed": seed, "integrator": integrator, "radius": repr(radius),
+        **asdict(options),
+    }  # fmt: skip
+    sums_path = out.with_suffix(".sums.npz")
+    if resume:
+        sums = load_accumulation(sums_path, key)
+        note(f"resumed at {sums.count} of {spp} samples")
+    else:
+        sums = Accumulation.empty(described.camera.height, described.camera.width)
+    tracer = PathTracer(described)
+
+    def add(count: int) -> None:
+        if integrator == "occlusion":
+            tracer.add_occlusion(sums, count, seed=seed, radius=radius)
+        else:
+            tracer.add_samples(sums, count, seed=seed, options=options)
+
+    def save() -> None:
+        sums.save(sums_path, key)
+        write_pictures(sums, out)
+
+    with stop_on_signals() as stopping:
+        seconds = _run(add, save, sums, spp, stopping)
+    _report(sums, out, spp, seconds, as_json=as_json)
+    if sums.count < spp:
+        raise typer.Exit(stopping.exit_code or 1)
+
+
+def _report(sums: Accumulation, out: Path, spp: int, seconds: float, *, as_json: bool) -> None:
+    """What was made, how noisy it is, and how to go on."""
+    result: dict[str, Any] = {"out": out, "spp": sums.count, "seconds": round(seconds, 3)}
+    if sums.count > 1:
+        result["noise"] = f"{100 * sums.noise:.2f} %"
+    emit(result, as_json=as_json, title="trace")
+    if sums.count < spp:
+        note(f"stopped at {sums.count} of {spp} samples; continue with --resume")
+
+
+def write_pictures(sums: Accumulation, out: Path) -> None:
+    """The mean as EXR, if that is what `out` is, and display-encoded as PNG beside it."""
+    mean = sums.mean
+    if out.suffix.lower() == ".exr":
+        write_exr(out, mean.astype(np.float32))
+    write_png(out.with_suffix(".png"), srgb_encode(np.clip(mean, 0.0, 1.0)).astype(np.float32))
+
+
+def _run(add: Any, save: Any, sums: Accumulation, spp: int, stopping: StopRequest) -> float:
+    """Adds passes until there are `spp` samples or a signal arrives; seconds that took."""
+    began = saved = time.monotonic()
+    columns = [Column("noise", lambda value: f"{100 * value:.1f} %")]
+    start = min(sums.count, spp)
+    with Progress("trace", spp, columns, start=start) as bar:
+        while sums.count < spp and not stopping():
+            add(min(PASS_SPP - sums.count % PASS_SPP, spp - sums.count))
+            bar.update(sums.count, noise=sums.noise if sums.count > 1 else float("nan"))
+            if time.monotonic() - saved > SAVE_SECONDS:
+                save()
+                saved = time.monotonic()
+    seconds = time.monotonic() - began
+    if sums.count:
+        save()
+    return seconds
+
+
+def _load(name: str, size: int) -> tuple[Scene, str]:
+    """The scene, and a text that changes with it."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        if name in BUILTIN:
+            loaded = builtin_scene(name, size), f"{name} {size}"
+        elif not name.lower().endswith(".toml") and not Path(name).exists():
+            loaded = builtin_scene(name, size), ""  # says what the names are
+        else:
+            path = Path(name)
+            scene = read_scene(path)
+            loaded = scene, hashlib.sha256(path.read_bytes()).hexdigest()
+    for warning in caught:
+        note(f"{warning.message}")
+    return loaded

@@ -1,0 +1,127 @@
+"""Sums of samples: a picture that more samples can be added to, and how sure it is."""
+
+from __future__ import annotations
+
+import io
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from photograd_course.atomic_io import atomic_write
+
+from photograd.errors import Error, IoError, RangeError, message
+
+Array = npt.NDArray[Any]
+VERSION = 1
+
+
+@dataclass(eq=False)
+class Accumulation:
+    """Samples of every pixel, summed up.
+
+    Attributes:
+        radiance: (H, W, 3) float64, sum over samples.
+        squares: (H, W, 3) float64, sum over samples of the squared radiance.
+        count: samples of each pixel.
+    """
+
+    radiance: Array
+    squares: Array
+    count: int = 0
+
+    @classmethod
+    def empty(cls, height: int, width: int) -> Accumulation:
+        """No samples yet."""
+        return cls(np.zeros((height, width, 3)), np.zeros((height, width, 3)))
+
+    @property
+    def mean(self) -> Array:
+        """The picture, (H, W, 3) linear radiance.
+
+        Raises:
+            RangeError: no samples.
+        """
+        if self.count < 1:
+            raise RangeError(message("Accumulation.mean", "count", "at least 1 sample", 0))
+        mean: Array = self.radiance / self.count
+        return mean
+
+    @property
+    def standard_error(self) -> Array:
+        """(H, W, 3) estimated standard deviation of `mean`.
+
+        Raises:
+            RangeError: fewer than two samples: one says nothing about its spread.
+        """
+        if self.count < 2:
+            expected = "at least 2 samples"
+            raise RangeError(message("standard_error", "count", expected, self.count))
+        variance = self.squares / self.count - self.mean**2
+        error: Array = np.sqrt(np.maximum(variance, 0.0) / (self.count - 1))
+        return error
+
+    @property
+    def noise(self) -> float:
+        """The standard error's root mean square as a part of the mean radiance; 0 if black."""
+        level = float(self.mean.mean())
+        return float(np.sqrt(np.square(self.standard_error).mean())) / level if level > 0 else 0.0
+
+    def check_finite(self, function: str) -> None:
+        """Raise Error that names the first pixel with a sum that is not finite."""
+        if not np.isfinite(self.radiance).all():
+            row, column = np.argwhere(~np.isfinite(self.radiance))[0][:2]
+            got = f"a value that is not, first in pixel ({column}, {row})"
+            raise Error(message(function, "radiance", "finite values", got))
+
+    def save(self, path: Path, key: dict[str, Any]) -> None:
+        """Write the sums and `key`, which says what they belong to; the file is replaced at once.
+
+        Raises:
+            IoError: the file cannot be written.
+        """
+        meta = json.dumps({"version": VERSION, "count": self.count, "key": key}, sort_keys=True)
+        buffer = io.BytesIO()
+        np.savez(buffer, radiance=self.radiance, squares=self.squares, meta=np.array(meta))
+        atomic_write(path, buffer.getvalue())
+
+
+def load_accumulation(path: Path, key: dict[str, Any]) -> Accumulation:
+    """The sums that `Accumulation.save` wrote for the same key.
+
+    Raises:
+        IoError: missing or damaged, or of another scene, seed or options.
+    """
+    try:
+        with path.open("rb") as stream, np.load(stream, allow_pickle=False) as archive:
+            radiance, squares = archive["radiance"], archive["squares"]
+            meta = json.loads(str(archive["meta"]))
+        count, found, version = int(meta["count"]), meta["key"], meta["version"]
+    except FileNotFoundError as failure:
+        expected = "sums of an interrupted rendering"
+        raise IoError(message("load_accumulation", "path", expected, f"no {path}")) from failure
+    except Exception as failure:  # whatever numpy, zipfile and json say of foreign bytes
+        expected = "sums of an interrupted rendering"
+        raise IoError(message("load_accumulation", f"{path}", expected, failure)) from failure
+    if version != VERSION or found != json.loads(json.dumps(key)):
+        differing = (
+            sorted(
+                name
+                for name in {*found, *key}
+                if found.get(name) != json.loads(json.dumps(key)).get(name)
+            )
+            if isinstance(found, dict)
+            else ["key"]
+        )
+        raise IoError(
+            message("load_accumulation", f"{path}", "sums of this very rendering",
+                    f"others: {', '.join(differing) or 'version'} differ", "leave --resume away")
+        )  # fmt: skip
+    shape = radiance.shape
+    sound = radiance.ndim == 3 and shape[2] == 3 and squares.shape == shape and count >= 0
+    if not sound or radiance.dtype != np.float64 or squares.dtype != np.float64:
+        got = f"shapes {shape} and {squares.shape}"
+        raise IoError(message("load_accumulation", f"{path}", "two (H, W, 3) float64 arrays", got))
+    return Accumulation(radiance, squares, count)

@@ -1,0 +1,252 @@
+"""What a scene for path tracing is: shapes with a material each, what shines, and a camera.
+
+World as everywhere: right-handed, +Y up, metres; radiance and reflectances are linear Rec. 709.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from photograd_course.suggest import choose_from
+
+from photograd import bsdf, delta_bsdf
+from photograd.data.camera import Camera
+from photograd.errors import DtypeError, RangeError, SceneError, ShapeError, message
+from photograd.mesh import drop_degenerate
+
+Array = npt.NDArray[Any]
+MODELS: dict[str, bsdf.BsdfModel | delta_bsdf.DeltaModel] = {
+    **bsdf.registry(),
+    **delta_bsdf.registry(),
+}
+"""All reflectance models, rough and smooth, by name."""
+
+
+@dataclass(frozen=True)
+class Material:
+    """A reflectance model and its parameters.
+
+    Attributes:
+        model: a name of `MODELS`.
+        values: {parameter: number or (3,)}, all of them.
+
+    Raises:
+        SceneError: no such model.
+        RangeError, ShapeError: parameters missing, unknown, not finite or of another shape.
+    """
+
+    model: str
+    values: Mapping[str, Any]
+
+    def __post_init__(self) -> None:
+        if self.model not in MODELS:
+            known = choose_from(self.model, MODELS)
+            raise SceneError(message("Material", "model", "a reflectance model", self.model, known))
+        self.row()
+
+    @property
+    def parameters(self) -> tuple[bsdf.Parameter, ...]:
+        """Descriptions of the parameters, in the order in which the core packs them."""
+        return MODELS[self.model].parameters
+
+    def row(self) -> Array:
+        """All parameters as one row of numbers (P,), float64."""
+        packed: Array = bsdf.pack_rows(self.model, self.parameters, self.values, np.float64)[0]
+        return packed
+
+
+@dataclass(frozen=True, eq=False)
+class MeshShape:
+    """A triangle mesh in the world.
+
+    Triangles without area, or with corners that are not finite, are dropped with a warning that
+    counts them.
+
+    Attributes:
+        name: unique in its scene.
+        vertices: (V, 3) floating point, metres; kept as float32.
+        faces: (F, 3) integers, counter-clockwise seen from the side that emits.
+        material: name of one of the scene's materials.
+        emission: (3,) radiance of the front; 0 for all that does not shine.
+        normals: (V, 3) shading normals of any length, or None for flat triangles.
+
+    Raises:
+        DtypeError, ShapeError: arrays of other types or shapes.
+        RangeError: vertex numbers out of range, or negative emission.
+        SceneError: no triangle is left; for a shape that shines, a light without area.
+    """
+
+    name: str
+    vertices: Array
+    faces: Array
+    material: str
+    emission: Array = field(default_factory=lambda: np.zeros(3))
+    normals: Array | None = None
+
+    def __post_init__(self) -> None:
+        vertices = _float_rows(self.name, "vertices", self.vertices)
+        faces = np.asarray(self.faces)
+        if faces.dtype.kind not in "iu":
+            raise DtypeError(message("MeshShape", f"{self.name}.faces", "integers", faces.dtype))
+        if faces.ndim != 2 or faces.shape[1] != 3:
+            expected = "shape (F, 3)"
+            raise ShapeError(message("MeshShape", f"{self.name}.faces", expected, faces.shape))
+        if faces.size and not (int(faces.min()) >= 0 and int(faces.max()) < len(vertices)):
+            expected = f"vertex numbers 0 to {len(vertices) - 1}"
+            got = f"{int(faces.min())} to {int(faces.max())}"
+            raise RangeError(message("MeshShape", f"{self.name}.faces", expected, got))
+        emission = _color(self.name, "emission", self.emission)
+        vertices, faces = _usable(self.name, vertices, faces)
+        if not len(faces):
+            shines = bool(emission.any())
+            expected = "a light with an area" if shines else "a triangle with an area"
+            raise SceneError(message("MeshShape", f"{self.name}.faces", expected, "none"))
+        object.__setattr__(self, "vertices", vertices)
+        object.__setattr__(self, "faces", np.ascontiguousarray(faces, np.uint32))
+        object.__setattr__(self, "emission", emission)
+        if self.normals is not None:
+            normals = _float_rows(self.name, "normals", self.normals)
+            if normals.shape != vertices.shape or not np.isfinite(normals).all():
+                expected = f"finite numbers, shape {vertices.shape}"
+                wrong = f"shape {normals.shape}"
+                raise ShapeError(message("MeshShape", f"{self.name}.normals", expected, wrong))
+            object.__setattr__(self, "normals", normals)
+
+
+@dataclass(frozen=True, eq=False)
+class SphereShape:
+    """A perfect sphere; its outside emits.
+
+    Attributes:
+        name: unique in its scene.
+        center: (3,) metres.
+        radius: metres, above 0.
+        material: name of one of the scene's materials.
+        emission: (3,) radiance.
+
+    Raises:
+        RangeError, ShapeError: numbers that are not finite, a radius of 0, negative emission.
+    """
+
+    name: str
+    center: Array
+    radius: float
+    material: str
+    emission: Array = field(default_factory=lambda: np.zeros(3))
+
+    def __post_init__(self) -> None:
+        center = np.asarray(self.center, np.float64)
+        if center.shape != (3,) or not np.isfinite(center).all():
+            expected = "three finite numbers"
+            raise ShapeError(message("SphereShape", f"{self.name}.center", expected, self.center))
+        emission = _color(self.name, "emission", self.emission)
+        if not (np.isfinite(self.radius) and np.float32(self.radius) > 0):
+            expected = "above 0 m (a light needs an area)" if emission.any() else "above 0 m"
+            raise RangeError(message("SphereShape", f"{self.name}.radius", expected, self.radius))
+        object.__setattr__(self, "center", center)
+        object.__setattr__(self, "emission", emission)
+
+
+Shape = MeshShape | SphereShape
+
+
+@dataclass(frozen=True, eq=False)
+class Environment:
+    """The radiance of a dome around everything, by height alone; three equal colours are constant.
+
+    Attributes:
+        zenith, horizon, ground: (3,) radiance from straight above, the horizon, straight below.
+
+    Raises:
+        RangeError: negative or not finite.
+    """
+
+    zenith: Array
+    horizon: Array
+    ground: Array
+
+    def __post_init__(self) -> None:
+        for name in ("zenith", "horizon", "ground"):
+            object.__setattr__(self, name, _color("environment", name, getattr(self, name)))
+
+    @classmethod
+    def constant(cls, radiance: Any) -> Environment:
+        """The same radiance, a number or (3,), from everywhere."""
+        color = np.broadcast_to(np.asarray(radiance, np.float64), (3,))
+        return cls(color, color, color)
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """All that a path tracer needs.
+
+    Attributes:
+        name: for titles and messages.
+        shapes: what there is; meshes and spheres in any order.
+        materials: by the names that shapes use.
+        camera: where the picture is taken from.
+        environment: what lies behind everything; None is black.
+
+    Raises:
+        SceneError: no shape, two of one name, or a material that does not exist.
+    """
+
+    name: str
+    shapes: tuple[Shape, ...]
+    materials: Mapping[str, Material]
+    camera: Camera
+    environment: Environment | None = None
+
+    def __post_init__(self) -> None:
+        if not self.shapes:
+            raise SceneError(message("Scene", "shapes", "at least one", "none"))
+        names = [shape.name for shape in self.shapes]
+        for shape in self.shapes:
+            if names.count(shape.name) > 1:
+                got = f"two of the name '{shape.name}'"
+                raise SceneError(message("Scene", "shapes", "names of their own", got))
+            if shape.material not in self.materials:
+                known = choose_from(shape.material, self.materials)
+                argument = f"{shape.name}.material"
+                expected = "one of the scene's materials"
+                raise SceneError(message("Scene", argument, expected, shape.material, known))
+
+
+def _usable(name: str, vertices: Array, faces: Array) -> tuple[Array, Array]:
+    """Vertices that are all finite, and the triangles that can be hit; warns of what is dropped."""
+    finite = np.asarray(np.isfinite(vertices).all(axis=1))
+    sound = faces[finite[faces].all(axis=1)] if len(faces) else faces
+    vertices = np.where(finite[:, None], vertices, np.float32(0))
+    kept = drop_degenerate(vertices, sound) if len(sound) else sound
+    if len(kept) < len(faces):
+        broken, flat = len(faces) - len(sound), len(sound) - len(kept)
+        parts = [f"{broken} with corners that are not finite"] * (broken > 0)
+        parts += [f"{flat} without area"] * (flat > 0)
+        text = f"{name}: dropped {' and '.join(parts)} of {len(faces)} triangles"
+        warnings.warn(text, UserWarning, stacklevel=4)
+    return np.ascontiguousarray(vertices), kept
+
+
+def _float_rows(name: str, argument: str, value: Array) -> Array:
+    array = np.asarray(value)
+    if array.dtype.kind != "f":
+        raise DtypeError(
+            message("MeshShape", f"{name}.{argument}", "floating point numbers", array.dtype)
+        )
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise ShapeError(message("MeshShape", f"{name}.{argument}", "shape (V, 3)", array.shape))
+    with np.errstate(over="ignore"):
+        return np.array(array, np.float32)
+
+
+def _color(name: str, argument: str, value: Any) -> Array:
+    color = np.array(value, np.float64)
+    if color.shape != (3,) or not np.isfinite(color).all() or bool((color < 0).any()):
+        expected = "three finite numbers of at least 0"
+        raise RangeError(message("Scene", f"{name}.{argument}", expected, np.asarray(value)))
+    return color

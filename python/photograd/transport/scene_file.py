@@ -1,0 +1,145 @@
+"""Scenes in TOML files: what may stand in one is what `_shape`, `_camera` and `_environment` read.
+
+[camera]
+position = [0, 1, 6.8]
+look_at = [0, 1, 0]
+field_of_view = 19.5          # degrees, vertical
+size = [256, 256]             # width, height in pixels
+
+[environment]                 # optional; or zenith, horizon and ground
+radiance = 0.2
+
+[materials.white]
+model = "lambert"             # and the parameters of that model
+albedo = [0.7, 0.7, 0.7]
+
+[[shapes]]
+kind = "rectangle"            # or box, sphere, triangles
+corner = [-1, 0, 1]
+edge_u = [2, 0, 0]
+edge_v = [0, 0, -2]
+material = "white"
+emission = [0, 0, 0]          # optional, of the front
+"""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from photograd.data.camera import Camera
+from photograd.errors import IoError, SceneError, message
+from photograd.transport.builtin import camera_at
+from photograd.transport.scene import Environment, Material, MeshShape, Scene, Shape, SphereShape
+from photograd.transport.scene_node import Node
+from photograd.transport.shapes import box, rectangle
+from photograd.transport.toml_lines import key_lines
+
+
+def read_scene(path: Path) -> Scene:
+    """The scene that a file describes.
+
+    Raises:
+        IoError: the file is missing or no text.
+        SceneError: what it says is no scene; names the line and the key.
+    """
+    try:
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as failure:
+        raise IoError(message("read_scene", "path", "a TOML file", failure)) from failure
+    try:
+        data = tomllib.loads(text)
+    except (
+        ValueError,
+        RecursionError,
+    ) as failure:  # numbers or nesting beyond Python's limits, too
+        raise SceneError(message("read_scene", f"{path}", "TOML", failure)) from failure
+    root = Node(path, data, (), key_lines(text))
+    scene = root.built(lambda: _scene(root, path.stem))
+    root.refuse_other_keys()
+    return scene
+
+
+def _scene(root: Node, name: str) -> Scene:
+    camera = _camera(root.table("camera"))
+    environment = _environment(root.table("environment")) if root.has("environment") else None
+    tables = root.table("materials")
+    materials = {key: _material(tables.table(key)) for key in tables.data}
+    shapes = tuple(_shape(node, i, materials) for i, node in enumerate(root.tables("shapes")))
+    return Scene(name, shapes, materials, camera, environment)
+
+
+def _camera(node: Node) -> Camera:
+    width, height = node.numbers("size", 2)
+    position, target = node.numbers("position", 3), node.numbers("look_at", 3)
+    field_of_view = node.number("field_of_view")
+    if not 0 < field_of_view < 180:
+        raise node.wrong("field_of_view", "degrees between 0 and 180", field_of_view)
+    if width != int(width) or height != int(height) or min(width, height) < 1:
+        raise node.wrong("size", "width and height in pixels", [width, height])
+    way = np.subtract(target, position)
+    if np.linalg.norm(way[[0, 2]]) < 1e-6 * np.linalg.norm(way) or not way.any():
+        raise node.wrong("look_at", "a point that is not straight above, below or here", target)
+    node.refuse_other_keys()
+    return node.built(lambda: camera_at(position, target, field_of_view, int(width), int(height)))
+
+
+def _environment(node: Node) -> Environment:
+    if node.has("radiance"):
+        radiance = node.color("radiance")
+        node.refuse_other_keys()
+        return node.built(lambda: Environment.constant(radiance))
+    parts = [np.array(node.color(name)) for name in ("zenith", "horizon", "ground")]
+    node.refuse_other_keys()
+    return node.built(lambda: Environment(*parts))
+
+
+def _material(node: Node) -> Material:
+    model = node.text("model")
+    values = {key: node.value(key) for key in node.data if key != "model"}
+    return node.built(lambda: Material(model, values))
+
+
+def _shape(node: Node, index: int, materials: dict[str, Material]) -> Shape:
+    kind = node.choice("kind", KINDS)
+    name = node.text("name", f"{kind} {index}")
+    material = node.choice("material", materials)
+    emission = node.color("emission", [0.0, 0.0, 0.0])
+    shape = node.built(lambda: KINDS[kind](node, name, material, emission))
+    node.refuse_other_keys()
+    return shape
+
+
+def _rectangle(node: Node, name: str, material: str, emission: Any) -> MeshShape:
+    corner, u, v = (node.numbers(key, 3) for key in ("corner", "edge_u", "edge_v"))
+    return rectangle(name, corner, u, v, material, emission)
+
+
+def _box(node: Node, name: str, material: str, emission: Any) -> MeshShape:
+    return box(
+        name, node.numbers("center", 3), node.numbers("size", 3), material, emission,
+        turn=node.number("turn", 0.0), inward=node.flag("inward"),
+    )  # fmt: skip
+
+
+def _sphere(node: Node, name: str, material: str, emission: Any) -> SphereShape:
+    center = np.array(node.numbers("center", 3))
+    return SphereShape(name, center, node.number("radius"), material, emission)
+
+
+def _triangles(node: Node, name: str, material: str, emission: Any) -> MeshShape:
+    vertices = node.rows("vertices", float)
+    normals = node.rows("normals", float) if node.has("normals") else None
+    return MeshShape(name, vertices, node.rows("faces", int), material, emission, normals)
+
+
+KINDS: dict[str, Callable[[Node, str, str, Any], Shape]] = {
+    "rectangle": _rectangle,
+    "box": _box,
+    "sphere": _sphere,
+    "triangles": _triangles,
+}

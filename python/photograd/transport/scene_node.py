@@ -1,0 +1,163 @@
+"""A table of a scene file: values of the wanted types, and errors that say where they stand."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numpy as np
+from photograd_course.suggest import choose_from
+
+from photograd.errors import Error, SceneError, message
+from photograd.transport.toml_lines import KeyPath
+
+Built = TypeVar("Built")
+LARGEST = 2**53  # whole numbers up to here are exact in a float
+
+
+class Node:
+    """A table and the keys of it that have been asked for."""
+
+    def __init__(
+        self, path: Path, data: Mapping[str, Any], place: KeyPath, lines: Mapping[KeyPath, int]
+    ) -> None:
+        """A table at `place` in the file at `path`; `lines` are those of `key_lines`."""
+        self.path, self.data, self.place, self._lines = path, data, place, lines
+        self._asked: set[str] = set()
+
+    def line(self, key: str | None = None) -> int:
+        """Where a key stands, or the nearest table around it."""
+        place: KeyPath = self.place if key is None else (*self.place, key)
+        while place and place not in self._lines:
+            place = place[:-1]
+        return self._lines.get(place, 1)
+
+    def wrong(
+        self, key: str, expected: object, got: object, remedy: str | None = None
+    ) -> SceneError:
+        """The error that a value is not what was expected."""
+        name = ".".join(str(part) for part in (*self.place, key))
+        where = f"line {self.line(key)}: {name}"
+        return SceneError(message(f"read_scene: {self.path}", where, expected, got, remedy))
+
+    def built(self, make: Callable[[], Built]) -> Built:
+        """What `make` returns; its errors get the line of this table, unless they name one."""
+        try:
+            return make()
+        except Error as failure:
+            text = str(failure)
+            if text.startswith(f"read_scene: {self.path}"):
+                raise
+            name = ".".join(str(part) for part in self.place) or "scene"
+            where = f"line {self.line()}: {name}"
+            raise SceneError(f"read_scene: {self.path}: {where}: {text}") from failure
+
+    def has(self, key: str) -> bool:
+        """Whether the key is there."""
+        return key in self.data
+
+    def value(self, key: str, default: Any = None) -> Any:
+        """Whatever stands there; SceneError if nothing does and there is no default."""
+        self._asked.add(key)
+        if key in self.data:
+            return self.data[key]
+        if default is None:
+            near = choose_from(key, self.data) if self.data else None
+            raise self.wrong(key, "a value", "none", near)
+        return default
+
+    def table(self, key: str) -> Node:
+        """The table of this name."""
+        found = self.value(key)
+        if not isinstance(found, dict):
+            raise self.wrong(key, "a table", type(found).__name__)
+        return Node(self.path, found, (*self.place, key), self._lines)
+
+    def tables(self, key: str) -> list[Node]:
+        """The tables of an array [[key]]."""
+        found = self.value(key)
+        if not isinstance(found, list) or not all(isinstance(entry, dict) for entry in found):
+            raise self.wrong(key, f"tables [[{key}]]", type(found).__name__)
+        return [
+            Node(self.path, entry, (*self.place, key, i), self._lines)
+            for i, entry in enumerate(found)
+        ]
+
+    def text(self, key: str, default: str | None = None) -> str:
+        """A string."""
+        found = self.value(key, default)
+        if not isinstance(found, str):
+            raise self.wrong(key, "a string", found)
+        return found
+
+    def choice(self, key: str, known: Iterable[str]) -> str:
+        """One of the known names."""
+        names = list(known)
+        found = self.text(key)
+        if found not in names:
+            raise self.wrong(key, f"one of {', '.join(names)}", found, choose_from(found, names))
+        return found
+
+    def flag(self, key: str) -> bool:
+        """A truth value; false if absent."""
+        found = self.value(key, False)
+        if not isinstance(found, bool):
+            raise self.wrong(key, "true or false", found)
+        return found
+
+    def number(self, key: str, default: float | None = None) -> float:
+        """A finite number."""
+        found = self.value(key, default)
+        if not _is_number(found):
+            raise self.wrong(key, "a finite number", found)
+        return float(found)
+
+    def numbers(self, key: str, count: int, default: list[float] | None = None) -> list[float]:
+        """A list of finite numbers."""
+        found = self.value(key, default)
+        if not isinstance(found, list) or len(found) != count or not all(map(_is_number, found)):
+            raise self.wrong(key, f"{count} finite numbers", found)
+        return [float(entry) for entry in found]
+
+    def color(self, key: str, default: list[float] | None = None) -> list[float]:
+        """Three numbers, or one for all three, none negative."""
+        found = self.value(key, default)
+        entries = [found] * 3 if _is_number(found) else found
+        if (
+            not isinstance(entries, list)
+            or len(entries) != 3
+            or not all(_is_number(entry) and entry >= 0 for entry in entries)
+        ):
+            raise self.wrong(key, "a radiance: one or three numbers of at least 0", found)
+        return [float(entry) for entry in entries]
+
+    def rows(self, key: str, kind: type[int] | type[float]) -> Any:
+        """An array of rows of three numbers, (N, 3)."""
+        found = self.value(key)
+        whole = kind is int
+        good = isinstance(found, list) and all(
+            isinstance(row, list)
+            and len(row) == 3
+            and all(
+                _is_number(entry) and (not whole or isinstance(entry, int)) and abs(entry) < LARGEST
+                for entry in row
+            )
+            for row in found
+        )
+        if not good or not found:
+            what = "whole numbers" if whole else "finite numbers"
+            raise self.wrong(key, f"rows of three {what}", "something else")
+        return np.array(found, np.int64 if whole else np.float64)
+
+    def refuse_other_keys(self) -> None:
+        """SceneError for the first key that nobody has asked for."""
+        for key in self.data:
+            if key not in self._asked:
+                near = choose_from(key, self._asked)
+                raise self.wrong(key, "a key that is known here", "an unknown one", near)
+
+
+def _is_number(value: object) -> bool:
+    """Finite and within reason: TOML's integers have no end, and NaN is in no interval."""
+    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < 1e30

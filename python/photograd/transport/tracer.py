@@ -1,0 +1,272 @@
+"""Path tracing of a scene, and the derivatives of its picture by everything that is a number.
+
+The mathematics is in cpp/photograd/render/path_walk.h (which paths) and path_vertex.h (what they
+carry, and its adjoint).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from photograd.core import _core
+from photograd.data.camera import Camera
+from photograd.errors import DtypeError, RangeError, ShapeError, message
+from photograd.transport.accumulation import Accumulation
+from photograd.transport.scene import Array, MeshShape, Scene, Shape, SphereShape
+
+STRATEGIES = ("light", "bsdf", "mis")
+HEURISTICS = ("balance", "power")
+NEVER = 1 << 20  # a vertex that no path reaches
+
+
+@dataclass(frozen=True)
+class PathOptions:
+    """How light is looked for.
+
+    Attributes:
+        strategy: "light" asks a light at every vertex; "bsdf" counts what a path meets by chance;
+            "mis" does both and shares out the weight.
+        heuristic: how "mis" does so: "balance" or "power".
+        max_depth: segments of the longest path; 1 sees lights alone, 2 is direct light.
+        roulette_from: the first vertex at which a path may end by chance; None never ends one.
+
+    Raises:
+        RangeError: none of these.
+    """
+
+    strategy: str = "mis"
+    heuristic: str = "power"
+    max_depth: int = 64
+    roulette_from: int | None = 4
+
+    def __post_init__(self) -> None:
+        for name, known in (("strategy", STRATEGIES), ("heuristic", HEURISTICS)):
+            if getattr(self, name) not in known:
+                raise RangeError(message("PathOptions", name, known, getattr(self, name)))
+        if not 1 <= self.max_depth <= 4096:
+            raise RangeError(message("PathOptions", "max_depth", "1 to 4096", self.max_depth))
+        if self.roulette_from is not None and self.roulette_from < 0:
+            got = self.roulette_from
+            raise RangeError(message("PathOptions", "roulette_from", "at least 0", got))
+
+    def numbers(self, seed: int) -> tuple[int, int, int, int, int]:
+        """As the core takes them."""
+        late = NEVER if self.roulette_from is None else self.roulette_from
+        strategy, heuristic = STRATEGIES.index(self.strategy), HEURISTICS.index(self.heuristic)
+        return strategy, heuristic, self.max_depth, late, seed
+
+
+DEFAULTS = PathOptions()
+
+
+class PathTracer:
+    """A scene ready to be traced.
+
+    Attributes:
+        scene: what it was built from.
+        params: {name: array}, to be changed freely between renderings:
+            "materials.NAME.PARAMETER", () or (3,); "emission.SHAPE" (3,) of shapes that shine;
+            "environment" (3, 3), the radiance of zenith, horizon and ground.
+    """
+
+    def __init__(self, scene: Scene, *, dtype: npt.DTypeLike = np.float32) -> None:
+        """Build the hierarchy.
+
+        Raises:
+            DtypeError: dtype is neither float32 nor float64.
+            SceneError: geometry that cannot be traced, or a light without area.
+        """
+        self.dtype = np.dtype(dtype)
+        if self.dtype not in (np.dtype(np.float32), np.dtype(np.float64)):
+            expected = "float32 or float64"
+            raise DtypeError(message("PathTracer", "dtype", expected, self.dtype))
+        self.scene = scene
+        meshes = [shape for shape in scene.shapes if isinstance(shape, MeshShape)]
+        spheres = [shape for shape in scene.shapes if isinstance(shape, SphereShape)]
+        self._shapes: list[Shape] = [*meshes, *spheres]
+        names = list(scene.materials)
+        balls = [[*shape.center, shape.radius] for shape in spheres]
+        self._geometry = _core.PathGeometry(
+            meshes=[(mesh.vertices, mesh.faces, mesh.normals) for mesh in meshes],
+            spheres=np.array(balls, np.float32).reshape(-1, 4),
+            material=np.array([names.index(s.material) for s in self._shapes], np.int32),
+            emission=np.array([shape.emission for shape in self._shapes], np.float64),
+            has_environment=scene.environment is not None,
+        )
+        self._models = [material.model for material in scene.materials.values()]
+        self.params: dict[str, Array] = self._initial_params()
+
+    def _initial_params(self) -> dict[str, Array]:
+        params: dict[str, Any] = {}
+        for name, material in self.scene.materials.items():
+            for parameter in material.parameters:
+                params[f"materials.{name}.{parameter.name}"] = material.values[parameter.name]
+        for shape in self._shapes:
+            if shape.emission.any():
+                params[f"emission.{shape.name}"] = shape.emission
+        sky = self.scene.environment
+        if sky is not None:
+            params["environment"] = np.array([sky.zenith, sky.horizon, sky.ground])
+        return {name: np.array(value, self.dtype) for name, value in params.items()}
+
+    def render(
+        self, *, spp: int, seed: int, options: PathOptions = DEFAULTS, camera: Camera | None = None
+    ) -> Accumulation:
+        """A picture of `spp` samples a pixel; the same seed gives the same bits on any threads.
+
+        Args:
+            spp: samples a pixel.
+            seed: of all random numbers.
+            options: how light is looked for.
+            camera: None takes the scene's.
+
+        Raises:
+            RangeError: spp below 1.
+            Error: radiance that is not finite; names the pixel.
+        """
+        view = self.scene.camera if camera is None else camera
+        sums = Accumulation.empty(view.height, view.width)
+        self.add_samples(sums, spp, seed=seed, options=options, camera=camera)
+        return sums
+
+    def add_samples(
+        self, sums: Accumulation, spp: int, *, seed: int, options: PathOptions = DEFAULTS,
+        camera: Camera | None = None, sampling_params: dict[str, Array] | None = None,
+    ) -> None:  # fmt: skip
+        """Add the next `spp` samples to `sums`, in place.
+
+        Args:
+            sums: of the same seed, options and camera, or empty.
+            spp, seed, options, camera: as for `render`.
+            sampling_params: what decides where paths go, if not `params`: a difference of two
+                pictures with different `params` and the same sampling is what `render_backward`
+                differentiates.
+
+        Raises:
+            As `render`; ShapeError: sums of another size.
+        """
+        view = self.scene.camera if camera is None else camera
+        self._check_sums("add_samples", sums, spp, view)
+        other = None if sampling_params is None else self._material_row(sampling_params)
+        _core.trace_paths(
+            **self._arguments(view), sampling_parameters=other, options=options.numbers(seed),
+            first=sums.count, count=spp, radiance=sums.radiance, squares=sums.squares,
+        )  # fmt: skip
+        sums.count += spp
+        sums.check_finite("PathTracer.render")
+
+    def render_backward(
+        self, d_image: Array, *, spp: int, seed: int, options: PathOptions = DEFAULTS,
+        camera: Camera | None = None,
+    ) -> dict[str, Array]:  # fmt: skip
+        """dL/dparams for dL/dimage (H, W, 3), estimated with `spp` paths a pixel.
+
+        With the seed and spp of a rendering it is the derivative of that very picture, its paths
+        held fixed. To fit, take another seed: the noise of `d_image` then has nothing to do with
+        this estimate's, and their product is right on average. Geometry is held fixed: edges of
+        shadows and silhouettes, and the directions into which smooth glass refracts.
+
+        Raises:
+            ShapeError: d_image of another shape than the picture.
+            RangeError: spp below 1.
+        """
+        view = self.scene.camera if camera is None else camera
+        shape = (view.height, view.width, 3)
+        if np.shape(d_image) != shape:
+            got = np.shape(d_image)
+            raise ShapeError(message("render_backward", "d_image", f"shape {shape}", got))
+        if spp < 1:
+            raise RangeError(message("PathTracer", "spp", "at least 1", spp))
+        arguments = self._arguments(view)
+        d_rows = np.zeros_like(arguments["parameters"])
+        d_emission = np.zeros((len(self._shapes), 3), self.dtype)
+        d_sky = np.zeros((3, 3), self.dtype)
+        _core.trace_paths_backward(
+            **arguments, options=options.numbers(seed), first=0, count=spp,
+            d_image=np.ascontiguousarray(d_image, np.float64),
+            d_parameters=d_rows, d_emission=d_emission, d_sky=d_sky,
+        )  # fmt: skip
+        gradients = {"environment": d_sky}
+        start = 0
+        for name, material in self.scene.materials.items():
+            for parameter in material.parameters:
+                part = d_rows[start : start + parameter.size]
+                key = f"materials.{name}.{parameter.name}"
+                gradients[key] = part.reshape(self.params[key].shape)
+                start += parameter.size
+        for number, placed in enumerate(self._shapes):
+            gradients[f"emission.{placed.name}"] = d_emission[number]
+        return {name: gradients[name] for name in self.params}
+
+    def add_occlusion(
+        self, sums: Accumulation, spp: int, *, seed: int, radius: float = np.inf
+    ) -> None:
+        """Add `spp` samples of ambient occlusion to `sums`, in place; all channels are the same.
+
+        A sample is 1 where the scene's camera sees nothing, or nothing lies within `radius` metres
+        of what it sees in one direction, drawn in proportion to the cosine; otherwise 0.
+
+        Raises:
+            RangeError: spp below 1, or a radius that is not positive.
+            ShapeError: sums of another size.
+        """
+        view = self.scene.camera
+        self._check_sums("add_occlusion", sums, spp, view)
+        free = np.zeros((view.height, view.width))
+        _core.ambient_occlusion(self._geometry, _numbers(view), radius, seed, sums.count, spp, free)
+        sums.radiance += free[..., None]
+        sums.squares += free[..., None]  # 0 and 1 are their own squares
+        sums.count += spp
+
+    def path(
+        self, pixel: int, sample: int, *, seed: int, options: PathOptions = DEFAULTS
+    ) -> list[dict[str, Any]]:
+        """One path of the scene's camera, a dictionary a vertex: what was met, asked and chosen.
+
+        `pixel` is row * width + column. In float64, whatever the tracer's dtype.
+        """
+        arguments = self._arguments(self.scene.camera)
+        for name in ("parameters", "emission", "sky"):
+            arguments[name] = arguments[name].astype(np.float64)
+        found: list[dict[str, Any]] = _core.trace_path(
+            **arguments, options=options.numbers(seed), pixel=pixel, sample=sample
+        )
+        return found
+
+    @staticmethod
+    def _check_sums(function: str, sums: Accumulation, spp: int, view: Camera) -> None:
+        if spp < 1:
+            raise RangeError(message(function, "spp", "at least 1", spp))
+        shape = (view.height, view.width, 3)
+        if sums.radiance.shape != shape:
+            raise ShapeError(message(function, "sums", f"shape {shape}", sums.radiance.shape))
+
+    def _material_row(self, params: dict[str, Array]) -> Array:
+        """All parameters of all materials, one after another, (P,)."""
+        parts = [
+            np.reshape(params[f"materials.{name}.{parameter.name}"], -1)
+            for name, material in self.scene.materials.items()
+            for parameter in material.parameters
+        ]
+        return np.ascontiguousarray(np.concatenate(parts), self.dtype)
+
+    def _arguments(self, camera: Camera) -> dict[str, Any]:
+        black = np.zeros(3, self.dtype)
+        emission = [self.params.get(f"emission.{shape.name}", black) for shape in self._shapes]
+        return {
+            "geometry": self._geometry,
+            "models": self._models,
+            "parameters": self._material_row(self.params),
+            "emission": np.array(emission, self.dtype),
+            "sky": np.asarray(self.params.get("environment", np.zeros((3, 3))), self.dtype),
+            "camera": _numbers(camera),
+        }
+
+
+def _numbers(camera: Camera) -> tuple[Any, ...]:
+    pose = camera.world_from_camera[:3].tolist()
+    return camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy, pose

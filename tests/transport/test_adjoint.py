@@ -1,0 +1,155 @@
+"""Derivatives of traced pictures: by differences with held paths, by closed forms, by bits."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from photograd.core import _core
+from photograd.errors import DtypeError, RangeError, ShapeError
+from photograd.transport import Accumulation, Material, PathOptions, PathTracer, Scene
+from photograd.transport.builtin import cornell_box, furnace_box
+from photograd.transport.scene import MODELS
+from photograd_course.gradcheck import check_gradient
+from photograd_course.mutants import check_mutants
+
+from tests.transport.scenes import BLACK, any_material, stage
+
+SPP = 4
+OPTIONS = PathOptions(max_depth=5, roulette_from=2)
+
+
+def proof(scene: Scene, options: PathOptions = OPTIONS) -> tuple[Any, Any, dict[str, Any]]:
+    """(function, backward, start) of the picture with paths held where `start` puts them."""
+    tracer = PathTracer(scene, dtype=np.float64)
+    start = {name: value.copy() for name, value in tracer.params.items()}
+
+    def function(params: dict[str, Any]) -> Any:
+        tracer.params = {name: np.array(value) for name, value in params.items()}
+        sums = Accumulation.empty(scene.camera.height, scene.camera.width)
+        tracer.add_samples(sums, SPP, seed=1, options=options, sampling_params=start)
+        return sums.mean
+
+    def backward(params: dict[str, Any], d_image: Any) -> dict[str, Any]:
+        tracer.params = {name: np.array(value) for name, value in params.items()}
+        return tracer.render_backward(d_image, spp=SPP, seed=1, options=options)
+
+    return function, backward, start
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_every_parameter_of_every_model(model: str) -> None:
+    function, backward, start = proof(stage(any_material(model), size=6, sky=0.4))
+    report = check_gradient(function, backward, start, seed=2, coordinates=3, directions=3)
+    assert report, str(report)
+
+
+@pytest.mark.parametrize("strategy", ["light", "bsdf", "mis"])
+def test_every_strategy(strategy: str) -> None:
+    options = PathOptions(strategy, max_depth=5, roulette_from=2)
+    function, backward, start = proof(cornell_box(6), options)
+    report = check_gradient(function, backward, start, seed=3, coordinates=4, directions=3,
+                            may_be_zero=("materials.lamp.albedo",))  # fmt: skip
+    assert report, str(report)
+
+
+def test_wrong_gradients_die() -> None:
+    function, backward, start = proof(stage(any_material("gltf"), size=6, sky=0.4))
+    d = 0.2 + np.random.default_rng(5).random((6, 6, 3))
+    deaths = check_mutants(
+        lambda b: check_gradient(function, b, start, seed=4, coordinates=3, directions=2),
+        backward, start, d,
+    )  # fmt: skip
+    assert deaths, str(deaths)
+
+
+def test_black_surfaces_have_derivatives() -> None:
+    # A division by the albedo would give none; the difference says there is one.
+    scene = stage(BLACK, size=6, sky=0.4, floor=BLACK)
+    function, backward, start = proof(scene)
+    gradient = backward(start, np.ones((6, 6, 3)))
+    assert (gradient["materials.ball.albedo"] > 0).all()
+    assert (gradient["materials.floor.albedo"] > 0).all()
+    report = check_gradient(function, backward, start, seed=5, coordinates=3, directions=3)
+    assert report, str(report)
+    dark = stage(Material("glass", {"eta": 1.5, "tint": [0.0] * 3}), size=6, sky=0.4)
+    _, backward, start = proof(dark)
+    assert (backward(start, np.ones((6, 6, 3)))["materials.ball.tint"] > 0).all()
+
+
+def test_furnace_derivatives_in_closed_form() -> None:
+    # L = e / (1 - a): dL/da = e / (1 - a)^2, dL/de = 1 / (1 - a). No path is held here.
+    tracer = PathTracer(furnace_box(8, 0.5, 0.7))
+    d_image = np.full((8, 8, 3), 1 / 64)
+    found = tracer.render_backward(d_image, spp=2048, seed=6, options=PathOptions(max_depth=100))
+    np.testing.assert_allclose(found["materials.wall.albedo"], 0.7 / 0.25, rtol=0.01)
+    np.testing.assert_allclose(found["emission.walls"], 1 / 0.5, rtol=0.005)
+
+
+def test_a_loss_needs_paths_of_its_own() -> None:
+    # L = sum (I - t)^2: with the picture's own paths its noise enters the mean of the derivative,
+    # 2 cov(I, dI); with other paths the mean is the derivative of the mean.
+    tracer = PathTracer(furnace_box(4, 0.5, 1.0))
+    options = PathOptions("bsdf", max_depth=40, roulette_from=1)
+    truth = 2 * (2.0 - 1.8) * 3 * 16 * 1.0 / 0.25
+    own, other = [], []
+    for seed in range(300):
+        d = 2 * (tracer.render(spp=1, seed=seed, options=options).mean - 1.8)
+        for found, used in ((own, seed), (other, seed + 10_000)):
+            gradient = tracer.render_backward(d, spp=1, seed=used, options=options)
+            found.append(gradient["materials.wall.albedo"].sum())
+    spread = np.std(other) / np.sqrt(len(other))
+    assert abs(np.mean(other) - truth) < 4 * spread
+    assert np.mean(own) - truth > 8 * spread
+
+
+def test_twice_is_twice_and_any_number_of_threads() -> None:
+    scene = cornell_box(24)
+    d = np.random.default_rng(8).uniform(-1, 1, (24, 24, 3))
+    found = []
+    for threads in (1, 2, 5):
+        _core.set_thread_count(threads)
+        tracer = PathTracer(scene)
+        sums = tracer.render(spp=20, seed=9)
+        gradient = tracer.render_backward(d, spp=20, seed=9)
+        found.append([sums.radiance, sums.squares, *gradient.values()])
+    _core.set_thread_count(0)
+    assert np.abs(found[0][0]).max() > 0
+    assert all(np.abs(part).max() > 0 for part in found[0] if part.size)
+    for other in found[1:]:
+        for a, b in zip(found[0], other, strict=True):
+            np.testing.assert_array_equal(a, b)
+    double = tracer.render_backward(2 * d, spp=20, seed=9)
+    for name, value in gradient.items():
+        np.testing.assert_allclose(double[name], 2 * value, rtol=1e-6)
+
+
+def test_float_agrees_with_double() -> None:
+    # Single paths fall the other way at edges, where float rounds; the rest agrees to rounding.
+    scene = cornell_box(12)
+    d = np.random.default_rng(8).uniform(-1, 1, (12, 12, 3))
+    narrow, wide = (PathTracer(scene, dtype=t) for t in (np.float32, np.float64))
+    a, b = (t.render(spp=8, seed=1).mean for t in (narrow, wide))
+    same = np.isclose(a, b, rtol=1e-3, atol=1e-5)
+    assert same.mean() > 0.97
+    assert a[same] == pytest.approx(b[same], rel=1e-3, abs=1e-5)
+    g, h = (t.render_backward(d, spp=8, seed=1) for t in (narrow, wide))
+    for name in g:
+        assert np.linalg.norm(g[name] - h[name]) <= 0.05 * np.linalg.norm(h[name]) + 1e-6
+
+
+def test_bad_arguments_are_named() -> None:
+    tracer = PathTracer(cornell_box(4))
+    with pytest.raises(ShapeError, match="d_image: expected shape"):
+        tracer.render_backward(np.zeros((3, 4, 3)), spp=1, seed=0)
+    with pytest.raises(RangeError, match="spp: expected at least 1"):
+        tracer.render(spp=0, seed=0)
+    with pytest.raises(ShapeError, match="sums: expected shape"):
+        tracer.add_samples(Accumulation.empty(3, 4), 1, seed=0)
+    with pytest.raises(DtypeError, match="dtype"):
+        PathTracer(cornell_box(4), dtype=np.float16)
+    with pytest.raises(RangeError, match="strategy"):
+        PathOptions("hope")
+    with pytest.raises(RangeError, match="max_depth"):
+        PathOptions(max_depth=0)
