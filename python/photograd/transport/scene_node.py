@@ -29,9 +29,12 @@ class Node:
     def line(self, key: str | None = None) -> int:
         """Where a key stands, or the nearest table around it."""
         place: KeyPath = self.place if key is None else (*self.place, key)
-        while place and place not in self._lines:
+        while place:
+            for found in (place, (*place, 0)):  # an array of tables begins with its first
+                if found in self._lines:
+                    return self._lines[found]
             place = place[:-1]
-        return self._lines.get(place, 1)
+        return 1
 
     def wrong(
         self, key: str, expected: object, got: object, remedy: str | None = None
@@ -54,7 +57,8 @@ class Node:
             raise SceneError(f"read_scene: {self.path}: {where}: {text}") from failure
 
     def has(self, key: str) -> bool:
-        """Whether the key is there."""
+        """Whether the key is there; one that may be is a known one."""
+        self._asked.add(key)
         return key in self.data
 
     def value(self, key: str, default: Any = None) -> Any:
