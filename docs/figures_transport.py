@@ -52,7 +52,7 @@ def transport_figure() -> Figure:
     above = (
         ("all bounces", picture("cornell-box", SPP)),
         ("direct light", picture("cornell-box", SPP, max_depth=2)),
-        ("what bounces add, twice as bright",
+        ("added by bounces, doubled",
          2 * (picture("cornell-box", SPP) - picture("cornell-box", SPP, max_depth=2))),
         ("copper and glass", picture("cornell-spheres", 4 * SPP)),
     )  # fmt: skip
@@ -83,10 +83,10 @@ def transport_figure() -> Figure:
             figure,
             "Above: a room with one lamp; what one bounce alone shows; what all others add (the "
             "ceiling, and colour that walls lend to boxes); a room with balls of copper and glass. "
-            "Below: the same few samples spent in three ways. Asking lights leaves the ball's "
-            "highlight noisy, waiting to meet them leaves everything else so; both together take "
-            "the better of each. Right: a redder wall brightens itself most, and through its light "
-            "all that faces it.",
+            "Below: the same few samples spent in three ways. Waiting to meet a lamp does well "
+            "in the copper ball's highlight alone; what only a path through glass can find (the "
+            "bright patch under the ball) is noisy for all. Right: a redder wall brightens itself "
+            "most, and through its light all that faces it.",
             left=left, right=left,
         )  # fmt: skip
     return figure

@@ -14,7 +14,7 @@ from photograd.transport.scene import MODELS
 from photograd_course.gradcheck import check_gradient
 from photograd_course.mutants import check_mutants
 
-from tests.transport.scenes import BLACK, any_material, stage
+from tests.transport.scenes import BLACK, GREY, any_material, stage
 
 SPP = 4
 OPTIONS = PathOptions(max_depth=5, roulette_from=2)
@@ -80,8 +80,9 @@ def test_black_surfaces_have_derivatives() -> None:
         ("mirror", {"reflectance": [0.0] * 3}, "reflectance"),
         ("thin_glass", {"eta": 1.5, "tint": [0.0] * 3}, "tint"),
     ):
-        _, backward, start = proof(stage(Material(model, values), size=6, sky=0.4))
-        assert (backward(start, np.ones((6, 6, 3)))[f"materials.ball.{name}"] > 0).all()
+        floor = Material(model, values)
+        _, backward, start = proof(stage(GREY, size=6, sky=0.4, floor=floor))
+        assert (backward(start, np.ones((6, 6, 3)))[f"materials.floor.{name}"] > 0).all()
 
 
 def test_furnace_derivatives_in_closed_form() -> None:
