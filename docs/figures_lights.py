@@ -72,9 +72,9 @@ def sky() -> Array:
     up = np.clip(1.0 - 2.0 * v, 0.0, 1.0)[..., None]
     image = (1 - up) * np.array([0.9, 0.55, 0.35]) + up * np.array([0.15, 0.3, 0.7])
     image = np.where((v > 0.5)[..., None], np.array([0.12, 0.1, 0.08]), image)
-    theta, phi = np.pi * (v - 0.42), 2.0 * np.pi * (u - 0.3)
+    theta, phi = np.pi * (v - 0.36), 2.0 * np.pi * (u - 0.12)
     sun = np.exp(-(theta**2 + (phi * np.sin(np.pi * v)) ** 2) / 0.006)
-    image = image + 60.0 * sun[..., None] * np.array([1.0, 0.8, 0.5])
+    image = image + 150.0 * sun[..., None] * np.array([1.0, 0.8, 0.5])
     window = (np.abs(u - 0.72) < 0.05) & (np.abs(v - 0.55) < 0.06)
     return np.where(window[..., None], np.array([3.0, 3.5, 5.0]), image)
 
@@ -148,30 +148,35 @@ def lights_figure() -> Figure:
         ("point", PointLight([0.0, 0.4, 0.0], 0.35 * WARM), 1),
         ("spot", SPOT, 1),
         ("sphere", SphereLight([0.3, 0.35, 0.2], 0.25, 2.5 * WARM), 16),
-        ("quad, 1 sample by area", by_area, 1),
-        ("1 sample by solid angle", by_solid_angle, 1),
+        ("1 sample by area", by_area, 1),
+        ("by solid angle", by_solid_angle, 1),
     )
     side, gap, left = 1.5, 0.16, 0.2
     width = 5 * side + 4 * gap + 2 * left
     with style.house_style():
-        figure = style.new_figure(width, 5.3)
+        figure = style.new_figure(width, 4.65)
         for number, (title, lamp, samples) in enumerate(floors):
             axes = style.place_axes(figure, left + number * (side + gap), 0.35, side, side)
             draw(axes, shown(floor(lamp, samples)), title)
-        draw_map(style.place_axes(figure, left, 2.3, 3.16, 1.58), light)
-        axes = style.place_axes(figure, left + 3.32, 2.3, 1.58, 1.58)
-        draw(axes, shown(ball(light), 0.8), "a matte ball in it")
-        slope = by_softness()
-        limit = float(np.quantile(np.abs(slope[slope != 0]), 0.99))
-        scale, colors = style.symmetric_scale(limit), style.signed_colour_map()
-        axes = style.place_axes(figure, left + 5.06, 2.3, 1.2, 1.2)
-        draw(axes, slope, "spot by softness", norm=scale, cmap=colors)
-        derivative = by_texels(light, np.array([0.0, 0.6, 0.8]))
-        axes = style.place_axes(figure, left + 6.4, 2.3, 1.5, 0.75)
-        scale = style.symmetric_scale(float(derivative.max()))
-        draw(axes, derivative, "a point by texels", norm=scale, cmap=colors, extent=(0, 2, 1, 0))
-        mappable = ScalarMappable(scale, colors)
-        style.colour_bar(figure, (left + 6.4, 3.3, 1.5, 0.1), mappable, "")
+        low = 1.2
+        draw_map(style.place_axes(figure, left, 2.35, 2 * low, low), light)
+        axes = style.place_axes(figure, left + 2.5, 2.35, low, low)
+        draw(axes, shown(ball(light), 0.6), "a matte ball in it")
+        colors = style.signed_colour_map()
+        for at, wide, title, image, extent in (
+            (3.85, low, "spot by softness", by_softness(), None),
+            (
+                5.7, 1.5, "a point by texels", by_texels(light, np.array([0.0, 0.6, 0.8])),
+                (0, 2, 1, 0),
+            ),
+        ):  # fmt: skip
+            scale = style.symmetric_scale(float(np.quantile(np.abs(image), 0.999)))
+            high = wide if extent is None else wide / 2
+            axes = style.place_axes(figure, left + at, 2.35, wide, high)
+            draw(axes, image, title, norm=scale, cmap=colors, extent=extent)
+            mappable = ScalarMappable(scale, colors)
+            box = (left + at + wide + 0.05, 2.35, 0.08, high)
+            style.colour_bar(figure, box, mappable, "", extend="both")
         style.write_caption(
             figure,
             "Above: a white floor, 2 m x 2 m, under lamps. One sample a pixel of a rectangle close "
