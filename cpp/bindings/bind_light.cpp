@@ -1,20 +1,11 @@
-// Every light of light/registry.h as a class of static functions on arrays, and {name: class} as _core.lights.
-#include "model_args.h"
+// Every light at infinity of light/registry.h as a class of static functions on arrays, and {name: class} as
+// _core.lights. All lights as a tracer sees them are bound in bind_sampled_lights.cpp.
+#include "light_calls.h"
 #include "module.h"
 #include "photograd/light/registry.h"
 
 namespace photograd {
 namespace {
-
-template <class T, class R>
-T light_of(ArrayArgs& args, const py::array& parameters, const py::array& constants) {
-    T light;
-    const R* p = args.in<R>("parameters", parameters, std::to_string(scalars_in(T::params)));
-    const R* c = args.in<R>("constants", constants, std::to_string(scalars_in(T::constants)));
-    for_each_scalar(T::params, [&](R& x) { x = *p++; }, light);
-    for_each_scalar(T::constants, [&](R& x) { x = *c++; }, light);
-    return light;
-}
 
 template <template <class> class M>
 struct BoundLight {
@@ -134,6 +125,9 @@ void bind_light(py::module_& m) {
     Lights::for_each(
         [&]<template <class> class M>() { registry[M<double>::name] = BoundLight<M>::bind(m); });
     m.attr("lights") = registry;
+    bind_sampled_lights(m);
+    bind_mesh_light(m);
+    bind_environment(m);
 }
 
 }  // namespace photograd

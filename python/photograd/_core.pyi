@@ -13,6 +13,8 @@ __all__: list[str] = [
     "BrickTopology",
     "Bvh",
     "CellTable",
+    "EmittingMesh",
+    "EnvironmentSampler",
     "MarchSettings",
     "Octree",
     "Op",
@@ -61,6 +63,7 @@ __all__: list[str] = [
     "exp",
     "expm1",
     "instruction_set",
+    "light_constant",
     "light_sky",
     "light_sun",
     "lights",
@@ -88,6 +91,16 @@ __all__: list[str] = [
     "sample_bricks_backward",
     "sample_mips",
     "sample_mips_backward",
+    "sampled_constant",
+    "sampled_directional",
+    "sampled_lights",
+    "sampled_point",
+    "sampled_quad",
+    "sampled_sky",
+    "sampled_sphere",
+    "sampled_spot",
+    "sampled_sun",
+    "sampled_triangle",
     "set_thread_count",
     "sh_colors",
     "sh_colors_backward",
@@ -1413,6 +1426,841 @@ class light_sky:
         Directions (N, 3) from uniform u2 (N, 2).
         """
 
+class light_constant:
+    """
+    A light at infinity. parameters (P,), constants (C,); directions (N, 3) of unit length, towards the light, in the world.
+    """
+    @staticmethod
+    def L(parameters: numpy.ndarray, constants: numpy.ndarray, w: numpy.ndarray) -> numpy.ndarray:
+        """
+        Radiance from directions w, (N, 3).
+        """
+    @staticmethod
+    def L_backward(
+        parameters: numpy.ndarray,
+        constants: numpy.ndarray,
+        w: numpy.ndarray,
+        d_L: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Adds dL/dparameters to d_parameters (P,) and returns it.
+        """
+    @staticmethod
+    def constants() -> list[tuple[str, int, float, float, str]]:
+        """
+        The same of what is not differentiated.
+        """
+    @staticmethod
+    def jvp(
+        parameters: numpy.ndarray, constants: numpy.ndarray, v: numpy.ndarray, w: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        Exact derivative of L along v (P,), (N, 3), float64.
+        """
+    @staticmethod
+    def parameters() -> list[tuple[str, int, float, float, str]]:
+        """
+        (name, scalars, lo, hi, unit) of each differentiated parameter.
+        """
+    @staticmethod
+    def pdf(parameters: numpy.ndarray, constants: numpy.ndarray, w: numpy.ndarray) -> numpy.ndarray:
+        """
+        Density of `sample` over solid angle, (N,).
+        """
+    @staticmethod
+    def sample(
+        parameters: numpy.ndarray, constants: numpy.ndarray, u2: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        Directions (N, 3) from uniform u2 (N, 2).
+        """
+
+class sampled_sun:
+    """
+    A light. parameters (P,), constants (C,); points (N, 3) in the world, directions w (N, 3) of unit length, from the points.
+    """
+    @staticmethod
+    def constants() -> list[tuple[str, int, float, float, str]]:
+        """
+        The same of what is not differentiated.
+        """
+    @staticmethod
+    def jvp(
+        parameters: numpy.ndarray,
+        constants: numpy.ndarray,
+        v: numpy.ndarray,
+        points: numpy.ndarray,
+        w: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Exact derivative of samples' radiance along v (P,), (N, 3), float64.
+        """
+    @staticmethod
+    def parameters() -> list[tuple[str, int, float, float, str]]:
+        """
+        (name, scalars, lo, hi, unit) of each differentiated parameter.
+        """
+    @staticmethod
+    def pdf(
+        parameters: numpy.ndarray, constants: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        Density of `sample` over solid angle, (N,); 0 of delta lights.
+        """
+    @staticmethod
+    def radiance(
+        parameters: numpy.ndarray, constants: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        What arrives at the points from w, (N, 3); 0 of delta lights.
+        """
+    @staticmethod
+    def radiance_backward(
+        parameters: numpy.ndarray,
+        constants: numpy.ndarray,
+        points: numpy.ndarray,
+        w: numpy.ndarray,
+        d_radiance: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Adds dL/dparameters to d_parameters (P,) and returns it.
+        """
+    @staticmethod
+    def sample(
+        parameters: numpy.ndarray,
+        constants: numpy.ndarray,
+        points: numpy.ndarray,
+        u2: numpy.ndarray,
+    ) -> tuple[typing.Any, ...]:
+        """
+        (direction (N, 3), distance (N,), radiance (N, 3), pdf (N,)).
+        """
+    @staticmethod
+    def sample_backward(
+        parameters: numpy.ndarray,
+        constants: numpy.ndarray,
+        points: numpy.ndarray,
+        w: numpy.ndarray,
+        d_radiance: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        The same for the radiance of samples whose directions are w.
+        """
+
+class sampled_sky:
+    """
+    A light. parameters (P,), constants (C,); points (N, 3) in the world, directions w (N, 3) of unit length, from the points.
+    """
+    @staticmethod
+    def constants() -> list[tuple[str, int, float, float, str]]:
+        """
+        The same of what is not differentiated.
+        """
+    @staticmethod
+    def jvp(
+        parameters: numpy.ndarray,
+        constants: numpy.ndarray,
+        v: numpy.ndarray,
+        points: numpy.ndarray,
+        w: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Exact derivative of samples' radiance along v (P,), (N, 3), float64.
+        """
+    @staticmethod
+    def parameters() -> list[tuple[str, int, float, float, str]]:
+        """
+        (name, scalars, lo, hi, unit) of each differentiated parameter.
+        """
+    @staticmethod
+    def pdf(
+        parameters: numpy.ndarray, constants: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        Density of `sample` over solid angle, (N,); 0 of delta lights.
+        """
+    @staticmethod
+    def radiance(
+        parameters: numpy.ndarray, constants: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        What arrives at the points from w, (N, 3); 0 of delta lights.
+        """
+    @staticmethod
+    def radiance_backward(
+        parameters: numpy.ndarray,
+        constants: numpy.ndarray,
+        points: numpy.ndarray,
+        w: numpy.ndarray,
+        d_radiance: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Adds dL/dparameters to d_parameters (P,) and returns it.
+        """
+    @staticmethod
+    def sample(
+        parameters: numpy.ndarray,
+        constants: numpy.ndarray,
+        points: numpy.ndarray,
+        u2: numpy.ndarray,
+    ) -> tuple[typing.Any, ...]:
+        """
+        (direction (N, 3), distance (N,), radiance (N, 3), pdf (N,)).
+        """
+    @staticmethod
+    def sample_backward(
+        parameters: numpy.ndarray,
+        constants: numpy.ndarray,
+        points: numpy.ndarray,
+        w: numpy.ndarray,
+        d_radiance: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        The same for the radiance of samples whose directions are w.
+        """
+
+class sampled_constant:
+    """
+    A light. parameters (P,), constants (C,); points (N, 3) in the world, directions w (N, 3) of unit length, from the points.
+    """
+    @staticmethod
+    def constants() -> list[tuple[str, int, float, float, str]]:
+        """
+        The same of what is not differentiated.
+        """
+    @staticmethod
+    def jvp(
+        parameters: numpy.ndarray,
+        constants: numpy.ndarray,
+        v: numpy.ndarray,
+        points: numpy.ndarray,
+        w: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Exact derivative of samples' radiance along v (P,), (N, 3), float64.
+        """
+    @staticmethod
+    def parameters() -> list[tuple[str, int, float, float, str]]:
+        """
+        (name, scalars, lo, hi, unit) of each differentiated parameter.
+        """
+    @staticmethod
+    def pdf(
+        parameters: numpy.ndarray, constants: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        Density of `sample` over solid angle, (N,); 0 of delta lights.
+        """
+    @staticmethod
+    def radiance(
+        parameters: numpy.ndarray, constants: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        What arrives at the points from w, (N, 3); 0 of delta lights.
+        """
+    @staticmethod
+    def radiance_backward(
+        parameters: numpy.ndarray,
+        constants: numpy.ndarray,
+        points: numpy.ndarray,
+        w: numpy.ndarray,
+        d_radiance: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Adds dL/dparameters to d_parameters (P,) and returns it.
+        """
+    @staticmethod
+    def sample(
+        parameters: numpy.ndarray,
+        constants: numpy.ndarray,
+        points: numpy.ndarray,
+        u2: numpy.ndarray,
+    ) -> tuple[typing.Any, ...]:
+        """
+        (direction (N, 3), distance (N,), radiance (N, 3), pdf (N,)).
+        """
+    @staticmethod
+    def sample_backward(
+        parameters: numpy.ndarray,
+        constants: numpy.ndarray,
+        points: numpy.ndarray,
+        w: numpy.ndarray,
+        d_radiance: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        The same for the radiance of samples whose directions are w.
+        """
+
+class sampled_point:
+    """
+    A light. parameters (P,), constants (C,); points (N, 3) in the world, directions w (N, 3) of unit length, from the points.
+    """
+    @staticmethod
+    def constants() -> list[tuple[str, int, float, float, str]]:
+        """
+        The same of what is not differentiated.
+        """
+    @staticmethod
+    def jvp(
+        parameters: numpy.ndarray,
+        constants: numpy.ndarray,
+        v: numpy.ndarray,
+        points: numpy.ndarray,
+        w: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Exact derivative of samples' radiance along v (P,), (N, 3), float64.
+        """
+    @staticmethod
+    def parameters() -> list[tuple[str, int, float, float, str]]:
+        """
+        (name, scalars, lo, hi, unit) of each differentiated parameter.
+        """
+    @staticmethod
+    def pdf(
+        parameters: numpy.ndarray, constants: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        Density of `sample` over solid angle, (N,); 0 of delta lights.
+        """
+    @staticmethod
+    def radiance(
+        parameters: numpy.ndarray, constants: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        What arrives at the points from w, (N, 3); 0 of delta lights.
+        """
+    @staticmethod
+    def radiance_backward(
+        parameters: numpy.ndarray,
+        constants: numpy.ndarray,
+        points: numpy.ndarray,
+        w: numpy.ndarray,
+        d_radiance: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Adds dL/dparameters to d_parameters (P,) and returns it.
+        """
+    @staticmethod
+    def sample(
+        parameters: numpy.ndarray,
+        constants: numpy.ndarray,
+        points: numpy.ndarray,
+        u2: numpy.ndarray,
+    ) -> tuple[typing.Any, ...]:
+        """
+        (direction (N, 3), distance (N,), radiance (N, 3), pdf (N,)).
+        """
+    @staticmethod
+    def sample_backward(
+        parameters: numpy.ndarray,
+        constants: numpy.ndarray,
+        points: numpy.ndarray,
+        w: numpy.ndarray,
+        d_radiance: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        The same for the radiance of samples whose directions are w.
+        """
+
+class sampled_directional:
+    """
+    A light. parameters (P,), constants (C,); points (N, 3) in the world, directions w (N, 3) of unit length, from the points.
+    """
+    @staticmethod
+    def constants() -> list[tuple[str, int, float, float, str]]:
+        """
+        The same of what is not differentiated.
+        """
+    @staticmethod
+    def jvp(
+        parameters: numpy.ndarray,
+        constants: numpy.ndarray,
+        v: numpy.ndarray,
+        points: numpy.ndarray,
+        w: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Exact derivative of samples' radiance along v (P,), (N, 3), float64.
+        """
+    @staticmethod
+    def parameters() -> list[tuple[str, int, float, float, str]]:
+        """
+        (name, scalars, lo, hi, unit) of each differentiated parameter.
+        """
+    @staticmethod
+    def pdf(
+        parameters: numpy.ndarray, constants: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        Density of `sample` over solid angle, (N,); 0 of delta lights.
+        """
+    @staticmethod
+    def radiance(
+        parameters: numpy.ndarray, constants: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        What arrives at the points from w, (N, 3); 0 of delta lights.
+        """
+    @staticmethod
+    def radiance_backward(
+        parameters: numpy.ndarray,
+        constants: numpy.ndarray,
+        points: numpy.ndarray,
+        w: numpy.ndarray,
+        d_radiance: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Adds dL/dparameters to d_parameters (P,) and returns it.
+        """
+    @staticmethod
+    def sample(
+        parameters: numpy.ndarray,
+        constants: numpy.ndarray,
+        points: numpy.ndarray,
+        u2: numpy.ndarray,
+    ) -> tuple[typing.Any, ...]:
+        """
+        (direction (N, 3), distance (N,), radiance (N, 3), pdf (N,)).
+        """
+    @staticmethod
+    def sample_backward(
+        parameters: numpy.ndarray,
+        constants: numpy.ndarray,
+        points: numpy.ndarray,
+        w: numpy.ndarray,
+        d_radiance: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        The same for the radiance of samples whose directions are w.
+        """
+
+class sampled_spot:
+    """
+    A light. parameters (P,), constants (C,); points (N, 3) in the world, directions w (N, 3) of unit length, from the points.
+    """
+    @staticmethod
+    def constants() -> list[tuple[str, int, float, float, str]]:
+        """
+        The same of what is not differentiated.
+        """
+    @staticmethod
+    def jvp(
+        parameters: numpy.ndarray,
+        constants: numpy.ndarray,
+        v: numpy.ndarray,
+        points: numpy.ndarray,
+        w: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Exact derivative of samples' radiance along v (P,), (N, 3), float64.
+        """
+    @staticmethod
+    def parameters() -> list[tuple[str, int, float, float, str]]:
+        """
+        (name, scalars, lo, hi, unit) of each differentiated parameter.
+        """
+    @staticmethod
+    def pdf(
+        parameters: numpy.ndarray, constants: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        Density of `sample` over solid angle, (N,); 0 of delta lights.
+        """
+    @staticmethod
+    def radiance(
+        parameters: numpy.ndarray, constants: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        What arrives at the points from w, (N, 3); 0 of delta lights.
+        """
+    @staticmethod
+    def radiance_backward(
+        parameters: numpy.ndarray,
+        constants: numpy.ndarray,
+        points: numpy.ndarray,
+        w: numpy.ndarray,
+        d_radiance: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Adds dL/dparameters to d_parameters (P,) and returns it.
+        """
+    @staticmethod
+    def sample(
+        parameters: numpy.ndarray,
+        constants: numpy.ndarray,
+        points: numpy.ndarray,
+        u2: numpy.ndarray,
+    ) -> tuple[typing.Any, ...]:
+        """
+        (direction (N, 3), distance (N,), radiance (N, 3), pdf (N,)).
+        """
+    @staticmethod
+    def sample_backward(
+        parameters: numpy.ndarray,
+        constants: numpy.ndarray,
+        points: numpy.ndarray,
+        w: numpy.ndarray,
+        d_radiance: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        The same for the radiance of samples whose directions are w.
+        """
+
+class sampled_quad:
+    """
+    A light. parameters (P,), constants (C,); points (N, 3) in the world, directions w (N, 3) of unit length, from the points.
+    """
+    @staticmethod
+    def constants() -> list[tuple[str, int, float, float, str]]:
+        """
+        The same of what is not differentiated.
+        """
+    @staticmethod
+    def jvp(
+        parameters: numpy.ndarray,
+        constants: numpy.ndarray,
+        v: numpy.ndarray,
+        points: numpy.ndarray,
+        w: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Exact derivative of samples' radiance along v (P,), (N, 3), float64.
+        """
+    @staticmethod
+    def parameters() -> list[tuple[str, int, float, float, str]]:
+        """
+        (name, scalars, lo, hi, unit) of each differentiated parameter.
+        """
+    @staticmethod
+    def pdf(
+        parameters: numpy.ndarray, constants: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        Density of `sample` over solid angle, (N,); 0 of delta lights.
+        """
+    @staticmethod
+    def radiance(
+        parameters: numpy.ndarray, constants: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        What arrives at the points from w, (N, 3); 0 of delta lights.
+        """
+    @staticmethod
+    def radiance_backward(
+        parameters: numpy.ndarray,
+        constants: numpy.ndarray,
+        points: numpy.ndarray,
+        w: numpy.ndarray,
+        d_radiance: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Adds dL/dparameters to d_parameters (P,) and returns it.
+        """
+    @staticmethod
+    def sample(
+        parameters: numpy.ndarray,
+        constants: numpy.ndarray,
+        points: numpy.ndarray,
+        u2: numpy.ndarray,
+    ) -> tuple[typing.Any, ...]:
+        """
+        (direction (N, 3), distance (N,), radiance (N, 3), pdf (N,)).
+        """
+    @staticmethod
+    def sample_backward(
+        parameters: numpy.ndarray,
+        constants: numpy.ndarray,
+        points: numpy.ndarray,
+        w: numpy.ndarray,
+        d_radiance: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        The same for the radiance of samples whose directions are w.
+        """
+
+class sampled_sphere:
+    """
+    A light. parameters (P,), constants (C,); points (N, 3) in the world, directions w (N, 3) of unit length, from the points.
+    """
+    @staticmethod
+    def constants() -> list[tuple[str, int, float, float, str]]:
+        """
+        The same of what is not differentiated.
+        """
+    @staticmethod
+    def jvp(
+        parameters: numpy.ndarray,
+        constants: numpy.ndarray,
+        v: numpy.ndarray,
+        points: numpy.ndarray,
+        w: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Exact derivative of samples' radiance along v (P,), (N, 3), float64.
+        """
+    @staticmethod
+    def parameters() -> list[tuple[str, int, float, float, str]]:
+        """
+        (name, scalars, lo, hi, unit) of each differentiated parameter.
+        """
+    @staticmethod
+    def pdf(
+        parameters: numpy.ndarray, constants: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        Density of `sample` over solid angle, (N,); 0 of delta lights.
+        """
+    @staticmethod
+    def radiance(
+        parameters: numpy.ndarray, constants: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        What arrives at the points from w, (N, 3); 0 of delta lights.
+        """
+    @staticmethod
+    def radiance_backward(
+        parameters: numpy.ndarray,
+        constants: numpy.ndarray,
+        points: numpy.ndarray,
+        w: numpy.ndarray,
+        d_radiance: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Adds dL/dparameters to d_parameters (P,) and returns it.
+        """
+    @staticmethod
+    def sample(
+        parameters: numpy.ndarray,
+        constants: numpy.ndarray,
+        points: numpy.ndarray,
+        u2: numpy.ndarray,
+    ) -> tuple[typing.Any, ...]:
+        """
+        (direction (N, 3), distance (N,), radiance (N, 3), pdf (N,)).
+        """
+    @staticmethod
+    def sample_backward(
+        parameters: numpy.ndarray,
+        constants: numpy.ndarray,
+        points: numpy.ndarray,
+        w: numpy.ndarray,
+        d_radiance: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        The same for the radiance of samples whose directions are w.
+        """
+
+class sampled_triangle:
+    """
+    A light. parameters (P,), constants (C,); points (N, 3) in the world, directions w (N, 3) of unit length, from the points.
+    """
+    @staticmethod
+    def constants() -> list[tuple[str, int, float, float, str]]:
+        """
+        The same of what is not differentiated.
+        """
+    @staticmethod
+    def jvp(
+        parameters: numpy.ndarray,
+        constants: numpy.ndarray,
+        v: numpy.ndarray,
+        points: numpy.ndarray,
+        w: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Exact derivative of samples' radiance along v (P,), (N, 3), float64.
+        """
+    @staticmethod
+    def parameters() -> list[tuple[str, int, float, float, str]]:
+        """
+        (name, scalars, lo, hi, unit) of each differentiated parameter.
+        """
+    @staticmethod
+    def pdf(
+        parameters: numpy.ndarray, constants: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        Density of `sample` over solid angle, (N,); 0 of delta lights.
+        """
+    @staticmethod
+    def radiance(
+        parameters: numpy.ndarray, constants: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        What arrives at the points from w, (N, 3); 0 of delta lights.
+        """
+    @staticmethod
+    def radiance_backward(
+        parameters: numpy.ndarray,
+        constants: numpy.ndarray,
+        points: numpy.ndarray,
+        w: numpy.ndarray,
+        d_radiance: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Adds dL/dparameters to d_parameters (P,) and returns it.
+        """
+    @staticmethod
+    def sample(
+        parameters: numpy.ndarray,
+        constants: numpy.ndarray,
+        points: numpy.ndarray,
+        u2: numpy.ndarray,
+    ) -> tuple[typing.Any, ...]:
+        """
+        (direction (N, 3), distance (N,), radiance (N, 3), pdf (N,)).
+        """
+    @staticmethod
+    def sample_backward(
+        parameters: numpy.ndarray,
+        constants: numpy.ndarray,
+        points: numpy.ndarray,
+        w: numpy.ndarray,
+        d_radiance: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        The same for the radiance of samples whose directions are w.
+        """
+
+class EmittingMesh:
+    """
+    Triangles that glow on their front sides.
+    """
+    def __init__(self, vertices: numpy.ndarray, faces: numpy.ndarray) -> None:
+        """
+        Vertices (V, 3) float64 in the world, faces (F, 3) uint32.
+        """
+    def pdf(
+        self, radiance: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        Density over solid angle with which `sample` draws what w meets first, (N,).
+        """
+    def radiance(
+        self, radiance: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        What arrives at the points from w, (N, 3).
+        """
+    def radiance_backward(
+        self,
+        radiance: numpy.ndarray,
+        points: numpy.ndarray,
+        w: numpy.ndarray,
+        d_radiance: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Adds dL/dradiance to d_parameters (3,) and returns it.
+        """
+    def sample(
+        self, radiance: numpy.ndarray, points: numpy.ndarray, u2: numpy.ndarray
+    ) -> tuple[typing.Any, ...]:
+        """
+        (direction (N, 3), distance (N,), radiance (N, 3), pdf (N,)).
+        """
+    def sample_backward(
+        self,
+        radiance: numpy.ndarray,
+        points: numpy.ndarray,
+        w: numpy.ndarray,
+        d_radiance: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        The same for the radiance of samples whose directions are w.
+        """
+    @property
+    def area(self) -> float:
+        """
+        Sum of all faces, m^2.
+        """
+
+class EnvironmentSampler:
+    """
+    Draws directions towards the bright parts of a map.
+    """
+    def __init__(
+        self, texels: numpy.ndarray, uniform_share: typing.SupportsFloat | typing.SupportsIndex
+    ) -> None:
+        """
+        Texels (H, 2 H, 3); uniform_share of the samples go everywhere alike.
+        """
+    def pdf(
+        self,
+        texels: numpy.ndarray,
+        world_from_map: numpy.ndarray,
+        points: numpy.ndarray,
+        w: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Density of `sample` over solid angle, (N,).
+        """
+    def radiance(
+        self,
+        texels: numpy.ndarray,
+        world_from_map: numpy.ndarray,
+        points: numpy.ndarray,
+        w: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        What arrives from w, (N, 3).
+        """
+    def radiance_backward(
+        self,
+        texels: numpy.ndarray,
+        world_from_map: numpy.ndarray,
+        points: numpy.ndarray,
+        w: numpy.ndarray,
+        d_radiance: numpy.ndarray,
+        d_texels: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Adds dL/dtexels to d_texels (H, 2 H, 3) and returns it.
+        """
+    def sample(
+        self,
+        texels: numpy.ndarray,
+        world_from_map: numpy.ndarray,
+        points: numpy.ndarray,
+        u2: numpy.ndarray,
+    ) -> tuple[typing.Any, ...]:
+        """
+        (direction (N, 3), distance (N,), radiance (N, 3), pdf (N,)).
+        """
+    def sample_backward(
+        self,
+        texels: numpy.ndarray,
+        world_from_map: numpy.ndarray,
+        points: numpy.ndarray,
+        w: numpy.ndarray,
+        d_radiance: numpy.ndarray,
+        d_texels: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        The same for the radiance of samples whose directions are w.
+        """
+
 class phase_henyey_greenstein:
     """
     A phase function. parameters (P,); cos_theta (N,) of the angle by which light turns.
@@ -2534,10 +3382,21 @@ delta_bsdfs: dict[str, typing.Any] = {
     "glass": delta_bsdf_glass,
     "thin_glass": delta_bsdf_thin_glass,
 }
-lights: dict[str, typing.Any] = {"sun": light_sun, "sky": light_sky}
+lights: dict[str, typing.Any] = {"sun": light_sun, "sky": light_sky, "constant": light_constant}
 ops: dict[str, typing.Any]
 phases: dict[str, typing.Any] = {
     "henyey_greenstein": phase_henyey_greenstein,
     "cornette_shanks": phase_cornette_shanks,
+}
+sampled_lights: dict[str, typing.Any] = {
+    "sun": sampled_sun,
+    "sky": sampled_sky,
+    "constant": sampled_constant,
+    "point": sampled_point,
+    "directional": sampled_directional,
+    "spot": sampled_spot,
+    "quad": sampled_quad,
+    "sphere": sampled_sphere,
+    "triangle": sampled_triangle,
 }
 tiny_network_parameters: int = 132

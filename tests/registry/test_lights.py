@@ -19,6 +19,7 @@ DIRECTION = np.array([2.0, 3.0, -6.0]) / 7.0
 CONSTANTS: dict[str, dict[str, Any]] = {
     "sun": {"direction": DIRECTION, "height": cap_height(0.3)},
     "sky": {},
+    "constant": {},
 }
 COUNT = 24
 

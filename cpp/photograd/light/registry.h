@@ -1,11 +1,24 @@
-// All lights. A new one: its header, and its name here.
+// All lights of a fixed number of parameters. A new one: its header, and its name here. Meshes and environment maps,
+// whose size is not fixed, have bindings of their own.
 #pragma once
 
+#include "photograd/light/constant_light.h"
+#include "photograd/light/directional_light.h"
+#include "photograd/light/point_light.h"
+#include "photograd/light/quad_light.h"
 #include "photograd/light/sky.h"
+#include "photograd/light/sphere_light.h"
+#include "photograd/light/spot_light.h"
 #include "photograd/light/sun.h"
+#include "photograd/light/triangle_light.h"
 
 namespace photograd {
 
-using Lights = ModelList<Sun, Sky>;
+/// At infinity: radiance by direction alone.
+using Lights = ModelList<Sun, Sky, ConstantLight>;
+
+/// The others, at a place or of one direction.
+using PlacedLights =
+    ModelList<PointLight, DirectionalLight, SpotLight, QuadLight, SphereLight, TriangleLight>;
 
 }  // namespace photograd

@@ -23,12 +23,7 @@ struct Sun {
     static constexpr auto constants =
         describe(p("direction", &Sun::direction, -1.0, 1.0), p("height", &Sun::height, 1e-6, 1.0));
 
-    /// |w - direction|^2 = 2 (1 - cos) tells apart angles that a float cosine cannot. A hair more than the
-    /// disc, so that samples on its rim belong to it after rounding.
-    [[nodiscard]] bool contains(const Vec3<R>& w) const {
-        const Vec3<R> apart = w - direction;
-        return dot(apart, apart) <= R(2.0001) * height;
-    }
+    [[nodiscard]] bool contains(const Vec3<R>& w) const { return in_cap(w, direction, height); }
     Vec3<R> L(const Vec3<R>& w) const { return radiance * (contains(w) ? R(1) : R(0)); }
     void L_backward(const Vec3<R>& w, const Vec3<R>& d_L, Sun& d_self) const {
         d_self.radiance += d_L * (contains(w) ? R(1) : R(0));

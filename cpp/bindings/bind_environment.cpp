@@ -1,0 +1,124 @@
+// Environment maps: texels are arrays of the caller; the table by which directions are drawn is kept between calls.
+#include "light_calls.h"
+#include "photograd/light/environment_gradient.h"
+
+namespace photograd {
+namespace {
+
+template <class R>
+int height_of(ArrayArgs& args, const char* name, const py::array& texels) {
+    constexpr std::int64_t tallest = 1 << 14;
+    const std::int64_t h = args.size("H"), w = args.size("W");
+    if (h < 1 || h > tallest || w != 2 * h)
+        fail(ErrorKind::shape, "environment", name,
+             "shape (H, 2 H, 3), H at most " + std::to_string(tallest),
+             "(" + std::to_string(h) + ", " + std::to_string(w) + ", " +
+                 std::to_string(texels.shape(2)) + ")",
+             "a map of all directions is twice as wide as high");
+    return static_cast<int>(h);
+}
+
+std::unique_ptr<EnvironmentSampler> make_sampler(const py::array& texels, double uniform_share) {
+    return dispatch_real("EnvironmentSampler", "texels", texels, [&](auto real) {
+        using R = decltype(real);
+        ArrayArgs args("EnvironmentSampler");
+        const R* data = args.in<R>("texels", texels, "H W 3");
+        const int height = height_of<R>(args, "texels", texels);
+        const std::span<const R> all(data, static_cast<std::size_t>(texels.size()));
+        const py::gil_scoped_release release;
+        return std::make_unique<EnvironmentSampler>(all, height, uniform_share);
+    });
+}
+
+template <class R>
+Mat3<R> rotation_in(ArrayArgs& args, const py::array& world_from_map) {
+    const R* m = args.in<R>("world_from_map", world_from_map, "3 3");
+    Mat3<R> rotation;
+    for (int column = 0; column < 3; ++column)
+        for (int row = 0; row < 3; ++row) rotation[column][row] = m[3 * row + column];
+    return rotation;
+}
+
+template <class R>
+Environment<R> environment_in(ArrayArgs& args, const EnvironmentSampler& sampler,
+                              const py::array& texels, const py::array& world_from_map) {
+    const R* data = args.in<R>("texels", texels, "H W 3");
+    const int height = height_of<R>(args, "texels", texels);
+    return {data, height, rotation_in<R>(args, world_from_map), &sampler};
+}
+
+/// w is enough: an environment is the same from all points.
+py::array backward(const EnvironmentSampler& sampler, const py::array& texels,
+                   const py::array& world_from_map, const py::array& points, const py::array& w,
+                   const py::array& d_radiance, py::array d_texels) {
+    return dispatch_real("radiance_backward", "texels", texels, [&](auto real) -> py::array {
+        using R = decltype(real);
+        ArrayArgs args("radiance_backward");
+        const Environment<R> light = environment_in<R>(args, sampler, texels, world_from_map);
+        args.in<R>("points", points, "N 3");
+        const R* in = args.in<R>("w", w, "N 3");
+        const R* d = args.in<R>("d_radiance", d_radiance, "N 3");
+        R* out = args.out<R>("d_texels", d_texels, "H W 3");
+        {
+            const py::gil_scoped_release release;
+            environment_backward(light, in, d, args.size("N"), out);
+        }
+        return d_texels;
+    });
+}
+
+}  // namespace
+
+void bind_environment(py::module_& m) {
+    const auto t = py::arg("texels");
+    const auto r = py::arg("world_from_map");
+    py::class_<EnvironmentSampler>(m, "EnvironmentSampler",
+                                   "Draws directions towards the bright parts of a map.")
+        .def(py::init(&make_sampler), t, py::arg("uniform_share"),
+             "Texels (H, 2 H, 3); uniform_share of the samples go everywhere alike.")
+        .def(
+            "sample",
+            [](const EnvironmentSampler& sampler, const py::array& texels,
+               const py::array& world_from_map, const py::array& points, const py::array& u2) {
+                return dispatch_real("sample", "texels", texels, [&](auto real) -> py::tuple {
+                    using R = decltype(real);
+                    ArrayArgs args("sample");
+                    const auto light = environment_in<R>(args, sampler, texels, world_from_map);
+                    return sample_rows<R>(args, light, points, u2);
+                });
+            },
+            t, r, py::arg("points"), py::arg("u2"),
+            "(direction (N, 3), distance (N,), radiance (N, 3), pdf (N,)).")
+        .def(
+            "radiance",
+            [](const EnvironmentSampler& sampler, const py::array& texels,
+               const py::array& world_from_map, const py::array& points, const py::array& w) {
+                return dispatch_real("radiance", "texels", texels, [&](auto real) -> py::array {
+                    using R = decltype(real);
+                    ArrayArgs args("radiance");
+                    const auto light = environment_in<R>(args, sampler, texels, world_from_map);
+                    return radiance_rows<R>(args, light, points, w);
+                });
+            },
+            t, r, py::arg("points"), py::arg("w"), "What arrives from w, (N, 3).")
+        .def(
+            "pdf",
+            [](const EnvironmentSampler& sampler, const py::array& texels,
+               const py::array& world_from_map, const py::array& points, const py::array& w) {
+                return dispatch_real("pdf", "texels", texels, [&](auto real) -> py::array {
+                    using R = decltype(real);
+                    ArrayArgs args("pdf");
+                    const auto light = environment_in<R>(args, sampler, texels, world_from_map);
+                    return pdf_rows<R>(args, light, points, w);
+                });
+            },
+            t, r, py::arg("points"), py::arg("w"), "Density of `sample` over solid angle, (N,).")
+        .def("radiance_backward", &backward, t, r, py::arg("points"), py::arg("w"),
+             py::arg("d_radiance"), py::arg("d_texels"),
+             "Adds dL/dtexels to d_texels (H, 2 H, 3) and returns it.")
+        .def("sample_backward", &backward, t, r, py::arg("points"), py::arg("w"),
+             py::arg("d_radiance"), py::arg("d_texels"),
+             "The same for the radiance of samples whose directions are w.");
+}
+
+}  // namespace photograd

@@ -1,0 +1,119 @@
+// Lights as functions on arrays of points and directions, whatever the light: light/sample_light.h, row by row.
+#pragma once
+
+#include <cmath>
+
+#include "model_args.h"
+#include "photograd/light/sample_light.h"
+
+namespace photograd {
+
+void bind_sampled_lights(py::module_& m);
+void bind_mesh_light(py::module_& m);
+void bind_environment(py::module_& m);
+
+/// A light from its flat parameters and constants.
+template <class T, class R>
+T light_of(ArrayArgs& args, const py::array& parameters, const py::array& constants) {
+    T light;
+    const R* p = args.in<R>("parameters", parameters, std::to_string(scalars_in(T::params)));
+    const R* c = args.in<R>("constants", constants, std::to_string(scalars_in(T::constants)));
+    for_each_scalar(T::params, [&](R& x) { x = *p++; }, light);
+    for_each_scalar(T::constants, [&](R& x) { x = *c++; }, light);
+    return light;
+}
+
+/// Refuses colours that are negative, numbers that are not finite, and what the light itself finds wrong.
+template <class R, class T>
+void check_light(const ArrayArgs& args, const T& light) {
+    const auto check = [&](const char* name, const auto& value, bool color) {
+        for (int i = 0; i < 3; ++i) {
+            R x;
+            if constexpr (std::is_same_v<std::remove_cvref_t<decltype(value)>, R>)
+                x = value;
+            else
+                x = value[i];
+            if (!std::isfinite(x) || (color && x < R(0)))
+                args.range(name, color ? "finite numbers that are not negative" : "finite numbers",
+                           std::to_string(x));
+        }
+    };
+    const auto each = [&](const auto& description, bool parameters) {
+        std::apply(
+            [&](const auto&... q) {
+                (check(q.name, light.*q.member, parameters && value_scalars(q) == 3), ...);
+            },
+            description);
+    };
+    each(T::params, true);
+    if constexpr (requires { T::constants; }) each(T::constants, false);
+    if constexpr (requires { light.fault(); }) {
+        const LightFault fault = light.fault();
+        if (fault.argument) args.range(fault.argument, fault.expected, "none such");
+    }
+}
+
+/// (direction (N, 3), distance (N,), radiance (N, 3), pdf (N,)) of one sample for each point.
+template <class R, class L>
+py::tuple sample_rows(ArrayArgs& args, const L& light, const py::array& points,
+                      const py::array& u2) {
+    const R* x = args.in<R>("points", points, "N 3");
+    const R* u = args.in<R>("u2", u2, "N 2");
+    const std::int64_t count = args.size("N");
+    py::array_t<R> direction({count, std::int64_t(3)}), radiance({count, std::int64_t(3)});
+    py::array_t<R> distance(count), pdf(count);
+    R *w = direction.mutable_data(), *color = radiance.mutable_data();
+    R *t = distance.mutable_data(), *density = pdf.mutable_data();
+    for_each_row(count, [&](std::int64_t n) {
+        const LightSample<R> s =
+            sample_light(light, vec3_at(x, n), Vec2<R>(u[2 * n], u[2 * n + 1]));
+        put_vec3(w, n, s.direction);
+        put_vec3(color, n, s.radiance);
+        t[n] = s.distance;
+        density[n] = s.pdf;
+    });
+    return py::make_tuple(direction, distance, radiance, pdf);
+}
+
+template <class R, class L>
+py::array radiance_rows(ArrayArgs& args, const L& light, const py::array& points,
+                        const py::array& w) {
+    const R *x = args.in<R>("points", points, "N 3"), *in = args.in<R>("w", w, "N 3");
+    py::array_t<R> out({args.size("N"), std::int64_t(3)});
+    R* value = out.mutable_data();
+    for_each_row(args.size("N"), [&](std::int64_t n) {
+        put_vec3(value, n, light_radiance(light, vec3_at(x, n), vec3_at(in, n)));
+    });
+    return out;
+}
+
+template <class R, class L>
+py::array pdf_rows(ArrayArgs& args, const L& light, const py::array& points, const py::array& w) {
+    const R *x = args.in<R>("points", points, "N 3"), *in = args.in<R>("w", w, "N 3");
+    py::array_t<R> out(args.size("N"));
+    R* density = out.mutable_data();
+    for_each_row(args.size("N"), [&](std::int64_t n) {
+        density[n] = light_pdf(light, vec3_at(x, n), vec3_at(in, n));
+    });
+    return out;
+}
+
+/// Adds dL/dparameters to d_parameters (P,); `of_sample`: w are directions that `sample` gave.
+template <class R, class L>
+void add_light_rows(ArrayArgs& args, const L& light, bool of_sample, const py::array& points,
+                    const py::array& w, const py::array& d_radiance, py::array& d_parameters) {
+    const R *x = args.in<R>("points", points, "N 3"), *in = args.in<R>("w", w, "N 3");
+    const R* d = args.in<R>("d_radiance", d_radiance, "N 3");
+    R* out = args.out<R>("d_parameters", d_parameters, std::to_string(parameter_count<L>()));
+    add_parameter_rows<R, L>(args.size("N"), true, out, [&](std::int64_t n) {
+        L d_light = zero_model<L, R>();
+        const Vec3<R> point = vec3_at(x, n), direction = vec3_at(in, n), d_out = vec3_at(d, n);
+        if (of_sample)
+            sample_light_backward(light, point, direction, d_out, d_light);
+        else
+            light_radiance_backward(light, point, direction, d_out, d_light);
+        return d_light;
+    });
+}
+
+}  // namespace photograd

@@ -1,0 +1,78 @@
+// Light from all around, painted on a picture of all directions (lat_long.h).
+//
+//   L(w) = sum over the four texels around w's place of weight * texel       weights bilinear, columns going around
+//   dL/dtexel = weight
+//
+// The picture may be turned: world_from_map takes directions of the picture to those of the world. Turning moves
+// every texel's edges through the scene; no derivative by it is given.
+#pragma once
+
+#include "photograd/light/environment_sampler.h"
+#include "photograd/light/lat_long.h"
+#include "photograd/light/light.h"
+
+namespace photograd {
+
+/// Texels (H, 2 H, 3) that a direction sees, as numbers row * 2 H + column, and their weights.
+template <class R>
+struct EnvironmentTaps {
+    std::int64_t texel[4];
+    R weight[4];
+};
+
+template <class R>
+EnvironmentTaps<R> environment_taps(const Vec3<R>& w, int height) {
+    const Vec2<double> uv = lat_long_from_direction({double(w.x), double(w.y), double(w.z)});
+    const TexelPair column = columns_at(uv.x, 2 * height), row = rows_at(uv.y, height);
+    const double f = column.fraction, g = row.fraction;
+    const auto texel = [&](int r, int c) { return static_cast<std::int64_t>(r) * 2 * height + c; };
+    return {{texel(row.first, column.first), texel(row.first, column.second),
+             texel(row.second, column.first), texel(row.second, column.second)},
+            {R((1 - g) * (1 - f)), R((1 - g) * f), R(g * (1 - f)), R(g * f)}};
+}
+
+/// A view: texels and sampler belong to the caller. The sampler may have been built from other texels, as while a
+/// picture is being recovered: its density is its own, and the estimate stays right wherever it is not zero.
+template <class R>
+struct Environment {
+    const R* texels;
+    int height;
+    Mat3<R> world_from_map;
+    const EnvironmentSampler* sampler;
+
+    static constexpr const char* name = "environment";
+
+    [[nodiscard]] EnvironmentTaps<R> taps(const Vec3<R>& w) const {
+        return environment_taps(map_from_world(w), height);
+    }
+    Vec3<R> L(const Vec3<R>& w) const {
+        const EnvironmentTaps<R> at = taps(w);
+        Vec3<R> radiance(R(0));
+        for (int k = 0; k < 4; ++k)
+            for (int c = 0; c < 3; ++c) radiance[c] += at.weight[k] * texels[3 * at.texel[k] + c];
+        return radiance;
+    }
+    /// Adds to d_texels (H, 2 H, 3). Threads that share them scatter by owner instead, from `taps`
+    /// (environment_gradient.h).
+    void L_backward(const Vec3<R>& w, const Vec3<R>& d_L, R* d_texels) const {
+        const EnvironmentTaps<R> at = taps(w);
+        for (int k = 0; k < 4; ++k)
+            for (int c = 0; c < 3; ++c) d_texels[3 * at.texel[k] + c] += at.weight[k] * d_L[c];
+    }
+
+    Vec3<R> sample(const Vec2<R>& u2) const {
+        const Vec3<double> w = sampler->sample({double(u2.x), double(u2.y)});
+        return world_from_map * Vec3<R>(R(w.x), R(w.y), R(w.z));
+    }
+    R pdf(const Vec3<R>& w) const {
+        const Vec3<R> local = map_from_world(w);
+        return R(sampler->pdf({double(local.x), double(local.y), double(local.z)}));
+    }
+
+private:
+    [[nodiscard]] Vec3<R> map_from_world(const Vec3<R>& w) const {
+        return {dot(world_from_map[0], w), dot(world_from_map[1], w), dot(world_from_map[2], w)};
+    }
+};
+
+}  // namespace photograd

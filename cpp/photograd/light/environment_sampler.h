@@ -1,0 +1,49 @@
+// Directions drawn towards the bright parts of an environment map.
+//
+// Between texel centres the map is cut into cells: bands between the heights of neighbouring rows of centres, each as
+// long as the map is wide, and two half bands at the poles. The density over solid angle is
+//
+//   pdf(w) = b(x, s) / integral of b over the sphere
+//
+// with b bilinear between the brightnesses of a cell's corners, x along the row and s = the part of the cell's solid
+// angle above w (on a sphere, equal heights are equal areas: s is linear in w.y). The map itself is bilinear in the
+// angle instead of the height. Both agree at the corners and are zero in the same places, so their ratio stays bounded:
+// between 2/3 and 2 at the poles, close to 1 elsewhere, exactly 1 for a map of one colour. Nothing is divided by the sine
+// of theta.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "photograd/core/real.h"
+#include "photograd/sampling/bilinear_patch.h"
+#include "photograd/sampling/distribution_2d.h"
+
+namespace photograd {
+
+class EnvironmentSampler {
+public:
+    /// Texels (H, 2 H, 3). `uniform_share` of the samples go everywhere alike: with 0, directions that are black now
+    /// are never drawn, and if the texels change later, nothing would be known of them. A map without any
+    /// light is sampled uniformly.
+    /// Refuses (RangeError) texels that are negative or not finite, and a share outside of [0, 1].
+    template <Real R>
+    EnvironmentSampler(std::span<const R> texels, int height, double uniform_share);
+
+    /// A direction in the frame of the map.
+    [[nodiscard]] Vec3<double> sample(const Vec2<double>& u2) const;
+    /// Its density over solid angle.
+    [[nodiscard]] double pdf(const Vec3<double>& w) const;
+    [[nodiscard]] int height() const { return height_; }
+
+private:
+    [[nodiscard]] BilinearPatch<double> corners(std::int64_t band, std::int64_t column) const;
+
+    int height_;
+    std::vector<float> brightness_;  // (H, 2 H)
+    std::vector<double> drop_;  // (H + 2): 1 - height of the bands' edges, from the zenith down
+    Distribution2D cells_;      // (H + 1, 2 H), by brightness times solid angle
+    double density_scale_;      // 1 / integral of the brightness over the sphere
+};
+
+}  // namespace photograd

@@ -1,0 +1,85 @@
+// A glowing rectangle, sampled by the solid angle that it fills: all its light arrives with one weight, and what is left
+// of the noise is the receiving surface's cosine and shadows.
+//
+//   L(point, w) = radiance where w meets the rectangle's front,    dL/dradiance = 1 there
+//
+// The front is the side of edge_x x edge_y. Where the rectangle fills less than 1e-6 sr, its solid angle is not known
+// well enough and points are drawn evenly over its area instead.
+#pragma once
+
+#include "photograd/light/glow.h"
+#include "photograd/sampling/spherical_rectangle.h"
+
+namespace photograd {
+
+template <class R>
+struct QuadLight {
+    Vec3<R> radiance{R(1)};
+    Vec3<R> corner{R(-0.5), R(0), R(-0.5)}, edge_x{R(1), R(0), R(0)}, edge_y{R(0), R(0), R(1)};
+
+    static constexpr const char* name = "quad";
+    static constexpr auto params =
+        describe(p("radiance", &QuadLight::radiance, 0.0, 10.0, "W/(m^2 sr)"));
+    static constexpr auto constants = describe(p("corner", &QuadLight::corner, -1.0, 1.0, "m"),
+                                               p("edge_x", &QuadLight::edge_x, -1.0, 1.0, "m"),
+                                               p("edge_y", &QuadLight::edge_y, -1.0, 1.0, "m"));
+
+    [[nodiscard]] LightFault fault() const {
+        const R x2 = dot(edge_x, edge_x), y2 = dot(edge_y, edge_y), xy = dot(edge_x, edge_y);
+        if (!(x2 > R(0)) || !(y2 > R(0))) return {"edge_x, edge_y", "edges of some length"};
+        if (!(xy * xy <= R(1e-8) * x2 * y2)) return {"edge_x, edge_y", "perpendicular edges"};
+        return {};
+    }
+    Vec3<R> L(const Vec3<R>& point, const Vec3<R>& w) const {
+        return meet(point, w).cosine > R(0) ? radiance : Vec3<R>(R(0));
+    }
+    void L_backward(const Vec3<R>& point, const Vec3<R>& w, const Vec3<R>& d_L,
+                    QuadLight& d_self) const {
+        if (meet(point, w).cosine > R(0)) d_self.radiance += d_L;
+    }
+
+    LightSample<R> sample(const Vec3<R>& point, const Vec2<R>& u2) const {
+        const Vec3<R> normal = cross(edge_x, edge_y), from = corner - point;
+        if (!(dot(from, normal) < R(0))) return {};
+        const SphericalRectangle seen = seen_from(point);
+        if (seen.solid_angle < smallest)
+            return glow_sample(from + u2.x * edge_x + u2.y * edge_y, normalize(normal),
+                               R(1) / length(normal), radiance);
+        const Vec3<double> to = seen.sample({double(u2.x), double(u2.y)});
+        const double r = length(to);
+        const Vec3<double> w = to * (1 / r);
+        return {{R(w.x), R(w.y), R(w.z)}, R(r), radiance, R(1 / seen.solid_angle), false};
+    }
+    R pdf(const Vec3<R>& point, const Vec3<R>& w) const {
+        const Meeting at = meet(point, w);
+        if (!(at.cosine > R(0))) return R(0);
+        const double solid_angle = seen_from(point).solid_angle;
+        if (solid_angle >= smallest) return R(1 / solid_angle);
+        return solid_angle_density(R(1) / length(cross(edge_x, edge_y)), at.t * at.t, at.cosine);
+    }
+
+private:
+    static constexpr double smallest = 1e-6;  // sr
+
+    struct Meeting {
+        R t, cosine;  // cosine 0: w misses the front
+    };
+    [[nodiscard]] Meeting meet(const Vec3<R>& point, const Vec3<R>& w) const {
+        const Vec3<R> normal = normalize(cross(edge_x, edge_y)), from = corner - point;
+        const R cosine = -dot(w, normal), t = -dot(from, normal) / cosine;
+        if (!(cosine > R(0)) || !(t > R(0))) return {R(0), R(0)};
+        const Vec3<R> inside = w * t - from;
+        const R x = dot(inside, edge_x) / dot(edge_x, edge_x),
+                y = dot(inside, edge_y) / dot(edge_y, edge_y);
+        const bool hit = x >= R(0) && x <= R(1) && y >= R(0) && y <= R(1);
+        return {t, hit ? cosine : R(0)};
+    }
+    [[nodiscard]] SphericalRectangle seen_from(const Vec3<R>& point) const {
+        const auto wide = [](const Vec3<R>& v) { return Vec3<double>(v.x, v.y, v.z); };
+        return {wide(corner) - wide(point), wide(edge_x), wide(edge_y)};
+    }
+};
+
+static_assert(AreaLight<QuadLight>);
+
+}  // namespace photograd

@@ -1,0 +1,113 @@
+"""Light from all around, painted on a picture of all directions."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from photograd.core import _core
+from photograd.errors import DtypeError, RangeError, ShapeError, message
+from photograd.lights.base import Array, Light
+
+
+def about_y(angle: float) -> Array:
+    """Rotation (3, 3) about +Y, counterclockwise seen against it, for `angle` in radians.
+
+    As `world_from_map` it turns what the middle of the picture shows from +Z towards +X.
+    """
+    c, s = math.cos(angle), math.sin(angle)
+    return np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]])
+
+
+@dataclass(frozen=True, eq=False)
+class EnvironmentMap(Light):
+    """Radiance by direction, bilinear between texels, sampled towards its bright parts.
+
+    The picture is twice as wide as high. Its upper edge is the zenith +Y, its middle shows +Z and
+    its left and right edges -Z; it is seen from inside, so that -X is to the right of +Z.
+
+    Attributes:
+        texels: (H, 2 H, 3), float32 or float64, W/(m^2 sr), row 0 on top.
+        world_from_map: rotation (3, 3), for example `about_y(angle)`.
+        uniform_share: part of the samples that go everywhere alike, in [0, 1]. With 0, directions
+            that are black are never drawn, and a fit would learn nothing about them.
+
+    Raises:
+        DtypeError: texels that are not float32 or float64.
+        ShapeError: a picture that is not twice as wide as high, a rotation that is not (3, 3).
+        RangeError: texels that are negative or not finite, a matrix that does more than rotate, a
+            share outside of [0, 1].
+    """
+
+    texels: Array
+    world_from_map: Array = field(default_factory=lambda: np.eye(3))
+    uniform_share: float = 0.0
+
+    def __post_init__(self) -> None:
+        texels = np.asarray(self.texels)
+        if texels.dtype not in (np.float32, np.float64):
+            raise DtypeError(
+                message("EnvironmentMap", "texels", "float32 or float64", texels.dtype)
+            )
+        if texels.ndim != 3 or texels.shape[2] != 3:
+            raise ShapeError(message("EnvironmentMap", "texels", "shape (H, 2 H, 3)", texels.shape))
+        texels = np.ascontiguousarray(texels)
+        object.__setattr__(self, "texels", texels)
+        object.__setattr__(self, "world_from_map", checked_rotation(self.world_from_map))
+        sampler = _core.EnvironmentSampler(texels, float(self.uniform_share))
+        object.__setattr__(self, "_sampler", sampler)
+
+    def with_texels(self, texels: Array) -> EnvironmentMap:
+        """The same map with other texels, sampled as before: for the steps of a fit.
+
+        Estimates stay right as long as this map's density is not zero where the new one is bright,
+        which a `uniform_share` above 0 sees to. Make a new map from time to time: samples go where
+        light was when it was made.
+
+        Raises:
+            ShapeError, DtypeError: texels of another shape or dtype.
+            RangeError: texels that are negative, above 1e30 or not finite.
+        """
+        texels = np.ascontiguousarray(texels)
+        if texels.shape != self.texels.shape:
+            expected = f"shape {self.texels.shape}"
+            raise ShapeError(message("with_texels", "texels", expected, texels.shape))
+        if texels.dtype != self.texels.dtype:
+            raise DtypeError(message("with_texels", "texels", f"{self.texels.dtype}", texels.dtype))
+        if not ((texels >= 0.0) & (texels <= 1e30)).all():
+            raise RangeError(
+                message("with_texels", "texels", "numbers from 0 to 1e30", "others among them")
+            )
+        other = object.__new__(EnvironmentMap)
+        for name, value in {**vars(self), "texels": texels}.items():
+            object.__setattr__(other, name, value)
+        return other
+
+    def core_call(self, dtype: npt.DTypeLike) -> tuple[Any, tuple[Array, ...]]:
+        """The core's table of directions; texels (H, 2 H, 3) and the rotation."""
+        return (
+            vars(self)["_sampler"],
+            (self.texels.astype(dtype, copy=False), self.world_from_map.astype(dtype)),
+        )
+
+    def named(self, derivative: Array) -> dict[str, Array]:
+        """{"texels": (H, 2 H, 3)}."""
+        return {"texels": derivative}
+
+
+def checked_rotation(matrix: Any) -> Array:
+    """`matrix` in float64 if it is a rotation."""
+    rotation = np.ascontiguousarray(matrix, np.float64)
+    if rotation.shape != (3, 3):
+        raise ShapeError(
+            message("EnvironmentMap", "world_from_map", "shape (3, 3)", rotation.shape)
+        )
+    # The last comparison is False for NaN.
+    fits = np.abs(rotation @ rotation.T - np.eye(3)).max() <= 1e-5
+    if not fits or np.linalg.det(rotation) < 0.0:
+        raise RangeError(message("EnvironmentMap", "world_from_map", "a rotation", rotation))
+    return rotation
