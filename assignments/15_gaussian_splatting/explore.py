@@ -110,7 +110,7 @@ start = cloud(min(120, most), np.random.default_rng(seed))
 frames, began = [], time.perf_counter()
 
 
-def watch(step, scene, loss):
+def watch(step, scene, _):
     """Says how far the fit has come, and keeps frames of it."""
     if step % max(1, steps // 40) == 0:
         shown, _ = mine.picture(scene, unseen[0][0], BACKGROUND)
@@ -134,7 +134,9 @@ def byte(shown):
     return (255 * np.clip(shown, 0, 1) + 0.5).astype(np.uint8)
 
 
-large = [Image.fromarray(byte(each)).resize((256, 256), Image.Resampling.NEAREST) for each in frames]
+large = [
+    Image.fromarray(byte(each)).resize((256, 256), Image.Resampling.NEAREST) for each in frames
+]
 large[0].save("fit.gif", save_all=True, append_images=large[1:], duration=120, loop=0)
 print("fit.gif: a new view while it is learned")
 
@@ -219,7 +221,11 @@ wide = np.array([[[0.09, 0.02, 0.01], [0.02, 0.06, 0.0], [0.01, 0.0, 0.04]]])
 g = np.array([[0.3, -0.7, 0.5]])
 by_mean = differences(lambda x: mine.project(x, wide, lens)[1], world, g)
 by_depth = by_mean[0] @ lens["camera_from_world"][2, :3]
-A = np.array([[1, 0, -high], [0, 1, -point[0, 1] / point[0, 2]]]) * lens["focal"][:, None] / point[0, 2]
+A = (
+    np.array([[1, 0, -high], [0, 1, -point[0, 1] / point[0, 2]]])
+    * lens["focal"][:, None]
+    / point[0, 2]
+)
 V = lens["camera_from_world"][:, :3] @ wide[0] @ lens["camera_from_world"][:, :3].T
 G = np.array([[g[0, 0], g[0, 1] / 2], [g[0, 1] / 2, g[0, 2]]])
 slopes = 2 * G @ A @ V
@@ -259,7 +265,11 @@ def of_the_core():
         def back(d_shown):
             got = splat.render_backward(context, np.ascontiguousarray(d_shown))
             rest = {"colors": got.gaussians["sh"][:, 0] / Y0, "pull": np.abs(got.screen)}
-            return {**{key: got.gaussians[key] for key in told}, **rest, "background": got.background}
+            return {
+                **{key: got.gaussians[key] for key in told},
+                **rest,
+                "background": got.background,
+            }
 
         return np.asarray(shown.color), back
 
@@ -279,7 +289,9 @@ else:
     d_shown = draws.uniform(-1.0, 1.0, mine_shown.shape)
     mine_d, core_d = mine_back(d_shown), core_back(d_shown)
     worst = max(off(mine_d[key], core_d[key]) for key in (*mine.RATES, "background"))
-    print(f"core:   pictures differ by {off(mine_shown, core_shown):.0e}, derivatives by {worst:.0e}")
+    print(
+        f"core:   pictures differ by {off(mine_shown, core_shown):.0e}, derivatives by {worst:.0e}"
+    )
     wider, kept_back = option("core-pixels", 200), mine.picture
     sharp = [(each, photograph(each)) for each in around(2 * count, wider)]
     mine.picture, before = core, time.perf_counter()

@@ -28,7 +28,7 @@ NEAR = 0.01  # metres; Gaussians that are closer are not drawn
 ALPHA_MIN, ALPHA_MAX = 1 / 255, 0.999
 FAINT = 0.02  # opacity below which a Gaussian is dropped
 SMALL = 0.06  # metres; longer ones are split, the others cloned
-THRESHOLD = 0.02  # of the pressure
+THRESHOLD = 0.002  # of the pressure
 SHRINK = 1.6  # a part of a split Gaussian is smaller by this
 TILE = 16  # pixels
 RATES = {
@@ -137,7 +137,7 @@ def screen_alpha(mean2d, cov2d, opacity_logits, pixels):
         equations (15) to (21).
     """
     # >>> solution 15.3
-    S = cov2d + [LOW_PASS, 0, LOW_PASS]
+    S = cov2d + np.array([LOW_PASS, 0, LOW_PASS])
     det = S[:, 0] * S[:, 2] - S[:, 1] ** 2
     A, B, C = (S[:, ::-1] * [1, -1, 1] / det[:, None]).T[:, :, None]
     dx, dy = (mean2d[:, None] - pixels).transpose(2, 0, 1)

@@ -1,4 +1,4 @@
-"""Whole arrays, number by number: six entries of a covariance, A, B, C of a conic, sums of logarithms."""
+"""Whole arrays, number by number: entries of R, A, B, C of a conic, sums of logarithms."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ NEAR = 0.01  # metres; Gaussians that are closer are not drawn
 ALPHA_MIN, ALPHA_MAX = 1 / 255, 0.999
 FAINT = 0.02  # opacity below which a Gaussian is dropped
 SMALL = 0.06  # metres; longer ones are split, the others cloned
-THRESHOLD = 0.02  # of the pressure
+THRESHOLD = 0.002  # of the pressure
 SHRINK = 1.6  # a part of a split Gaussian is smaller by this
 TILE = 16  # pixels
 RATES = {
@@ -29,9 +29,10 @@ def covariance(quats, log_scales):
     size = np.sqrt(np.sum(quats**2, axis=1))
     w, x, y, z = quats.T / size
     R = np.empty((len(quats), 3, 3))
-    R[:, 0, 0], R[:, 0, 1], R[:, 0, 2] = w * w + x * x - y * y - z * z, 2 * (x * y - w * z), 2 * (x * z + w * y)
-    R[:, 1, 0], R[:, 1, 1], R[:, 1, 2] = 2 * (x * y + w * z), w * w - x * x + y * y - z * z, 2 * (y * z - w * x)
-    R[:, 2, 0], R[:, 2, 1], R[:, 2, 2] = 2 * (x * z - w * y), 2 * (y * z + w * x), w * w - x * x - y * y + z * z
+    ww, xx, yy, zz = w * w, x * x, y * y, z * z
+    R[:, 0, 0], R[:, 0, 1], R[:, 0, 2] = ww + xx - yy - zz, 2 * (x * y - w * z), 2 * (x * z + w * y)
+    R[:, 1, 0], R[:, 1, 1], R[:, 1, 2] = 2 * (x * y + w * z), ww - xx + yy - zz, 2 * (y * z - w * x)
+    R[:, 2, 0], R[:, 2, 1], R[:, 2, 2] = 2 * (x * z - w * y), 2 * (y * z + w * x), ww - xx - yy + zz
     variance = np.exp(2 * log_scales)
     cov = np.einsum("nik,nk,njk->nij", R, variance, R)
 

@@ -10,7 +10,7 @@ NEAR = 0.01  # metres; Gaussians that are closer are not drawn
 ALPHA_MIN, ALPHA_MAX = 1 / 255, 0.999
 FAINT = 0.02  # opacity below which a Gaussian is dropped
 SMALL = 0.06  # metres; longer ones are split, the others cloned
-THRESHOLD = 0.02  # of the pressure
+THRESHOLD = 0.002  # of the pressure
 SHRINK = 1.6  # a part of a split Gaussian is smaller by this
 TILE = 16  # pixels
 RATES = {
@@ -102,7 +102,7 @@ def project(means, cov, camera):
     def back(d_mean2d, d_cov2d):
         d_means, d_cov = np.zeros((N, 3)), np.zeros((N, 3, 3))
         for i in range(N):
-            t, u, v, hu, hv, J = kept[i]
+            t, u, v, _, _, J = kept[i]
             # All of the derivative of xy goes to one of its two entries: the same sum.
             g = np.array([[d_cov2d[i, 0], d_cov2d[i, 1]], [0.0, d_cov2d[i, 2]]])
             camera_cov = W @ cov[i] @ W.T
