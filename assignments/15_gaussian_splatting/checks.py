@@ -871,6 +871,8 @@ def random_changes(t):
             "log_scales": np.log(0.05) + t.rng.normal(size=(40, 3)) / 3,
             "opacity_logits": t.rng.uniform(-6.0, 6.0, 40), "colors": t.rng.normal(size=(40, 3)),
         }  # fmt: skip
+        # Opacities of 0.0202 and 0.0198, on both sides of FAINT.
+        scene["opacity_logits"][:2] = np.log([0.0202 / 0.9798, 0.0198 / 0.9802])
         pressure, seed = t.rng.exponential(0.003, 40), int(t.rng.integers(1 << 20))
         given = np.random.default_rng(seed)
         right, source = t.reference.densify(scene, pressure, given, most)

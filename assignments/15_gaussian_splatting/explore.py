@@ -93,9 +93,9 @@ def decibels(one, other):
 def cloud(number, rng):
     """Where a fit begins: grey balls anywhere."""
     return {
-        "means": rng.uniform(-0.8, 0.8, (number, 3)), "log_scales": np.full((number, 3), np.log(0.1)),
-        "quats": np.tile([1.0, 0.0, 0.0, 0.0], (number, 1)), "opacity_logits": np.full(number, -1.0),
-        "colors": np.full((number, 3), 0.5),
+        "means": rng.uniform(-0.8, 0.8, (number, 3)), "quats": np.eye(4)[[0] * number],
+        "log_scales": np.full((number, 3), np.log(0.1)), "colors": np.full((number, 3), 0.5),
+        "opacity_logits": np.full(number, -1.0),
     }  # fmt: skip
 
 
@@ -126,7 +126,8 @@ seconds = time.perf_counter() - began
 scores = [decibels(mine.picture(found, camera, BACKGROUND)[0], truth) for camera, truth in unseen]
 empty = [decibels(np.broadcast_to(BACKGROUND, truth.shape), truth) for _, truth in unseen]
 print(f"\rfit:    {steps} steps in {seconds:.0f} s, {len(found['means'])} Gaussians, "
-      f"{np.mean(scores):.1f} dB on new views (nothing at all has {np.mean(empty):.1f} dB)   ")  # fmt: skip
+      f"{np.mean(scores):.1f} dB on new views "
+      f"(nothing at all has {np.mean(empty):.1f} dB)  ")  # fmt: skip
 
 
 def byte(shown):
@@ -210,8 +211,9 @@ def by_covariance(of_conic, factor):
     return np.array([[D[0, 0], 2 * D[0, 1], D[1, 1]]])
 
 
-print("conic:  B's derivative kept halved and doubled later is off by "
-      f"{off(by_covariance(kept, 2), right):.0e}; kept halved, taken once {off(by_covariance(kept, 1), right):.0%}")  # fmt: skip
+later, once = (off(by_covariance(kept, factor), right) for factor in (2, 1))
+print(f"conic:  B's derivative kept halved and doubled later is off by {later:.0e}; "
+      f"kept halved, taken once {once:.0%}")  # fmt: skip
 
 lens = around(1, 64)[0]
 high = mine.limits(lens)[1][0]
@@ -234,7 +236,8 @@ told = -np.sum(slopes[:, :2] * A[:, :2]) / z
 told += slopes[0, 2] * 2 * f * high / z**2  # as if t_x stood still: right inside, wrong outside
 told += slopes[1, 2] * 2 * f * (point[0, 1] / z) / z**2
 mended = told - slopes[0, 2] * f * high / z**2
-print(f"clamp:  by t_z, outside: differences {by_depth:.4f}, the formula of public code {told:.4f}, "
+print(f"clamp:  by t_z, outside: differences {by_depth:.4f}, "
+      f"the formula of public code {told:.4f}, "
       f"with the clamped branch of its own {mended:.4f}")  # fmt: skip
 
 # %% [markdown]
@@ -304,5 +307,6 @@ else:
     tests = [(each, photograph(each)) for each in around(3, wider, 1.0)]
     pairs = [(core(many, each, BACKGROUND)[0], truth) for each, truth in tests]
     Image.fromarray(byte(np.concatenate([pairs[0][1], pairs[0][0]], axis=1))).save("core.png")
-    print(f"core:   {2 * steps} steps of {wider} x {wider} in {time.perf_counter() - before:.0f} s, "
-          f"{len(many['means'])} Gaussians, {np.mean([decibels(*p) for p in pairs]):.1f} dB; core.png")  # fmt: skip
+    score, took = np.mean([decibels(*pair) for pair in pairs]), time.perf_counter() - before
+    print(f"core:   {2 * steps} steps of {wider} x {wider} in {took:.0f} s, "
+          f"{len(many['means'])} Gaussians, {score:.1f} dB; core.png")  # fmt: skip

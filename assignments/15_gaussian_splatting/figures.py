@@ -114,7 +114,7 @@ def fig2_weights(module: ModuleType) -> tuple[Figure, Facts]:
 
 
 def fig3_pull(module: ModuleType) -> tuple[Figure, Facts]:
-    """One splat over two stripes: what each pixel adds, the sum, and what more Gaussians are worth."""
+    """One splat over two stripes: what each pixel adds, and what more Gaussians are worth."""
     n = 16
     camera = _camera(np.array([0.0, 0.0, -2.0]), n)
     y, x = (np.mgrid[0:n, 0:n] + 0.5).reshape(2, -1)
@@ -241,7 +241,7 @@ def fig5_arrows(module: ModuleType) -> tuple[Figure, Facts]:
 
 
 def fig6_three(module: ModuleType) -> tuple[Figure, Facts]:
-    """One capture, three representations: pictures, bytes, and what the photographs want at first."""
+    """One capture, three representations: pictures, bytes, what photographs want at first."""
     views, unseen = _photographs(VIEWS), _photographs(3, 1.0)
     begin = _cloud(80, 0.1)
     _, splats, _ = _fitted(module, ())

@@ -179,8 +179,9 @@ def composite(alpha, colors, depth, background):
 
     def back(d_shown):
         v = c @ d_shown.T
+        wv = w * v
         end = T[-1] * (d_shown @ background)
-        rest = end + np.sum(w * v, axis=0) - np.cumsum(w * v, axis=0)
+        rest = end + np.sum(wv, axis=0) - np.cumsum(wv, axis=0)
         d_alpha, d_colors = np.zeros_like(a), np.zeros_like(c)
         d_alpha[order] = T[:-1] * v - rest / (1 - a)
         d_colors[order] = w @ d_shown
@@ -206,7 +207,7 @@ def render(gaussians, camera, pixels, background):
     """
     # >>> solution 15.5
     drawn = depths(gaussians["means"], camera) > NEAR
-    part = {name: array[drawn] for name, array in gaussians.items()}
+    part = {key: values[drawn] for key, values in gaussians.items()}
     cov, shape_back = covariance(part["quats"], part["log_scales"])
     mean2d, cov2d, depth, lens_back = project(part["means"], cov, camera)
     alpha, alpha_back = screen_alpha(mean2d, cov2d, part["opacity_logits"], pixels)
@@ -218,9 +219,9 @@ def render(gaussians, camera, pixels, background):
         d_mean2d, d_cov2d, found["opacity_logits"], found["pull"] = alpha_back(d_alpha)
         found["means"], d_cov = lens_back(d_mean2d, d_cov2d)
         found["quats"], found["log_scales"] = shape_back(d_cov)
-        rows = {name: np.zeros((len(drawn), *each.shape[1:])) for name, each in found.items()}
-        for name, each in found.items():
-            rows[name][drawn] = each
+        rows = {key: np.zeros((len(drawn), *each.shape[1:])) for key, each in found.items()}
+        for key, each in found.items():
+            rows[key][drawn] = each
         return {**rows, "background": d_background}
 
     return shown, back
@@ -252,11 +253,11 @@ def densify(gaussians, pressure, rng, most):
     rows = np.concatenate([stay, clone, split, split])
     logits = gaussians["opacity_logits"].copy()
     logits[clone] = np.log(np.sqrt(1 + np.exp(logits[clone])) - 1)
-    after = {name: array[rows] for name, array in {**gaussians, "opacity_logits": logits}.items()}
+    after = {key: part[rows] for key, part in {**gaussians, "opacity_logits": logits}.items()}
     fresh = slice(len(rows) - 2 * len(split), None)
-    cov, _ = covariance(after["quats"][fresh], after["log_scales"][fresh])
+    whole, _ = covariance(after["quats"][fresh], after["log_scales"][fresh])
     drawn = rng.standard_normal((2 * len(split), 3))
-    after["means"][fresh] += np.einsum("nij,nj->ni", np.linalg.cholesky(cov), drawn)
+    after["means"][fresh] += np.einsum("nij,nj->ni", np.linalg.cholesky(whole), drawn)
     after["log_scales"][fresh] -= np.log(SHRINK)
     return after, np.where(np.arange(len(rows)) < len(stay), rows, -1)
     # <<< solution

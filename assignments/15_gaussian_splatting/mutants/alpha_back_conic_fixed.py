@@ -1,4 +1,4 @@
-"""The derivative of xy is halved once too often: the half that public code keeps is doubled later."""
+"""The derivative of xy is halved once too often: what is kept halved is doubled later."""
 
 TASKS = ("15.3",)
 LOSES = (

@@ -9,7 +9,7 @@ LOSES = (
 )
 REPLACE = [
     (
-        "S = cov2d + [LOW_PASS, 0, LOW_PASS]",
-        "S = cov2d + [0.0, 0, 0]",
+        "S = cov2d + np.array([LOW_PASS, 0, LOW_PASS])",
+        "S = cov2d + np.array([0.0, 0, 0])",
     ),
 ]

@@ -7,11 +7,7 @@ LOSES = (
 )
 REPLACE = [
     (
-        (
-            "- np.cumsum(w * v, axis=0)\n"
-        ),
-        (
-            "- np.cumsum(w * v, axis=0) + w * v\n"
-        ),
+        ("- np.cumsum(wv, axis=0)\n"),
+        ("- np.cumsum(wv, axis=0) + wv\n"),
     ),
 ]

@@ -1,4 +1,4 @@
-"""You count the splats that a pixel has seen and go through so many rows: those it does not see lie in between."""
+"""You go through as many rows as a pixel has seen splats: unseen ones lie in between."""
 
 TASKS = ("15.4",)
 LOSES = (
@@ -8,6 +8,9 @@ LOSES = (
 REPLACE = [
     (
         "d_alpha[order] = T[:-1] * v - rest / (1 - a)",
-        "d_alpha[order] = np.where(np.cumsum(a > -1, axis=0) <= (a > 0).sum(axis=0), T[:-1] * v - rest / (1 - a), 0.0)",
+        (
+            "d_alpha[order] = np.where(np.cumsum(a > -1, axis=0) <= (a > 0).sum(axis=0), "
+            "T[:-1] * v - rest / (1 - a), 0.0)"
+        ),
     ),
 ]

@@ -7,7 +7,7 @@ LOSES = (
 )
 REPLACE = [
     (
-        "order = np.argsort(depth, kind=\"stable\")",
-        "order = np.argsort(-depth, kind=\"stable\")",
+        'order = np.argsort(depth, kind="stable")',
+        'order = np.argsort(-depth, kind="stable")',
     ),
 ]

@@ -8,7 +8,7 @@ LOSES = (
 )
 REPLACE = [
     (
-        "order = np.argsort(depth, kind=\"stable\")",
+        'order = np.argsort(depth, kind="stable")',
         "order = np.arange(len(depth))",
     ),
 ]

@@ -9,7 +9,7 @@ LOSES = (
 )
 REPLACE = [
     (
-        "composite(alpha, part[\"colors\"], depth, background)",
-        "composite(alpha, part[\"colors\"], depth, 0 * background)",
+        'composite(alpha, part["colors"], depth, background)',
+        'composite(alpha, part["colors"], depth, 0 * background)',
     ),
 ]

@@ -7,7 +7,7 @@ LOSES = (
 )
 REPLACE = [
     (
-        "\"background\": d_background}",
-        "\"background\": 0 * d_background}",
+        '"background": d_background}',
+        '"background": 0 * d_background}',
     ),
 ]

@@ -7,7 +7,7 @@ LOSES = (
 )
 REPLACE = [
     (
-        "drawn = depths(gaussians[\"means\"], camera) > NEAR",
-        "drawn = np.ones(len(gaussians[\"means\"]), bool)",
+        'drawn = depths(gaussians["means"], camera) > NEAR',
+        'drawn = np.ones(len(gaussians["means"]), bool)',
     ),
 ]

@@ -7,7 +7,7 @@ LOSES = (
 )
 REPLACE = [
     (
-        "composite(alpha, part[\"colors\"], depth, background)",
-        "composite(alpha, part[\"colors\"], -depth, background)",
+        'composite(alpha, part["colors"], depth, background)',
+        'composite(alpha, part["colors"], -depth, background)',
     ),
 ]

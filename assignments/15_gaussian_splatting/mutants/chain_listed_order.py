@@ -7,7 +7,7 @@ LOSES = (
 )
 REPLACE = [
     (
-        "composite(alpha, part[\"colors\"], depth, background)",
-        "composite(alpha, part[\"colors\"], np.arange(len(depth)) + 0.0, background)",
+        'composite(alpha, part["colors"], depth, background)',
+        'composite(alpha, part["colors"], np.arange(len(depth)) + 0.0, background)',
     ),
 ]

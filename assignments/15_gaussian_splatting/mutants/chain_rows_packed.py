@@ -7,7 +7,7 @@ LOSES = (
 )
 REPLACE = [
     (
-        "rows[name][drawn] = each",
-        "rows[name][: len(each)] = each",
+        "rows[key][drawn] = each",
+        "rows[key][: len(each)] = each",
     ),
 ]

@@ -7,9 +7,7 @@ LOSES = (
 )
 REPLACE = [
     (
-        (
-            "    logits[clone] = np.log(np.sqrt(1 + np.exp(logits[clone])) - 1)\n"
-        ),
+        ("    logits[clone] = np.log(np.sqrt(1 + np.exp(logits[clone])) - 1)\n"),
         "",
     ),
 ]

@@ -9,7 +9,7 @@ REPLACE = [
     (
         "    fresh = slice(len(rows)",
         (
-            "    after[\"opacity_logits\"][: len(stay)] = gaussians[\"opacity_logits\"][stay]\n"
+            '    after["opacity_logits"][: len(stay)] = gaussians["opacity_logits"][stay]\n'
             "    fresh = slice(len(rows)"
         ),
     ),

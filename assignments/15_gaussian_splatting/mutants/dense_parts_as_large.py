@@ -7,9 +7,7 @@ LOSES = (
 )
 REPLACE = [
     (
-        (
-            "    after[\"log_scales\"][fresh] -= np.log(SHRINK)\n"
-        ),
+        ('    after["log_scales"][fresh] -= np.log(SHRINK)\n'),
         "",
     ),
 ]

@@ -7,7 +7,7 @@ LOSES = (
 )
 REPLACE = [
     (
-        "np.linalg.cholesky(cov), drawn",
-        "cov, drawn",
+        "np.linalg.cholesky(whole), drawn",
+        "whole, drawn",
     ),
 ]

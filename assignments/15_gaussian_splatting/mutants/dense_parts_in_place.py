@@ -7,7 +7,7 @@ LOSES = (
 )
 REPLACE = [
     (
-        "after[\"means\"][fresh] += np.einsum(\"nij,nj->ni\", np.linalg.cholesky(cov), drawn)",
+        ('after["means"][fresh] += np.einsum("nij,nj->ni", np.linalg.cholesky(whole), drawn)'),
         "drawn *= 0",
     ),
 ]

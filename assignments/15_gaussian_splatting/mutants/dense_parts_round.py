@@ -7,7 +7,7 @@ LOSES = (
 )
 REPLACE = [
     (
-        "np.einsum(\"nij,nj->ni\", np.linalg.cholesky(cov), drawn)",
-        "drawn * np.exp(after[\"log_scales\"][fresh])",
+        'np.einsum("nij,nj->ni", np.linalg.cholesky(whole), drawn)',
+        'drawn * np.exp(after["log_scales"][fresh])',
     ),
 ]

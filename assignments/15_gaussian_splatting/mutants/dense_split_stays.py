@@ -9,9 +9,7 @@ LOSES = (
 )
 REPLACE = [
     (
-        (
-            "    kept[split] = False\n"
-        ),
+        ("    kept[split] = False\n"),
         "",
     ),
 ]

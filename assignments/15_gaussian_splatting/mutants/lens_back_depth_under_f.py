@@ -8,11 +8,7 @@ LOSES = (
 )
 REPLACE = [
     (
-        (
-            " - np.sum(d_A * A, axis=(1, 2))\n"
-        ),
-        (
-            "\n"
-        ),
+        (" - np.sum(d_A * A, axis=(1, 2))\n"),
+        ("\n"),
     ),
 ]

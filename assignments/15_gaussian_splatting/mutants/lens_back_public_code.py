@@ -1,4 +1,4 @@
-"""Your derivative by t_z is that of public code: it moves h as if t_x stood still. What is held depends on nothing."""
+"""Your derivative by t_z moves h as if t_x stood still: what is held depends on nothing."""
 
 TASKS = ("15.2",)
 LOSES = (

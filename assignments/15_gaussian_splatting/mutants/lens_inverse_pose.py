@@ -11,7 +11,7 @@ LOSES = (
 )
 REPLACE = [
     (
-        "t = means @ W.T + camera[\"camera_from_world\"][:, 3]",
-        "t = (means - camera[\"camera_from_world\"][:, 3]) @ W",
+        't = means @ W.T + camera["camera_from_world"][:, 3]',
+        't = (means - camera["camera_from_world"][:, 3]) @ W',
     ),
 ]

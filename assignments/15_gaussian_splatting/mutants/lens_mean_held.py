@@ -9,7 +9,7 @@ LOSES = (
 )
 REPLACE = [
     (
-        "return f * u + camera[\"centre\"], S",
-        "return f * h + camera[\"centre\"], S",
+        'return f * u + camera["centre"], S',
+        'return f * h + camera["centre"], S',
     ),
 ]

@@ -8,7 +8,7 @@ LOSES = (
 )
 REPLACE = [
     (
-        "return f * u + camera[\"centre\"], S",
+        'return f * u + camera["centre"], S',
         "return f * u, S",
     ),
 ]

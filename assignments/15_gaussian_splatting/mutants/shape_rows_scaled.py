@@ -8,11 +8,7 @@ LOSES = (
 )
 REPLACE = [
     (
-        (
-            "    M = R * s\n"
-        ),
-        (
-            "    M = R * s.swapaxes(1, 2)\n"
-        ),
+        ("    M = R * s\n"),
+        ("    M = R * s.swapaxes(1, 2)\n"),
     ),
 ]

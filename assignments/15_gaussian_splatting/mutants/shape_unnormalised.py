@@ -9,11 +9,7 @@ LOSES = (
 )
 REPLACE = [
     (
-        (
-            "    n = quats / length\n"
-        ),
-        (
-            "    n = quats\n"
-        ),
+        ("    n = quats / length\n"),
+        ("    n = quats\n"),
     ),
 ]
