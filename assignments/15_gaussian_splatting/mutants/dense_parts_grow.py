@@ -1,4 +1,4 @@
-"""A part is smaller than the whole: yours is larger."""
+"""A part is smaller than the whole: yours is a little larger."""
 
 TASKS = ("15.6",)
 LOSES = (
@@ -8,6 +8,6 @@ LOSES = (
 REPLACE = [
     (
         "[fresh] -= np.log(SHRINK)",
-        "[fresh] += np.log(SHRINK)",
+        "[fresh] += np.log(SHRINK) / 5",
     ),
 ]
