@@ -1,0 +1,81 @@
+"""Between the checks and your `splatting.py`: functions `back` cannot cross the pipe.
+
+Runs beside your file; nothing here is to be changed or handed in. Each function calls yours, and
+the `back` that it returns with the derivatives that the check gives.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import splatting
+
+
+def covariance(quats, log_scales):
+    """The values of `covariance`."""
+    return splatting.covariance(quats, log_scales)[0]
+
+
+def covariance_back(quats, log_scales, d_cov):
+    """What its `back` returns."""
+    return splatting.covariance(quats, log_scales)[1](d_cov)
+
+
+def project(means, cov, camera):
+    """The values of `project`."""
+    return splatting.project(means, cov, camera)[:3]
+
+
+def project_back(means, cov, camera, d_mean2d, d_cov2d):
+    """What its `back` returns."""
+    return splatting.project(means, cov, camera)[3](d_mean2d, d_cov2d)
+
+
+def screen_alpha(mean2d, cov2d, opacity_logits, pixels):
+    """The values of `screen_alpha`."""
+    return splatting.screen_alpha(mean2d, cov2d, opacity_logits, pixels)[0]
+
+
+def screen_alpha_back(mean2d, cov2d, opacity_logits, pixels, d_alpha):
+    """What its `back` returns."""
+    return splatting.screen_alpha(mean2d, cov2d, opacity_logits, pixels)[1](d_alpha)
+
+
+def composite(alpha, colors, depth, background):
+    """The values of `composite`."""
+    return splatting.composite(alpha, colors, depth, background)[0]
+
+
+def composite_back(alpha, colors, depth, background, d_shown):
+    """What its `back` returns."""
+    return splatting.composite(alpha, colors, depth, background)[1](d_shown)
+
+
+def render(gaussians, camera, pixels, background):
+    """The values of `render`."""
+    return splatting.render(gaussians, camera, pixels, background)[0]
+
+
+def render_back(gaussians, camera, pixels, background, d_shown):
+    """What its `back` returns."""
+    return splatting.render(gaussians, camera, pixels, background)[1](d_shown)
+
+
+def densify(gaussians, pressure, seed, most):
+    """`densify` with a generator of this seed; the scene as a list, then source as float64."""
+    rng = np.random.default_rng(seed)
+    after, source = splatting.densify(gaussians, pressure, rng, most)
+    names = ("means", "log_scales", "quats", "opacity_logits", "colors")
+    return [*(after[name] for name in names), np.asarray(source).astype(np.float64)]
+
+
+def densify_leaves_scene(gaussians, pressure):
+    """Whether `densify` leaves the arrays of the scene as they were."""
+    before = {name: array.copy() for name, array in gaussians.items()}
+    splatting.densify(gaussians, pressure, np.random.default_rng(0), 1000)
+    return all(np.array_equal(before[name], array) for name, array in gaussians.items())
+
+
+def fitted(gaussians, views, steps, seed, background, most):
+    """The losses of a fit from here."""
+    rng = np.random.default_rng(seed)
+    return splatting.fit(gaussians, views, steps, rng, background, most, every=20)[1]

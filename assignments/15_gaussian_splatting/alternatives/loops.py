@@ -1,0 +1,311 @@
+"""One Gaussian at a time, in loops; the blend goes from the back to the front."""
+
+from __future__ import annotations
+
+import numpy as np
+
+LOW_PASS = 0.3  # pixels squared: no splat is thinner than about a pixel
+MARGIN = 0.15  # of the picture's size: how far outside of it slopes are still taken where they are
+NEAR = 0.01  # metres; Gaussians that are closer are not drawn
+ALPHA_MIN, ALPHA_MAX = 1 / 255, 0.999
+FAINT = 0.02  # opacity below which a Gaussian is dropped
+SMALL = 0.06  # metres; longer ones are split, the others cloned
+THRESHOLD = 0.002  # of the pressure
+SHRINK = 1.6  # a part of a split Gaussian is smaller by this
+TILE = 16  # pixels
+RATES = {
+    "means": 0.008, "log_scales": 0.03, "quats": 0.03, "opacity_logits": 0.05, "colors": 0.02,
+}  # fmt: skip
+# The matrix that takes v to the cross product u x v has the entries sum_k CROSS[i, j, k] u_k.
+CROSS = np.array([
+    [[0, 0, 0], [0, 0, -1], [0, 1, 0]],
+    [[0, 0, 1], [0, 0, 0], [-1, 0, 0]],
+    [[0, -1, 0], [1, 0, 0], [0, 0, 0]],
+])  # fmt: skip
+
+
+def turning(q):
+    """R of a unit quaternion, entry by entry."""
+    w, x, y, z = q
+    return np.array([
+        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+    ])  # fmt: skip
+
+
+def turning_slopes(q):
+    """The derivatives of `turning` by w, x, y, z."""
+    w, x, y, z = q
+    return 2 * np.array([
+        [[0, -z, y], [z, 0, -x], [-y, x, 0]],
+        [[0, y, z], [y, -2 * x, -w], [z, w, -2 * x]],
+        [[-2 * y, x, w], [x, 0, z], [-w, z, -2 * y]],
+        [[-2 * z, -w, x], [w, -2 * z, y], [x, y, 0]],
+    ])  # fmt: skip
+
+
+def covariance(quats, log_scales):
+    """The covariances of Gaussians."""
+    N = len(quats)
+    cov, axes, lengths = np.zeros((N, 3, 3)), np.zeros((N, 3, 3)), np.zeros(N)
+    for i in range(N):
+        lengths[i] = np.sqrt(quats[i] @ quats[i])
+        axes[i] = turning(quats[i] / lengths[i]) @ np.diag(np.exp(log_scales[i]))
+        cov[i] = axes[i] @ axes[i].T
+
+    def back(d_cov):
+        d_quats, d_log_scales = np.zeros((N, 4)), np.zeros((N, 3))
+        for i in range(N):
+            d_axes = d_cov[i] @ axes[i] + d_cov[i].T @ axes[i]
+            for j in range(3):
+                d_log_scales[i, j] = d_axes[:, j] @ axes[i][:, j]
+            unit = quats[i] / lengths[i]
+            slopes = turning_slopes(unit) * np.exp(log_scales[i])
+            d_unit = np.array([np.sum(slope * d_axes) for slope in slopes])
+            d_quats[i] = (np.eye(4) - np.outer(unit, unit)) @ d_unit / lengths[i]
+        return d_quats, d_log_scales
+
+    return cov, back
+
+
+def depths(means, camera):
+    """Given: how far in front of the camera means lie, along its axis; (N,)."""
+    view = camera["camera_from_world"]
+    return means @ view[2, :3] + view[2, 3]
+
+
+def limits(camera):
+    """Given: (low, high), (2,) each: where t_x / t_z and t_y / t_z are held for the slopes."""
+    size = np.array([camera["width"], camera["height"]], np.float64)
+    low = (-MARGIN * size - camera["centre"]) / camera["focal"]
+    return low, ((1 + MARGIN) * size - camera["centre"]) / camera["focal"]
+
+
+def project(means, cov, camera):
+    """Gaussians as the camera sees them."""
+    W, b = camera["camera_from_world"][:, :3], camera["camera_from_world"][:, 3]
+    fx, fy = camera["focal"]
+    low, high = limits(camera)
+    N = len(means)
+    mean2d, cov2d, depth, kept = np.zeros((N, 2)), np.zeros((N, 3)), np.zeros(N), []
+    for i in range(N):
+        t = W @ means[i] + b
+        u, v = t[0] / t[2], t[1] / t[2]
+        hu, hv = min(max(u, low[0]), high[0]), min(max(v, low[1]), high[1])
+        J = np.array([[fx, 0, -fx * hu], [0, fy, -fy * hv]]) / t[2]
+        flat = J @ W @ cov[i] @ W.T @ J.T
+        mean2d[i] = fx * u + camera["centre"][0], fy * v + camera["centre"][1]
+        cov2d[i], depth[i] = (flat[0, 0], flat[0, 1], flat[1, 1]), t[2]
+        kept.append((t, u, v, hu, hv, J))
+
+    def back(d_mean2d, d_cov2d):
+        d_means, d_cov = np.zeros((N, 3)), np.zeros((N, 3, 3))
+        for i in range(N):
+            t, u, v, _, _, J = kept[i]
+            # All of the derivative of xy goes to one of its two entries: the same sum.
+            g = np.array([[d_cov2d[i, 0], d_cov2d[i, 1]], [0.0, d_cov2d[i, 2]]])
+            camera_cov = W @ cov[i] @ W.T
+            d_J = g @ J @ camera_cov + g.T @ J @ camera_cov
+            d_cov[i] = W.T @ J.T @ g @ J @ W
+            d_u, d_v = fx * d_mean2d[i, 0], fy * d_mean2d[i, 1]
+            if low[0] < u < high[0]:
+                d_u -= d_J[0, 2] * fx / t[2]
+            if low[1] < v < high[1]:
+                d_v -= d_J[1, 2] * fy / t[2]
+            d_z = -(d_u * u + d_v * v) / t[2] - np.sum(d_J * J) / t[2]
+            d_means[i] = W.T @ np.array([d_u / t[2], d_v / t[2], d_z])
+        return d_means, d_cov
+
+    return mean2d, cov2d, depth, back
+
+
+def screen_alpha(mean2d, cov2d, opacity_logits, pixels):
+    """How much of each pixel's light each splat takes."""
+    N, P = len(mean2d), len(pixels)
+    alpha, kept = np.zeros((N, P)), []
+    for i in range(N):
+        xx, xy, yy = cov2d[i] + np.array([LOW_PASS, 0.0, LOW_PASS])
+        conic = np.linalg.inv(np.array([[xx, xy], [xy, yy]]))
+        d = mean2d[i] - pixels
+        o = 1 / (1 + np.exp(-opacity_logits[i]))
+        G = np.exp(-0.5 * np.einsum("pi,ij,pj->p", d, conic, d))
+        held, dropped = o * G > ALPHA_MAX, o * G < ALPHA_MIN
+        alpha[i] = np.where(dropped, 0.0, np.where(held, ALPHA_MAX, o * G))
+        kept.append((conic, d, o, G, ~held & ~dropped))
+
+    def back(d_alpha):
+        d_mean2d, d_cov2d = np.zeros((N, 2)), np.zeros((N, 3))
+        d_logits, pull = np.zeros(N), np.zeros((N, 2))
+        for i in range(N):
+            conic, d, o, G, moves = kept[i]
+            d_raw = d_alpha[i] * moves
+            d_logits[i] = np.sum(d_raw * G) * o * (1 - o)
+            d_sigma = -d_raw * o * G
+            each = d_sigma[:, None] * (d @ conic)
+            d_mean2d[i], pull[i] = each.sum(axis=0), np.abs(each).sum(axis=0)
+            d_conic = 0.5 * np.einsum("p,pi,pj->ij", d_sigma, d, d)
+            d_full = -conic @ d_conic @ conic
+            d_cov2d[i] = d_full[0, 0], d_full[0, 1] + d_full[1, 0], d_full[1, 1]
+        return d_mean2d, d_cov2d, d_logits, pull
+
+    return alpha, back
+
+
+def composite(alpha, colors, depth, background):
+    """Splats over one another, nearest first."""
+    nearest = sorted(range(len(depth)), key=lambda i: depth[i])
+    shown = np.tile(background, (alpha.shape[1], 1))
+    behind = {}
+    for i in reversed(nearest):
+        behind[i] = shown
+        shown = alpha[i][:, None] * colors[i] + (1 - alpha[i])[:, None] * shown
+
+    def back(d_shown):
+        d_alpha, d_colors = np.zeros(alpha.shape), np.zeros(colors.shape)
+        g = d_shown.copy()
+        for i in nearest:
+            d_alpha[i] = np.sum(g * (colors[i] - behind[i]), axis=1)
+            d_colors[i] = alpha[i] @ g
+            g = g * (1 - alpha[i])[:, None]
+        return d_alpha, d_colors, g.sum(axis=0)
+
+    return shown, back
+
+
+def render(gaussians, camera, pixels, background):
+    """What some pixels show of a scene."""
+    index = [i for i, z in enumerate(depths(gaussians["means"], camera)) if z > NEAR]
+    means, log_scales, quats = (gaussians[k][index] for k in ("means", "log_scales", "quats"))
+    cov, back1 = covariance(quats, log_scales)
+    mean2d, cov2d, z, back2 = project(means, cov, camera)
+    alpha, back3 = screen_alpha(mean2d, cov2d, gaussians["opacity_logits"][index], pixels)
+    shown, back4 = composite(alpha, gaussians["colors"][index], z, background)
+
+    def back(d_shown):
+        out = {key: np.zeros_like(value) for key, value in gaussians.items()}
+        out["pull"] = np.zeros((len(gaussians["means"]), 2))
+        d_alpha, out["colors"][index], d_background = back4(d_shown)
+        d_mean2d, d_cov2d, out["opacity_logits"][index], out["pull"][index] = back3(d_alpha)
+        out["means"][index], d_cov = back2(d_mean2d, d_cov2d)
+        out["quats"][index], out["log_scales"][index] = back1(d_cov)
+        out["background"] = d_background
+        return out
+
+    return shown, back
+
+
+def densify(gaussians, pressure, rng, most):
+    """Clone, split and drop Gaussians."""
+    opacity = 1 / (1 + np.exp(-gaussians["opacity_logits"]))
+    alive = [i for i in range(len(opacity)) if opacity[i] >= FAINT]
+    wanted = sorted((i for i in alive if pressure[i] > THRESHOLD), key=lambda i: -pressure[i])
+    wanted = sorted(wanted[: max(most - len(alive), 0)])
+    long = [i for i in wanted if np.exp(gaussians["log_scales"][i]).max() > SMALL]
+    short = [i for i in wanted if i not in long]
+    stay = [i for i in alive if i not in long]
+    new = {key: value.copy() for key, value in gaussians.items()}
+    for i in short:
+        a = 1 - np.sqrt(1 - opacity[i])
+        new["opacity_logits"][i] = np.log(a) - np.log(1 - a)
+    new = {key: value[[*stay, *short, *long, *long]] for key, value in new.items()}
+    z = rng.standard_normal((2 * len(long), 3))
+    cov, _ = covariance(gaussians["quats"][long], gaussians["log_scales"][long])
+    at = len(stay) + len(short)
+    for k in range(2 * len(long)):
+        new["means"][at + k] += np.linalg.cholesky(cov[k % len(long)]) @ z[k]
+        new["log_scales"][at + k] -= np.log(SHRINK)
+    return new, np.array(stay + [-1] * (len(short) + 2 * len(long)))
+
+
+def reach(gaussians, camera):
+    """Given: (low, high), (N, 2) each: outside of this box alpha is below ALPHA_MIN."""
+    ahead = depths(gaussians["means"], camera) > NEAR
+    low, high = np.full((len(ahead), 2), np.inf), np.full((len(ahead), 2), -np.inf)
+    visible = {key: values[ahead] for key, values in gaussians.items()}
+    spread, _ = covariance(visible["quats"], visible["log_scales"])
+    middle, extent, *_ = project(visible["means"], spread, camera)
+    solid = 1 / (1 + np.exp(-visible["opacity_logits"]))
+    sigmas = np.sqrt(2 * np.log(np.maximum(solid / ALPHA_MIN, 1)))
+    half = sigmas[:, None] * np.sqrt(extent[:, ::2] + LOW_PASS)
+    low[ahead], high[ahead] = middle - half, middle + half
+    return low, high
+
+
+def picture(gaussians, camera, background):
+    """Given: all pixels by `render`, TILE x TILE of them at a time, with what can reach them."""
+    low, high = reach(gaussians, camera)
+    height, width = camera["height"], camera["width"]
+    shown, tiles = np.zeros((height, width, 3)), []
+    for top in range(0, height, TILE):
+        for left in range(0, width, TILE):
+            block = slice(top, min(top + TILE, height)), slice(left, min(left + TILE, width))
+            y, x = (each.ravel() + 0.5 for each in np.mgrid[block])
+            here = (high > [x[0], y[0]]) & (low < [x[-1], y[-1]])
+            here = np.flatnonzero(here.all(axis=1))
+            some = {key: values[here] for key, values in gaussians.items()}
+            colors, tile_back = render(some, camera, np.stack([x, y], axis=1), background)
+            shown[block] = colors.reshape(shown[block].shape)
+            tiles.append((block, here, tile_back))
+
+    def back(d_shown):
+        total = {key: np.zeros_like(values) for key, values in gaussians.items()}
+        total.update(pull=np.zeros((len(low), 2)), background=np.zeros(3))
+        for block, here, tile_back in tiles:
+            for key, values in tile_back(d_shown[block].reshape(-1, 3)).items():
+                total[key][... if key == "background" else here] += values
+        return total
+
+    return shown, back
+
+
+class Adam:
+    """Steps of Adam for a scene, as in assignment 01, with beta 0.9 and 0.99."""
+
+    def __init__(self, gaussians):
+        self.m = {key: np.zeros_like(values) for key, values in gaussians.items()}
+        self.v = {key: np.zeros_like(values) for key, values in gaussians.items()}
+        self.k = 0
+
+    def step(self, gaussians, gradient):
+        """The scene after one step; the given one stays as it is."""
+        self.k += 1
+        moved = {}
+        for key, values in gaussians.items():
+            self.m[key] = 0.9 * self.m[key] + 0.1 * gradient[key]
+            self.v[key] = 0.99 * self.v[key] + 0.01 * gradient[key] ** 2
+            m, v = self.m[key] / (1 - 0.9**self.k), self.v[key] / (1 - 0.99**self.k)
+            moved[key] = values - RATES[key] * m / (np.sqrt(v) + 1e-8)
+        return moved
+
+    def follow(self, source):
+        """Rows keep their moments when a scene has changed; new ones begin with none."""
+        for moments in (self.m, self.v):
+            for key, values in moments.items():
+                old = (source >= 0).reshape(-1, *[1] * (values.ndim - 1))
+                moments[key] = np.where(old, values[source], 0.0)
+
+
+def fit(gaussians, views, steps, rng, background, most, every=50, watch=None):
+    """Given: fit a scene to photographs, one of them in each step."""
+    adam, losses = Adam(gaussians), np.zeros(steps)
+    total, times = np.zeros(len(gaussians["means"])), np.zeros(len(gaussians["means"]))
+    for step in range(steps):
+        camera, truth = views[rng.integers(len(views))]
+        shown, back = picture(gaussians, camera, background)
+        error = shown - truth
+        losses[step] = np.sum(error**2) / error[..., 0].size
+        if watch is not None:
+            watch(step, gaussians, losses[step])
+        gradient = back(2 * error / error[..., 0].size)
+        pull = np.linalg.norm(gradient["pull"], axis=1)
+        # The loss is a mean over pixels: with this factor a threshold holds for any picture's size.
+        total += pull * max(camera["width"], camera["height"]) / 2
+        times += pull > 0
+        gaussians = adam.step(gaussians, gradient)
+        if most and (step + 1) % every == 0 and 3 * step < 2 * steps:
+            pressure = total / np.maximum(times, 1)
+            gaussians, source = densify(gaussians, pressure, rng, most)
+            adam.follow(source)
+            total, times = np.zeros(len(source)), np.zeros(len(source))
+    return gaussians, losses

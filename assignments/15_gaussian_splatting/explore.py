@@ -1,0 +1,312 @@
+# %% [markdown]
+# # Photographs become Gaussians
+# Photographs three balls drawn by formulas, fits Gaussians to them with your functions, and draws
+# what pulls at them; then two formulas of public code are put to the test by differences of your
+# own functions, and everything is compared with the C++ core where that is installed. Never
+# graded. `python explore.py` takes `--steps`, `--pixels`, `--views`, `--most` (Gaussians),
+# `--every` (steps between two changes of their number), `--seed`, and `--core-pixels`.
+
+# %%
+from __future__ import annotations
+
+import importlib
+import sys
+import time
+
+import numpy as np
+import splatting as mine
+from matplotlib.figure import Figure
+from PIL import Image
+
+
+def option(name, default):
+    """The value after --name on the command line; the default in a notebook."""
+    words = sys.argv[1:]
+    return type(default)(words[words.index(f"--{name}") + 1]) if f"--{name}" in words else default
+
+
+steps, size, count = option("steps", 600), option("pixels", 64), option("views", 12)
+most, every, seed = option("most", 500), option("every", 40), option("seed", 0)
+BACKGROUND = np.array([0.05, 0.06, 0.09])
+
+# %% [markdown]
+# ## A scene, and its photographs
+
+
+# %%
+def camera_at(place, width):
+    """A camera at a place that looks at the origin, x to the right, y down, z forward."""
+    z = -place / np.linalg.norm(place)
+    x = np.cross(z, [0.0, 1.0, 0.0])
+    x /= np.linalg.norm(x)
+    W = np.stack([x, np.cross(z, x), z])
+    pose = np.concatenate([W, -(W @ place)[:, None]], axis=1)
+    middle = np.full(2, width / 2)
+    return {"camera_from_world": pose, "focal": np.full(2, 1.2 * width), "centre": middle,
+            "width": width, "height": width}  # fmt: skip
+
+
+def around(number, width, turn=0.0):
+    """Cameras on a sphere of 3.2 m around the origin."""
+    height = 0.8 - 1.2 * (np.arange(number) + 0.5) / number
+    phi, ring = np.arange(number) * 2.399963 + turn, np.sqrt(1 - height**2)
+    places = 3.2 * np.stack([ring * np.cos(phi), height, ring * np.sin(phi)], axis=1)
+    return [camera_at(place, width) for place in places]
+
+
+BALLS = (
+    ((-0.3, 0.0, 0.1), 0.5, (0.95, 0.5, 0.35)),
+    ((0.45, 0.2, -0.3), 0.35, (0.45, 0.75, 0.95)),
+    ((0.3, -0.45, 0.35), 0.25, (0.9, 0.85, 0.4)),
+)
+
+
+def photograph(camera):
+    """Three lit and striped balls by rays, nine for each pixel."""
+    n, fine = camera["width"], 3
+    W, b = camera["camera_from_world"][:, :3], camera["camera_from_world"][:, 3]
+    v, u = (np.mgrid[0 : fine * n, 0 : fine * n] + 0.5) / fine
+    d = np.stack([u, v, 0 * u], axis=-1) - [*camera["centre"], 0]
+    d = d / [*camera["focal"], 1] + [0, 0, 1]
+    d = d / np.linalg.norm(d, axis=-1, keepdims=True) @ W
+    eye = -b @ W
+    image, nearest = np.tile(BACKGROUND, (fine * n, fine * n, 1)), np.full(u.shape, np.inf)
+    for middle, radius, paint in BALLS:
+        away = np.array(middle) - eye
+        along = d @ away
+        inside = radius**2 - away @ away + along**2
+        t = along - np.sqrt(np.maximum(inside, 0))
+        hit = (inside > 0) & (t < nearest)
+        p = eye + t[hit, None] * d[hit]
+        light = 0.45 + 0.55 * np.maximum((p - middle) @ [0.4, 0.8, 0.45] / radius, 0)
+        stripes = np.where(np.sin(p @ [9.0, 14.0, 5.0]) > 0, 1.0, 0.55)
+        image[hit] = (light * stripes)[:, None] * np.array(paint)
+        nearest[hit] = t[hit]
+    return image.reshape(n, fine, n, fine, 3).mean(axis=(1, 3))
+
+
+def decibels(one, other):
+    """PSNR."""
+    return -10 * np.log10(max(float(np.mean((one - other) ** 2)), 1e-30))
+
+
+def cloud(number, rng):
+    """Where a fit begins: grey balls anywhere."""
+    return {
+        "means": rng.uniform(-0.8, 0.8, (number, 3)), "quats": np.eye(4)[[0] * number],
+        "log_scales": np.full((number, 3), np.log(0.1)), "colors": np.full((number, 3), 0.5),
+        "opacity_logits": np.full(number, -1.0),
+    }  # fmt: skip
+
+
+views = [(camera, photograph(camera)) for camera in around(count, size)]
+unseen = [(camera, photograph(camera)) for camera in around(3, size, 1.0)]
+start = cloud(min(120, most), np.random.default_rng(seed))
+
+# %% [markdown]
+# ## The fit
+
+# %%
+frames, began = [], time.perf_counter()
+
+
+def watch(step, scene, _):
+    """Says how far the fit has come, and keeps frames of it."""
+    if step % max(1, steps // 40) == 0:
+        shown, _ = mine.picture(scene, unseen[0][0], BACKGROUND)
+        frames.append(shown)
+        print(f"\rfit:    step {step} of {steps}, {len(scene['means'])} Gaussians, "
+              f"{decibels(shown, unseen[0][1]):.1f} dB on a new view, "
+              f"{time.perf_counter() - began:.0f} s ", end="", flush=True)  # fmt: skip
+
+
+found, losses = mine.fit(start, views, steps, np.random.default_rng(seed), BACKGROUND, most, every,
+                         watch)  # fmt: skip
+seconds = time.perf_counter() - began
+scores = [decibels(mine.picture(found, camera, BACKGROUND)[0], truth) for camera, truth in unseen]
+empty = [decibels(np.broadcast_to(BACKGROUND, truth.shape), truth) for _, truth in unseen]
+print(f"\rfit:    {steps} steps in {seconds:.0f} s, {len(found['means'])} Gaussians, "
+      f"{np.mean(scores):.1f} dB on new views "
+      f"(nothing at all has {np.mean(empty):.1f} dB)  ")  # fmt: skip
+
+
+def byte(shown):
+    """A picture as PNG and GIF have it."""
+    return (255 * np.clip(shown, 0, 1) + 0.5).astype(np.uint8)
+
+
+large = [
+    Image.fromarray(byte(each)).resize((256, 256), Image.Resampling.NEAREST) for each in frames
+]
+large[0].save("fit.gif", save_all=True, append_images=large[1:], duration=120, loop=0)
+print("fit.gif: a new view while it is learned")
+
+# %% [markdown]
+# ## What pulls at each Gaussian
+# Arrows: where descent moves each mean on the screen. Circles: `pull`, what `densify` looks at.
+
+# %%
+camera, truth = views[0]
+shown, back = mine.picture(found, camera, BACKGROUND)
+gradient = back(2 * (shown - truth) / shown[..., 0].size)
+cov, _ = mine.covariance(found["quats"], found["log_scales"])
+places, *_ = mine.project(found["means"], cov, camera)
+# What moves a mean on the screen by one pixel, in the world, across the line of sight.
+W = camera["camera_from_world"][:2, :3]
+depth = mine.depths(found["means"], camera)
+arrows = -(gradient["means"] @ W.T) * (depth / camera["focal"][0])[:, None]
+pull = np.linalg.norm(gradient["pull"], axis=1)
+figure = Figure(figsize=(13, 4.4), layout="constrained")
+panels = figure.subplots(1, 3)
+for axes, image, title in ((panels[0], truth, "a photograph"), (panels[1], shown, "your Gaussians"),
+                           (panels[2], shown, "arrows: descent; circles: pull")):  # fmt: skip
+    axes.imshow(np.clip(image, 0, 1), extent=(0, size, size, 0))
+    axes.set(title=title, xticks=[], yticks=[], xlim=(0, size), ylim=(size, 0))
+panels[2].scatter(*places.T, s=300 * pull / pull.max(), facecolors="none", edgecolors="w", lw=0.7)
+long = np.linalg.norm(arrows, axis=1).max()
+panels[2].quiver(*places.T, *(arrows.T / long), angles="xy", scale_units="xy", scale=0.2, color="r")
+figure.savefig("pull.png", dpi=100)
+print("pull.png: a photograph, your picture, and what pulls at it")
+
+# %% [markdown]
+# ## Two formulas of public code, put to the test
+# Nothing here knows the right derivative. It moves the arguments of *your* functions.
+
+
+# %%
+def differences(function, x, g, eps=1e-5):
+    """The derivative of <function(x), g> by each number of x."""
+    slope = np.zeros_like(x)
+    for k in np.ndindex(x.shape):
+        ends = []
+        for sign in (1, -1):
+            moved = x.copy()
+            moved[k] += sign * eps
+            ends.append(np.sum(function(moved) * g))
+        slope[k] = (ends[0] - ends[1]) / (2 * eps)
+    return slope
+
+
+def off(told, right):
+    """How far a derivative is off, relative to the right one."""
+    return np.linalg.norm(told - right) / np.linalg.norm(right)
+
+
+draws = np.random.default_rng(3)
+m, S = np.array([[3.0, 2.0]]), np.array([[6.0, 2.5, 4.0]])
+grid = np.stack(np.meshgrid(np.arange(6) + 0.5, np.arange(5) + 0.5), axis=-1).reshape(-1, 2)
+g = draws.uniform(-1.0, 1.0, (1, len(grid)))
+right = differences(lambda x: mine.screen_alpha(m, x, np.zeros(1), grid)[0], S, g)
+alpha, _ = mine.screen_alpha(m, S, np.zeros(1), grid)
+full = S[0, [0, 1, 1, 2]].reshape(2, 2) + mine.LOW_PASS * np.eye(2)
+Q, d = np.linalg.inv(full), m - grid
+s = -(g * alpha)[0]  # the derivative by the exponent's sigma
+kept = np.array([0.5 * s @ d[:, 0] ** 2, 0.5 * s @ (d[:, 0] * d[:, 1]), 0.5 * s @ d[:, 1] ** 2])
+
+
+def by_covariance(of_conic, factor):
+    """From derivatives by A, B, C to those by xx, xy, yy, with B's taken `factor` times."""
+    H = np.array([[of_conic[0], factor / 2 * of_conic[1]], [factor / 2 * of_conic[1], of_conic[2]]])
+    D = -Q @ H @ Q
+    return np.array([[D[0, 0], 2 * D[0, 1], D[1, 1]]])
+
+
+later, once = (off(by_covariance(kept, factor), right) for factor in (2, 1))
+print(f"conic:  B's derivative kept halved and doubled later is off by {later:.0e}; "
+      f"kept halved, taken once {once:.0%}")  # fmt: skip
+
+lens = around(1, 64)[0]
+high = mine.limits(lens)[1][0]
+point = np.array([[1.4 * high, 0.1, 1.0]]) * 2.5
+world = (point - lens["camera_from_world"][:, 3]) @ lens["camera_from_world"][:, :3]
+wide = np.array([[[0.09, 0.02, 0.01], [0.02, 0.06, 0.0], [0.01, 0.0, 0.04]]])
+g = np.array([[0.3, -0.7, 0.5]])
+by_mean = differences(lambda x: mine.project(x, wide, lens)[1], world, g)
+by_depth = by_mean[0] @ lens["camera_from_world"][2, :3]
+A = (
+    np.array([[1, 0, -high], [0, 1, -point[0, 1] / point[0, 2]]])
+    * lens["focal"][:, None]
+    / point[0, 2]
+)
+V = lens["camera_from_world"][:, :3] @ wide[0] @ lens["camera_from_world"][:, :3].T
+G = np.array([[g[0, 0], g[0, 1] / 2], [g[0, 1] / 2, g[0, 2]]])
+slopes = 2 * G @ A @ V
+f, z = lens["focal"][0], point[0, 2]
+told = -np.sum(slopes[:, :2] * A[:, :2]) / z
+told += slopes[0, 2] * 2 * f * high / z**2  # as if t_x stood still: right inside, wrong outside
+told += slopes[1, 2] * 2 * f * (point[0, 1] / z) / z**2
+mended = told - slopes[0, 2] * f * high / z**2
+print(f"clamp:  by t_z, outside: differences {by_depth:.4f}, "
+      f"the formula of public code {told:.4f}, "
+      f"with the clamped branch of its own {mended:.4f}")  # fmt: skip
+
+# %% [markdown]
+# ## The C++ core
+# Its picture and derivatives beside yours; then the same fit, with your `densify`, on photographs
+# as large as `--core-pixels`, drawn by the core.
+
+# %%
+Y0 = 0.28209479177387814
+
+
+def of_the_core():
+    """`picture` by the core; raises where there is none."""
+    splat = importlib.import_module("photograd.splat")
+    cameras = importlib.import_module("photograd.data.camera")
+
+    def drawn(scene, camera, background):
+        pose = np.eye(4)
+        pose[:3] = camera["camera_from_world"]
+        (fx, fy), (cx, cy) = camera["focal"].tolist(), camera["centre"].tolist()
+        lens = cameras.Camera(world_from_camera=np.linalg.inv(pose), width=camera["width"],
+                              height=camera["height"], fx=fx, fy=fy, cx=cx, cy=cy)  # fmt: skip
+        told = {key: scene[key] for key in ("means", "log_scales", "quats", "opacity_logits")}
+        own = splat.Gaussians(**told, sh=((scene["colors"] - 0.5) / Y0)[:, None])
+        options = splat.SplatOptions(stop=0.0)
+        shown, context = splat.render(own, lens, background=background, options=options)
+
+        def back(d_shown):
+            got = splat.render_backward(context, np.ascontiguousarray(d_shown))
+            rest = {"colors": got.gaussians["sh"][:, 0] / Y0, "pull": np.abs(got.screen)}
+            return {
+                **{key: got.gaussians[key] for key in told},
+                **rest,
+                "background": got.background,
+            }
+
+        return np.asarray(shown.color), back
+
+    drawn(start, views[0][0], BACKGROUND)
+    return drawn
+
+
+try:
+    core = of_the_core()
+except (ImportError, AttributeError, TypeError):  # none, or another than this was written for
+    print("core not installed")
+else:
+    scene = {**found, "colors": np.maximum(found["colors"], 0.01)}  # the core's are not negative
+    (mine_shown, mine_back), (core_shown, core_back) = (
+        draw(scene, camera, BACKGROUND) for draw in (mine.picture, core)
+    )
+    d_shown = draws.uniform(-1.0, 1.0, mine_shown.shape)
+    mine_d, core_d = mine_back(d_shown), core_back(d_shown)
+    worst = max(off(mine_d[key], core_d[key]) for key in (*mine.RATES, "background"))
+    print(
+        f"core:   pictures differ by {off(mine_shown, core_shown):.0e}, derivatives by {worst:.0e}"
+    )
+    wider, kept_back = option("core-pixels", 200), mine.picture
+    sharp = [(each, photograph(each)) for each in around(2 * count, wider)]
+    mine.picture, before = core, time.perf_counter()
+    # The core sums with signs before it takes sizes, so less is left of a pull.
+    mine.THRESHOLD, limit = mine.THRESHOLD / 4, mine.SMALL
+    mine.SMALL = limit / 2
+    many, _ = mine.fit(cloud(500, np.random.default_rng(seed)), sharp, 2 * steps,
+                       np.random.default_rng(seed), BACKGROUND, 8 * most, every)  # fmt: skip
+    mine.picture = kept_back
+    tests = [(each, photograph(each)) for each in around(3, wider, 1.0)]
+    pairs = [(core(many, each, BACKGROUND)[0], truth) for each, truth in tests]
+    Image.fromarray(byte(np.concatenate([pairs[0][1], pairs[0][0]], axis=1))).save("core.png")
+    score, took = np.mean([decibels(*pair) for pair in pairs]), time.perf_counter() - before
+    print(f"core:   {2 * steps} steps of {wider} x {wider} in {took:.0f} s, "
+          f"{len(many['means'])} Gaussians, {score:.1f} dB; core.png")  # fmt: skip

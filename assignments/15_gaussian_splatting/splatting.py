@@ -1,0 +1,374 @@
+"""3D Gaussian splatting: a scene of fuzzy ellipsoids, its pictures, and the way back.
+
+A scene is a dict of arrays with a row for each Gaussian, and every number may take any value:
+
+    "means"             (N, 3), metres, in the world
+    "log_scales"        (N, 3), logarithms of the standard deviations along its axes, in metres
+    "quats"             (N, 4), quaternions (w, x, y, z) of any length above zero
+    "opacity_logits"    (N,), the opacity in its middle is 1 / (1 + exp(-logit))
+    "colors"            (N, 3), as pictures show them
+
+A *camera* is a dict: "camera_from_world" (3, 4), a rotation W and a translation b that take a point
+p to t = W p + b with x to the right, y down, z forward; "focal" and "centre", (2,) each, in pixels
+along x and y; "width" and "height". The middle of pixel (row, column) is (column + 1/2, row + 1/2).
+
+Your tasks are six functions, one section of the handout each; `photograd course check 15` tells
+how far you are. Five of them return, behind their values, a function `back`: given the derivative
+of a loss by the values, it returns the derivatives of that loss by what the function was given. The
+other functions are given and stay as they are. All numbers are float64.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+LOW_PASS = 0.3  # pixels squared: no splat is thinner than about a pixel
+MARGIN = 0.15  # of the picture's size: how far outside of it slopes are still taken where they are
+NEAR = 0.01  # metres; Gaussians that are closer are not drawn
+ALPHA_MIN, ALPHA_MAX = 1 / 255, 0.999
+FAINT = 0.02  # opacity below which a Gaussian is dropped
+SMALL = 0.06  # metres; longer ones are split, the others cloned
+THRESHOLD = 0.002  # of the pressure
+SHRINK = 1.6  # a part of a split Gaussian is smaller by this
+TILE = 16  # pixels
+RATES = {
+    "means": 0.008, "log_scales": 0.03, "quats": 0.03, "opacity_logits": 0.05, "colors": 0.02,
+}  # fmt: skip
+# The matrix that takes v to the cross product u x v has the entries sum_k CROSS[i, j, k] u_k.
+CROSS = np.array([
+    [[0, 0, 0], [0, 0, -1], [0, 1, 0]],
+    [[0, 0, 1], [0, 0, 0], [-1, 0, 0]],
+    [[0, -1, 0], [1, 0, 0], [0, 0, 0]],
+])  # fmt: skip
+
+
+def covariance(quats, log_scales):
+    """The covariances of Gaussians.
+
+    Args:
+        quats: (N, 4), of any length above zero.
+        log_scales: (N, 3).
+
+    Returns:
+        (cov, back): (N, 3, 3), symmetric; back(d_cov) returns (d_quats, d_log_scales), and each of
+        the nine numbers of d_cov counts by itself. Handout equations (4) to (8).
+    """
+    # >>> solution 15.1
+    length = np.linalg.norm(quats, axis=1, keepdims=True)
+    n = quats / length
+    w, K = n[:, :1, None], np.einsum("ijk,nk->nij", CROSS, n[:, 1:])
+    R = np.eye(3) + 2 * (w * K + K @ K)
+    s = np.exp(log_scales)[:, None]
+    M = R * s
+
+    def back(d_cov):
+        d_M = (d_cov + d_cov.swapaxes(1, 2)) @ M
+        d_R = 2 * d_M * s
+        d_K = w * d_R - d_R @ K - K @ d_R
+        d_u = np.einsum("ijk,nij->nk", CROSS, d_K)
+        d_n = np.concatenate([np.sum(d_R * K, axis=(1, 2))[:, None], d_u], axis=1)
+        along = np.sum(n * d_n, axis=1, keepdims=True)
+        return (d_n - along * n) / length, np.sum(d_M * M, axis=1)
+
+    return M @ M.swapaxes(1, 2), back
+    # <<< solution
+
+
+def depths(means, camera):
+    """Given: how far in front of the camera means lie, along its axis; (N,)."""
+    view = camera["camera_from_world"]
+    return means @ view[2, :3] + view[2, 3]
+
+
+def limits(camera):
+    """Given: (low, high), (2,) each: where t_x / t_z and t_y / t_z are held for the slopes."""
+    size = np.array([camera["width"], camera["height"]], np.float64)
+    low = (-MARGIN * size - camera["centre"]) / camera["focal"]
+    return low, ((1 + MARGIN) * size - camera["centre"]) / camera["focal"]
+
+
+def project(means, cov, camera):
+    """Gaussians as the camera sees them.
+
+    Args:
+        means: (N, 3), all in front of the camera.
+        cov: (N, 3, 3), symmetric.
+        camera: see above.
+
+    Returns:
+        (mean2d, cov2d, depth, back): (N, 2), pixels along x and y; (N, 3), the entries xx, xy, yy,
+        in pixels squared; (N,), metres; back(d_mean2d, d_cov2d) returns (d_means, d_cov). Handout
+        equations (9) to (14).
+    """
+    # >>> solution 15.2
+    W, f = camera["camera_from_world"][:, :3], camera["focal"]
+    t = means @ W.T + camera["camera_from_world"][:, 3]
+    z = t[:, 2:]
+    u = t[:, :2] / z
+    h = np.clip(u, *limits(camera))
+    A = (f / z)[:, :, None] * (W[:2] - h[:, :, None] * W[2])
+    S = A @ cov @ A.swapaxes(1, 2)
+
+    def back(d_mean2d, d_cov2d):
+        G = d_cov2d[:, [0, 1, 1, 2]].reshape(-1, 2, 2) * [[1, 0.5], [0.5, 1]]
+        d_A = 2 * G @ A @ cov
+        d_h = -f / z * (d_A @ W[2])
+        d_u = f * d_mean2d + np.where(h == u, d_h, 0.0)
+        d_z = -np.sum(d_u * u, axis=1) - np.sum(d_A * A, axis=(1, 2))
+        d_t = np.concatenate([d_u, d_z[:, None]], axis=1) / z
+        return d_t @ W, A.swapaxes(1, 2) @ G @ A
+
+    return f * u + camera["centre"], S[:, [0, 0, 1], [0, 1, 1]], t[:, 2], back
+    # <<< solution
+
+
+def screen_alpha(mean2d, cov2d, opacity_logits, pixels):
+    """How much of each pixel's light each splat takes.
+
+    Args:
+        mean2d: (N, 2), in pixels along x and y.
+        cov2d: (N, 3), xx, xy, yy, in pixels squared; LOW_PASS is still to be added.
+        opacity_logits: (N,).
+        pixels: (P, 2), places on the screen.
+
+    Returns:
+        (alpha, back): (N, P); back(d_alpha) returns (d_mean2d, d_cov2d, d_opacity_logits, pull),
+        and pull, (N, 2), sums the absolute values of what single pixels add to d_mean2d. Handout
+        equations (15) to (21).
+    """
+    # >>> solution 15.3
+    S = cov2d + np.array([LOW_PASS, 0, LOW_PASS])
+    det = S[:, 0] * S[:, 2] - S[:, 1] ** 2
+    A, B, C = (S[:, ::-1] * [1, -1, 1] / det[:, None]).T[:, :, None]
+    dx, dy = (mean2d[:, None] - pixels).transpose(2, 0, 1)
+    vx, vy = A * dx + B * dy, B * dx + C * dy
+    o = 1 / (1 + np.exp(-opacity_logits))
+    raw = o[:, None] * np.exp(-(dx * vx + dy * vy) / 2)
+    seen = raw >= ALPHA_MIN
+
+    def back(d_alpha):
+        g = np.where(seen & (raw <= ALPHA_MAX), raw * d_alpha, 0.0)
+        gx, gy = g * vx, g * vy
+        d_S = np.stack([gx * vx / 2, gx * vy, gy * vy / 2]).sum(axis=2).T
+        d_mean2d = -np.stack([gx, gy]).sum(axis=2).T
+        pull = np.abs(np.stack([gx, gy])).sum(axis=2).T
+        return d_mean2d, d_S, (1 - o) * g.sum(axis=1), pull
+
+    return np.where(seen, np.minimum(raw, ALPHA_MAX), 0.0), back
+    # <<< solution
+
+
+def composite(alpha, colors, depth, background):
+    """Splats over one another, nearest first.
+
+    Args:
+        alpha: (N, P), below 1.
+        colors: (N, 3).
+        depth: (N,); the smaller is in front, of equal ones the row that comes first.
+        background: (3,), what is behind all of them.
+
+    Returns:
+        (shown, back): (P, 3); back(d_shown) returns (d_alpha, d_colors, d_background), rows in the
+        order in which they came. Handout equations (22) to (25).
+    """
+    # >>> solution 15.4
+    order = np.argsort(depth, kind="stable")
+    a, c = alpha[order], colors[order]
+    T = np.cumprod(np.concatenate([np.ones((1, a.shape[1])), 1 - a]), axis=0)
+    w = T[:-1] * a
+
+    def back(d_shown):
+        v = c @ d_shown.T
+        wv = w * v
+        end = T[-1] * (d_shown @ background)
+        rest = end + np.sum(wv, axis=0) - np.cumsum(wv, axis=0)
+        d_alpha, d_colors = np.zeros_like(a), np.zeros_like(c)
+        d_alpha[order] = T[:-1] * v - rest / (1 - a)
+        d_colors[order] = w @ d_shown
+        return d_alpha, d_colors, T[-1] @ d_shown
+
+    return w.T @ c + T[-1][:, None] * background, back
+    # <<< solution
+
+
+def render(gaussians, camera, pixels, background):
+    """What some pixels show of a scene.
+
+    Args:
+        gaussians: N of them; those that are not farther than NEAR in front are not drawn.
+        camera: see above.
+        pixels: (P, 2), places on the screen.
+        background: (3,).
+
+    Returns:
+        (shown, back): (P, 3); back(d_shown) returns a dict with the derivatives by all five arrays
+        of the scene, by "background" (3,), and "pull" (N, 2); rows that are not drawn have zeros.
+        Handout equations (26) and (27).
+    """
+    # >>> solution 15.5
+    drawn = depths(gaussians["means"], camera) > NEAR
+    part = {key: values[drawn] for key, values in gaussians.items()}
+    cov, shape_back = covariance(part["quats"], part["log_scales"])
+    mean2d, cov2d, depth, lens_back = project(part["means"], cov, camera)
+    alpha, alpha_back = screen_alpha(mean2d, cov2d, part["opacity_logits"], pixels)
+    shown, blend_back = composite(alpha, part["colors"], depth, background)
+
+    def back(d_shown):
+        found = {}
+        d_alpha, found["colors"], d_background = blend_back(d_shown)
+        d_mean2d, d_cov2d, found["opacity_logits"], found["pull"] = alpha_back(d_alpha)
+        found["means"], d_cov = lens_back(d_mean2d, d_cov2d)
+        found["quats"], found["log_scales"] = shape_back(d_cov)
+        rows = {key: np.zeros((len(drawn), *each.shape[1:])) for key, each in found.items()}
+        for key, each in found.items():
+            rows[key][drawn] = each
+        return {**rows, "background": d_background}
+
+    return shown, back
+    # <<< solution
+
+
+def densify(gaussians, pressure, rng, most):
+    """Clone, split and drop Gaussians.
+
+    Args:
+        gaussians: N of them; these arrays must not change.
+        pressure: (N,), how much the pictures pulled at each.
+        rng: a numpy.random.Generator, asked once: standard_normal((2 K, 3)) for K that are split.
+        most: there are never more Gaussians, unless there were more before.
+
+    Returns:
+        (gaussians, source): the new scene, and (M,), integers: the row that each was before, or -1
+        for one that is new. Handout equations (28) to (32).
+    """
+    # >>> solution 15.6
+    opacity = 1 / (1 + np.exp(-gaussians["opacity_logits"]))
+    kept = opacity >= FAINT
+    rows = np.argsort(-pressure, kind="stable")
+    chosen = rows[(kept & (pressure > THRESHOLD))[rows]][: max(most - kept.sum(), 0)]
+    small = np.exp(gaussians["log_scales"]).max(axis=1) <= SMALL
+    clone, split = (np.sort(chosen[each]) for each in (small[chosen], ~small[chosen]))
+    kept[split] = False
+    stay = np.flatnonzero(kept)
+    rows = np.concatenate([stay, clone, split, split])
+    logits = gaussians["opacity_logits"].copy()
+    logits[clone] = np.log(np.sqrt(1 + np.exp(logits[clone])) - 1)
+    after = {key: part[rows] for key, part in {**gaussians, "opacity_logits": logits}.items()}
+    fresh = slice(len(rows) - 2 * len(split), None)
+    whole, _ = covariance(after["quats"][fresh], after["log_scales"][fresh])
+    drawn = rng.standard_normal((2 * len(split), 3))
+    after["means"][fresh] += np.einsum("nij,nj->ni", np.linalg.cholesky(whole), drawn)
+    after["log_scales"][fresh] -= np.log(SHRINK)
+    return after, np.where(np.arange(len(rows)) < len(stay), rows, -1)
+    # <<< solution
+
+
+def reach(gaussians, camera):
+    """Given: (low, high), (N, 2) each: outside of this box alpha is below ALPHA_MIN."""
+    ahead = depths(gaussians["means"], camera) > NEAR
+    low, high = np.full((len(ahead), 2), np.inf), np.full((len(ahead), 2), -np.inf)
+    visible = {key: values[ahead] for key, values in gaussians.items()}
+    spread, _ = covariance(visible["quats"], visible["log_scales"])
+    middle, extent, *_ = project(visible["means"], spread, camera)
+    solid = 1 / (1 + np.exp(-visible["opacity_logits"]))
+    sigmas = np.sqrt(2 * np.log(np.maximum(solid / ALPHA_MIN, 1)))
+    half = sigmas[:, None] * np.sqrt(extent[:, ::2] + LOW_PASS)
+    low[ahead], high[ahead] = middle - half, middle + half
+    return low, high
+
+
+def picture(gaussians, camera, background):
+    """Given: all pixels by `render`, TILE x TILE of them at a time, with what can reach them.
+
+    Returns:
+        (shown, back): (H, W, 3); back as that of `render`.
+    """
+    low, high = reach(gaussians, camera)
+    height, width = camera["height"], camera["width"]
+    shown, tiles = np.zeros((height, width, 3)), []
+    for top in range(0, height, TILE):
+        for left in range(0, width, TILE):
+            block = slice(top, min(top + TILE, height)), slice(left, min(left + TILE, width))
+            y, x = (each.ravel() + 0.5 for each in np.mgrid[block])
+            here = (high > [x[0], y[0]]) & (low < [x[-1], y[-1]])
+            here = np.flatnonzero(here.all(axis=1))
+            some = {key: values[here] for key, values in gaussians.items()}
+            colors, tile_back = render(some, camera, np.stack([x, y], axis=1), background)
+            shown[block] = colors.reshape(shown[block].shape)
+            tiles.append((block, here, tile_back))
+
+    def back(d_shown):
+        total = {key: np.zeros_like(values) for key, values in gaussians.items()}
+        total.update(pull=np.zeros((len(low), 2)), background=np.zeros(3))
+        for block, here, tile_back in tiles:
+            for key, values in tile_back(d_shown[block].reshape(-1, 3)).items():
+                total[key][... if key == "background" else here] += values
+        return total
+
+    return shown, back
+
+
+class Adam:
+    """Steps of Adam for a scene, as in assignment 01, with beta 0.9 and 0.99."""
+
+    def __init__(self, gaussians):
+        self.m = {key: np.zeros_like(values) for key, values in gaussians.items()}
+        self.v = {key: np.zeros_like(values) for key, values in gaussians.items()}
+        self.k = 0
+
+    def step(self, gaussians, gradient):
+        """The scene after one step; the given one stays as it is."""
+        self.k += 1
+        moved = {}
+        for key, values in gaussians.items():
+            self.m[key] = 0.9 * self.m[key] + 0.1 * gradient[key]
+            self.v[key] = 0.99 * self.v[key] + 0.01 * gradient[key] ** 2
+            m, v = self.m[key] / (1 - 0.9**self.k), self.v[key] / (1 - 0.99**self.k)
+            moved[key] = values - RATES[key] * m / (np.sqrt(v) + 1e-8)
+        return moved
+
+    def follow(self, source):
+        """Rows keep their moments when a scene has changed; new ones begin with none."""
+        for moments in (self.m, self.v):
+            for key, values in moments.items():
+                old = (source >= 0).reshape(-1, *[1] * (values.ndim - 1))
+                moments[key] = np.where(old, values[source], 0.0)
+
+
+def fit(gaussians, views, steps, rng, background, most, every=50, watch=None):
+    """Given: fit a scene to photographs, one of them in each step.
+
+    Args:
+        gaussians: where the descent starts.
+        views: a list of pairs of a camera and a picture (H, W, 3).
+        steps: how many.
+        rng: a numpy.random.Generator.
+        background: (3,).
+        most: the number of Gaussians never exceeds this; 0: it stays as it is.
+        every: steps between two changes of the number, in the first two thirds of the fit.
+        watch: called with (step, gaussians, loss) before each step, or None.
+
+    Returns:
+        (gaussians, losses): losses (steps,), of the picture that each step saw.
+    """
+    adam, losses = Adam(gaussians), np.zeros(steps)
+    total, times = np.zeros(len(gaussians["means"])), np.zeros(len(gaussians["means"]))
+    for step in range(steps):
+        camera, truth = views[rng.integers(len(views))]
+        shown, back = picture(gaussians, camera, background)
+        error = shown - truth
+        losses[step] = np.sum(error**2) / error[..., 0].size
+        if watch is not None:
+            watch(step, gaussians, losses[step])
+        gradient = back(2 * error / error[..., 0].size)
+        pull = np.linalg.norm(gradient["pull"], axis=1)
+        # The loss is a mean over pixels: with this factor a threshold holds for any picture's size.
+        total += pull * max(camera["width"], camera["height"]) / 2
+        times += pull > 0
+        gaussians = adam.step(gaussians, gradient)
+        if most and (step + 1) % every == 0 and 3 * step < 2 * steps:
+            pressure = total / np.maximum(times, 1)
+            gaussians, source = densify(gaussians, pressure, rng, most)
+            adam.follow(source)
+            total, times = np.zeros(len(source)), np.zeros(len(source))
+    return gaussians, losses
