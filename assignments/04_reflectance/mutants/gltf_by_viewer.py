@@ -1,7 +1,19 @@
-"""The angle of your Fresnel factor is that of the viewer to the normal: it is that to the half vector."""
+"""Your Fresnel factor takes the angle of the viewer to the normal: it belongs to the half vector."""
 
 TASKS = ("04.5",)
-LOSES = ("04.5.mirror", "04.5.symmetry", "04.5.energy", "04.5.hidden",)
+LOSES = (
+    "04.5.mirror",
+    "04.5.symmetry",
+    "04.5.energy",
+    "04.5.hidden",
+)
 REPLACE = [
-    ('cos = np.sum(wo * half_vector(wo, wi), axis=1)[:, None]\n    F = schlick(0.04, cos)\n    ground', 'cos = wo[:, 2:]\n    F = schlick(0.04, cos)\n    ground'),
+    (
+        (
+            "cos = np.sum(wo * half_vector(wo, wi), axis=1)[:, None]\n"
+            "    F = schlick(0.04, cos)\n"
+            "    ground"
+        ),
+        ("cos = wo[:, 2:]\n    F = schlick(0.04, cos)\n    ground"),
+    ),
 ]

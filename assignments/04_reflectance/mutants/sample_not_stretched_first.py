@@ -1,7 +1,11 @@
 """You do not stretch the viewer's direction before you draw."""
 
 TASKS = ("04.4",)
-LOSES = ("04.4.chi", "04.4.mean", "04.4.hidden",)
+LOSES = (
+    "04.4.chi",
+    "04.4.mean",
+    "04.4.hidden",
+)
 REPLACE = [
-    ('    v = wo * stretch\n', '    v = wo * 1.0\n'),
+    ("    v = wo * stretch\n", "    v = wo * 1.0\n"),
 ]
