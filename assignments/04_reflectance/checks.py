@@ -171,7 +171,7 @@ def the_roughest_surface(t):
 
 
 @check("04.2.symmetry", task="04.2", points=2, calls=("ggx_lobe",), tolerance=EXACT,
-       kills=("lobe_cosine", "lobe_light_below", "lobe_one_axis",),
+       kills=("lobe_cosine", "lobe_one_axis",),
        hint="every formula of section 2 treats wo and wi alike",
        sole="reciprocity: light could go the other way")  # fmt: skip
 def light_could_go_the_other_way(t):
@@ -206,9 +206,9 @@ MIRRORS = (
 
 @check("04.2.energy", task="04.2", points=4, calls=("ggx_lobe",), tolerance=TABLE,
        kills=("lobe_alpha_once", "lobe_beckmann", "lobe_cosine", "lobe_facets_stretched",
-              "lobe_half", "lobe_light_below", "lobe_no_masking", "lobe_no_pi", "lobe_no_roots",
-              "lobe_not_halfway", "lobe_not_squared", "lobe_one_axis", "lobe_own_cosines",
-              "lobe_printed", "lobe_q_once", "lobe_uncorrelated",),
+              "lobe_half", "lobe_no_masking", "lobe_no_pi", "lobe_no_roots", "lobe_not_halfway",
+              "lobe_not_squared", "lobe_one_axis", "lobe_own_cosines", "lobe_printed",
+              "lobe_q_once", "lobe_uncorrelated",),
        hint="handout, section 2: D must cover the surface once, V divides by 4 o_z i_z",
        sole="the furnace decides: what each roughness returns, 1 - ln 2 among it")  # fmt: skip
 def what_mirrors_return(t):
@@ -628,9 +628,9 @@ def other_models(t):
 @check("04.2.hidden", task="04.2", points=3, calls=("ggx_lobe",), visibility="hidden",
        tolerance=SHARP,
        kills=("lobe_alpha_once", "lobe_beckmann", "lobe_cosine", "lobe_facets_stretched",
-              "lobe_half", "lobe_light_below", "lobe_no_masking", "lobe_no_pi", "lobe_no_roots",
-              "lobe_not_halfway", "lobe_not_squared", "lobe_one_axis", "lobe_own_cosines",
-              "lobe_printed", "lobe_q_once", "lobe_uncorrelated",),
+              "lobe_half", "lobe_no_masking", "lobe_no_pi", "lobe_no_roots", "lobe_not_halfway",
+              "lobe_not_squared", "lobe_one_axis", "lobe_own_cosines", "lobe_printed",
+              "lobe_q_once", "lobe_uncorrelated",),
        sole="the same mistakes at unknown directions, and on polished surfaces")  # fmt: skip
 def lobes_anywhere(t):
     """The lobe is right anywhere, and where it is sharp."""

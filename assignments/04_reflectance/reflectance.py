@@ -83,15 +83,15 @@ def cook_torrance(wo, wi, f0, rms_slope, printed=False):
 
     With `printed` the constants are those that the paper of 1982 prints.
     """
-    wo, wi = (np.where(above(wo, wi)[:, None], w, [0.0, 0.0, 1.0]) for w in (wo, wi))
-    wh = half_vector(wo, wi)
-    z2, seen = wh[:, 2] ** 2, np.sum(wo * wh, axis=1)
+    up = above(wo, wi)
+    o, i = (np.where(up[:, None], w, [0.0, 0.0, 1.0]) for w in (wo, wi))
+    wh = half_vector(o, i)
+    z2, seen = wh[:, 2] ** 2, np.sum(o * wh, axis=1)
     D = np.exp((1 - 1 / z2) / rms_slope**2) / (rms_slope**2 * z2**2)
-    G = np.minimum(1, 2 * wh[:, 2] * np.minimum(wo[:, 2], wi[:, 2]) / seen)
+    G = np.minimum(1, 2 * wh[:, 2] * np.minimum(o[:, 2], i[:, 2]) / seen)
     constants = np.pi if printed else 4 * np.pi
-    return _coloured(
-        schlick(f0, seen) * D * G / (constants * wo[:, 2] * wi[:, 2]), np.ones(3), wo, wi
-    )
+    f = schlick(f0, seen) * D * G / (constants * o[:, 2] * i[:, 2])
+    return _coloured(f, 1.0, wo, wi)
 
 
 # Your tasks ---------------------------------------------------------------------------------------

@@ -1,4 +1,4 @@
-"""Your Fresnel factor takes the angle of the viewer to the normal: it belongs to the half vector."""
+"""Your Fresnel factor takes the viewer's angle to the normal: it belongs to the half vector."""
 
 TASKS = ("04.5",)
 LOSES = (
