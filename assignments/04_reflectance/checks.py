@@ -79,7 +79,7 @@ def densities(t, wo, wi, r):
 def room(t, value, channels, cosines):
     """`furnace` of the hand-in for a model, which looks at the directions that it is asked for."""
 
-    def f(wo, wi):
+    def model(wo, wi):
         t.require(isinstance(wo, np.ndarray) and isinstance(wi, np.ndarray)
                   and wo.ndim == 2 and wo.shape == wi.shape and wo.shape[1] == 3,
                   "f must be asked for wo and wi as arrays of one shape (M, 3)")  # fmt: skip
@@ -93,7 +93,7 @@ def room(t, value, channels, cosines):
         t.require(bool((wi[:, 2] > 0).all()), "wi must be above the surface")
         return value(wo, wi)
 
-    return t.call("furnace", f, cosines, returns=Array((len(cosines), channels)))
+    return t.call("furnace", model, cosines, returns=Array((len(cosines), channels)))
 
 
 @check("04.1.matte", task="04.1", points=3, calls=("furnace",), tolerance=EXACT,
@@ -345,7 +345,7 @@ def samples_are_mirrored_at_facets(t):
         t.close("lengths", np.linalg.norm(wi, axis=1), np.ones(200), reveal=True)
         h = wo + wi
         t.require(bool((h[:, 2] > 0).all()), "wo + wi must point upwards: a facet's normal does")
-        t.require(bool((np.sum(wo * h, axis=1) > 0).all()), "the viewer must see the facet")
+        t.require(bool(((wo * h).sum(axis=1) > 0).all()), "the viewer must see the facet")
 
 
 @check("04.4.rows", task="04.4", points=1, calls=("sample_ggx",), tolerance=EXACT,

@@ -66,14 +66,14 @@ def pulled(scene, color, m, r, d_picture):
     """Derivatives of a loss by colour (3,), metalness and roughness, and by roughness (N,)."""
     _, wo, lights = scene
     n = len(wo)
-    by_color, by_metal, by_rough = np.zeros((n, 3)), np.zeros(n), np.zeros(n)
+    of_color, of_metal, of_rough = np.zeros((n, 3)), np.zeros(n), np.zeros(n)
     for wi, (_, strength) in zip(lights, LAMPS, strict=True):
         g = np.pi * strength * np.maximum(wi[:, 2:], 0) * d_picture
         parts = mine.gltf_backward(wo, wi, np.tile(color, (n, 1)), np.full(n, m), np.full(n, r), g)
-        by_color, by_metal, by_rough = (
-            a + b for a, b in zip((by_color, by_metal, by_rough), parts, strict=True)
+        of_color, of_metal, of_rough = (
+            a + b for a, b in zip((of_color, of_metal, of_rough), parts, strict=True)
         )
-    return by_color.sum(axis=0), by_metal.sum(), by_rough.sum(), by_rough
+    return of_color.sum(axis=0), of_metal.sum(), of_rough.sum(), of_rough
 
 
 scene = ball(pixels)

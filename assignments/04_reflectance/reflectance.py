@@ -176,13 +176,13 @@ def sample_ggx(wo, roughness, u2):
     """
     # >>> solution 04.4
     stretch = np.stack([roughness**2, roughness**2, np.ones(len(wo))], axis=1)
-    v = wo * stretch
-    v = v / np.linalg.norm(v, axis=1, keepdims=True)
-    z = 1 - u2[:, 0] * (1 + v[:, 2])
+    viewer = wo * stretch
+    viewer = viewer / np.linalg.norm(viewer, axis=1, keepdims=True)
+    z = 1 - u2[:, 0] * (1 + viewer[:, 2])
     phi = 2 * np.pi * u2[:, 1]
     r = np.sqrt(1 - z * z)
     cap = np.stack([r * np.cos(phi), r * np.sin(phi), z], axis=1)
-    h = (cap + v) * stretch
+    h = (cap + viewer) * stretch
     h = h / np.linalg.norm(h, axis=1, keepdims=True)
     return 2 * np.sum(wo * h, axis=1, keepdims=True) * h - wo
     # <<< solution

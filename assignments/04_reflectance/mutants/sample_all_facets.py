@@ -8,5 +8,5 @@ LOSES = (
     "04.4.hidden",
 )
 REPLACE = [
-    ("    v = wo * stretch\n", "    v = np.tile([0.0, 0.0, 1.0], (len(wo), 1))\n"),
+    ("    viewer = wo * stretch\n", "    viewer = np.tile([0.0, 0.0, 1.0], (len(wo), 1))\n"),
 ]

@@ -8,5 +8,5 @@ LOSES = (
     "04.4.hidden",
 )
 REPLACE = [
-    ("h = (cap + v) * stretch", "h = cap * stretch"),
+    ("h = (cap + viewer) * stretch", "h = cap * stretch"),
 ]

@@ -7,5 +7,5 @@ LOSES = (
     "04.4.hidden",
 )
 REPLACE = [
-    ("z = 1 - u2[:, 0] * (1 + v[:, 2])", "z = np.cos(u2[:, 0] * np.arccos(-v[:, 2]))"),
+    ("z = 1 - u2[:, 0] * (1 + viewer[:, 2])", "z = np.cos(u2[:, 0] * np.arccos(-viewer[:, 2]))"),
 ]

@@ -7,5 +7,5 @@ LOSES = (
     "04.4.hidden",
 )
 REPLACE = [
-    ("    v = wo * stretch\n", "    v = wo * 1.0\n"),
+    ("    viewer = wo * stretch\n", "    viewer = wo * 1.0\n"),
 ]

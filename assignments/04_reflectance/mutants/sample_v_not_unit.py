@@ -8,5 +8,5 @@ LOSES = (
     "04.4.hidden",
 )
 REPLACE = [
-    ("    v = v / np.linalg.norm(v, axis=1, keepdims=True)\n", ""),
+    ("    viewer = viewer / np.linalg.norm(viewer, axis=1, keepdims=True)\n", ""),
 ]
