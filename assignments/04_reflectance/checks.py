@@ -679,7 +679,8 @@ def densities_anywhere(t):
 def samples_have_the_right_density(t):
     """Samples at random views fall into cells as often as they should (chi-square)."""
     for low, high in ((0.2, 0.5), (0.5, 1.0)):
-        r, z = float(t.rng.uniform(0.5, 0.95)), float(t.rng.uniform(low, high))
+        # Rougher ones look nearly even, whatever is forgotten.
+        r, z = float(t.rng.uniform(0.5, 0.7)), float(t.rng.uniform(low, high))
         wo = turned(viewer(z, 10_000), float(t.rng.uniform(0.0, 6.0)))
         shares = cells(
             lambda wi, wo=wo, r=r: t.reference.ggx_pdf(wo[: len(wi)], wi, np.full(len(wi), r))
