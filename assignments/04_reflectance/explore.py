@@ -142,7 +142,8 @@ for row, m in enumerate((0.0, 1.0)):
     for column, r in enumerate((0.15, 0.3, 0.45, 0.65, 1.0)):
         axes = figure.add_subplot(grid[row, column])
         axes.imshow(screen(picture(small, COLOR, m, r, mine.gltf), small[0]))
-        axes.set(xticks=[], yticks=[], title=f"metalness {m:g}, roughness {r:g}")
+        axes.set(xticks=[], yticks=[], title=f"roughness {r:g}" if row == 0 else "")
+        axes.set_ylabel(f"metalness {m:g}" if column == 0 else "")
 axes = figure.add_subplot(grid[2, 0])
 axes.imshow(screen(target, scene[0]))
 axes.set(xticks=[], yticks=[], title="the ball")
