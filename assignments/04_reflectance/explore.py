@@ -1,0 +1,171 @@
+# %% [markdown]
+# # Your material
+# Draws the chart of your material, its lobe and the derivative by roughness; forgets roughness and
+# colour of a ball and finds them again from its picture. Where the C++ core is installed, its
+# values stand beside yours. Never graded. Run it as `python explore.py`; `--roughness`,
+# `--metalness` and `--start` (the roughness that the fit begins with) change the ball, `--pixels`
+# and `--steps` the amount of work.
+
+# %%
+from __future__ import annotations
+
+import importlib
+import sys
+
+import numpy as np
+import reflectance as mine
+from matplotlib.figure import Figure
+
+
+def option(name, default):
+    """The value after --name on the command line; the default in a notebook."""
+    words = sys.argv[1:]
+    return type(default)(words[words.index(f"--{name}") + 1]) if f"--{name}" in words else default
+
+
+pixels, steps = option("pixels", 64), option("steps", 60)
+rough, metal_share, start = (
+    option("roughness", 0.35),
+    option("metalness", 0.0),
+    option("start", 0.7),
+)
+COLOR = np.array([0.75, 0.3, 0.1])
+LAMPS = (((-0.5, 0.6, 0.62), 1.0), ((0.8, 0.1, 0.35), 0.35))
+
+# %% [markdown]
+# ## A ball
+# Seen from far away; every pixel has a frame of its own, in which the normal is +z.
+
+
+# %%
+def ball(size):
+    """Which pixels of (size, size) see the ball; for these wo (N, 3), and wi for each lamp."""
+    x = (np.arange(size) + 0.5) / size * 2.04 - 1.02
+    right, up = np.meshgrid(x, -x)
+    seen = right**2 + up**2 < 0.998
+    normal = np.stack([right, up, np.sqrt(np.maximum(1 - right**2 - up**2, 0))], axis=-1)[seen]
+    tangent = np.cross([0.0, 1.0, 0.0], normal)
+    tangent /= np.linalg.norm(tangent, axis=1, keepdims=True)
+    frame = np.stack([tangent, np.cross(normal, tangent), normal], axis=1)
+    lights = [frame @ (np.array(place) / np.linalg.norm(place)) for place, _ in LAMPS]
+    return seen, frame @ np.array([0.0, 0.0, 1.0]), lights
+
+
+def picture(scene, color, m, r, material):
+    """Radiance (N, 3) of the ball's pixels."""
+    _, wo, lights = scene
+    n = len(wo)
+    total = np.zeros((n, 3))
+    for wi, (_, strength) in zip(lights, LAMPS, strict=True):
+        f = material(wo, wi, np.tile(color, (n, 1)), np.full(n, m), np.full(n, r))
+        total += np.pi * strength * np.maximum(wi[:, 2:], 0) * f
+    return total
+
+
+def pulled(scene, color, m, r, d_picture):
+    """Derivatives of a loss by colour (3,), metalness and roughness, and by roughness (N,)."""
+    _, wo, lights = scene
+    n = len(wo)
+    of_color, of_metal, of_rough = np.zeros((n, 3)), np.zeros(n), np.zeros(n)
+    for wi, (_, strength) in zip(lights, LAMPS, strict=True):
+        g = np.pi * strength * np.maximum(wi[:, 2:], 0) * d_picture
+        parts = mine.gltf_backward(wo, wi, np.tile(color, (n, 1)), np.full(n, m), np.full(n, r), g)
+        of_color, of_metal, of_rough = (
+            a + b for a, b in zip((of_color, of_metal, of_rough), parts, strict=True)
+        )
+    return of_color.sum(axis=0), of_metal.sum(), of_rough.sum(), of_rough
+
+
+scene = ball(pixels)
+print(f"ball: {scene[0].sum()} pixels, roughness {rough:g}, metalness {metal_share:g}")
+
+# %% [markdown]
+# ## Forget and find
+# Mean squared error against the picture; Adam's steps as in assignment 01. Roughness moves between
+# 0.045 and 1, colours between 0 and 1; the metalness is known.
+
+# %%
+target = picture(scene, COLOR, metal_share, rough, mine.gltf)
+x = np.array([0.5, 0.5, 0.5, start])
+first, second = np.zeros(4), np.zeros(4)
+trail = [x]
+for k in range(1, steps + 1):
+    error = picture(scene, x[:3], metal_share, x[3], mine.gltf) - target
+    d_color, _, d_rough, _ = pulled(scene, x[:3], metal_share, x[3], 2 * error / error.size)
+    slope = np.append(d_color, d_rough)
+    first, second = 0.9 * first + 0.1 * slope, 0.99 * second + 0.01 * slope**2
+    x = x - 0.03 * first / (1 - 0.9**k) / (np.sqrt(second / (1 - 0.99**k)) + 1e-12)
+    x = np.clip(x, [0, 0, 0, 0.045], 1)
+    trail.append(x)
+trail = np.array(trail)
+print(f"fit: roughness {x[3]:.3f}, colour {np.round(x[:3], 3)}")
+print(f"truth: roughness {rough:.3f}, colour {COLOR}")
+
+# %% [markdown]
+# ## The furnace, and the C++ core
+
+# %%
+views = np.array([0.3, 0.6, 1.0])
+for r in (0.5, 0.75, 1.0):
+    mirrors = mine.furnace(
+        lambda wo, wi, r=r: mine.ggx_lobe(wo, wi, np.full(len(wo), r))[:, None], views
+    )
+    print(f"perfect mirrors of roughness {r:g} return {np.round(mirrors[:, 0], 4)} from {views}")
+try:
+    core = importlib.import_module("photograd.bsdf").registry()["gltf"]
+except ImportError:
+    print("core not installed")
+else:
+
+    def core_gltf(wo, wi, base_color, metalness, roughness):
+        given = {"base_color": base_color, "metalness": metalness, "roughness": roughness}
+        return core.f(given, wo, np.ascontiguousarray(wi))
+
+    off = np.abs(picture(scene, COLOR, metal_share, rough, core_gltf) - target).max()
+    print(f"core: its picture differs from yours by {off:.1e} at most")
+
+# %% [markdown]
+# ## Pictures
+
+
+# %%
+def screen(values, seen):
+    image = np.ones((*seen.shape, 3))
+    image[seen] = np.clip(values, 0, 1) ** (1 / 2.2)
+    return image
+
+
+figure = Figure(figsize=(11, 8.2), layout="constrained")
+grid = figure.add_gridspec(3, 5)
+small = ball(min(pixels, 90))
+for row, m in enumerate((0.0, 1.0)):
+    for column, r in enumerate((0.15, 0.3, 0.45, 0.65, 1.0)):
+        axes = figure.add_subplot(grid[row, column])
+        axes.imshow(screen(picture(small, COLOR, m, r, mine.gltf), small[0]))
+        axes.set(xticks=[], yticks=[], title=f"roughness {r:g}" if row == 0 else "")
+        axes.set_ylabel(f"metalness {m:g}" if column == 0 else "")
+axes = figure.add_subplot(grid[2, 0])
+axes.imshow(screen(target, scene[0]))
+axes.set(xticks=[], yticks=[], title="the ball")
+axes = figure.add_subplot(grid[2, 1])
+field = np.full(scene[0].shape, np.nan)
+field[scene[0]] = pulled(scene, COLOR, metal_share, rough, np.ones_like(target) / 3)[3]
+top = np.nanquantile(np.abs(field), 0.99)
+axes.imshow(field, cmap="RdBu_r", vmin=-top, vmax=top)
+axes.set(xticks=[], yticks=[], title="by roughness")
+axes = figure.add_subplot(grid[2, 2:4])
+for k, name in enumerate(("red", "green", "blue")):
+    axes.plot(trail[:, k], color=name, linewidth=1)
+    axes.axhline(COLOR[k], color=name, linewidth=0.5, linestyle=":")
+axes.plot(trail[:, 3], color="black", label="roughness")
+axes.axhline(rough, color="black", linewidth=0.5, linestyle=":")
+axes.set(xlabel="step", title="forget and find")
+axes.legend()
+axes = figure.add_subplot(grid[2, 4])
+angle = np.radians(np.linspace(-89, 89, 179))
+wo = np.stack([np.sin(angle), 0 * angle, np.cos(angle)], axis=1)
+wi = np.tile([-np.sqrt(0.5), 0.0, np.sqrt(0.5)], (len(wo), 1))
+axes.semilogy(np.degrees(angle), mine.ggx_lobe(wo, wi, np.full(len(wo), rough)))
+axes.set(title="lobe, light from −45°", xlabel="viewer, degrees")
+figure.savefig("reflectance.png", dpi=100)
+print("reflectance.png: chart, derivative by roughness, fit, lobe")

@@ -1,0 +1,428 @@
+"""The figures of assignment 04, and the facts that their captions claim.
+
+`module` is the solution or a mutant of it. A fact is a bool, or (value, low, high).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.ticker import NullFormatter
+from photograd_course.color import srgb_encode
+from photograd_course.viz.style import (
+    BLUE,
+    FRAME,
+    GREY,
+    INK,
+    ORANGE,
+    house_style,
+    signed_colour_map,
+)
+from photograd_course.viz.style import RED as CRIMSON
+
+DOTS = 110  # per inch: 7 inches wide gives 770 pixels
+LIGHTS = (((-0.5, 0.6, 0.62), 1.0), ((0.8, 0.1, 0.35), 0.35), ((0.1, -0.7, 0.5), 0.15))
+
+
+def save(figure, path):
+    """Write a figure with the same bytes every time."""
+    with house_style():
+        figure.savefig(path, dpi=DOTS, facecolor="white", metadata={"Software": None})
+
+
+def fig1_furnace(module):
+    """What white materials return, by the cosine of the viewer."""
+    cosines = np.concatenate([[0.02, 0.05], np.linspace(0.1, 1.0, 19)])
+
+    def of(model, *given, cosines=cosines):
+        return module.furnace(lambda wo, wi: model(wo, wi, *given), cosines)[:, 0]
+
+    mirrors = {r: module.furnace(_mirror(module, r), cosines)[:, 0] for r in (0.6, 0.8, 1.0)}
+    burley = {r: of(module.burley_diffuse, 1.0, r) for r in (0.3, 1.0)}
+    with np.errstate(under="ignore"):
+        printed, right = (
+            of(module.cook_torrance, 1.0, 0.4, flag, cosines=cosines[2:]) for flag in (True, False)
+        )
+    plastic = module.furnace(_white(module, 0.0, 0.6), np.array([0.1]))[0, 0]
+    facts = {
+        "mirrors of roughness 1 return 1 - ln 2 straight up": (
+            float(mirrors[1.0][-1] - 1 + np.log(2)), -1e-9, 1e-9,
+        ),
+        "no mirror returns more than came": (
+            max(float(values.max()) for values in mirrors.values()), 0.3, 1.0,
+        ),
+        "Burley's, roughness 1, returns 1.46 at 0.05": (float(burley[1.0][1]), 1.46, 1.47),
+        "Burley's, roughness 1, is above 1 everywhere": (float(burley[1.0].min()), 1.0, 1.1),
+        "Burley's, roughness 0.3, is nowhere above 1": (float(burley[0.3].max()), 0.5, 1.0),
+        "as printed, Cook and Torrance's returns four times as much": (
+            float(np.abs(printed / right - 4).max()), 0, 1e-9,
+        ),
+        "repaired it nowhere returns more than came": (float(right.max()), 0.8, 1.0),
+        "white plastic of roughness 0.6 returns 1.06 at 0.1": (float(plastic), 1.055, 1.065),
+    }  # fmt: skip
+    with house_style():
+        figure = Figure(figsize=(7.0, 3.2), layout="constrained")
+        panels = figure.subplots(1, 2, width_ratios=(1.5, 1))
+        axes = panels[0]
+        looks = ((BLUE, "-"), (ORANGE, "--"), (CRIMSON, "-."))
+        for (r, values), (colour, look) in zip(mirrors.items(), looks, strict=True):
+            axes.plot(cosines, values, look, color=colour, label=f"mirrors, roughness {r:g}")
+        for (r, values), look in zip(burley.items(), (":", "-"), strict=True):
+            axes.plot(cosines, values, look, color=INK, label=f"Burley, roughness {r:g}")
+        axes.plot(1.0, 1 - np.log(2), "o", color=CRIMSON, markersize=5, clip_on=False)
+        axes.annotate("1 − ln 2", (1.0, 1 - np.log(2)), (-8, -14), textcoords="offset points",
+                      ha="right")  # fmt: skip
+        axes.set(title="facets that mirror all, and Burley's white", ylim=(0, 1.6))
+        axes.legend(loc="lower left", fontsize=6.5)
+        axes = panels[1]
+        axes.plot(cosines[2:], printed, color=CRIMSON, label="as printed")
+        axes.plot(cosines[2:], right, "--", color=BLUE, label="with 4 π")
+        axes.set(title="Cook and Torrance's, slope 0.4", ylim=(0, 4.4))
+        axes.legend(loc="center right", fontsize=7)
+        for axes in panels:
+            axes.axhline(1, color=FRAME, linewidth=0.8)
+            axes.set(xlim=(0, 1), xlabel="cosine of the viewer")
+            axes.spines[["top", "right"]].set_visible(False)
+        panels[0].set_ylabel("share of the light returned")
+    return figure, facts
+
+
+def fig2_lobes(module):
+    """Lobes of light from 45 degrees: Phong's, and facets of growing roughness."""
+    angle = np.radians(np.linspace(-89.5, 89.5, 359))
+    wo = np.stack([np.sin(angle), 0 * angle, np.cos(angle)], axis=1)
+    wi = np.tile([-np.sqrt(0.5), 0.0, np.sqrt(0.5)], (len(angle), 1))
+    with np.errstate(under="ignore"):
+        highlight = module.phong(wo, wi, 1.0, 40)[:, 0]
+    curves = {r: module.ggx_lobe(wo, wi, np.full(len(wo), r)) for r in (0.4, 0.6, 0.8, 1.0)}
+    height = curves[0.4].max()
+    with np.errstate(under="ignore"):
+        matched = highlight * (height / highlight.max())
+    away = np.degrees(angle) > 5.2
+    away &= np.degrees(angle) < 5.8  # 40 degrees from the mirror direction
+    peaks = {r: float(np.degrees(angle[np.argmax(values)])) for r, values in curves.items()}
+    facts = {
+        "Phong's peak lies in the mirror direction": (
+            float(np.degrees(angle[np.argmax(highlight)])), 44.4, 45.6,
+        ),
+        "at roughness 0.4 the peak lies within 3 degrees of it": (peaks[0.4], 44, 48),
+        "at roughness 0.8 it lies more than 20 degrees beyond": (peaks[0.8], 65, 90),
+        "40 degrees from the peak GGX has more than 300 times Phong's light": (
+            float(curves[0.4][away].mean() / matched[away].mean()), 300, 1e6,
+        ),
+    }  # fmt: skip
+    with house_style():
+        figure = Figure(figsize=(7.0, 2.9), layout="constrained")
+        panels = figure.subplots(1, 2)
+        looks = ((BLUE, "-"), (ORANGE, "--"), (CRIMSON, "-."), (INK, ":"))
+        degrees = np.degrees(angle)
+        for (r, values), (colour, look) in zip(curves.items(), looks, strict=True):
+            if r > 0.4:
+                panels[0].plot(degrees, values, look, color=colour, label=f"roughness {r:g}")
+        panels[0].set(title="facets of GGX", ylabel="D V [1/sr]", ylim=(0, 1.5))
+        panels[1].plot(degrees, curves[0.4], color=BLUE, label="GGX, roughness 0.4")
+        panels[1].plot(degrees, matched, "--", color=GREY, label="Phong, exponent 40")
+        panels[1].set(title="tails, on a scale of powers", yscale="log", ylim=(1e-4, 100))
+        for axes in panels:
+            axes.axvline(45, color=FRAME, linewidth=0.7)
+            axes.set(xlabel="angle of the viewer, degrees", xticks=range(-90, 91, 45))
+            axes.spines[["top", "right"]].set_visible(False)
+            axes.legend(loc="upper left", fontsize=7)
+    return figure, facts
+
+
+def fig3_samples(module):
+    """Samples over their density, and weights of two ways to draw."""
+    rng = np.random.default_rng(7)
+    r, n = 0.6, 4000
+    panels_of, below = [], []
+    for z in (0.95, 0.35):
+        wo = np.tile([np.sqrt(1 - z * z), 0.0, z], (n, 1))
+        wi = module.sample_ggx(wo, np.full(n, r), rng.random((n, 2)))
+        panels_of.append((z, wo, wi))
+        below.append(float((wi[:, 2] <= 0).mean()))
+    z, wo, wi = panels_of[1]
+    weights = _weights(module, wo, wi, r, module.ggx_pdf(wo, wi, np.full(n, r)))
+    even = _even(rng, n)
+    plain = _weights(module, wo, even, r, np.full(n, 1 / (2 * np.pi)))
+    right = float(module.furnace(_mirror(module, r), np.array([z]))[0, 0])
+    spread = weights.std() / np.sqrt(n)
+    facts = {
+        "no weight is above 1": (float(weights.max()), 0.5, 1 + 1e-9),
+        "the mean weight is the albedo within four standard errors": (
+            float(abs(weights.mean() - right) / spread), 0, 4,
+        ),
+        "directions drawn evenly are more than three times as noisy": (
+            float(plain.std() / weights.std()), 3, 100,
+        ),
+        "for both viewers about a tenth leads below the surface": (
+            float(np.abs(np.array(below) - 0.1).max()), 0, 0.02,
+        ),
+    }  # fmt: skip
+    with house_style():
+        figure = Figure(figsize=(7.0, 2.7), layout="constrained")
+        panels = figure.subplots(1, 3)
+        x = np.linspace(-1, 1, 121)
+        px, py = (each.ravel() for each in np.meshgrid(x, x))
+        pz = np.sqrt(np.maximum(1 - px**2 - py**2, 0))
+        grid = np.stack([px, py, pz], axis=1)
+        for axes, (z, wo, wi) in zip(panels[:2], panels_of, strict=True):
+            density = module.ggx_pdf(np.tile(wo[:1], (len(grid), 1)), grid, np.full(len(grid), r))
+            density = np.where(px**2 + py**2 < 0.995, density, np.nan).reshape(121, 121)
+            axes.imshow(density, origin="lower", extent=(-1, 1, -1, 1), cmap="viridis", vmin=0)
+            shown = wi[(wi[:, 2] > 0)][:350]
+            axes.plot(shown[:, 0], shown[:, 1], ".", color="white", markersize=1.6)
+            axes.plot(wo[0, 0], 0, "o", markerfacecolor="none", color=CRIMSON, markersize=6)
+            axes.set(title=f"viewer at cosine {z:g}", xticks=[], yticks=[], xlabel="x")
+            axes.set_ylabel("y")
+        axes = panels[2]
+        bins = np.linspace(0, 4, 41)
+        axes.hist(np.minimum(plain, 3.99), bins, color=GREY, label="drawn evenly")
+        axes.hist(weights, bins, color=BLUE, alpha=0.8, label="visible facets")
+        axes.axvline(right, color=CRIMSON, linewidth=1)
+        axes.set(xlabel="weight f cos / pdf", title="4000 weights, 0.35", yscale="log")
+        axes.yaxis.set_minor_formatter(NullFormatter())
+        axes.legend(fontsize=6.5)
+        axes.spines[["top", "right"]].set_visible(False)
+    return figure, facts
+
+
+def fig4_blend(module):
+    """White of roughness 0.5, seen from 0.6: lobes blended, and what goes into them blended."""
+    metalness, view = np.linspace(0, 1, 11), np.array([0.6])
+
+    def premixed(m):
+        def f(wo, wi):
+            cos = np.sum(wo * module.half_vector(wo, wi), axis=1)
+            F = module.schlick((1 - m) * 0.04 + m, cos)
+            lobe = module.ggx_lobe(wo, wi, np.full(len(wo), 0.5))
+            return ((1 - m) * (1 - F) / np.pi + F * lobe)[:, None]
+
+        return f
+
+    blended = np.array([module.furnace(_white(module, m, 0.5), view)[0, 0] for m in metalness])
+    mixed = np.array([module.furnace(premixed(m), view)[0, 0] for m in metalness])
+    straight = blended[0] + metalness * (blended[-1] - blended[0])
+    facts = {
+        "blended, half metal returns 0.937": (float(blended[5]), 0.9365, 0.9375),
+        "premixed it returns 0.698": (float(mixed[5]), 0.6975, 0.6985),
+        "blended it is a straight line": (float(np.abs(blended - straight).max()), 0, 1e-12),
+        "premixed it is darker than both ends": (
+            float(mixed[5] / min(mixed[0], mixed[-1])), 0.5, 0.9,
+        ),
+    }  # fmt: skip
+    with house_style():
+        figure = Figure(figsize=(6.0, 2.7), layout="constrained")
+        axes = figure.subplots()
+        axes.plot(metalness, blended, "o-", color=BLUE, markersize=4, label="lobes blended")
+        axes.plot(metalness, mixed, "^--", color=ORANGE, markersize=4, label="f0 blended")
+        axes.axhline(1, color=FRAME, linewidth=0.8)
+        axes.set(xlabel="metalness", ylabel="share of the light returned", ylim=(0.6, 1.05))
+        axes.legend(loc="lower left", fontsize=7)
+        axes.spines[["top", "right"]].set_visible(False)
+    return figure, facts
+
+
+def fig5_chart(module):
+    """Balls of the material: roughness to the right, metalness downwards."""
+    color = np.array([0.9, 0.45, 0.12])
+    roughs, metals = (0.15, 0.3, 0.45, 0.65, 1.0), (0.0, 0.5, 1.0)
+    size = 124
+    balls = {(m, r): _ball(module, size, color, m, r) for m in metals for r in roughs}
+    peak = {key: ball[np.unravel_index(np.nanargmax(ball.sum(axis=2)), ball.shape[:2])]
+            for key, ball in balls.items()}  # fmt: skip
+    off = [np.nanmax(np.abs(balls[0.5, r] - (balls[0.0, r] + balls[1.0, r]) / 2)) for r in roughs]
+    gold, white = peak[1.0, 0.3], peak[0.0, 0.15]
+    falls = [peak[1.0, r].max() for r in roughs]
+    facts = {
+        "each pixel of half metal is the mean of those above and below": (
+            float(np.max(off)), 0, 1e-12,
+        ),
+        "the metal's highlight has the base colour": (
+            float(np.abs(gold / gold[0] - color / color[0]).max()), 0, 0.05,
+        ),
+        "the varnish's highlight is nearly white": (float(white[2] / white[0]), 0.75, 1.0),
+        "the metal's highlight gets darker to the right": bool((np.diff(falls) < 0).all()),
+    }  # fmt: skip
+    with house_style():
+        figure = Figure(figsize=(7.0, 4.4))
+        for row, m in enumerate(metals):
+            for column, r in enumerate(roughs):
+                axes = figure.add_axes((0.1 + column * 0.178, 0.655 - row * 0.315, 0.17, 0.29))
+                picture = np.nan_to_num(srgb_encode(np.clip(balls[m, r], 0, 1)), nan=1.0)
+                # Fewer levels make a smaller file.
+                axes.imshow(np.round(picture * 42) / 42, interpolation="nearest")
+                axes.set_axis_off()
+                if row == 0:
+                    axes.set_title(f"roughness {r:g}", fontsize=8, pad=2)
+            figure.text(0.012, 0.79 - row * 0.315, f"metalness\n{m:g}", fontsize=8)
+    return figure, facts
+
+
+def fig6_by_roughness(module):
+    """A plastic ball, its derivative by roughness, and what a step does."""
+    size, r, step = 150, 0.35, 0.02
+    color = np.array([0.75, 0.12, 0.08])
+    inside, wo, frame = _frames(size)
+    wi = frame @ _unit(LIGHTS[0][0])
+    n = len(wo)
+    given = np.tile(color, (n, 1)), np.zeros(n)
+    cosine = np.pi * np.clip(wi[:, 2:], 0, None)
+    d_f = np.repeat(cosine / 3, 3, axis=1)
+    _, _, slope = module.gltf_backward(wo, wi, *given, np.full(n, r), d_f)
+    before, after = (
+        (module.gltf(wo, wi, *given, np.full(n, each)) * cosine).mean(axis=1)
+        for each in (r, r + step)
+    )
+    middle = int(np.argmax(before))
+    change, told = after - before, slope * step
+    centre = np.linalg.norm(np.argwhere(inside) - np.argwhere(inside)[middle], axis=1)
+    ring = (centre > 14) & (centre < 26)
+    dark = wi[:, 2] <= 0
+    facts = {
+        "the middle of the highlight gets darker": (float(slope[middle]), -1e9, -1),
+        "the ring around it gets brighter": (float((slope[ring] > 0).mean()), 0.95, 1),
+        "a step of 0.02 does what the derivative says to 15 %": (
+            float(np.linalg.norm(told - change) / np.linalg.norm(change)), 0, 0.15,
+        ),
+        "in the shadow it is exactly zero": (float(np.abs(slope[dark]).max()), 0, 0),
+    }  # fmt: skip
+    with house_style():
+        figure = Figure(figsize=(7.0, 2.6), layout="constrained")
+        panels = figure.subplots(1, 3)
+        picture = np.ones((size, size, 3))
+        picture[inside] = srgb_encode(np.clip(module.gltf(wo, wi, *given, np.full(n, r))
+                                              * cosine, 0, 1))  # fmt: skip
+        panels[0].imshow(picture)
+        panels[0].set_title("plastic, roughness 0.35")
+        top = float(np.quantile(np.abs(slope), 0.99))
+        for axes, values, title in (
+            (panels[1], slope, "∂ brightness / ∂ roughness"),
+            (panels[2], change / step, "difference, step 0.02"),
+        ):
+            field = np.full((size, size), np.nan)
+            field[inside] = values
+            image = axes.imshow(field, cmap=signed_colour_map(), vmin=-top, vmax=top)
+            axes.set_title(title)
+        for axes in panels:
+            axes.set_axis_off()
+        figure.colorbar(image, ax=panels[1:], shrink=0.8, extend="both")
+    return figure, facts
+
+
+def _mirror(module, r):
+    return lambda wo, wi: module.ggx_lobe(wo, wi, np.full(len(wo), r))[:, None]
+
+
+def _white(module, m, r):
+    def f(wo, wi):
+        n = len(wo)
+        return module.gltf(wo, wi, np.ones((n, 3)), np.full(n, m), np.full(n, r))
+
+    return f
+
+
+def _weights(module, wo, wi, r, pdf):
+    lobe = module.ggx_lobe(wo, wi, np.full(len(wo), r))
+    return np.where(pdf > 0, lobe * wi[:, 2] / np.where(pdf > 0, pdf, 1), 0)
+
+
+def _even(rng, n):
+    z, phi = rng.random(n), 2 * np.pi * rng.random(n)
+    s = np.sqrt(1 - z * z)
+    return np.stack([s * np.cos(phi), s * np.sin(phi), z], axis=1)
+
+
+def _unit(v):
+    return np.array(v) / np.linalg.norm(v)
+
+
+def _frames(size):
+    """A ball seen from +z: where it is, and for its pixels wo and the frames (N, 3, 3)."""
+    x = (np.arange(size) + 0.5) / size * 2.06 - 1.03
+    right, up = np.meshgrid(x, -x)
+    inside = right**2 + up**2 < 0.998
+    normal = np.stack([right, up, np.sqrt(np.maximum(1 - right**2 - up**2, 0))], axis=-1)[inside]
+    tangent = np.cross([0.0, 1.0, 0.0], normal)
+    tangent /= np.linalg.norm(tangent, axis=1, keepdims=True)
+    frame = np.stack([tangent, np.cross(normal, tangent), normal], axis=1)
+    return inside, frame @ np.array([0.0, 0.0, 1.0]), frame
+
+
+def _ball(module, size, color, m, r):
+    """Radiance (size, size, 3) of a ball under three lights; NaN beside it."""
+    inside, wo, frame = _frames(size)
+    n = len(wo)
+    total = 0
+    for place, strength in LIGHTS:
+        wi = frame @ _unit(place)
+        f = module.gltf(wo, wi, np.tile(color, (n, 1)), np.full(n, m), np.full(n, r))
+        total = total + f * np.clip(wi[:, 2:], 0, None) * np.pi * strength
+    image = np.full((size, size, 3), np.nan)
+    image[inside] = total
+    return image
+
+
+FIGURES = {
+    "fig1_furnace": fig1_furnace,
+    "fig2_lobes": fig2_lobes,
+    "fig3_samples": fig3_samples,
+    "fig4_blend": fig4_blend,
+    "fig5_chart": fig5_chart,
+    "fig6_by_roughness": fig6_by_roughness,
+}
+RED = {
+    "fig1_furnace": "furnace_no_cosine",
+    "fig2_lobes": "lobe_not_squared",
+    "fig3_samples": "sample_all_facets",
+    "fig4_blend": "gltf_premixed",
+    "fig5_chart": "gltf_tinted_varnish",
+    "fig6_by_roughness": "back_q_sign",
+}
+# A mutant for each fact.
+RED_FACTS = {
+    "fig1_furnace": {
+        "mirrors of roughness 1 return 1 - ln 2 straight up": "lobe_printed",
+        "no mirror returns more than came": "lobe_no_masking",
+        "Burley's, roughness 1, returns 1.46 at 0.05": "furnace_mean",
+        "Burley's, roughness 1, is above 1 everywhere": "furnace_over_pi",
+        "Burley's, roughness 0.3, is nowhere above 1": "furnace_no_cosine",
+        "repaired it nowhere returns more than came": "furnace_viewer_cosine",
+        "white plastic of roughness 0.6 returns 1.06 at 0.1": "gltf_ground_keeps_all",
+    },
+    "fig2_lobes": {
+        "at roughness 0.4 the peak lies within 3 degrees of it": "lobe_not_squared",
+        "at roughness 0.8 it lies more than 20 degrees beyond": "lobe_facets_stretched",
+        "40 degrees from the peak GGX has more than 300 times Phong's light": "lobe_beckmann",
+    },
+    "fig3_samples": {
+        "no weight is above 1": "pdf_half",
+        "the mean weight is the albedo within four standard errors": "sample_half_ball",
+        "directions drawn evenly are more than three times as noisy": "pdf_all_facets",
+        "for both viewers about a tenth leads below the surface": "sample_all_facets",
+    },
+    "fig4_blend": {
+        "blended, half metal returns 0.937": "gltf_varnish_added",
+        "premixed it returns 0.698": "lobe_uncorrelated",
+        "blended it is a straight line": "gltf_premixed",
+        "premixed it is darker than both ends": "lobe_half",
+    },
+    "fig5_chart": {
+        "each pixel of half metal is the mean of those above and below": "gltf_premixed",
+        "the metal's highlight has the base colour": "gltf_metalness_reversed",
+        "the varnish's highlight is nearly white": "gltf_tinted_varnish",
+        "the metal's highlight gets darker to the right": "lobe_no_masking",
+    },
+    "fig6_by_roughness": {
+        "the middle of the highlight gets darker": "back_no_D",
+        "the ring around it gets brighter": "back_q_sign",
+        "a step of 0.02 does what the derivative says to 15 %": "back_of_alpha",
+        "in the shadow it is exactly zero": "back_rows_summed",
+    },
+}
+HELD = {
+    "fig1_furnace": {
+        "as printed, Cook and Torrance's returns four times as much": "about a model that is given"
+    },
+    "fig2_lobes": {"Phong's peak lies in the mirror direction": "about a model that is given"},
+}

@@ -1,0 +1,19 @@
+"""Your Fresnel factor takes the viewer's angle to the normal: it belongs to the half vector."""
+
+TASKS = ("04.5",)
+LOSES = (
+    "04.5.mirror",
+    "04.5.symmetry",
+    "04.5.energy",
+    "04.5.hidden",
+)
+REPLACE = [
+    (
+        (
+            "cos = np.sum(wo * half_vector(wo, wi), axis=1)[:, None]\n"
+            "    F = schlick(0.04, cos)\n"
+            "    ground"
+        ),
+        ("cos = wo[:, 2:]\n    F = schlick(0.04, cos)\n    ground"),
+    ),
+]

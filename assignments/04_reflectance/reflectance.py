@@ -1,0 +1,243 @@
+"""How much light a surface sends where: from Phong's highlight to the material of glTF.
+
+Directions are unit vectors in the frame of the surface, whose normal is +z. wo leads to the viewer,
+wi to the light; both leave the surface. A model f(wo, wi), in 1/sr, does not contain the cosine,
+and is 0 unless both directions lie above the surface. N pairs of directions are two arrays (N, 3);
+parameters stand in arrays of N, too, one for each pair.
+
+Your tasks are six functions, one section of the handout each; `photograd course check 04` tells
+how far you are. The other functions are given and stay as they are. All numbers are float64.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+# Geometry ----------------------------------------------------------------------------------------
+
+
+def above(wo, wi):
+    """Whether both directions of each pair lie above the surface: (N,) of bool."""
+    return (wo[:, 2] > 0) & (wi[:, 2] > 0)
+
+
+def half_vector(wo, wi):
+    """Unit vectors (N, 3) halfway between wo and wi; zeros where these are opposite."""
+    sums = wo + wi
+    return sums / np.maximum(np.linalg.norm(sums, axis=1, keepdims=True), 1e-300)
+
+
+def stretched(w, alpha):
+    """Lengths (N,) of directions (N, 3) whose x and y are made alpha (N,) times as long."""
+    return np.sqrt(alpha**2 * (w[:, 0] ** 2 + w[:, 1] ** 2) + w[:, 2] ** 2)
+
+
+def hemisphere(heights=48, turns=96):
+    """Directions (M, 3) above the surface, and the solid angles (M,) that they speak for.
+
+    The integral of g over the hemisphere is about the sum of solid angles times g(directions);
+    closer where g is smooth. The solid angles sum to 2 pi. Nodes crowd near the horizon.
+    """
+    nodes, weights = np.polynomial.legendre.leggauss(heights)
+    root = (nodes + 1) / 2
+    z, phi = np.meshgrid(root**2, (np.arange(turns) + 0.5) * (2 * np.pi / turns), indexing="ij")
+    r = np.sqrt(1 - z * z)
+    wi = np.stack([r * np.cos(phi), r * np.sin(phi), z], axis=-1).reshape(-1, 3)
+    return wi, np.repeat(root * weights * (2 * np.pi / turns), turns)
+
+
+# Models to measure --------------------------------------------------------------------------------
+
+
+def _coloured(value, colour, wo, wi):
+    """value (N,) times a colour, (3,) or one number, above the surface: (N, 3)."""
+    return np.where(above(wo, wi), value, 0.0)[:, None] * (colour * np.ones(3))
+
+
+def lambert(wo, wi, albedo):
+    """A matte surface: as bright from everywhere (N, 3)."""
+    return _coloured(np.full(len(wo), 1 / np.pi), albedo, wo, wi)
+
+
+def phong(wo, wi, specular, exponent):
+    """Phong's highlight, in the form of section 0 (N, 3)."""
+    c = np.maximum(wo[:, 2] * wi[:, 2] - wo[:, 0] * wi[:, 0] - wo[:, 1] * wi[:, 1], 0)
+    return _coloured((exponent + 2) / (2 * np.pi) * c**exponent, specular, wo, wi)
+
+
+def schlick(f0, cos_theta):
+    """What share a facet mirrors, by the angle: f0 straight on, all at a grazing angle."""
+    return f0 + (1 - f0) * (1 - cos_theta) ** 5
+
+
+def burley_diffuse(wo, wi, albedo, roughness):
+    """Burley's matte surface, fitted to measured ones (N, 3); roughness is one number, 0 to 1."""
+    wh = half_vector(wo, wi)
+    f90 = 0.5 + 2 * roughness * np.sum(wi * wh, axis=1) ** 2
+    towards, from_light = (1 + (f90 - 1) * (1 - w[:, 2]) ** 5 for w in (wo, wi))
+    return _coloured(towards * from_light / np.pi, albedo, wo, wi)
+
+
+def cook_torrance(wo, wi, f0, rms_slope, printed=False):
+    """Cook and Torrance's metal: Beckmann's facets in grooves like a V (N, 3).
+
+    With `printed` the constants are those that the paper of 1982 prints.
+    """
+    up = above(wo, wi)
+    o, i = (np.where(up[:, None], w, [0.0, 0.0, 1.0]) for w in (wo, wi))
+    wh = half_vector(o, i)
+    z2, seen = wh[:, 2] ** 2, np.sum(o * wh, axis=1)
+    D = np.exp((1 - 1 / z2) / rms_slope**2) / (rms_slope**2 * z2**2)
+    G = np.minimum(1, 2 * wh[:, 2] * np.minimum(o[:, 2], i[:, 2]) / seen)
+    constants = np.pi if printed else 4 * np.pi
+    f = schlick(f0, seen) * D * G / (constants * o[:, 2] * i[:, 2])
+    return _coloured(f, 1.0, wo, wi)
+
+
+# Your tasks ---------------------------------------------------------------------------------------
+
+
+def furnace(f, cosines):
+    """What share of the light a surface returns in a room that is equally bright everywhere.
+
+    Args:
+        f: a function of wo (M, 3) and wi (M, 3) that returns (M, C), a model without the cosine.
+        cosines: (K,), each that of a viewer to the normal, above 0 and up to 1.
+
+    Returns:
+        (K, C), the albedo for each viewer, by the directions of `hemisphere()`; handout
+        equation (5). The viewers stand in the plane y = 0, on the side of +x.
+    """
+    # >>> solution 04.1
+    wi, solid_angles = hemisphere()
+    rows = []
+    for z in cosines:
+        wo = np.tile([np.sqrt(1 - z * z), 0.0, z], (len(wi), 1))
+        rows.append((solid_angles * wi[:, 2]) @ f(wo, wi))
+    return np.array(rows)
+    # <<< solution
+
+
+def ggx_lobe(wo, wi, roughness):
+    """A surface of tiny mirrors, without Fresnel's factor: D V of the handout.
+
+    Args:
+        wo, wi: (N, 3).
+        roughness: (N,), 0.045 to 1.
+
+    Returns:
+        (N,); handout equations (6) to (10). 0 unless both directions are above the surface.
+    """
+    # >>> solution 04.2
+    up = above(wo, wi)
+    o, i, alpha = wo[up], wi[up], roughness[up] ** 2
+    h = half_vector(o, i)
+    q = (h[:, 0] ** 2 + h[:, 1] ** 2) / alpha**2 + h[:, 2] ** 2
+    L = stretched(o, alpha) * i[:, 2] + stretched(i, alpha) * o[:, 2]
+    lobe = np.zeros(len(wo))
+    lobe[up] = 1 / (2 * np.pi * alpha**2 * q**2 * L)
+    return lobe
+    # <<< solution
+
+
+def ggx_pdf(wo, wi, roughness):
+    """How densely directions wi lie if a facet that wo sees is drawn and mirrors wo.
+
+    Args:
+        wo, wi: (N, 3).
+        roughness: (N,), 0.045 to 1.
+
+    Returns:
+        (N,), in 1/sr; handout equations (11) to (13). 0 unless both directions are above the
+        surface.
+    """
+    # >>> solution 04.3
+    up = above(wo, wi)
+    o, i, alpha = wo[up], wi[up], roughness[up] ** 2
+    length = stretched(o, alpha)
+    L = length * i[:, 2] + stretched(i, alpha) * o[:, 2]
+    pdf = np.zeros(len(wo))
+    pdf[up] = ggx_lobe(o, i, roughness[up]) * L / (o[:, 2] + length)
+    return pdf
+    # <<< solution
+
+
+def sample_ggx(wo, roughness, u2):
+    """Draw a facet that wo sees, as often as wo sees its kind, and mirror wo at it.
+
+    Args:
+        wo: (N, 3), above the surface.
+        roughness: (N,), 0.045 to 1.
+        u2: (N, 2), uniform in [0, 1); row n decides about direction n, and nothing else does.
+
+    Returns:
+        (N, 3), unit vectors with the density `ggx_pdf`; some may lead below the surface, where
+        that density is 0. Handout equations (14) to (16).
+    """
+    # >>> solution 04.4
+    stretch = np.stack([roughness**2, roughness**2, np.ones(len(wo))], axis=1)
+    viewer = wo * stretch
+    viewer = viewer / np.linalg.norm(viewer, axis=1, keepdims=True)
+    z = 1 - u2[:, 0] * (1 + viewer[:, 2])
+    phi = 2 * np.pi * u2[:, 1]
+    r = np.sqrt(1 - z * z)
+    cap = np.stack([r * np.cos(phi), r * np.sin(phi), z], axis=1)
+    h = (cap + viewer) * stretch
+    h = h / np.linalg.norm(h, axis=1, keepdims=True)
+    return 2 * np.sum(wo * h, axis=1, keepdims=True) * h - wo
+    # <<< solution
+
+
+def gltf(wo, wi, base_color, metalness, roughness):
+    """The material of glTF: a varnished matte ground, a metal, or a blend of both.
+
+    Args:
+        wo, wi: (N, 3).
+        base_color: (N, 3), 0 to 1.
+        metalness: (N,), 0 to 1.
+        roughness: (N,), 0.045 to 1.
+
+    Returns:
+        (N, 3); handout equations (17) to (20). 0 unless both directions are above the surface.
+    """
+    # >>> solution 04.5
+    lobe = ggx_lobe(wo, wi, roughness)[:, None]
+    cos = np.sum(wo * half_vector(wo, wi), axis=1)[:, None]
+    F = schlick(0.04, cos)
+    ground = above(wo, wi)[:, None] * base_color / np.pi
+    m = metalness[:, None]
+    return (1 - m) * ((1 - F) * ground + F * lobe) + m * schlick(base_color, cos) * lobe
+    # <<< solution
+
+
+def gltf_backward(wo, wi, base_color, metalness, roughness, d_f):
+    """The adjoint of `gltf`: derivatives by its parameters; directions are held fixed.
+
+    Args:
+        wo, wi, base_color, metalness, roughness: as for `gltf`.
+        d_f: (N, 3), the derivative of some loss by each number that `gltf` returned.
+
+    Returns:
+        (d_base_color (N, 3), d_metalness (N,), d_roughness (N,)); handout equations (21) to (25).
+    """
+    # >>> solution 04.6
+    lobe = ggx_lobe(wo, wi, roughness)
+    h = half_vector(wo, wi)
+    cos = np.sum(wo * h, axis=1)
+    F, m = schlick(0.04, cos), metalness
+    by_color = above(wo, wi) * (1 - m) * (1 - F) / np.pi + m * (1 - schlick(0.0, cos)) * lobe
+    metal = gltf(wo, wi, base_color, np.ones(len(wo)), roughness)
+    dielectric = gltf(wo, wi, base_color, np.zeros(len(wo)), roughness)
+    mirrored = ((1 - m) * F)[:, None] + m[:, None] * schlick(base_color, cos[:, None])
+    up = above(wo, wi)
+    o, i, h, alpha = wo[up], wi[up], h[up], roughness[up] ** 2
+    flat_o, flat_i, flat_h = (w[:, 0] ** 2 + w[:, 1] ** 2 for w in (o, i, h))
+    q = flat_h / alpha**2 + h[:, 2] ** 2
+    long_o, long_i = stretched(o, alpha), stretched(i, alpha)
+    L = long_o * i[:, 2] + long_i * o[:, 2]
+    of_D = (4 * flat_h / (alpha**2 * q) - 2) / alpha
+    of_V = alpha * (flat_o * i[:, 2] / long_o + flat_i * o[:, 2] / long_i) / L
+    d_roughness = np.zeros(len(wo))
+    d_roughness[up] = (np.sum(d_f * mirrored, axis=1) * lobe * 2 * roughness)[up] * (of_D - of_V)
+    return d_f * by_color[:, None], np.sum(d_f * (metal - dielectric), axis=1), d_roughness
+    # <<< solution
