@@ -2,9 +2,9 @@
 
 A ray is an origin o and a direction d, and t counts along it: the place at t is o + t d. Directions
 may have any length but zero, unless a function asks for length 1. What a ray *meets* is the first
-thing at t > T_MIN, so that a ray that starts on a surface does not meet it there again. Nothing met:
-t is infinite. The world is right-handed with y up; a camera looks along its own +z, with x to the
-right and y down, as OpenCV has it.
+thing at t > T_MIN, so that a ray that starts on a surface does not meet it there again. Where
+nothing is met t is infinite. The world is right-handed with y up; a camera looks along its own +z,
+with x to the right and y down, as OpenCV has it.
 
 Your tasks are six functions, one section of the handout each; `photograd course check 05` tells how
 far you are. The other functions are given and stay as they are. Values are float64, indices int64.

@@ -1,4 +1,4 @@
-"""Written from the handout's equations alone, with whole arrays and masks, and no stack but calls."""
+"""Written from the handout's equations alone, with whole arrays and masks; no stack but calls."""
 
 from __future__ import annotations
 

@@ -64,8 +64,8 @@ def hit_triangle(origin, direction, corners):
 
 def refract(directions, normals, eta):
     out, through = [], []
-    for d, n in zip(directions.tolist(), normals.tolist(), strict=True):
-        cosine = -dot(d, n)
+    for d, outward in zip(directions.tolist(), normals.tolist(), strict=True):
+        n, cosine = outward, -dot(d, outward)
         ratio = eta
         if cosine < 0:  # from inside: turn the normal round
             n, cosine, ratio = (-n[0], -n[1], -n[2]), -cosine, 1 / eta
