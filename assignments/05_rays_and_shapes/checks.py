@@ -155,7 +155,8 @@ def spheres_from_inside(t):
 @check("05.1.misses", task="05.1", points=2, calls=("hit_sphere",), tolerance=EXACT,
        kills=("sphere_absolute", "sphere_backwards", "sphere_behind", "sphere_centre_added",
               "sphere_far_root", "sphere_half_of_two", "sphere_near_only", "sphere_never_misses",
-              "sphere_starts_on_itself", "sphere_touch_misses", "sphere_unit_direction"),
+              "sphere_radius", "sphere_starts_on_itself", "sphere_touch_misses",
+              "sphere_unit_direction"),
        hint="nothing behind the origin is met; a ray that touches meets",
        sole="what is not there must not be seen")  # fmt: skip
 def spheres_missed(t):
@@ -177,6 +178,10 @@ def spheres_missed(t):
     origins, directions = (np.array([case[k] for case in cases], float) for k in (0, 1))
     right = np.array([case[2] for case in cases])
     same_hits(t, hit(t, origins + shift, directions, shift, 1.0), right)
+    # Spheres as small as T_MIN: what lies at T_MIN itself does not count.
+    for center, right in ((2 * T_MIN, 3 * T_MIN), (0.0, np.inf)):
+        got = hit(t, np.zeros((1, 3)), np.array([[1.0, 0, 0]]), np.array([center, 0, 0]), T_MIN)
+        same_hits(t, got, np.array([right]), hint="T_MIN itself does not count, what is above does")
 
 
 @check("05.1.far", task="05.1", points=1, calls=("hit_sphere",), tolerance=FAR,
@@ -274,11 +279,13 @@ def places_outside_triangles(t):
             [[2, 1, 1], [2, 1, 1], [2, 1, 1]],
             [[3, -1, -1], [3, 2, -1], [3, -1, 2]],
             [[0, -1, -1], [0, 2, -1], [0, -1, 2]],  # the ray starts on it
+            [[2 * T_MIN, -1, -1], [2 * T_MIN, 1, -1], [2 * T_MIN, 0, 1]],  # at T_MIN itself
+            [[3, -0.25, -0.25], [3, 0.75, -0.25], [3, -0.25, 0.25]],
         ],
         float,
     )
     got, _ = triangles(t, np.zeros(3), np.array([2.0, 0, 0]), flat)
-    same_hits(t, got, np.array([np.inf, np.inf, np.inf, 1.5, np.inf]))
+    same_hits(t, got, np.array([np.inf, np.inf, np.inf, 1.5, np.inf, np.inf, 1.5]))
 
 
 def sheet(t, n, jitter):
@@ -292,8 +299,9 @@ def sheet(t, n, jitter):
 
 
 @check("05.2.edges", task="05.2", points=4, calls=("hit_triangle",),
-       kills=("triangle_back_culled", "triangle_cramer", "triangle_one_edge_open",
-              "triangle_plane", "triangle_quad", "triangle_strict", "triangle_volumes"),
+       kills=("triangle_back_culled", "triangle_cramer", "triangle_front_culled",
+              "triangle_one_edge_open", "triangle_plane", "triangle_quad", "triangle_strict",
+              "triangle_volumes"),
        hint="handout, section 2: on a common edge both triangles compute one number with two signs",
        sole="light must not leak between two triangles")  # fmt: skip
 def no_light_between_triangles(t):
@@ -312,6 +320,7 @@ def no_light_between_triangles(t):
         for k, place in enumerate(np.concatenate([edge, face])):
             tilt = t.rng.uniform(-0.3, 0.3, 2) if jitter else np.zeros(2)
             direction = np.array([*tilt, -1.0]) * (1.0 if jitter == 0 else lengths(t, 1)[0, 0])
+            direction *= 1 if k % 3 else -1  # from below
             got, _ = triangles(t, place - 4 * direction, direction, corners)
             many = int(np.isfinite(got).sum())
             t.require(many > 0, "a ray leaks between two triangles with a common edge")
@@ -398,6 +407,9 @@ def total_reflection(t):
             -np.sum(d * n, axis=1)[back])  # fmt: skip
     _, through = refracted(t, *arrivals(t, 8, 1.5), eta)
     t.require(bool(through.all()), "from outside into glass some light always gets through")
+    flat = np.array([[1.0, 0, 0]]), np.array([[0.0, 1, 0]])
+    _, through = refracted(t, *flat, 1.0)
+    t.require(not through[0], "where k is 0 nothing gets through")
 
 
 # 05.4 ---------------------------------------------------------------------------------------------
@@ -569,6 +581,8 @@ def few_questions(t):
     got, _, asked = marched(t, wall(up, 0.0), origins, down, steps=1)
     t.require(bool(np.isinf(got).all()), "one step is not enough to arrive at a wall")
     t.require(asked == 5, f"one step for each of five rays: {asked} places")
+    got, _, asked = marched(t, wall(up, 0.0), CLOSE * up[None], down[:1])
+    same_hits(t, got, np.array([CLOSE]), COUNTED, hint="there is *below* CLOSE")
     # Past slanted walls the distance shrinks by the same factor each time.
     cosine = np.array([0.5, 0.75, 0.9])
     slanted = np.stack([np.sqrt(1 - cosine**2), np.zeros(3), -cosine], axis=1)
@@ -770,18 +784,18 @@ def right_answer(t, scene, got, hint=""):
 
 
 @check("05.6.nearest", task="05.6", points=4, calls=("traverse",), needs=("build_bvh",),
-       kills=("traverse_entry_is_hit", "traverse_far_child_lost", "traverse_first_leaf",
-              "traverse_flat_missed", "traverse_negative_missed", "traverse_number_in_leaf",
-              "traverse_starts_outside"),
+       kills=("traverse_any_hit", "traverse_entry_is_hit", "traverse_far_child_lost",
+              "traverse_first_leaf", "traverse_flat_missed", "traverse_negative_missed",
+              "traverse_number_in_leaf", "traverse_starts_outside"),
        hint="handout, equation (19): a box may be skipped only if it is missed or begins behind "
             "the best so far",
        sole="the same answer as from asking everything")  # fmt: skip
 def the_nearest_of_all(t):
     """The first thing that rays meet is the one found by asking all."""
-    for count in (1, 3, 60):
-        scene = rectangles(t, count)
+    for count, size in ((1, 1.0), (3, 1.0), (60, 1.0), (30, 6.0)):  # the last ones overlap a lot
+        scene = rectangles(t, count, size)
         tree = grow(t, scene)
-        for k in range(25):
+        for k in range(20):
             origin, direction = t.rng.uniform(-6, 6, 3), units(t, 1)[0] * lengths(t, 1)[0, 0]
             if k % 2:  # aimed at one
                 which = t.rng.integers(count)
@@ -1056,24 +1070,24 @@ def trees_at_random(t):
 
 @check("05.6.hidden", task="05.6", points=2, calls=("traverse",), needs=("build_bvh",),
        visibility="hidden", tolerance=EXACT,
-       kills=("traverse_any_hit", "traverse_asks_twice", "traverse_boxes_ignored",
-              "traverse_entry_is_hit", "traverse_far_child_lost", "traverse_far_first",
-              "traverse_first_leaf", "traverse_flat_missed", "traverse_last_exit",
-              "traverse_negative_missed", "traverse_never_skips", "traverse_number_in_leaf",
-              "traverse_starts_outside", "traverse_two_axes"),
+       kills=("traverse_any_hit", "traverse_asks_twice", "traverse_boxes_behind",
+              "traverse_boxes_ignored", "traverse_entry_is_hit", "traverse_far_child_lost",
+              "traverse_far_first", "traverse_first_leaf", "traverse_flat_missed",
+              "traverse_last_exit", "traverse_negative_missed", "traverse_never_skips",
+              "traverse_number_in_leaf", "traverse_starts_outside", "traverse_two_axes"),
        sole="the same mistakes in scenes that are not known beforehand")  # fmt: skip
 def scenes_at_random(t):
     """Random rays in random scenes: the answer, and how many boxes and things it takes."""
-    for count in (2, 30, 120):
-        scene = rectangles(t, count, 1.5)
+    for count, size in ((2, 1.5), (30, 6.0), (120, 1.5)):
+        scene = rectangles(t, count, size)
         low, high = scene.low, scene.high
         tree = t.reference.build_bvh(low, high)
         scene.boxes = tree[0]
         mine, enough = [0, 0], [0, 0]
-        for _ in range(25):
+        for _ in range(15):
             which = t.rng.integers(count)
             target = t.rng.uniform(low[which], high[which])
-            origin = t.rng.uniform(-7, 7, 3)
+            origin = t.rng.uniform(-4, 4, 3)
             direction = (target - origin) * t.rng.uniform(0.2, 1.4)
             right_answer(t, scene, first_met(t, scene, tree, origin, direction))
             mine = [mine[0] + len(scene.asked), mine[1] + len(scene.met)]
@@ -1082,7 +1096,7 @@ def scenes_at_random(t):
                                  scene.meet, origin, direction)  # fmt: skip
             enough = [enough[0] + len(scene.asked), enough[1] + len(scene.met)]
         for what, got, right in zip(("boxes", "things"), mine, enough, strict=True):
-            t.require(got <= 1.1 * right, f"{got} {what} were asked for, {right} are enough")
+            t.require(got <= 1.05 * right, f"{got} {what} were asked for, {right} are enough")
 
 
 # <<< hidden

@@ -2,6 +2,7 @@
 
 TASKS = ("05.6",)
 LOSES = (
+    "05.6.nearest",
     "05.6.embree",
     "05.6.hidden",
 )

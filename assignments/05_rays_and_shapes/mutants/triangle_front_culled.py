@@ -4,6 +4,7 @@ TASKS = ("05.2",)
 LOSES = (
     "05.2.inside",
     "05.2.misses",
+    "05.2.edges",
     "05.2.hidden",
 )
 REPLACE = [
