@@ -708,7 +708,7 @@ class Scene:
         self.low, self.high = low, high
         self.axis = np.argmin(high - low, axis=1)
         self.boxes = None
-        self.asked, self.met, self.most = [], [], 100_000
+        self.asked, self.met, self.most = [], [], 5_000
 
     def ray(self, origin, direction):
         self.origin, self.direction = origin, direction
