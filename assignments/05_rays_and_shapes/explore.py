@@ -1,0 +1,195 @@
+# %% [markdown]
+# # What rays find
+# Draws three pictures with your functions: a ring of triangles and what each pixel cost; a ball of
+# glass over a floor; a marched ball and its derivative by the radius. Where the C++ core is
+# installed, Embree's answers stand beside yours. Never graded. `python explore.py` takes
+# `--triangles` (of the ring), `--size` (pixels across), `--eta` (of the glass) and `--rays` (to
+# compare with the core).
+
+# %%
+from __future__ import annotations
+
+import importlib
+import sys
+import time
+
+import numpy as np
+import rays as mine
+from matplotlib.figure import Figure
+
+
+def option(name, default):
+    """The value after --name on the command line; the default in a notebook."""
+    words = sys.argv[1:]
+    return type(default)(words[words.index(f"--{name}") + 1]) if f"--{name}" in words else default
+
+
+triangles, size = option("triangles", 256), option("size", 64)
+eta, count = option("eta", 1.5), option("rays", 2000)
+
+# %% [markdown]
+# ## A camera
+# It stands above the scene and looks down a little: its own y points down, its z forward.
+
+# %%
+width, height = size, size * 5 // 8
+pose = np.array([[1, 0, 0, 0], [0, -0.8, -0.6, 3.3], [0, 0.6, -0.8, 4.4]])
+focal = 0.6 * width
+origins, ways = mine.camera_rays(width, height, focal, focal, width / 2, height / 2, pose)
+
+# %% [markdown]
+# ## A ring of triangles
+# The tree is asked with counters, one for boxes and one for triangles.
+
+
+# %%
+def ring(turns, sides):
+    """Triangles (2 turns sides, 3, 3) of a ring around y, coordinates that float32 has exactly."""
+    turn = 2 * np.pi * np.arange(turns) / turns
+    across = 2 * np.pi * np.arange(sides) / sides
+    far = 2 + 0.75 * np.cos(across)
+    high = np.broadcast_to(0.75 * np.sin(across), (turns, sides))
+    a = np.stack([far * np.cos(turn)[:, None], high, far * np.sin(turn)[:, None]], axis=2)
+    a = a.astype(np.float32).astype(float)
+    b, d = np.roll(a, -1, axis=1), np.roll(a, -1, axis=0)
+    c = np.roll(b, -1, axis=0)
+    halves = np.stack([np.stack([a, b, c], axis=2), np.stack([a, c, d], axis=2)], axis=2)
+    return halves.reshape(-1, 3, 3)
+
+
+def look(corners, origins, ways):
+    """(t, triangle, boxes asked for, triangles asked for), each (R,), of rays."""
+    boxes, first, many, order = mine.build_bvh(corners.min(axis=1), corners.max(axis=1))
+    t, number = np.zeros(len(origins)), np.zeros(len(origins), int)
+    cost = np.zeros((2, len(origins)), int)
+    for r, (o, d) in enumerate(zip(origins, ways, strict=True)):
+
+        def box(node, r=r):
+            cost[0, r] += 1
+            return boxes[node]
+
+        def meet(things, r=r, o=o, d=d):
+            cost[1, r] += len(things)
+            return mine.hit_triangle(o, d, corners[things])[0]
+
+        t[r], number[r] = mine.traverse(first, many, order, box, meet, o, d)
+    return t, number, *cost
+
+
+turns = max(4, round(triangles**0.5 / 2) * 2)
+corners = ring(turns, max(3, triangles // (2 * turns)))
+before = time.perf_counter()
+t, number, asked, met = look(corners, origins, ways)
+seconds = time.perf_counter() - before
+print(f"{len(corners)} triangles, {len(ways)} pixels: {asked.mean():.1f} boxes and "
+      f"{met.mean():.1f} triangles for each, {seconds:.1f} s")  # fmt: skip
+a, b, c = np.moveaxis(corners, 1, 0)
+normals = np.cross(b - a, c - a)
+normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+towards = -np.sum(normals[number] * ways, axis=1)
+seen = np.where(number >= 0, 0.15 + 0.85 * np.abs(towards), 1.0)
+
+# %% [markdown]
+# ## A ball of glass over a floor
+# A ray goes in and out, mirrored inside as often as it takes, and then sees the floor or the sky.
+# What is mirrored outside is left out.
+
+
+# %%
+def world(origins, ways):
+    """Colours (R, 3) of a chequered floor and of the sky."""
+    down = ways[:, 1] < -1e-6
+    t = np.where(down, (-1.2 - origins[:, 1]) / np.where(down, ways[:, 1], -1.0), 0.0)
+    x, z = (np.floor(1.5 * (origins[:, k] + t * ways[:, k]) + 0.3) for k in (0, 2))
+    floor = np.where(((x + z) % 2 == 0)[:, None], (0.85, 0.45, 0.2), (0.95, 0.95, 0.9))
+    fade = np.exp(-t / 25)[:, None]
+    sky = np.stack([0.5 - 0.3 * ways[:, 1], 0.7 - 0.2 * ways[:, 1], np.ones(len(ways))], axis=1)
+    return np.where(down[:, None], fade * floor + (1 - fade) * 0.8, sky)
+
+
+centre, radius = np.array([0.0, 0.2, 0.0]), 1.4
+place, way = origins.copy(), ways.copy()
+inside = np.zeros(len(ways), bool)
+for bounce in range(8):
+    t_ball = mine.hit_sphere(place, way, centre, radius)
+    on = np.isfinite(t_ball) & (inside | (bounce == 0))
+    place[on] += t_ball[on, None] * way[on]
+    way[on], through = mine.refract(way[on], (place[on] - centre) / radius, eta)
+    inside[on] ^= through
+glass = world(place, way)
+print(f"glass with eta {eta}: {inside.sum()} rays are still inside")
+
+# %% [markdown]
+# ## A march and its derivative
+# Two balls that melt into each other; the derivative is that of t by the radius of the left one.
+
+
+# %%
+def melted(radius=1.0, blend=0.5):
+    """The distance to two balls, blended smoothly; p is the radius of the first."""
+
+    def shape(x):
+        parts = [x - np.array(each) for each in ((-0.7, 0.0, 0.0), (0.9, 0.3, 0.2))]
+        away = [np.linalg.norm(part, axis=1) for part in parts]
+        one, two = away[0] - radius, away[1] - 0.8
+        share = np.clip(0.5 + 0.5 * (two - one) / blend, 0, 1)
+        value = share * one + (1 - share) * two - blend * share * (1 - share)
+        slopes = [part / far[:, None] for part, far in zip(parts, away, strict=True)]
+        # The derivative by the share itself is zero wherever it is not cut off.
+        return value, share[:, None] * slopes[0] + (1 - share)[:, None] * slopes[1], -share
+
+    return shape
+
+
+t_march, d_t = mine.march_sdf(melted(), origins, ways, 20.0, 500)
+eps = 1e-4
+more, less = (mine.march_sdf(melted(1 + e), origins, ways, 20.0, 500)[0] for e in (eps, -eps))
+kept = np.isfinite(t_march) & np.isfinite(more) & np.isfinite(less) & (np.abs(d_t) < 5)
+apart = (more[kept] - less[kept]) / (2 * eps)
+worst = np.abs(apart - d_t[kept]).max() if kept.any() else np.inf
+print(f"march: your derivative is {worst:.1e} from differences of your t")
+
+# %% [markdown]
+# ## Embree, by the C++ core
+# Random rays through the ring. Rays within 1e-7 of an edge may be told apart differently: the
+# core's triangles are in float32.
+
+# %%
+rng = np.random.default_rng(7)
+try:
+    meshes = importlib.import_module("photograd.mesh")
+    faces = np.arange(3 * len(corners)).reshape(-1, 3)
+    tree = meshes.Bvh(meshes.Mesh(corners.reshape(-1, 3).astype(np.float32), faces))
+except (ImportError, AttributeError, TypeError):  # none, or another than this was written for
+    print("core not installed")
+else:
+    start = rng.normal(size=(count, 3)) * 2.5
+    to = rng.normal(size=(count, 3)) * [1.5, 0.4, 1.5] - start
+    hits = tree.trace(start, to)
+    its = tree.surface_points(start, to, hits).t
+    t_mine, number_mine, _, _ = look(corners, start, to)
+    near = np.isfinite(its) & np.isfinite(t_mine)
+    differ = int((np.isfinite(its) != np.isfinite(t_mine)).sum())
+    off = np.abs(t_mine[near] / its[near] - 1).max()
+    print(f"core: {near.sum()} of {count} rays meet the ring, {differ} are told apart, "
+          f"t is {off:.1e} from yours")  # fmt: skip
+
+# %% [markdown]
+# ## Pictures
+
+# %%
+figure = Figure(figsize=(9, 6), layout="constrained")
+axes = figure.subplots(2, 2)
+shape = (height, width)
+axes[0, 0].imshow(seen.reshape(shape), cmap="gray", vmin=0, vmax=1)
+axes[0, 0].set(title=f"{len(corners)} triangles")
+drawn = axes[0, 1].imshow(asked.reshape(shape), vmin=0)
+figure.colorbar(drawn, ax=axes[0, 1], label="boxes asked for", shrink=0.8)
+axes[1, 0].imshow(np.clip(glass, 0, 1).reshape(*shape, 3))
+axes[1, 0].set(title=f"glass, eta = {eta}")
+drawn = axes[1, 1].imshow(d_t.reshape(shape), cmap="RdBu", vmin=-4, vmax=4)
+figure.colorbar(drawn, ax=axes[1, 1], label="∂t / ∂ left radius", shrink=0.8)
+for each in axes.flat:
+    each.set(xticks=[], yticks=[])
+figure.savefig("seen.png", dpi=110)
+print("wrote seen.png")

@@ -1,0 +1,348 @@
+"""The figures of assignment 05, and the facts that their captions claim."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from types import ModuleType
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Circle
+from photograd_course.viz.style import BLUE, GREY, INK, ORANGE, house_style
+from photograd_course.viz.style import RED as CRIMSON
+
+Facts = dict[str, bool | tuple[float, float, float]]
+Array = np.ndarray
+DOTS = 110  # per inch: 7 inches wide gives 770 pixels
+
+
+def save(figure: Figure, path: object) -> None:
+    """Write a figure with the same bytes every time."""
+    with house_style():
+        figure.savefig(path, dpi=DOTS, facecolor="white", metadata={"Software": None})
+
+
+def fig1_far(module: ModuleType) -> tuple[Figure, Facts]:
+    """How far off a small sphere is met from far away, by two formulas."""
+    rng = np.random.default_rng(1)
+    n, d = _units(rng, 200), _units(rng, 200)
+    d = np.where(np.sum(n * d, axis=1, keepdims=True) > 0, -d, d) - 0.2 * n
+    d /= np.linalg.norm(d, axis=1, keepdims=True)
+    away = 10.0 ** np.arange(9)
+    ours, quadratic, missed = [], [], []
+    for distance in away:
+        origins = n - distance * d
+        t = module.hit_sphere(origins, d, np.zeros(3), 1.0)
+        ours.append(_off(origins, d, np.where(np.isfinite(t), t, 0.0)))
+        b = np.sum(origins * d, axis=1)
+        rest = b**2 - (np.sum(origins**2, axis=1) - 1)
+        kept = rest >= 0
+        missed.append(1 - kept.mean())
+        quadratic.append(_off(origins[kept], d[kept], (-b - np.sqrt(np.abs(rest)))[kept]))
+    facts: Facts = {
+        "the quadratic is off by more than a millimetre from 1e7": (quadratic[7], 1e-3, 10.0),
+        "from 1e8 it misses a tenth or more": (float(missed[8]), 0.1, 1.0),
+        "ours below 1e-7 at 1e8": (ours[8], 0.0, 1e-7),
+    }
+    with house_style():
+        figure = Figure(figsize=(7.0, 2.9), layout="constrained")
+        axes = figure.subplots()
+        tiny = 1e-17
+        axes.loglog(away, np.maximum(quadratic, tiny), color=CRIMSON, marker="o", markersize=4)
+        axes.loglog(away, np.maximum(ours, tiny), color=BLUE, marker="s", markersize=4)
+        axes.annotate("quadratic", (away[6], quadratic[6]), (-58, 2), color=CRIMSON,
+                      textcoords="offset points")  # fmt: skip
+        axes.annotate("(5) and (6)", (away[6], ours[6]), (8, -12), color=BLUE,
+                      textcoords="offset points")  # fmt: skip
+        axes.set(xlabel="distance of the origin  [radii]", ylabel="off the sphere  [radii]")
+        _plain(axes)
+    return figure, facts
+
+
+def fig2_edges(module: ModuleType) -> tuple[Figure, Facts]:
+    """Weights of two triangles; rays onto edges that no triangle meets."""
+    size = 48
+    y, x = (np.mgrid[:size, :size] + 0.5) / size
+    square = np.array([[[0, 0, 1], [1, 0, 1], [1, 1, 1]], [[0, 0, 1], [1, 1, 1], [0, 1, 1.0]]])
+    picture, sums = np.ones((size, size, 3)), []
+    for i in range(size):
+        for j in range(size):
+            at = np.array([x[i, j], y[i, j], 0.0])
+            t, weights = module.hit_triangle(at, np.array([0, 0, 1.0]), square)
+            k = int(np.argmin(t))
+            if np.isfinite(t[k]):
+                picture[i, j] = 1 - weights[k].sum(), *weights[k]
+                corner = square[k].T @ picture[i, j]
+                sums.append(np.abs(corner[:2] - at[:2]).max())
+    rng = np.random.default_rng(2)
+    corners, ends = _sheet(rng, 5)
+    s = rng.random((2000, 1))
+    which = rng.integers(0, len(ends), 2000)
+    places = (1 - s) * ends[which, 0] + s * ends[which, 1]
+    ways = np.column_stack([rng.uniform(-0.3, 0.3, (2000, 2)), -np.ones(2000)])
+    lost, lost_by_corner = [], []
+    for place, way in zip(places, ways, strict=True):
+        t, _ = module.hit_triangle(place - 4 * way, way, corners)
+        lost.append(not np.isfinite(t).any())
+        lost_by_corner.append(not _from_a_corner(place - 4 * way, way, corners).any())
+    facts: Facts = {
+        "none is lost": bool(not any(lost)),
+        "from a corner more than one in a hundred": (float(np.mean(lost_by_corner)), 0.01, 1.0),
+        "weights give back the place": (float(max(sums, default=1.0)), 0.0, 1e-12),
+    }
+    with house_style():
+        figure = Figure(figsize=(7.0, 3.3), layout="constrained")
+        left, right = figure.subplots(1, 2)
+        left.imshow(np.clip(picture, 0, 1), origin="lower", extent=(0, 1, 0, 1))
+        left.plot([0, 1], [0, 1], color="white", linewidth=0.8)
+        left.set(xticks=[], yticks=[], title="weights of a, b, c")
+        for one, two in ends:
+            right.plot(*np.array([one, two]).T[:2], color=GREY, linewidth=0.7)
+        right.plot(*places[np.array(lost_by_corner)].T[:2], "o", color=CRIMSON, markersize=3)
+        right.plot(*places[np.array(lost)].T[:2], "x", color=INK)
+        title = f"lost from a corner: {sum(lost_by_corner)}, with (7): {sum(lost)}"
+        right.set(xticks=[], yticks=[], aspect="equal", title=title)
+    return figure, facts
+
+
+def fig3_glass(module: ModuleType) -> tuple[Figure, Facts]:
+    """Rays through a ball of glass; the angle behind a surface by that before it."""
+    eta = 1.5
+    heights = np.concatenate([np.linspace(-0.9, 0.9, 13), [0.05]])
+    start = np.stack([np.full(14, -2.0), heights, np.zeros(14)], axis=1)
+    ways = np.tile([1.0, 0, 0], (14, 1))
+    t = module.hit_sphere(start, ways, np.zeros(3), 1.0)
+    first = start + _finite(t)[:, None] * ways
+    within, entered = module.refract(ways, first, eta)
+    t = module.hit_sphere(first, within, np.zeros(3), 1.0)
+    second = first + _finite(t)[:, None] * within
+    out, left_it = module.refract(within, second, eta)
+    crossing = second[:, 0] - second[:, 1] * _finite(out[:, 0] / out[:, 1])
+    angle = np.radians(np.linspace(0.5, 89.5, 179))
+    up = np.tile([0.0, 0, 1], (179, 1))
+    ins = np.stack([np.sin(angle), 0 * angle, -np.cos(angle)], axis=1)
+    outs = ins * [1, 1, -1]
+    (bent, _), (free, got_out) = module.refract(ins, up, eta), module.refract(outs, up, eta)
+    critical = np.degrees(angle[got_out].max(initial=0.0))
+    facts: Facts = {
+        "the middle crosses 1.5 radii behind the centre": (float(crossing[-1]), 1.48, 1.5),
+        "the outer ones nearer": bool(0.5 < crossing[0] < 1.2),
+        "all get in and out": bool(entered.all() and left_it.all()),
+        "nothing gets out beyond 41.8 degrees": (float(critical), 41.3, 41.9),
+    }
+    with house_style():
+        figure = Figure(figsize=(7.0, 2.9), layout="constrained")
+        left, right = figure.subplots(1, 2, width_ratios=(1.5, 1))
+        left.add_patch(Circle((0, 0), 1, facecolor="#dbe7f3", edgecolor=INK, linewidth=0.8))
+        for r in range(13):
+            path = np.stack([start[r], first[r], second[r], second[r] + 2.2 * out[r]])
+            left.plot(path[:, 0], path[:, 1], color=BLUE, linewidth=0.8)
+        left.plot([1.5], [0], "o", color=CRIMSON, markersize=4)
+        left.set(xlim=(-2, 2.7), ylim=(-1.3, 1.3), aspect="equal", xlabel="x  [radii]")
+        degrees = np.degrees(angle)
+        right.plot(degrees, _angle(bent), color=BLUE)
+        right.plot(degrees[got_out], _angle(free)[got_out], color=ORANGE)
+        right.annotate("into glass", (60, 35), (0, -14), color=BLUE, textcoords="offset points")
+        right.annotate("out of it", (35, 60), (-52, 4), color=ORANGE, textcoords="offset points")
+        right.set(xlabel="angle before  [°]", ylabel="behind  [°]", xlim=(0, 90), ylim=(0, 90))
+        _plain(right)
+    return figure, facts
+
+
+def fig4_march(module: ModuleType) -> tuple[Figure, Facts]:
+    """Two marches; the derivative of t by a radius."""
+    asked: list[Array] = []
+
+    def scene(places: Array) -> tuple[Array, Array, Array]:
+        asked.append(places)
+        one, two = _ball(1.0)(places), (3.0 - places[:, 0], places * 0 - [1.0, 0, 0])
+        nearer = one[0] < two[0]
+        gradient = np.where(nearer[:, None], one[1], two[1])
+        return np.where(nearer, one[0], two[0]), gradient, np.where(nearer, -1.0, 0.0)
+
+    walks = []
+    for height in (1.05, -2.2):
+        asked.clear()
+        at = np.array([[-3.0, height, 0]])
+        t, _ = module.march_sdf(scene, at, np.array([[1.0, 0, 0]]), 20.0, 200)
+        walks.append((np.concatenate(asked), float(t[0])))
+    places = walks[0][0]
+    room = np.minimum(np.hypot(places[:, 0], places[:, 1]) - 1, 3 - places[:, 0])
+    ahead = np.diff(places[:, 0])
+    y = np.linspace(-0.96, 0.96, 49)
+    origins = np.stack([np.full(49, -3.0), y, np.zeros(49)], axis=1)
+    ways = np.tile([1.0, 0, 0], (49, 1))
+    slopes = module.march_sdf(_ball(1.0), origins, ways, 20.0, 3000)[1]
+    eps = 1e-4
+    ends = [module.march_sdf(_ball(1 + e), origins, ways, 20.0, 3000)[0] for e in (-eps, eps)]
+    apart = (_finite(ends[1]) - _finite(ends[0])) / (2 * eps)
+    facts: Facts = {
+        "both arrive at the wall": bool(max(abs(each[1] - 6) for each in walks) < 1e-8),
+        "the grazing ray asks three times as often or more": (
+            len(walks[0][0]) / len(walks[1][0]), 3.0, 30.0),
+        "no step is longer than the distance": bool(
+            len(ahead) > 3 and (ahead <= room[:-1] + 1e-12).all()),
+        "differences agree": (float(np.abs(slopes - apart).max()), 0.0, 1e-3),
+        "towards the outline it grows": bool(abs(slopes[0]) > 3 * abs(slopes[24]) > 1),
+    }  # fmt: skip
+    with house_style():
+        figure = Figure(figsize=(7.0, 3.2), layout="constrained")
+        left, right = figure.subplots(1, 2, width_ratios=(1.4, 1))
+        left.add_patch(Circle((0, 0), 1, facecolor="#f6dcc3", edgecolor=INK, linewidth=0.8))
+        left.axvline(3, color=INK)
+        for (walk, _), colour in zip(walks, (BLUE, ORANGE), strict=True):
+            left.plot([-3, 3], walk[[0, 0], 1], color=colour, linewidth=0.6)
+            for place in walk[:60]:
+                free = abs(float(scene(place[None])[0][0]))
+                left.add_patch(Circle(place[:2], free, fill=False, edgecolor=colour,
+                                      linewidth=0.6))  # fmt: skip
+            left.plot(*walk[:, :2].T, ".", color=colour, markersize=3)
+        left.set(xlim=(-5.3, 3.4), ylim=(-3.9, 3.2), aspect="equal", xlabel="x  [m]")
+        right.plot(y, slopes, color=BLUE)
+        right.plot(y[::4], apart[::4], "o", color=INK, markersize=3)
+        right.set(xlabel="height  [radii]", ylabel="∂t/∂p")
+        _plain(right)
+    return figure, facts
+
+
+def fig5_tree(module: ModuleType) -> tuple[Figure, Facts]:
+    """Boxes that each pixel asks for; boxes by how many triangles there are."""
+    width, height = 50, 30
+    pose = np.array([[1, 0, 0, 0], [0, -0.8, -0.6, 3.3], [0, 0.6, -0.8, 4.4]])
+    origins, ways = module.camera_rays(width, height, 29.0, 29.0, width / 2, height / 2, pose)
+    counts, depth = _asked(module, _ring(16, 8), origins, ways)
+    every = [module.hit_triangle(o, d, _ring(16, 8))[0].min(initial=np.inf)
+             for o, d in zip(origins[::7], ways[::7], strict=True)]  # fmt: skip
+    hits = np.isfinite(depth)
+    sizes, means = [], []
+    chosen = np.flatnonzero(hits)[::10]
+    for turns in (8, 16, 32, 64):
+        sizes.append(turns * turns)
+        found, _ = _asked(module, _ring(turns, turns // 2), origins[chosen], ways[chosen])
+        means.append(float(np.mean(found)))
+    facts: Facts = {
+        "the answers are those of asking every triangle": bool(
+            np.allclose(_finite(depth[::7]), _finite(np.array(every)), atol=1e-9)),
+        "beside the root's box one box is enough": bool(counts.min() == 1),
+        "no pixel asks for more than 80": (int(counts.max()), 20, 80),
+        "from 256 to 4096 less than twice as many": (means[3] / means[1], 1.0, 2.0),
+        "with 256 triangles about 25": (means[1], 22.0, 28.0),
+    }  # fmt: skip
+    with house_style():
+        figure = Figure(figsize=(7.0, 2.9), layout="constrained")
+        left, right = figure.subplots(1, 2, width_ratios=(1.5, 1))
+        drawn = left.imshow(counts.reshape(height, width), cmap="viridis", vmin=0)
+        figure.colorbar(drawn, ax=left, label="boxes asked for", shrink=0.8)
+        left.set(xticks=[], yticks=[])
+        right.loglog(sizes, sizes, color=GREY, linewidth=1)
+        right.loglog(sizes, means, color=BLUE, marker="o", markersize=4)
+        right.annotate("every triangle", (sizes[1], sizes[1]), (-30, 22), color=INK,
+                       textcoords="offset points")  # fmt: skip
+        right.annotate("boxes of the tree", (sizes[1], means[1]), (-20, -16), color=BLUE,
+                       textcoords="offset points")  # fmt: skip
+        right.set(xlabel="triangles", ylabel="asked for, by one ray", ylim=(5, 8000))
+        right.set_xticks(sizes, [str(k) for k in sizes])
+        right.minorticks_off()
+        _plain(right)
+    return figure, facts
+
+
+def _units(rng: np.random.Generator, count: int) -> Array:
+    v = rng.normal(size=(count, 3))
+    return v / np.linalg.norm(v, axis=1, keepdims=True)
+
+
+def _off(origins: Array, ways: Array, t: Array) -> float:
+    """How far off the unit sphere the worst place is."""
+    if not len(t):
+        return 1.0
+    return float(np.abs(np.linalg.norm(origins + t[:, None] * ways, axis=1) - 1).max())
+
+
+def _finite(t: Array) -> Array:
+    return np.where(np.isfinite(t), t, 0.0)
+
+
+def _angle(ways: Array) -> Array:
+    """Angle with the z axis, in degrees."""
+    return np.degrees(np.arctan2(np.abs(ways[:, 0]), np.abs(ways[:, 2])))
+
+
+def _ball(radius: float) -> Callable[[Array], tuple[Array, Array, Array]]:
+    def shape(places: Array) -> tuple[Array, Array, Array]:
+        away = np.linalg.norm(places, axis=1)
+        return away - radius, places / away[:, None], -np.ones(len(places))
+
+    return shape
+
+
+def _sheet(rng: np.random.Generator, n: int) -> tuple[Array, Array]:
+    """(corners (M, 3, 3), inner edges (E, 2, 3)) of a bumpy sheet."""
+    x, y = np.meshgrid(np.arange(n + 1.0), np.arange(n + 1.0), indexing="ij")
+    v = np.stack([x, y, np.zeros(x.shape)], axis=2) + rng.uniform(-0.3, 0.3, (n + 1, n + 1, 3))
+    a, b, c, d = v[:-1, :-1], v[1:, :-1], v[1:, 1:], v[:-1, 1:]
+    both = np.stack([np.stack([a, b, c], axis=2), np.stack([a, c, d], axis=2)], axis=2)
+    edges = [np.stack([a, c], axis=2), np.stack([b, c], axis=2)[:-1],
+             np.stack([d, c], axis=2)[:, :-1]]  # fmt: skip
+    return both.reshape(-1, 3, 3), np.concatenate([e.reshape(-1, 2, 3) for e in edges])
+
+
+def _from_a_corner(origin: Array, way: Array, corners: Array) -> Array:
+    """Whether triangles are met, measured from the corner a of each [Moller1997]."""
+    a, b, c = np.moveaxis(corners, 1, 0)
+    p, q = np.cross(way, c - a), np.cross(origin - a, b - a)
+    whole = np.sum((b - a) * p, axis=1)
+    u, v = np.sum((origin - a) * p, axis=1) / whole, np.sum(way * q, axis=1) / whole
+    return (u >= 0) & (v >= 0) & (u + v <= 1)
+
+
+def _ring(turns: int, sides: int) -> Array:
+    """Triangles (2 turns sides, 3, 3) of a ring around y."""
+    turn = 2 * np.pi * np.arange(turns) / turns
+    across = 2 * np.pi * np.arange(sides) / sides
+    far = 2 + 0.75 * np.cos(across)
+    high = np.broadcast_to(0.75 * np.sin(across), (turns, sides))
+    a = np.stack([far * np.cos(turn)[:, None], high, far * np.sin(turn)[:, None]], axis=2)
+    b, d = np.roll(a, -1, axis=1), np.roll(a, -1, axis=0)
+    c = np.roll(b, -1, axis=0)
+    both = np.stack([np.stack([a, b, c], axis=2), np.stack([a, c, d], axis=2)], axis=2)
+    return both.reshape(-1, 3, 3)
+
+
+def _asked(module: ModuleType, corners: Array, origins: Array, ways: Array) -> tuple[Array, Array]:
+    """(boxes asked for, t), both (R,), of rays through the tree of triangles."""
+    boxes, first, count, order = module.build_bvh(corners.min(axis=1), corners.max(axis=1))
+    asked, found = np.zeros(len(origins), int), np.zeros(len(origins))
+    for r, (o, d) in enumerate(zip(origins, ways, strict=True)):
+
+        def box(node: int, r: int = r) -> Array:
+            asked[r] += 1
+            return boxes[node]
+
+        def meet(things: Array, o: Array = o, d: Array = d) -> Array:
+            return module.hit_triangle(o, d, corners[things])[0]
+
+        found[r] = module.traverse(first, count, order, box, meet, o, d)[0]
+    return asked, found
+
+
+def _plain(axes: Axes) -> None:
+    axes.grid(visible=True)
+    axes.spines[["top", "right"]].set_visible(False)
+
+
+FIGURES = {
+    "fig1_far": fig1_far,
+    "fig2_edges": fig2_edges,
+    "fig3_glass": fig3_glass,
+    "fig4_march": fig4_march,
+    "fig5_tree": fig5_tree,
+}
+RED = {
+    "fig1_far": "sphere_quadratic",
+    "fig2_edges": "triangle_cramer",
+    "fig3_glass": "refract_from_inside_alike",
+    "fig4_march": "march_d_no_cosine",
+    "fig5_tree": "traverse_far_child_lost",
+}

@@ -1,0 +1,249 @@
+"""Where rays meet things, and how to find out without asking every thing.
+
+A ray is an origin o and a direction d, and t counts along it: the place at t is o + t d. Directions
+may have any length but zero, unless a function asks for length 1. What a ray *meets* is the first
+thing at t > T_MIN, so that a ray that starts on a surface does not meet it there again. Where
+nothing is met t is infinite. The world is right-handed with y up; a camera looks along its own +z,
+with x to the right and y down, as OpenCV has it.
+
+Your tasks are six functions, one section of the handout each; `photograd course check 05` tells how
+far you are. The other functions are given and stay as they are. Values are float64, indices int64.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+T_MIN = 1e-9  # nothing nearer counts as met
+CLOSE = 1e-9  # a march has arrived when less is left
+LEAF = 2  # things in a leaf of a tree, at most
+
+
+def camera_rays(width, height, fx, fy, cx, cy, world_from_camera):
+    """One ray through the centre of each pixel of a pinhole camera.
+
+    Args:
+        width, height: of the picture, in pixels.
+        fx, fy, cx, cy: focal lengths and principal point, in pixels.
+        world_from_camera: (3, 4), turns and then moves places of the camera into the world.
+
+    Returns:
+        (origins, directions), both (height width, 3), row by row from the top; unit directions.
+    """
+    v, u = np.mgrid[:height, :width].reshape(2, -1) + 0.5
+    local = np.stack([(u - cx) / fx, (v - cy) / fy, np.ones(len(u))], axis=1)
+    local /= np.linalg.norm(local, axis=1, keepdims=True)
+    directions = local @ world_from_camera[:, :3].T
+    return np.tile(world_from_camera[:, 3], (len(u), 1)), directions
+
+
+def hit_sphere(origins, directions, center, radius):
+    """Where rays meet a sphere.
+
+    Args:
+        origins, directions: (R, 3); directions of any length.
+        center: (3,).
+        radius: a number above 0.
+
+    Returns:
+        t (R,), the first one above T_MIN at which the ray is on the sphere, from outside or from
+        inside; infinite where there is none. A ray that touches the sphere in one place meets it.
+        Handout equations (5) and (6).
+    """
+    # >>> solution 05.1
+    offset = origins - center
+    square = np.sum(directions**2, axis=1)
+    nearest = -np.sum(offset * directions, axis=1) / square
+    aside = offset + nearest[:, None] * directions
+    rest = (radius**2 - np.sum(aside**2, axis=1)) / square
+    half = np.sqrt(np.abs(rest))
+    t = np.where(nearest - half > T_MIN, nearest - half, nearest + half)
+    return np.where((rest >= 0) & (t > T_MIN), t, np.inf)
+    # <<< solution
+
+
+def hit_triangle(origin, direction, corners):
+    """Where one ray meets each of many triangles, from either side.
+
+    Args:
+        origin, direction: (3,); a direction of any length.
+        corners: (M, 3, 3), the corners a, b, c of each triangle.
+
+    Returns:
+        (t, weights): t (M,), infinite where the triangle is missed, lies in the plane of the ray or
+        has no area; weights (M, 2) of the corners b and c in the place that is met, zeros where
+        none is. A ray that passes exactly between two triangles with a common edge meets one of
+        them or both. Handout equations (7) to (9).
+    """
+    # >>> solution 05.2
+    a, b, c = np.moveaxis(corners - origin, 1, 0)
+    volumes = np.sum(np.stack([np.cross(b, c), np.cross(c, a), np.cross(a, b)]) * direction, axis=2)
+    whole = np.sum(volumes, axis=0)
+    inside = ((volumes >= 0).all(axis=0) | (volumes <= 0).all(axis=0)) & (whole != 0)
+    weights = volumes / np.where(inside, whole, 1.0)
+    ahead = np.sum(np.stack([a, b, c]) * direction, axis=2) / np.sum(direction**2)
+    t = np.sum(weights * ahead, axis=0)
+    met = inside & (t > T_MIN)
+    return np.where(met, t, np.inf), np.where(met, weights[1:], 0.0).T
+    # <<< solution
+
+
+def refract(directions, normals, eta):
+    """Where light goes on at a smooth surface of glass, by Snell's law.
+
+    Args:
+        directions: (R, 3), unit, the way the ray travels: *into* the surface.
+        normals: (R, 3), unit, always to the outside, whichever side the ray comes from.
+        eta: the index of refraction inside over that outside, above 0.
+
+    Returns:
+        (out, through): out (R, 3), unit: the refracted ray, or the mirrored one where none gets
+        through; through (R,) of bool, which of the two it is. Handout equations (10) to (12).
+    """
+    # >>> solution 05.3
+    cosine = -np.sum(directions * normals, axis=1, keepdims=True)
+    side = np.sign(cosine)
+    ratio = eta**side
+    square = 1 - (1 - cosine**2) / ratio**2
+    through = square > 0
+    along = directions + cosine * normals
+    bent = along / ratio - side * np.sqrt(np.abs(square)) * normals
+    mirrored = along + cosine * normals
+    return np.where(through, bent, mirrored), through[:, 0]
+    # <<< solution
+
+
+def march_sdf(sdf, origins, directions, t_max, steps):
+    """Where rays meet a surface of which only the distance is known; and how that depends on it.
+
+    Args:
+        sdf: a function from places (M, 3) to (distance (M,), gradient (M, 3), by_parameter (M,)):
+            the distance to the surface, below 0 inside; its derivative by the place; its derivative
+            by some parameter p of the shape. It is what costs: ask for as few places as you can,
+            and never for none.
+        origins, directions: (R, 3); unit directions.
+        t_max: a surface farther away is not met.
+        steps: a ray that has not arrived when it has asked so often meets nothing, 1 or more.
+
+    Returns:
+        (t, d_t), both (R,): the first t at which |distance| is below CLOSE, infinite where there is
+        none; its derivative by p, zero where there is none. Handout equations (13) to (15).
+    """
+    # >>> solution 05.4
+    t, found, d_t = np.zeros(len(origins)), np.full(len(origins), np.inf), np.zeros(len(origins))
+    live = np.arange(len(origins))
+    for _ in range(steps):
+        if len(live) == 0:
+            break
+        distance, gradient, by_parameter = sdf(origins[live] + t[live, None] * directions[live])
+        there = np.abs(distance) < CLOSE
+        done = live[there]
+        found[done] = t[done]
+        d_t[done] = -by_parameter[there] / np.sum(gradient[there] * directions[done], axis=1)
+        t[live] += np.abs(distance)
+        live = live[~there & (t[live] <= t_max)]
+    return found, d_t
+    # <<< solution
+
+
+def build_bvh(low, high):
+    """A tree of boxes around things, of which only the own box is known.
+
+    Args:
+        low, high: (P, 3), the lower and the upper corner of each thing's box; P is 1 or more.
+
+    Returns:
+        (boxes, first, count, order) with N nodes, of which 0 is the root: boxes (N, 2, 3), the
+        smallest that hold all things of a node; count (N,), how many things lie in a leaf, 1 to
+        LEAF, and 0 for any other node; first (N,): the things of a leaf are order[first] to
+        order[first + count - 1], the children of another node are the nodes first and first + 1;
+        order (P,), the numbers of all things. Handout equations (16) and (17).
+    """
+    # >>> solution 05.5
+    twice_middle = low + high
+    order = np.arange(len(low))
+    boxes, first, count, todo = [], [], [], [(0, len(low))]
+    for start, stop in todo:  # which grows meanwhile
+        mine = order[start:stop]
+        boxes.append([low[mine].min(axis=0), high[mine].max(axis=0)])
+        if stop - start <= LEAF:
+            first.append(start)
+            count.append(stop - start)
+        else:
+            axis = np.ptp(twice_middle[mine], axis=0).argmax()
+            order[start:stop] = mine[np.argsort(twice_middle[mine, axis])]
+            half = (start + stop) // 2
+            first.append(len(todo))
+            count.append(0)
+            todo += [(start, half), (half, stop)]
+    return np.array(boxes), np.array(first), np.array(count), order
+    # <<< solution
+
+
+def traverse(first, count, order, box, meet, origin, direction):
+    """The first thing that a ray meets, with few questions.
+
+    Args:
+        first (N,), count (N,), order (P,): of `build_bvh`.
+        box: a function from the number of a node to its box (2, 3).
+        meet: a function from the numbers (K,) of things to t (K,), where the ray meets each,
+            infinite where it does not. Both are what costs: ask as little as you can.
+        origin, direction: (3,); a direction of any length, single components may be zero.
+
+    Returns:
+        (t, number) of the nearest thing; infinite and -1 if the ray meets nothing. Handout
+        equations (18) to (20).
+    """
+    # >>> solution 05.6
+    moves = direction != 0
+
+    def enter(node):
+        low, high = box(node)
+        if ((origin < low) | (origin > high))[~moves].any():
+            return np.inf
+        faces = (np.stack([low, high]) - origin)[:, moves] / direction[moves]
+        near, far = max(faces.min(axis=0).max(), 0.0), faces.max(axis=0).min()
+        return near if near <= far else np.inf
+
+    best, number = np.inf, -1
+    todo = [(enter(0), 0)]
+    while todo:
+        near, node = todo.pop()
+        if near >= best:
+            continue
+        if count[node] == 0:
+            children = [(enter(child), child) for child in (first[node], first[node] + 1)]
+            todo += sorted(children, reverse=True)
+            continue
+        things = order[first[node] : first[node] + count[node]]
+        t = meet(things)
+        if t.min() < best:
+            best, number = t.min(), things[t.argmin()]
+    return float(best), int(number)
+    # <<< solution
+
+
+def trace_mesh(corners, origins, directions):
+    """The nearest triangle of each ray, by your tree.
+
+    Args:
+        corners: (M, 3, 3), triangles.
+        origins, directions: (R, 3).
+
+    Returns:
+        (t (R,), number (R,)); infinite and -1 for rays that meet nothing.
+    """
+    boxes, first, count, order = build_bvh(corners.min(axis=1), corners.max(axis=1))
+    found = [
+        traverse(
+            first,
+            count,
+            order,
+            lambda node: boxes[node],
+            lambda things, o=o, d=d: hit_triangle(o, d, corners[things])[0],
+            o,
+            d,
+        )
+        for o, d in zip(origins, directions, strict=True)
+    ]
+    return np.array([t for t, _ in found]), np.array([number for _, number in found])
