@@ -16,7 +16,7 @@ from photograd_course.grading.adjoint_gate import (
     require_zero_for_zero,
 )
 
-# Evidence: worst of the solution and three alternatives, against the nearest of 91 named wrong
+# Evidence: worst of the solution and three alternatives, against the nearest of 92 named wrong
 # solutions.
 EXACT = Tolerance(
     1e-11,
@@ -240,8 +240,8 @@ def what_mirrors_return(t):
 
 @check("04.3.ball", task="04.3", points=2, calls=("ggx_pdf",), needs=("ggx_lobe",),
        tolerance=EXACT,
-       kills=("pdf_all_facets", "pdf_by_light", "pdf_four_alone", "pdf_half", "pdf_is_value",
-              "pdf_no_masking", "pdf_of_facets", "pdf_twice",),
+       kills=("pdf_all_facets", "pdf_by_height", "pdf_by_light", "pdf_four_alone",
+              "pdf_half", "pdf_is_value", "pdf_no_masking", "pdf_of_facets", "pdf_twice",),
        hint="at roughness 1: D = 1 / pi, and wo sees 2 o_z / (1 + o_z) of the facets turned to it",
        sole="the roughest surface in closed form")  # fmt: skip
 def a_ball_spreads_evenly(t):
@@ -267,8 +267,8 @@ def what_stays_above(t):
 
 @check("04.3.weight", task="04.3", points=3, calls=("ggx_pdf",), needs=("ggx_lobe",),
        tolerance=EXACT,
-       kills=("pdf_all_facets", "pdf_by_light", "pdf_four_alone", "pdf_half", "pdf_no_masking",
-              "pdf_of_facets", "pdf_twice",),
+       kills=("pdf_all_facets", "pdf_by_height", "pdf_by_light", "pdf_four_alone",
+              "pdf_half", "pdf_no_masking", "pdf_of_facets", "pdf_twice",),
        hint="a sample's weight is the share of the facets seen that the light sees, too",
        sole="what the sampler is good for: no sample counts more than 1")  # fmt: skip
 def weights_are_shares(t):
@@ -694,8 +694,8 @@ def lobes_anywhere(t):
 
 @check("04.3.hidden", task="04.3", points=2, calls=("ggx_pdf",), needs=("ggx_lobe",),
        visibility="hidden", tolerance=SHARP,
-       kills=("pdf_all_facets", "pdf_by_light", "pdf_four_alone", "pdf_half", "pdf_is_value",
-              "pdf_no_masking", "pdf_not_squared", "pdf_of_facets", "pdf_twice",),
+       kills=("pdf_all_facets", "pdf_by_height", "pdf_by_light", "pdf_four_alone",
+              "pdf_half", "pdf_is_value", "pdf_no_masking", "pdf_not_squared", "pdf_of_facets", "pdf_twice",),
        sole="the same mistakes at directions that are not known beforehand")  # fmt: skip
 def densities_anywhere(t):
     """The density is right anywhere."""
