@@ -695,7 +695,8 @@ def lobes_anywhere(t):
 @check("04.3.hidden", task="04.3", points=2, calls=("ggx_pdf",), needs=("ggx_lobe",),
        visibility="hidden", tolerance=SHARP,
        kills=("pdf_all_facets", "pdf_by_height", "pdf_by_light", "pdf_four_alone",
-              "pdf_half", "pdf_is_value", "pdf_no_masking", "pdf_not_squared", "pdf_of_facets", "pdf_twice",),
+              "pdf_half", "pdf_is_value", "pdf_no_masking", "pdf_not_squared", "pdf_of_facets",
+              "pdf_twice",),
        sole="the same mistakes at directions that are not known beforehand")  # fmt: skip
 def densities_anywhere(t):
     """The density is right anywhere."""
