@@ -168,7 +168,8 @@ def sample_ggx(wo, roughness, u2):
     Args:
         wo: (N, 3), above the surface.
         roughness: (N,), 0.045 to 1.
-        u2: (N, 2), uniform in [0, 1); row n decides about direction n, and nothing else does.
+        u2: (N, 2), uniform in [0, 1). Direction n depends on row n of wo, roughness and u2 only;
+            use no random numbers of your own.
 
     Returns:
         (N, 3), unit vectors with the density `ggx_pdf`; some may lead below the surface, where

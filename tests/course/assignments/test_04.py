@@ -12,7 +12,7 @@ from photograd_course.assignment.bundle import read_folder
 from photograd_course.assignment.checks_file import load_module
 from photograd_course.assignment.drawing import draw as draw_question
 
-from course.assignments.support import ASSIGNMENTS, AssignmentTests, apply_mutant, source
+from course.assignments.support import ASSIGNMENTS, AssignmentTests, apply_mutant, judge, source
 
 FOLDER = ASSIGNMENTS / "04_reflectance"
 WO, WI = np.array([[0.6, 0.0, 0.8]]), np.array([[-0.48, 0.36, 0.8]])
@@ -172,6 +172,23 @@ def test_right_samples_are_rejected_as_rarely_as_they_should(solution) -> None:
     assert min(p) > checks.LEVEL / 10
     wrong = mutant("sample_all_facets").sample_ggx(wo, r, rng.random((n, 2)))
     assert checks.chi_square(wrong, shares) < checks.LEVEL / 1000
+
+
+def test_a_wrong_sampler_is_told_where_its_samples_lie() -> None:
+    """About a tenth of the right ones is below the surface (Figure 3), of the bare cap's half."""
+    outcomes = judge(FOLDER, apply_mutant(FOLDER, "sample_cap_alone"), tasks=("04.4",))
+    told = next(each for each in outcomes if each.id == "04.4.chi")
+    mine, right = (
+        float(part.partition(" ")[0])
+        for part in (told.text.partition("samples: ")[2], told.text.partition("density: ")[2])
+    )
+    assert mine == pytest.approx(0.48, abs=0.03)
+    assert right == pytest.approx(0.1, abs=0.01)
+    assert told.arrays is not None
+    found, expected = told.arrays
+    assert found.shape == expected.shape == (8, 8)
+    assert 1 - found.sum() == pytest.approx(mine, abs=6e-4)  # the text rounds to three digits
+    assert 1 - expected.sum() == pytest.approx(right, abs=5e-3)  # cells have a rule of their own
 
 
 def test_diagnoses_fit_one_answer_alone(solution) -> None:

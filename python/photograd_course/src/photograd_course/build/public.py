@@ -114,7 +114,7 @@ def answers_template(manifest: Manifest) -> str:
     for kind, entry in _questions(manifest.folder):
         options = entry.get("options", [])
         last = "abcdefgh"[len(options) - 1 : len(options)]
-        form = f"a letter, a to {last}" if options else "a number such as 0.125"
+        form = f"a letter, a to {last}" if options else "a number such as 0.1250"
         lines.append(f'{toml_key(str(entry["id"]))} = ""  # {kind}: {form}')
     return "\n".join(lines) + "\n"
 

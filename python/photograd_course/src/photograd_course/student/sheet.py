@@ -89,7 +89,7 @@ def fault(question: Question, answer: str) -> str:
         good = math.isfinite(float(answer))
     except ValueError:
         good = False
-    return "" if good else "write a number such as 0.125: no fraction, no unit"
+    return "" if good else "write a number such as 0.1250: no fraction, no unit"
 
 
 def _locked(bundle: Bundle, work: WorkFolder) -> dict[str, str]:
