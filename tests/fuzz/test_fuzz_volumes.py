@@ -23,7 +23,7 @@ FILES = {
     "a.vtk": vtk(values()),
     "text.vtk": vtk(values(), text=True),
     "a.nii": nifti(values(), slope=1.0, qform=(0.1, 0.2, 0.3, 1, 2, 3)),
-    "a.nii.gz": gzip.compress(nifti(values())),
+    "a.nii.gz": gzip.compress(nifti(values()), mtime=0),
     "a.vol": mitsuba(values()[..., None]),
 }
 
