@@ -137,7 +137,7 @@ def symmetric_positive_and_free_of_length(t):
               "shape_back_w_lost", "shape_half_turned", "shape_product_reversed",
               "shape_rows_scaled", "shape_turned_back", "shape_unnormalised",
               "shape_variances", "shape_w_last",),
-       hint="handout, equations (7) and (8); cov has nine numbers, d_cov need not be symmetric",
+       hint="handout, equations (7) and (8); d_log_scales: M, not R; d_cov need not be symmetric",
        sole="the derivative itself, without the reference")  # fmt: skip
 def the_shape_agrees_with_differences(t):
     """Moving q or a scale moves your covariance as your back says, group by group."""
@@ -252,6 +252,10 @@ def what_is_held_outside(t):
     t.close("cov2d at twice the limit", found[2], found[0])
 
 
+# What the columns of `folded` are: an index tells nothing else of the matrix.
+NINE = "cov by xx, xy, xz, yy, yz, zz"
+
+
 def projection_gate(t, points, camera, g):
     """Both groups of `project` against differences, at points of the camera's frame."""
     means, six = in_world(camera, points), shapes(t.rng, len(points)).reshape(-1, 9)
@@ -259,11 +263,11 @@ def projection_gate(t, points, camera, g):
     d_means, d_cov = seen_back(t, means, symmetric(six), camera, g)
 
     def forward(point):
-        mean2d, cov2d, _ = seen(t, point["means"], symmetric(point["cov"]), camera)
+        mean2d, cov2d, _ = seen(t, point["means"], symmetric(point[NINE]), camera)
         return np.concatenate([mean2d, cov2d], axis=1)
 
-    found = {"cov": folded(d_cov), "means": d_means}
-    require_gradients(t, found, forward, {"means": means, "cov": six}, g, GATE)
+    found = {NINE: folded(d_cov), "means": d_means}
+    require_gradients(t, found, forward, {"means": means, NINE: six}, g, GATE)
 
 
 @check("15.2.differences", task="15.2", points=4, calls=("project",), tolerance=GATE,
@@ -272,7 +276,8 @@ def projection_gate(t, points, camera, g):
               "lens_back_turned_on", "lens_back_xy_lost", "lens_back_xy_twice",
               "lens_cov_unturned", "lens_inverse_pose", "lens_no_third_column",
               "lens_size_without_depth", "lens_third_column_sign",),
-       hint="handout, equation (14); the xy of cov2d stands for two entries of a matrix",
+       hint="handout, equation (14): xy is two entries of a matrix. d_means: t_z stands in four "
+            "entries of J and in both u; inside, J_xz moves by u as well",
        sole="the derivative itself, without the reference")  # fmt: skip
 def the_projection_agrees_with_differences(t):
     """Moving a mean or a covariance moves its splat as your back says."""
@@ -349,7 +354,8 @@ def a_round_splat(t):
        kills=("alpha_conic_once", "alpha_conic_sign", "alpha_conic_unswapped",
               "alpha_low_pass_xy", "alpha_mirrored", "alpha_no_half", "alpha_no_low_pass",
               "alpha_not_inverted",),
-       hint="handout, equation (16): the inverse of a 2 x 2 matrix swaps xx and yy",
+       hint="handout, equations (16) and (17): the inverse swaps xx and yy; B dx dy stands outside "
+            "of the 1/2; or dx and dy have different signs",
        sole="says whether the conic belongs to the covariance")  # fmt: skip
 def on_an_ellipse_alpha_is_the_same(t):
     """On the ellipse of k standard deviations, alpha is the opacity times exp(-k^2 / 2)."""
@@ -393,7 +399,7 @@ def cut_offs(t):
               "alpha_conic_unswapped", "alpha_mirrored", "alpha_no_half",
               "alpha_not_held", "alpha_not_inverted", "pull_exchanged",),
        hint="handout, equations (19) and (20): derivatives by A, B, C or by the covariance, each "
-            "with its own count of B",
+            "with its own count of B; the slope of oG by the logit is oG (1 - o)",
        sole="the derivative itself, without the reference")  # fmt: skip
 def alpha_agrees_with_differences(t):
     """Moving a splat, its covariance or its logit moves alpha as your back says."""
@@ -452,11 +458,14 @@ def layers(rng, n, p):
 @check("15.4.layers", task="15.4", points=2, calls=("composite",), tolerance=EXACT,
        kills=("blend_added", "blend_background_undimmed", "blend_farthest_first",
               "blend_inclusive", "blend_no_background", "blend_ties_reversed",
-              "blend_unsorted",),
+              "blend_ties_unstable", "blend_unsorted",),
        hint="handout, equation (22): T is what all splats in front let through, not this one",
        sole="small enough to work out by hand")  # fmt: skip
 def known_layers(t):
-    """Nothing shows the background; one splat mixes; of equal depth the first row is in front."""
+    """Nothing shows the background; one splat mixes; of equal depth the first row is in front.
+
+    Many rows of few depths: with three rows a sort that is not stable may look as if it were.
+    """
     c, b = t.rng.uniform(0.0, 1.0, (3, 3)), t.rng.uniform(0.0, 1.0, 3)
     a = np.array([[0.0, 0.75, 0.5], [0.0, 0.0, 0.5], [0.0, 0.0, 0.2]])
     expected = [b, 0.75 * c[0] + 0.25 * b, 0.2 * c[2] + 0.4 * c[0] + 0.2 * c[1] + 0.2 * b]
@@ -466,6 +475,11 @@ def known_layers(t):
     t.close("white before white", got, np.ones((1, 3)), reveal=True)
     nothing = blended(t, np.zeros((0, 2)), np.zeros((0, 3)), np.zeros(0), b)
     t.close("no splat at all", nothing, np.stack([b, b]), reveal=True)
+    z, behind = np.arange(60) % 3 + 1.0, b
+    a, c = t.rng.uniform(0.05, 0.15, (60, 1)), t.rng.uniform(0.0, 1.0, (60, 3))
+    for k in (*range(59, 0, -3), *range(58, 0, -3), *range(57, -1, -3)):
+        behind = a[k] * c[k] + (1 - a[k]) * behind
+    t.close("60 rows at three depths", blended(t, a, c, z, b), behind[None], reveal=True)
 
 
 @check("15.4.order", task="15.4", points=3, calls=("composite",), tolerance=EXACT,
@@ -637,7 +651,8 @@ def eight(rng):
         "log_scales": np.log(0.03) + rng.uniform(-0.2, 0.2, (8, 3)),
         "opacity_logits": rng.uniform(-1.0, 3.0, 8), "colors": rng.uniform(0.0, 1.0, (8, 3)),
     }  # fmt: skip
-    scene["log_scales"][[2, 3, 7], rng.integers(0, 3, 3)] += 2.0
+    # Row 2: the longest scale is above SMALL = 0.06, the mean of the three below.
+    scene["log_scales"][[2, 3, 7], rng.integers(0, 3, 3)] += [1.0, 2.0, 2.0]
     scene["opacity_logits"][[0, 4]] = -5.0
     return scene, np.array([0.9, 3, 5, 1, 0, 8, 1.9, 4]) / 1000
 
@@ -645,10 +660,11 @@ def eight(rng):
 @check("15.6.rows", task="15.6", points=2, calls=("densify",), needs=("covariance",),
        tolerance=EXACT,
        kills=("dense_all_cloned", "dense_all_split", "dense_calm_chosen",
-              "dense_faint_stay", "dense_in_place", "dense_one_part",
+              "dense_faint_stay", "dense_in_place", "dense_mean_scale", "dense_one_part",
               "dense_parts_paired", "dense_shortest_scale", "dense_source_counted",
               "dense_source_of_new", "dense_split_stays",),
-       hint="handout, equations (28) to (30): first those that stay, then clones, then parts twice",
+       hint="handout, equations (28) to (30): first those that stay, then clones, then parts "
+            "twice; work on copies",
        sole="asks which rows there are, and nothing of their values")  # fmt: skip
 def who_stays_and_who_is_new(t):
     """Faint ones go, small pressed ones are cloned, large pressed ones split, in a fixed order."""
@@ -666,12 +682,13 @@ def who_stays_and_who_is_new(t):
        tolerance=EXACT,
        kills=("dense_all_cloned", "dense_all_split", "dense_calm_chosen",
               "dense_clones_halved", "dense_clones_opaque", "dense_faint_stay",
-              "dense_one_part", "dense_original_opaque", "dense_parts_as_large",
+              "dense_mean_scale", "dense_one_part", "dense_original_opaque", "dense_parts_as_large",
               "dense_parts_by_covariance", "dense_parts_grow", "dense_parts_in_place",
               "dense_parts_mirrored", "dense_parts_paired", "dense_parts_round",
               "dense_parts_shrunk_too_much", "dense_shortest_scale",
               "dense_split_stays",),
-       hint="handout, equations (31) and (32)",
+       hint="handout, equations (31) and (32). log-scales: minus log(SHRINK); places: L z with L "
+            "of the whole",
        sole="asks about the values of new rows")  # fmt: skip
 def clones_keep_the_middle_and_parts_are_drawn(t):
     """Two clones cover as one did; parts are smaller by 1.6, at places drawn from the whole."""
@@ -684,7 +701,8 @@ def clones_keep_the_middle_and_parts_are_drawn(t):
     both = through.copy()
     both[[0, 2]] = through[[0, 2]] * through[[4, 5]]
     both[[4, 5]] = both[[0, 2]]
-    t.close("what original and clone let through", both, before, reveal=True)
+    t.close("what rows let through (original and clone together; parts keep their opacity)", both,
+            before, reveal=True)  # fmt: skip
     t.close("opacity of a clone", through[[4, 5]], through[[0, 2]])
     scales = scene["log_scales"][rows]
     scales[new] -= np.log(1.6)
@@ -702,10 +720,11 @@ def clones_keep_the_middle_and_parts_are_drawn(t):
 @check("15.6.most", task="15.6", points=1, calls=("densify",), needs=("covariance",),
        tolerance=EXACT,
        kills=("dense_all_cloned", "dense_all_split", "dense_faint_stay",
-              "dense_least_pressed", "dense_limit_of_all", "dense_no_limit",
+              "dense_least_pressed", "dense_limit_of_all", "dense_mean_scale", "dense_no_limit",
               "dense_one_part", "dense_shortest_scale", "dense_source_counted",
               "dense_source_of_new", "dense_split_stays",),
-       hint="each chosen one makes one more; the highest pressure goes first",
+       hint="each chosen one makes one more; the highest pressure goes first. Faint ones leave "
+            "first: room is `most` minus the number that stay",
        sole="asks about the budget alone")  # fmt: skip
 def never_more_than_most(t):
     """With room for two more, the two under the highest pressure are chosen; with none, nobody."""
@@ -808,12 +827,12 @@ def random_splats(t):
               "blend_back_sorted_again", "blend_back_sorted_alpha",
               "blend_back_sorted_colors", "blend_background_undimmed",
               "blend_farthest_first", "blend_inclusive", "blend_no_background",
-              "blend_ties_reversed", "blend_unsorted",),
+              "blend_ties_reversed", "blend_ties_unstable", "blend_unsorted",),
        sole="the same mistakes at values that are not known beforehand")  # fmt: skip
 def random_layers(t):
     """Values and derivatives are right for many layers."""
     a, c, z, b = layers(t.rng, 20, 9)
-    z[3], z[11] = z[5], z[7]
+    z = np.floor(z)  # seven depths
     g = random_cotangent(t.rng, (9, 3))
     right, pullback = t.reference.composite(a, c, z, b)
     t.close("shown", blended(t, a, c, z, b), right)
@@ -856,7 +875,7 @@ def random_scenes(t):
        visibility="hidden", tolerance=EXACT,
        kills=("dense_all_cloned", "dense_all_split", "dense_calm_chosen",
               "dense_clones_halved", "dense_clones_opaque", "dense_faint_cloned",
-              "dense_faint_stay", "dense_least_pressed", "dense_limit_of_all",
+              "dense_faint_stay", "dense_least_pressed", "dense_limit_of_all", "dense_mean_scale",
               "dense_no_limit", "dense_one_part", "dense_original_opaque",
               "dense_parts_as_large", "dense_parts_by_covariance", "dense_parts_grow",
               "dense_parts_in_place", "dense_parts_mirrored", "dense_parts_paired",

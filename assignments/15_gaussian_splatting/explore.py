@@ -211,9 +211,9 @@ def by_covariance(of_conic, factor):
     return np.array([[D[0, 0], 2 * D[0, 1], D[1, 1]]])
 
 
-later, once = (off(by_covariance(kept, factor), right) for factor in (2, 1))
-print(f"conic:  B's derivative kept halved and doubled later is off by {later:.0e}; "
-      f"kept halved, taken once {once:.0%}")  # fmt: skip
+halved, patched = (off(by_covariance(kept * [1, whole, 1], 2), right) for whole in (1, 2))
+print(f"conic:  B's derivative kept halved and doubled later is off by {halved:.0e}; "
+      f"the patch (kept whole, still doubled) by {patched:.0%}")  # fmt: skip
 
 lens = around(1, 64)[0]
 high = mine.limits(lens)[1][0]
@@ -233,7 +233,7 @@ G = np.array([[g[0, 0], g[0, 1] / 2], [g[0, 1] / 2, g[0, 2]]])
 slopes = 2 * G @ A @ V
 f, z = lens["focal"][0], point[0, 2]
 told = -np.sum(slopes[:, :2] * A[:, :2]) / z
-told += slopes[0, 2] * 2 * f * high / z**2  # as if t_x stood still: right inside, wrong outside
+told += slopes[0, 2] * 2 * f * high / z**2  # as public code has it
 told += slopes[1, 2] * 2 * f * (point[0, 1] / z) / z**2
 mended = told - slopes[0, 2] * f * high / z**2
 print(f"clamp:  by t_z, outside: differences {by_depth:.4f}, "

@@ -94,8 +94,8 @@ def fig2_weights(module: ModuleType) -> tuple[Figure, Facts]:
     facts: Facts = {
         "weights and what is left add up to 1": (float(weights.sum() + left), 1 - 1e-12, 1 + 1e-12),
         "the nearest weighs its alpha": (float(weights[order[0]] - 0.6), -1e-12, 1e-12),
-        "the most opaque one weighs less than half of the nearest": (
-            float(weights[3] / weights[1]), 0, 0.5,
+        "the most opaque one weighs a quarter of the nearest": (
+            float(weights[3] / weights[1]), 0.23, 0.27,
         ),
     }  # fmt: skip
     with house_style():
@@ -147,7 +147,9 @@ def fig3_pull(module: ModuleType) -> tuple[Figure, Facts]:
         "pull is the sum of the sizes": (
             float(total[0] / np.abs(pulls[:, 0]).sum()), 1 - 1e-9, 1 + 1e-9,
         ),
-        "with densify the loss ends below half": (float(curves[1][-1] / curves[0][-1]), 0, 0.5),
+        "with densify the loss ends below a tenth": (
+            float(curves[1][-1] / curves[0][-1]), 0, 0.1,
+        ),
     }  # fmt: skip
     with house_style():
         figure = Figure(figsize=(7.0, 2.9), layout="constrained")
@@ -216,7 +218,7 @@ def fig5_arrows(module: ModuleType) -> tuple[Figure, Facts]:
             float(fall / predicted), 0.98, 1.02,
         ),
         "some are chosen, and most are not": (float(chosen.mean()), 0.05, 0.6),
-        "beneath the chosen ones the error is more than half as large again": (
+        "beneath the chosen ones the error is at least 1.5 times that beneath the others": (
             float(beneath[chosen].mean() / beneath[~chosen].mean()), 1.5, 50,
         ),
     }  # fmt: skip
@@ -252,6 +254,7 @@ def fig6_three(module: ModuleType) -> tuple[Figure, Facts]:
     facts: Facts = {
         "the Gaussians have the most decibels": bool(score > max(score9[0], score11[0])),
         "and the fewest bytes": bool(sizes[0] < min(sizes[1:])),
+        "10 KiB of them as float32": (sizes[0] / 1024, 9.5, 10.5),
         "all three have more than 20 dB": (min(score, score9[0], score11[0]), 20, 60),
     }
     camera, truth = views[1]

@@ -29,7 +29,7 @@ ALPHA_MIN, ALPHA_MAX = 1 / 255, 0.999
 FAINT = 0.02  # opacity below which a Gaussian is dropped
 SMALL = 0.06  # metres; longer ones are split, the others cloned
 THRESHOLD = 0.002  # of the pressure
-SHRINK = 1.6  # a part of a split Gaussian is smaller by this
+SHRINK = 1.6  # a part of a split Gaussian is smaller by this factor
 TILE = 16  # pixels
 RATES = {
     "means": 0.008, "log_scales": 0.03, "quats": 0.03, "opacity_logits": 0.05, "colors": 0.02,
@@ -235,7 +235,7 @@ def densify(gaussians, pressure, rng, most):
         gaussians: N of them; these arrays must not change.
         pressure: (N,), how much the pictures pulled at each.
         rng: a numpy.random.Generator, asked once: standard_normal((2 K, 3)) for K that are split.
-        most: there are never more Gaussians, unless there were more before.
+        most: there are never more Gaussians, unless more than that stay; faint ones leave first.
 
     Returns:
         (gaussians, source): the new scene, and (M,), integers: the row that each was before, or -1
