@@ -53,7 +53,7 @@ class Contender:
         own = DEFAULTS_OF.get(self.representation, {})
         rest = {name: value for name, value in own.items() if name != "steps"}
         return replace(
-            shared, representation=self.representation, **{size: self.resolution, **rest}
+            shared, representation=self.representation, **{**rest, size: self.resolution}
         )
 
     @property

@@ -49,6 +49,7 @@ from photograd.fit_checks import (
     require_finite_loss,
     require_gaussians,
     require_pixels_of,
+    require_room_to_refine,
     require_split_of,
     require_startable,
 )
@@ -288,6 +289,7 @@ class Fit:
             return
         self._prune()
         before: Any = self.model
+        require_room_to_refine(before, size)
         after = before.refined(size, steps_per_voxel=self.options.steps_per_voxel)
         for group in before.params:
             self.optimiser.resample(group, lambda moment: before.resampled(moment, after))

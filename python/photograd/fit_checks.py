@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from photograd.errors import Error, IoError, RangeError, message
 from photograd.fields.fitted import FITTED
 from photograd.fields.gaussians import GaussianScene
 from photograd.fit_options import FitOptions
+from photograd.memory import available_memory
 from photograd.representation import Array, representation
 
 _SAME = "resume with the capture, and the --downscale, that the fit was started on"
@@ -44,6 +46,24 @@ def require_background_of(capture: Capture, options: FitOptions) -> None:
         raise RangeError(
             message("Fit", "background", "random, white or black for photographs with alpha",
                     "'learned'")
+        )  # fmt: skip
+
+
+def require_room_to_refine(grid: Any, resolution: int) -> None:
+    """Raise RangeError if a grid, refined, takes more memory than there is.
+
+    Each number has a gradient and two moments beside it, and is interpolated from the coarse grid
+    while that still exists. A sparse grid that pruned little, of a capture without alpha, can grow
+    eightfold.
+    """
+    now = sum(values.nbytes for values in grid.params.values())
+    needed = 4 * int(now * (1 + (resolution / grid.resolution) ** 3))
+    room = available_memory()
+    if needed > room:
+        raise RangeError(
+            message("Fit", "resolution", f"one whose grid fits in memory ({room:,} bytes)",
+                    f"{resolution}, which takes {needed:,}",
+                    f"fit with --resolution {grid.resolution}, or crop the capture's bounds")
         )  # fmt: skip
 
 

@@ -109,7 +109,10 @@ class FitOptions:
         return levels
 
 
-DEFAULTS_OF: dict[str, dict[str, Any]] = {"gaussians": {"steps": 4000, "degree": 3}}
+DEFAULTS_OF: dict[str, dict[str, Any]] = {
+    "gaussians": {"steps": 4000, "degree": 3},
+    "sparse_sh": {"resolution": 256},  # what held-out training views prefer: docs/results.md
+}
 """What representations do otherwise than `FitOptions` itself."""
 
 

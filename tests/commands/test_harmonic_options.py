@@ -7,6 +7,8 @@ from typing import Any
 
 import pytest
 from photograd.checkpoint import load_checkpoint
+from photograd.compare import Contender
+from photograd.fit_options import FitOptions, options_for
 
 from tests.commands.conftest import Photograd
 from tests.commands.test_bad_input import FEW, assert_one_line
@@ -25,6 +27,16 @@ def test_harmonics_and_pruning_are_options_of_a_fit(
     assert (every.meta["options"]["degree"], some.meta["options"]["degree"]) == (2, 0)
     done = photograd("fit", capture_folder, "--out", tmp_path / "few", "--resume", "--prune", 0.2)
     assert_one_line(done, "--prune: expected 0.01, which the checkpoint was started with")
+
+
+def test_each_representation_has_the_resolution_that_suits_it(photograd: Photograd) -> None:
+    """A contender keeps the size that it is called by."""
+    assert options_for("sparse_sh").resolution == 256
+    assert options_for("sparse_sh", resolution=40).resolution == 40
+    assert options_for("dense_grid").resolution == 128
+    assert Contender("sparse_sh", 128).options(FitOptions()).resolution == 128
+    shown = photograd("fit", "--help").out
+    assert "128; sparse_sh: 256" in " ".join(shown.replace("│", " ").split())
 
 
 @pytest.mark.parametrize(

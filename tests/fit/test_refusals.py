@@ -117,6 +117,21 @@ def test_a_gradient_that_is_not_finite_moves_nothing(monkeypatch: pytest.MonkeyP
     assert all(np.array_equal(fit.optimiser.state()[key], array) for key, array in state.items())
 
 
+def test_a_grid_that_does_not_fit_into_memory_is_refused_before_it_is_made(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    fit = Fit.start(scene.capture(), scene.options(resolution=32, steps=10, refine_at=(0.2, 0.5)))
+    coarse = fit.model.resolution
+    fit.step()
+    fit.step()
+    monkeypatch.setattr("photograd.fit_checks.available_memory", lambda: 100_000)
+    with pytest.raises(RangeError, match=rf"memory .*got 16, which takes .*resolution {coarse}"):
+        fit.step()
+    monkeypatch.undo()
+    fit.step()
+    assert fit.model.resolution == 16
+
+
 def test_nothing_to_learn_from_and_nothing_to_score() -> None:
     with pytest.raises(RangeError, match="TrainingPixels: views: expected at least one view"):
         TrainingPixels([], "display")

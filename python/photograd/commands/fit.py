@@ -78,7 +78,7 @@ def fit(
     out: Annotated[Path, typer.Option("--out", help="Folder for the model and its checkpoints.")],
     representation: RepresentationOption = DEFAULTS.representation,
     steps: StepsOption = None,
-    resolution: ResolutionOption = DEFAULTS.resolution,
+    resolution: ResolutionOption = None,
     rays: RaysOption = DEFAULTS.rays,
     learning_rate: LearningRateOption = DEFAULTS.learning_rate,
     total_variation: TotalVariationOption = DEFAULTS.total_variation,

@@ -20,7 +20,9 @@ from photograd.fit_options import (
 
 def _defaults(option: str) -> str:
     """The default of an option, and of what has one of its own."""
-    others = ", ".join(f"{name}: {given[option]}" for name, given in DEFAULTS_OF.items())
+    others = ", ".join(
+        f"{name}: {given[option]}" for name, given in DEFAULTS_OF.items() if option in given
+    )
     return f"{getattr(FitOptions(), option)}; {others}"
 
 
@@ -38,7 +40,13 @@ StepsOption: TypeAlias = Annotated[
     ),
 ]
 ResolutionOption: TypeAlias = Annotated[
-    int, typer.Option("--resolution", min=8, help="Voxels along the longest edge.")
+    int | None,
+    typer.Option(
+        "--resolution",
+        min=8,
+        help="Voxels along the longest edge.",
+        show_default=_defaults("resolution"),
+    ),
 ]
 RaysOption: TypeAlias = Annotated[
     int, typer.Option("--rays", min=1, help="Rays a step; Gaussians take whole views.")
