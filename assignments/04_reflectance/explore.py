@@ -91,8 +91,8 @@ first, second = np.zeros(4), np.zeros(4)
 trail = [x]
 for k in range(1, steps + 1):
     error = picture(scene, x[:3], metal_share, x[3], mine.gltf) - target
-    d_color, _, d_rough, _ = pulled(scene, x[:3], metal_share, x[3], 2 * error / error.size)
-    slope = np.append(d_color, d_rough)
+    d_color, _, slope_rough, _ = pulled(scene, x[:3], metal_share, x[3], 2 * error / error.size)
+    slope = np.append(d_color, slope_rough)
     first, second = 0.9 * first + 0.1 * slope, 0.99 * second + 0.01 * slope**2
     x = x - 0.03 * first / (1 - 0.9**k) / (np.sqrt(second / (1 - 0.99**k)) + 1e-12)
     x = np.clip(x, [0, 0, 0, 0.045], 1)

@@ -131,7 +131,7 @@ def sh_color_adjoint(coefficients, v, g):
     slope = np.zeros((3, len(v)))
     for ell in range(1, degree + 1):
         for m in range(ell + 1):
-            plus, minus = pull[ell * (ell + 1) + m], pull[ell * (ell + 1) - m] * (m > 0)
+            plus, minus = pull[ell * (ell + 1) + m], pull[ell * (ell + 1) - m]
             slope[2] += _size(ell, m) * Q[ell, m + 1] * (plus * even[m] + minus * odd[m])
             if m > 0:
                 common = _size(ell, m) * m * Q[ell, m]
