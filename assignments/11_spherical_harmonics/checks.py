@@ -637,8 +637,8 @@ def glossy_scene(t, n):
 
 @check("11.6.gain", task="11.6", points=4, calls=("fit_plenoxels",), needs=EARLIER,
        visibility="hidden",
-       kills=("coefficients_frozen", "refined_coefficients_lost", "steps_at_last_level",
-              "uphill",), seconds=60.0,
+       kills=("coefficients_frozen", "density_frozen", "refined_coefficients_lost",
+              "steps_at_last_level", "uphill",), seconds=60.0,
        sole="the whole: a scene that nobody has seen, from its pictures")  # fmt: skip
 def coarse_to_fine_beats_the_fixed_grid(t):
     """A glossy scene, seen from new places, is at least 1 dB better coarse to fine."""
@@ -651,16 +651,17 @@ def coarse_to_fine_beats_the_fixed_grid(t):
     (rays, target), (unseen, truth) = pictures
     scores = []
     for n, levels in ((16, 1), (4, 3)):
-        start = np.full((n, n, n), 0.1), np.zeros((n, n, n, 9, 1))
+        start = np.full((n, n, n), 0.02), np.zeros((n, n, n, 9, 1))
         found = fitted(t, *start, rays, target, levels, 18 // levels)
         samples = t.reference.march((16, 16, 16), unseen)
         error = t.reference.render(found[0], found[1], samples) - truth
         scores.append(-10 * np.log10(max(float(np.mean(error**2)), 1e-30)))
     fixed, fine = scores
-    # Ten seeds: at least 2.3 dB more, 3.5 on average; 21.6 dB at worst, an empty volume has 17.
+    # Forty seeds: at least 1.7 dB more, 3.3 on average; 20.2 dB at worst, an empty volume has 17.
+    # With a density that never moves: 0.2 dB more.
     t.require(fine >= fixed + 1.0,
               f"coarse to fine {fine:.1f} dB, fixed {fixed:.1f} dB: asked 1 dB more")  # fmt: skip
-    t.require(fine >= 20.0, f"coarse to fine {fine:.1f} dB, asked 20 dB")
+    t.require(fine >= 19.0, f"coarse to fine {fine:.1f} dB, asked 19 dB")
 
 
 # <<< hidden
