@@ -12,6 +12,8 @@
 #include "photograd/bsdf/gltf.h"
 #include "photograd/bsdf/lambert.h"
 #include "photograd/bsdf/oren_nayar.h"
+#include "photograd/bsdf/oren_nayar_energy_preserving.h"
+#include "photograd/bsdf/oren_nayar_full.h"
 #include "photograd/bsdf/phong.h"
 #include "photograd/bsdf/rough_dielectric.h"
 #include "photograd/bsdf/sheen.h"
@@ -19,9 +21,9 @@
 
 namespace photograd {
 
-using Bsdfs =
-    ModelList<Lambert, Phong, PhongReciprocal, BlinnPhong, BlinnPhongFitted, OrenNayarQualitative,
-              BurleyDiffuse, CookTorrance, GgxMetal, GgxConductor, BeckmannConductor,
-              GgxAnisotropic, Standard, Gltf, Clearcoat, Sheen, RoughDielectric>;
+using Bsdfs = ModelList<Lambert, Phong, PhongReciprocal, BlinnPhong, BlinnPhongFitted,
+                        OrenNayarQualitative, OrenNayarFull, OrenNayarEnergyPreserving,
+                        BurleyDiffuse, CookTorrance, GgxMetal, GgxConductor, BeckmannConductor,
+                        GgxAnisotropic, Standard, Gltf, Clearcoat, Sheen, RoughDielectric>;
 
 }  // namespace photograd
