@@ -10,6 +10,7 @@
 #include "photograd/bsdf/ggx_anisotropic.h"
 #include "photograd/bsdf/ggx_metal.h"
 #include "photograd/bsdf/gltf.h"
+#include "photograd/bsdf/gltf_iridescence.h"
 #include "photograd/bsdf/lambert.h"
 #include "photograd/bsdf/oren_nayar.h"
 #include "photograd/bsdf/oren_nayar_energy_preserving.h"
@@ -21,9 +22,10 @@
 
 namespace photograd {
 
-using Bsdfs = ModelList<Lambert, Phong, PhongReciprocal, BlinnPhong, BlinnPhongFitted,
-                        OrenNayarQualitative, OrenNayarFull, OrenNayarEnergyPreserving,
-                        BurleyDiffuse, CookTorrance, GgxMetal, GgxConductor, BeckmannConductor,
-                        GgxAnisotropic, Standard, Gltf, Clearcoat, Sheen, RoughDielectric>;
+using Bsdfs =
+    ModelList<Lambert, Phong, PhongReciprocal, BlinnPhong, BlinnPhongFitted, OrenNayarQualitative,
+              OrenNayarFull, OrenNayarEnergyPreserving, BurleyDiffuse, CookTorrance, GgxMetal,
+              GgxConductor, BeckmannConductor, GgxAnisotropic, Standard, Gltf, GltfIridescence,
+              Clearcoat, Sheen, RoughDielectric>;
 
 }  // namespace photograd
