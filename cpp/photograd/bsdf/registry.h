@@ -9,6 +9,7 @@
 #include "photograd/bsdf/cook_torrance.h"
 #include "photograd/bsdf/ggx_anisotropic.h"
 #include "photograd/bsdf/ggx_metal.h"
+#include "photograd/bsdf/ggx_metal_compensated.h"
 #include "photograd/bsdf/gltf.h"
 #include "photograd/bsdf/gltf_iridescence.h"
 #include "photograd/bsdf/lambert.h"
@@ -25,7 +26,7 @@ namespace photograd {
 using Bsdfs =
     ModelList<Lambert, Phong, PhongReciprocal, BlinnPhong, BlinnPhongFitted, OrenNayarQualitative,
               OrenNayarFull, OrenNayarEnergyPreserving, BurleyDiffuse, CookTorrance, GgxMetal,
-              GgxConductor, BeckmannConductor, GgxAnisotropic, Standard, Gltf, GltfIridescence,
-              Clearcoat, Sheen, RoughDielectric>;
+              GgxMetalCompensated, GgxConductor, BeckmannConductor, GgxAnisotropic, Standard, Gltf,
+              GltfIridescence, Clearcoat, Sheen, RoughDielectric>;
 
 }  // namespace photograd
