@@ -45,6 +45,7 @@ __all__: list[str] = [
     "bsdf_ggx_metal_compensated",
     "bsdf_gltf",
     "bsdf_gltf_iridescence",
+    "bsdf_gltf_sheen",
     "bsdf_lambert",
     "bsdf_oren_nayar_energy_preserving",
     "bsdf_oren_nayar_full",
@@ -1217,6 +1218,64 @@ class bsdf_gltf:
         """
 
 class bsdf_gltf_iridescence:
+    """
+    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
+    """
+    @staticmethod
+    def energy() -> tuple[str, float]:
+        """
+        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
+        """
+    @staticmethod
+    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Value without the cosine, (N, 3).
+        """
+    @staticmethod
+    def f_backward(
+        parameters: numpy.ndarray,
+        wo: numpy.ndarray,
+        wi: numpy.ndarray,
+        d_f: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
+        """
+    @staticmethod
+    def jvp(
+        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        Exact derivative of f along v, (N, 3), float64.
+        """
+    @staticmethod
+    def parameters() -> list[tuple[str, int, float, float, str]]:
+        """
+        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
+        """
+    @staticmethod
+    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Density of `sample` over solid angle, (N,).
+        """
+    @staticmethod
+    def reciprocal() -> bool:
+        """
+        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
+        """
+    @staticmethod
+    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
+        """
+        wi (N, 3) from uniform u2 (N, 2).
+        """
+    @staticmethod
+    def transmits() -> bool:
+        """
+        Whether light may pass the surface.
+        """
+
+class bsdf_gltf_sheen:
     """
     A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
     """
@@ -3613,6 +3672,7 @@ bsdfs: dict[str, typing.Any] = {
     "standard": bsdf_standard,
     "gltf": bsdf_gltf,
     "gltf_iridescence": bsdf_gltf_iridescence,
+    "gltf_sheen": bsdf_gltf_sheen,
     "clearcoat": bsdf_clearcoat,
     "sheen": bsdf_sheen,
     "rough_dielectric": bsdf_rough_dielectric,

@@ -12,6 +12,7 @@
 #include "photograd/bsdf/ggx_metal_compensated.h"
 #include "photograd/bsdf/gltf.h"
 #include "photograd/bsdf/gltf_iridescence.h"
+#include "photograd/bsdf/gltf_sheen.h"
 #include "photograd/bsdf/lambert.h"
 #include "photograd/bsdf/oren_nayar.h"
 #include "photograd/bsdf/oren_nayar_energy_preserving.h"
@@ -27,6 +28,6 @@ using Bsdfs =
     ModelList<Lambert, Phong, PhongReciprocal, BlinnPhong, BlinnPhongFitted, OrenNayarQualitative,
               OrenNayarFull, OrenNayarEnergyPreserving, BurleyDiffuse, CookTorrance, GgxMetal,
               GgxMetalCompensated, GgxConductor, BeckmannConductor, GgxAnisotropic, Standard, Gltf,
-              GltfIridescence, Clearcoat, Sheen, RoughDielectric>;
+              GltfIridescence, GltfSheen, Clearcoat, Sheen, RoughDielectric>;
 
 }  // namespace photograd
