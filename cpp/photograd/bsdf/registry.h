@@ -7,6 +7,7 @@
 #include "photograd/bsdf/clearcoat.h"
 #include "photograd/bsdf/conductor.h"
 #include "photograd/bsdf/cook_torrance.h"
+#include "photograd/bsdf/disney.h"
 #include "photograd/bsdf/ggx_anisotropic.h"
 #include "photograd/bsdf/ggx_metal.h"
 #include "photograd/bsdf/ggx_metal_compensated.h"
@@ -28,6 +29,6 @@ using Bsdfs =
     ModelList<Lambert, Phong, PhongReciprocal, BlinnPhong, BlinnPhongFitted, OrenNayarQualitative,
               OrenNayarFull, OrenNayarEnergyPreserving, BurleyDiffuse, CookTorrance, GgxMetal,
               GgxMetalCompensated, GgxConductor, BeckmannConductor, GgxAnisotropic, Standard, Gltf,
-              GltfIridescence, GltfSheen, Clearcoat, Sheen, RoughDielectric>;
+              GltfIridescence, GltfSheen, Clearcoat, Sheen, Disney, RoughDielectric>;
 
 }  // namespace photograd
