@@ -39,11 +39,17 @@ __all__: list[str] = [
     "bsdf_burley_diffuse",
     "bsdf_clearcoat",
     "bsdf_cook_torrance",
+    "bsdf_disney",
     "bsdf_ggx_anisotropic",
     "bsdf_ggx_conductor",
     "bsdf_ggx_metal",
+    "bsdf_ggx_metal_compensated",
     "bsdf_gltf",
+    "bsdf_gltf_iridescence",
+    "bsdf_gltf_sheen",
     "bsdf_lambert",
+    "bsdf_oren_nayar_energy_preserving",
+    "bsdf_oren_nayar_full",
     "bsdf_oren_nayar_qualitative",
     "bsdf_phong",
     "bsdf_phong_reciprocal",
@@ -574,6 +580,122 @@ class bsdf_oren_nayar_qualitative:
         Whether light may pass the surface.
         """
 
+class bsdf_oren_nayar_full:
+    """
+    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
+    """
+    @staticmethod
+    def energy() -> tuple[str, float]:
+        """
+        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
+        """
+    @staticmethod
+    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Value without the cosine, (N, 3).
+        """
+    @staticmethod
+    def f_backward(
+        parameters: numpy.ndarray,
+        wo: numpy.ndarray,
+        wi: numpy.ndarray,
+        d_f: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
+        """
+    @staticmethod
+    def jvp(
+        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        Exact derivative of f along v, (N, 3), float64.
+        """
+    @staticmethod
+    def parameters() -> list[tuple[str, int, float, float, str]]:
+        """
+        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
+        """
+    @staticmethod
+    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Density of `sample` over solid angle, (N,).
+        """
+    @staticmethod
+    def reciprocal() -> bool:
+        """
+        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
+        """
+    @staticmethod
+    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
+        """
+        wi (N, 3) from uniform u2 (N, 2).
+        """
+    @staticmethod
+    def transmits() -> bool:
+        """
+        Whether light may pass the surface.
+        """
+
+class bsdf_oren_nayar_energy_preserving:
+    """
+    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
+    """
+    @staticmethod
+    def energy() -> tuple[str, float]:
+        """
+        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
+        """
+    @staticmethod
+    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Value without the cosine, (N, 3).
+        """
+    @staticmethod
+    def f_backward(
+        parameters: numpy.ndarray,
+        wo: numpy.ndarray,
+        wi: numpy.ndarray,
+        d_f: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
+        """
+    @staticmethod
+    def jvp(
+        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        Exact derivative of f along v, (N, 3), float64.
+        """
+    @staticmethod
+    def parameters() -> list[tuple[str, int, float, float, str]]:
+        """
+        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
+        """
+    @staticmethod
+    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Density of `sample` over solid angle, (N,).
+        """
+    @staticmethod
+    def reciprocal() -> bool:
+        """
+        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
+        """
+    @staticmethod
+    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
+        """
+        wi (N, 3) from uniform u2 (N, 2).
+        """
+    @staticmethod
+    def transmits() -> bool:
+        """
+        Whether light may pass the surface.
+        """
+
 class bsdf_burley_diffuse:
     """
     A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
@@ -691,6 +813,64 @@ class bsdf_cook_torrance:
         """
 
 class bsdf_ggx_metal:
+    """
+    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
+    """
+    @staticmethod
+    def energy() -> tuple[str, float]:
+        """
+        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
+        """
+    @staticmethod
+    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Value without the cosine, (N, 3).
+        """
+    @staticmethod
+    def f_backward(
+        parameters: numpy.ndarray,
+        wo: numpy.ndarray,
+        wi: numpy.ndarray,
+        d_f: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
+        """
+    @staticmethod
+    def jvp(
+        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        Exact derivative of f along v, (N, 3), float64.
+        """
+    @staticmethod
+    def parameters() -> list[tuple[str, int, float, float, str]]:
+        """
+        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
+        """
+    @staticmethod
+    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Density of `sample` over solid angle, (N,).
+        """
+    @staticmethod
+    def reciprocal() -> bool:
+        """
+        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
+        """
+    @staticmethod
+    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
+        """
+        wi (N, 3) from uniform u2 (N, 2).
+        """
+    @staticmethod
+    def transmits() -> bool:
+        """
+        Whether light may pass the surface.
+        """
+
+class bsdf_ggx_metal_compensated:
     """
     A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
     """
@@ -1038,6 +1218,122 @@ class bsdf_gltf:
         Whether light may pass the surface.
         """
 
+class bsdf_gltf_iridescence:
+    """
+    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
+    """
+    @staticmethod
+    def energy() -> tuple[str, float]:
+        """
+        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
+        """
+    @staticmethod
+    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Value without the cosine, (N, 3).
+        """
+    @staticmethod
+    def f_backward(
+        parameters: numpy.ndarray,
+        wo: numpy.ndarray,
+        wi: numpy.ndarray,
+        d_f: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
+        """
+    @staticmethod
+    def jvp(
+        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        Exact derivative of f along v, (N, 3), float64.
+        """
+    @staticmethod
+    def parameters() -> list[tuple[str, int, float, float, str]]:
+        """
+        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
+        """
+    @staticmethod
+    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Density of `sample` over solid angle, (N,).
+        """
+    @staticmethod
+    def reciprocal() -> bool:
+        """
+        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
+        """
+    @staticmethod
+    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
+        """
+        wi (N, 3) from uniform u2 (N, 2).
+        """
+    @staticmethod
+    def transmits() -> bool:
+        """
+        Whether light may pass the surface.
+        """
+
+class bsdf_gltf_sheen:
+    """
+    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
+    """
+    @staticmethod
+    def energy() -> tuple[str, float]:
+        """
+        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
+        """
+    @staticmethod
+    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Value without the cosine, (N, 3).
+        """
+    @staticmethod
+    def f_backward(
+        parameters: numpy.ndarray,
+        wo: numpy.ndarray,
+        wi: numpy.ndarray,
+        d_f: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
+        """
+    @staticmethod
+    def jvp(
+        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        Exact derivative of f along v, (N, 3), float64.
+        """
+    @staticmethod
+    def parameters() -> list[tuple[str, int, float, float, str]]:
+        """
+        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
+        """
+    @staticmethod
+    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Density of `sample` over solid angle, (N,).
+        """
+    @staticmethod
+    def reciprocal() -> bool:
+        """
+        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
+        """
+    @staticmethod
+    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
+        """
+        wi (N, 3) from uniform u2 (N, 2).
+        """
+    @staticmethod
+    def transmits() -> bool:
+        """
+        Whether light may pass the surface.
+        """
+
 class bsdf_clearcoat:
     """
     A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
@@ -1097,6 +1393,64 @@ class bsdf_clearcoat:
         """
 
 class bsdf_sheen:
+    """
+    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
+    """
+    @staticmethod
+    def energy() -> tuple[str, float]:
+        """
+        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
+        """
+    @staticmethod
+    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Value without the cosine, (N, 3).
+        """
+    @staticmethod
+    def f_backward(
+        parameters: numpy.ndarray,
+        wo: numpy.ndarray,
+        wi: numpy.ndarray,
+        d_f: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
+        """
+    @staticmethod
+    def jvp(
+        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        Exact derivative of f along v, (N, 3), float64.
+        """
+    @staticmethod
+    def parameters() -> list[tuple[str, int, float, float, str]]:
+        """
+        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
+        """
+    @staticmethod
+    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Density of `sample` over solid angle, (N,).
+        """
+    @staticmethod
+    def reciprocal() -> bool:
+        """
+        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
+        """
+    @staticmethod
+    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
+        """
+        wi (N, 3) from uniform u2 (N, 2).
+        """
+    @staticmethod
+    def transmits() -> bool:
+        """
+        Whether light may pass the surface.
+        """
+
+class bsdf_disney:
     """
     A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
     """
@@ -3365,16 +3719,22 @@ bsdfs: dict[str, typing.Any] = {
     "blinn_phong": bsdf_blinn_phong,
     "blinn_phong_fitted": bsdf_blinn_phong_fitted,
     "oren_nayar_qualitative": bsdf_oren_nayar_qualitative,
+    "oren_nayar_full": bsdf_oren_nayar_full,
+    "oren_nayar_energy_preserving": bsdf_oren_nayar_energy_preserving,
     "burley_diffuse": bsdf_burley_diffuse,
     "cook_torrance": bsdf_cook_torrance,
     "ggx_metal": bsdf_ggx_metal,
+    "ggx_metal_compensated": bsdf_ggx_metal_compensated,
     "ggx_conductor": bsdf_ggx_conductor,
     "beckmann_conductor": bsdf_beckmann_conductor,
     "ggx_anisotropic": bsdf_ggx_anisotropic,
     "standard": bsdf_standard,
     "gltf": bsdf_gltf,
+    "gltf_iridescence": bsdf_gltf_iridescence,
+    "gltf_sheen": bsdf_gltf_sheen,
     "clearcoat": bsdf_clearcoat,
     "sheen": bsdf_sheen,
+    "disney": bsdf_disney,
     "rough_dielectric": bsdf_rough_dielectric,
 }
 delta_bsdfs: dict[str, typing.Any] = {

@@ -119,6 +119,10 @@ def test_anisotropy_zero_is_isotropic_and_a_quarter_turn_swaps_the_axes() -> Non
 
 LEAST = {  # the sharpest lobe of each glossy model that is a mirror there, and its F at cosine c
     "ggx_metal": ({"f0": [0.5] * 3, "roughness": 0.045}, lambda c: 0.5 + 0.5 * (1 - c) ** 5),
+    "ggx_metal_compensated": (
+        {"f0": [0.5] * 3, "roughness": 0.045},
+        lambda c: 0.5 + 0.5 * (1 - c) ** 5,
+    ),
     "cook_torrance": ({"f0": [0.5] * 3, "slope": 0.002}, lambda c: 0.5 + 0.5 * (1 - c) ** 5),
     "ggx_anisotropic": (
         {"f0": [0.5] * 3, "roughness": 0.045, "anisotropy": 0.0, "rotation": 0.3},

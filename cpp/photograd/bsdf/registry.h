@@ -7,11 +7,17 @@
 #include "photograd/bsdf/clearcoat.h"
 #include "photograd/bsdf/conductor.h"
 #include "photograd/bsdf/cook_torrance.h"
+#include "photograd/bsdf/disney.h"
 #include "photograd/bsdf/ggx_anisotropic.h"
 #include "photograd/bsdf/ggx_metal.h"
+#include "photograd/bsdf/ggx_metal_compensated.h"
 #include "photograd/bsdf/gltf.h"
+#include "photograd/bsdf/gltf_iridescence.h"
+#include "photograd/bsdf/gltf_sheen.h"
 #include "photograd/bsdf/lambert.h"
 #include "photograd/bsdf/oren_nayar.h"
+#include "photograd/bsdf/oren_nayar_energy_preserving.h"
+#include "photograd/bsdf/oren_nayar_full.h"
 #include "photograd/bsdf/phong.h"
 #include "photograd/bsdf/rough_dielectric.h"
 #include "photograd/bsdf/sheen.h"
@@ -21,7 +27,8 @@ namespace photograd {
 
 using Bsdfs =
     ModelList<Lambert, Phong, PhongReciprocal, BlinnPhong, BlinnPhongFitted, OrenNayarQualitative,
-              BurleyDiffuse, CookTorrance, GgxMetal, GgxConductor, BeckmannConductor,
-              GgxAnisotropic, Standard, Gltf, Clearcoat, Sheen, RoughDielectric>;
+              OrenNayarFull, OrenNayarEnergyPreserving, BurleyDiffuse, CookTorrance, GgxMetal,
+              GgxMetalCompensated, GgxConductor, BeckmannConductor, GgxAnisotropic, Standard, Gltf,
+              GltfIridescence, GltfSheen, Clearcoat, Sheen, Disney, RoughDielectric>;
 
 }  // namespace photograd

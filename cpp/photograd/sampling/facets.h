@@ -7,6 +7,7 @@
 #include "photograd/core/log.h"
 #include "photograd/ops/beckmann.h"
 #include "photograd/ops/ggx.h"
+#include "photograd/ops/gtr1.h"
 #include "photograd/sampling/warp.h"
 
 namespace photograd {
@@ -41,6 +42,20 @@ Vec3<R> sample_beckmann(R alpha, const Vec2<R>& u2) {
 template <class R>
 R beckmann_pdf(const Vec3<R>& wh, R alpha) {
     return beckmann_D(wh, alpha) * wh.z;
+}
+
+/// All facets of GTR1, with density D h_z: sin^2 = q (q^(-r^2) - 1) / (1 - q), q = alpha^2.
+template <Real R>
+Vec3<R> sample_gtr1(R alpha, const Vec2<R>& u2) {
+    const Vec2<R> p = square_to_disk(u2);
+    const R r2 = p.x * p.x + p.y * p.y, q = alpha * alpha;
+    if (!(r2 > R(0))) return {R(0), R(0), R(1)};
+    const R s2 = q * expm1(-r2 * log(q)) / (R(1) - q), scale = sqrt(s2 / r2);
+    return {p.x * scale, p.y * scale, sqrt(larger(R(1) - s2, R(0)))};
+}
+template <class R>
+R gtr1_pdf(const Vec3<R>& wh, R alpha) {
+    return gtr1_D(wh, alpha) * wh.z;
 }
 
 /// Around +Z with density (n + 1) / (2 pi) cos^n: cos = (1 - r^2)^(1 / (n + 1)).
