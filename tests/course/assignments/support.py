@@ -7,10 +7,14 @@ Facts of a figure are `{"claim": True}` or `{"claim": (value, low, high)}`. `fig
 each figure the mutant that turns at least one of its facts red (RED), and, where it wants to be
 exact, one for each fact (RED_FACTS = {"fig1_x": {"claim": "mutant"}}); a fact in HELD, with a
 reason, needs none.
+
+What is read or drawn from an assignment's folder is kept for the tests that follow: nothing writes
+into these folders meanwhile, and one bundle judges many hand-ins at a grader's desk as well.
 """
 
 from __future__ import annotations
 
+import functools
 import io
 import re
 import tempfile
@@ -56,6 +60,13 @@ def names(folder: Path, kind: str) -> list[str]:
     return sorted(path.stem for path in (folder / kind).glob("*.py"))
 
 
+@functools.cache
+def bundle_of(folder: Path, secret: bytes = SECRET) -> Bundle:
+    """What judges hand-ins of an assignment."""
+    return read_folder(folder, secret=secret)
+
+
+@functools.cache
 def read_mutant(folder: Path, name: str) -> Mutant:
     module = load_module(name, (folder / "mutants" / f"{name}.py").read_text("utf-8"))
     diagnosis = (module.__doc__ or "").strip().splitlines()[0]
@@ -64,7 +75,7 @@ def read_mutant(folder: Path, name: str) -> Mutant:
 
 def source(folder: Path) -> str:
     """The instructor source."""
-    module = read_folder(folder).manifest.module
+    module = bundle_of(folder).manifest.module
     return (folder / f"{module}.py").read_text("utf-8")
 
 
@@ -97,7 +108,7 @@ def judge(
     tasks: Collection[str] = (),
 ) -> list[Outcome]:
     """The outcome of every check, or of those of some tasks; by default for the solution."""
-    bundle = read_folder(folder, secret=secret)
+    bundle = bundle_of(folder, secret)
     checks = [each for each in bundle.checks if not tasks or each.task in tasks]
     hand = bundle.hand(bundle.solution_files(source_text or source(folder)))
     return run_checks(checks, bundle.setting, lambda given: _open(hand.sources, given))
@@ -114,25 +125,26 @@ def lost(outcomes: list[Outcome]) -> set[str]:
     return {each.id for each in outcomes if each.status is not Status.PASSED}
 
 
+@functools.cache
 def load_figures(folder: Path) -> ModuleType:
     return load_module("figures", (folder / "figures.py").read_text("utf-8"))
 
 
-def draw(folder: Path, mutant: str | None = None, only: str | None = None) -> dict[str, Any]:
-    """(figure, facts) by figure, computed from the solution or from a mutant."""
+@functools.cache
+def draw(folder: Path, figure: str, mutant: str | None = None) -> tuple[Any, dict[str, Fact]]:
+    """A figure and its facts, computed from the solution or from a mutant."""
     text = source(folder) if mutant is None else apply_mutant(folder, mutant)
-    bundle = read_folder(folder)
+    bundle = bundle_of(folder)
     module = load_beside(bundle.manifest.module, text, bundle.brought)
     made: dict[str, Callable[[ModuleType], Any]] = load_figures(folder).FIGURES
     with np.errstate(all="ignore" if mutant else "warn"):
-        return {name: make(module) for name, make in made.items() if only in (None, name)}
+        drawn, facts = made[figure](module)
+    return None if mutant else drawn, facts
 
 
-def figure_facts(
-    folder: Path, mutant: str | None = None, only: str | None = None
-) -> dict[str, dict[str, Fact]]:
-    """The facts behind the captions, by figure."""
-    return {name: facts for name, (_, facts) in draw(folder, mutant, only).items()}
+def figure_facts(folder: Path, figure: str, mutant: str | None = None) -> dict[str, Fact]:
+    """The facts behind a caption."""
+    return draw(folder, figure, mutant)[1]
 
 
 def holds(fact: Fact) -> bool:
@@ -169,7 +181,7 @@ class AssignmentTests:
 
     @property
     def bundle(self) -> Bundle:
-        return read_folder(self.folder, secret=SECRET)
+        return bundle_of(self.folder)
 
     def test_points_and_tasks_add_up(self) -> None:
         bundle = self.bundle
@@ -228,25 +240,25 @@ class AssignmentTests:
         assert len(names(self.folder, "alternatives")) >= 3
 
     def test_a_figure_says_what_its_picture_shows(self, figure: str) -> None:
-        facts = figure_facts(self.folder, only=figure)[figure]
+        facts = figure_facts(self.folder, figure)
         assert facts
         assert red(facts) == {}
 
     def test_a_figure_turns_red_under_its_mutant(self, figure: str) -> None:
         module = load_figures(self.folder)
-        assert red(figure_facts(self.folder, module.RED[figure], figure)[figure])
+        assert red(figure_facts(self.folder, figure, module.RED[figure]))
         exact: dict[str, str] = getattr(module, "RED_FACTS", {}).get(figure, {})
         for claim, mutant in exact.items():
-            assert claim in red(figure_facts(self.folder, mutant, figure)[figure]), (claim, mutant)
+            assert claim in red(figure_facts(self.folder, figure, mutant)), (claim, mutant)
         if hasattr(module, "RED_FACTS"):
             held = getattr(module, "HELD", {}).get(figure, {})
-            assert set(exact) | set(held) == set(figure_facts(self.folder, only=figure)[figure])
+            assert set(exact) | set(held) == set(figure_facts(self.folder, figure))
 
     def test_a_picture_is_the_one_that_its_script_draws(self, figure: str) -> None:
         path = self.folder / "figures" / f"{figure}.png"
         assert path.stat().st_size < PICTURE_BYTES
         with tempfile.TemporaryDirectory() as place:
-            drawn, _ = draw(self.folder, only=figure)[figure]
+            drawn, _ = draw(self.folder, figure)
             again = _pixels(write_picture(self.folder, drawn, Path(place) / path.name).read_bytes())
         kept = _pixels(path.read_bytes())
         assert kept.shape == again.shape
