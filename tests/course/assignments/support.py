@@ -131,8 +131,8 @@ def load_figures(folder: Path) -> ModuleType:
 
 
 @functools.cache
-def draw(folder: Path, figure: str, mutant: str | None = None) -> tuple[Any, dict[str, Fact]]:
-    """A figure and its facts, computed from the solution or from a mutant."""
+def draw(folder: Path, figure: str, mutant: str | None) -> tuple[Any, dict[str, Fact]]:
+    """A figure, None of a mutant, and its facts, computed from the solution or from a mutant."""
     text = source(folder) if mutant is None else apply_mutant(folder, mutant)
     bundle = bundle_of(folder)
     module = load_beside(bundle.manifest.module, text, bundle.brought)
@@ -258,7 +258,7 @@ class AssignmentTests:
         path = self.folder / "figures" / f"{figure}.png"
         assert path.stat().st_size < PICTURE_BYTES
         with tempfile.TemporaryDirectory() as place:
-            drawn, _ = draw(self.folder, figure)
+            drawn, _ = draw(self.folder, figure, None)
             again = _pixels(write_picture(self.folder, drawn, Path(place) / path.name).read_bytes())
         kept = _pixels(path.read_bytes())
         assert kept.shape == again.shape
