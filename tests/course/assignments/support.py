@@ -9,7 +9,7 @@ exact, one for each fact (RED_FACTS = {"fig1_x": {"claim": "mutant"}}); a fact i
 reason, needs none.
 
 What is read or drawn from an assignment's folder is kept for the tests that follow: nothing writes
-into these folders meanwhile, and one bundle judges many hand-ins at a grader's desk as well.
+there meanwhile, and one bundle judges many hand-ins at a grader's desk as well.
 """
 
 from __future__ import annotations
@@ -136,9 +136,8 @@ def draw(folder: Path, figure: str, mutant: str | None) -> tuple[Any, dict[str, 
     text = source(folder) if mutant is None else apply_mutant(folder, mutant)
     bundle = bundle_of(folder)
     module = load_beside(bundle.manifest.module, text, bundle.brought)
-    made: dict[str, Callable[[ModuleType], Any]] = load_figures(folder).FIGURES
     with np.errstate(all="ignore" if mutant else "warn"):
-        drawn, facts = made[figure](module)
+        drawn, facts = load_figures(folder).FIGURES[figure](module)
     return None if mutant else drawn, facts
 
 
