@@ -92,7 +92,7 @@ seen = np.where(number >= 0, 0.15 + 0.85 * np.abs(towards), 1.0)
 # %% [markdown]
 # ## A ball of glass over a floor
 # A ray goes in and out, mirrored inside as often as it takes, and then sees the floor or the sky.
-# What is mirrored outside is left out.
+# What is mirrored outside is left out. This camera looks level, so the horizon is behind the ball.
 
 
 # %%
@@ -107,9 +107,10 @@ def world(origins, ways):
     return np.where(down[:, None], fade * floor + (1 - fade) * 0.8, sky)
 
 
-centre, radius = np.array([0.0, 0.2, 0.0]), 1.4
-place, way = origins.copy(), ways.copy()
-inside = np.zeros(len(ways), bool)
+centre, radius = np.array([0.0, 0.3, 0.0]), 1.2
+level = np.array([[1, 0, 0, 0], [0, -1, 0, 0.3], [0, 0, -1, 3.6]])
+place, way = mine.camera_rays(width, height, focal, focal, width / 2, height / 2, level)
+inside = np.zeros(len(way), bool)
 for bounce in range(8):
     t_ball = mine.hit_sphere(place, way, centre, radius)
     on = np.isfinite(t_ball) & (inside | (bounce == 0))

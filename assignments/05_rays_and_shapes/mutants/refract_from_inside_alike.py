@@ -1,4 +1,4 @@
-"""From inside the ratio is the same as from outside; it is 1 / eta there."""
+"""The ratio is eta for light from inside as well; there it is 1 / eta."""
 
 TASKS = ("05.3",)
 LOSES = (

@@ -9,7 +9,7 @@ exact, one for each fact (RED_FACTS = {"fig1_x": {"claim": "mutant"}}); a fact i
 reason, needs none.
 
 What is read or drawn from an assignment's folder is kept for the tests that follow: nothing writes
-into these folders meanwhile, and one bundle judges many hand-ins at a grader's desk as well.
+there meanwhile, and one bundle judges many hand-ins at a grader's desk as well.
 """
 
 from __future__ import annotations
@@ -131,14 +131,13 @@ def load_figures(folder: Path) -> ModuleType:
 
 
 @functools.cache
-def draw(folder: Path, figure: str, mutant: str | None = None) -> tuple[Any, dict[str, Fact]]:
-    """A figure and its facts, computed from the solution or from a mutant."""
+def draw(folder: Path, figure: str, mutant: str | None) -> tuple[Any, dict[str, Fact]]:
+    """A figure, None of a mutant, and its facts, computed from the solution or from a mutant."""
     text = source(folder) if mutant is None else apply_mutant(folder, mutant)
     bundle = bundle_of(folder)
     module = load_beside(bundle.manifest.module, text, bundle.brought)
-    made: dict[str, Callable[[ModuleType], Any]] = load_figures(folder).FIGURES
     with np.errstate(all="ignore" if mutant else "warn"):
-        drawn, facts = made[figure](module)
+        drawn, facts = load_figures(folder).FIGURES[figure](module)
     return None if mutant else drawn, facts
 
 
@@ -258,7 +257,7 @@ class AssignmentTests:
         path = self.folder / "figures" / f"{figure}.png"
         assert path.stat().st_size < PICTURE_BYTES
         with tempfile.TemporaryDirectory() as place:
-            drawn, _ = draw(self.folder, figure)
+            drawn, _ = draw(self.folder, figure, None)
             again = _pixels(write_picture(self.folder, drawn, Path(place) / path.name).read_bytes())
         kept = _pixels(path.read_bytes())
         assert kept.shape == again.shape

@@ -231,13 +231,13 @@ def test_the_tree_finds_what_embree_finds(solution, checks) -> None:
     np.testing.assert_allclose(t[hits.hit], checks.EMBREE_T, rtol=1e-12)
     # Random rays: the same off a band of 1e-7 around edges.
     rng = np.random.default_rng(5)
-    origins = rng.normal(size=(3000, 3)) * 2.5
-    directions = rng.normal(size=(3000, 3)) * [1.5, 0.4, 1.5] - origins
+    origins = rng.normal(size=(800, 3)) * 2.5
+    directions = rng.normal(size=(800, 3)) * [1.5, 0.4, 1.5] - origins
     t, hits = core(origins, directions)
     mine, number = solution.trace_mesh(corners, origins, directions)
     u = hits.barycentrics
     edge = np.minimum(u.min(axis=1), 1 - u.sum(axis=1)) < 1e-7
-    assert 1000 < hits.hit.sum() < 2900
+    assert 300 < hits.hit.sum() < 780
     clear = ~(hits.hit & edge)
     assert clear.mean() > 0.99
     np.testing.assert_array_equal(number[clear], hits.primitive[clear])

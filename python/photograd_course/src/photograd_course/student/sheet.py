@@ -32,7 +32,8 @@ def question_sheet(bundle: Bundle, work: WorkFolder) -> list[str]:
     locked = _locked(bundle, work)
     for question in bundle.questions:
         drawn = draw(question, student, source)
-        lines += ["", f"{question.id}  ({question.kind}, {question.points:g} points)", drawn.text]
+        worth = f"{question.points:g} point{'s' if question.points != 1 else ''}"
+        lines += ["", f"{question.id}  ({question.kind}, {worth})", drawn.text]
         lines += [
             f"  {letter}) {option}"
             for letter, option in zip(LETTERS, question.options, strict=False)
