@@ -21,7 +21,7 @@ from photograd_course.viz import save_figure, style
 
 Array = NDArray[Any]
 IMAGES = Path(__file__).with_name("images")
-SIZE, SPP, HEIGHT = 160, 256, 24
+SIZE, SPP, HEIGHT = 96, 192, 24
 WRONG = np.array([-0.75, 0.45, 0.1])
 OPTIONS = PathOptions(max_depth=8)
 
@@ -63,7 +63,7 @@ def path_lights_figure() -> Figure:
     target, picture, gradient = sky_gradient(SIZE, SPP)
     side, gap, left, top = 2.0, 0.15, 0.15, 0.35
     with style.house_style():
-        figure = style.new_figure(6 * side + 3 * gap + 2 * left, 3.4)
+        figure = style.new_figure(6 * side + 3 * gap + 2 * left, 3.0)
         for column, (title, image) in enumerate((("truth", target), ("guess", picture))):
             x = left + column * (side + gap)
             axes = style.place_axes(figure, x, top, side, side)

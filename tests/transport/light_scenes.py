@@ -32,7 +32,7 @@ TILT = about_y(0.7) @ np.array([[1.0, 0, 0], [0, 0.6, -0.8], [0, 0.8, 0.6]])
 def texels(height: int = 6, *, seed: int = 5) -> Any:
     """A map with one bright spot above the horizon, so that it matters where samples go."""
     image = 0.1 + 0.3 * np.random.default_rng(seed).random((height, 2 * height, 3))
-    image[1, 3] += [25.0, 20.0, 12.0]
+    image[height // 6, height // 2] += [25.0, 20.0, 12.0]
     return image
 
 

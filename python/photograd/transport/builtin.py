@@ -82,7 +82,7 @@ def evening(size: int = 256) -> Scene:
         "copper": Material("ggx_metal", {"f0": [0.95, 0.64, 0.54], "roughness": 0.2}),
         "glass": Material("glass", {"eta": 1.5, "tint": [1.0, 1.0, 1.0]}),
     }
-    camera = camera_at([0.0, 1.6, 4.6], [0.0, 0.4, 0.0], 34.0, size, size)
+    camera = camera_at([0.0, 1.1, 4.8], [0.0, 0.5, 0.0], 40.0, size, size)
     return Scene("evening", shapes, materials, camera, lights=(EnvironmentMap(evening_map()),))
 
 

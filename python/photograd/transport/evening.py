@@ -8,9 +8,9 @@ import numpy as np
 import numpy.typing as npt
 
 Array = npt.NDArray[Any]
-ZENITH, HORIZON, GROUND = [0.12, 0.22, 0.45], [0.9, 0.55, 0.32], [0.10, 0.08, 0.07]
+ZENITH, HORIZON, GROUND = [0.2, 0.36, 0.75], [1.5, 0.9, 0.52], [0.15, 0.12, 0.10]
 SUN = np.array([0.62, 0.26, 0.44])  # towards it, of any length
-SUN_RADIANCE, SUN_SHARPNESS = [260.0, 170.0, 90.0], 900.0  # a lobe of about 2.7 degrees
+SUN_RADIANCE, SUN_SHARPNESS = [700.0, 460.0, 240.0], 900.0  # a lobe of about 2.7 degrees
 GLOW_RADIANCE, GLOW_SHARPNESS = [2.0, 1.1, 0.5], 8.0
 
 
