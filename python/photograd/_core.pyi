@@ -2697,11 +2697,15 @@ class PathGeometry:
         spheres: numpy.ndarray,
         material: numpy.ndarray,
         emission: numpy.ndarray,
-        has_environment: bool,
+        lights: collections.abc.Sequence[tuple[typing.Any, ...]],
     ) -> None:
         """
         Meshes as (vertices (V, 3) float32, faces (F, 3) uint32, normals (V, 3) float32 or None);
-        spheres (K, 4) float32; material (S,) int32 and emission (S, 3) float64 of each shape.
+        spheres (K, 4) float32; material (S,) int32 and emission (S, 3) float64 of each shape. Lights of the list: (name, parameters, constants) or ("environment", texels, world_from_map, sampler), float64.
+        """
+    def choose_lights(self, u: numpy.ndarray) -> tuple[typing.Any, ...]:
+        """
+        (entries (N,) int64, their probabilities (N,)) by uniform u (N,): first lights of the list, then what emits of the shapes.
         """
 
 class TexturePlan:
@@ -3620,7 +3624,7 @@ def trace_path(
     models: collections.abc.Sequence[str],
     parameters: numpy.ndarray,
     emission: numpy.ndarray,
-    sky: numpy.ndarray,
+    lights: collections.abc.Sequence[tuple[typing.Any, ...]],
     camera: tuple[typing.Any, ...],
     options: tuple[
         typing.SupportsInt | typing.SupportsIndex,
@@ -3642,7 +3646,7 @@ def trace_paths(
     parameters: numpy.ndarray,
     sampling_parameters: numpy.ndarray | None,
     emission: numpy.ndarray,
-    sky: numpy.ndarray,
+    lights: collections.abc.Sequence[tuple[typing.Any, ...]],
     camera: tuple[typing.Any, ...],
     options: tuple[
         typing.SupportsInt | typing.SupportsIndex,
@@ -3665,7 +3669,7 @@ def trace_paths_backward(
     models: collections.abc.Sequence[str],
     parameters: numpy.ndarray,
     emission: numpy.ndarray,
-    sky: numpy.ndarray,
+    lights: collections.abc.Sequence[tuple[typing.Any, ...]],
     camera: tuple[typing.Any, ...],
     options: tuple[
         typing.SupportsInt | typing.SupportsIndex,
@@ -3679,10 +3683,10 @@ def trace_paths_backward(
     d_image: numpy.ndarray,
     d_parameters: numpy.ndarray,
     d_emission: numpy.ndarray,
-    d_sky: numpy.ndarray,
+    d_lights: collections.abc.Sequence[numpy.ndarray],
 ) -> None:
     """
-    Adds to d_parameters (P,), d_emission (S, 3), d_sky (3, 3) for dL/d(mean radiance).
+    Adds to d_parameters (P,), d_emission (S, 3) and d_lights, an array like the first of each light, for dL/d(mean radiance).
     """
 
 def uniform(

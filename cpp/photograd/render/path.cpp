@@ -1,57 +1,9 @@
 #include "photograd/render/path.h"
 
-#include "photograd/core/scatter.h"
-#include "photograd/render/path_walk.h"
+#include "photograd/core/parallel.h"
+#include "photograd/render/path_samples.h"
 
 namespace photograd {
-namespace {
-
-constexpr std::int64_t chunk_pixels = 64;  // of one task
-
-RandomKey key_of(const PathOptions& options, std::int64_t pixel, std::uint32_t sample) {
-    return {options.seed, 0, static_cast<std::uint32_t>(pixel), sample};
-}
-
-/// visit(pixel, path) for every sample of the pixels [begin, end), pixel by pixel. Lanes hold successive samples.
-template <class R, class Visit>
-void for_each_path(const PathScene<R>& scene, const Pinhole& camera, const PathOptions& options,
-                   const SampleRange& samples, bool stop_when_black, std::int64_t begin,
-                   std::int64_t end, Visit&& visit) {
-    constexpr int width = RayPacket::width;
-    PathWalk<R> walk(scene, options, stop_when_black);
-    const std::int64_t total = (end - begin) * samples.count;
-    for (std::int64_t first = 0; first < total; first += width) {
-        const int count = static_cast<int>(std::min<std::int64_t>(width, total - first));
-        Ray<R> rays[width];
-        RandomKey keys[width];
-        for (int k = 0; k < count; ++k) {
-            const std::int64_t i = first + k;
-            keys[k] = key_of(options, begin + i / samples.count,
-                             samples.first + static_cast<std::uint32_t>(i % samples.count));
-            rays[k] = camera_ray<R>(camera, keys[k]);
-        }
-        walk.trace(rays, keys, count);
-        for (int k = 0; k < count; ++k) visit(begin + (first + k) / samples.count, walk.path(k));
-    }
-}
-
-/// All derivatives of a chunk, in double, in the order materials, emission, environment.
-template <class R>
-void add_to(const PathGradient<R>& gradient, double* out) {
-    for (const Material<R>& m : gradient.materials) {
-        m.add_to(out);
-        out += m.parameter_count();
-    }
-    const auto add = [&](const Vec3<R>& v) {
-        for (int c = 0; c < 3; ++c) *out++ += static_cast<double>(v[c]);
-    };
-    for (const Vec3<R>& v : gradient.emission) add(v);
-    add(gradient.sky.zenith);
-    add(gradient.sky.horizon);
-    add(gradient.sky.ground);
-}
-
-}  // namespace
 
 template <Real R>
 void trace_paths(const PathScene<R>& scene, const Pinhole& camera, const PathOptions& options,
@@ -62,7 +14,7 @@ void trace_paths(const PathScene<R>& scene, const Pinhole& camera, const PathOpt
                            end = std::min(begin + chunk_pixels, pixels);
         for_each_path(scene, camera, options, samples, scene.drawn_as_sampled(), begin, end,
                       [&](std::int64_t pixel, const Path<R>& path) {
-                          const Vec3<R> L = gather<R>(scene, path, nullptr);
+                          const Vec3<R> L = gather<R>(path, nullptr);
                           for (int c = 0; c < 3; ++c) {
                               const double value = static_cast<double>(L[c]);
                               sums.radiance[3 * pixel + c] += value;
@@ -70,40 +22,6 @@ void trace_paths(const PathScene<R>& scene, const Pinhole& camera, const PathOpt
                           }
                       });
     });
-}
-
-template <Real R>
-void trace_paths_backward(const PathScene<R>& scene, const Pinhole& camera,
-                          const PathOptions& options, const SampleRange& samples,
-                          const double* d_image, R* d_parameters, R* d_emission, R* d_sky) {
-    const std::int64_t pixels = static_cast<std::int64_t>(camera.width) * camera.height;
-    // A fixed number of chunks at most, so that their partial sums stay small.
-    const std::int64_t chunk = std::max(chunk_pixels, (pixels + 2047) / 2048);
-    std::size_t parameters = 0;
-    for (const Material<R>& m : scene.materials)
-        parameters += static_cast<std::size_t>(m.parameter_count());
-    const std::size_t emission = 3 * scene.geometry->shape_count();
-    std::vector<R> total(parameters + emission + 9, R(0));
-    const double share = 1.0 / samples.count;
-    sum_partials<R>(
-        (pixels + chunk - 1) / chunk, std::span<R>(total),
-        [&](std::int64_t i, std::span<double> partial) {
-            PathGradient<R> gradient(scene);
-            std::vector<Vec3<R>> ahead(static_cast<std::size_t>(options.max_depth));
-            for_each_path(scene, camera, options, samples, false, i * chunk,
-                          std::min((i + 1) * chunk, pixels),
-                          [&](std::int64_t pixel, const Path<R>& path) {
-                              const double* d = d_image + 3 * pixel;
-                              const Vec3<R> d_L(R(d[0] * share), R(d[1] * share), R(d[2] * share));
-                              gather<R>(scene, path, ahead.data());
-                              gather_backward<R>(scene, path, ahead.data(), d_L, gradient);
-                          });
-            add_to(gradient, partial.data());
-        });
-    const R* next = total.data();
-    for (std::size_t k = 0; k < parameters; ++k) d_parameters[k] += *next++;
-    for (std::size_t k = 0; k < emission; ++k) d_emission[k] += *next++;
-    for (std::size_t k = 0; k < 9; ++k) d_sky[k] += *next++;
 }
 
 template <Real R>
@@ -120,10 +38,6 @@ template void trace_paths(const PathScene<float>&, const Pinhole&, const PathOpt
                           const SampleRange&, const PathSums&);
 template void trace_paths(const PathScene<double>&, const Pinhole&, const PathOptions&,
                           const SampleRange&, const PathSums&);
-template void trace_paths_backward(const PathScene<float>&, const Pinhole&, const PathOptions&,
-                                   const SampleRange&, const double*, float*, float*, float*);
-template void trace_paths_backward(const PathScene<double>&, const Pinhole&, const PathOptions&,
-                                   const SampleRange&, const double*, double*, double*, double*);
 template Path<float> trace_path(const PathScene<float>&, const Pinhole&, const PathOptions&,
                                 std::uint32_t, std::uint32_t);
 template Path<double> trace_path(const PathScene<double>&, const Pinhole&, const PathOptions&,

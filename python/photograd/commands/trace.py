@@ -27,6 +27,7 @@ from photograd_course.color import srgb_encode
 from photograd.commands.shared import StopRequest, stop_on_signals, use_threads
 from photograd.data.image_write import write_exr, write_png
 from photograd.errors import IoError, RangeError, message
+from photograd.lights import EnvironmentMap
 from photograd.transport.accumulation import Accumulation, load_accumulation
 from photograd.transport.builtin import BUILTIN, builtin_scene
 from photograd.transport.scene import Scene
@@ -181,7 +182,11 @@ def _load(name: str, size: int) -> tuple[Scene, str]:
         else:
             path = Path(name)
             scene = read_scene(path)
-            loaded = scene, hashlib.sha256(path.read_bytes()).hexdigest()
+            found = hashlib.sha256(path.read_bytes())
+            for light in scene.lights:
+                if isinstance(light, EnvironmentMap):  # from a file of its own
+                    found.update(light.texels.tobytes())
+            loaded = scene, found.hexdigest()
     for warning in caught:
         note(f"{warning.message}")
     return loaded

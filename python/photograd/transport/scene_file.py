@@ -20,6 +20,11 @@ edge_u = [2, 0, 0]
 edge_v = [0, 0, -2]
 material = "white"
 emission = [0, 0, 0]          # optional, of the front
+
+[[lights]]                    # optional; kinds and keys: light_nodes.py
+kind = "directional"
+direction = [0.3, 1, 0.2]     # towards the light
+irradiance = 2
 """
 
 from __future__ import annotations
@@ -34,6 +39,7 @@ import numpy as np
 from photograd.data.camera import Camera
 from photograd.errors import IoError, SceneError, message
 from photograd.transport.builtin import camera_at
+from photograd.transport.light_nodes import light_of
 from photograd.transport.scene import Environment, Material, MeshShape, Scene, Shape, SphereShape
 from photograd.transport.scene_node import Node
 from photograd.transport.shapes import box, rectangle
@@ -70,7 +76,8 @@ def _scene(root: Node, name: str) -> Scene:
     tables = root.table("materials")
     materials = {key: _material(tables.table(key)) for key in tables.data}
     shapes = tuple(_shape(node, i, materials) for i, node in enumerate(root.tables("shapes")))
-    return Scene(name, shapes, materials, camera, environment)
+    lights = tuple(map(light_of, root.tables("lights"))) if root.has("lights") else ()
+    return Scene(name, shapes, materials, camera, environment, lights)
 
 
 def _camera(node: Node) -> Camera:
