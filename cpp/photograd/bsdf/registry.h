@@ -13,6 +13,7 @@
 #include "photograd/bsdf/lambert.h"
 #include "photograd/bsdf/oren_nayar.h"
 #include "photograd/bsdf/phong.h"
+#include "photograd/bsdf/principled.h"
 #include "photograd/bsdf/rough_dielectric.h"
 #include "photograd/bsdf/sheen.h"
 #include "photograd/bsdf/standard.h"
@@ -22,6 +23,6 @@ namespace photograd {
 using Bsdfs =
     ModelList<Lambert, Phong, PhongReciprocal, BlinnPhong, BlinnPhongFitted, OrenNayarQualitative,
               BurleyDiffuse, CookTorrance, GgxMetal, GgxConductor, BeckmannConductor,
-              GgxAnisotropic, Standard, Gltf, Clearcoat, Sheen, RoughDielectric>;
+              GgxAnisotropic, Standard, Gltf, Clearcoat, Sheen, RoughDielectric, Principled>;
 
 }  // namespace photograd
