@@ -67,6 +67,15 @@ def sh_bound(points: int) -> dict[str, Any]:
     return _row(forward, slowest({"byte": 432 * points, "flop": 400 * points}))
 
 
+def bsdf_bound(evaluations: int) -> dict[str, Any]:
+    """W10: two directions read and a value written; 150 flop forward, 450 with the gradient."""
+    bytes_moved = 36 * evaluations
+    return _row(
+        slowest({"flop": 150 * evaluations, "byte": bytes_moved}),
+        slowest({"flop": 450 * evaluations, "byte": bytes_moved}),
+    )
+
+
 def splat_bound(contributions: int) -> dict[str, Any]:
     """W8: a pixel and a Gaussian that adds to it take 24 flop and one exp forward, 100 more back.
 

@@ -26,6 +26,10 @@ RECORDED = {
     "W6b n=128 res=128 views=4": "54d7fd96b0050b75",
     "W6b n=32 res=16 views=1": "8572acd7267ff727",
     "W8 n=100000 res=512": "58aff03f9ae90801",
+    "W10 evals=10000000 scalar 1024": "118bf309f8e2f4ff",
+    "W10 evals=10000000 texture 1024": "8a436409dee41dd0",
+    "W10 evals=2000 scalar 20": "f1e0f5d78c888c36",
+    "W10 evals=2000 texture 20": "835310570d8723b4",
     "W8 n=2000 res=64": "b9a1345105ac1026",
 }
 
@@ -245,6 +249,31 @@ def ray_sets(vertices: Array, faces: Array, res: int) -> dict[str, tuple[Array, 
         "bounce": (start, cosine_directions(inward, seed=1)),
     }
     return {name: (o.astype(np.float32), d.astype(np.float32)) for name, (o, d) in rays.items()}
+
+
+# W10: directions in pairs, and a surface
+
+
+def bsdf_pairs(count: int) -> tuple[Array, Array, Array]:
+    """Directions (N, 3) of both ends, z up, dense as the cosine, z >= 0.02; weights (N, 3)."""
+    g = np.random.default_rng(17)
+
+    def directions() -> Array:
+        u = g.random((count, 2), dtype=np.float32)
+        r, phi = np.sqrt(u[:, 0] * np.float32(0.9996)), np.float32(2 * np.pi) * u[:, 1]
+        return np.stack([r * np.cos(phi), r * np.sin(phi), np.sqrt(1 - r * r)], -1)
+
+    first, second = directions(), directions()
+    return first, second, g.random((count, 3), dtype=np.float32)
+
+
+def bsdf_parameters(kind: str, texels: int) -> tuple[Array, Array, Array]:
+    """Base colour, metalness, roughness: "scalar" (3,), (), (); "texture" of texels^2 each."""
+    if kind == "scalar":
+        return np.array([0.7, 0.4, 0.2], np.float32), np.float32(0.3), np.float32(0.35)  # type: ignore[return-value]
+    t = texture(texels)
+    roughness = (0.15 + 0.7 * t[..., :1]).astype(np.float32)
+    return 0.1 + 0.8 * t, np.ascontiguousarray(t[..., 1:2]), roughness
 
 
 # W8: Gaussians in a ball, and a camera that sees it

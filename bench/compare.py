@@ -28,12 +28,16 @@ HERE = Path(__file__).resolve().parent
 
 @dataclass(frozen=True)
 class Peer:
-    """Another program's script for a workload, and which of the given interpreters runs it."""
+    """Another program's script for a workload, and which of the given interpreters runs it.
+
+    `words` are more arguments for it.
+    """
 
     workload: str
     name: str
     script: str
     environment: str
+    words: tuple[str, ...] = ()
 
 
 PEERS = [
@@ -53,7 +57,14 @@ PEERS = [
     Peer("W6b", "taichi", "w6_plenoxel_taichi.py", "ti"),
     Peer("W6b", "torch", "w6_plenoxel_torch.py", "torch"),
     Peer("W8", "torch-tiles", "w8_splat_torch.py", "torch"),
-]
+    Peer("W10", "mitsuba-llvm", "w10_bsdf_mitsuba.py", "mi"),
+    Peer("W10", "torch", "w10_bsdf_torch.py", "torch"),
+    Peer("W10", "torch-compile", "w10_bsdf_torch.py", "torch", ("--compile", "1")),
+]  # fmt: skip
+VARIANTS: dict[str, list[tuple[str, ...]]] = {
+    "w10_bsdf": [("--params", kind) for kind in ("scalar", "texture")],
+}
+"""Arguments with which a workload is measured, all programs alike; once without any by default."""
 
 
 def emit(row: Mapping[str, Any]) -> None:
@@ -81,16 +92,35 @@ def run(runs: Runs, command: list[str], folder: Path, number: int, timeout: floa
     emit(row)
 
 
-def measure(workload: str, script: Path, args: argparse.Namespace) -> tuple[Runs, list[Runs]]:
+def variants_of(script: Path, args: argparse.Namespace) -> list[list[str]]:
+    """Arguments of each variant of a workload; one list without any where there are none.
+
+    What --set names is not varied.
+    """
+    named = {pair.split("=", 1)[0] for pair in args.set}
+    found: list[list[str]] = []
+    for words in VARIANTS.get(script.stem, [()]):
+        mine = [] if words and words[0].removeprefix("--") in named else list(words)
+        if mine not in found:
+            found.append(mine)
+    return found
+
+
+def measure(
+    workload: str, script: Path, args: argparse.Namespace, variant: list[str]
+) -> tuple[Runs, list[Runs]]:
     """Our program and the others, one after another, as often as there are rounds."""
-    words = ["--reps", str(args.reps)]
+    words = ["--reps", str(args.reps), *variant]
     words += ["--threads", str(args.threads)] if args.threads else []
     for pair in args.set:
         name, value = pair.split("=", 1)
         words += [f"--{name}", value]
     ours = Runs(workload, "photograd")
     others = [
-        (Runs(workload, peer.name), [args.pythons[peer.environment], peer.script, *words])
+        (
+            Runs(workload, peer.name),
+            [args.pythons[peer.environment], peer.script, *words, *peer.words],
+        )
         for peer in PEERS
         if args.peers and peer.workload == workload and peer.environment in args.pythons
     ]
@@ -142,12 +172,17 @@ def add_theirs(table: Table, line: Row) -> None:
             table.add_row("", f"  {key}", *cells(key), "", "", "", "")
 
 
-def compare(script: Path, args: argparse.Namespace, table: Table, notes: list[str]) -> bool:
+def compare(
+    script: Path, args: argparse.Namespace, table: Table, notes: list[str], variant: list[str]
+) -> bool:
     """Measure one workload and add it to the table; False if our own script failed."""
     workload = script.stem.split("_")[0].replace("w", "W", 1)  # "w6a_sh" measures W6a
-    ours, others = measure(workload, script, args)
+    ours, others = measure(workload, script, args, variant)
     if args.results:
-        others += group(read_rows(args.results), workload, same_run=False)
+        rows = read_rows(args.results)
+        if variant:
+            rows = [row for row in rows if variant[1] in row.get("size", {}).values()]
+        others += group(rows, workload, same_run=False)
     notes += [f"{workload} {runs.name}: {runs.error}" for runs in (ours, *others) if runs.error]
     if not ours.rows:
         return False
@@ -193,9 +228,10 @@ def main() -> int:
     table = Table("workload", "program", "fwd s", "x", "fwd+bwd s", "x", "x bound", "load")
     notes: list[str] = []
     good = [
-        compare(path, args, table, notes)
+        compare(path, args, table, notes, variant)
         for stem, path in scripts.items()
         if not args.names or {stem, stem.split("_")[0]} & set(args.names)
+        for variant in variants_of(path, args)
     ]
     console = Console(stderr=True, width=None if sys.stderr.isatty() else 120)
     console.print(table)

@@ -104,6 +104,17 @@ def section(workload: str, programs: Sequence[Runs]) -> str | None:
     return "\n\n".join(text for text in parts if text)
 
 
+def by_size(rows: Sequence[Row]) -> list[list[Row]]:
+    """The rows of a workload, apart for each size that we measured."""
+    sizes: list[Row] = []
+    for row in rows:
+        if row["peer"] == "photograd" and row["size"] not in sizes:
+            sizes.append(row["size"])
+    if len(sizes) < 2:
+        return [list(rows)]
+    return [[r for r in rows if all(r["size"].get(k) == v for k, v in s.items())] for s in sizes]
+
+
 def page(files: Sequence[Path]) -> str:
     """The page for the rows of all files."""
     rows = [row for path in files for row in read_rows(path)]
@@ -112,7 +123,11 @@ def page(files: Sequence[Path]) -> str:
         f"{m['cpu']}, {m['cores']} processors, kernels {m['instruction_set']}"
         for m in (row["machine"] for row in rows if "machine" in row)
     }
-    sections = [section(name, group(rows, name, same_run=True)) for name in workloads]
+    sections = [
+        section(name, group(part, name, same_run=True))
+        for name in workloads
+        for part in by_size([row for row in rows if row.get("workload") == name])
+    ]
     parts = [HEAD, *(f"Machine: {text}." for text in sorted(machines)), *filter(None, sections)]
     return "\n\n".join(parts) + "\n"
 

@@ -12,8 +12,8 @@ namespace {
 
 /// vertices (V, 3), faces (F, 3), shading normals (V, 3) or None.
 using MeshArrays = std::tuple<py::array, py::array, std::optional<py::array>>;
-/// (strategy, heuristic, max_depth, roulette_from, seed)
-using Options = std::tuple<int, int, int, int, std::uint64_t>;
+/// (strategy, heuristic, max_depth, roulette_from, sampler, seed)
+using Options = std::tuple<int, int, int, int, int, std::uint64_t>;
 
 std::shared_ptr<PathGeometry> build(const std::vector<MeshArrays>& meshes, const py::array& spheres,
                                     const py::array& material, const py::array& emission,
@@ -105,14 +105,19 @@ private:
 };
 
 PathOptions options_of(const ArrayArgs& args, const Options& given) {
-    const auto [strategy, heuristic, max_depth, roulette_from, seed] = given;
-    if (strategy < 0 || strategy > 2 || heuristic < 0 || heuristic > 1)
-        args.range("options", "a strategy and a heuristic", "others");
+    const auto [strategy, heuristic, max_depth, roulette_from, sampler, seed] = given;
+    if (strategy < 0 || strategy > 2 || heuristic < 0 || heuristic > 1 || sampler < 0 ||
+        sampler > 1)
+        args.range("options", "a strategy, a heuristic and a sampler", "others");
     if (max_depth < 1 || max_depth > 4096)
         args.range("max_depth", "1 to 4096 segments", std::to_string(max_depth));
     if (roulette_from < 0) args.range("roulette_from", "at least 0", std::to_string(roulette_from));
-    return {static_cast<Strategy>(strategy), static_cast<Heuristic>(heuristic), max_depth,
-            roulette_from, seed};
+    return {static_cast<Strategy>(strategy),
+            static_cast<Heuristic>(heuristic),
+            max_depth,
+            roulette_from,
+            seed,
+            static_cast<Sampler>(sampler)};
 }
 
 void trace(const PathGeometry& geometry, const std::vector<std::string>& models,
@@ -254,7 +259,7 @@ void bind_path(py::module_& m) {
           py::arg("options"), py::arg("first"), py::arg("count"), py::arg("radiance"),
           py::arg("squares"),
           "Adds samples to radiance (H, W, 3) and squares (H, W, 3), float64. options: (strategy, "
-          "heuristic, max_depth, roulette_from, seed).");
+          "heuristic, max_depth, roulette_from, sampler, seed).");
     m.def("trace_paths_backward", &trace_backward, py::arg("geometry"), py::arg("models"),
           py::arg("parameters"), py::arg("emission"), py::arg("lights"), py::arg("camera"),
           py::arg("options"), py::arg("first"), py::arg("count"), py::arg("d_image"),

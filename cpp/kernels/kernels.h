@@ -4,6 +4,7 @@
 
 #include "kernels/march_dense.h"
 #include "kernels/march_sparse_sh.h"
+#include "kernels/principled.h"
 #include "kernels/sample_rgb.h"
 #include "kernels/sh_rgb.h"
 #include "photograd/splat/tiles.h"
@@ -33,6 +34,12 @@ struct Kernels {
     void (*march_sparse_sh_weights)(const MarchSparseShArgs&, const MarchSparseShBackward&,
                                     std::int64_t begin, std::int64_t end);
     void (*march_sparse_sh_gather)(const SparseShGather&);
+    /// Of the rows [begin, end); of the evaluations, where there is one row, whose derivative is added to
+    /// d_parameters (5,) then.
+    void (*principled_values)(const PrincipledArgs&, std::int64_t begin, std::int64_t end,
+                              float* values);
+    void (*principled_values_backward)(const PrincipledArgs&, const float* d_values,
+                                       std::int64_t begin, std::int64_t end, float* d_parameters);
 };
 
 [[nodiscard]] const Kernels& kernels();

@@ -53,6 +53,7 @@ __all__: list[str] = [
     "bsdf_oren_nayar_qualitative",
     "bsdf_phong",
     "bsdf_phong_reciprocal",
+    "bsdf_principled",
     "bsdf_rough_dielectric",
     "bsdf_sheen",
     "bsdf_standard",
@@ -66,6 +67,7 @@ __all__: list[str] = [
     "delta_bsdf_thin_glass",
     "delta_bsdfs",
     "disk_to_square",
+    "even_words",
     "exp",
     "expm1",
     "instruction_set",
@@ -88,6 +90,8 @@ __all__: list[str] = [
     "place_samples",
     "prepare_splat_rays",
     "prepare_splats",
+    "principled_values",
+    "principled_values_backward",
     "read_vdb",
     "render_direct",
     "render_direct_backward",
@@ -1509,6 +1513,64 @@ class bsdf_disney:
         """
 
 class bsdf_rough_dielectric:
+    """
+    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
+    """
+    @staticmethod
+    def energy() -> tuple[str, float]:
+        """
+        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
+        """
+    @staticmethod
+    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Value without the cosine, (N, 3).
+        """
+    @staticmethod
+    def f_backward(
+        parameters: numpy.ndarray,
+        wo: numpy.ndarray,
+        wi: numpy.ndarray,
+        d_f: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
+        """
+    @staticmethod
+    def jvp(
+        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        Exact derivative of f along v, (N, 3), float64.
+        """
+    @staticmethod
+    def parameters() -> list[tuple[str, int, float, float, str]]:
+        """
+        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
+        """
+    @staticmethod
+    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Density of `sample` over solid angle, (N,).
+        """
+    @staticmethod
+    def reciprocal() -> bool:
+        """
+        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
+        """
+    @staticmethod
+    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
+        """
+        wi (N, 3) from uniform u2 (N, 2).
+        """
+    @staticmethod
+    def transmits() -> bool:
+        """
+        Whether light may pass the surface.
+        """
+
+class bsdf_principled:
     """
     A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
     """
@@ -3238,6 +3300,18 @@ def disk_to_square(p: numpy.ndarray) -> numpy.ndarray:
     The inverse of square_to_disk.
     """
 
+def even_words(
+    seed: typing.SupportsInt | typing.SupportsIndex,
+    step: typing.SupportsInt | typing.SupportsIndex,
+    block: typing.SupportsInt | typing.SupportsIndex,
+    pixel: numpy.ndarray,
+    first: typing.SupportsInt | typing.SupportsIndex,
+    count: typing.SupportsInt | typing.SupportsIndex,
+) -> numpy.typing.NDArray[numpy.uint32]:
+    """
+    Words (N, count, 4) uint32 of scrambled Sobol' points first, first + 1, ... of pixels (N,).
+    """
+
 def exp(x: numpy.ndarray) -> numpy.ndarray:
     """
     The portable exp on a flat array.
@@ -3401,6 +3475,29 @@ def prepare_splats(
 ) -> typing.Any:
     """
     Projects, sorts and bins; PreparedSplats32 or PreparedSplats64.
+    """
+
+def principled_values(
+    parameters: numpy.ndarray,
+    wo: numpy.ndarray,
+    wi: numpy.ndarray,
+    cosine: bool,
+    values: numpy.ndarray,
+) -> None:
+    """
+    Writes values (N, 3), times the cosine of wi on request. parameters (T, 5): base colour, metalness, roughness; evaluation n takes row n mod T. float32.
+    """
+
+def principled_values_backward(
+    parameters: numpy.ndarray,
+    wo: numpy.ndarray,
+    wi: numpy.ndarray,
+    cosine: bool,
+    d_values: numpy.ndarray,
+    d_parameters: numpy.ndarray,
+) -> None:
+    """
+    Adds to d_parameters (T, 5) for d_values (N, 3).
     """
 
 def read_vdb(
@@ -3632,6 +3729,7 @@ def trace_path(
         typing.SupportsInt | typing.SupportsIndex,
         typing.SupportsInt | typing.SupportsIndex,
         typing.SupportsInt | typing.SupportsIndex,
+        typing.SupportsInt | typing.SupportsIndex,
     ],
     pixel: typing.SupportsInt | typing.SupportsIndex,
     sample: typing.SupportsInt | typing.SupportsIndex,
@@ -3654,6 +3752,7 @@ def trace_paths(
         typing.SupportsInt | typing.SupportsIndex,
         typing.SupportsInt | typing.SupportsIndex,
         typing.SupportsInt | typing.SupportsIndex,
+        typing.SupportsInt | typing.SupportsIndex,
     ],
     first: typing.SupportsInt | typing.SupportsIndex,
     count: typing.SupportsInt | typing.SupportsIndex,
@@ -3661,7 +3760,7 @@ def trace_paths(
     squares: numpy.ndarray,
 ) -> None:
     """
-    Adds samples to radiance (H, W, 3) and squares (H, W, 3), float64. options: (strategy, heuristic, max_depth, roulette_from, seed).
+    Adds samples to radiance (H, W, 3) and squares (H, W, 3), float64. options: (strategy, heuristic, max_depth, roulette_from, sampler, seed).
     """
 
 def trace_paths_backward(
@@ -3672,6 +3771,7 @@ def trace_paths_backward(
     lights: collections.abc.Sequence[tuple[typing.Any, ...]],
     camera: tuple[typing.Any, ...],
     options: tuple[
+        typing.SupportsInt | typing.SupportsIndex,
         typing.SupportsInt | typing.SupportsIndex,
         typing.SupportsInt | typing.SupportsIndex,
         typing.SupportsInt | typing.SupportsIndex,
@@ -3740,6 +3840,7 @@ bsdfs: dict[str, typing.Any] = {
     "sheen": bsdf_sheen,
     "disney": bsdf_disney,
     "rough_dielectric": bsdf_rough_dielectric,
+    "principled": bsdf_principled,
 }
 delta_bsdfs: dict[str, typing.Any] = {
     "mirror": delta_bsdf_mirror,

@@ -143,7 +143,7 @@ def test_more_samples_may_come_later() -> None:
 def test_noise_falls_as_one_over_the_root() -> None:
     # Direct light, whose samples are bounded: the spread of a few tells that of many.
     tracer = PathTracer(stage(GREY, size=16, sky=0.5))
-    options = PathOptions(max_depth=2)
+    options = PathOptions(max_depth=2, sampler="independent")
     errors = []
     truth = tracer.render(spp=4096, seed=9, options=options).mean
     for spp in (8, 32, 128):

@@ -19,6 +19,7 @@
 #include "photograd/bsdf/oren_nayar_energy_preserving.h"
 #include "photograd/bsdf/oren_nayar_full.h"
 #include "photograd/bsdf/phong.h"
+#include "photograd/bsdf/principled.h"
 #include "photograd/bsdf/rough_dielectric.h"
 #include "photograd/bsdf/sheen.h"
 #include "photograd/bsdf/standard.h"
@@ -29,6 +30,6 @@ using Bsdfs =
     ModelList<Lambert, Phong, PhongReciprocal, BlinnPhong, BlinnPhongFitted, OrenNayarQualitative,
               OrenNayarFull, OrenNayarEnergyPreserving, BurleyDiffuse, CookTorrance, GgxMetal,
               GgxMetalCompensated, GgxConductor, BeckmannConductor, GgxAnisotropic, Standard, Gltf,
-              GltfIridescence, GltfSheen, Clearcoat, Sheen, Disney, RoughDielectric>;
+              GltfIridescence, GltfSheen, Clearcoat, Sheen, Disney, RoughDielectric, Principled>;
 
 }  // namespace photograd

@@ -23,7 +23,7 @@ int free_samples(const PathGeometry& scene, const Pinhole& camera, double radius
         if (k >= count) continue;
         keys[k] = key;
         keys[k].sample += static_cast<std::uint32_t>(k);
-        rays[k] = camera_ray<R>(camera, keys[k]);
+        rays[k] = camera_ray<R>(camera, keys[k], random_block(keys[k], 0));
         set_lane(packet, k, rays[k].origin, rays[k].direction,
                  std::numeric_limits<float>::infinity());
     }

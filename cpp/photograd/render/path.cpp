@@ -28,7 +28,7 @@ template <Real R>
 Path<R> trace_path(const PathScene<R>& scene, const Pinhole& camera, const PathOptions& options,
                    std::uint32_t pixel, std::uint32_t sample) {
     const RandomKey key = key_of(options, pixel, sample);
-    const Ray<R> ray = camera_ray<R>(camera, key);
+    const Ray<R> ray = camera_ray<R>(camera, key, SampleNumbers(options.sampler)(key, 0));
     PathWalk<R> walk(scene, options, false);
     walk.trace(&ray, &key, 1);
     return walk.path(0);

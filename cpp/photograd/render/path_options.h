@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include "photograd/render/sample_numbers.h"
+
 namespace photograd {
 
 /// Both ways to find a light, alone and together. `light` asks a light, and counts what a path meets by chance only
@@ -28,6 +30,7 @@ struct PathOptions {
     int roulette_from =
         4;  // the first vertex at which a path may end by chance; max_depth: none does
     std::uint64_t seed = 0;
+    Sampler sampler = Sampler::independent;
 };
 
 }  // namespace photograd

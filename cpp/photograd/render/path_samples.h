@@ -21,6 +21,7 @@ void for_each_path(const PathScene<R>& scene, const Pinhole& camera, const PathO
                    std::int64_t end, Visit&& visit) {
     constexpr int width = RayPacket::width;
     PathWalk<R> walk(scene, options, stop_when_black);
+    SampleNumbers numbers(options.sampler);
     const std::int64_t total = (end - begin) * samples.count;
     for (std::int64_t first = 0; first < total; first += width) {
         const int count = static_cast<int>(std::min<std::int64_t>(width, total - first));
@@ -30,7 +31,7 @@ void for_each_path(const PathScene<R>& scene, const Pinhole& camera, const PathO
             const std::int64_t i = first + k;
             keys[k] = key_of(options, begin + i / samples.count,
                              samples.first + static_cast<std::uint32_t>(i % samples.count));
-            rays[k] = camera_ray<R>(camera, keys[k]);
+            rays[k] = camera_ray<R>(camera, keys[k], numbers(keys[k], 0));
         }
         walk.trace(rays, keys, count);
         for (int k = 0; k < count; ++k) visit(begin + (first + k) / samples.count, walk.path(k));

@@ -3,7 +3,7 @@
 // Each round finds what the rays hit, weighs the emission met there, asks a light (and casts a shadow ray), and lets
 // the material choose where to go on; roulette [Arvo1990] ends paths that carry little. Everything is decided by
 // `scene.sampling` and by random numbers that are a function of seed, pixel, sample and vertex: vertex k owns dimensions
-// 4 + 8 k to 11 + 8 k (light: piece and point; roulette; direction and lobe), whatever the path has done before.
+// 4 + 8 k to 11 + 8 k (light: piece and point; direction, lobe and roulette), whatever the path has done before.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +22,10 @@ public:
 
     /// `stop_when_black` gives up paths whose weight is 0: right for a picture, wrong for a derivative.
     PathWalk(const PathScene<R>& scene, const PathOptions& options, bool stop_when_black)
-        : scene_(scene), options_(options), stop_when_black_(stop_when_black) {}
+        : scene_(scene),
+          options_(options),
+          stop_when_black_(stop_when_black),
+          numbers_(options.sampler) {}
 
     /// Samples the paths of `count` <= 16 camera rays; they are then in path(0), path(1), ...
     void trace(const Ray<R>* rays, const RandomKey* keys, int count) {
@@ -146,7 +149,7 @@ private:
     /// Draws a light, a direction to it and its weight, shadow aside; returns whether it can count at all.
     bool choose_light(Lane& lane, int depth) {
         const SceneLights& lights = scene_.geometry->lights;
-        const Philox4 words = random_block(lane.key, 1 + 2 * static_cast<std::uint32_t>(depth));
+        const Philox4 words = numbers_(lane.key, 1 + 2 * static_cast<std::uint32_t>(depth));
         const Vec2<R> u2(uniform_from<R>(words[1]), uniform_from<R>(words[2]));
         const double u = uniform_from<double>(words[0]);
         const bool deltas_alone = options_.strategy == Strategy::bsdf;
@@ -213,7 +216,7 @@ private:
         lane.alive = false;
         PathVertex<R>& v = lane.path.back();
         const auto vertex = static_cast<std::uint32_t>(depth);
-        const Philox4 words = random_block(lane.key, 2 + 2 * vertex);
+        const Philox4 words = numbers_(lane.key, 2 + 2 * vertex);
         const ScatterSample<R> next = sampling_of(lane).sample(
             v.wo, Vec2<R>(uniform_from<R>(words[0]), uniform_from<R>(words[1])),
             uniform_from<R>(words[2]));
@@ -229,8 +232,7 @@ private:
         if (depth >= options_.roulette_from) {
             const R largest = std::max({lane.beta.x, lane.beta.y, lane.beta.z});
             v.survival = std::clamp(largest, R(0.05), R(0.95));
-            const Philox4 own = random_block(lane.key, 1 + 2 * vertex);
-            if (uniform_from<R>(own[3]) >= v.survival) return;
+            if (uniform_from<R>(words[3]) >= v.survival) return;
             lane.beta *= R(1) / v.survival;
         }
         v.weight = weight / v.survival;
@@ -256,6 +258,7 @@ private:
     const PathScene<R>& scene_;
     PathOptions options_;
     bool stop_when_black_;
+    SampleNumbers numbers_;
     Lane lanes_[width];
 };
 

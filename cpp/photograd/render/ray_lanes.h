@@ -19,10 +19,9 @@ void set_lane(RayPacket& packet, int k, const Vec3<R>& origin, const Vec3<R>& di
     packet.active[k] = true;
 }
 
-/// The ray of one sample: uniform over the pixel, by dimensions 0 and 1.
+/// The ray of one sample: uniform over the pixel, by dimensions 0 and 1, words of block 0.
 template <class R>
-Ray<R> camera_ray(const Pinhole& camera, const RandomKey& key) {
-    const Philox4 words = random_block(key, 0);
+Ray<R> camera_ray(const Pinhole& camera, const RandomKey& key, const Philox4& words) {
     const std::int64_t column = key.pixel % static_cast<std::uint32_t>(camera.width),
                        row = key.pixel / static_cast<std::uint32_t>(camera.width);
     return camera.ray(R(column) + uniform_from<R>(words[0]), R(row) + uniform_from<R>(words[1]));

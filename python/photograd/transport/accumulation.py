@@ -51,7 +51,9 @@ class Accumulation:
 
     @property
     def standard_error(self) -> Array:
-        """(H, W, 3) estimated standard deviation of `mean`.
+        """(H, W, 3) estimated standard deviation of `mean`, for independent samples.
+
+        Even samples (`PathOptions.sampler`) have about the same spread, and a mean that errs less.
 
         Raises:
             RangeError: fewer than two samples: one says nothing about its spread.

@@ -1,0 +1,38 @@
+// The random numbers of a path: independent ones, or points that are spread evenly over the samples of a pixel.
+#pragma once
+
+#include "photograd/sampling/even_points.h"
+
+namespace photograd {
+
+/// `independent`: words of Philox. `even`: scrambled Sobol' points (sampling/even_points.h): every number is
+/// uniform as well, but the samples of a pixel are no longer independent of one another, and their mean errs less than
+/// their spread says.
+enum class Sampler : int { independent = 0, even = 1 };
+
+/// Words of a block of four dimensions. Keeps the scrambling of the last pixel and block: paths that are traced side
+/// by side are mostly of one pixel. Seed and step must not change between calls.
+class SampleNumbers {
+public:
+    SampleNumbers() = default;
+    explicit SampleNumbers(Sampler sampler) : sampler_(sampler) {}
+
+    Philox4 operator()(const RandomKey& key, std::uint32_t block) {
+        if (sampler_ == Sampler::independent) return random_block(key, block);
+        if (!known_ || key.pixel != pixel_ || block != block_) {
+            points_ = EvenPoints(key, block);
+            pixel_ = key.pixel;
+            block_ = block;
+            known_ = true;
+        }
+        return points_.words(key.sample);
+    }
+
+private:
+    Sampler sampler_ = Sampler::independent;
+    bool known_ = false;
+    std::uint32_t pixel_ = 0, block_ = 0;
+    EvenPoints points_;
+};
+
+}  // namespace photograd
