@@ -25,6 +25,15 @@ IMAGES = Path(__file__).with_name("images")
 MODELS = registry()
 SIZE = 200
 PLASTIC = {"base_color": [0.75, 0.12, 0.08], "metalness": 0.0}
+GOLD = [1.0, 0.78, 0.34]
+
+
+def draining_film() -> Array:
+    """Thickness (N,) in nm for the pixels of a ball: a film that has run down."""
+    down = np.nonzero(sphere_directions(SIZE)[0])[0]
+    return np.asarray(200.0 + 500.0 * down / SIZE)
+
+
 BALLS: tuple[tuple[str, str, dict[str, Any]], ...] = (
     ("plaster", "oren_nayar_qualitative", {"albedo": [0.7, 0.66, 0.6], "sigma": 0.6}),
     ("plastic", "gltf", {**PLASTIC, "roughness": 0.35}),
@@ -33,6 +42,19 @@ BALLS: tuple[tuple[str, str, dict[str, Any]], ...] = (
     ("brushed", "ggx_anisotropic",
      {"f0": [0.8, 0.8, 0.85], "roughness": 0.35, "anisotropy": 0.8, "rotation": 0.0}),
     ("velvet", "sheen", {"color": [0.3, 0.4, 0.9], "roughness": 0.5}),
+    ("plaster, all terms", "oren_nayar_full", {"albedo": [0.7, 0.66, 0.6], "sigma": 0.6}),
+    ("draining film", "gltf_iridescence",
+     {"base_color": [0.3] * 3, "metalness": 1.0, "roughness": 0.7, "iridescence_factor": 1.0,
+      "iridescence_ior": 1.8, "iridescence_thickness": draining_film()}),
+    ("rough gold, lossy", "ggx_metal", {"f0": GOLD, "roughness": 1.0}),
+    ("given back", "ggx_metal_compensated", {"f0": GOLD, "roughness": 1.0}),
+    ("cloth", "gltf_sheen",
+     {"base_color": [0.25, 0.03, 0.04], "metalness": 0.0, "roughness": 0.8,
+      "sheen_color_factor": [0.9, 0.6, 0.6], "sheen_roughness_factor": 0.4}),
+    ("principled", "disney",
+     {"base_color": [0.05, 0.2, 0.35], "subsurface": 0.0, "metalness": 0.3, "specular": 0.5,
+      "specular_tint": 0.5, "roughness": 0.5, "anisotropic": 0.6, "sheen": 0.5,
+      "sheen_tint": 0.5, "clearcoat": 1.0, "clearcoat_gloss": 0.8}),
 )  # fmt: skip
 WHITE: tuple[tuple[str, str, dict[str, Any]], ...] = (
     ("Lambert", "lambert", {"albedo": [1.0] * 3}),
@@ -41,6 +63,7 @@ WHITE: tuple[tuple[str, str, dict[str, Any]], ...] = (
      {"base_color": [1.0] * 3, "metalness": 0.0, "roughness": 0.5}),
     ("GGX mirror, roughness 0.5", "ggx_metal", {"f0": [1.0] * 3, "roughness": 0.5}),
     ("GGX mirror, roughness 1", "ggx_metal", {"f0": [1.0] * 3, "roughness": 1.0}),
+    ("the same, given back", "ggx_metal_compensated", {"f0": [1.0] * 3, "roughness": 1.0}),
     ("sheen, roughness 0.5", "sheen", {"color": [1.0] * 3, "roughness": 0.5}),
 )  # fmt: skip
 
@@ -83,40 +106,44 @@ def draw_ball(axes: Axes, image: Array, title: str, **options: Any) -> None:
 
 
 def bsdf_figure() -> Figure:
-    """Six balls above; albedos, a plastic ball and its derivative below."""
+    """Twelve balls above; albedos, a plastic ball and its derivative below."""
     cosines = np.linspace(0.02, 1.0, 50)
     side, gap, left = 1.35, 0.12, 0.15
     width = 6 * side + 5 * gap + 2 * left
+    row = side + 0.3
     with style.house_style():
-        figure = style.new_figure(width, 5.45)
+        figure = style.new_figure(width, 5.45 + row)
         for number, (title, name, parameters) in enumerate(BALLS):
-            axes = style.place_axes(figure, left + number * (side + gap), 0.35, side, side)
+            down, across = divmod(number, 6)
+            place = left + across * (side + gap), 0.35 + down * row
+            axes = style.place_axes(figure, *place, side, side)
             picture = sphere_picture(MODELS[name], parameters, SIZE)
             draw_ball(axes, srgb_encode(np.clip(picture, 0.0, 1.0)), title)
-        axes = style.place_axes(figure, 0.6, 2.1, 3.6, 2.2)
+        axes = style.place_axes(figure, 0.6, 2.1 + row, 3.6, 2.2)
         for label, name, parameters in WHITE:
             axes.plot(cosines, furnace(MODELS[name], parameters, cosines), label=label)
         axes.axhline(1.0, color=style.GUIDE, lw=0.8)
-        axes.set(xlim=(0.0, 1.0), ylim=(0.0, 1.6), xlabel="cosine of the viewer")
+        axes.set(xlim=(0.0, 1.0), ylim=(0.0, 2.0), xlabel="cosine of the viewer")
         axes.set_title("light returned by white materials")
         axes.legend(loc="upper right", fontsize=6.0, ncols=2)
         plastic = {**PLASTIC, "roughness": 0.35}
         image, slope = sphere_picture(MODELS["gltf"], plastic, SIZE), by_roughness(plastic)
         limit = float(np.quantile(np.abs(slope), 0.995))
-        axes = style.place_axes(figure, 4.6, 2.3, 1.7, 1.7)
+        axes = style.place_axes(figure, 4.6, 2.3 + row, 1.7, 1.7)
         draw_ball(axes, srgb_encode(np.clip(image, 0.0, 1.0)), "plastic, roughness 0.35")
-        axes = style.place_axes(figure, 6.45, 2.3, 1.7, 1.7)
+        axes = style.place_axes(figure, 6.45, 2.3 + row, 1.7, 1.7)
         scale, colors = style.symmetric_scale(limit), style.signed_colour_map()
         draw_ball(axes, slope, "its derivative by roughness", norm=scale, cmap=colors)
         mappable = ScalarMappable(scale, colors)
-        style.colour_bar(figure, (8.2, 2.3, 0.1, 1.7), mappable, "", extend="both")
+        style.colour_bar(figure, (8.2, 2.3 + row, 0.1, 1.7), mappable, "", extend="both")
         style.write_caption(
             figure,
-            "Above: balls under one distant light. Left: the part of the light that comes back, by "
-            "the cosine of the view. Mirrors of rough facets lose what meets a second facet; the "
-            "fits of Burley and of glTF return more than came at grazing angles. Right: more "
-            "roughness would dim the middle of the highlight (blue) and light a ring around it "
-            "(red); an error in the picture pulls roughness one way or the other by where it lies.",
+            "Above: balls under one distant light. Left: the part of the light that comes back, "
+            "by the cosine of the view. Mirrors of rough facets lose what meets a second facet, "
+            "if it is not given back; the fits of Burley and of glTF return more than came at "
+            "grazing angles. Right: more roughness would dim the middle of the highlight (blue) "
+            "and light a ring around it (red); an error in the picture pulls roughness one way "
+            "or the other by where it lies.",
             left=left, right=left,
         )  # fmt: skip
     return figure

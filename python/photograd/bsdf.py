@@ -3,6 +3,11 @@
 All models come from the core's registry (cpp/photograd/bsdf/registry.h); everything here, and the
 proofs in the tests, iterates over it. Directions are (N, 3) unit vectors in the shading frame,
 normal +Z, both leaving the surface; `f` does not contain the cosine.
+
+Models that follow an extension of glTF name its parameters as the extension does, in snake_case:
+`iridescence_factor`, `iridescence_ior` and `iridescence_thickness` (nm) of `gltf_iridescence`,
+`sheen_color_factor` and `sheen_roughness_factor` of `gltf_sheen`. The sliders of `disney` are those
+of [Burley2012]; his metallic is `metalness`, as in all models here.
 """
 
 from __future__ import annotations
