@@ -35,7 +35,7 @@ def gallery_picture(model: BsdfModel, path: Path) -> None:
         sphere = figure.add_subplot(2, 4, 1 + column)
         sphere.imshow(srgb_encode(np.clip(sphere_picture(model, parameters), 0.0, 1.0)))
         sphere.axis("off")
-        sphere.set_title(_caption(parameters), fontsize=7)
+        sphere.set_title(_caption(parameters), fontsize=7 if len(parameters) < 6 else 5)
         lobe = figure.add_subplot(2, 4, 5 + column, projection="polar")
         angle, value = _lobe(model, parameters)
         lobe.plot(np.pi / 2 - angle, value, lw=1.5)
@@ -49,7 +49,10 @@ def gallery_picture(model: BsdfModel, path: Path) -> None:
 
 def _caption(parameters: dict[str, Array]) -> str:
     parts = [f"{name} {np.round(np.mean(value), 2):g}" for name, value in parameters.items()]
-    return "\n".join(parts)
+    # As many names to a line as keep the block below the title.
+    across = 1 + (len(parts) - 1) // 5
+    lines = [parts[k : k + across] for k in range(0, len(parts), across)]
+    return "\n".join(", ".join(line) for line in lines)
 
 
 def sphere_directions(size: int) -> tuple[Array, Array, Array]:
@@ -79,7 +82,8 @@ def sphere_picture(model: BsdfModel, parameters: dict[str, Any], size: int = 160
 
 def _lobe(model: BsdfModel, parameters: dict[str, Array]) -> tuple[Array, Array]:
     """Angles from the normal (A,) and f cos, mean over channels (A,), in the plane of incidence."""
-    reach = np.pi if model.transmits else np.pi / 2
+    # In the horizon itself sheen grows without bound.
+    reach = np.pi if model.transmits else 0.499 * np.pi
     angle = np.linspace(-reach, reach, 361)
     wo = np.stack([np.sin(angle), np.zeros_like(angle), np.cos(angle)], axis=1)
     wi = np.broadcast_to([-np.sqrt(0.5), 0.0, np.sqrt(0.5)], wo.shape).copy()
