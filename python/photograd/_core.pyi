@@ -2335,19 +2335,63 @@ class phase_cornette_shanks:
 
 class PathGeometry:
     """
-    Shapes of a scene: meshes first, then spheres.
+    Shapes of a scene: instances of meshes first, then spheres.
     """
     def __init__(
         self,
-        meshes: collections.abc.Sequence[tuple[numpy.ndarray, numpy.ndarray, numpy.ndarray | None]],
+        meshes: collections.abc.Sequence[
+            tuple[numpy.ndarray, numpy.ndarray, numpy.ndarray | None, numpy.ndarray | None]
+        ],
+        instances: numpy.ndarray,
+        matrices: numpy.ndarray,
         spheres: numpy.ndarray,
         material: numpy.ndarray,
         emission: numpy.ndarray,
         has_environment: bool,
     ) -> None:
         """
-        Meshes as (vertices (V, 3) float32, faces (F, 3) uint32, normals (V, 3) float32 or None);
-        spheres (K, 4) float32; material (S,) int32 and emission (S, 3) float64 of each shape.
+        Meshes as (vertices (V, 3) float32, faces (F, 3) uint32, normals (V, 3) float32 or None,
+        uv (V, 2) float32 or None); instances (I,) int32, mesh numbers, and matrices (I, 3, 4) float64;
+        spheres (K, 4) float32; material (S,) int32 and emission (S, 3) float64 of each shape,
+        which are the instances, then the spheres.
+        """
+    def set_textures(
+        self,
+        layouts: collections.abc.Sequence[
+            tuple[
+                typing.SupportsInt | typing.SupportsIndex,
+                typing.SupportsInt | typing.SupportsIndex,
+                typing.SupportsInt | typing.SupportsIndex,
+                typing.SupportsInt | typing.SupportsIndex,
+                typing.SupportsInt | typing.SupportsIndex,
+            ]
+        ],
+        uses: collections.abc.Sequence[
+            collections.abc.Sequence[
+                tuple[
+                    typing.SupportsInt | typing.SupportsIndex,
+                    typing.SupportsInt | typing.SupportsIndex,
+                    typing.SupportsInt | typing.SupportsIndex,
+                    typing.SupportsInt | typing.SupportsIndex,
+                    typing.SupportsFloat | typing.SupportsIndex,
+                    typing.SupportsFloat | typing.SupportsIndex,
+                ]
+            ]
+        ],
+        normal_maps: collections.abc.Sequence[
+            tuple[
+                numpy.ndarray,
+                typing.SupportsInt | typing.SupportsIndex,
+                typing.SupportsInt | typing.SupportsIndex,
+            ]
+            | None
+        ],
+        directed: collections.abc.Sequence[bool],
+    ) -> None:
+        """
+        Layouts (H, W, C, wrap_u, wrap_v) of textures; for each material uses (texture, channel, first,
+        count, lo, hi), and a normal map (values (H, W, 3) float32, wrap_u, wrap_v) or None;
+        directed (M,), whether its frame follows u.
         """
 
 class TexturePlan:
@@ -3267,6 +3311,7 @@ def trace_path(
     parameters: numpy.ndarray,
     emission: numpy.ndarray,
     sky: numpy.ndarray,
+    textures: collections.abc.Sequence[numpy.ndarray],
     camera: tuple[typing.Any, ...],
     options: tuple[
         typing.SupportsInt | typing.SupportsIndex,
@@ -3289,6 +3334,8 @@ def trace_paths(
     sampling_parameters: numpy.ndarray | None,
     emission: numpy.ndarray,
     sky: numpy.ndarray,
+    textures: collections.abc.Sequence[numpy.ndarray],
+    sampling_textures: collections.abc.Sequence[numpy.ndarray] | None,
     camera: tuple[typing.Any, ...],
     options: tuple[
         typing.SupportsInt | typing.SupportsIndex,
@@ -3312,6 +3359,7 @@ def trace_paths_backward(
     parameters: numpy.ndarray,
     emission: numpy.ndarray,
     sky: numpy.ndarray,
+    textures: collections.abc.Sequence[numpy.ndarray],
     camera: tuple[typing.Any, ...],
     options: tuple[
         typing.SupportsInt | typing.SupportsIndex,
@@ -3326,9 +3374,10 @@ def trace_paths_backward(
     d_parameters: numpy.ndarray,
     d_emission: numpy.ndarray,
     d_sky: numpy.ndarray,
+    d_textures: collections.abc.Sequence[numpy.ndarray],
 ) -> None:
     """
-    Adds to d_parameters (P,), d_emission (S, 3), d_sky (3, 3) for dL/d(mean radiance).
+    Adds to d_parameters (P,), d_emission (S, 3), d_sky (3, 3) and d_textures for dL/d(mean radiance).
     """
 
 def uniform(

@@ -9,7 +9,7 @@
 // which smooth surfaces refract.
 #pragma once
 
-#include "photograd/camera/pinhole.h"
+#include "photograd/camera/thin_lens.h"
 #include "photograd/render/path_options.h"
 #include "photograd/render/path_vertex.h"
 
@@ -28,19 +28,20 @@ struct PathSums {
 };
 
 template <Real R>
-void trace_paths(const PathScene<R>& scene, const Pinhole& camera, const PathOptions& options,
+void trace_paths(const PathScene<R>& scene, const ThinLens& camera, const PathOptions& options,
                  const SampleRange& samples, const PathSums& sums);
 
 /// Adds derivatives for dL/d(mean radiance) (H, W, 3) of these samples: d_parameters, the parameters of all materials
-/// one after another; d_emission (S, 3); d_sky (3, 3), zenith, horizon and ground.
+/// one after another; d_emission (S, 3); d_sky (3, 3), zenith, horizon and ground; d_texels (H, W, C) of each texture.
 template <Real R>
-void trace_paths_backward(const PathScene<R>& scene, const Pinhole& camera,
+void trace_paths_backward(const PathScene<R>& scene, const ThinLens& camera,
                           const PathOptions& options, const SampleRange& samples,
-                          const double* d_image, R* d_parameters, R* d_emission, R* d_sky);
+                          const double* d_image, R* d_parameters, R* d_emission, R* d_sky,
+                          std::span<R* const> d_texels = {});
 
 /// One path, for those who want to look at its vertices.
 template <Real R>
-Path<R> trace_path(const PathScene<R>& scene, const Pinhole& camera, const PathOptions& options,
+Path<R> trace_path(const PathScene<R>& scene, const ThinLens& camera, const PathOptions& options,
                    std::uint32_t pixel, std::uint32_t sample);
 
 }  // namespace photograd

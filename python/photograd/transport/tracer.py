@@ -16,6 +16,7 @@ from photograd.core import _core
 from photograd.data.camera import Camera
 from photograd.errors import DtypeError, RangeError, ShapeError, message
 from photograd.transport.accumulation import Accumulation
+from photograd.transport.core_arrays import instances_of, textures_of
 from photograd.transport.scene import Array, MeshShape, Scene, Shape, SphereShape
 
 STRATEGIES = ("light", "bsdf", "mis")
@@ -69,8 +70,9 @@ class PathTracer:
     Attributes:
         scene: what it was built from.
         params: {name: array}, to be changed freely between renderings:
-            "materials.NAME.PARAMETER", () or (3,); "emission.SHAPE" (3,) of shapes that shine;
-            "environment" (3, 3), the radiance of zenith, horizon and ground.
+            "materials.NAME.PARAMETER", () or (3,); "textures.NAME" (H, W, C), linear;
+            "emission.SHAPE" (3,) of shapes that shine; "environment" (3, 3), the radiance of
+            zenith, horizon and ground.
     """
 
     def __init__(self, scene: Scene, *, dtype: npt.DTypeLike = np.float32) -> None:
@@ -88,15 +90,23 @@ class PathTracer:
         meshes = [shape for shape in scene.shapes if isinstance(shape, MeshShape)]
         spheres = [shape for shape in scene.shapes if isinstance(shape, SphereShape)]
         self._shapes: list[Shape] = [*meshes, *spheres]
-        names = list(scene.materials)
+        names = {name: number for number, name in enumerate(scene.materials)}
+        placed, matrices = instances_of(meshes)
+        # What the core counts as a shape is an instance; `_owner` says of which of ours.
+        self._owner = np.concatenate([placed, np.arange(len(meshes), len(self._shapes))])
+        material = np.array([names[shape.material] for shape in self._shapes], np.int32)
+        emission = np.array([shape.emission for shape in self._shapes], np.float64)
         balls = [[*shape.center, shape.radius] for shape in spheres]
         self._geometry = _core.PathGeometry(
-            meshes=[(mesh.vertices, mesh.faces, mesh.normals) for mesh in meshes],
+            meshes=[(mesh.vertices, mesh.faces, mesh.normals, mesh.uv) for mesh in meshes],
+            instances=placed,
+            matrices=matrices,
             spheres=np.array(balls, np.float32).reshape(-1, 4),
-            material=np.array([names.index(s.material) for s in self._shapes], np.int32),
-            emission=np.array([shape.emission for shape in self._shapes], np.float64),
+            material=material[self._owner],
+            emission=emission[self._owner],
             has_environment=scene.environment is not None,
         )
+        self._geometry.set_textures(*textures_of(scene))
         self._models = [material.model for material in scene.materials.values()]
         self.params: dict[str, Array] = self._initial_params()
 
@@ -105,6 +115,8 @@ class PathTracer:
         for name, material in self.scene.materials.items():
             for parameter in material.parameters:
                 params[f"materials.{name}.{parameter.name}"] = material.values[parameter.name]
+        for name, texture in self.scene.textures.items():
+            params[f"textures.{name}"] = texture.values
         for shape in self._shapes:
             if shape.emission.any():
                 params[f"emission.{shape.name}"] = shape.emission
@@ -152,8 +164,10 @@ class PathTracer:
         view = self.scene.camera if camera is None else camera
         self._check_sums("add_samples", sums, spp, view)
         other = None if sampling_params is None else self._material_row(sampling_params)
+        texels = None if sampling_params is None else self._texels(sampling_params)
         _core.trace_paths(
-            **self._arguments(view), sampling_parameters=other, options=options.numbers(seed),
+            **self._arguments(view), sampling_parameters=other, sampling_textures=texels,
+            options=options.numbers(seed),
             first=sums.count, count=spp, radiance=sums.radiance, squares=sums.squares,
         )  # fmt: skip
         sums.count += spp
@@ -175,22 +189,25 @@ class PathTracer:
             RangeError: spp below 1.
         """
         view = self.scene.camera if camera is None else camera
-        shape = (view.height, view.width, 3)
-        if np.shape(d_image) != shape:
+        wanted = (view.height, view.width, 3)
+        if np.shape(d_image) != wanted:
             got = np.shape(d_image)
-            raise ShapeError(message("render_backward", "d_image", f"shape {shape}", got))
+            raise ShapeError(message("render_backward", "d_image", f"shape {wanted}", got))
         if spp < 1:
             raise RangeError(message("PathTracer", "spp", "at least 1", spp))
         arguments = self._arguments(view)
         d_rows = np.zeros_like(arguments["parameters"])
-        d_emission = np.zeros((len(self._shapes), 3), self.dtype)
+        d_emission = np.zeros_like(arguments["emission"])
         d_sky = np.zeros((3, 3), self.dtype)
+        d_textures = [np.zeros_like(texels) for texels in arguments["textures"]]
         _core.trace_paths_backward(
             **arguments, options=options.numbers(seed), first=0, count=spp,
             d_image=np.ascontiguousarray(d_image, np.float64),
-            d_parameters=d_rows, d_emission=d_emission, d_sky=d_sky,
+            d_parameters=d_rows, d_emission=d_emission, d_sky=d_sky, d_textures=d_textures,
         )  # fmt: skip
         gradients = {"environment": d_sky}
+        for name, d_texels in zip(self.scene.textures, d_textures, strict=True):
+            gradients[f"textures.{name}"] = d_texels
         start = 0
         for name, material in self.scene.materials.items():
             for parameter in material.parameters:
@@ -198,8 +215,10 @@ class PathTracer:
                 key = f"materials.{name}.{parameter.name}"
                 gradients[key] = part.reshape(self.params[key].shape)
                 start += parameter.size
-        for number, placed in enumerate(self._shapes):
-            gradients[f"emission.{placed.name}"] = d_emission[number]
+        d_shapes = np.zeros((len(self._shapes), 3), self.dtype)
+        np.add.at(d_shapes, self._owner, d_emission)
+        for shape, d_shape in zip(self._shapes, d_shapes, strict=True):
+            gradients[f"emission.{shape.name}"] = d_shape
         return {name: gradients[name] for name in self.params}
 
     def add_occlusion(
@@ -232,6 +251,7 @@ class PathTracer:
         arguments = self._arguments(self.scene.camera)
         for name in ("parameters", "emission", "sky"):
             arguments[name] = arguments[name].astype(np.float64)
+        arguments["textures"] = [texels.astype(np.float64) for texels in arguments["textures"]]
         found: list[dict[str, Any]] = _core.trace_path(
             **arguments, options=options.numbers(seed), pixel=pixel, sample=sample
         )
@@ -254,16 +274,25 @@ class PathTracer:
         ]
         return np.ascontiguousarray(np.concatenate(parts), self.dtype)
 
+    def _texels(self, params: dict[str, Array]) -> list[Array]:
+        """Values (H, W, C) of each texture, in the scene's order."""
+        return [
+            np.ascontiguousarray(params[f"textures.{name}"], self.dtype)
+            for name in self.scene.textures
+        ]
+
     def _arguments(self, camera: Camera) -> dict[str, Any]:
         black = np.zeros(3, self.dtype)
         emission = [self.params.get(f"emission.{shape.name}", black) for shape in self._shapes]
+        shining = np.array(emission, self.dtype)
         return {
             "geometry": self._geometry,
             "models": self._models,
             "parameters": self._material_row(self.params),
-            "emission": np.array(emission, self.dtype),
+            "emission": shining[self._owner],
             "sky": np.asarray(self.params.get("environment", np.zeros((3, 3))), self.dtype),
-            "camera": _numbers(camera),
+            "textures": self._texels(self.params),
+            "camera": (*_numbers(camera), self.scene.lens.radius, self.scene.lens.focus),
         }
 
 
