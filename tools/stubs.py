@@ -15,7 +15,7 @@ PACKAGE = Path(__file__).resolve().parent.parent / "python" / "photograd"
 ROOT = PACKAGE.parents[1]
 HEAD = "# Generated from the compiled module by tools/stubs.py. Do not edit.\n"
 # pybind11's own containers say nothing about their content; a strict type checker wants it said.
-BARE = re.compile(r"((?:-> |: ))(tuple|list|dict|collections\.abc\.Callable)(?=[:,)\n]| =)")
+BARE = re.compile(r"(-> |: |\[)(tuple|list|dict|collections\.abc\.Callable)(?=[:,)\]\n]| =)")
 FULL = {
     "tuple": "tuple[typing.Any, ...]",
     "list": "list[typing.Any]",

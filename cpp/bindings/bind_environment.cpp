@@ -1,22 +1,10 @@
 // Environment maps: texels are arrays of the caller; the table by which directions are drawn is kept between calls.
+#include "environment_args.h"
 #include "light_calls.h"
 #include "photograd/light/environment_gradient.h"
 
 namespace photograd {
 namespace {
-
-template <class R>
-int height_of(ArrayArgs& args, const char* name, const py::array& texels) {
-    constexpr std::int64_t tallest = 1 << 14;
-    const std::int64_t h = args.size("H"), w = args.size("W");
-    if (h < 1 || h > tallest || w != 2 * h)
-        fail(ErrorKind::shape, "environment", name,
-             "shape (H, 2 H, 3), H at most " + std::to_string(tallest),
-             "(" + std::to_string(h) + ", " + std::to_string(w) + ", " +
-                 std::to_string(texels.shape(2)) + ")",
-             "a map of all directions is twice as wide as high");
-    return static_cast<int>(h);
-}
 
 std::unique_ptr<EnvironmentSampler> make_sampler(const py::array& texels, double uniform_share) {
     return dispatch_real("EnvironmentSampler", "texels", texels, [&](auto real) {
@@ -28,23 +16,6 @@ std::unique_ptr<EnvironmentSampler> make_sampler(const py::array& texels, double
         const py::gil_scoped_release release;
         return std::make_unique<EnvironmentSampler>(all, height, uniform_share);
     });
-}
-
-template <class R>
-Mat3<R> rotation_in(ArrayArgs& args, const py::array& world_from_map) {
-    const R* m = args.in<R>("world_from_map", world_from_map, "3 3");
-    Mat3<R> rotation;
-    for (int column = 0; column < 3; ++column)
-        for (int row = 0; row < 3; ++row) rotation[column][row] = m[3 * row + column];
-    return rotation;
-}
-
-template <class R>
-Environment<R> environment_in(ArrayArgs& args, const EnvironmentSampler& sampler,
-                              const py::array& texels, const py::array& world_from_map) {
-    const R* data = args.in<R>("texels", texels, "H W 3");
-    const int height = height_of<R>(args, "texels", texels);
-    return {data, height, rotation_in<R>(args, world_from_map), &sampler};
 }
 
 /// w is enough: an environment is the same from all points.

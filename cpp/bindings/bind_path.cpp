@@ -2,7 +2,7 @@
 #include <optional>
 
 #include "camera_args.h"
-#include "model_args.h"
+#include "listed_lights.h"
 #include "module.h"
 #include "photograd/render/ambient_occlusion.h"
 #include "photograd/render/path.h"
@@ -19,7 +19,7 @@ using Options = std::tuple<int, int, int, int, std::uint64_t>;
 std::shared_ptr<PathGeometry> build(const std::vector<MeshArrays>& meshes, const py::array& placed,
                                     const py::array& matrices, const py::array& spheres,
                                     const py::array& material, const py::array& emission,
-                                    bool has_environment) {
+                                    const LightTuples& lights) {
     std::vector<Mesh> built;
     std::vector<Instance> instances;
     std::vector<std::vector<float>> normals;
@@ -58,11 +58,12 @@ std::shared_ptr<PathGeometry> build(const std::vector<MeshArrays>& meshes, const
     std::vector<Sphere> balls;
     for (std::size_t i = 0; i < K; ++i)
         balls.push_back({s[4 * i], s[4 * i + 1], s[4 * i + 2], s[4 * i + 3]});
+    const std::vector<AnyLight<double>> listed = listed_lights<double>(lights);
     const py::gil_scoped_release release;
     return std::make_shared<PathGeometry>(
         Bvh(std::move(built), std::move(instances), std::move(balls)),
         std::vector<std::int32_t>(m, m + S), std::move(normals), std::span<const double>(e, 3 * S),
-        has_environment);
+        listed);
 }
 
 /// (H, W, C, wrap_u, wrap_v); (texture, channel, first, count, lo, hi); (values, wrap_u, wrap_v).
@@ -121,13 +122,15 @@ template <class R>
 struct SceneNumbers {
     std::vector<Material<R>> drawn, sampling;
     std::vector<const R*> texels, sampling_texels;
+    std::vector<AnyLight<R>> lights;
     PathScene<R> scene;
 
     SceneNumbers(ArrayArgs& args, const PathGeometry& geometry,
                  const std::vector<std::string>& models, const py::array& parameters,
                  const std::optional<py::array>& sampling_parameters, const py::array& emission,
-                 const py::array& sky, const std::vector<py::array>& textures,
-                 const std::optional<std::vector<py::array>>& sampling_textures) {
+                 const LightTuples& light_rows, const std::vector<py::array>& textures,
+                 const std::optional<std::vector<py::array>>& sampling_textures)
+        : lights(listed_lights<R>(light_rows)) {
         for (const std::int32_t m : geometry.material)
             if (m < 0 || m >= static_cast<std::int32_t>(models.size()))
                 args.range("material", "numbers below " + std::to_string(models.size()),
@@ -137,12 +140,11 @@ struct SceneNumbers {
             read(args, models, "sampling_parameters", *sampling_parameters, sampling);
         const R* e =
             args.in<R>("emission", emission, std::to_string(geometry.shape_count()) + " 3");
-        const R* s = args.in<R>("sky", sky, "3 3");
-        scene = {&geometry,
-                 drawn,
-                 sampling_parameters ? sampling : drawn,
-                 e,
-                 {vec3_at(s, 0), vec3_at(s, 1), vec3_at(s, 2)}};
+        const std::size_t count = static_cast<std::size_t>(geometry.lights.listed_count());
+        if (lights.size() != count)
+            args.range("lights", std::to_string(count) + ", as when the scene was built",
+                       std::to_string(lights.size()));
+        scene = {&geometry, drawn, sampling_parameters ? sampling : drawn, e, lights};
         texels = texels_of(args, geometry, "textures", textures);
         if (sampling_textures)
             sampling_texels = texels_of(args, geometry, "textures", *sampling_textures);
@@ -197,7 +199,8 @@ PathOptions options_of(const ArrayArgs& args, const Options& given) {
 
 void trace(const PathGeometry& geometry, const std::vector<std::string>& models,
            const py::array& parameters, const std::optional<py::array>& sampling_parameters,
-           const py::array& emission, const py::array& sky, const std::vector<py::array>& textures,
+           const py::array& emission, const LightTuples& lights,
+           const std::vector<py::array>& textures,
            const std::optional<std::vector<py::array>>& sampling_textures,
            const py::tuple& camera_numbers, const Options& given, std::uint32_t first,
            std::uint32_t count, py::array radiance, py::array squares) {
@@ -205,7 +208,7 @@ void trace(const PathGeometry& geometry, const std::vector<std::string>& models,
         using R = decltype(real);
         ArrayArgs args("trace_paths");
         const SceneNumbers<R> numbers(args, geometry, models, parameters, sampling_parameters,
-                                      emission, sky, textures, sampling_textures);
+                                      emission, lights, textures, sampling_textures);
         const ThinLens camera = thin_lens(camera_numbers);
         const std::string axes =
             std::to_string(camera.height) + " " + std::to_string(camera.width) + " 3";
@@ -218,16 +221,17 @@ void trace(const PathGeometry& geometry, const std::vector<std::string>& models,
 }
 
 void trace_backward(const PathGeometry& geometry, const std::vector<std::string>& models,
-                    const py::array& parameters, const py::array& emission, const py::array& sky,
-                    const std::vector<py::array>& textures, const py::tuple& camera_numbers,
-                    const Options& given, std::uint32_t first, std::uint32_t count,
-                    const py::array& d_image, py::array d_parameters, py::array d_emission,
-                    py::array d_sky, std::vector<py::array> d_textures) {
+                    const py::array& parameters, const py::array& emission,
+                    const LightTuples& lights, const std::vector<py::array>& textures,
+                    const py::tuple& camera_numbers, const Options& given, std::uint32_t first,
+                    std::uint32_t count, const py::array& d_image, py::array d_parameters,
+                    py::array d_emission, std::vector<py::array> d_lights,
+                    std::vector<py::array> d_textures) {
     dispatch_real("trace_paths_backward", "parameters", parameters, [&](auto real) {
         using R = decltype(real);
         ArrayArgs args("trace_paths_backward");
         const SceneNumbers<R> numbers(args, geometry, models, parameters, std::nullopt, emission,
-                                      sky, textures, std::nullopt);
+                                      lights, textures, std::nullopt);
         const ThinLens camera = thin_lens(camera_numbers);
         const double* d = args.in<double>(
             "d_image", d_image,
@@ -235,7 +239,7 @@ void trace_backward(const PathGeometry& geometry, const std::vector<std::string>
         R* to_parameters = args.out<R>("d_parameters", d_parameters, "P");
         R* to_emission =
             args.out<R>("d_emission", d_emission, std::to_string(geometry.shape_count()) + " 3");
-        R* to_sky = args.out<R>("d_sky", d_sky, "3 3");
+        const std::vector<R*> to_lights = light_derivatives<R>(lights, d_lights);
         const auto& layouts = geometry.textures.layouts;
         std::vector<R*> to_textures;
         if (d_textures.size() != layouts.size())
@@ -246,8 +250,9 @@ void trace_backward(const PathGeometry& geometry, const std::vector<std::string>
         const PathOptions options = options_of(args, given);
         if (count < 1) args.range("count", "at least 1 sample", "0");
         const py::gil_scoped_release release;
-        trace_paths_backward<R>(numbers.scene, camera, options, {first, count}, d, to_parameters,
-                                to_emission, to_sky, to_textures);
+        trace_paths_backward(
+            numbers.scene, camera, options, {first, count}, d,
+            PathDerivatives<R>{to_parameters, to_emission, to_lights, to_textures});
     });
 }
 
@@ -259,12 +264,12 @@ py::list colors(const Vec3<double>& v) {
 
 /// One path as a list of dictionaries, double precision.
 py::list path(const PathGeometry& geometry, const std::vector<std::string>& models,
-              const py::array& parameters, const py::array& emission, const py::array& sky,
+              const py::array& parameters, const py::array& emission, const LightTuples& lights,
               const std::vector<py::array>& textures, const py::tuple& camera_numbers,
               const Options& given, std::uint32_t pixel, std::uint32_t sample) {
     ArrayArgs args("trace_path");
     const SceneNumbers<double> numbers(args, geometry, models, parameters, std::nullopt, emission,
-                                       sky, textures, std::nullopt);
+                                       lights, textures, std::nullopt);
     const ThinLens camera = thin_lens(camera_numbers);
     py::list out;
     for (const PathVertex<double>& v :
@@ -272,15 +277,15 @@ py::list path(const PathGeometry& geometry, const std::vector<std::string>& mode
         py::dict row;
         row["shape"] = v.shape;
         row["direction"] = colors(v.direction);
-        row["emitted"] = colors(numbers.scene.emitted(v.shape, v.direction));
+        row["emitted"] = colors(v.emitted);
         row["emission_weight"] = v.emission_weight;
         row["pdf"] = v.pdf;
         row["light_pdf"] = v.light_pdf;
         row["light_shape"] = v.light.shape;
+        row["light_listed"] = v.light.listed;
+        row["light_direction"] = colors(v.light.direction);
         row["light_f"] = colors(v.light.f);
-        row["light_emitted"] = v.light.weight > 0
-                                   ? colors(numbers.scene.emitted(v.light.shape, v.light.direction))
-                                   : colors(Vec3<double>(0));
+        row["light_emitted"] = colors(v.light.weight > 0 ? v.light.sent : Vec3<double>(0));
         row["light_weight"] = v.light.weight;
         row["light_cosine"] = std::abs(v.light.wi.z);
         row["light_chosen_pdf"] = v.light.pdf;
@@ -294,6 +299,21 @@ py::list path(const PathGeometry& geometry, const std::vector<std::string>& mode
         out.append(row);
     }
     return out;
+}
+
+/// Entries of the table of lights, by uniform numbers: those of the list first, then pieces of shapes.
+py::tuple choose_lights(const PathGeometry& geometry, const py::array& u) {
+    ArrayArgs args("choose_lights");
+    const double* x = args.in<double>("u", u, "N");
+    if (geometry.lights.empty()) args.range("u", "a scene with lights", "one without");
+    py::array_t<std::int64_t> entry(args.size("N"));
+    py::array_t<double> pmf(args.size("N"));
+    for (std::int64_t n = 0; n < args.size("N"); ++n) {
+        const Choice choice = geometry.lights.choose(x[n]);
+        entry.mutable_at(n) = choice.index;
+        pmf.mutable_at(n) = choice.pmf;
+    }
+    return py::make_tuple(entry, pmf);
 }
 
 void ambient_occlusion(const PathGeometry& geometry, const py::tuple& camera_numbers, double radius,
@@ -314,32 +334,37 @@ void bind_path(py::module_& m) {
     py::class_<PathGeometry, std::shared_ptr<PathGeometry>>(
         m, "PathGeometry", "Shapes of a scene: instances of meshes first, then spheres.")
         .def(py::init(&build), py::arg("meshes"), py::arg("instances"), py::arg("matrices"),
-             py::arg("spheres"), py::arg("material"), py::arg("emission"),
-             py::arg("has_environment"),
+             py::arg("spheres"), py::arg("material"), py::arg("emission"), py::arg("lights"),
              "Meshes as (vertices (V, 3) float32, faces (F, 3) uint32, normals (V, 3) float32 or "
              "None,\nuv (V, 2) float32 or None); instances (I,) int32, mesh numbers, and matrices "
              "(I, 3, 4) float64;\nspheres (K, 4) float32; material (S,) int32 and emission (S, 3) "
-             "float64 of each shape,\nwhich are the instances, then the spheres.")
+             "float64 of each shape,\nwhich are the instances, then the spheres. Lights of the "
+             "list: (name, parameters, "
+             "constants) or\n(\"environment\", texels, world_from_map, sampler), float64.")
+        .def("choose_lights", &choose_lights, py::arg("u"),
+             "(entries (N,) int64, their probabilities (N,)) by uniform u (N,): first lights of "
+             "the list, then what emits of the shapes.")
         .def("set_textures", &set_textures, py::arg("layouts"), py::arg("uses"),
              py::arg("normal_maps"), py::arg("directed"),
              "Layouts (H, W, C, wrap_u, wrap_v) of textures; for each material uses (texture, "
              "channel, first,\ncount, lo, hi), and a normal map (values (H, W, 3) float32, wrap_u, "
              "wrap_v) or None;\ndirected (M,), whether its frame follows u.");
     m.def("trace_paths", &trace, py::arg("geometry"), py::arg("models"), py::arg("parameters"),
-          py::arg("sampling_parameters"), py::arg("emission"), py::arg("sky"), py::arg("textures"),
-          py::arg("sampling_textures"), py::arg("camera"), py::arg("options"), py::arg("first"),
-          py::arg("count"), py::arg("radiance"), py::arg("squares"),
+          py::arg("sampling_parameters"), py::arg("emission"), py::arg("lights"),
+          py::arg("textures"), py::arg("sampling_textures"), py::arg("camera"), py::arg("options"),
+          py::arg("first"), py::arg("count"), py::arg("radiance"), py::arg("squares"),
           "Adds samples to radiance (H, W, 3) and squares (H, W, 3), float64. options: (strategy, "
           "heuristic, max_depth, roulette_from, seed).");
     m.def("trace_paths_backward", &trace_backward, py::arg("geometry"), py::arg("models"),
-          py::arg("parameters"), py::arg("emission"), py::arg("sky"), py::arg("textures"),
+          py::arg("parameters"), py::arg("emission"), py::arg("lights"), py::arg("textures"),
           py::arg("camera"), py::arg("options"), py::arg("first"), py::arg("count"),
-          py::arg("d_image"), py::arg("d_parameters"), py::arg("d_emission"), py::arg("d_sky"),
+          py::arg("d_image"), py::arg("d_parameters"), py::arg("d_emission"), py::arg("d_lights"),
           py::arg("d_textures"),
-          "Adds to d_parameters (P,), d_emission (S, 3), d_sky (3, 3) and d_textures for dL/d(mean "
+          "Adds to d_parameters (P,), d_emission (S, 3), d_lights, an array like the first of each "
+          "light, and d_textures for dL/d(mean "
           "radiance).");
     m.def("trace_path", &path, py::arg("geometry"), py::arg("models"), py::arg("parameters"),
-          py::arg("emission"), py::arg("sky"), py::arg("textures"), py::arg("camera"),
+          py::arg("emission"), py::arg("lights"), py::arg("textures"), py::arg("camera"),
           py::arg("options"), py::arg("pixel"), py::arg("sample"),
           "One path, a dictionary a vertex.");
     m.def("ambient_occlusion", &ambient_occlusion, py::arg("geometry"), py::arg("camera"),

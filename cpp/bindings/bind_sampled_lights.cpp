@@ -126,7 +126,8 @@ void bind_sampled_lights(py::module_& m) {
         registry[M<double>::name] = SampledLight<M>::bind(m);
     };
     Lights::for_each(add);
-    PlacedLights::for_each(add);
+    DeltaLights::for_each(add);
+    AreaLights::for_each(add);
     m.attr("sampled_lights") = registry;
 }
 

@@ -2347,13 +2347,18 @@ class PathGeometry:
         spheres: numpy.ndarray,
         material: numpy.ndarray,
         emission: numpy.ndarray,
-        has_environment: bool,
+        lights: collections.abc.Sequence[tuple[typing.Any, ...]],
     ) -> None:
         """
         Meshes as (vertices (V, 3) float32, faces (F, 3) uint32, normals (V, 3) float32 or None,
         uv (V, 2) float32 or None); instances (I,) int32, mesh numbers, and matrices (I, 3, 4) float64;
         spheres (K, 4) float32; material (S,) int32 and emission (S, 3) float64 of each shape,
-        which are the instances, then the spheres.
+        which are the instances, then the spheres. Lights of the list: (name, parameters, constants) or
+        ("environment", texels, world_from_map, sampler), float64.
+        """
+    def choose_lights(self, u: numpy.ndarray) -> tuple[typing.Any, ...]:
+        """
+        (entries (N,) int64, their probabilities (N,)) by uniform u (N,): first lights of the list, then what emits of the shapes.
         """
     def set_textures(
         self,
@@ -3310,7 +3315,7 @@ def trace_path(
     models: collections.abc.Sequence[str],
     parameters: numpy.ndarray,
     emission: numpy.ndarray,
-    sky: numpy.ndarray,
+    lights: collections.abc.Sequence[tuple[typing.Any, ...]],
     textures: collections.abc.Sequence[numpy.ndarray],
     camera: tuple[typing.Any, ...],
     options: tuple[
@@ -3333,7 +3338,7 @@ def trace_paths(
     parameters: numpy.ndarray,
     sampling_parameters: numpy.ndarray | None,
     emission: numpy.ndarray,
-    sky: numpy.ndarray,
+    lights: collections.abc.Sequence[tuple[typing.Any, ...]],
     textures: collections.abc.Sequence[numpy.ndarray],
     sampling_textures: collections.abc.Sequence[numpy.ndarray] | None,
     camera: tuple[typing.Any, ...],
@@ -3358,7 +3363,7 @@ def trace_paths_backward(
     models: collections.abc.Sequence[str],
     parameters: numpy.ndarray,
     emission: numpy.ndarray,
-    sky: numpy.ndarray,
+    lights: collections.abc.Sequence[tuple[typing.Any, ...]],
     textures: collections.abc.Sequence[numpy.ndarray],
     camera: tuple[typing.Any, ...],
     options: tuple[
@@ -3373,11 +3378,11 @@ def trace_paths_backward(
     d_image: numpy.ndarray,
     d_parameters: numpy.ndarray,
     d_emission: numpy.ndarray,
-    d_sky: numpy.ndarray,
+    d_lights: collections.abc.Sequence[numpy.ndarray],
     d_textures: collections.abc.Sequence[numpy.ndarray],
 ) -> None:
     """
-    Adds to d_parameters (P,), d_emission (S, 3), d_sky (3, 3) and d_textures for dL/d(mean radiance).
+    Adds to d_parameters (P,), d_emission (S, 3), d_lights, an array like the first of each light, and d_textures for dL/d(mean radiance).
     """
 
 def uniform(

@@ -21,9 +21,8 @@ struct EnvironmentTaps {
 };
 
 template <class R>
-EnvironmentTaps<R> environment_taps(const Vec3<R>& w, int height) {
-    const Vec2<double> uv = lat_long_from_direction({double(w.x), double(w.y), double(w.z)});
-    const TexelPair column = columns_at(uv.x, 2 * height), row = rows_at(uv.y, height);
+EnvironmentTaps<R> environment_taps(double u, double v, int height) {
+    const TexelPair column = columns_at(u, 2 * height), row = rows_at(v, height);
     const double f = column.fraction, g = row.fraction;
     const auto texel = [&](int r, int c) { return static_cast<std::int64_t>(r) * 2 * height + c; };
     return {{texel(row.first, column.first), texel(row.first, column.second),
@@ -43,15 +42,10 @@ struct Environment {
     static constexpr const char* name = "environment";
 
     [[nodiscard]] EnvironmentTaps<R> taps(const Vec3<R>& w) const {
-        return environment_taps(map_from_world(w), height);
+        const Vec2<double> uv = lat_long_from_direction(map_from_world(w));
+        return environment_taps<R>(uv.x, uv.y, height);
     }
-    Vec3<R> L(const Vec3<R>& w) const {
-        const EnvironmentTaps<R> at = taps(w);
-        Vec3<R> radiance(R(0));
-        for (int k = 0; k < 4; ++k)
-            for (int c = 0; c < 3; ++c) radiance[c] += at.weight[k] * texels[3 * at.texel[k] + c];
-        return radiance;
-    }
+    Vec3<R> L(const Vec3<R>& w) const { return look_up(taps(w)); }
     /// Adds to d_texels (H, 2 H, 3). Threads that share them scatter by owner instead, from `taps`
     /// (environment_gradient.h).
     void L_backward(const Vec3<R>& w, const Vec3<R>& d_L, R* d_texels) const {
@@ -61,17 +55,34 @@ struct Environment {
     }
 
     Vec3<R> sample(const Vec2<R>& u2) const {
-        const Vec3<double> w = sampler->sample({double(u2.x), double(u2.y)});
-        return world_from_map * Vec3<R>(R(w.x), R(w.y), R(w.z));
+        return world_from_map * Vec3<R>(sampler->sample({double(u2.x), double(u2.y)}).w);
     }
-    R pdf(const Vec3<R>& w) const {
-        const Vec3<R> local = map_from_world(w);
-        return R(sampler->pdf({double(local.x), double(local.y), double(local.z)}));
+    R pdf(const Vec3<R>& w) const { return R(sampler->pdf(lat_long_of(map_from_world(w)))); }
+
+    /// `sample` with its radiance and density: its place in the map is known, but for the angle to the zenith.
+    [[nodiscard]] LightSample<R> draw(const Vec2<R>& u2) const {
+        const DrawnDirection drawn = sampler->sample({double(u2.x), double(u2.y)});
+        const Vec3<double>& w = drawn.w;
+        const double v = polar_angle(sqrt(w.x * w.x + w.z * w.z), w.y) / pi;
+        return {world_from_map * Vec3<R>(w), infinitely_far<R>(),
+                look_up(environment_taps<R>(drawn.u, v, height)), R(drawn.pdf), false};
+    }
+    /// L and pdf of a direction by one lookup of its place.
+    [[nodiscard]] Background<R> look(const Vec3<R>& w) const {
+        const LatLong place = lat_long_of(map_from_world(w));
+        return {look_up(environment_taps<R>(place.u, place.v, height)), R(sampler->pdf(place))};
     }
 
 private:
-    [[nodiscard]] Vec3<R> map_from_world(const Vec3<R>& w) const {
-        return {dot(world_from_map[0], w), dot(world_from_map[1], w), dot(world_from_map[2], w)};
+    [[nodiscard]] Vec3<R> look_up(const EnvironmentTaps<R>& at) const {
+        Vec3<R> radiance(R(0));
+        for (int k = 0; k < 4; ++k)
+            for (int c = 0; c < 3; ++c) radiance[c] += at.weight[k] * texels[3 * at.texel[k] + c];
+        return radiance;
+    }
+    [[nodiscard]] Vec3<double> map_from_world(const Vec3<R>& w) const {
+        return {double(dot(world_from_map[0], w)), double(dot(world_from_map[1], w)),
+                double(dot(world_from_map[2], w))};
     }
 };
 

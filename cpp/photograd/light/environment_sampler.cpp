@@ -3,18 +3,12 @@
 #include <string>
 
 #include "photograd/core/errors.h"
-#include "photograd/light/lat_long.h"
+#include "photograd/light/luminance.h"
 
 namespace photograd {
 namespace {
 
 constexpr double brightest = 1e30;  // squares and sums stay numbers
-
-/// Rec. 709: bright is what looks bright. Every channel counts, so that no light is left out.
-template <class R>
-double luminance(const R* texel) {
-    return 0.2126 * double(texel[0]) + 0.7152 * double(texel[1]) + 0.0722 * double(texel[2]);
-}
 
 template <class R>
 void check_texels(std::span<const R> texels, std::int64_t width) {
@@ -64,6 +58,7 @@ EnvironmentSampler::EnvironmentSampler(std::span<const R> texels, int height, do
     cells_ = Distribution2D(height + 1, width, mass);
     // The sphere's mean brightness, everywhere, is the uniform part of the mixture.
     const double mean = cells_.total() / (2.0 * static_cast<double>(width));
+    flux_ = 4 * pi * mean;
     const bool dark = !(mean > 0.0);
     for (float& b : brightness_)
         b = dark ? 1.0f : static_cast<float>((1 - uniform_share) * b + uniform_share * mean);
@@ -87,20 +82,22 @@ BilinearPatch<double> EnvironmentSampler::corners(std::int64_t band, std::int64_
     return {at(upper + column), at(upper + right), at(lower + column), at(lower + right)};
 }
 
-Vec3<double> EnvironmentSampler::sample(const Vec2<double>& u2) const {
+DrawnDirection EnvironmentSampler::sample(const Vec2<double>& u2) const {
     const CellChoice cell = cells_.sample(u2.y, u2.x);
-    const Vec2<double> in = corners(cell.row, cell.column).sample(cell.rest_column, cell.rest_row);
+    const BilinearPatch<double> patch = corners(cell.row, cell.column);
+    const Vec2<double> in = patch.sample(cell.rest_column, cell.rest_row);
     const auto k = static_cast<std::size_t>(cell.row);
-    const double u = (static_cast<double>(cell.column) + 0.5 + in.x) / (2.0 * height_);
-    return direction_from_lat_long(u < 1 ? u : u - 1, drop_[k] + in.y * (drop_[k + 1] - drop_[k]));
+    const double beyond = (static_cast<double>(cell.column) + 0.5 + in.x) / (2.0 * height_);
+    const double u = beyond < 1 ? beyond : beyond - 1;
+    return {direction_from_lat_long(u, drop_[k] + in.y * (drop_[k + 1] - drop_[k])), u,
+            density_scale_ * patch.at(in.x, in.y)};
 }
 
-double EnvironmentSampler::pdf(const Vec3<double>& w) const {
-    const Vec2<double> uv = lat_long_from_direction(w);
-    const TexelPair column = columns_at(uv.x, 2 * height_);
+double EnvironmentSampler::pdf(const LatLong& place) const {
+    const TexelPair column = columns_at(place.u, 2 * height_);
     const auto band =
-        static_cast<std::size_t>(smaller(double(height_), larger(0.0, uv.y * height_ + 0.5)));
-    const double s = (drop_of(w) - drop_[band]) / (drop_[band + 1] - drop_[band]);
+        static_cast<std::size_t>(smaller(double(height_), larger(0.0, place.v * height_ + 0.5)));
+    const double s = (place.drop - drop_[band]) / (drop_[band + 1] - drop_[band]);
     return density_scale_ * corners(static_cast<std::int64_t>(band), column.first)
                                 .at(column.fraction, clamped(s, 0.0, 1.0));
 }

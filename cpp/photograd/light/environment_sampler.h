@@ -16,10 +16,17 @@
 #include <vector>
 
 #include "photograd/core/real.h"
+#include "photograd/light/lat_long.h"
 #include "photograd/sampling/bilinear_patch.h"
 #include "photograd/sampling/distribution_2d.h"
 
 namespace photograd {
+
+/// A direction in the frame of the map, its column and its density over solid angle.
+struct DrawnDirection {
+    Vec3<double> w;
+    double u, pdf;
+};
 
 class EnvironmentSampler {
 public:
@@ -30,11 +37,12 @@ public:
     template <Real R>
     EnvironmentSampler(std::span<const R> texels, int height, double uniform_share);
 
-    /// A direction in the frame of the map.
-    [[nodiscard]] Vec3<double> sample(const Vec2<double>& u2) const;
-    /// Its density over solid angle.
-    [[nodiscard]] double pdf(const Vec3<double>& w) const;
+    [[nodiscard]] DrawnDirection sample(const Vec2<double>& u2) const;
+    /// The density over solid angle of a direction at this place.
+    [[nodiscard]] double pdf(const LatLong& place) const;
     [[nodiscard]] int height() const { return height_; }
+    /// The map's luminance, integrated over the sphere, W/m^2.
+    [[nodiscard]] double flux() const { return flux_; }
 
 private:
     [[nodiscard]] BilinearPatch<double> corners(std::int64_t band, std::int64_t column) const;
@@ -43,7 +51,8 @@ private:
     std::vector<float> brightness_;  // (H, 2 H)
     std::vector<double> drop_;  // (H + 2): 1 - height of the bands' edges, from the zenith down
     Distribution2D cells_;      // (H + 1, 2 H), by brightness times solid angle
-    double density_scale_;      // 1 / integral of the brightness over the sphere
+    double flux_;
+    double density_scale_;  // 1 / integral of the brightness over the sphere
 };
 
 }  // namespace photograd

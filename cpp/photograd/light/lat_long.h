@@ -20,6 +20,11 @@ inline Vec2<double> lat_long_from_direction(const Vec3<double>& w) {
     return {0.5 + polar_angle(-w.x, w.z) / (2 * pi), theta / pi};
 }
 
+/// A direction's place in the picture, with its height beside the angle: what lookup and density ask.
+struct LatLong {
+    double u, v, drop;
+};
+
 /// The direction at u whose height is w.y = 1 - drop; drop in [0, 2] keeps its digits at the zenith.
 inline Vec3<double> direction_from_lat_long(double u, double drop) {
     const SinCos<double> phi = sin_cos(2 * pi * (u - 0.5));
@@ -31,6 +36,11 @@ inline Vec3<double> direction_from_lat_long(double u, double drop) {
 inline double drop_of(const Vec3<double>& w) {
     const double side = w.x * w.x + w.z * w.z, norm = sqrt(side + w.y * w.y);
     return w.y > 0 ? side / (norm * (norm + w.y)) : 1 - w.y / norm;
+}
+
+inline LatLong lat_long_of(const Vec3<double>& w) {
+    const Vec2<double> uv = lat_long_from_direction(w);
+    return {uv.x, uv.y, drop_of(w)};
 }
 
 /// Two neighbouring rows or columns of texels, and how far from the first to the second.

@@ -28,6 +28,13 @@ struct LightSample {
         false;  // no other strategy finds this light: weight 1 in multiple importance sampling
 };
 
+/// What lights at infinity send from one direction, and how densely samples of them are drawn there, 1/sr.
+template <class R>
+struct Background {
+    Vec3<R> radiance{R(0)};
+    R pdf = R(0);
+};
+
 /// What is wrong with a light's numbers; no argument: nothing.
 struct LightFault {
     const char* argument = nullptr;

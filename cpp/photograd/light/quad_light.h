@@ -52,10 +52,14 @@ struct QuadLight {
     }
     R pdf(const Vec3<R>& point, const Vec3<R>& w) const {
         const Meeting at = meet(point, w);
-        if (!(at.cosine > R(0))) return R(0);
+        return at.cosine > R(0) ? hit_pdf(point, at.t, at.cosine) : R(0);
+    }
+    /// The same for a tracer that knows the distance and the cosine at the front that it has hit.
+    [[nodiscard]] R hit_pdf(const Vec3<R>& point, R distance, R cosine) const {
         const double solid_angle = seen_from(point).solid_angle;
         if (solid_angle >= smallest) return R(1 / solid_angle);
-        return solid_angle_density(R(1) / length(cross(edge_x, edge_y)), at.t * at.t, at.cosine);
+        return solid_angle_density(R(1) / length(cross(edge_x, edge_y)), distance * distance,
+                                   cosine);
     }
 
 private:

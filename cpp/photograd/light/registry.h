@@ -17,8 +17,10 @@ namespace photograd {
 /// At infinity: radiance by direction alone.
 using Lights = ModelList<Sun, Sky, ConstantLight>;
 
-/// The others, at a place or of one direction.
-using PlacedLights =
-    ModelList<PointLight, DirectionalLight, SpotLight, QuadLight, SphereLight, TriangleLight>;
+/// Of one direction at each place; no ray ever hits them.
+using DeltaLights = ModelList<PointLight, DirectionalLight, SpotLight>;
+
+/// Surfaces that glow.
+using AreaLights = ModelList<QuadLight, SphereLight, TriangleLight>;
 
 }  // namespace photograd

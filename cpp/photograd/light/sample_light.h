@@ -16,6 +16,8 @@ LightSample<R> sample_light(const L& light, const Vec3<R>& point, const Vec2<R>&
         return light.at(point);
     } else if constexpr (requires { light.sample(point, u2); }) {
         return light.sample(point, u2);
+    } else if constexpr (requires { light.draw(u2); }) {
+        return light.draw(u2);
     } else {
         const Vec3<R> w = light.sample(u2);
         return {w, infinitely_far<R>(), light.L(w), light.pdf(w), false};

@@ -57,6 +57,11 @@ struct SphereLight {
         const bool seen = cone.height > R(0) && in_cap(w, cone.axis, cone.height);
         return seen ? R(1 / (2 * pi)) / cone.height : R(0);
     }
+    /// The same for a tracer that has hit the ball: directions along its rim may round to either side.
+    [[nodiscard]] R hit_pdf(const Vec3<R>& point, R, R) const {
+        const Cone cone = cone_from(point);
+        return cone.height > R(0) ? R(1 / (2 * pi)) / cone.height : R(0);
+    }
 
 private:
     struct Cone {

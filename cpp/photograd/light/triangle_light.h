@@ -39,6 +39,10 @@ struct TriangleLight {
                            radiance);
     }
     R pdf(const Vec3<R>& point, const Vec3<R>& w) const { return density(point, w); }
+    /// The same for a tracer that knows the distance and the cosine at the front that it has hit.
+    [[nodiscard]] R hit_pdf(const Vec3<R>&, R distance, R cosine) const {
+        return solid_angle_density(R(1) / area(), distance * distance, cosine);
+    }
 
     [[nodiscard]] R area() const { return R(0.5) * length(cross(b - a, c - a)); }
     [[nodiscard]] Vec3<R> normal() const { return normalize(cross(b - a, c - a)); }
@@ -49,7 +53,7 @@ private:
         if (!(cosine > R(0))) return R(0);
         const TrianglePoint<R> at = triangle_point(Ray<R>{point, w}, a, b, c);
         const bool hit = at.t > R(0) && at.u >= R(0) && at.v >= R(0) && at.u + at.v <= R(1);
-        return hit ? solid_angle_density(R(1) / area(), at.t * at.t, cosine) : R(0);
+        return hit ? hit_pdf(point, at.t, cosine) : R(0);
     }
 };
 

@@ -8,6 +8,7 @@
 #include "photograd/bsdf/lambert.h"
 #include "photograd/core/scatter.h"
 #include "photograd/render/pixel_strata.h"
+#include "photograd/render/ray_lanes.h"
 
 namespace photograd {
 namespace {
@@ -17,6 +18,7 @@ constexpr std::int64_t chunk_pixels = 64;  // of one task
 constexpr std::int64_t slab_chunks = 64;   // whose contributions are kept at a time
 constexpr int owner_entries = 64;          // albedo entries of one owner
 constexpr float shadow_offset = 1e-4f;     // of the scene's size, against self-shadowing
+constexpr float infinity = std::numeric_limits<float>::infinity();
 
 /// One light sample of a hit: a direction and what multiplies f L there. weight = cos / pdf.
 template <class R>
@@ -34,17 +36,6 @@ struct Hit {
     AlbedoTaps<R> taps;
     LightSample<R> sun, sky;
 };
-
-template <class R>
-void put(RayPacket& packet, int k, const Vec3<R>& o, const Vec3<R>& d, float t_min) {
-    for (int axis = 0; axis < 3; ++axis) {
-        packet.origin[axis][k] = static_cast<float>(o[axis]);
-        packet.direction[axis][k] = static_cast<float>(d[axis]);
-    }
-    packet.t_min[k] = t_min;
-    packet.t_max[k] = std::numeric_limits<float>::infinity();
-    packet.active[k] = true;
-}
 
 template <class R>
 Hit<R> shade(const DirectScene<R>& scene, const Ray<R>& ray, std::int32_t instance,
@@ -82,8 +73,8 @@ void cast_shadows(const DirectScene<R>& scene, Hit<R>* hits, LightSample<R> Hit<
         const LightSample<R>& sample = hits[k].*light;
         packet.active[k] = false;
         if (!hits[k].valid || !(sample.weight > R(0))) continue;
-        put(packet, k, hits[k].position + hits[k].normal * R(shadow_offset * size), sample.world,
-            0);
+        set_lane(packet, k, hits[k].position + hits[k].normal * R(shadow_offset * size),
+                 sample.world, infinity);
         any = true;
     }
     if (!any) return;
@@ -109,7 +100,7 @@ void trace_samples(const DirectScene<R>& scene, const Pinhole& camera, const Dir
         const Vec2<R>& at = points[k].pixel;
         const std::int64_t column = pixel % camera.width, row = pixel / camera.width;
         rays[k] = camera.ray(R(column) + at.x, R(row) + at.y);
-        put(packet, k, rays[k].origin, rays[k].direction, 0);
+        set_lane(packet, k, rays[k].origin, rays[k].direction, infinity);
     }
     PacketHits found;
     scene.bvh->trace(packet, true, found);

@@ -31,13 +31,20 @@ template <Real R>
 void trace_paths(const PathScene<R>& scene, const ThinLens& camera, const PathOptions& options,
                  const SampleRange& samples, const PathSums& sums);
 
-/// Adds derivatives for dL/d(mean radiance) (H, W, 3) of these samples: d_parameters, the parameters of all materials
-/// one after another; d_emission (S, 3); d_sky (3, 3), zenith, horizon and ground; d_texels (H, W, C) of each texture.
+/// Where derivatives are added: parameters of all materials one after another; emission (S, 3); for each light of the
+/// list its parameters, or the texels (H, 2 H, 3) of a map; texels (H, W, C) of each texture.
+template <Real R>
+struct PathDerivatives {
+    R *parameters, *emission;
+    std::span<R* const> lights, textures;
+};
+
+/// Adds derivatives for dL/d(mean radiance) (H, W, 3) of these samples. What is held at a time does not grow with the
+/// size of the picture or the number of samples.
 template <Real R>
 void trace_paths_backward(const PathScene<R>& scene, const ThinLens& camera,
                           const PathOptions& options, const SampleRange& samples,
-                          const double* d_image, R* d_parameters, R* d_emission, R* d_sky,
-                          std::span<R* const> d_texels = {});
+                          const double* d_image, const PathDerivatives<R>& out);
 
 /// One path, for those who want to look at its vertices.
 template <Real R>

@@ -7,7 +7,7 @@ namespace photograd {
 
 /// Both ways to find a light, alone and together. `light` asks a light, and counts what a path meets by chance only
 /// where no light can be asked (seen by the camera, or through a smooth surface); `bsdf` counts what it meets, and
-/// asks none; `mis` does both and shares out the weight [Veach1995].
+/// asks only delta lights, which cannot be met; `mis` does both and shares out the weight [Veach1995].
 enum class Strategy : int { light = 0, bsdf = 1, mis = 2 };
 
 /// Weight of a sample of density p that the other strategy would have drawn with density q: p / (p + q), or

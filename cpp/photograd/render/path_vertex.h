@@ -25,18 +25,22 @@ namespace photograd {
 
 template <class R>
 struct LightVertex {
-    std::int32_t shape = Emitters::none;  // that emits, or Emitters::environment
-    Vec3<R> direction{R(0)}, wi{R(0)};    // world, shading frame
+    std::int32_t shape = SceneLights::none;  // that emits, or SceneLights::background or ::delta
+    std::int32_t listed = -1;                // number of a delta light
+    Vec3<R> point{R(0)};                     // that is lit
+    Vec3<R> direction{R(0)}, wi{R(0)};       // world, shading frame
     Vec3<R> f{R(0)};
+    Vec3<R> sent{R(0)};                // radiance, or a delta light's irradiance
     R weight = R(0);                   // 0 where something stands in front of it
     R pdf = R(0), scatter_pdf = R(0);  // of the light's choice; of the BSDF for the same direction
 };
 
 template <class R>
 struct PathVertex {
-    std::int32_t shape = Emitters::environment;
+    std::int32_t shape = SceneLights::background;
     Vec2<R> uv{R(0)};         // where the material has textures
     Vec3<R> direction{R(0)};  // world, of the ray that arrived here
+    Vec3<R> emitted{R(0)};    // what is met there sends to where the ray came from
     R emission_weight = R(0);
     R pdf = R(0),
       light_pdf =
@@ -57,32 +61,48 @@ template <Real R>
 struct PathGradient {
     std::vector<Material<R>> materials;
     std::vector<Vec3<R>> emission;
-    Sky<R> sky{Vec3<R>(R(0)), Vec3<R>(R(0)), Vec3<R>(R(0))};
-    std::vector<TexelAdjoint<R>> texels;  // of each texture, to be added up
+    std::vector<AnyLightGradient<R>> lights;  // of the list
+    std::vector<TexelAdjoint<R>> texels;      // of each texture, to be added up
 
     explicit PathGradient(const PathScene<R>& scene)
         : emission(scene.geometry->shape_count(), Vec3<R>(R(0))), texels(scene.texels.size()) {
         for (const Material<R>& m : scene.materials) materials.push_back(m.zero());
-    }
-    void add_emitted(std::int32_t shape, const Vec3<R>& direction, const Vec3<R>& d_L) {
-        if (shape < 0)
-            Sky<R>{}.L_backward(direction, d_L, sky);
-        else
-            emission[static_cast<std::size_t>(shape)] += d_L;
+        for (const AnyLight<R>& light : scene.lights) lights.push_back(zero_gradient(light));
     }
 };
 
+/// Adds the derivative of <d_L, radiance of a shape, or of what lies behind everything>.
+template <Real R>
+void emitted_backward(const PathScene<R>& scene, std::int32_t shape, const Vec3<R>& direction,
+                      const Vec3<R>& d_L, PathGradient<R>& d_scene) {
+    if (shape >= 0) {
+        d_scene.emission[static_cast<std::size_t>(shape)] += d_L;
+        return;
+    }
+    for (const std::int32_t i : scene.geometry->lights.at_infinity()) {
+        const auto k = static_cast<std::size_t>(i);
+        background_backward(scene.lights[k], direction, d_L, d_scene.lights[k]);
+    }
+}
+template <Real R>
+void sent_backward(const PathScene<R>& scene, const LightVertex<R>& light, const Vec3<R>& d_L,
+                   PathGradient<R>& d_scene) {
+    if (light.shape != SceneLights::delta)
+        return emitted_backward(scene, light.shape, light.direction, d_L, d_scene);
+    const auto k = static_cast<std::size_t>(light.listed);
+    delta_backward(scene.lights[k], light.point, d_L, d_scene.lights[k]);
+}
+
 /// L_0. Fills ahead[k] with L_{k+1}, which the derivative needs, unless it is null.
 template <Real R>
-Vec3<R> gather(const PathScene<R>& scene, const Path<R>& path, Vec3<R>* ahead) {
+Vec3<R> gather(const Path<R>& path, Vec3<R>* ahead) {
     Vec3<R> L(R(0));
     for (std::size_t k = path.size(); k-- > 0;) {
         const PathVertex<R>& v = path[k];
         if (ahead) ahead[k] = L;
         L *= v.value * v.weight;
-        if (v.light.weight > R(0))
-            L += v.light.f * scene.emitted(v.light.shape, v.light.direction) * v.light.weight;
-        if (v.emission_weight > R(0)) L += scene.emitted(v.shape, v.direction) * v.emission_weight;
+        if (v.light.weight > R(0)) L += v.light.f * v.light.sent * v.light.weight;
+        if (v.emission_weight > R(0)) L += v.emitted * v.emission_weight;
     }
     return L;
 }
@@ -94,7 +114,7 @@ void gather_backward(const PathScene<R>& scene, const Path<R>& path, const Vec3<
     for (std::size_t k = 0; k < path.size(); ++k) {
         const PathVertex<R>& v = path[k];
         if (v.emission_weight > R(0))
-            d_scene.add_emitted(v.shape, v.direction, d_L * v.emission_weight);
+            emitted_backward(scene, v.shape, v.direction, d_L * v.emission_weight, d_scene);
         if (v.shape < 0) return;
         const auto m =
             static_cast<std::size_t>(scene.geometry->material[static_cast<std::size_t>(v.shape)]);
@@ -110,10 +130,8 @@ void gather_backward(const PathScene<R>& scene, const Path<R>& path, const Vec3<
         Material<R>& d_material = uses.empty() ? d_scene.materials[m] : d_own;
         if (v.light.weight > R(0)) {
             const Vec3<R> d = d_L * v.light.weight;
-            d_scene.add_emitted(v.light.shape, v.light.direction, d * v.light.f);
-            material.value_backward(v.wo, v.light.wi, -1,
-                                    d * scene.emitted(v.light.shape, v.light.direction),
-                                    d_material);
+            sent_backward(scene, v.light, d * v.light.f, d_scene);
+            material.value_backward(v.wo, v.light.wi, -1, d * v.light.sent, d_material);
         }
         const bool goes_on = v.weight > R(0);
         if (goes_on)

@@ -39,8 +39,7 @@ public:
         }
         for (int depth = 0; depth < options_.max_depth && find_hits(depth); ++depth) {
             if (depth + 1 == options_.max_depth) break;
-            if (options_.strategy != Strategy::bsdf && !scene_.geometry->emitters.empty())
-                ask_lights(depth);
+            if (may_ask()) ask_lights(depth);
             for (Lane& lane : lanes_)
                 if (lane.alive) go_on(lane, depth);
         }
@@ -60,7 +59,15 @@ private:
         bool textured = false;  // the hit has a material of its own, not one of the scene's
         Material<R> own_sampling, own_drawn;
         Path<R> path;
+        Vec3<R> light_end;  // of the shadow ray, unless the light is at infinity
+        bool light_far = false;
     };
+
+    /// Those who wait for light to be met ask for what cannot be met.
+    [[nodiscard]] bool may_ask() const {
+        const SceneLights& lights = scene_.geometry->lights;
+        return options_.strategy == Strategy::bsdf ? lights.has_delta() : !lights.empty();
+    }
 
     /// Follows the rays; returns whether any met a surface.
     bool find_hits(int depth) {
@@ -90,7 +97,9 @@ private:
         v.direction = lane.ray.direction;
         v.pdf = lane.pdf;
         if (primitive < 0) {
-            v.light_pdf = R(geometry.emitters.environment_pmf()) * scene_.sky.pdf(v.direction);
+            const Background<R> behind = scene_.behind(v.direction);
+            v.emitted = behind.radiance;
+            v.light_pdf = behind.pdf;
             v.emission_weight = emission_weight(v);
             lane.alive = false;
             return;
@@ -103,9 +112,10 @@ private:
         v.wo = lane.side.wo;
         const R cosine = -dot(lane.hit.outside, v.direction);
         if (!(cosine > R(0))) return;  // the back of a light is dark
+        v.emitted = scene_.emitted(v.shape);
         const Vec3<R> way = lane.hit.position - lane.previous;
-        v.light_pdf =
-            R(geometry.emitters.density(v.shape, lane.hit.primitive)) * dot(way, way) / cosine;
+        v.light_pdf = geometry.lights.hit_pdf(geometry.bvh, v.shape, lane.hit.primitive,
+                                              lane.previous, length(way), cosine);
         v.emission_weight = emission_weight(v);
     }
     void look_up_textures(Lane& lane) const {
@@ -136,11 +146,11 @@ private:
             if (!lane.shadow) continue;
             const Vec3<R> start = lane.side.start(
                 lane.hit.position, lane.path.back().light.direction, scene_.geometry->offset);
-            if (lane.path.back().light.shape < 0)
+            if (lane.light_far)
                 set_lane(packet, k, start, lane.path.back().light.direction,
                          std::numeric_limits<float>::infinity());
             else
-                set_lane(packet, k, start, light_end_[k] - start, 1.0f);
+                set_lane(packet, k, start, lane.light_end - start, 1.0f);
         }
         bool blocked[width];
         scene_.geometry->bvh.occluded(packet, false, blocked);
@@ -148,31 +158,54 @@ private:
             if (lanes_[k].shadow && blocked[k]) lanes_[k].path.back().light.weight = R(0);
     }
 
-    /// Draws a point of a light and its weight, shadow aside; returns whether it can count at all.
+    /// Draws a light, a direction to it and its weight, shadow aside; returns whether it can count at all.
     bool choose_light(Lane& lane, int depth) {
-        const PathGeometry& geometry = *scene_.geometry;
+        const SceneLights& lights = scene_.geometry->lights;
         const Philox4 words = random_block(lane.key, 1 + 2 * static_cast<std::uint32_t>(depth));
         const Vec2<R> u2(uniform_from<R>(words[1]), uniform_from<R>(words[2]));
-        const int piece = geometry.emitters.choose(uniform_from<double>(words[0]));
+        const double u = uniform_from<double>(words[0]);
+        const bool deltas_alone = options_.strategy == Strategy::bsdf;
+        const Choice choice = deltas_alone ? lights.choose_delta(u) : lights.choose(u);
         LightVertex<R>& light = lane.path.back().light;
-        if (piece == Emitters::environment) {
-            light.shape = piece;
-            light.direction = scene_.sky.sample(u2);
-            light.pdf = R(geometry.emitters.environment_pmf()) * scene_.sky.pdf(light.direction);
+        light.point = lane.hit.position;
+        if (choice.index >= lights.listed_count())
+            ask_piece(lane, light, choice, u2);
+        else
+            ask_listed(lane, light, choice, u2);
+        return light.pdf > R(0) && weigh_light(lane, light);
+    }
+    void ask_piece(Lane& lane, LightVertex<R>& light, const Choice& choice, const Vec2<R>& u2) {
+        const PathGeometry& geometry = *scene_.geometry;
+        const LightPiece& piece = geometry.lights.piece(choice.index);
+        light.shape = piece.shape;
+        light.sent = scene_.emitted(piece.shape);
+        // A ball never lights itself; rounding could see it from a point on it.
+        if (piece.shape == lane.hit.shape && piece.shape >= geometry.bvh.sphere_instance()) return;
+        const PieceSample<R> found = geometry.lights.sample(geometry.bvh, piece, light.point, u2);
+        light.direction = found.light.direction;
+        light.pdf = R(choice.pmf) * found.light.pdf;
+        lane.light_far = false;
+        lane.light_end = light.point + found.light.direction * found.light.distance +
+                         found.normal * R(geometry.offset);
+    }
+    void ask_listed(Lane& lane, LightVertex<R>& light, const Choice& choice, const Vec2<R>& u2) {
+        const AnyLight<R>& listed = scene_.lights[static_cast<std::size_t>(choice.index)];
+        const LightSample<R> found = sample_any(listed, light.point, u2);
+        light.direction = found.direction;
+        light.listed = static_cast<std::int32_t>(choice.index);
+        lane.light_far = !(found.distance < std::numeric_limits<R>::max());
+        if (!lane.light_far) lane.light_end = light.point + found.direction * found.distance;
+        if (is_delta(listed)) {
+            light.shape = SceneLights::delta;
+            light.sent = found.radiance;
+            light.pdf = R(choice.pmf) * found.pdf;
         } else {
-            const EmitterPiece& it = geometry.emitters.pieces()[static_cast<std::size_t>(piece)];
-            const EmitterPoint<R> point = geometry.emitters.point(geometry.bvh, piece, u2);
-            const Vec3<R> way = point.position - lane.hit.position;
-            const R squared = dot(way, way);
-            if (!(squared > R(0))) return false;
-            light.shape = it.shape;
-            light.direction = way * (R(1) / std::sqrt(squared));
-            const R cosine = -dot(point.normal, light.direction);
-            if (!(cosine > R(0))) return false;
-            light.pdf = R(it.pmf / it.area) * squared / cosine;
-            light_end_[&lane - lanes_] = point.position + point.normal * R(geometry.offset);
+            const Background<R> behind =
+                scene_.behind(found.direction, choice.index, {found.radiance, found.pdf});
+            light.shape = SceneLights::background;
+            light.sent = behind.radiance;
+            light.pdf = behind.pdf;
         }
-        return weigh_light(lane, light);
     }
     bool weigh_light(const Lane& lane, LightVertex<R>& light) const {
         light.wi = lane.side.frame.to_local(light.direction);
@@ -182,9 +215,10 @@ private:
         light.f = drawn_as(lane).f(wo, light.wi);
         if (stop_when_black_ && is_black(light.f)) return false;
         light.scatter_pdf = sampling_of(lane).pdf(wo, light.wi);
-        const R share = options_.strategy == Strategy::light
-                            ? R(1)
-                            : mis_weight(options_.heuristic, light.pdf, light.scatter_pdf);
+        // No ray meets a delta light: it is the light sample's alone.
+        const bool alone =
+            options_.strategy == Strategy::light || light.shape == SceneLights::delta;
+        const R share = alone ? R(1) : mis_weight(options_.heuristic, light.pdf, light.scatter_pdf);
         light.weight = share * std::abs(light.wi.z) / light.pdf;
         return true;
     }
@@ -238,7 +272,6 @@ private:
     PathOptions options_;
     bool stop_when_black_;
     Lane lanes_[width];
-    Vec3<R> light_end_[width];
 };
 
 }  // namespace photograd

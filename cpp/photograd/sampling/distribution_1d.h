@@ -46,8 +46,8 @@ class Distribution1D {
 public:
     Distribution1D() = default;
     /// Weights: at least one, finite and not negative (the caller has checked).
-    explicit Distribution1D(std::span<const double> weights) : cdf_(weights.size() + 1) {
-        std::copy(weights.begin(), weights.end(), cdf_.begin() + 1);
+    explicit Distribution1D(std::span<const double> weights) : cdf_{0.0} {
+        cdf_.insert(cdf_.end(), weights.begin(), weights.end());
         total_ = accumulate_cdf(cdf_);
     }
     [[nodiscard]] Choice sample(double u) const { return choose(cdf_, u); }

@@ -1,7 +1,7 @@
 // What a path tracer walks through: shapes with a material each, shapes that emit, and what lies behind them.
 //
 // A shape is a mesh or a sphere; meshes come first, and a mesh's shape number is that of its instance. Geometry is
-// built once; materials, emission and environment are numbers that may change between renderings.
+// built once; materials, emission and what lights send are numbers that may change between renderings.
 #pragma once
 
 #include <algorithm>
@@ -10,10 +10,9 @@
 #include <vector>
 
 #include "photograd/core/frame.h"
-#include "photograd/light/sky.h"
 #include "photograd/scene/bent_normal.h"
-#include "photograd/scene/emitters.h"
 #include "photograd/scene/material.h"
+#include "photograd/scene/scene_lights.h"
 #include "photograd/scene/textured.h"
 
 namespace photograd {
@@ -22,17 +21,17 @@ struct PathGeometry {
     Bvh bvh;
     std::vector<std::int32_t> material;       // of each shape
     std::vector<std::vector<float>> normals;  // of each mesh: (V, 3) shading normals, or none
-    Emitters emitters;
+    SceneLights lights;
     SurfaceTextures textures;
     double offset;  // by which rays start away from a surface, metres
 
     PathGeometry(Bvh hierarchy, std::vector<std::int32_t> materials,
                  std::vector<std::vector<float>> shading, std::span<const double> emission,
-                 bool has_environment)
+                 std::span<const AnyLight<double>> listed)
         : bvh(std::move(hierarchy)),
           material(std::move(materials)),
           normals(std::move(shading)),
-          emitters(bvh, emission, has_environment) {
+          lights(bvh, emission, listed) {
         // The tracer calculates in float: its error is a few 6e-8 of the largest coordinate.
         double largest = 0;
         for (int k = 0; k < 3; ++k)
@@ -49,14 +48,26 @@ template <Real R>
 struct PathScene {
     const PathGeometry* geometry;
     std::span<const Material<R>> materials, sampling;
-    const R* emission;  // (S, 3)
-    Sky<R> sky;
+    const R* emission;                                            // (S, 3)
+    std::span<const AnyLight<R>> lights;                          // of the list
     std::span<const R* const> texels = {}, sampling_texels = {};  // (H, W, C) of each texture
 
-    [[nodiscard]] Vec3<R> emitted(std::int32_t shape, const Vec3<R>& direction) const {
-        if (shape < 0) return sky.L(direction);
+    [[nodiscard]] Vec3<R> emitted(std::int32_t shape) const {
         const R* L = emission + 3 * static_cast<std::size_t>(shape);
         return {L[0], L[1], L[2]};
+    }
+    /// All lights at infinity: radiance, and density of asking for this direction. `found` is what is already known of
+    /// the light `known`.
+    [[nodiscard]] Background<R> behind(const Vec3<R>& direction, std::int64_t known = -1,
+                                       const Background<R>& found = {}) const {
+        Background<R> sum;
+        for (const std::int32_t i : geometry->lights.at_infinity()) {
+            const Background<R> one =
+                i == known ? found : background(lights[static_cast<std::size_t>(i)], direction);
+            sum.radiance += one.radiance;
+            sum.pdf += R(geometry->lights.pmf(i)) * one.pdf;
+        }
+        return sum;
     }
     [[nodiscard]] bool drawn_as_sampled() const {
         return materials.data() == sampling.data() && texels.data() == sampling_texels.data();

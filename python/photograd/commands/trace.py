@@ -27,6 +27,7 @@ from photograd_course.color import srgb_encode
 from photograd.commands.shared import StopRequest, stop_on_signals, use_threads
 from photograd.data.image_write import write_exr, write_png
 from photograd.errors import IoError, RangeError, message
+from photograd.lights import EnvironmentMap
 from photograd.transport.accumulation import Accumulation, load_accumulation
 from photograd.transport.builtin import BUILTIN, builtin_scene
 from photograd.transport.mesh_files import SUFFIXES, model_scene, read_model
@@ -200,9 +201,12 @@ def _load(name: str, size: int) -> tuple[Scene, str]:
             path = Path(name)
             meshes = path.suffix.lower() in SUFFIXES
             scene = model_scene(read_model(path), path.stem, size) if meshes else read_scene(path)
-            # Of the files that it names, only the sizes are looked at.
-            digest = hashlib.sha256(path.read_bytes() + repr(scene_size(scene)).encode())
-            loaded = scene, f"{digest.hexdigest()} {size if meshes else ''}"
+            # Of the meshes and textures that it names, only the sizes are looked at.
+            found = hashlib.sha256(path.read_bytes() + repr(scene_size(scene)).encode())
+            for light in scene.lights:
+                if isinstance(light, EnvironmentMap):  # from a file of its own
+                    found.update(light.texels.tobytes())
+            loaded = scene, f"{found.hexdigest()} {size if meshes else ''}"
     for warning in caught:
         note(f"{warning.message}")
     return loaded

@@ -1,4 +1,4 @@
-"""Scenes by name: a Cornell box and a furnace."""
+"""Scenes by name: a Cornell box, a furnace, balls under an evening sky."""
 
 from __future__ import annotations
 
@@ -9,7 +9,9 @@ from photograd_course.suggest import choose_from
 
 from photograd.data.camera import Camera
 from photograd.errors import RangeError, SceneError, message
+from photograd.lights import EnvironmentMap
 from photograd.orbit import look_at
+from photograd.transport.evening import evening_map
 from photograd.transport.scene import Environment, Material, MeshShape, Scene, Shape, SphereShape
 from photograd.transport.shapes import box, rectangle
 
@@ -66,11 +68,30 @@ def white_ball(size: int = 64) -> Scene:
     return Scene("white-ball", (ball,), {"white": white}, camera, Environment.constant(1.0))
 
 
+def evening(size: int = 256) -> Scene:
+    """Balls of clay, copper and glass on a table, lit by an environment map with a low sun."""
+    shapes: tuple[Shape, ...] = (
+        rectangle("table", [-3, 0, 3], [6, 0, 0], [0, 0, -6], "table"),
+        SphereShape("clay ball", np.array([-1.1, 0.5, 0.0]), 0.5, "clay"),
+        SphereShape("copper ball", np.array([0.0, 0.5, -0.3]), 0.5, "copper"),
+        SphereShape("glass ball", np.array([1.1, 0.5, 0.0]), 0.5, "glass"),
+    )
+    materials = {
+        "table": Material("lambert", {"albedo": [0.45, 0.42, 0.38]}),
+        "clay": Material("lambert", {"albedo": [0.6, 0.35, 0.25]}),
+        "copper": Material("ggx_metal", {"f0": [0.95, 0.64, 0.54], "roughness": 0.2}),
+        "glass": Material("glass", {"eta": 1.5, "tint": [1.0, 1.0, 1.0]}),
+    }
+    camera = camera_at([0.0, 1.1, 4.8], [0.0, 0.5, 0.0], 40.0, size, size)
+    return Scene("evening", shapes, materials, camera, lights=(EnvironmentMap(evening_map()),))
+
+
 BUILTIN: dict[str, Callable[[int], Scene]] = {
     "cornell-box": cornell_box,
     "cornell-spheres": cornell_spheres,
     "furnace-box": furnace_box,
     "white-ball": white_ball,
+    "evening": evening,
 }
 """Scenes by name, made for pictures of a given size."""
 

@@ -18,6 +18,7 @@ from photograd_course.suggest import choose_from
 from photograd import bsdf, delta_bsdf
 from photograd.data.camera import Camera
 from photograd.errors import DtypeError, RangeError, SceneError, ShapeError, message
+from photograd.lights import Light
 from photograd.mesh import drop_degenerate
 from photograd.transport.lens import PINHOLE, Lens
 from photograd.transport.texture import NormalMap, Texture, TextureUse, checked_uses
@@ -236,12 +237,15 @@ class Scene:
         materials: by the names that shapes use.
         camera: where the picture is taken from.
         environment: what lies behind everything; None is black.
+        lights: of `photograd.lights`, more than one of a kind if need be. Those with a surface are
+            seen by rays like shapes and reflect nothing; lights at infinity add up, together with
+            the environment.
         textures: by the names that materials use.
         lens: of the camera.
 
     Raises:
         SceneError: no shape, two of one name, a material or texture that does not exist, or a
-            textured shape without texture coordinates.
+            textured shape without texture coordinates, or a light that is none.
     """
 
     name: str
@@ -249,10 +253,15 @@ class Scene:
     materials: Mapping[str, Material]
     camera: Camera
     environment: Environment | None = None
+    lights: tuple[Light, ...] = ()
     textures: Mapping[str, Texture] = field(default_factory=dict)
     lens: Lens = PINHOLE
 
     def __post_init__(self) -> None:
+        for i, light in enumerate(self.lights):
+            if not isinstance(light, Light):
+                expected, got = "a light of photograd.lights", type(light).__name__
+                raise SceneError(message("Scene", f"lights[{i}]", expected, got))
         if not self.shapes:
             raise SceneError(message("Scene", "shapes", "at least one", "none"))
         for name, material in self.materials.items():

@@ -23,6 +23,11 @@ edge_v = [0, 0, -2]
 material = "white"
 emission = [0, 0, 0]          # optional, of the front
 
+[[lights]]                    # optional; kinds and keys: light_nodes.py
+kind = "directional"
+direction = [0.3, 1, 0.2]     # towards the light
+irradiance = 2
+
 Textures, and meshes from files, are described in `scene_meshes`.
 """
 
@@ -39,6 +44,7 @@ from photograd.data.camera import Camera
 from photograd.errors import IoError, SceneError, message
 from photograd.transport.builtin import camera_at
 from photograd.transport.lens import Lens
+from photograd.transport.light_nodes import light_of
 from photograd.transport.scene import Environment, Material, MeshShape, Scene, Shape, SphereShape
 from photograd.transport.scene_meshes import mesh_shapes, pictures_of, textures_in
 from photograd.transport.scene_node import Node
@@ -85,7 +91,10 @@ def _scene(root: Node, name: str) -> Scene:
         for i, node in enumerate(root.tables("shapes"))
         for shape in _shapes(node, i, materials, brought)
     ]
-    return Scene(name, tuple(shapes), brought[0], camera, environment, textures=textures, lens=lens)
+    lights = tuple(map(light_of, root.tables("lights"))) if root.has("lights") else ()
+    return Scene(
+        name, tuple(shapes), brought[0], camera, environment, lights, textures=textures, lens=lens
+    )
 
 
 def _camera(node: Node) -> tuple[Camera, Lens]:

@@ -17,6 +17,7 @@ from photograd.data.camera import Camera
 from photograd.errors import DtypeError, RangeError, ShapeError, message
 from photograd.transport.accumulation import Accumulation
 from photograd.transport.core_arrays import instances_of, textures_of
+from photograd.transport.light_list import light_shapes, listed_lights
 from photograd.transport.scene import Array, MeshShape, Scene, Shape, SphereShape
 
 STRATEGIES = ("light", "bsdf", "mis")
@@ -29,8 +30,9 @@ class PathOptions:
     """How light is looked for.
 
     Attributes:
-        strategy: "light" asks a light at every vertex; "bsdf" counts what a path meets by chance;
-            "mis" does both and shares out the weight.
+        strategy: "light" asks a light at every vertex; "bsdf" counts what a path meets by chance,
+            and asks only what it cannot meet (point, spot, directional lights); "mis" does both and
+            shares out the weight.
         heuristic: how "mis" does so: "balance" or "power".
         max_depth: segments of the longest path; 1 sees lights alone, 2 is direct light.
         roulette_from: the first vertex at which a path may end by chance; None never ends one.
@@ -71,8 +73,12 @@ class PathTracer:
         scene: what it was built from.
         params: {name: array}, to be changed freely between renderings:
             "materials.NAME.PARAMETER", () or (3,); "textures.NAME" (H, W, C), linear;
-            "emission.SHAPE" (3,) of shapes that shine; "environment" (3, 3), the radiance of
-            zenith, horizon and ground.
+            "emission.SHAPE" (3,) of shapes that shine;
+            "environment" (3, 3), the radiance of zenith, horizon and ground;
+            "lights.INDEX.PARAMETER" of the list, such as "lights.0.intensity" (3,) or
+            "lights.0.texels" (H, 2 H, 3). How often a light is asked stays as it was when the
+            tracer was built: pictures stay right, but a tracer that is built again is less noisy
+            where a light has become much stronger. Places and directions of lights are fixed.
     """
 
     def __init__(self, scene: Scene, *, dtype: npt.DTypeLike = np.float32) -> None:
@@ -87,28 +93,37 @@ class PathTracer:
             expected = "float32 or float64"
             raise DtypeError(message("PathTracer", "dtype", expected, self.dtype))
         self.scene = scene
-        meshes = [shape for shape in scene.shapes if isinstance(shape, MeshShape)]
-        spheres = [shape for shape in scene.shapes if isinstance(shape, SphereShape)]
-        self._shapes: list[Shape] = [*meshes, *spheres]
+        self._lights = listed_lights(scene)
         names = {name: number for number, name in enumerate(scene.materials)}
-        placed, matrices = instances_of(meshes)
+        # (name of the emission among the params, shape, number of its material); lights reflect
+        # nothing, by a material that is no parameter.
+        placed: list[tuple[str, Shape, int]] = [
+            *((f"emission.{s.name}", s, names[s.material]) for s in scene.shapes),
+            *((name, s, len(names)) for name, s in light_shapes(scene).items()),
+        ]
+        placed.sort(key=lambda entry: isinstance(entry[1], SphereShape))  # meshes come first
+        self._shapes: list[Shape] = [shape for _, shape, _ in placed]
+        self._emissions = [name for name, _, _ in placed]
+        meshes = [shape for shape in self._shapes if isinstance(shape, MeshShape)]
+        spheres = [shape for shape in self._shapes if isinstance(shape, SphereShape)]
+        numbers, matrices = instances_of(meshes)
         # What the core counts as a shape is an instance; `_owner` says of which of ours.
-        self._owner = np.concatenate([placed, np.arange(len(meshes), len(self._shapes))])
-        material = np.array([names[shape.material] for shape in self._shapes], np.int32)
+        self._owner = np.concatenate([numbers, np.arange(len(meshes), len(self._shapes))])
+        materials = np.array([material for _, _, material in placed], np.int32)
         emission = np.array([shape.emission for shape in self._shapes], np.float64)
         balls = [[*shape.center, shape.radius] for shape in spheres]
+        self.params: dict[str, Array] = self._initial_params()
         self._geometry = _core.PathGeometry(
             meshes=[(mesh.vertices, mesh.faces, mesh.normals, mesh.uv) for mesh in meshes],
-            instances=placed,
+            instances=numbers,
             matrices=matrices,
             spheres=np.array(balls, np.float32).reshape(-1, 4),
-            material=material[self._owner],
+            material=materials[self._owner],
             emission=emission[self._owner],
-            has_environment=scene.environment is not None,
+            lights=[light.row(light.start, np.float64) for light in self._lights],
         )
         self._geometry.set_textures(*textures_of(scene))
-        self._models = [material.model for material in scene.materials.values()]
-        self.params: dict[str, Array] = self._initial_params()
+        self._models = [*(material.model for material in scene.materials.values()), "lambert"]
 
     def _initial_params(self) -> dict[str, Array]:
         params: dict[str, Any] = {}
@@ -117,12 +132,11 @@ class PathTracer:
                 params[f"materials.{name}.{parameter.name}"] = material.values[parameter.name]
         for name, texture in self.scene.textures.items():
             params[f"textures.{name}"] = texture.values
-        for shape in self._shapes:
-            if shape.emission.any():
-                params[f"emission.{shape.name}"] = shape.emission
-        sky = self.scene.environment
-        if sky is not None:
-            params["environment"] = np.array([sky.zenith, sky.horizon, sky.ground])
+        for name, shape in zip(self._emissions, self._shapes, strict=True):
+            if shape.emission.any() or name.startswith("lights."):
+                params[name] = shape.emission
+        for light in self._lights:
+            params.update(light.start)
         return {name: np.array(value, self.dtype) for name, value in params.items()}
 
     def render(
@@ -198,14 +212,16 @@ class PathTracer:
         arguments = self._arguments(view)
         d_rows = np.zeros_like(arguments["parameters"])
         d_emission = np.zeros_like(arguments["emission"])
-        d_sky = np.zeros((3, 3), self.dtype)
+        d_lights = [np.zeros_like(row[1]) for row in arguments["lights"]]
         d_textures = [np.zeros_like(texels) for texels in arguments["textures"]]
         _core.trace_paths_backward(
             **arguments, options=options.numbers(seed), first=0, count=spp,
             d_image=np.ascontiguousarray(d_image, np.float64),
-            d_parameters=d_rows, d_emission=d_emission, d_sky=d_sky, d_textures=d_textures,
+            d_parameters=d_rows, d_emission=d_emission, d_lights=d_lights, d_textures=d_textures,
         )  # fmt: skip
-        gradients = {"environment": d_sky}
+        d_shapes = np.zeros((len(self._shapes), 3), self.dtype)
+        np.add.at(d_shapes, self._owner, d_emission)
+        gradients = dict(zip(self._emissions, d_shapes, strict=True))
         for name, d_texels in zip(self.scene.textures, d_textures, strict=True):
             gradients[f"textures.{name}"] = d_texels
         start = 0
@@ -215,10 +231,8 @@ class PathTracer:
                 key = f"materials.{name}.{parameter.name}"
                 gradients[key] = part.reshape(self.params[key].shape)
                 start += parameter.size
-        d_shapes = np.zeros((len(self._shapes), 3), self.dtype)
-        np.add.at(d_shapes, self._owner, d_emission)
-        for shape, d_shape in zip(self._shapes, d_shapes, strict=True):
-            gradients[f"emission.{shape.name}"] = d_shape
+        for light, derivative in zip(self._lights, d_lights, strict=True):
+            gradients.update(light.named(derivative))
         return {name: gradients[name] for name in self.params}
 
     def add_occlusion(
@@ -249,9 +263,10 @@ class PathTracer:
         `pixel` is row * width + column. In float64, whatever the tracer's dtype.
         """
         arguments = self._arguments(self.scene.camera)
-        for name in ("parameters", "emission", "sky"):
+        for name in ("parameters", "emission"):
             arguments[name] = arguments[name].astype(np.float64)
         arguments["textures"] = [texels.astype(np.float64) for texels in arguments["textures"]]
+        arguments["lights"] = [light.row(self.params, np.float64) for light in self._lights]
         found: list[dict[str, Any]] = _core.trace_path(
             **arguments, options=options.numbers(seed), pixel=pixel, sample=sample
         )
@@ -266,13 +281,13 @@ class PathTracer:
             raise ShapeError(message(function, "sums", f"shape {shape}", sums.radiance.shape))
 
     def _material_row(self, params: dict[str, Array]) -> Array:
-        """All parameters of all materials, one after another, (P,)."""
+        """All parameters of all materials, one after another, (P,); then those of lights."""
         parts = [
             np.reshape(params[f"materials.{name}.{parameter.name}"], -1)
             for name, material in self.scene.materials.items()
             for parameter in material.parameters
         ]
-        return np.ascontiguousarray(np.concatenate(parts), self.dtype)
+        return np.ascontiguousarray(np.concatenate([*parts, np.zeros(3)]), self.dtype)
 
     def _texels(self, params: dict[str, Array]) -> list[Array]:
         """Values (H, W, C) of each texture, in the scene's order."""
@@ -283,14 +298,14 @@ class PathTracer:
 
     def _arguments(self, camera: Camera) -> dict[str, Any]:
         black = np.zeros(3, self.dtype)
-        emission = [self.params.get(f"emission.{shape.name}", black) for shape in self._shapes]
+        emission = [self.params.get(name, black) for name in self._emissions]
         shining = np.array(emission, self.dtype)
         return {
             "geometry": self._geometry,
             "models": self._models,
             "parameters": self._material_row(self.params),
             "emission": shining[self._owner],
-            "sky": np.asarray(self.params.get("environment", np.zeros((3, 3))), self.dtype),
+            "lights": [light.row(self.params, self.dtype) for light in self._lights],
             "textures": self._texels(self.params),
             "camera": (*_numbers(camera), self.scene.lens.radius, self.scene.lens.focus),
         }

@@ -1,0 +1,193 @@
+#include <vector>
+
+#include "photograd/core/scatter.h"
+#include "photograd/light/environment_gradient.h"
+#include "photograd/render/path_samples.h"
+#include "photograd/texture/sample.h"
+
+namespace photograd {
+namespace {
+
+// Each chunk sums up in double what has few parameters; chunks are added in order. Texels are many, so that directions
+// in which maps were seen are kept, and scattered by the owners of texels. Both are done slab by slab.
+constexpr std::int64_t slab_paths = 1 << 18, fewest_chunks = 16, most_chunks = 2048;
+constexpr std::uint32_t samples_at_once = 256;  // of a pixel, where there are maps
+
+/// What of a chunk goes to texels: of maps, for each light of the list, and of textures.
+template <class R>
+struct Seen {
+    std::vector<SeenDirections<R>> directions;
+    std::vector<TexelAdjoint<R>> lookups;
+};
+
+template <class R>
+bool is_map(const AnyLight<R>& light) {
+    return std::holds_alternative<Environment<R>>(light.model);
+}
+
+/// Derivatives of everything but texels, as one row: materials, emission, lights.
+template <class R>
+class DerivativeRow {
+public:
+    explicit DerivativeRow(const PathScene<R>& scene)
+        : emission_(3 * scene.geometry->shape_count()), sums_(emission_, 0.0) {
+        PathGradient<R> zero(scene);
+        std::size_t parameters = 0;
+        for (const Material<R>& m : zero.materials)
+            parameters += static_cast<std::size_t>(m.parameter_count());
+        for (auto& light : zero.lights) for_each_number(light, [&](R) { ++parameters; });
+        sums_.resize(emission_ + parameters, 0.0);
+    }
+    [[nodiscard]] std::span<double> sums() { return sums_; }
+
+    static void put(PathGradient<R>& from, double* to) {
+        for (const Material<R>& m : from.materials) {
+            m.add_to(to);
+            to += m.parameter_count();
+        }
+        for (const Vec3<R>& v : from.emission)
+            for (int c = 0; c < 3; ++c) *to++ += static_cast<double>(v[c]);
+        for (auto& light : from.lights)
+            for_each_number(light, [&](R x) { *to++ += static_cast<double>(x); });
+    }
+    void add_to(const PathScene<R>& scene, const PathDerivatives<R>& out) const {
+        const double* next = sums_.data();
+        const auto take = [&](R* to, std::size_t count) {
+            for (std::size_t k = 0; k < count; ++k) to[k] += static_cast<R>(*next++);
+        };
+        std::size_t parameters = 0;
+        for (const Material<R>& m : scene.materials)
+            parameters += static_cast<std::size_t>(m.parameter_count());
+        take(out.parameters, parameters);
+        take(out.emission, emission_);
+        for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+            auto zero = zero_gradient(scene.lights[i]);
+            std::size_t count = 0;
+            for_each_number(zero, [&](R) { ++count; });
+            take(out.lights[i], count);
+        }
+    }
+
+private:
+    template <class Visit>
+    static void for_each_number(AnyLightGradient<R>& any, Visit&& visit) {
+        std::visit(
+            [&]<class L>(L& light) {
+                if constexpr (requires { L::params; }) for_each_scalar(visit, light);
+            },
+            any.model);
+    }
+
+    std::size_t emission_;
+    std::vector<double> sums_;
+};
+
+/// The texels' part of a slab: directions of all chunks in order, each texel's added by its owner.
+template <class R>
+void scatter_directions(const Environment<R>& map, std::size_t light,
+                        const std::vector<Seen<R>>& chunks, std::vector<double>& d_texels) {
+    std::vector<double> w, d_L;
+    for (const Seen<R>& of_chunk : chunks) {
+        const SeenDirections<R>& seen = of_chunk.directions[light];
+        w.insert(w.end(), seen.w.begin(), seen.w.end());
+        d_L.insert(d_L.end(), seen.d_L.begin(), seen.d_L.end());
+    }
+    const Environment<double> wide{nullptr, map.height, Mat3<double>(map.world_from_map), nullptr};
+    environment_backward(wide, w.data(), d_L.data(), static_cast<std::int64_t>(w.size() / 3),
+                         d_texels.data());
+}
+
+/// The same of textures, by the owners of their texels (texture/tile.h).
+template <class R>
+void scatter_lookups(const PathScene<R>& scene, const std::vector<Seen<R>>& chunks,
+                     std::span<R* const> d_textures) {
+    for (std::size_t t = 0; t < d_textures.size(); ++t) {
+        TexelAdjoint<R> all;
+        for (const Seen<R>& of_chunk : chunks) {
+            const TexelAdjoint<R>& own = of_chunk.lookups[t];
+            all.uv.insert(all.uv.end(), own.uv.begin(), own.uv.end());
+            all.d_color.insert(all.d_color.end(), own.d_color.begin(), own.d_color.end());
+        }
+        const TextureLayout& layout = scene.geometry->textures.layouts[t];
+        if (!all.uv.empty())
+            sample_backward<R>({scene.texels[t], layout.shape, layout.channels}, all.uv.data(),
+                               static_cast<std::int64_t>(all.uv.size() / 2), all.d_color.data(),
+                               d_textures[t], nullptr);
+    }
+}
+
+/// Adds one chunk's derivatives to `row` and returns what goes to texels.
+template <class R>
+Seen<R> chunk_backward(const PathScene<R>& scene, const ThinLens& camera,
+                       const PathOptions& options, const SampleRange& samples, double share,
+                       const double* d_image, std::int64_t begin, std::int64_t end, double* row) {
+    PathGradient<R> gradient(scene);
+    std::vector<Vec3<R>> ahead(static_cast<std::size_t>(options.max_depth));
+    for_each_path(scene, camera, options, samples, false, begin, end,
+                  [&](std::int64_t pixel, const Path<R>& path) {
+                      const double* d = d_image + 3 * pixel;
+                      const Vec3<R> d_L(R(d[0] * share), R(d[1] * share), R(d[2] * share));
+                      gather<R>(path, ahead.data());
+                      gather_backward<R>(scene, path, ahead.data(), d_L, gradient);
+                  });
+    DerivativeRow<R>::put(gradient, row);
+    Seen<R> seen{std::vector<SeenDirections<R>>(scene.lights.size()), std::move(gradient.texels)};
+    for (std::size_t i = 0; i < seen.directions.size(); ++i)
+        if (is_map(scene.lights[i]))
+            seen.directions[i] = std::move(std::get<SeenDirections<R>>(gradient.lights[i].model));
+    return seen;
+}
+
+}  // namespace
+
+template <Real R>
+void trace_paths_backward(const PathScene<R>& scene, const ThinLens& camera,
+                          const PathOptions& options, const SampleRange& samples,
+                          const double* d_image, const PathDerivatives<R>& out) {
+    const std::int64_t pixels = static_cast<std::int64_t>(camera.width) * camera.height;
+    const std::int64_t chunks = (pixels + chunk_pixels - 1) / chunk_pixels;
+    const double share = 1.0 / samples.count;
+    DerivativeRow<R> row(scene);
+    std::vector<std::vector<double>> texels(scene.lights.size());
+    bool maps = !out.textures.empty();  // or textures: something that has texels
+    for (std::size_t i = 0; i < texels.size(); ++i)
+        if (const auto* map = std::get_if<Environment<R>>(&scene.lights[i].model)) {
+            const auto height = static_cast<std::size_t>(map->height);
+            texels[i].assign(6 * height * height, 0.0);
+            maps = true;
+        }
+    const std::uint32_t batch = maps ? std::min(samples_at_once, samples.count) : samples.count;
+    const std::int64_t slab =
+        maps ? std::clamp(slab_paths / (chunk_pixels * batch), fewest_chunks, most_chunks)
+             : most_chunks;
+    for (std::uint32_t done = 0; done < samples.count; done += batch) {
+        const SampleRange now{samples.first + done, std::min(batch, samples.count - done)};
+        for (std::int64_t first = 0; first < chunks; first += slab) {
+            const std::int64_t count = std::min(slab, chunks - first);
+            std::vector<Seen<R>> seen(static_cast<std::size_t>(count));
+            sum_partials<double>(count, row.sums(), [&](std::int64_t i, std::span<double> partial) {
+                const std::int64_t begin = (first + i) * chunk_pixels;
+                seen[static_cast<std::size_t>(i)] =
+                    chunk_backward(scene, camera, options, now, share, d_image, begin,
+                                   std::min(begin + chunk_pixels, pixels), partial.data());
+            });
+            for (std::size_t k = 0; k < texels.size(); ++k)
+                if (const auto* map = std::get_if<Environment<R>>(&scene.lights[k].model))
+                    scatter_directions(*map, k, seen, texels[k]);
+            scatter_lookups(scene, seen, out.textures);
+        }
+    }
+    row.add_to(scene, out);
+    for (std::size_t i = 0; i < texels.size(); ++i)
+        for (std::size_t k = 0; k < texels[i].size(); ++k)
+            out.lights[i][k] += static_cast<R>(texels[i][k]);
+}
+
+template void trace_paths_backward(const PathScene<float>&, const ThinLens&, const PathOptions&,
+                                   const SampleRange&, const double*,
+                                   const PathDerivatives<float>&);
+template void trace_paths_backward(const PathScene<double>&, const ThinLens&, const PathOptions&,
+                                   const SampleRange&, const double*,
+                                   const PathDerivatives<double>&);
+
+}  // namespace photograd

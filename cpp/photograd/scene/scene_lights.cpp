@@ -1,0 +1,162 @@
+#include "photograd/scene/scene_lights.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "photograd/core/errors.h"
+#include "photograd/light/light_power.h"
+#include "photograd/light/rectangle.h"
+
+namespace photograd {
+namespace {
+
+constexpr double least_share = 0.01;  // of all choices, for the lights of the list together
+
+double emitted_luminance(std::span<const double> emission, std::size_t shape) {
+    for (std::size_t c = 0; c < 3; ++c) {
+        const double L = emission[3 * shape + c];
+        if (!(L >= 0) || !std::isfinite(L))
+            fail(ErrorKind::scene, "scene", "emission", "finite radiance of at least 0",
+                 std::to_string(L) + " in shape " + std::to_string(shape));
+    }
+    return luminance(&emission[3 * shape]);
+}
+
+/// Power of a surface that emits L; refuses one without area.
+double surface_power(double area, double L, std::int32_t shape, std::int32_t primitive) {
+    if (!(area > 0))
+        fail(ErrorKind::scene, "scene", "emission", "lights with an area",
+             "none in primitive " + std::to_string(primitive) + " of shape " +
+                 std::to_string(shape));
+    return pi * area * L;
+}
+
+template <class R>
+Vec3<R> front_of(const SphereLight<R>& ball, const Vec3<R>& position) {
+    return normalize(position - ball.center);
+}
+template <class R>
+Vec3<R> front_of(const QuadLight<R>& quad, const Vec3<R>&) {
+    return normalize(cross(quad.edge_x, quad.edge_y));
+}
+template <class R>
+Vec3<R> front_of(const TriangleLight<R>& triangle, const Vec3<R>&) {
+    return triangle.normal();
+}
+
+}  // namespace
+
+SceneLights::SceneLights(const Bvh& bvh, std::span<const double> emission,
+                         std::span<const AnyLight<double>> listed)
+    : listed_(static_cast<std::int64_t>(listed.size())) {
+    std::vector<double> power;
+    for (std::size_t i = 0; i < listed.size(); ++i) {
+        (is_delta(listed[i]) ? deltas_ : at_infinity_).push_back(static_cast<std::int32_t>(i));
+        power.push_back(light_power(listed[i], bvh.bounds()));
+    }
+    const std::size_t shapes = bvh.instances().size() + bvh.spheres().size();
+    first_.assign(shapes, -1);
+    for (std::size_t shape = 0; shape < shapes; ++shape) {
+        const double L = emitted_luminance(emission, shape);
+        if (L > 0) add_shape(bvh, static_cast<std::int32_t>(shape), L, power);
+    }
+    double total = 0;
+    for (const double P : power) total += P;
+    const double least =
+        total > 0 ? least_share * total / std::max(1.0, static_cast<double>(listed_)) : 1.0;
+    for (std::size_t i = 0; i < listed.size(); ++i) power[i] = std::max(power[i], least);
+    if (!power.empty()) choice_ = Distribution1D(power);
+    std::vector<double> of_deltas;
+    for (const std::int32_t i : deltas_) of_deltas.push_back(power[static_cast<std::size_t>(i)]);
+    if (!of_deltas.empty()) delta_choice_ = Distribution1D(of_deltas);
+}
+
+void SceneLights::add_shape(const Bvh& bvh, std::int32_t shape, double L,
+                            std::vector<double>& power) {
+    first_[static_cast<std::size_t>(shape)] = static_cast<std::int32_t>(pieces_.size());
+    if (shape >= bvh.sphere_instance()) {
+        const std::int32_t ball = shape - bvh.sphere_instance();
+        const double r = double(bvh.spheres()[static_cast<std::size_t>(ball)].radius);
+        pieces_.push_back({shape, ball});
+        power.push_back(surface_power(4 * pi * r * r, L, shape, ball));
+        return;
+    }
+    const auto faces = static_cast<std::int32_t>(bvh.mesh_of(shape).face_count());
+    Vec3<double> p[3], other[3];
+    if (faces == 2) {
+        bvh.corners(shape, 0, p);
+        bvh.corners(shape, 1, other);
+        if (const auto rectangle = rectangle_of(p, other)) {
+            pieces_.push_back({shape, 0, static_cast<std::int32_t>(rectangles_.size())});
+            rectangles_.push_back(*rectangle);
+            const double area = length(cross(rectangle->edge_x, rectangle->edge_y));
+            power.push_back(surface_power(area, L, shape, 0));
+            return;
+        }
+    }
+    for (std::int32_t face = 0; face < faces; ++face) {
+        bvh.corners(shape, face, p);
+        pieces_.push_back({shape, face});
+        power.push_back(
+            surface_power(0.5 * length(cross(p[1] - p[0], p[2] - p[0])), L, shape, face));
+    }
+}
+
+Choice SceneLights::choose_delta(double u) const {
+    Choice choice = delta_choice_.sample(u);
+    choice.index = deltas_[static_cast<std::size_t>(choice.index)];
+    return choice;
+}
+
+/// use(the piece as a light of its kind).
+template <class R, class Use>
+auto SceneLights::as_light(const Bvh& bvh, const LightPiece& piece, Use&& use) const {
+    if (piece.rectangle >= 0) {
+        const QuadLight<double>& q = rectangles_[static_cast<std::size_t>(piece.rectangle)];
+        return use(
+            QuadLight<R>{Vec3<R>(1), Vec3<R>(q.corner), Vec3<R>(q.edge_x), Vec3<R>(q.edge_y)});
+    }
+    if (piece.shape >= bvh.sphere_instance()) {
+        const Sphere& ball = bvh.spheres()[static_cast<std::size_t>(piece.primitive)];
+        return use(SphereLight<R>{Vec3<R>(1), ball.center<R>(), R(ball.radius)});
+    }
+    Vec3<R> p[3];
+    bvh.corners(piece.shape, piece.primitive, p);
+    return use(TriangleLight<R>{Vec3<R>(1), p[0], p[1], p[2]});
+}
+
+template <Real R>
+PieceSample<R> SceneLights::sample(const Bvh& bvh, const LightPiece& piece, const Vec3<R>& point,
+                                   const Vec2<R>& u2) const {
+    return as_light<R>(bvh, piece, [&](const auto& light) -> PieceSample<R> {
+        const LightSample<R> found = light.sample(point, u2);
+        if (!(found.pdf > R(0))) return {};
+        return {found, front_of(light, point + found.direction * found.distance)};
+    });
+}
+
+template <Real R>
+R SceneLights::hit_pdf(const Bvh& bvh, std::int32_t shape, std::int32_t primitive,
+                       const Vec3<R>& point, R distance, R cosine) const {
+    const std::int32_t first = first_[static_cast<std::size_t>(shape)];
+    if (first < 0) return R(0);
+    const LightPiece& start = pieces_[static_cast<std::size_t>(first)];
+    const bool single = start.rectangle >= 0 || shape >= bvh.sphere_instance();
+    const std::int64_t number = first + (single ? 0 : primitive);
+    const R density =
+        as_light<R>(bvh, pieces_[static_cast<std::size_t>(number)],
+                    [&](const auto& light) { return light.hit_pdf(point, distance, cosine); });
+    return R(pmf(listed_ + number)) * density;
+}
+
+template PieceSample<float> SceneLights::sample(const Bvh&, const LightPiece&, const Vec3<float>&,
+                                                const Vec2<float>&) const;
+template PieceSample<double> SceneLights::sample(const Bvh&, const LightPiece&, const Vec3<double>&,
+                                                 const Vec2<double>&) const;
+template float SceneLights::hit_pdf(const Bvh&, std::int32_t, std::int32_t, const Vec3<float>&,
+                                    float, float) const;
+template double SceneLights::hit_pdf(const Bvh&, std::int32_t, std::int32_t, const Vec3<double>&,
+                                     double, double) const;
+
+}  // namespace photograd
