@@ -10,18 +10,20 @@
 namespace photograd {
 namespace {
 
-/// vertices (V, 3), faces (F, 3), shading normals (V, 3) or None.
-using MeshArrays = std::tuple<py::array, py::array, std::optional<py::array>>;
+/// vertices (V, 3), faces (F, 3), shading normals (V, 3) or None, texture coordinates (V, 2) or None.
+using MeshArrays =
+    std::tuple<py::array, py::array, std::optional<py::array>, std::optional<py::array>>;
 /// (strategy, heuristic, max_depth, roulette_from, sampler, seed)
 using Options = std::tuple<int, int, int, int, int, std::uint64_t>;
 
-std::shared_ptr<PathGeometry> build(const std::vector<MeshArrays>& meshes, const py::array& spheres,
+std::shared_ptr<PathGeometry> build(const std::vector<MeshArrays>& meshes, const py::array& placed,
+                                    const py::array& matrices, const py::array& spheres,
                                     const py::array& material, const py::array& emission,
                                     const LightTuples& lights) {
     std::vector<Mesh> built;
     std::vector<Instance> instances;
     std::vector<std::vector<float>> normals;
-    for (const auto& [vertices, faces, shading] : meshes) {
+    for (const auto& [vertices, faces, shading, coordinates] : meshes) {
         ArrayArgs args("PathTracer");
         const float* v = args.in<float>("vertices", vertices, "V 3");
         const std::uint32_t* f = args.in<std::uint32_t>("faces", faces, "F 3");
@@ -32,20 +34,26 @@ std::shared_ptr<PathGeometry> build(const std::vector<MeshArrays>& meshes, const
             const float* n = args.in<float>("normals", *shading, "V 3");
             normals.back().assign(n, n + 3 * V);
         }
-        const int index = static_cast<int>(built.size());
+        std::span<const float> uv;
+        if (coordinates) uv = {args.in<float>("uv", *coordinates, "V 2"), 2 * V};
         built.emplace_back(std::span<const float>(v, 3 * V),
-                           std::span<const std::uint32_t>(f, 3 * F), std::span<const float>(),
-                           index);
-        instances.push_back({index, Affine{}});
+                           std::span<const std::uint32_t>(f, 3 * F), uv,
+                           static_cast<int>(built.size()));
     }
     ArrayArgs args("PathTracer");
+    const std::int32_t* which = args.in<std::int32_t>("instances", placed, "I");
+    const double* rows = args.in<double>("matrices", matrices, "I 3 4");
+    for (std::int64_t i = 0; i < args.size("I"); ++i) {
+        instances.push_back({which[i], Affine{}});
+        std::copy_n(rows + 12 * i, 12, instances.back().world_from_object.m.begin());
+    }
     const float* s = args.in<float>("spheres", spheres, "K 4");
     const std::int32_t* m = args.in<std::int32_t>("material", material, "S");
     const double* e = args.in<double>("emission", emission, "S 3");
     const auto K = static_cast<std::size_t>(args.size("K")),
                S = static_cast<std::size_t>(args.size("S"));
-    if (S != built.size() + K)
-        args.range("material", std::to_string(built.size() + K) + ", one a shape",
+    if (S != instances.size() + K)
+        args.range("material", std::to_string(instances.size() + K) + ", one a shape",
                    std::to_string(S));
     std::vector<Sphere> balls;
     for (std::size_t i = 0; i < K; ++i)
@@ -58,17 +66,70 @@ std::shared_ptr<PathGeometry> build(const std::vector<MeshArrays>& meshes, const
         listed);
 }
 
+/// (H, W, C, wrap_u, wrap_v); (texture, channel, first, count, lo, hi); (values, wrap_u, wrap_v).
+using Layout = std::tuple<int, int, int, int, int>;
+using Use = std::tuple<int, int, int, int, double, double>;
+using BentNormals = std::tuple<py::array, int, int>;
+
+TextureLayout layout_of(const ArrayArgs& args, const Layout& given) {
+    const auto [height, width, channels, u, v] = given;
+    if (height < 1 || width < 1 || channels < 1 || channels > max_channels)
+        args.range("layouts", "textures (H, W, 1 to 4)", "others");
+    if (u < 0 || u > 2 || v < 0 || v > 2) args.range("wrap", "0 to 2", "others");
+    return {{height, width}, channels, static_cast<Wrap>(u), static_cast<Wrap>(v)};
+}
+
+void set_textures(PathGeometry& geometry, const std::vector<Layout>& layouts,
+                  const std::vector<std::vector<Use>>& uses,
+                  const std::vector<std::optional<BentNormals>>& normal_maps,
+                  const std::vector<bool>& directed) {
+    SurfaceTextures out;
+    out.directed = directed;
+    ArrayArgs args("PathTracer");
+    for (const Layout& given : layouts) out.layouts.push_back(layout_of(args, given));
+    for (const std::vector<Use>& of_material : uses) {
+        out.uses.emplace_back();
+        for (const auto& [texture, channel, first, count, lo, hi] : of_material) {
+            if (texture < 0 || texture >= static_cast<int>(layouts.size()) || channel < 0 ||
+                first < 0 || count < 1 || first + count > max_parameters ||
+                channel + count > out.layouts[static_cast<std::size_t>(texture)].channels)
+                args.range("uses", "channels of textures that are there", "others");
+            out.uses.back().push_back({texture, channel, first, count, lo, hi});
+        }
+    }
+    for (const std::optional<BentNormals>& given : normal_maps) {
+        NormalMap map;
+        if (given) {
+            const auto& [values, u, v] = *given;
+            ArrayArgs own("PathTracer");
+            const float* n = own.in<float>("normal_maps", values, "H W 3");
+            const auto H = static_cast<int>(own.size("H")), W = static_cast<int>(own.size("W"));
+            map.layout = layout_of(own, {H, W, 3, u, v});
+            map.values.assign(n, n + 3 * map.layout.shape.texels());
+        }
+        out.normal_maps.push_back(std::move(map));
+    }
+    geometry.textures = std::move(out);
+}
+
+std::string axes_of(const TextureLayout& layout) {
+    return std::to_string(layout.shape.height) + " " + std::to_string(layout.shape.width) + " " +
+           std::to_string(layout.channels);
+}
+
 /// Checked numbers of a scene, and the materials that they describe.
 template <class R>
 struct SceneNumbers {
     std::vector<Material<R>> drawn, sampling;
+    std::vector<const R*> texels, sampling_texels;
     std::vector<AnyLight<R>> lights;
     PathScene<R> scene;
 
     SceneNumbers(ArrayArgs& args, const PathGeometry& geometry,
                  const std::vector<std::string>& models, const py::array& parameters,
                  const std::optional<py::array>& sampling_parameters, const py::array& emission,
-                 const LightTuples& light_rows)
+                 const LightTuples& light_rows, const std::vector<py::array>& textures,
+                 const std::optional<std::vector<py::array>>& sampling_textures)
         : lights(listed_lights<R>(light_rows)) {
         for (const std::int32_t m : geometry.material)
             if (m < 0 || m >= static_cast<std::int32_t>(models.size()))
@@ -84,9 +145,30 @@ struct SceneNumbers {
             args.range("lights", std::to_string(count) + ", as when the scene was built",
                        std::to_string(lights.size()));
         scene = {&geometry, drawn, sampling_parameters ? sampling : drawn, e, lights};
+        texels = texels_of(args, geometry, "textures", textures);
+        if (sampling_textures)
+            sampling_texels = texels_of(args, geometry, "textures", *sampling_textures);
+        scene.texels = texels;
+        scene.sampling_texels = sampling_textures ? sampling_texels : texels;
+        for (std::size_t m = 0; m < drawn.size(); ++m)
+            for (const TextureUse& use : geometry.textures.of(m))
+                if (use.first + use.count > drawn[m].parameter_count())
+                    args.range("uses", "parameters of the material", "others");
     }
 
 private:
+    static std::vector<const R*> texels_of(ArrayArgs& args, const PathGeometry& geometry,
+                                           const char* name,
+                                           const std::vector<py::array>& textures) {
+        std::vector<const R*> out;
+        const auto& layouts = geometry.textures.layouts;
+        if (textures.size() != layouts.size())
+            args.range(name, std::to_string(layouts.size()) + " textures",
+                       std::to_string(textures.size()));
+        for (std::size_t t = 0; t < layouts.size(); ++t)
+            out.push_back(args.in<R>(name, textures[t], axes_of(layouts[t])));
+        return out;
+    }
     static void read(ArrayArgs& args, const std::vector<std::string>& models, const char* name,
                      const py::array& parameters, std::vector<Material<R>>& out) {
         const R* row = args.in<R>(name, parameters, "P");
@@ -122,15 +204,17 @@ PathOptions options_of(const ArrayArgs& args, const Options& given) {
 
 void trace(const PathGeometry& geometry, const std::vector<std::string>& models,
            const py::array& parameters, const std::optional<py::array>& sampling_parameters,
-           const py::array& emission, const LightTuples& lights, const py::tuple& camera_numbers,
-           const Options& given, std::uint32_t first, std::uint32_t count, py::array radiance,
-           py::array squares) {
+           const py::array& emission, const LightTuples& lights,
+           const std::vector<py::array>& textures,
+           const std::optional<std::vector<py::array>>& sampling_textures,
+           const py::tuple& camera_numbers, const Options& given, std::uint32_t first,
+           std::uint32_t count, py::array radiance, py::array squares) {
     dispatch_real("trace_paths", "parameters", parameters, [&](auto real) {
         using R = decltype(real);
         ArrayArgs args("trace_paths");
         const SceneNumbers<R> numbers(args, geometry, models, parameters, sampling_parameters,
-                                      emission, lights);
-        const Pinhole camera = pinhole(camera_numbers);
+                                      emission, lights, textures, sampling_textures);
+        const ThinLens camera = thin_lens(camera_numbers);
         const std::string axes =
             std::to_string(camera.height) + " " + std::to_string(camera.width) + " 3";
         const PathSums sums{args.out<double>("radiance", radiance, axes),
@@ -143,16 +227,17 @@ void trace(const PathGeometry& geometry, const std::vector<std::string>& models,
 
 void trace_backward(const PathGeometry& geometry, const std::vector<std::string>& models,
                     const py::array& parameters, const py::array& emission,
-                    const LightTuples& lights, const py::tuple& camera_numbers,
-                    const Options& given, std::uint32_t first, std::uint32_t count,
-                    const py::array& d_image, py::array d_parameters, py::array d_emission,
-                    std::vector<py::array> d_lights) {
+                    const LightTuples& lights, const std::vector<py::array>& textures,
+                    const py::tuple& camera_numbers, const Options& given, std::uint32_t first,
+                    std::uint32_t count, const py::array& d_image, py::array d_parameters,
+                    py::array d_emission, std::vector<py::array> d_lights,
+                    std::vector<py::array> d_textures) {
     dispatch_real("trace_paths_backward", "parameters", parameters, [&](auto real) {
         using R = decltype(real);
         ArrayArgs args("trace_paths_backward");
         const SceneNumbers<R> numbers(args, geometry, models, parameters, std::nullopt, emission,
-                                      lights);
-        const Pinhole camera = pinhole(camera_numbers);
+                                      lights, textures, std::nullopt);
+        const ThinLens camera = thin_lens(camera_numbers);
         const double* d = args.in<double>(
             "d_image", d_image,
             std::to_string(camera.height) + " " + std::to_string(camera.width) + " 3");
@@ -160,11 +245,19 @@ void trace_backward(const PathGeometry& geometry, const std::vector<std::string>
         R* to_emission =
             args.out<R>("d_emission", d_emission, std::to_string(geometry.shape_count()) + " 3");
         const std::vector<R*> to_lights = light_derivatives<R>(lights, d_lights);
+        const auto& layouts = geometry.textures.layouts;
+        std::vector<R*> to_textures;
+        if (d_textures.size() != layouts.size())
+            args.range("d_textures", std::to_string(layouts.size()) + " textures",
+                       std::to_string(d_textures.size()));
+        for (std::size_t t = 0; t < layouts.size(); ++t)
+            to_textures.push_back(args.out<R>("d_textures", d_textures[t], axes_of(layouts[t])));
         const PathOptions options = options_of(args, given);
         if (count < 1) args.range("count", "at least 1 sample", "0");
         const py::gil_scoped_release release;
-        trace_paths_backward(numbers.scene, camera, options, {first, count}, d,
-                             PathDerivatives<R>{to_parameters, to_emission, to_lights});
+        trace_paths_backward(
+            numbers.scene, camera, options, {first, count}, d,
+            PathDerivatives<R>{to_parameters, to_emission, to_lights, to_textures});
     });
 }
 
@@ -177,12 +270,12 @@ py::list colors(const Vec3<double>& v) {
 /// One path as a list of dictionaries, double precision.
 py::list path(const PathGeometry& geometry, const std::vector<std::string>& models,
               const py::array& parameters, const py::array& emission, const LightTuples& lights,
-              const py::tuple& camera_numbers, const Options& given, std::uint32_t pixel,
-              std::uint32_t sample) {
+              const std::vector<py::array>& textures, const py::tuple& camera_numbers,
+              const Options& given, std::uint32_t pixel, std::uint32_t sample) {
     ArrayArgs args("trace_path");
     const SceneNumbers<double> numbers(args, geometry, models, parameters, std::nullopt, emission,
-                                       lights);
-    const Pinhole camera = pinhole(camera_numbers);
+                                       lights, textures, std::nullopt);
+    const ThinLens camera = thin_lens(camera_numbers);
     py::list out;
     for (const PathVertex<double>& v :
          trace_path(numbers.scene, camera, options_of(args, given), pixel, sample)) {
@@ -244,31 +337,41 @@ void ambient_occlusion(const PathGeometry& geometry, const py::tuple& camera_num
 
 void bind_path(py::module_& m) {
     py::class_<PathGeometry, std::shared_ptr<PathGeometry>>(
-        m, "PathGeometry", "Shapes of a scene: meshes first, then spheres.")
-        .def(py::init(&build), py::arg("meshes"), py::arg("spheres"), py::arg("material"),
-             py::arg("emission"), py::arg("lights"),
+        m, "PathGeometry", "Shapes of a scene: instances of meshes first, then spheres.")
+        .def(py::init(&build), py::arg("meshes"), py::arg("instances"), py::arg("matrices"),
+             py::arg("spheres"), py::arg("material"), py::arg("emission"), py::arg("lights"),
              "Meshes as (vertices (V, 3) float32, faces (F, 3) uint32, normals (V, 3) float32 or "
-             "None);\nspheres (K, 4) float32; material (S,) int32 and emission (S, 3) float64 of "
-             "each shape. Lights of the list: (name, parameters, constants) or (\"environment\", "
-             "texels, world_from_map, sampler), float64.")
+             "None,\nuv (V, 2) float32 or None); instances (I,) int32, mesh numbers, and matrices "
+             "(I, 3, 4) float64;\nspheres (K, 4) float32; material (S,) int32 and emission (S, 3) "
+             "float64 of each shape,\nwhich are the instances, then the spheres. Lights of the "
+             "list: (name, parameters, "
+             "constants) or\n(\"environment\", texels, world_from_map, sampler), float64.")
         .def("choose_lights", &choose_lights, py::arg("u"),
              "(entries (N,) int64, their probabilities (N,)) by uniform u (N,): first lights of "
-             "the list, then what emits of the shapes.");
+             "the list, then what emits of the shapes.")
+        .def("set_textures", &set_textures, py::arg("layouts"), py::arg("uses"),
+             py::arg("normal_maps"), py::arg("directed"),
+             "Layouts (H, W, C, wrap_u, wrap_v) of textures; for each material uses (texture, "
+             "channel, first,\ncount, lo, hi), and a normal map (values (H, W, 3) float32, wrap_u, "
+             "wrap_v) or None;\ndirected (M,), whether its frame follows u.");
     m.def("trace_paths", &trace, py::arg("geometry"), py::arg("models"), py::arg("parameters"),
-          py::arg("sampling_parameters"), py::arg("emission"), py::arg("lights"), py::arg("camera"),
-          py::arg("options"), py::arg("first"), py::arg("count"), py::arg("radiance"),
-          py::arg("squares"),
+          py::arg("sampling_parameters"), py::arg("emission"), py::arg("lights"),
+          py::arg("textures"), py::arg("sampling_textures"), py::arg("camera"), py::arg("options"),
+          py::arg("first"), py::arg("count"), py::arg("radiance"), py::arg("squares"),
           "Adds samples to radiance (H, W, 3) and squares (H, W, 3), float64. options: (strategy, "
           "heuristic, max_depth, roulette_from, sampler, seed).");
     m.def("trace_paths_backward", &trace_backward, py::arg("geometry"), py::arg("models"),
-          py::arg("parameters"), py::arg("emission"), py::arg("lights"), py::arg("camera"),
-          py::arg("options"), py::arg("first"), py::arg("count"), py::arg("d_image"),
-          py::arg("d_parameters"), py::arg("d_emission"), py::arg("d_lights"),
-          "Adds to d_parameters (P,), d_emission (S, 3) and d_lights, an array like the first of "
-          "each light, for dL/d(mean radiance).");
+          py::arg("parameters"), py::arg("emission"), py::arg("lights"), py::arg("textures"),
+          py::arg("camera"), py::arg("options"), py::arg("first"), py::arg("count"),
+          py::arg("d_image"), py::arg("d_parameters"), py::arg("d_emission"), py::arg("d_lights"),
+          py::arg("d_textures"),
+          "Adds to d_parameters (P,), d_emission (S, 3), d_lights, an array like the first of each "
+          "light, and d_textures for dL/d(mean "
+          "radiance).");
     m.def("trace_path", &path, py::arg("geometry"), py::arg("models"), py::arg("parameters"),
-          py::arg("emission"), py::arg("lights"), py::arg("camera"), py::arg("options"),
-          py::arg("pixel"), py::arg("sample"), "One path, a dictionary a vertex.");
+          py::arg("emission"), py::arg("lights"), py::arg("textures"), py::arg("camera"),
+          py::arg("options"), py::arg("pixel"), py::arg("sample"),
+          "One path, a dictionary a vertex.");
     m.def("ambient_occlusion", &ambient_occlusion, py::arg("geometry"), py::arg("camera"),
           py::arg("radius"), py::arg("seed"), py::arg("first"), py::arg("count"), py::arg("sums"),
           "Adds the free part of each sample to sums (H, W), float64.");

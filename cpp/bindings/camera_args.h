@@ -1,4 +1,5 @@
-// Cameras as Python hands them over: (width, height, fx, fy, cx, cy, rows of world_from_camera).
+// Cameras as Python hands them over: (width, height, fx, fy, cx, cy, rows of world_from_camera), and for a lens its
+// radius and the distance of the plane in focus behind them.
 #pragma once
 
 #include <pybind11/stl.h>
@@ -6,7 +7,7 @@
 #include <algorithm>
 
 #include "array_args.h"
-#include "photograd/camera/pinhole.h"
+#include "photograd/camera/thin_lens.h"
 
 namespace photograd {
 
@@ -22,6 +23,14 @@ inline Pinhole pinhole(const py::tuple& numbers) {
     for (std::size_t i = 0; i < 3; ++i)
         std::copy(pose[i].begin(), pose[i].end(), camera.world_from_camera[i]);
     return camera;
+}
+
+inline ThinLens thin_lens(const py::tuple& numbers) {
+    const double radius = numbers[7].cast<double>(), focus = numbers[8].cast<double>();
+    if (!(radius >= 0) || !(focus > 0))
+        fail(ErrorKind::range, "camera", "lens", "a radius of at least 0 and a focus above 0 m",
+             std::to_string(radius) + " and " + std::to_string(focus));
+    return {pinhole(numbers), radius, focus};
 }
 
 }  // namespace photograd

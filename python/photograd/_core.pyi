@@ -2751,23 +2751,68 @@ class phase_cornette_shanks:
 
 class PathGeometry:
     """
-    Shapes of a scene: meshes first, then spheres.
+    Shapes of a scene: instances of meshes first, then spheres.
     """
     def __init__(
         self,
-        meshes: collections.abc.Sequence[tuple[numpy.ndarray, numpy.ndarray, numpy.ndarray | None]],
+        meshes: collections.abc.Sequence[
+            tuple[numpy.ndarray, numpy.ndarray, numpy.ndarray | None, numpy.ndarray | None]
+        ],
+        instances: numpy.ndarray,
+        matrices: numpy.ndarray,
         spheres: numpy.ndarray,
         material: numpy.ndarray,
         emission: numpy.ndarray,
         lights: collections.abc.Sequence[tuple[typing.Any, ...]],
     ) -> None:
         """
-        Meshes as (vertices (V, 3) float32, faces (F, 3) uint32, normals (V, 3) float32 or None);
-        spheres (K, 4) float32; material (S,) int32 and emission (S, 3) float64 of each shape. Lights of the list: (name, parameters, constants) or ("environment", texels, world_from_map, sampler), float64.
+        Meshes as (vertices (V, 3) float32, faces (F, 3) uint32, normals (V, 3) float32 or None,
+        uv (V, 2) float32 or None); instances (I,) int32, mesh numbers, and matrices (I, 3, 4) float64;
+        spheres (K, 4) float32; material (S,) int32 and emission (S, 3) float64 of each shape,
+        which are the instances, then the spheres. Lights of the list: (name, parameters, constants) or
+        ("environment", texels, world_from_map, sampler), float64.
         """
     def choose_lights(self, u: numpy.ndarray) -> tuple[typing.Any, ...]:
         """
         (entries (N,) int64, their probabilities (N,)) by uniform u (N,): first lights of the list, then what emits of the shapes.
+        """
+    def set_textures(
+        self,
+        layouts: collections.abc.Sequence[
+            tuple[
+                typing.SupportsInt | typing.SupportsIndex,
+                typing.SupportsInt | typing.SupportsIndex,
+                typing.SupportsInt | typing.SupportsIndex,
+                typing.SupportsInt | typing.SupportsIndex,
+                typing.SupportsInt | typing.SupportsIndex,
+            ]
+        ],
+        uses: collections.abc.Sequence[
+            collections.abc.Sequence[
+                tuple[
+                    typing.SupportsInt | typing.SupportsIndex,
+                    typing.SupportsInt | typing.SupportsIndex,
+                    typing.SupportsInt | typing.SupportsIndex,
+                    typing.SupportsInt | typing.SupportsIndex,
+                    typing.SupportsFloat | typing.SupportsIndex,
+                    typing.SupportsFloat | typing.SupportsIndex,
+                ]
+            ]
+        ],
+        normal_maps: collections.abc.Sequence[
+            tuple[
+                numpy.ndarray,
+                typing.SupportsInt | typing.SupportsIndex,
+                typing.SupportsInt | typing.SupportsIndex,
+            ]
+            | None
+        ],
+        directed: collections.abc.Sequence[bool],
+    ) -> None:
+        """
+        Layouts (H, W, C, wrap_u, wrap_v) of textures; for each material uses (texture, channel, first,
+        count, lo, hi), and a normal map (values (H, W, 3) float32, wrap_u, wrap_v) or None;
+        directed (M,), whether its frame follows u.
         """
 
 class TexturePlan:
@@ -3722,6 +3767,7 @@ def trace_path(
     parameters: numpy.ndarray,
     emission: numpy.ndarray,
     lights: collections.abc.Sequence[tuple[typing.Any, ...]],
+    textures: collections.abc.Sequence[numpy.ndarray],
     camera: tuple[typing.Any, ...],
     options: tuple[
         typing.SupportsInt | typing.SupportsIndex,
@@ -3745,6 +3791,8 @@ def trace_paths(
     sampling_parameters: numpy.ndarray | None,
     emission: numpy.ndarray,
     lights: collections.abc.Sequence[tuple[typing.Any, ...]],
+    textures: collections.abc.Sequence[numpy.ndarray],
+    sampling_textures: collections.abc.Sequence[numpy.ndarray] | None,
     camera: tuple[typing.Any, ...],
     options: tuple[
         typing.SupportsInt | typing.SupportsIndex,
@@ -3769,6 +3817,7 @@ def trace_paths_backward(
     parameters: numpy.ndarray,
     emission: numpy.ndarray,
     lights: collections.abc.Sequence[tuple[typing.Any, ...]],
+    textures: collections.abc.Sequence[numpy.ndarray],
     camera: tuple[typing.Any, ...],
     options: tuple[
         typing.SupportsInt | typing.SupportsIndex,
@@ -3784,9 +3833,10 @@ def trace_paths_backward(
     d_parameters: numpy.ndarray,
     d_emission: numpy.ndarray,
     d_lights: collections.abc.Sequence[numpy.ndarray],
+    d_textures: collections.abc.Sequence[numpy.ndarray],
 ) -> None:
     """
-    Adds to d_parameters (P,), d_emission (S, 3) and d_lights, an array like the first of each light, for dL/d(mean radiance).
+    Adds to d_parameters (P,), d_emission (S, 3), d_lights, an array like the first of each light, and d_textures for dL/d(mean radiance).
     """
 
 def uniform(

@@ -6,7 +6,7 @@
 namespace photograd {
 
 template <Real R>
-void trace_paths(const PathScene<R>& scene, const Pinhole& camera, const PathOptions& options,
+void trace_paths(const PathScene<R>& scene, const ThinLens& camera, const PathOptions& options,
                  const SampleRange& samples, const PathSums& sums) {
     const std::int64_t pixels = static_cast<std::int64_t>(camera.width) * camera.height;
     parallel_for((pixels + chunk_pixels - 1) / chunk_pixels, [&](std::int64_t chunk) {
@@ -25,7 +25,7 @@ void trace_paths(const PathScene<R>& scene, const Pinhole& camera, const PathOpt
 }
 
 template <Real R>
-Path<R> trace_path(const PathScene<R>& scene, const Pinhole& camera, const PathOptions& options,
+Path<R> trace_path(const PathScene<R>& scene, const ThinLens& camera, const PathOptions& options,
                    std::uint32_t pixel, std::uint32_t sample) {
     const RandomKey key = key_of(options, pixel, sample);
     const Ray<R> ray = camera_ray<R>(camera, key, SampleNumbers(options.sampler)(key, 0));
@@ -34,13 +34,13 @@ Path<R> trace_path(const PathScene<R>& scene, const Pinhole& camera, const PathO
     return walk.path(0);
 }
 
-template void trace_paths(const PathScene<float>&, const Pinhole&, const PathOptions&,
+template void trace_paths(const PathScene<float>&, const ThinLens&, const PathOptions&,
                           const SampleRange&, const PathSums&);
-template void trace_paths(const PathScene<double>&, const Pinhole&, const PathOptions&,
+template void trace_paths(const PathScene<double>&, const ThinLens&, const PathOptions&,
                           const SampleRange&, const PathSums&);
-template Path<float> trace_path(const PathScene<float>&, const Pinhole&, const PathOptions&,
+template Path<float> trace_path(const PathScene<float>&, const ThinLens&, const PathOptions&,
                                 std::uint32_t, std::uint32_t);
-template Path<double> trace_path(const PathScene<double>&, const Pinhole&, const PathOptions&,
+template Path<double> trace_path(const PathScene<double>&, const ThinLens&, const PathOptions&,
                                  std::uint32_t, std::uint32_t);
 
 }  // namespace photograd

@@ -9,7 +9,7 @@
 // which smooth surfaces refract.
 #pragma once
 
-#include "photograd/camera/pinhole.h"
+#include "photograd/camera/thin_lens.h"
 #include "photograd/render/path_options.h"
 #include "photograd/render/path_vertex.h"
 
@@ -28,27 +28,27 @@ struct PathSums {
 };
 
 template <Real R>
-void trace_paths(const PathScene<R>& scene, const Pinhole& camera, const PathOptions& options,
+void trace_paths(const PathScene<R>& scene, const ThinLens& camera, const PathOptions& options,
                  const SampleRange& samples, const PathSums& sums);
 
 /// Where derivatives are added: parameters of all materials one after another; emission (S, 3); for each light of the
-/// list its parameters, or the texels (H, 2 H, 3) of a map.
+/// list its parameters, or the texels (H, 2 H, 3) of a map; texels (H, W, C) of each texture.
 template <Real R>
 struct PathDerivatives {
     R *parameters, *emission;
-    std::span<R* const> lights;
+    std::span<R* const> lights, textures;
 };
 
 /// Adds derivatives for dL/d(mean radiance) (H, W, 3) of these samples. What is held at a time does not grow with the
 /// size of the picture or the number of samples.
 template <Real R>
-void trace_paths_backward(const PathScene<R>& scene, const Pinhole& camera,
+void trace_paths_backward(const PathScene<R>& scene, const ThinLens& camera,
                           const PathOptions& options, const SampleRange& samples,
                           const double* d_image, const PathDerivatives<R>& out);
 
 /// One path, for those who want to look at its vertices.
 template <Real R>
-Path<R> trace_path(const PathScene<R>& scene, const Pinhole& camera, const PathOptions& options,
+Path<R> trace_path(const PathScene<R>& scene, const ThinLens& camera, const PathOptions& options,
                    std::uint32_t pixel, std::uint32_t sample);
 
 }  // namespace photograd

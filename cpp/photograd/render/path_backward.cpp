@@ -3,6 +3,7 @@
 #include "photograd/core/scatter.h"
 #include "photograd/light/environment_gradient.h"
 #include "photograd/render/path_samples.h"
+#include "photograd/texture/sample.h"
 
 namespace photograd {
 namespace {
@@ -12,8 +13,12 @@ namespace {
 constexpr std::int64_t slab_paths = 1 << 18, fewest_chunks = 16, most_chunks = 2048;
 constexpr std::uint32_t samples_at_once = 256;  // of a pixel, where there are maps
 
+/// What of a chunk goes to texels: of maps, for each light of the list, and of textures.
 template <class R>
-using Directions = std::vector<SeenDirections<R>>;  // of each light of the list
+struct Seen {
+    std::vector<SeenDirections<R>> directions;
+    std::vector<TexelAdjoint<R>> lookups;
+};
 
 template <class R>
 bool is_map(const AnyLight<R>& light) {
@@ -80,23 +85,42 @@ private:
 /// The texels' part of a slab: directions of all chunks in order, each texel's added by its owner.
 template <class R>
 void scatter_directions(const Environment<R>& map, std::size_t light,
-                        const std::vector<Directions<R>>& chunks, std::vector<double>& d_texels) {
+                        const std::vector<Seen<R>>& chunks, std::vector<double>& d_texels) {
     std::vector<double> w, d_L;
-    for (const Directions<R>& seen : chunks) {
-        w.insert(w.end(), seen[light].w.begin(), seen[light].w.end());
-        d_L.insert(d_L.end(), seen[light].d_L.begin(), seen[light].d_L.end());
+    for (const Seen<R>& of_chunk : chunks) {
+        const SeenDirections<R>& seen = of_chunk.directions[light];
+        w.insert(w.end(), seen.w.begin(), seen.w.end());
+        d_L.insert(d_L.end(), seen.d_L.begin(), seen.d_L.end());
     }
     const Environment<double> wide{nullptr, map.height, Mat3<double>(map.world_from_map), nullptr};
     environment_backward(wide, w.data(), d_L.data(), static_cast<std::int64_t>(w.size() / 3),
                          d_texels.data());
 }
 
-/// Adds one chunk's derivatives to `row` and returns the directions in which it saw maps.
+/// The same of textures, by the owners of their texels (texture/tile.h).
 template <class R>
-Directions<R> chunk_backward(const PathScene<R>& scene, const Pinhole& camera,
-                             const PathOptions& options, const SampleRange& samples, double share,
-                             const double* d_image, std::int64_t begin, std::int64_t end,
-                             double* row) {
+void scatter_lookups(const PathScene<R>& scene, const std::vector<Seen<R>>& chunks,
+                     std::span<R* const> d_textures) {
+    for (std::size_t t = 0; t < d_textures.size(); ++t) {
+        TexelAdjoint<R> all;
+        for (const Seen<R>& of_chunk : chunks) {
+            const TexelAdjoint<R>& own = of_chunk.lookups[t];
+            all.uv.insert(all.uv.end(), own.uv.begin(), own.uv.end());
+            all.d_color.insert(all.d_color.end(), own.d_color.begin(), own.d_color.end());
+        }
+        const TextureLayout& layout = scene.geometry->textures.layouts[t];
+        if (!all.uv.empty())
+            sample_backward<R>({scene.texels[t], layout.shape, layout.channels}, all.uv.data(),
+                               static_cast<std::int64_t>(all.uv.size() / 2), all.d_color.data(),
+                               d_textures[t], nullptr);
+    }
+}
+
+/// Adds one chunk's derivatives to `row` and returns what goes to texels.
+template <class R>
+Seen<R> chunk_backward(const PathScene<R>& scene, const ThinLens& camera,
+                       const PathOptions& options, const SampleRange& samples, double share,
+                       const double* d_image, std::int64_t begin, std::int64_t end, double* row) {
     PathGradient<R> gradient(scene);
     std::vector<Vec3<R>> ahead(static_cast<std::size_t>(options.max_depth));
     for_each_path(scene, camera, options, samples, false, begin, end,
@@ -107,17 +131,17 @@ Directions<R> chunk_backward(const PathScene<R>& scene, const Pinhole& camera,
                       gather_backward<R>(scene, path, ahead.data(), d_L, gradient);
                   });
     DerivativeRow<R>::put(gradient, row);
-    Directions<R> seen(scene.lights.size());
-    for (std::size_t i = 0; i < seen.size(); ++i)
+    Seen<R> seen{std::vector<SeenDirections<R>>(scene.lights.size()), std::move(gradient.texels)};
+    for (std::size_t i = 0; i < seen.directions.size(); ++i)
         if (is_map(scene.lights[i]))
-            seen[i] = std::move(std::get<SeenDirections<R>>(gradient.lights[i].model));
+            seen.directions[i] = std::move(std::get<SeenDirections<R>>(gradient.lights[i].model));
     return seen;
 }
 
 }  // namespace
 
 template <Real R>
-void trace_paths_backward(const PathScene<R>& scene, const Pinhole& camera,
+void trace_paths_backward(const PathScene<R>& scene, const ThinLens& camera,
                           const PathOptions& options, const SampleRange& samples,
                           const double* d_image, const PathDerivatives<R>& out) {
     const std::int64_t pixels = static_cast<std::int64_t>(camera.width) * camera.height;
@@ -125,7 +149,7 @@ void trace_paths_backward(const PathScene<R>& scene, const Pinhole& camera,
     const double share = 1.0 / samples.count;
     DerivativeRow<R> row(scene);
     std::vector<std::vector<double>> texels(scene.lights.size());
-    bool maps = false;
+    bool maps = !out.textures.empty();  // or textures: something that has texels
     for (std::size_t i = 0; i < texels.size(); ++i)
         if (const auto* map = std::get_if<Environment<R>>(&scene.lights[i].model)) {
             const auto height = static_cast<std::size_t>(map->height);
@@ -140,7 +164,7 @@ void trace_paths_backward(const PathScene<R>& scene, const Pinhole& camera,
         const SampleRange now{samples.first + done, std::min(batch, samples.count - done)};
         for (std::int64_t first = 0; first < chunks; first += slab) {
             const std::int64_t count = std::min(slab, chunks - first);
-            std::vector<Directions<R>> seen(static_cast<std::size_t>(count));
+            std::vector<Seen<R>> seen(static_cast<std::size_t>(count));
             sum_partials<double>(count, row.sums(), [&](std::int64_t i, std::span<double> partial) {
                 const std::int64_t begin = (first + i) * chunk_pixels;
                 seen[static_cast<std::size_t>(i)] =
@@ -150,6 +174,7 @@ void trace_paths_backward(const PathScene<R>& scene, const Pinhole& camera,
             for (std::size_t k = 0; k < texels.size(); ++k)
                 if (const auto* map = std::get_if<Environment<R>>(&scene.lights[k].model))
                     scatter_directions(*map, k, seen, texels[k]);
+            scatter_lookups(scene, seen, out.textures);
         }
     }
     row.add_to(scene, out);
@@ -158,10 +183,10 @@ void trace_paths_backward(const PathScene<R>& scene, const Pinhole& camera,
             out.lights[i][k] += static_cast<R>(texels[i][k]);
 }
 
-template void trace_paths_backward(const PathScene<float>&, const Pinhole&, const PathOptions&,
+template void trace_paths_backward(const PathScene<float>&, const ThinLens&, const PathOptions&,
                                    const SampleRange&, const double*,
                                    const PathDerivatives<float>&);
-template void trace_paths_backward(const PathScene<double>&, const Pinhole&, const PathOptions&,
+template void trace_paths_backward(const PathScene<double>&, const ThinLens&, const PathOptions&,
                                    const SampleRange&, const double*,
                                    const PathDerivatives<double>&);
 

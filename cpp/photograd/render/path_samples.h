@@ -16,7 +16,7 @@ inline RandomKey key_of(const PathOptions& options, std::int64_t pixel, std::uin
 
 /// visit(pixel, path) for every sample of the pixels [begin, end), pixel by pixel. Lanes hold successive samples.
 template <class R, class Visit>
-void for_each_path(const PathScene<R>& scene, const Pinhole& camera, const PathOptions& options,
+void for_each_path(const PathScene<R>& scene, const ThinLens& camera, const PathOptions& options,
                    const SampleRange& samples, bool stop_when_black, std::int64_t begin,
                    std::int64_t end, Visit&& visit) {
     constexpr int width = RayPacket::width;

@@ -38,6 +38,7 @@ struct LightVertex {
 template <class R>
 struct PathVertex {
     std::int32_t shape = SceneLights::background;
+    Vec2<R> uv{R(0)};         // where the material has textures
     Vec3<R> direction{R(0)};  // world, of the ray that arrived here
     Vec3<R> emitted{R(0)};    // what is met there sends to where the ray came from
     R emission_weight = R(0);
@@ -61,9 +62,10 @@ struct PathGradient {
     std::vector<Material<R>> materials;
     std::vector<Vec3<R>> emission;
     std::vector<AnyLightGradient<R>> lights;  // of the list
+    std::vector<TexelAdjoint<R>> texels;      // of each texture, to be added up
 
     explicit PathGradient(const PathScene<R>& scene)
-        : emission(scene.geometry->shape_count(), Vec3<R>(R(0))) {
+        : emission(scene.geometry->shape_count(), Vec3<R>(R(0))), texels(scene.texels.size()) {
         for (const Material<R>& m : scene.materials) materials.push_back(m.zero());
         for (const AnyLight<R>& light : scene.lights) lights.push_back(zero_gradient(light));
     }
@@ -116,15 +118,28 @@ void gather_backward(const PathScene<R>& scene, const Path<R>& path, const Vec3<
         if (v.shape < 0) return;
         const auto m =
             static_cast<std::size_t>(scene.geometry->material[static_cast<std::size_t>(v.shape)]);
-        const Material<R>& material = scene.materials[m];
+        const SurfaceTextures& textures = scene.geometry->textures;
+        const std::span<const TextureUse> uses = textures.of(m);
+        // With textures the material at this point, and its derivative, are copies that textured_backward takes apart.
+        Material<R> own, d_own;
+        if (!uses.empty()) {
+            own = textured(scene.materials[m], uses, textures, scene.texels, v.uv);
+            d_own = own.zero();
+        }
+        const Material<R>& material = uses.empty() ? scene.materials[m] : own;
+        Material<R>& d_material = uses.empty() ? d_scene.materials[m] : d_own;
         if (v.light.weight > R(0)) {
             const Vec3<R> d = d_L * v.light.weight;
             sent_backward(scene, v.light, d * v.light.f, d_scene);
-            material.value_backward(v.wo, v.light.wi, -1, d * v.light.sent, d_scene.materials[m]);
+            material.value_backward(v.wo, v.light.wi, -1, d * v.light.sent, d_material);
         }
-        if (!(v.weight > R(0))) return;
-        material.value_backward(v.wo, v.wi, v.lobe, d_L * ahead[k] * v.weight,
-                                d_scene.materials[m]);
+        const bool goes_on = v.weight > R(0);
+        if (goes_on)
+            material.value_backward(v.wo, v.wi, v.lobe, d_L * ahead[k] * v.weight, d_material);
+        if (!uses.empty())
+            textured_backward(scene.materials[m], uses, textures, scene.texels, v.uv, d_own,
+                              d_scene.materials[m], d_scene.texels);
+        if (!goes_on) return;
         d_L *= v.value * v.weight;
     }
 }

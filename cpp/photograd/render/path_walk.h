@@ -59,6 +59,8 @@ private:
         R pdf = R(0);  // of the ray's direction; 0 from the camera and from smooth surfaces
         SurfaceHit<R> hit;
         SurfaceSide<R> side;
+        bool textured = false;  // the hit has a material of its own, not one of the scene's
+        Material<R> own_sampling, own_drawn;
         Path<R> path;
         Vec3<R> light_end;  // of the shadow ray, unless the light is at infinity
         bool light_far = false;
@@ -107,6 +109,7 @@ private:
         }
         lane.hit = surface_hit(geometry, lane.ray, instance, primitive, t);
         v.shape = lane.hit.shape;
+        look_up_textures(lane);
         const Material<R>& material = sampling_of(lane);
         lane.side = SurfaceSide<R>(lane.hit, -v.direction, material.transmits());
         v.wo = lane.side.wo;
@@ -117,6 +120,18 @@ private:
         v.light_pdf = geometry.lights.hit_pdf(geometry.bvh, v.shape, lane.hit.primitive,
                                               lane.previous, length(way), cosine);
         v.emission_weight = emission_weight(v);
+    }
+    void look_up_textures(Lane& lane) const {
+        const std::size_t m = material_of(lane);
+        const SurfaceTextures& textures = scene_.geometry->textures;
+        const std::span<const TextureUse> uses = textures.of(m);
+        lane.textured = !uses.empty();
+        if (!lane.textured) return;
+        const Vec2<R> uv = lane.path.back().uv = lane.hit.uv;
+        lane.own_drawn = textured(scene_.materials[m], uses, textures, scene_.texels, uv);
+        lane.own_sampling = scene_.drawn_as_sampled() ? lane.own_drawn
+                                                      : textured(scene_.sampling[m], uses, textures,
+                                                                 scene_.sampling_texels, uv);
     }
     R emission_weight(const PathVertex<R>& v) const {
         if (v.pdf == R(0) || v.light_pdf == R(0) || options_.strategy == Strategy::bsdf)
@@ -249,10 +264,10 @@ private:
             scene_.geometry->material[static_cast<std::size_t>(lane.hit.shape)]);
     }
     const Material<R>& sampling_of(const Lane& lane) const {
-        return scene_.sampling[material_of(lane)];
+        return lane.textured ? lane.own_sampling : scene_.sampling[material_of(lane)];
     }
     const Material<R>& drawn_as(const Lane& lane) const {
-        return scene_.materials[material_of(lane)];
+        return lane.textured ? lane.own_drawn : scene_.materials[material_of(lane)];
     }
 
     const PathScene<R>& scene_;

@@ -86,6 +86,17 @@ void Material<R>::add_to(double* out) const {
 }
 
 template <Real R>
+void Material<R>::get(R* row) const {
+    std::visit([&](const auto& m) { for_each_scalar([&](const auto& x) { *row++ = x; }, m); },
+               model);
+}
+
+template <Real R>
+void Material<R>::set(const R* row) {
+    std::visit([&](auto& m) { for_each_scalar([&](auto& x) { x = *row++; }, m); }, model);
+}
+
+template <Real R>
 bool Material<R>::transmits() const {
     return std::visit(
         []<class M>(const M&) {

@@ -34,6 +34,8 @@ struct ScatterSample {
     int lobe = -1;
 };
 
+inline constexpr int max_parameters = 64;  // numbers of one model
+
 template <Real R>
 struct Material {
     AnyModel<R> model;
@@ -45,6 +47,9 @@ struct Material {
     [[nodiscard]] int parameter_count() const;
     /// Adds all parameters to out, in their order.
     void add_to(double* out) const;
+    /// All parameters, in the same order, to or from a row of them.
+    void get(R* row) const;
+    void set(const R* row);
 
     /// Whether light may pass; such a surface has an inside, and is not turned towards the viewer.
     [[nodiscard]] bool transmits() const;

@@ -10,8 +10,10 @@
 #include <vector>
 
 #include "photograd/core/frame.h"
+#include "photograd/scene/bent_normal.h"
 #include "photograd/scene/material.h"
 #include "photograd/scene/scene_lights.h"
+#include "photograd/scene/textured.h"
 
 namespace photograd {
 
@@ -20,6 +22,7 @@ struct PathGeometry {
     std::vector<std::int32_t> material;       // of each shape
     std::vector<std::vector<float>> normals;  // of each mesh: (V, 3) shading normals, or none
     SceneLights lights;
+    SurfaceTextures textures;
     double offset;  // by which rays start away from a surface, metres
 
     PathGeometry(Bvh hierarchy, std::vector<std::int32_t> materials,
@@ -45,8 +48,9 @@ template <Real R>
 struct PathScene {
     const PathGeometry* geometry;
     std::span<const Material<R>> materials, sampling;
-    const R* emission;                    // (S, 3)
-    std::span<const AnyLight<R>> lights;  // of the list
+    const R* emission;                                            // (S, 3)
+    std::span<const AnyLight<R>> lights;                          // of the list
+    std::span<const R* const> texels = {}, sampling_texels = {};  // (H, W, C) of each texture
 
     [[nodiscard]] Vec3<R> emitted(std::int32_t shape) const {
         const R* L = emission + 3 * static_cast<std::size_t>(shape);
@@ -65,7 +69,9 @@ struct PathScene {
         }
         return sum;
     }
-    [[nodiscard]] bool drawn_as_sampled() const { return materials.data() == sampling.data(); }
+    [[nodiscard]] bool drawn_as_sampled() const {
+        return materials.data() == sampling.data() && texels.data() == sampling_texels.data();
+    }
 };
 
 /// Where a ray met a shape. `outside` is the unit normal of the triangle's winding, or out of the sphere; `shading` is
@@ -74,7 +80,43 @@ template <class R>
 struct SurfaceHit {
     std::int32_t shape, primitive;
     Vec3<R> position, outside, shading;
+    Vec2<R> uv{R(0)};
+    Vec3<R> along{R(0)};  // growing u, where the material has a direction; or 0
 };
+
+/// A normal of an instance in the world, not of unit length: by the cofactors of the matrix, which are its inverse's
+/// transpose times a determinant that is positive here.
+template <class R>
+Vec3<R> world_normal(const Affine& world_from_object, const Vec3<R>& n) {
+    const auto& m = world_from_object.m;
+    const auto row = [&](std::size_t i) {
+        return Vec3<R>(R(m[4 * i]), R(m[4 * i + 1]), R(m[4 * i + 2]));
+    };
+    const Vec3<R> a = row(0), b = row(1), c = row(2);
+    return {dot(cross(b, c), n), dot(cross(c, a), n), dot(cross(a, b), n)};
+}
+
+/// The interpolated normal of a mesh that has normals, on the side of the geometric one.
+template <class R>
+void shade(const PathGeometry& scene, std::int32_t instance, std::int32_t primitive,
+           const TrianglePoint<R>& p, SurfaceHit<R>& hit) {
+    const Instance& place = scene.bvh.instances()[static_cast<std::size_t>(instance)];
+    const std::vector<float>& normals = scene.normals[static_cast<std::size_t>(place.mesh)];
+    if (normals.empty()) return;
+    const std::uint32_t* corner =
+        scene.bvh.mesh_of(instance).corners(static_cast<std::uint32_t>(primitive));
+    const R weight[3] = {R(1) - p.u - p.v, p.u, p.v};
+    Vec3<R> sum(R(0));
+    for (int k = 0; k < 3; ++k) {
+        const float* n = normals.data() + 3 * static_cast<std::size_t>(corner[k]);
+        sum += weight[k] * Vec3<R>(R(n[0]), R(n[1]), R(n[2]));
+    }
+    if (!(length(sum) > R(1e-3))) return;  // normals that cancel say nothing
+    if (!place.world_from_object.is_identity()) sum = world_normal(place.world_from_object, sum);
+    const R size = length(sum);
+    if (!(size > R(0))) return;
+    hit.shading = sum * ((dot(sum, p.normal) < R(0) ? R(-1) : R(1)) / size);
+}
 
 template <class R>
 SurfaceHit<R> surface_hit(const PathGeometry& scene, const Ray<R>& ray, std::int32_t instance,
@@ -85,20 +127,15 @@ SurfaceHit<R> surface_hit(const PathGeometry& scene, const Ray<R>& ray, std::int
         return {instance + primitive, primitive, p.position, p.normal, p.normal};
     }
     const TrianglePoint<R> p = scene.bvh.surface_point(ray, instance, primitive);
-    SurfaceHit<R> hit{instance, primitive, p.position, p.normal, p.normal};
-    const std::vector<float>& normals = scene.normals[static_cast<std::size_t>(instance)];
-    if (normals.empty()) return hit;
-    const std::uint32_t* corner =
-        scene.bvh.mesh_of(instance).corners(static_cast<std::uint32_t>(primitive));
-    const R weight[3] = {R(1) - p.u - p.v, p.u, p.v};
-    Vec3<R> sum(R(0));
-    for (int k = 0; k < 3; ++k) {
-        const float* n = normals.data() + 3 * static_cast<std::size_t>(corner[k]);
-        sum += weight[k] * Vec3<R>(R(n[0]), R(n[1]), R(n[2]));
-    }
-    const R size = length(sum);
-    if (!(size > R(1e-3))) return hit;  // normals that cancel say nothing
-    hit.shading = sum * ((dot(sum, p.normal) < R(0) ? R(-1) : R(1)) / size);
+    SurfaceHit<R> hit{instance, primitive, p.position,
+                      p.normal, p.normal,  scene.bvh.texture_point(instance, primitive, p.u, p.v)};
+    shade(scene, instance, primitive, p, hit);
+    const auto material =
+        static_cast<std::size_t>(scene.material[static_cast<std::size_t>(instance)]);
+    if (const NormalMap* map = scene.textures.bends(material))
+        bend_normal(scene.bvh, *map, instance, primitive, hit.uv, hit.outside, hit.shading);
+    if (scene.textures.is_directed(material) && scene.bvh.mesh_of(instance).has_uv())
+        hit.along = TextureAxes<R>::of(scene.bvh, instance, primitive).u;
     return hit;
 }
 
@@ -122,6 +159,11 @@ struct SurfaceSide {
         Vec3<R> shading = turn ? -hit.shading : hit.shading;
         if (!(dot(shading, viewer) * dot(normal, viewer) > R(0))) shading = normal;
         frame = Frame<R>::from_normal(shading);
+        const Vec3<R> along = hit.along - shading * dot(shading, hit.along);
+        if (dot(along, along) > R(0)) {
+            frame.tangent = normalize(along);
+            frame.bitangent = cross(shading, frame.tangent);
+        }
         wo = frame.to_local(viewer);
     }
     /// Whether a direction lies on the same side of the surface as of the shading normal.

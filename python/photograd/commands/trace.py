@@ -30,7 +30,8 @@ from photograd.errors import IoError, RangeError, message
 from photograd.lights import EnvironmentMap
 from photograd.transport.accumulation import Accumulation, load_accumulation
 from photograd.transport.builtin import BUILTIN, builtin_scene
-from photograd.transport.scene import Scene
+from photograd.transport.mesh_files import SUFFIXES, model_scene, read_model
+from photograd.transport.scene import MeshShape, Scene
 from photograd.transport.scene_file import read_scene
 from photograd.transport.tracer import HEURISTICS, STRATEGIES, PathOptions, PathTracer
 
@@ -43,13 +44,20 @@ INTEGRATORS = ("path", "direct", "occlusion")
 SceneArgument = Annotated[
     str,
     typer.Argument(
-        help=f"A scene file (.toml), or a built-in scene: {', '.join(BUILTIN)}.", metavar="SCENE"
+        help=f"A scene file (.toml), a mesh file ({', '.join(SUFFIXES)}), or a built-in scene: "
+        f"{', '.join(BUILTIN)}.",
+        metavar="SCENE",
     ),
 ]
 OutOption = Annotated[Path, typer.Option("--out", help="The picture: .exr, or .png alone.")]
 SppOption = Annotated[int, typer.Option("--spp", min=1, help="Samples a pixel.")]
 SizeOption = Annotated[
-    int, typer.Option("--size", min=1, help="Pixels along an edge of a built-in scene.")
+    int,
+    typer.Option(
+        "--size",
+        min=1,
+        help="Pixels along an edge of a built-in scene or of a mesh file's picture.",
+    ),
 ]
 IntegratorOption = Annotated[
     str, typer.Option("--integrator", help=f"What is estimated: {', '.join(INTEGRATORS)}.")
@@ -93,6 +101,9 @@ def trace(
     debug: DebugOption = False,  # noqa: ARG001  read by the command line's frame
 ) -> None:
     """Path trace a scene.
+
+    A mesh file is seen from in front and above, with its own materials, under a pale sky and one
+    lamp. What it has and cannot be drawn is named.
 
     Writes the picture as linear EXR, a PNG preview beside it every ten seconds, and OUT.sums.npz,
     from which --resume goes on: after Ctrl-C, or for more samples.
@@ -171,22 +182,31 @@ def _run(add: Any, save: Any, sums: Accumulation, spp: int, stopping: StopReques
     return seconds
 
 
+def scene_size(scene: Scene) -> tuple[int, int]:
+    """Triangles, and numbers in textures."""
+    meshes = [shape for shape in scene.shapes if isinstance(shape, MeshShape)]
+    texels = sum(texture.values.size for texture in scene.textures.values())
+    return sum(len(shape.faces) for shape in meshes), texels
+
+
 def _load(name: str, size: int) -> tuple[Scene, str]:
     """The scene, and a text that changes with it."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         if name in BUILTIN:
             loaded = builtin_scene(name, size), f"{name} {size}"
-        elif not name.lower().endswith(".toml") and not Path(name).exists():
+        elif not name.lower().endswith((".toml", *SUFFIXES)) and not Path(name).exists():
             loaded = builtin_scene(name, size), ""  # says what the names are
         else:
             path = Path(name)
-            scene = read_scene(path)
-            found = hashlib.sha256(path.read_bytes())
+            meshes = path.suffix.lower() in SUFFIXES
+            scene = model_scene(read_model(path), path.stem, size) if meshes else read_scene(path)
+            # Of the meshes and textures that it names, only the sizes are looked at.
+            found = hashlib.sha256(path.read_bytes() + repr(scene_size(scene)).encode())
             for light in scene.lights:
                 if isinstance(light, EnvironmentMap):  # from a file of its own
                     found.update(light.texels.tobytes())
-            loaded = scene, found.hexdigest()
+            loaded = scene, f"{found.hexdigest()} {size if meshes else ''}"
     for warning in caught:
         note(f"{warning.message}")
     return loaded

@@ -1,27 +1,39 @@
 """Light transport: scenes of shapes and materials, path traced, with derivatives.
 
-`Scene` says what there is, `PathTracer` draws it; `read_scene` and `builtin` bring scenes from
-files and by name. The mathematics is in cpp/photograd/render/path_vertex.h and path_walk.h.
+`Scene` says what there is, `PathTracer` draws it; `read_scene`, `read_model` (mesh files) and
+`builtin` bring scenes from files and by name. The mathematics is in
+cpp/photograd/render/path_vertex.h and path_walk.h.
 """
 
 from __future__ import annotations
 
 from photograd.transport.accumulation import Accumulation
 from photograd.transport.builtin import BUILTIN, builtin_scene
+from photograd.transport.lens import Lens
+from photograd.transport.mesh_files import ModelFile, model_scene, read_model
 from photograd.transport.scene import Environment, Material, MeshShape, Scene, SphereShape
 from photograd.transport.scene_file import read_scene
+from photograd.transport.texture import NormalMap, Texture, TextureUse, read_texture
 from photograd.transport.tracer import PathOptions, PathTracer
 
 __all__ = [
     "BUILTIN",
     "Accumulation",
     "Environment",
+    "Lens",
     "Material",
     "MeshShape",
+    "ModelFile",
+    "NormalMap",
     "PathOptions",
     "PathTracer",
     "Scene",
     "SphereShape",
+    "Texture",
+    "TextureUse",
     "builtin_scene",
+    "model_scene",
+    "read_model",
     "read_scene",
+    "read_texture",
 ]

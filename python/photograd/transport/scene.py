@@ -6,6 +6,7 @@ World as everywhere: right-handed, +Y up, metres; radiance and reflectances are 
 from __future__ import annotations
 
 import warnings
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -19,6 +20,8 @@ from photograd.data.camera import Camera
 from photograd.errors import DtypeError, RangeError, SceneError, ShapeError, message
 from photograd.lights import Light
 from photograd.mesh import drop_degenerate
+from photograd.transport.lens import PINHOLE, Lens
+from photograd.transport.texture import NormalMap, Texture, TextureUse, checked_uses
 
 Array = npt.NDArray[Any]
 MODELS: dict[str, bsdf.BsdfModel | delta_bsdf.DeltaModel] = {
@@ -35,6 +38,9 @@ class Material:
     Attributes:
         model: a name of `MODELS`.
         values: {parameter: number or (3,)}, all of them.
+        textures: {parameter: the texture that scales its value}; the product is brought into the
+            parameter's range.
+        normal_map: bends the shading normals, or None.
 
     Raises:
         SceneError: no such model.
@@ -43,12 +49,21 @@ class Material:
 
     model: str
     values: Mapping[str, Any]
+    textures: Mapping[str, TextureUse] = field(default_factory=dict)
+    normal_map: NormalMap | None = None
 
     def __post_init__(self) -> None:
         if self.model not in MODELS:
             known = choose_from(self.model, MODELS)
             raise SceneError(message("Material", "model", "a reflectance model", self.model, known))
         self.row()
+        sizes = {parameter.name: parameter.size for parameter in self.parameters}
+        object.__setattr__(self, "textures", checked_uses(self.model, sizes, self.textures))
+
+    @property
+    def needs_uv(self) -> bool:
+        """Whether surfaces of this material need texture coordinates."""
+        return bool(self.textures) or self.normal_map is not None
 
     @property
     def parameters(self) -> tuple[bsdf.Parameter, ...]:
@@ -75,10 +90,14 @@ class MeshShape:
         material: name of one of the scene's materials.
         emission: (3,) radiance of the front; 0 for all that does not shine.
         normals: (V, 3) shading normals of any length, or None for flat triangles.
+        uv: (V, 2) texture coordinates, v downwards, or None.
+        places: world_from_object, (4, 4) each, of instances of this mesh; none places it once,
+            where it is. All shine and reflect alike, and are kept in memory once.
 
     Raises:
         DtypeError, ShapeError: arrays of other types or shapes.
-        RangeError: vertex numbers out of range, or negative emission.
+        RangeError: vertex numbers out of range, negative emission, or a place that mirrors or
+            flattens.
         SceneError: no triangle is left; for a shape that shines, a light without area.
     """
 
@@ -88,6 +107,8 @@ class MeshShape:
     material: str
     emission: Array = field(default_factory=lambda: np.zeros(3))
     normals: Array | None = None
+    uv: Array | None = None
+    places: tuple[Array, ...] = ()
 
     def __post_init__(self) -> None:
         vertices = _float_rows(self.name, "vertices", self.vertices)
@@ -117,6 +138,25 @@ class MeshShape:
                 wrong = f"shape {normals.shape}"
                 raise ShapeError(message("MeshShape", f"{self.name}.normals", expected, wrong))
             object.__setattr__(self, "normals", normals)
+        if self.uv is not None:
+            uv = np.asarray(self.uv)
+            if uv.dtype.kind != "f" or uv.shape != (len(vertices), 2) or not np.isfinite(uv).all():
+                expected = f"finite floating point numbers, shape ({len(vertices)}, 2)"
+                got = f"{uv.dtype}, shape {uv.shape}"
+                raise ShapeError(message("MeshShape", f"{self.name}.uv", expected, got))
+            object.__setattr__(self, "uv", np.ascontiguousarray(uv, np.float32))
+        object.__setattr__(self, "places", tuple(_place(self.name, m) for m in self.places))
+
+    @property
+    def box(self) -> Array:
+        """(2, 3) lower and upper corner of all instances, metres."""
+        corners = self.vertices[self.faces.reshape(-1)].astype(np.float64)
+        if not self.places:
+            return np.array([corners.min(axis=0), corners.max(axis=0)])
+        ends = np.array([corners.min(axis=0), corners.max(axis=0)])
+        eight = np.array([[ends[i, 0], ends[j, 1], ends[k, 2]] for i, j, k in np.ndindex(2, 2, 2)])
+        world = np.concatenate([eight @ m[:3, :3].T + m[:3, 3] for m in self.places])
+        return np.array([world.min(axis=0), world.max(axis=0)])
 
 
 @dataclass(frozen=True, eq=False)
@@ -151,6 +191,11 @@ class SphereShape:
             raise RangeError(message("SphereShape", f"{self.name}.radius", expected, self.radius))
         object.__setattr__(self, "center", center)
         object.__setattr__(self, "emission", emission)
+
+    @property
+    def box(self) -> Array:
+        """(2, 3) lower and upper corner, metres."""
+        return np.array([self.center - self.radius, self.center + self.radius])
 
 
 Shape = MeshShape | SphereShape
@@ -195,10 +240,12 @@ class Scene:
         lights: of `photograd.lights`, more than one of a kind if need be. Those with a surface are
             seen by rays like shapes and reflect nothing; lights at infinity add up, together with
             the environment.
+        textures: by the names that materials use.
+        lens: of the camera.
 
     Raises:
-        SceneError: no shape, two of one name, a material that does not exist, or a light that is
-            none.
+        SceneError: no shape, two of one name, a material or texture that does not exist, or a
+            textured shape without texture coordinates, or a light that is none.
     """
 
     name: str
@@ -207,6 +254,8 @@ class Scene:
     camera: Camera
     environment: Environment | None = None
     lights: tuple[Light, ...] = ()
+    textures: Mapping[str, Texture] = field(default_factory=dict)
+    lens: Lens = PINHOLE
 
     def __post_init__(self) -> None:
         for i, light in enumerate(self.lights):
@@ -215,9 +264,11 @@ class Scene:
                 raise SceneError(message("Scene", f"lights[{i}]", expected, got))
         if not self.shapes:
             raise SceneError(message("Scene", "shapes", "at least one", "none"))
-        names = [shape.name for shape in self.shapes]
+        for name, material in self.materials.items():
+            _check_textures(name, material, self.textures)
+        names = Counter(shape.name for shape in self.shapes)
         for shape in self.shapes:
-            if names.count(shape.name) > 1:
+            if names[shape.name] > 1:
                 got = f"two of the name '{shape.name}'"
                 raise SceneError(message("Scene", "shapes", "names of their own", got))
             if shape.material not in self.materials:
@@ -225,6 +276,36 @@ class Scene:
                 argument = f"{shape.name}.material"
                 expected = "one of the scene's materials"
                 raise SceneError(message("Scene", argument, expected, shape.material, known))
+            if self.materials[shape.material].needs_uv and getattr(shape, "uv", None) is None:
+                expected = f"texture coordinates, which '{shape.material}' needs"
+                raise SceneError(message("Scene", f"{shape.name}.uv", expected, "none"))
+
+
+def _check_textures(name: str, material: Material, textures: Mapping[str, Texture]) -> None:
+    sizes = {parameter.name: parameter.size for parameter in material.parameters}
+    for parameter, use in material.textures.items():
+        argument = f"materials.{name}.textures.{parameter}"
+        if use.texture not in textures:
+            known = choose_from(use.texture, textures)
+            raise SceneError(
+                message("Scene", argument, "one of the scene's textures", use.texture, known)
+            )
+        last = use.channel + sizes[parameter]
+        if last > textures[use.texture].channels:
+            got = f"{textures[use.texture].channels} in '{use.texture}'"
+            raise SceneError(message("Scene", argument, f"at least {last} channels", got))
+
+
+def _place(name: str, matrix: Any) -> Array:
+    place = np.array(matrix, np.float64)
+    if place.shape != (4, 4) or not np.isfinite(place).all():
+        expected = "finite matrices (4, 4)"
+        raise ShapeError(message("MeshShape", f"{name}.places", expected, np.shape(matrix)))
+    volume = float(np.linalg.det(place[:3, :3]))
+    if not volume > 0:
+        expected = "a positive determinant"
+        raise RangeError(message("MeshShape", f"{name}.places", expected, volume))
+    return place
 
 
 def _usable(name: str, vertices: Array, faces: Array) -> tuple[Array, Array]:

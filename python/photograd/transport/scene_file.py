@@ -5,6 +5,8 @@ position = [0, 1, 6.8]
 look_at = [0, 1, 0]
 field_of_view = 19.5          # degrees, vertical
 size = [256, 256]             # width, height in pixels
+aperture = 0.05               # optional: radius of the lens, metres
+focus = 6.8                   # of what is sharp; the point looked at, if absent
 
 [environment]                 # optional; or zenith, horizon and ground
 radiance = 0.2
@@ -14,7 +16,7 @@ model = "lambert"             # and the parameters of that model
 albedo = [0.7, 0.7, 0.7]
 
 [[shapes]]
-kind = "rectangle"            # or box, sphere, triangles
+kind = "rectangle"            # or box, sphere, triangles, mesh
 corner = [-1, 0, 1]
 edge_u = [2, 0, 0]
 edge_v = [0, 0, -2]
@@ -25,6 +27,8 @@ emission = [0, 0, 0]          # optional, of the front
 kind = "directional"
 direction = [0.3, 1, 0.2]     # towards the light
 irradiance = 2
+
+Textures, and meshes from files, are described in `scene_meshes`.
 """
 
 from __future__ import annotations
@@ -39,10 +43,13 @@ import numpy as np
 from photograd.data.camera import Camera
 from photograd.errors import IoError, SceneError, message
 from photograd.transport.builtin import camera_at
+from photograd.transport.lens import Lens
 from photograd.transport.light_nodes import light_of
 from photograd.transport.scene import Environment, Material, MeshShape, Scene, Shape, SphereShape
+from photograd.transport.scene_meshes import mesh_shapes, pictures_of, textures_in
 from photograd.transport.scene_node import Node
 from photograd.transport.shapes import box, rectangle
+from photograd.transport.texture import Texture
 from photograd.transport.toml_lines import key_lines
 
 
@@ -71,16 +78,26 @@ def read_scene(path: Path) -> Scene:
 
 
 def _scene(root: Node, name: str) -> Scene:
-    camera = _camera(root.table("camera"))
+    camera, lens = _camera(root.table("camera"))
     environment = _environment(root.table("environment")) if root.has("environment") else None
-    tables = root.table("materials")
-    materials = {key: _material(tables.table(key)) for key in tables.data}
-    shapes = tuple(_shape(node, i, materials) for i, node in enumerate(root.tables("shapes")))
+    materials: dict[str, Material] = {}
+    if root.has("materials"):
+        tables = root.table("materials")
+        materials = {key: _material(tables.table(key)) for key in tables.data}
+    textures = textures_in(root)
+    brought = (dict(materials), textures)
+    shapes = [
+        shape
+        for i, node in enumerate(root.tables("shapes"))
+        for shape in _shapes(node, i, materials, brought)
+    ]
     lights = tuple(map(light_of, root.tables("lights"))) if root.has("lights") else ()
-    return Scene(name, shapes, materials, camera, environment, lights)
+    return Scene(
+        name, tuple(shapes), brought[0], camera, environment, lights, textures=textures, lens=lens
+    )
 
 
-def _camera(node: Node) -> Camera:
+def _camera(node: Node) -> tuple[Camera, Lens]:
     width, height = node.numbers("size", 2)
     position, target = node.numbers("position", 3), node.numbers("look_at", 3)
     field_of_view = node.number("field_of_view")
@@ -91,8 +108,12 @@ def _camera(node: Node) -> Camera:
     way = np.subtract(target, position)
     if np.linalg.norm(way[[0, 2]]) < 1e-6 * np.linalg.norm(way) or not way.any():
         raise node.wrong("look_at", "a point that is not straight above, below or here", target)
+    radius = node.number("aperture", 0.0)
+    focus = node.number("focus", float(np.linalg.norm(way)))
     node.refuse_other_keys()
-    return node.built(lambda: camera_at(position, target, field_of_view, int(width), int(height)))
+    lens = node.built(lambda: Lens(radius, focus))
+    pixels = int(width), int(height)
+    return node.built(lambda: camera_at(position, target, field_of_view, *pixels)), lens
 
 
 def _environment(node: Node) -> Environment:
@@ -107,8 +128,27 @@ def _environment(node: Node) -> Environment:
 
 def _material(node: Node) -> Material:
     model = node.text("model")
-    values = {key: node.value(key) for key in node.data if key != "model"}
-    return node.built(lambda: Material(model, values))
+    others = ("model", "textures", "normal_map")
+    values = {key: node.value(key) for key in node.data if key not in others}
+    uses, bent = pictures_of(node)
+    return node.built(lambda: Material(model, values, uses, bent))
+
+
+def _shapes(
+    node: Node, index: int, materials: dict[str, Material],
+    brought: tuple[dict[str, Material], dict[str, Texture]],
+) -> list[Shape]:  # fmt: skip
+    """What a table describes; materials and textures of a mesh file are added to `brought`."""
+    if node.choice("kind", (*KINDS, "mesh")) != "mesh":
+        return [_shape(node, index, materials)]
+    name = node.text("name", f"mesh {index}")
+    material = node.choice("material", materials) if node.has("material") else None
+    emission = node.color("emission") if node.has("emission") else None
+    shapes, own_materials, own_textures = mesh_shapes(node, name, material, emission)
+    node.refuse_other_keys()
+    brought[0].update(own_materials)
+    brought[1].update(own_textures)
+    return shapes
 
 
 def _shape(node: Node, index: int, materials: dict[str, Material]) -> Shape:

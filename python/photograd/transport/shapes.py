@@ -15,6 +15,8 @@ def rectangle(
 ) -> MeshShape:
     """A parallelogram of two triangles; its front is the side of edge_u x edge_v.
 
+    A texture stands upright on the front: u grows along edge_u, v against edge_v.
+
     Args:
         name, material, emission: as for `MeshShape`.
         corner: (3,) metres.
@@ -23,7 +25,8 @@ def rectangle(
     start, u, v = (np.asarray(x, np.float64) for x in (corner, edge_u, edge_v))
     vertices = np.array([start, start + u, start + u + v, start + v])
     faces = np.array([[0, 1, 2], [0, 2, 3]])
-    return MeshShape(name, vertices, faces, material, np.asarray(emission, np.float64))
+    uv = np.array([[0.0, 1.0], [1.0, 1.0], [1.0, 0.0], [0.0, 0.0]])
+    return MeshShape(name, vertices, faces, material, np.asarray(emission, np.float64), uv=uv)
 
 
 def box(

@@ -16,6 +16,7 @@ from photograd.core import _core
 from photograd.data.camera import Camera
 from photograd.errors import DtypeError, RangeError, ShapeError, message
 from photograd.transport.accumulation import Accumulation
+from photograd.transport.core_arrays import instances_of, textures_of
 from photograd.transport.light_list import light_shapes, listed_lights
 from photograd.transport.scene import Array, MeshShape, Scene, Shape, SphereShape
 
@@ -79,7 +80,8 @@ class PathTracer:
     Attributes:
         scene: what it was built from.
         params: {name: array}, to be changed freely between renderings:
-            "materials.NAME.PARAMETER", () or (3,); "emission.SHAPE" (3,) of shapes that shine;
+            "materials.NAME.PARAMETER", () or (3,); "textures.NAME" (H, W, C), linear;
+            "emission.SHAPE" (3,) of shapes that shine;
             "environment" (3, 3), the radiance of zenith, horizon and ground;
             "lights.INDEX.PARAMETER" of the list, such as "lights.0.intensity" (3,) or
             "lights.0.texels" (H, 2 H, 3). How often a light is asked stays as it was when the
@@ -100,11 +102,11 @@ class PathTracer:
             raise DtypeError(message("PathTracer", "dtype", expected, self.dtype))
         self.scene = scene
         self._lights = listed_lights(scene)
-        names = list(scene.materials)
+        names = {name: number for number, name in enumerate(scene.materials)}
         # (name of the emission among the params, shape, number of its material); lights reflect
         # nothing, by a material that is no parameter.
         placed: list[tuple[str, Shape, int]] = [
-            *((f"emission.{s.name}", s, names.index(s.material)) for s in scene.shapes),
+            *((f"emission.{s.name}", s, names[s.material]) for s in scene.shapes),
             *((name, s, len(names)) for name, s in light_shapes(scene).items()),
         ]
         placed.sort(key=lambda entry: isinstance(entry[1], SphereShape))  # meshes come first
@@ -112,15 +114,23 @@ class PathTracer:
         self._emissions = [name for name, _, _ in placed]
         meshes = [shape for shape in self._shapes if isinstance(shape, MeshShape)]
         spheres = [shape for shape in self._shapes if isinstance(shape, SphereShape)]
+        numbers, matrices = instances_of(meshes)
+        # What the core counts as a shape is an instance; `_owner` says of which of ours.
+        self._owner = np.concatenate([numbers, np.arange(len(meshes), len(self._shapes))])
+        materials = np.array([material for _, _, material in placed], np.int32)
+        emission = np.array([shape.emission for shape in self._shapes], np.float64)
         balls = [[*shape.center, shape.radius] for shape in spheres]
         self.params: dict[str, Array] = self._initial_params()
         self._geometry = _core.PathGeometry(
-            meshes=[(mesh.vertices, mesh.faces, mesh.normals) for mesh in meshes],
+            meshes=[(mesh.vertices, mesh.faces, mesh.normals, mesh.uv) for mesh in meshes],
+            instances=numbers,
+            matrices=matrices,
             spheres=np.array(balls, np.float32).reshape(-1, 4),
-            material=np.array([material for _, _, material in placed], np.int32),
-            emission=np.array([shape.emission for shape in self._shapes], np.float64),
+            material=materials[self._owner],
+            emission=emission[self._owner],
             lights=[light.row(light.start, np.float64) for light in self._lights],
         )
+        self._geometry.set_textures(*textures_of(scene))
         self._models = [*(material.model for material in scene.materials.values()), "lambert"]
 
     def _initial_params(self) -> dict[str, Array]:
@@ -128,6 +138,8 @@ class PathTracer:
         for name, material in self.scene.materials.items():
             for parameter in material.parameters:
                 params[f"materials.{name}.{parameter.name}"] = material.values[parameter.name]
+        for name, texture in self.scene.textures.items():
+            params[f"textures.{name}"] = texture.values
         for name, shape in zip(self._emissions, self._shapes, strict=True):
             if shape.emission.any() or name.startswith("lights."):
                 params[name] = shape.emission
@@ -174,8 +186,10 @@ class PathTracer:
         view = self.scene.camera if camera is None else camera
         self._check_sums("add_samples", sums, spp, view)
         other = None if sampling_params is None else self._material_row(sampling_params)
+        texels = None if sampling_params is None else self._texels(sampling_params)
         _core.trace_paths(
-            **self._arguments(view), sampling_parameters=other, options=options.numbers(seed),
+            **self._arguments(view), sampling_parameters=other, sampling_textures=texels,
+            options=options.numbers(seed),
             first=sums.count, count=spp, radiance=sums.radiance, squares=sums.squares,
         )  # fmt: skip
         sums.count += spp
@@ -197,22 +211,27 @@ class PathTracer:
             RangeError: spp below 1.
         """
         view = self.scene.camera if camera is None else camera
-        shape = (view.height, view.width, 3)
-        if np.shape(d_image) != shape:
+        wanted = (view.height, view.width, 3)
+        if np.shape(d_image) != wanted:
             got = np.shape(d_image)
-            raise ShapeError(message("render_backward", "d_image", f"shape {shape}", got))
+            raise ShapeError(message("render_backward", "d_image", f"shape {wanted}", got))
         if spp < 1:
             raise RangeError(message("PathTracer", "spp", "at least 1", spp))
         arguments = self._arguments(view)
         d_rows = np.zeros_like(arguments["parameters"])
-        d_emission = np.zeros((len(self._shapes), 3), self.dtype)
+        d_emission = np.zeros_like(arguments["emission"])
         d_lights = [np.zeros_like(row[1]) for row in arguments["lights"]]
+        d_textures = [np.zeros_like(texels) for texels in arguments["textures"]]
         _core.trace_paths_backward(
             **arguments, options=options.numbers(seed), first=0, count=spp,
             d_image=np.ascontiguousarray(d_image, np.float64),
-            d_parameters=d_rows, d_emission=d_emission, d_lights=d_lights,
+            d_parameters=d_rows, d_emission=d_emission, d_lights=d_lights, d_textures=d_textures,
         )  # fmt: skip
-        gradients = dict(zip(self._emissions, d_emission, strict=True))
+        d_shapes = np.zeros((len(self._shapes), 3), self.dtype)
+        np.add.at(d_shapes, self._owner, d_emission)
+        gradients = dict(zip(self._emissions, d_shapes, strict=True))
+        for name, d_texels in zip(self.scene.textures, d_textures, strict=True):
+            gradients[f"textures.{name}"] = d_texels
         start = 0
         for name, material in self.scene.materials.items():
             for parameter in material.parameters:
@@ -254,6 +273,7 @@ class PathTracer:
         arguments = self._arguments(self.scene.camera)
         for name in ("parameters", "emission"):
             arguments[name] = arguments[name].astype(np.float64)
+        arguments["textures"] = [texels.astype(np.float64) for texels in arguments["textures"]]
         arguments["lights"] = [light.row(self.params, np.float64) for light in self._lights]
         found: list[dict[str, Any]] = _core.trace_path(
             **arguments, options=options.numbers(seed), pixel=pixel, sample=sample
@@ -277,16 +297,25 @@ class PathTracer:
         ]
         return np.ascontiguousarray(np.concatenate([*parts, np.zeros(3)]), self.dtype)
 
+    def _texels(self, params: dict[str, Array]) -> list[Array]:
+        """Values (H, W, C) of each texture, in the scene's order."""
+        return [
+            np.ascontiguousarray(params[f"textures.{name}"], self.dtype)
+            for name in self.scene.textures
+        ]
+
     def _arguments(self, camera: Camera) -> dict[str, Any]:
         black = np.zeros(3, self.dtype)
         emission = [self.params.get(name, black) for name in self._emissions]
+        shining = np.array(emission, self.dtype)
         return {
             "geometry": self._geometry,
             "models": self._models,
             "parameters": self._material_row(self.params),
-            "emission": np.array(emission, self.dtype),
+            "emission": shining[self._owner],
             "lights": [light.row(self.params, self.dtype) for light in self._lights],
-            "camera": _numbers(camera),
+            "textures": self._texels(self.params),
+            "camera": (*_numbers(camera), self.scene.lens.radius, self.scene.lens.focus),
         }
 
 

@@ -1,0 +1,150 @@
+// Materials whose parameters vary over a surface: each is its value times a texture, brought into its range.
+//
+//   p = clamp(value t(u, v), lo, hi)          t bilinear (ops/bilinear.h), at coordinates brought back into 0..1
+//
+//   dp/dvalue = t,  dp/dt = value             0 where p is cut off
+//
+// The derivative by t goes to texels. A path tracer meets them in no order, so it writes down (u, v) and dL/dt, and
+// adds them up afterwards, texel by texel (texture/sample.h). A coordinate is wrapped before the lookup: texels on
+// both sides of a seam are not mixed. Normal maps bend the shading normal; they are part of the geometry, without a
+// derivative.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include "photograd/scene/material.h"
+#include "photograd/texture/image.h"
+
+namespace photograd {
+
+enum class Wrap : int { repeat = 0, mirror = 1, clamp = 2 };
+
+template <class R>
+R wrapped(Wrap wrap, R x) {
+    if (wrap == Wrap::clamp) return x;
+    if (wrap == Wrap::repeat) return x - std::floor(x);
+    const R y = R(0.5) * x, two = R(2) * (y - std::floor(y));
+    return two > R(1) ? R(2) - two : two;
+}
+
+struct TextureLayout {
+    TextureShape shape{1, 1};
+    int channels = 1;
+    Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
+
+    template <class R>
+    [[nodiscard]] Vec2<R> inside(const Vec2<R>& uv) const {
+        return {wrapped(wrap_u, uv.x), wrapped(wrap_v, uv.y)};
+    }
+    /// All channels at a point; `uv` as `inside` gives it.
+    template <class R>
+    void look_up(const R* texels, const Vec2<R>& uv, R out[max_channels]) const {
+        with_channels(channels, [&](auto fixed) {
+            bilinear<R, decltype(fixed)::value>(texels, shape, texel_axis(uv.x, shape.width),
+                                                texel_axis(uv.y, shape.height), out);
+        });
+    }
+};
+
+/// `count` numbers of a material, from `first` on in their order, are scaled by channels of a texture.
+struct TextureUse {
+    int texture, channel, first, count;
+    double lo, hi;
+};
+
+/// Unit vectors (H, W, 3) along growing u, against growing v, and outwards; empty for none.
+struct NormalMap {
+    TextureLayout layout;
+    std::vector<float> values;
+};
+
+/// What a scene knows of textures, besides their texels.
+struct SurfaceTextures {
+    std::vector<TextureLayout> layouts;
+    std::vector<std::vector<TextureUse>> uses;  // of each material, those of one texture together
+    std::vector<NormalMap> normal_maps;         // of each material
+    std::vector<bool> directed;                 // of each material: whether it is brushed along u
+
+    [[nodiscard]] std::span<const TextureUse> of(std::size_t material) const {
+        return material < uses.size() ? std::span<const TextureUse>(uses[material])
+                                      : std::span<const TextureUse>();
+    }
+    [[nodiscard]] bool is_directed(std::size_t material) const {
+        return material < directed.size() && directed[material];
+    }
+    /// The normal map of a material, or null.
+    [[nodiscard]] const NormalMap* bends(std::size_t material) const {
+        return material < normal_maps.size() && !normal_maps[material].values.empty()
+                   ? &normal_maps[material]
+                   : nullptr;
+    }
+};
+
+/// Lookups of one texture and their derivatives: uv (N, 2), d_color (N, C).
+template <class R>
+struct TexelAdjoint {
+    std::vector<R> uv, d_color;
+};
+
+/// The material as it is at one point.
+template <Real R>
+Material<R> textured(const Material<R>& base, std::span<const TextureUse> uses,
+                     const SurfaceTextures& textures, std::span<const R* const> texels,
+                     const Vec2<R>& uv) {
+    R row[max_parameters];
+    base.get(row);
+    for (const TextureUse& use : uses) {
+        const auto t = static_cast<std::size_t>(use.texture);
+        R color[max_channels];
+        textures.layouts[t].look_up(texels[t], textures.layouts[t].inside(uv), color);
+        for (int i = 0; i < use.count; ++i)
+            row[use.first + i] =
+                std::clamp(row[use.first + i] * color[use.channel + i], R(use.lo), R(use.hi));
+    }
+    Material<R> own = base;
+    own.set(row);
+    return own;
+}
+
+/// Adds to d_base and to d_texels (one a texture) for d_own, the derivative by the material at the point.
+template <Real R>
+void textured_backward(const Material<R>& base, std::span<const TextureUse> uses,
+                       const SurfaceTextures& textures, std::span<const R* const> texels,
+                       const Vec2<R>& uv, const Material<R>& d_own, Material<R>& d_base,
+                       std::vector<TexelAdjoint<R>>& d_texels) {
+    R value[max_parameters], d_row[max_parameters], sum[max_parameters];
+    base.get(value);
+    d_own.get(d_row);
+    int last = -1;
+    for (const TextureUse& use : uses) {
+        const auto t = static_cast<std::size_t>(use.texture);
+        const TextureLayout& layout = textures.layouts[t];
+        const Vec2<R> at = layout.inside(uv);
+        R color[max_channels];
+        layout.look_up(texels[t], at, color);
+        TexelAdjoint<R>& record = d_texels[t];
+        if (use.texture != last) {
+            record.uv.insert(record.uv.end(), {at.x, at.y});
+            record.d_color.resize(record.d_color.size() + static_cast<std::size_t>(layout.channels),
+                                  R(0));
+        }
+        last = use.texture;
+        R* d_color =
+            &record.d_color[record.d_color.size() - static_cast<std::size_t>(layout.channels)];
+        for (int i = 0; i < use.count; ++i) {
+            const int k = use.first + i, c = use.channel + i;
+            const R p = value[k] * color[c];
+            const R d = p < R(use.lo) || p > R(use.hi) ? R(0) : d_row[k];
+            d_color[c] += d * value[k];
+            d_row[k] = d * color[c];
+        }
+    }
+    d_base.get(sum);
+    for (int k = 0; k < d_base.parameter_count(); ++k) sum[k] += d_row[k];
+    d_base.set(sum);
+}
+
+}  // namespace photograd

@@ -1,0 +1,65 @@
+"""A scene's instances and textures as the core takes them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from photograd.transport.scene import Array, Material, MeshShape, Scene
+from photograd.transport.texture import WRAPS
+
+Layout = tuple[int, int, int, int, int]
+Use = tuple[int, int, int, int, float, float]
+BentNormals = tuple[Array, int, int]
+
+
+def instances_of(meshes: Sequence[MeshShape]) -> tuple[Array, Array]:
+    """Mesh numbers (I,) int32 and world_from_object (I, 3, 4) float64 of all instances."""
+    numbers: list[int] = []
+    matrices: list[Array] = []
+    for number, mesh in enumerate(meshes):
+        places = mesh.places or (np.eye(4),)
+        numbers += [number] * len(places)
+        matrices += [place[:3] for place in places]
+    return np.array(numbers, np.int32), np.array(matrices, np.float64).reshape(-1, 3, 4)
+
+
+def textures_of(
+    scene: Scene,
+) -> tuple[list[Layout], list[list[Use]], list[BentNormals | None], list[bool]]:
+    """Layouts of the textures; of each material what they scale, its normal map, and whether it is
+    brushed: the first axis of its frame then runs along growing u.
+    """
+    order = {name: number for number, name in enumerate(scene.textures)}
+    layouts = [(*texture.values.shape, *_wrap(texture.wrap)) for texture in scene.textures.values()]
+    uses = [_uses(material, order) for material in scene.materials.values()]
+    maps = [_bent(material) for material in scene.materials.values()]
+    directed = [
+        any(parameter.name == "anisotropy" for parameter in material.parameters)
+        for material in scene.materials.values()
+    ]
+    return layouts, uses, maps, directed
+
+
+def _uses(material: Material, order: dict[str, int]) -> list[Use]:
+    """Sorted by texture: a lookup serves all parameters that it scales."""
+    found: list[Use] = []
+    first = 0
+    for parameter in material.parameters:
+        use = material.textures.get(parameter.name)
+        if use is not None:
+            place = (order[use.texture], use.channel, first, parameter.size)
+            found.append((*place, parameter.lo, parameter.hi))
+        first += parameter.size
+    return sorted(found)
+
+
+def _bent(material: Material) -> BentNormals | None:
+    bent = material.normal_map
+    return None if bent is None else (bent.values, *_wrap(bent.wrap))
+
+
+def _wrap(wrap: tuple[str, str]) -> tuple[Any, ...]:
+    return WRAPS.index(wrap[0]), WRAPS.index(wrap[1])

@@ -1,0 +1,12 @@
+"""Scenes from mesh files: .glb and .gltf with their materials, .obj, .ply and .stl.
+
+`read_model` reads one; `model_scene` puts it under a light and before a camera.
+"""
+
+from __future__ import annotations
+
+from photograd.transport.mesh_files.model_file import ModelFile
+from photograd.transport.mesh_files.read import SUFFIXES, read_model
+from photograd.transport.mesh_files.studio import model_scene
+
+__all__ = ["SUFFIXES", "ModelFile", "model_scene", "read_model"]

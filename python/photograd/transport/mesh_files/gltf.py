@@ -1,0 +1,166 @@
+"""glTF 2.0 files as shapes, materials and textures [Khronos2021]."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from photograd.data.json_node import JsonNode
+from photograd.errors import IoError, SceneError, message
+from photograd.transport.mesh_files.accessor import read_floats, read_indices
+from photograd.transport.mesh_files.container import NAME, Container, open_container, whole
+from photograd.transport.mesh_files.gltf_materials import FileMaterial, read_material
+from photograd.transport.mesh_files.model_file import ModelFile, Names, placed_shapes
+from photograd.transport.mesh_files.nodes import mesh_places
+from photograd.transport.mesh_files.pictures import TRANSFORM, Pictures
+from photograd.transport.scene import Shape
+
+Array = npt.NDArray[Any]
+DRACO = "KHR_draco_mesh_compression"
+READABLE = (TRANSFORM, "KHR_mesh_quantization", "KHR_lights_punctual")
+"""Extensions that a file may require, besides those of materials, which are noted one by one."""
+_LEFT_OUT = {
+    "animations": "the rest position is drawn",
+    "skins": "the rest position is drawn",
+    "cameras": "the view is chosen from outside",
+}
+_TRIANGLES, _STRIP, _FAN = 4, 5, 6
+
+
+def read_gltf(path: Path, note: Callable[[str], None]) -> ModelFile:
+    """Everything in the file's first scene that can be drawn; `note` takes what cannot.
+
+    Raises:
+        IoError: a missing or damaged file, or compressed geometry.
+        RangeError: numbers that are not finite.
+        SceneError: nothing to draw.
+    """
+    container = open_container(path)
+    _check_required(container)
+    for key, instead in _LEFT_OUT.items():
+        if key in container.root:
+            note(f"{path.name}: {key}: not supported; {instead}")
+    pictures = Pictures(container, note)
+    materials: dict[str, FileMaterial] = {}
+    numbered: dict[int, str] = {}
+    names, titles = Names(), Names()
+    shapes: list[Shape] = []
+    for number, places in mesh_places(container).items():
+        meshes = container.entries("meshes")
+        if number >= len(meshes):
+            raise IoError(message(NAME, "meshes", f"a mesh {number}", f"{len(meshes)} meshes"))
+        mesh = meshes[number]
+        title = mesh["name"].text() if "name" in mesh else f"mesh {number}"
+        for part in mesh["primitives"].items():
+            wanted = whole(part, 0, 1 << 31, "material") if "material" in part else -1
+            if wanted not in numbered:
+                label, made = _material(container, wanted, pictures, note)
+                numbered[wanted] = names.free(label)
+                materials[numbered[wanted]] = made
+            name = numbered[wanted]
+            arrays = _arrays(container, part, materials[name], note)
+            if arrays is not None:
+                shapes += placed_shapes(
+                    titles, title, arrays, name, materials[name].emission, places, note
+                )
+    if not shapes:
+        raise SceneError(message(NAME, f"{path}", "triangles in the scene", "none"))
+    used = {name: made.material for name, made in materials.items()}
+    asked = {use.texture for made in used.values() for use in made.textures.values()}
+    textures = {name: pictures.textures[name] for name in pictures.textures if name in asked}
+    return ModelFile(tuple(shapes), used, textures)
+
+
+def _check_required(container: Container) -> None:
+    root = container.root
+    if "extensionsRequired" not in root:
+        return
+    for node in root["extensionsRequired"].items():
+        name = node.text()
+        if name == DRACO:
+            remedy = "save it without compression: there is no decoder for it here"
+            raise IoError(message(NAME, node.place, "plain geometry", name, remedy))
+        if name not in READABLE and not name.startswith("KHR_materials_"):
+            remedy = "save it without"
+            raise IoError(message(NAME, node.place, "extensions that are known", name[:60], remedy))
+
+
+def _material(
+    container: Container, number: int, pictures: Pictures, note: Callable[[str], None]
+) -> tuple[str, FileMaterial]:
+    """Name and material; -1 is the one of primitives that name none."""
+    if number < 0:
+        node = JsonNode(NAME, f"{container.path.name}: default material", {})
+        return "default", read_material(node, pictures, note)
+    materials = container.entries("materials")
+    if number >= len(materials):
+        got = f"{len(materials)} materials"
+        raise IoError(message(NAME, "materials", f"a material {number}", got))
+    node = materials[number]
+    name = node["name"].text() if "name" in node else f"material {number}"
+    return name, read_material(node, pictures, note)
+
+
+def _arrays(
+    container: Container, part: JsonNode, material: FileMaterial, note: Callable[[str], None]
+) -> tuple[Array, Array, Array | None, Array | None] | None:
+    """Vertices, faces, normals and texture coordinates of a primitive; None without surface."""
+    mode = whole(part, 0, 6, "mode", _TRIANGLES)
+    if mode < _TRIANGLES:
+        note(f"{part.place}: points or lines, left out")
+        return None
+    attributes = part["attributes"]
+    vertices = read_floats(container, attributes["POSITION"], 3)
+    count = len(vertices)
+    indices = read_indices(container, part["indices"]) if "indices" in part else np.arange(count)
+    if len(indices) and int(indices.max()) >= count:
+        expected = f"vertex numbers below {count}"
+        raise IoError(message(NAME, f"{part.place}: indices", expected, int(indices.max())))
+    faces = _faces(indices, mode)
+    if not len(faces):
+        note(f"{part.place}: no triangle, left out")
+        return None
+    for key in ("COLOR_0", "JOINTS_0"):
+        if key in attributes:
+            note(f"{part.place}: {key}: not supported, left out")
+    if "targets" in part:
+        note(f"{part.place}: targets: not supported, left out")
+    normals = _attribute(container, attributes, "NORMAL", 3, count, note)
+    place = material.coordinates
+    uv = _attribute(container, attributes, f"TEXCOORD_{place.set}", 2, count, note)
+    return vertices, faces, normals, None if uv is None else place.apply(uv)
+
+
+def _attribute(
+    container: Container, attributes: JsonNode, key: str, width: int, count: int,
+    note: Callable[[str], None],
+) -> Array | None:  # fmt: skip
+    """(V, width), or None if absent or unusable."""
+    if key not in attributes:
+        return None
+    rows = read_floats(container, attributes[key], width)
+    if len(rows) != count:
+        expected = f"{count} rows, one a vertex"
+        raise IoError(message(NAME, f"{attributes.place}: {key}", expected, len(rows)))
+    if not np.isfinite(rows).all():
+        note(f"{attributes.place}: {key}: NaN or infinity, left out")
+        return None
+    return rows
+
+
+def _faces(indices: Array, mode: int) -> Array:
+    """(F, 3); of a strip every second triangle runs the other way."""
+    if mode == _TRIANGLES:
+        return indices[: len(indices) // 3 * 3].reshape(-1, 3)
+    if len(indices) < 3:
+        return np.empty((0, 3), np.int64)
+    if mode == _FAN:
+        first = np.full(len(indices) - 2, indices[0])
+        return np.stack([first, indices[1:-1], indices[2:]], axis=1)
+    faces = np.stack([indices[:-2], indices[1:-1], indices[2:]], axis=1)
+    faces[1::2] = faces[1::2, [1, 0, 2]]
+    return faces

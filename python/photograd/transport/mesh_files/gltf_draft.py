@@ -1,0 +1,82 @@
+"""A glTF material while it is being read: what has been asked for, and what nobody has."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from photograd.data.json_node import JsonNode
+from photograd.transport.mesh_files.container import real
+
+FOLLOWED = ("KHR_materials_emissive_strength",)
+"""Extensions that no rule has to read."""
+PLAIN_IOR = 1.5
+
+
+@dataclass
+class Draft:
+    """A material while it is being read.
+
+    Attributes:
+        node: of the file.
+        core: its pbrMetallicRoughness.
+        note: takes what could not be followed.
+        read: extensions that a rule has read.
+        wanted: {parameter: (textureInfo, encoding, channel)}.
+    """
+
+    node: JsonNode
+    core: JsonNode
+    note: Callable[[str], None]
+    read: set[str] = field(default_factory=lambda: set(FOLLOWED))
+    wanted: dict[str, tuple[JsonNode, str, int]] = field(default_factory=dict)
+
+    def extension(self, name: str) -> JsonNode | None:
+        """An extension of the material, if it has it."""
+        key = f"KHR_materials_{name}"
+        if "extensions" not in self.node or key not in self.node["extensions"]:
+            return None
+        return self.node["extensions"][key]
+
+    def take(self, *names: str) -> None:
+        """Extensions that the model speaks for."""
+        self.read.update(f"KHR_materials_{name}" for name in names)
+
+    def textured(
+        self, parameter: str, node: JsonNode, key: str, encoding: str, channel: int = 0
+    ) -> None:
+        """A parameter is scaled by a texture, if the file has one there."""
+        if key in node:
+            self.wanted[parameter] = (node[key], encoding, channel)
+
+    def unread(self, node: JsonNode, *keys: str) -> None:
+        """Textures that no parameter of the model can take."""
+        for key in keys:
+            if key in node:
+                self.note(f"{node.place}: {key}: not supported, left out")
+
+    @property
+    def base_color(self) -> Any:
+        """(3,) linear; the fourth number of the file is its opacity."""
+        if "baseColorFactor" not in self.core:
+            return np.ones(3)
+        return np.clip(self.core["baseColorFactor"].numbers((4,))[:3], 0, 1)
+
+    @property
+    def metalness(self) -> float:
+        """0 to 1."""
+        return min(max(real(self.core, "metallicFactor", 1.0), 0.0), 1.0)
+
+    @property
+    def roughness(self) -> float:
+        """As the file has it, unbounded."""
+        return real(self.core, "roughnessFactor", 1.0)
+
+    @property
+    def ior(self) -> float:
+        """Refractive index."""
+        node = self.extension("ior")
+        return PLAIN_IOR if node is None else real(node, "ior", PLAIN_IOR)

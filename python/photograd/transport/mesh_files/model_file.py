@@ -1,0 +1,114 @@
+"""What every mesh file becomes: shapes, the materials that they name, and textures."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from photograd.errors import SceneError
+from photograd.transport.scene import Material, MeshShape, Shape
+from photograd.transport.texture import Texture
+
+Array = npt.NDArray[Any]
+Arrays = tuple[Array, Array, Array | None, Array | None]
+"""Vertices (V, 3), faces (F, 3), shading normals (V, 3) or None, uv (V, 2) or None."""
+LARGEST_COORDINATE = 1e9
+
+
+@dataclass(frozen=True, eq=False)
+class ModelFile:
+    """Shapes of a file in its own world, +Y up by the file's word.
+
+    Attributes:
+        shapes: at least one.
+        materials: those that the shapes name.
+        textures: those that the materials name.
+    """
+
+    shapes: tuple[Shape, ...]
+    materials: Mapping[str, Material]
+    textures: Mapping[str, Texture] = field(default_factory=dict)
+
+    @property
+    def box(self) -> Array:
+        """(2, 3) lower and upper corner of all shapes."""
+        boxes = np.array([shape.box for shape in self.shapes])
+        return np.array([boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)])
+
+
+def placed_shapes(
+    names: Names, name: str, arrays: Arrays, material: str, emission: Any, places: Sequence[Array],
+    note: Callable[[str], None],
+) -> list[Shape]:  # fmt: skip
+    """A mesh at each of its places (4, 4): moved there if there is one, else as instances.
+
+    What has no triangle left, or a place without volume, is left out with a note.
+    """
+    usable = []
+    for place in places:
+        volume = float(np.linalg.det(place[:3, :3])) if np.isfinite(place).all() else 0.0
+        reach = np.abs(place).max() if np.isfinite(place).all() else np.inf
+        if not (abs(volume) > 1e-30 and np.isfinite(volume) and reach < LARGEST_COORDINATE):
+            note(f"{name}: a transformation without volume, left out")
+            continue
+        usable.append((place, volume))
+    made: list[Shape] = []
+    together = [place for place, volume in usable if volume > 0]
+    alone = [place for place, volume in usable if volume < 0]  # mirrored: wound the other way
+    if len(together) > 1:
+        made += _shape(names.free(name), arrays, material, emission, tuple(together), note)
+    else:
+        alone = together + alone
+    for place in alone:
+        made += _shape(names.free(name), moved(arrays, place), material, emission, (), note)
+    return made
+
+
+def _shape(
+    name: str, arrays: Arrays, material: str, emission: Any, places: tuple[Array, ...],
+    note: Callable[[str], None],
+) -> list[Shape]:  # fmt: skip
+    vertices, faces, normals, uv = arrays
+    try:
+        return [MeshShape(name, vertices, faces, material, emission, normals, uv, places)]
+    except SceneError as failure:
+        note(f"{name}: left out: {failure}")
+        return []
+
+
+def moved(arrays: Arrays, world_from_object: Array) -> Arrays:
+    """The mesh in the world; a mirrored one is wound the other way: its front stays outside."""
+    vertices, faces, normals, uv = arrays
+    if np.array_equal(world_from_object, np.eye(4)):
+        return arrays
+    turn = np.asarray(world_from_object[:3, :3], np.float64)
+    with np.errstate(over="ignore", invalid="ignore"):
+        vertices = (vertices @ turn.T + world_from_object[:3, 3]).astype(np.float32)
+    if normals is not None:
+        scaled = normals @ np.linalg.inv(turn)  # by the inverse's transpose
+        length = np.linalg.norm(scaled, axis=1, keepdims=True)
+        normals = (scaled / np.where(length > 0, length, 1)).astype(np.float32)
+    if np.linalg.det(turn) < 0:
+        faces = faces[:, ::-1]
+    return vertices, faces, normals, uv
+
+
+class Names:
+    """Names that are free: `name`, `name (2)`, `name (3)`, ..."""
+
+    def __init__(self) -> None:
+        self._taken: set[str] = set()
+        self._next: dict[str, int] = {}
+
+    def free(self, name: str) -> str:
+        """The first of them that nobody has got yet; it is taken now."""
+        found = name
+        while found in self._taken:
+            number = self._next.get(name, 2)
+            found, self._next[name] = f"{name} ({number})", number + 1
+        self._taken.add(found)
+        return found

@@ -1,0 +1,123 @@
+"""Images of glTF materials: which coordinates, decoded how [Khronos2021, Sec. 3.8]."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import PurePath
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from PIL import Image
+
+from photograd.data.json_node import JsonNode
+from photograd.errors import Error, IoError, message
+from photograd.transport.mesh_files.container import NAME, Container, real, whole
+from photograd.transport.texture import Texture, decode
+
+Array = npt.NDArray[Any]
+TRANSFORM = "KHR_texture_transform"
+_WRAPS = {10497: "repeat", 33648: "mirror", 33071: "clamp"}
+
+
+@dataclass(frozen=True)
+class Coordinates:
+    """Which set of texture coordinates, and how it is moved: uv' = offset + R(rotation) S uv.
+
+    The rotation turns counter-clockwise as one sees it with v downwards.
+    """
+
+    set: int = 0
+    offset: tuple[float, float] = (0.0, 0.0)
+    rotation: float = 0.0
+    scale: tuple[float, float] = (1.0, 1.0)
+
+    def apply(self, uv: Array) -> Array:
+        """Uv (V, 2), moved."""
+        c, s = np.cos(self.rotation), np.sin(self.rotation)
+        with np.errstate(over="ignore", invalid="ignore"):
+            moved = (uv * np.array(self.scale)) @ np.array([[c, s], [-s, c]]).T + self.offset
+            return np.asarray(moved, np.float32)
+
+
+@dataclass
+class Pictures:
+    """The textures of a file, each decoded once and only if a material asks for it."""
+
+    container: Container
+    note: Callable[[str], None]
+    textures: dict[str, Texture] = field(default_factory=dict)
+    _images: dict[int, Array | None] = field(default_factory=dict)
+
+    def coordinates(self, info: JsonNode) -> Coordinates:
+        """Of a textureInfo object."""
+        number = whole(info, 0, 15, "texCoord", 0)
+        if "extensions" not in info or TRANSFORM not in info["extensions"]:
+            return Coordinates(number)
+        moved = info["extensions"][TRANSFORM]
+        number = whole(moved, 0, 15, "texCoord", number)
+        u, v = moved["offset"].numbers((2,)) if "offset" in moved else (0.0, 0.0)
+        x, y = moved["scale"].numbers((2,)) if "scale" in moved else (1.0, 1.0)
+        turn = real(moved, "rotation", 0.0)
+        return Coordinates(number, (float(u), float(v)), turn, (float(x), float(y)))
+
+    def texture(self, info: JsonNode, encoding: str) -> str | None:
+        """The name of the texture that a textureInfo object points at; None, with a note, if the
+        image is missing or damaged.
+        """
+        number = whole(info, 0, 1 << 31, "index")
+        found = self._pixels(info)
+        if found is None:
+            return None
+        image, wrap, label = found
+        name = f"{label} ({encoding}, {number})"
+        if name not in self.textures:
+            color = decode(image) if encoding == "srgb" else image
+            self.textures[name] = Texture(np.asarray(color, np.float32), wrap)
+        return name
+
+    def normal_map(self, info: JsonNode) -> tuple[Array, tuple[str, str]] | None:
+        """Pixels (H, W, 3) and wrap of a texture that holds normals."""
+        found = self._pixels(info)
+        return None if found is None else found[:2]
+
+    def _pixels(self, info: JsonNode) -> tuple[Array, tuple[str, str], str] | None:
+        texture = self.container.entry("textures", info["index"])
+        wrap = ("repeat", "repeat")
+        if "sampler" in texture:
+            sampler = self.container.entry("samplers", texture["sampler"])
+            kinds = [whole(sampler, 0, 1 << 16, key, 10497) for key in ("wrapS", "wrapT")]
+            wrap = (_WRAPS.get(kinds[0], "repeat"), _WRAPS.get(kinds[1], "repeat"))
+        if "source" not in texture:
+            self.note(f"{texture.place}: no image in a format that is read; left out")
+            return None
+        source = texture["source"]
+        number = whole(source, 0, 1 << 31)
+        image = self.container.entry("images", source)
+        if number not in self._images:
+            try:
+                self._images[number] = self._decoded(image)
+            except Error as failure:
+                self.note(f"{image.place}: left out: {failure}")
+                self._images[number] = None
+        pixels = self._images[number]
+        name = image["name"].text() if "name" in image else ""
+        return None if pixels is None else (pixels, wrap, PurePath(name).name or f"image {number}")
+
+    def _decoded(self, image: JsonNode) -> Array:
+        """(H, W, 3) float32 in 0..1, as stored; alpha is left out."""
+        if "bufferView" in image:
+            data = bytes(self.container.view(image["bufferView"])[0])
+        else:
+            data = self.container.fetch(image["uri"])
+        try:
+            with Image.open(io.BytesIO(data), formats=("PNG", "JPEG")) as opened:
+                self.container.spend(image, opened.width * opened.height)
+                return np.asarray(opened.convert("RGB"), np.float32) / np.float32(255)
+        except IoError:
+            raise
+        except Exception as failure:  # Pillow's plugins do not share an exception
+            text = " ".join(str(failure).split())[:120] or type(failure).__name__
+            raise IoError(message(NAME, image.place, "a PNG or JPEG image", text)) from failure

@@ -1,0 +1,52 @@
+"""Triangles in .stl files: 50 bytes each, or a text with three lines "vertex" for each."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import numpy as np
+
+from photograd.data.file_bytes import read_file
+from photograd.errors import IoError, message
+from photograd.transport.mesh_files.container import NAME
+from photograd.transport.mesh_files.model_file import ModelFile
+from photograd.transport.mesh_files.plain import GREY, Array, Note, plain_model
+
+_HEADER = 84
+_TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+_CORNER = re.compile(rb"\bvertex\s+(\S+)\s+(\S+)\s+(\S+)", re.IGNORECASE)
+
+
+def read_stl(path: Path, note: Note) -> ModelFile:
+    """The triangles of a file; its normals and attributes are left out.
+
+    Raises:
+        IoError: neither of the two layouts.
+        SceneError: no triangle.
+    """
+    data = read_file(NAME, path)
+    count = int.from_bytes(data[80:_HEADER], "little")
+    if len(data) >= _HEADER and len(data) == _HEADER + count * _TRIANGLE.itemsize:
+        corners = np.frombuffer(data, _TRIANGLE, count, _HEADER)["corners"].reshape(-1, 3)
+    elif data[:5].lower() == b"solid":
+        corners = _text(path, data)
+    else:
+        expected = f"{_HEADER} + 50 x {count} bytes, as its header says, or text"
+        raise IoError(message(NAME, f"{path}", expected, f"{len(data)} bytes"))
+    faces = np.arange(len(corners)).reshape(-1, 3)
+    arrays = (np.array(corners, np.float32), faces, None, None)
+    return plain_model(path, [(path.stem, arrays, "grey")], {"grey": GREY}, {}, note)
+
+
+def _text(path: Path, data: bytes) -> Array:
+    try:
+        with np.errstate(over="ignore"):
+            rows = [[float(word) for word in found] for found in _CORNER.findall(data)]
+    except ValueError as failure:
+        got = " ".join(str(failure).split())[:80]
+        raise IoError(message(NAME, f"{path}", "three numbers for each vertex", got)) from failure
+    if len(rows) % 3:
+        raise IoError(message(NAME, f"{path}", "three corners for each triangle", len(rows)))
+    with np.errstate(over="ignore"):
+        return np.array(rows, np.float64).reshape(-1, 3).astype(np.float32)

@@ -1,0 +1,154 @@
+"""Mesh files and textures in scene files.
+
+[textures.wood]
+file = "wood.png"             # beside the scene file
+encoding = "srgb"             # or "linear": numbers that are not colours
+wrap = "repeat"               # or mirror, clamp
+
+[materials.floor]
+model = "gltf"
+base_color = [1, 1, 1]        # times the texture
+metalness = 0
+roughness = 1
+textures = { base_color = "wood", roughness = ["rough", 1] }   # channel 1 of another one
+normal_map = "bumps.png"
+
+[[shapes]]
+kind = "mesh"
+file = "chair.glb"            # or .gltf, .obj, .ply, .stl
+material = "floor"            # optional; without it the file's own materials
+scale = 2                     # then rotate (degrees about x, then y, then z), then translate
+rotate = [0, 90, 0]
+translate = [0, 1, 0]
+places = [{ translate = [1, 0, 0] }, { scale = 2 }]   # optional: an instance at each
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from photograd.data.images import read_image
+from photograd.transport.mesh_files import ModelFile, read_model
+from photograd.transport.mesh_files.model_file import moved
+from photograd.transport.scene import Array, Material, MeshShape, Shape
+from photograd.transport.scene_node import Node
+from photograd.transport.texture import (
+    ENCODINGS,
+    WRAPS,
+    NormalMap,
+    Texture,
+    TextureUse,
+    read_texture,
+)
+
+
+def textures_in(root: Node) -> dict[str, Texture]:
+    """The tables [textures.NAME] of a scene file."""
+    if not root.has("textures"):
+        return {}
+    tables = root.table("textures")
+    return {name: _texture(tables.table(name)) for name in tables.data}
+
+
+def _texture(node: Node) -> Texture:
+    encoding = node.choice("encoding", ENCODINGS) if node.has("encoding") else "srgb"
+    wrap = node.choice("wrap", WRAPS) if node.has("wrap") else "repeat"
+    path = node.path.parent / node.text("file")
+    node.refuse_other_keys()
+    return node.built(lambda: read_texture(path, encoding, (wrap, wrap)))
+
+
+def pictures_of(node: Node) -> tuple[dict[str, TextureUse], NormalMap | None]:
+    """`textures` and `normal_map` of a table [materials.NAME]."""
+    uses: dict[str, TextureUse] = {}
+    if node.has("textures"):
+        table = node.table("textures")
+        for parameter in table.data:
+            found = table.value(parameter)
+            name, channel = found if isinstance(found, list) and len(found) == 2 else (found, 0)
+            if not isinstance(name, str) or type(channel) is not int:
+                raise table.wrong(parameter, 'a texture\'s name, or ["name", channel]', found)
+            uses[parameter] = TextureUse(name, channel)
+    if not node.has("normal_map"):
+        return uses, None
+    path = node.path.parent / node.text("normal_map")
+    return uses, node.built(lambda: NormalMap.from_image(read_image(path)))
+
+
+def mesh_shapes(
+    node: Node, name: str, material: str | None, emission: Any
+) -> tuple[list[Shape], dict[str, Material], dict[str, Texture]]:
+    """The shapes of a table of kind "mesh", and what they bring along.
+
+    Names of the file get the shape's name and a slash in front. Emission is the file's where the
+    table has none.
+    """
+    path = node.path.parent / node.text("file")
+    inner = _matrix(node)
+    places = [_matrix(place) for place in node.tables("places")] if node.has("places") else []
+    model = node.built(lambda: read_model(path))
+    meshes = [shape for shape in model.shapes if isinstance(shape, MeshShape)]
+    shapes = node.built(
+        lambda: [_placed(mesh, name, material, emission, inner, places) for mesh in meshes]
+    )
+    if material is not None:
+        return shapes, {}, {}
+    return shapes, *_renamed(model, name)
+
+
+def _placed(
+    shape: MeshShape, name: str, material: str | None, emission: Any, inner: Array,
+    places: list[Array],
+) -> Shape:  # fmt: skip
+    """A shape of the file, moved, with the instances of the file and of the table multiplied."""
+    vertices, faces, normals, uv = shape.vertices, shape.faces, shape.normals, shape.uv
+    own = [np.asarray(inner @ place) for place in shape.places]
+    if not own:
+        vertices, faces, normals, uv = moved((vertices, faces, normals, uv), inner)
+    outer = places or [np.eye(4)]
+    both = [far @ near for far in outer for near in (own or [np.eye(4)])]
+    shining = shape.emission if emission is None else np.asarray(emission, np.float64)
+    return replace(
+        shape, name=f"{name}/{shape.name}", vertices=vertices, faces=faces, normals=normals, uv=uv,
+        material=material or f"{name}/{shape.material}", emission=shining,
+        places=tuple(both) if own or places else (),
+    )  # fmt: skip
+
+
+def _renamed(model: ModelFile, name: str) -> tuple[dict[str, Material], dict[str, Texture]]:
+    materials = {
+        f"{name}/{own}": replace(
+            material,
+            textures={
+                parameter: TextureUse(f"{name}/{use.texture}", use.channel)
+                for parameter, use in material.textures.items()
+            },
+        )
+        for own, material in model.materials.items()
+    }
+    return materials, {f"{name}/{own}": texture for own, texture in model.textures.items()}
+
+
+def _matrix(node: Node) -> Array:
+    """(4, 4): scale, then rotate about x, y and z, then translate."""
+    matrix = np.eye(4)
+    if node.has("scale"):
+        found = node.value("scale")
+        one = [node.number("scale")] * 3 if not isinstance(found, list) else None
+        size = one or node.numbers("scale", 3)
+        if min(size) <= 0:
+            raise node.wrong("scale", "factors above 0", found)
+        matrix[:3, :3] *= size
+    if node.has("rotate"):
+        for axis, degrees in enumerate(node.numbers("rotate", 3)):
+            c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+            i, j = (axis + 1) % 3, (axis + 2) % 3
+            turn = np.eye(4)
+            turn[i, i], turn[i, j], turn[j, i], turn[j, j] = c, -s, s, c
+            matrix = turn @ matrix
+    if node.has("translate"):
+        matrix[:3, 3] = node.numbers("translate", 3)
+    return matrix

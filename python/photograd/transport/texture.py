@@ -1,0 +1,149 @@
+"""Pictures on surfaces: a material's parameter times a texture, and bent normals.
+
+A texture is linear and (H, W, C), T[row, column], v downwards; `from_image` decodes sRGB. Lookups
+are bilinear: a path tracer averages over a pixel by its many samples, and needs no mip map. A
+coordinate beyond 0..1 is brought back first, so texels at a seam are not mixed across it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from photograd_course.color import srgb_decode
+
+from photograd.data.images import read_image
+from photograd.errors import DtypeError, RangeError, ShapeError, message
+
+Array = npt.NDArray[Any]
+WRAPS = ("repeat", "mirror", "clamp")
+ENCODINGS = ("srgb", "linear")
+
+
+@dataclass(frozen=True, eq=False)
+class Texture:
+    """An image that scales parameters of materials.
+
+    Attributes:
+        values: (H, W, C) floating point, linear, C from 1 to 4; kept as float32.
+        wrap: what happens to coordinates outside 0..1 along u and v, of `WRAPS`.
+
+    Raises:
+        DtypeError, ShapeError: not floating point, or not (H, W, C).
+        RangeError: not finite, or an unknown wrap.
+    """
+
+    values: Array
+    wrap: tuple[str, str] = ("repeat", "repeat")
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "values", _picture("Texture", self.values, (1, 2, 3, 4)))
+        if len(self.wrap) != 2 or any(kind not in WRAPS for kind in self.wrap):
+            raise RangeError(message("Texture", "wrap", f"two of {WRAPS}", self.wrap))
+
+    @property
+    def channels(self) -> int:
+        """C."""
+        return int(self.values.shape[2])
+
+
+@dataclass(frozen=True)
+class TextureUse:
+    """A parameter of a material is its value times a texture.
+
+    Attributes:
+        texture: name in the scene.
+        channel: of the texture, that scales the parameter; colours take three from here on.
+    """
+
+    texture: str
+    channel: int = 0
+
+
+@dataclass(frozen=True, eq=False)
+class NormalMap:
+    """Normals in the frame of the texture coordinates; they are part of the shape, not parameters.
+
+    Attributes:
+        values: (H, W, 3), components -1..1 along growing u, against growing v, and outwards.
+        wrap: as of `Texture`.
+
+    Raises:
+        DtypeError, ShapeError, RangeError: as `Texture`.
+    """
+
+    values: Array
+    wrap: tuple[str, str] = ("repeat", "repeat")
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "values", _picture("NormalMap", self.values, (3,)))
+        if len(self.wrap) != 2 or any(kind not in WRAPS for kind in self.wrap):
+            raise RangeError(message("NormalMap", "wrap", f"two of {WRAPS}", self.wrap))
+
+    @classmethod
+    def from_image(
+        cls, image: Array, scale: float = 1.0, wrap: tuple[str, str] = ("repeat", "repeat")
+    ) -> NormalMap:
+        """Of an image (H, W, 3 or more) that holds (n + 1) / 2; `scale` is of the tilt."""
+        values = 2 * np.asarray(image, np.float32)[..., :3] - 1
+        return cls(values * np.array([scale, scale, 1], np.float32), wrap)
+
+
+def read_texture(
+    path: Path, encoding: str = "srgb", wrap: tuple[str, str] = ("repeat", "repeat")
+) -> Texture:
+    """The colours of an image file, without its alpha.
+
+    Args:
+        path: .png, .jpg or .exr.
+        encoding: "srgb" for colours of 8 or 16 bits, which are decoded; "linear" for numbers that
+            are not colours (roughness), taken as they are. EXR is always linear.
+        wrap: as of `Texture`.
+
+    Raises:
+        IoError: no such image.
+        RangeError: an unknown encoding or wrap.
+    """
+    if encoding not in ENCODINGS:
+        raise RangeError(message("read_texture", "encoding", ENCODINGS, encoding))
+    color = read_image(path)[..., :3]
+    decoded = encoding == "srgb" and path.suffix.lower() != ".exr"
+    return Texture(decode(color) if decoded else color, wrap)
+
+
+def decode(color: Array) -> Array:
+    """Display-encoded sRGB as linear float32."""
+    return np.asarray(srgb_decode(np.asarray(color, np.float64)), np.float32)
+
+
+def checked_uses(
+    model: str, sizes: Mapping[str, int], uses: Mapping[str, TextureUse]
+) -> Mapping[str, TextureUse]:
+    """`uses` if they name parameters of a model; `sizes` are those of the parameters.
+
+    Raises:
+        RangeError: an unknown parameter, or a channel below 0.
+    """
+    for name, use in uses.items():
+        if name not in sizes:
+            expected = f"parameters of {model}: {', '.join(sizes)}"
+            raise RangeError(message("Material", f"textures.{name}", expected, name))
+        if not 0 <= use.channel < 4:
+            raise RangeError(message("Material", f"textures.{name}", "channel 0 to 3", use.channel))
+    return dict(uses)
+
+
+def _picture(function: str, value: Any, channels: tuple[int, ...]) -> Array:
+    values = np.asarray(value)
+    if values.dtype.kind != "f":
+        raise DtypeError(message(function, "values", "floating point numbers", values.dtype))
+    if values.ndim != 3 or values.shape[2] not in channels or not values.size:
+        expected = f"shape (H, W, C) with C of {channels}"
+        raise ShapeError(message(function, "values", expected, values.shape))
+    if not np.isfinite(values).all():
+        raise RangeError(message(function, "values", "finite numbers", "NaN or infinity"))
+    return np.ascontiguousarray(values, np.float32)
