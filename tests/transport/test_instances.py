@@ -75,7 +75,7 @@ def scenes(size: int) -> tuple[Scene, Scene]:
 
 
 def test_instances_look_like_meshes_of_their_own() -> None:
-    options = PathOptions(max_depth=4, roulette_from=None)
+    options = PathOptions(max_depth=4, roulette_from=None, sampler="independent")
     together, apart = (PathTracer(scene, dtype=np.float64) for scene in scenes(24))
     a, b = (t.render(spp=16, seed=1, options=options).mean for t in (together, apart))
     # Transformed in float by one, in double by the other: single paths fall the other way.

@@ -282,8 +282,8 @@ def test_what_is_no_light_is_named() -> None:
         tracer.render(spp=1, seed=1)
     with pytest.raises(SceneError, match="a light without a surface, got quad"):
         _core.PathGeometry(
-            [], np.ones((1, 4), np.float32), np.zeros(1, np.int32), np.zeros((1, 3)),
-            [("quad", np.ones(3), np.ones(9))],
+            [], np.zeros(0, np.int32), np.zeros((0, 3, 4)), np.ones((1, 4), np.float32),
+            np.zeros(1, np.int32), np.zeros((1, 3)), [("quad", np.ones(3), np.ones(9))],
         )  # fmt: skip
 
 
