@@ -1,0 +1,15 @@
+"""Samples are not divided by their density."""
+
+TASKS = ("07.3",)
+LOSES = (
+    "07.3.furnace",
+    "07.3.hidden",
+    "07.3.matte",
+    "07.3.proposal",
+)
+REPLACE = [
+    (
+        ('scale = mis_weight(mine, theirs) * dot(way, hit["normals"]) / np.where(lit, mine, 1.0)'),
+        'scale = mis_weight(mine, theirs) * dot(way, hit["normals"])',
+    ),
+]

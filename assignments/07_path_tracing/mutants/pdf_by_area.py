@@ -1,0 +1,17 @@
+"""The density is that by area; by solid angle it is r squared over the cosine as much."""
+
+TASKS = ("07.1",)
+LOSES = (
+    "07.1.hidden",
+    "07.1.solid_angle",
+    "07.1.straight",
+)
+REPLACE = [
+    (
+        (
+            "pdf[rows[seen]] = distance[rows[seen]] ** 2 / (len(numbers) * area[seen] * "
+            "facing[seen])"
+        ),
+        "pdf[rows[seen]] = 1 / (len(numbers) * area[seen])",
+    ),
+]

@@ -1,0 +1,17 @@
+"""The choice among K lamps is forgotten: each is drawn only a K-th of the time."""
+
+TASKS = ("07.1",)
+LOSES = (
+    "07.1.hidden",
+    "07.1.solid_angle",
+    "07.1.straight",
+)
+REPLACE = [
+    (
+        (
+            "pdf[rows[seen]] = distance[rows[seen]] ** 2 / (len(numbers) * area[seen] * "
+            "facing[seen])"
+        ),
+        "pdf[rows[seen]] = distance[rows[seen]] ** 2 / (area[seen] * facing[seen])",
+    ),
+]

@@ -1,0 +1,16 @@
+"""Lamps that a path finds after a bounce are added, though direct light has counted them."""
+
+TASKS = ("07.5",)
+LOSES = (
+    "07.5.furnace",
+    "07.5.hidden",
+)
+REPLACE = [
+    (
+        "radiance[live] += beta * direct_light(scene, hit, u[0], u[1])",
+        (
+            "radiance[live] += beta * (direct_light(scene, hit, u[0], u[1]) + (bounce > 0) "
+            "* emitted(scene, hit))"
+        ),
+    ),
+]
