@@ -182,7 +182,8 @@ def towards(scene, thing, point, uv):
 
 
 @check("07.1.straight", task="07.1", points=2, calls=("light_pdf",), tolerance=EXACT,
-       kills=(), hint="equation (6): straight ahead the cosine is 1, and what is left is "
+       kills=("pdf_backs", "pdf_by_area", "pdf_distance_once", "pdf_one_lamp", "pdf_upside_down"),
+       hint="equation (6): straight ahead the cosine is 1, and what is left is "
        "distance squared over area, for one of K lamps",
        sole="one number that can be worked out by head")  # fmt: skip
 def straight_below(t):
@@ -197,7 +198,9 @@ def straight_below(t):
 
 
 @check("07.1.solid_angle", task="07.1", points=4, calls=("light_pdf",), tolerance=NODES,
-       kills=(), hint="equations (4) to (6): an area turned away looks smaller, one twice as far "
+       kills=("pdf_backs", "pdf_by_area", "pdf_cosine_above", "pdf_distance_once",
+              "pdf_no_cosine", "pdf_one_lamp", "pdf_upside_down"),
+       hint="equations (4) to (6): an area turned away looks smaller, one twice as far "
        "away four times smaller",
        sole="a density by solid angle is known by the solid angle")  # fmt: skip
 def densities_know_the_solid_angle(t):
@@ -216,7 +219,8 @@ def densities_know_the_solid_angle(t):
 
 
 @check("07.1.none", task="07.1", points=2, calls=("light_pdf",),
-       kills=(), hint="only fronts of lamps are drawn: a lamp's front is where its normal points",
+       kills=("pdf_backs", "pdf_both_sides", "pdf_of_everything"),
+       hint="only fronts of lamps are drawn: a lamp's front is where its normal points",
        sole="what is never drawn has density 0")  # fmt: skip
 def no_density_without_a_lamp(t):
     """Walls, balls, nothing at all, and a lamp from behind or from the edge: exactly 0."""
@@ -242,7 +246,9 @@ def weights_of(t, pdf, other):
 
 
 @check("07.2.values", task="07.2", points=3, calls=("mis_weight",), tolerance=EXACT,
-       kills=(), hint="equation (9): the squares of densities",
+       kills=("mis_balance", "mis_cube", "mis_exchanged", "mis_floor", "mis_half",
+              "mis_no_square", "mis_ratio"),
+       hint="equation (7): the squares of densities",
        sole="three numbers that can be worked out by head")  # fmt: skip
 def known_weights(t):
     """Three times as dense: nine parts of ten. As dense: half."""
@@ -252,7 +258,8 @@ def known_weights(t):
 
 
 @check("07.2.sum", task="07.2", points=2, calls=("mis_weight",), tolerance=EXACT,
-       kills=(), hint="what one strategy leaves is the other one's",
+       kills=("mis_floor", "mis_no_square", "mis_ratio"),
+       hint="what one strategy leaves is the other one's",
        sole="no light is counted twice, and none forgotten")  # fmt: skip
 def weights_sum_to_one(t):
     """Over both strategies the weights sum to 1."""
@@ -262,7 +269,9 @@ def weights_sum_to_one(t):
 
 
 @check("07.2.extremes", task="07.2", points=2, calls=("mis_weight",), tolerance=EXACT,
-       kills=(), hint="divide by the larger of the two before you square",
+       kills=("mis_balance", "mis_cube", "mis_exchanged", "mis_floor", "mis_half",
+              "mis_no_square", "mis_overflows", "mis_ratio"),
+       hint="divide by the larger of the two before you square",
        sole="mirrors have densities without bound, and what cannot be drawn has none")  # fmt: skip
 def weights_at_the_ends(t):
     """A density of 0, or of 1e200: 0, 1, or by their ratio; never infinite."""
@@ -295,7 +304,11 @@ def lit_floor(t, n=2000, size=1.3, height=0.45):
 
 
 @check("07.3.matte", task="07.3", points=4, calls=("direct_light",), needs=TASK_3,
-       kills=(), hint="equations (7), (8) and (10): reflectance times cosine times radiance, over "
+       kills=("direct_average", "direct_lamps_alone", "direct_material_alone",
+              "direct_no_cosine", "direct_no_division", "direct_no_emission",
+              "direct_no_weights", "direct_other_pdf", "direct_weights_exchanged",
+              "direct_wrong_measure"),
+       hint="equations (8) to (10): reflectance times cosine times radiance, over "
        "the density of the strategy that has drawn it, by its weight",
        sole="the irradiance from a rectangle has been known since Lambert")  # fmt: skip
 def light_from_a_rectangle(t):
@@ -327,7 +340,10 @@ def albedo(t, scene, hit):
 
 
 @check("07.3.furnace", task="07.3", points=4, calls=("direct_light",), needs=TASK_3,
-       kills=(), hint="in a room of radiance 1 direct light is the albedo: both strategies "
+       kills=("direct_lamps_alone", "direct_material_alone", "direct_no_cosine",
+              "direct_no_division", "direct_no_weights", "direct_other_pdf",
+              "direct_wrong_measure"),
+       hint="in a room of radiance 1 direct light is the albedo: both strategies "
        "together must count every direction once",
        sole="the integral of assignment 04, with all directions lit")  # fmt: skip
 def a_bright_room_shows_the_albedo(t):
@@ -337,7 +353,10 @@ def a_bright_room_shows_the_albedo(t):
 
 
 @check("07.3.proposal", task="07.3", points=3, calls=("direct_light",), needs=TASK_3,
-       kills=(), hint="directions, densities and weights by `proposal`, reflectance by `scene`",
+       kills=("direct_lamps_alone", "direct_material_alone", "direct_no_cosine",
+              "direct_no_division", "direct_no_weights", "direct_other_pdf",
+              "direct_proposal_forgotten", "direct_proposal_reflects", "direct_wrong_measure"),
+       hint="directions, densities and weights by `proposal`, reflectance by `scene`",
        sole="the mean does not depend on how samples are drawn")  # fmt: skip
 def another_proposal_has_the_same_mean(t):
     """Directions drawn by a rougher material: the mean is still that of the scene."""
@@ -349,7 +368,8 @@ def another_proposal_has_the_same_mean(t):
 
 
 @check("07.3.dark", task="07.3", points=2, calls=("direct_light",), needs=TASK_3,
-       kills=(), hint="what counts is the first thing that is met along the direction, and it must "
+       kills=("direct_material_alone",),
+       hint="what counts is the first thing that is met along the direction, and it must "
        "be the lamp that was drawn",
        sole="shadows")  # fmt: skip
 def no_light_arrives(t):
@@ -409,18 +429,23 @@ def played(t, beta, u):
 
 
 @check("07.4.values", task="07.4", points=2, calls=("roulette",), tolerance=EXACT,
-       kills=(), hint="equations (11) and (12): the brightest channel decides, u < q goes on",
+       kills=("roulette_dead_carry", "roulette_mean_channel", "roulette_no_division",
+              "roulette_reversed"),
+       hint="equations (11) and (12): the brightest channel decides, u < q goes on",
        sole="one path that goes on and one that ends")  # fmt: skip
 def known_ends(t):
     """A path with (0.2, 0.5, 0.1) goes on in half of all cases, with (0.4, 1, 0.2)."""
-    u = [float(t.rng.uniform(0.3, 0.49)), float(t.rng.uniform(0.51, 0.9)), 0.0]
-    beta, alive = played(t, [[0.2, 0.5, 0.1]] * 3, u)
-    t.require(alive.tolist() == [True, False, True], f"alive is {alive.tolist()} for u = {u}")
-    t.close("beta", beta, [[0.4, 1, 0.2], [0, 0, 0], [0.4, 1, 0.2]], reveal=True)
+    u = [float(t.rng.uniform(0.3, 0.49)), float(t.rng.uniform(0.51, 0.9)), 0.0, 0.5]
+    beta, alive = played(t, [[0.2, 0.5, 0.1]] * 4, u)
+    right = [True, False, True, False]
+    t.require(alive.tolist() == right, f"alive is {alive.tolist()} for u = {u}, q = 0.5")
+    t.close("beta", beta, np.outer(right, [0.4, 1, 0.2]), reveal=True)
 
 
 @check("07.4.mean", task="07.4", points=3, calls=("roulette",), tolerance=EXACT,
-       kills=(), hint="who goes on carries 1 / q, for those who do not",
+       kills=("roulette_clamped", "roulette_dead_carry", "roulette_divided_by_rest",
+              "roulette_mean_channel", "roulette_no_division", "roulette_reversed"),
+       hint="who goes on carries 1 / q, for those who do not",
        sole="roulette must not change the mean")  # fmt: skip
 def the_mean_is_kept(t):
     """Over 1000 values of u, evenly spread, the mean of beta is what it was."""
@@ -432,7 +457,8 @@ def the_mean_is_kept(t):
 
 
 @check("07.4.ends", task="07.4", points=2, calls=("roulette",), tolerance=EXACT,
-       kills=(), hint="q is at most 1; and where q is 0 nothing may be divided by it",
+       kills=("roulette_floor", "roulette_gain", "roulette_mean_channel", "roulette_reversed"),
+       hint="q is at most 1; and where q is 0 nothing may be divided by it",
        sole="bright paths stay as they are, and dark ones end")  # fmt: skip
 def bright_and_dark_paths(t):
     """A channel of 1 or more: goes on unchanged, always. Black: ends, always."""
@@ -458,7 +484,8 @@ def traced(t, scene, origins, directions, depth):
 
 @check("07.5.emitted", task="07.5", points=2, calls=("trace_paths",), needs=TASK_5,
        tolerance=EXACT,
-       kills=(), hint="a path of one piece ends at a lamp, or brings nothing",
+       kills=("trace_no_emission", "trace_one_more"),
+       hint="a path of one piece ends at a lamp, or brings nothing",
        sole="what is seen by itself, exactly")  # fmt: skip
 def depth_one(t):
     """One straight piece: what lamps emit from their fronts. A black lamp shows no more, ever."""
@@ -475,16 +502,17 @@ def depth_one(t):
 
 
 @check("07.5.integral", task="07.5", points=3, calls=("trace_paths",), needs=TASK_5,
-       kills=(), hint="two straight pieces are direct light and what is emitted, nothing else",
+       kills=("trace_no_emission", "trace_one_less", "trace_one_more"),
+       hint="two straight pieces are direct light and what is emitted, nothing else",
        sole="depth two is the integral of assignment 04")  # fmt: skip
 def depth_two(t):
     """Two straight pieces in a closed room: emission plus the integral over all directions."""
     shine, color = t.rng.uniform(0.5, 2, 3), t.rng.uniform(0.2, 0.8, 3)
     scene = scene_of(cube(emission=shine, base_color=color))
-    origins, directions = rays_inside(t, 1500)
+    origins, directions = rays_inside(t, 1000)
     right = shine * (1 + color)
     require_mean(t, "depth 2", lambda: traced(t, scene, origins, directions, 2), right)
-    scene, hit, right = lit_floor(t, 1500)
+    scene, hit, right = lit_floor(t, 1000)
     corner = hit["points"][0] - [0.2, 0, 0.2]
     scene["corners"][0], scene["edges_u"][0], scene["edges_v"][0] = corner, [0, 0, 0.4], [0.4, 0, 0]
     origins = hit["points"] + 0.05 * hit["wo"]
@@ -500,14 +528,17 @@ def rays_inside(t, n):
 
 
 @check("07.5.furnace", task="07.5", points=5, calls=("trace_paths",), needs=TASK_5,
-       kills=(), hint="equation (15): e (1 + a + a^2 + ...), as many terms as pieces; each surface "
+       kills=("trace_double_emission", "trace_last_surface_only", "trace_no_attenuation",
+              "trace_no_cosine", "trace_no_emission", "trace_no_pdf", "trace_one_less",
+              "trace_one_more", "trace_roulette_ends_only"),
+       hint="equation (15): e (1 + a + a^2 + ...), as many terms as pieces; each surface "
        "multiplies once, and lamps that a path finds by chance are counted already",
        sole="a room whose light is a geometric series")  # fmt: skip
 def a_room_that_shines(t):
     """A closed room that shines and reflects everywhere: a geometric series, by depth."""
     shine, color = t.rng.uniform(0.5, 2, 3), t.rng.permutation([0.3, 0.5, 0.8])
     scene = scene_of(cube(emission=shine, base_color=color))
-    origins, directions = rays_inside(t, 1500)
+    origins, directions = rays_inside(t, 1000)
     for depth in (3, 9):
         right = shine * (1 - color**depth) / (1 - color)
         require_mean(t, f"depth {depth}",
@@ -541,7 +572,9 @@ def small_scene(t, n):
 
 @check("07.6.differences", task="07.6", points=5, calls=("direct_light_backward",),
        needs=(*TASK_3, "direct_light"), tolerance=GATE,
-       kills=(), hint="equation (17): reflectance is differentiated, all that was drawn stays",
+       kills=("back_density_too", "back_lamps_alone", "back_no_cosine", "back_no_emission",
+              "back_no_weights", "back_overwritten", "back_sign", "back_weights_too"),
+       hint="equation (17): reflectance is differentiated, all that was drawn stays",
        sole="the definition: your own direct light, its proposal held fixed")  # fmt: skip
 def the_gradient_agrees_with_differences(t):
     """Against differences of your own `direct_light` whose proposal stays as it is."""
@@ -556,8 +589,9 @@ def the_gradient_agrees_with_differences(t):
 
 
 @check("07.6.zero", task="07.6", points=2, calls=("direct_light_backward",), needs=TASK_3,
-       tolerance=EXACT,
-       kills=(), hint="it is linear in d_radiance, and what was not seen has no derivative",
+       tolerance=GATE,
+       kills=("back_overwritten",),
+       hint="it is linear in d_radiance, and what was not seen has no derivative",
        sole="what must be zero, and what must double")  # fmt: skip
 def zeros_and_doubles(t):
     """Zero for zero; twice for twice; matte things have no roughness; the unseen nothing at all."""
@@ -579,7 +613,9 @@ def zeros_and_doubles(t):
 
 
 @check("07.6.mean", task="07.6", points=3, calls=("direct_light_backward",), needs=TASK_3,
-       kills=(), hint="equation (18): the mean over samples is the derivative of the integral",
+       kills=("back_density_too", "back_lamps_alone", "back_no_cosine", "back_no_weights",
+              "back_overwritten", "back_sign"),
+       hint="equation (18): the mean over samples is the derivative of the integral",
        sole="the mean of the gradient is the gradient of the mean")  # fmt: skip
 def the_mean_of_the_gradient(t):
     """In a room of radiance 1 the mean gradient is the derivative of assignment 04's integral."""
@@ -608,12 +644,15 @@ def the_mean_of_the_gradient(t):
 
 
 @check("07.6.cost", task="07.6", points=1, calls=("direct_light_backward",), needs=TASK_3,
-       kills=(), hint="one pass over the same samples gives the derivative by everything",
-       sole="differences would pay two renderings for each number")  # fmt: skip
+       kills=("back_density_too", "back_for_each_thing", "back_lamps_alone", "back_no_cosine",
+              "back_no_emission", "back_no_weights", "back_overwritten", "back_sign",
+              "back_weights_too"),
+       hint="one pass over the same samples gives the derivative by everything",
+       sole="differences would pay two renderings for each number, loops over things one for each")  # fmt: skip
 def the_gradient_is_cheap(t):
-    """A scene of 30 things: the gradient costs at most 20 times what direct light costs."""
+    """A scene of 100 things: the gradient costs at most 20 times what direct light costs."""
     scene, hit = small_scene(t, 30)
-    things = [flake(base_color=0.5, roughness=0.5, metalness=0.5)] * 27
+    things = [flake(base_color=0.5, roughness=0.5, metalness=0.5)] * 97
     more = scene_of(things)
     scene = {name: np.concatenate([scene[name], more[name]]) for name in scene}
     u, d = t.rng.random((2, 30, 3)), random_cotangent(t.rng, (30, 3))
@@ -626,7 +665,10 @@ def the_gradient_is_cheap(t):
 
 # >>> hidden
 @check("07.1.hidden", task="07.1", points=2, calls=("light_pdf",), visibility="hidden",
-       tolerance=EXACT, kills=(), sole="rooms that are not known beforehand")  # fmt: skip
+       tolerance=EXACT,
+       kills=("pdf_backs", "pdf_by_area", "pdf_cosine_above", "pdf_distance_once",
+              "pdf_no_cosine", "pdf_of_everything", "pdf_one_lamp", "pdf_upside_down"),
+       sole="rooms that are not known beforehand")  # fmt: skip
 def densities_in_a_room(t):
     """What random rays of a room meet, against the solution."""
     scene = mixed_room(t)
@@ -637,7 +679,10 @@ def densities_in_a_room(t):
 
 
 @check("07.2.hidden", task="07.2", points=1, calls=("mis_weight",), visibility="hidden",
-       tolerance=EXACT, kills=(), sole="densities that are not known beforehand")  # fmt: skip
+       tolerance=EXACT,
+       kills=("mis_balance", "mis_cube", "mis_exchanged", "mis_floor", "mis_half",
+              "mis_no_square", "mis_ratio"),
+       sole="densities that are not known beforehand")  # fmt: skip
 def random_weights(t):
     """Random densities."""
     p, q = np.exp(t.rng.uniform(-3, 3, (2, 40)))
@@ -645,7 +690,12 @@ def random_weights(t):
 
 
 @check("07.3.hidden", task="07.3", points=6, calls=("direct_light",), needs=TASK_3,
-       visibility="hidden", tolerance=EXACT, kills=(),
+       visibility="hidden", tolerance=EXACT,
+       kills=("direct_average", "direct_lamps_alone", "direct_material_alone",
+              "direct_no_cosine", "direct_no_division", "direct_no_emission",
+              "direct_no_weights", "direct_other_pdf", "direct_proposal_forgotten",
+              "direct_proposal_ignored", "direct_proposal_reflects", "direct_through_walls",
+              "direct_weights_exchanged", "direct_wrong_measure"),
        sole="the same random numbers, two lamps, shadows, and another proposal")  # fmt: skip
 def direct_light_of_a_room(t):
     """A room with two lamps, a ball and shadows, against the solution, number by number."""
@@ -660,7 +710,11 @@ def direct_light_of_a_room(t):
 
 
 @check("07.4.hidden", task="07.4", points=1, calls=("roulette",), visibility="hidden",
-       tolerance=EXACT, kills=(), sole="paths that are not known beforehand")  # fmt: skip
+       tolerance=EXACT,
+       kills=("roulette_clamped", "roulette_dead_carry", "roulette_divided_by_rest",
+              "roulette_floor", "roulette_gain", "roulette_mean_channel", "roulette_no_division",
+              "roulette_reversed"),
+       sole="paths that are not known beforehand")  # fmt: skip
 def random_roulette(t):
     """Random paths."""
     beta, u = t.rng.uniform(0, 1.3, (200, 3)) * t.rng.uniform(0, 1, (200, 1)), t.rng.random(200)
@@ -672,7 +726,10 @@ def random_roulette(t):
 
 
 @check("07.5.hidden", task="07.5", points=4, calls=("trace_paths",), needs=TASK_5,
-       visibility="hidden", kills=(),
+       visibility="hidden",
+       kills=("trace_double_emission", "trace_last_surface_only", "trace_no_attenuation",
+              "trace_no_cosine", "trace_no_emission", "trace_no_pdf", "trace_one_less",
+              "trace_one_more"),
        sole="glossy things, shadows, and paths that leave the room")  # fmt: skip
 def paths_of_a_room(t):
     """An open room where walls shine differently, with a glossy ball: the solution's mean."""
@@ -681,7 +738,7 @@ def paths_of_a_room(t):
              for face in cube()[:5]]  # fmt: skip
     glossy = {"base_color": t.rng.uniform(0.5, 0.9, 3), "metalness": 0.7, "roughness": 0.4}
     scene = scene_of(walls, [((0.3, -0.4, 0.1), 0.4, glossy)])
-    n, times = 1500, 4
+    n, times = 1000, 3
     origins, directions = rays_inside(t, n)
     origins = np.tile([-0.4, -0.2, 0.3], (n, 1))
     theirs = t.reference.trace_paths(scene, np.tile(origins, (times, 1)),
@@ -694,7 +751,10 @@ def paths_of_a_room(t):
 
 
 @check("07.6.hidden", task="07.6", points=2, calls=("direct_light_backward",), needs=TASK_3,
-       visibility="hidden", tolerance=EXACT, kills=(),
+       visibility="hidden", tolerance=GATE,
+       kills=("back_density_too", "back_lamps_alone", "back_no_cosine", "back_no_emission",
+              "back_no_weights", "back_overwritten", "back_sign", "back_through_lamps",
+              "back_weights_too"),
        sole="two lamps, shadows, a ball and something matte")  # fmt: skip
 def the_gradient_of_a_room(t):
     """A room with two lamps, a ball and shadows, against the solution."""
@@ -717,7 +777,8 @@ def glossy_table(color, metalness, roughness):
 
 
 @check("07.6.recover", task="07.6", points=3, calls=("direct_light_backward",),
-       needs=(*TASK_3, "direct_light"), visibility="hidden", kills=(),
+       needs=(*TASK_3, "direct_light"), visibility="hidden",
+       kills=("back_overwritten", "back_sign"),
        sole="what it is for: a base colour and a roughness, found in a picture")  # fmt: skip
 def a_material_is_recovered(t):
     """The base colour within 0.01 and the roughness within 0.02, from an unseen picture."""

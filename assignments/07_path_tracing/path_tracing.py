@@ -218,11 +218,12 @@ def light_pdf(scene, thing, wi, distance):
     numbers = lamps(scene)
     rows = np.flatnonzero(np.isin(thing, numbers))
     lamp = thing[rows]
-    area = np.linalg.norm(np.cross(scene["edges_u"][lamp], scene["edges_v"][lamp]), axis=1)
-    facing = -dot(wi[rows], front_normals(scene)[lamp])
-    pdf = np.zeros(len(thing))
+    width, height = (np.linalg.norm(scene[edge][lamp], axis=1) for edge in ("edges_u", "edges_v"))
+    facing = -np.sum(wi[rows] * front_normals(scene)[lamp], axis=1)
     seen = facing > 0
-    pdf[rows[seen]] = distance[rows[seen]] ** 2 / (len(numbers) * area[seen] * facing[seen])
+    small = len(numbers) * width[seen] * height[seen] * facing[seen]
+    pdf = np.zeros(len(thing))
+    pdf[rows[seen]] = distance[rows[seen]] ** 2 / small
     return pdf
     # <<< solution
 
@@ -235,13 +236,12 @@ def mis_weight(pdf, other):
         other: (N,), that of the other one, likewise. Both go from 0 to 1e200.
 
     Returns:
-        (N,), 0 to 1, by the power heuristic: handout equation (9). 0 where `pdf` is 0.
+        (N,), 0 to 1, by the power heuristic: handout equation (7). 0 where `pdf` is 0.
     """
     # >>> solution 07.2
-    most = np.maximum(pdf, other)
-    most = np.where(most > 0, most, 1.0)
-    mine, theirs = (pdf / most) ** 2, (other / most) ** 2
-    return np.where(pdf > 0, mine / np.where(pdf > 0, mine + theirs, 1.0), 0.0)
+    weight, drawn = np.zeros(len(pdf)), pdf > 0
+    weight[drawn] = (pdf[drawn] / np.hypot(pdf[drawn], other[drawn])) ** 2
+    return weight
     # <<< solution
 
 
@@ -259,7 +259,7 @@ def direct_light(scene, hit, u_light, u_surface, proposal=None):
 
     Returns:
         (N, 3), an estimate of the radiance, what the place emits by itself not included. Handout
-        equations (7), (8) and (10).
+        equations (8) to (10).
     """
     # >>> solution 07.3
     drawn_by = scene if proposal is None else proposal
@@ -269,14 +269,15 @@ def direct_light(scene, hit, u_light, u_surface, proposal=None):
         there = see(scene, hit["points"], way)
         by_light = light_pdf(drawn_by, there["thing"], way, there["t"])
         by_surface = brdf_pdf(drawn_by, hit, way)
-        lit = (by_light > 0) & (by_surface > 0)
         if wanted is not None:
-            lit &= there["thing"] == wanted
             mine, theirs = by_light, by_surface
+            lit = (mine > 0) & (there["thing"] == wanted)
         else:
             mine, theirs = by_surface, by_light
-        scale = mis_weight(mine, theirs) * dot(way, hit["normals"]) / np.where(lit, mine, 1.0)
-        total += np.where(lit, scale, 0.0)[:, None] * brdf(scene, hit, way) * emitted(scene, there)
+            lit = mine > 0
+        scale = mis_weight(mine, theirs) * np.sum(way * hit["normals"], axis=1)
+        scale = np.divide(scale, mine, out=np.zeros(len(mine)), where=lit)
+        total += scale[:, None] * brdf(scene, hit, way) * emitted(scene, there)
     return total
     # <<< solution
 
@@ -293,9 +294,11 @@ def roulette(beta, u):
         which paths go on. Handout equations (11) and (12).
     """
     # >>> solution 07.4
-    q = np.minimum(1.0, beta.max(axis=1))
+    q = beta.max(axis=1).clip(max=1.0)
     alive = u < q
-    return np.where(alive[:, None], beta / np.where(alive, q, 1.0)[:, None], 0.0), alive
+    after = np.zeros(beta.shape)
+    after[alive] = beta[alive] / q[alive, None]
+    return after, alive
     # <<< solution
 
 
@@ -319,19 +322,17 @@ def trace_paths(scene, origins, directions, depth, rng):
     live = np.flatnonzero(hit["thing"] >= 0)
     hit, beta = some(hit, live), np.ones((len(live), 3))
     for bounce in range(depth - 1):
-        u = rng.random((3, len(live), 3))
-        radiance[live] += beta * direct_light(scene, hit, u[0], u[1])
-        wi = sample_brdf(scene, hit, u[2])
-        pdf = brdf_pdf(scene, hit, wi)
-        share = dot(wi, hit["normals"]) / np.where(pdf > 0, pdf, 1.0)
-        beta = np.where(pdf > 0, share, 0.0)[:, None] * beta * brdf(scene, hit, wi)
-        alive = pdf > 0
+        fresh = rng.random((3, len(live), 3))
+        radiance[live] += beta * direct_light(scene, hit, *fresh[:2])
+        wi = sample_brdf(scene, hit, fresh[2])
+        pdf, cos = brdf_pdf(scene, hit, wi), np.sum(wi * hit["normals"], axis=1)
+        share = np.divide(cos, pdf, out=np.zeros(len(pdf)), where=pdf > 0)
+        beta = beta * brdf(scene, hit, wi) * share[:, None]
         if bounce >= ALWAYS:
-            beta, goes_on = roulette(beta, rng.random(len(live)))
-            alive &= goes_on
+            beta, _ = roulette(beta, rng.random(len(live)))
         there = see(scene, hit["points"], wi)
-        alive &= there["thing"] >= 0
-        hit, beta, live = some(there, alive), beta[alive], live[alive]
+        goes_on = (there["thing"] >= 0) & beta.any(axis=1)
+        hit, beta, live = some(there, goes_on), beta[goes_on], live[goes_on]
     return radiance
     # <<< solution
 
@@ -352,7 +353,7 @@ def direct_light_backward(scene, hit, u_light, u_surface, d_radiance):
         things that the hit does not contain. Handout equations (16) to (18).
     """
     # >>> solution 07.6
-    n = len(hit["thing"])
+    n, things = len(hit["thing"]), len(scene["matte"])
     towards, _, lamp = sample_light(scene, hit["points"], u_light)
     ways = np.concatenate([towards, sample_brdf(scene, hit, u_surface)])
     both = some(hit, np.tile(np.arange(n), 2))
@@ -361,15 +362,15 @@ def direct_light_backward(scene, hit, u_light, u_surface, d_radiance):
     of_brdf = brdf_pdf(scene, both, ways)
     by_lamp = np.arange(2 * n) < n
     own, other = np.where(by_lamp, of_lamp, of_brdf), np.where(by_lamp, of_brdf, of_lamp)
-    counts = (of_lamp > 0) & (of_brdf > 0)
+    counts = own > 0
     counts[:n] &= found["thing"][:n] == lamp
-    factor = mis_weight(own, other) * dot(ways, both["normals"]) / np.where(counts, own, 1.0)
-    d_f = np.tile(d_radiance, (2, 1)) * emitted(scene, found)
-    d_f *= np.where(counts, factor, 0.0)[:, None]
-    by_color, by_roughness = brdf_backward(scene, both, ways, d_f)
-    d_base_color, d_roughness = np.zeros((len(scene["matte"]), 3)), np.zeros(len(scene["matte"]))
+    factor = mis_weight(own, other) * np.sum(ways * both["normals"], axis=1)
+    factor = np.divide(factor, own, out=np.zeros(2 * n), where=counts)
+    d_f = np.tile(d_radiance, (2, 1)) * factor[:, None] * emitted(scene, found)
+    by_color, by_rough = brdf_backward(scene, both, ways, d_f)
+    d_base_color, d_roughness = np.zeros((things, 3)), np.zeros(things)
     np.add.at(d_base_color, both["thing"], by_color)
-    np.add.at(d_roughness, both["thing"], by_roughness)
+    np.add.at(d_roughness, both["thing"], by_rough)
     return d_base_color, d_roughness
     # <<< solution
 

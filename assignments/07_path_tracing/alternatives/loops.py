@@ -196,18 +196,15 @@ def light_pdf(scene, thing, wi, distance):
         (N,), in 1/sr; exactly 0 where the thing is no lamp, or its front is not seen. Handout
         equations (5) and (6).
     """
-    shining = [int(k) for k in lamps(scene)]
-    out = []
-    for what, way, far in zip(thing, wi, distance, strict=True):
-        value = 0.0
-        if int(what) in shining:
-            normal = np.cross(scene["edges_u"][what], scene["edges_v"][what])
-            size = float(np.sqrt(normal @ normal))
-            c = -float(way @ normal) / size
-            if c > 0:
-                value = far * far / c / size / len(shining)
-        out.append(value)
-    return np.array(out)
+    shining = lamps(scene)
+    out = np.zeros(len(thing))
+    for what in shining:
+        normal = np.cross(scene["edges_u"][what], scene["edges_v"][what])
+        size = np.sqrt(normal @ normal)
+        c = -(wi @ normal) / size
+        for n in np.flatnonzero((thing == what) & (c > 0)):
+            out[n] = distance[n] * distance[n] / c[n] / size / len(shining)
+    return out
 
 
 def mis_weight(pdf, other):
@@ -218,7 +215,7 @@ def mis_weight(pdf, other):
         other: (N,), that of the other one, likewise. Both go from 0 to 1e200.
 
     Returns:
-        (N,), 0 to 1, by the power heuristic: handout equation (9). 0 where `pdf` is 0.
+        (N,), 0 to 1, by the power heuristic: handout equation (7). 0 where `pdf` is 0.
     """
     out = np.zeros(len(pdf))
     for n in range(len(pdf)):
@@ -244,7 +241,7 @@ def direct_light(scene, hit, u_light, u_surface, proposal=None):
 
     Returns:
         (N, 3), an estimate of the radiance, what the place emits by itself not included. Handout
-        equations (7), (8) and (10).
+        equations (8) to (10).
     """
     if proposal is None:
         proposal = scene

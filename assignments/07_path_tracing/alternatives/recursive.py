@@ -221,7 +221,7 @@ def mis_weight(pdf, other):
         other: (N,), that of the other one, likewise. Both go from 0 to 1e200.
 
     Returns:
-        (N,), 0 to 1, by the power heuristic: handout equation (9). 0 where `pdf` is 0.
+        (N,), 0 to 1, by the power heuristic: handout equation (7). 0 where `pdf` is 0.
     """
     with np.errstate(divide="ignore", over="ignore"):
         ratio = np.where(pdf > 0, other / np.where(pdf > 0, pdf, 1.0), np.inf)
@@ -243,7 +243,7 @@ def direct_light(scene, hit, u_light, u_surface, proposal=None):
 
     Returns:
         (N, 3), an estimate of the radiance, what the place emits by itself not included. Handout
-        equations (7), (8) and (10).
+        equations (8) to (10).
     """
     chooser = proposal or scene
     sent = np.zeros((len(hit["thing"]), 3))

@@ -7,7 +7,7 @@ LOSES = (
 )
 REPLACE = [
     (
-        ('scale = mis_weight(mine, theirs) * dot(way, hit["normals"]) / np.where(lit, mine, 1.0)'),
-        'scale = 0.5 * dot(way, hit["normals"]) / np.where(lit, mine, 1.0)',
+        'scale = mis_weight(mine, theirs) * np.sum(way * hit["normals"], axis=1)',
+        'scale = 0.5 * np.sum(way * hit["normals"], axis=1)',
     ),
 ]

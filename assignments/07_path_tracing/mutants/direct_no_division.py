@@ -9,7 +9,7 @@ LOSES = (
 )
 REPLACE = [
     (
-        ('scale = mis_weight(mine, theirs) * dot(way, hit["normals"]) / np.where(lit, mine, 1.0)'),
-        'scale = mis_weight(mine, theirs) * dot(way, hit["normals"])',
+        "scale = np.divide(scale, mine, out=np.zeros(len(mine)), where=lit)",
+        "scale = np.where(lit, scale, 0.0)",
     ),
 ]

@@ -7,10 +7,7 @@ LOSES = (
 )
 REPLACE = [
     (
-        (
-            "total += np.where(lit, scale, 0.0)[:, None] * brdf(scene, hit, way) * "
-            "emitted(scene, there)"
-        ),
-        "total += np.where(lit, scale, 0.0)[:, None] * brdf(scene, hit, way)",
+        "total += scale[:, None] * brdf(scene, hit, way) * emitted(scene, there)",
+        "total += scale[:, None] * brdf(scene, hit, way) * (emitted(scene, there) > 0)",
     ),
 ]

@@ -9,7 +9,7 @@ LOSES = (
 )
 REPLACE = [
     (
-        ('scale = mis_weight(mine, theirs) * dot(way, hit["normals"]) / np.where(lit, mine, 1.0)'),
-        'scale = dot(way, hit["normals"]) / np.where(lit, mine, 1.0)',
+        'scale = mis_weight(mine, theirs) * np.sum(way * hit["normals"], axis=1)',
+        'scale = np.sum(way * hit["normals"], axis=1)',
     ),
 ]

@@ -9,10 +9,7 @@ LOSES = (
 )
 REPLACE = [
     (
-        ('scale = mis_weight(mine, theirs) * dot(way, hit["normals"]) / np.where(lit, mine, 1.0)'),
-        (
-            'scale = mis_weight(mine, theirs) * dot(way, hit["normals"]) / np.where(lit, '
-            "theirs, 1.0)"
-        ),
+        "scale = np.divide(scale, mine, out=np.zeros(len(mine)), where=lit)",
+        ("scale = np.divide(scale, theirs, out=np.zeros(len(mine)), where=lit & (theirs > 0))"),
     ),
 ]

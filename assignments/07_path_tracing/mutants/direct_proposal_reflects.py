@@ -7,13 +7,7 @@ LOSES = (
 )
 REPLACE = [
     (
-        (
-            "total += np.where(lit, scale, 0.0)[:, None] * brdf(scene, hit, way) * "
-            "emitted(scene, there)"
-        ),
-        (
-            "total += np.where(lit, scale, 0.0)[:, None] * brdf(drawn_by, hit, way) * "
-            "emitted(scene, there)"
-        ),
+        "total += scale[:, None] * brdf(scene, hit, way) * emitted(scene, there)",
+        "total += scale[:, None] * brdf(drawn_by, hit, way) * emitted(scene, there)",
     ),
 ]

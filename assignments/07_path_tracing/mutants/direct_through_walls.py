@@ -4,7 +4,7 @@ TASKS = ("07.3",)
 LOSES = ("07.3.hidden",)
 REPLACE = [
     (
-        ('lit &= there["thing"] == wanted\n            mine, theirs = by_light, by_surface'),
-        "mine, theirs = by_light, by_surface",
+        'lit = (mine > 0) & (there["thing"] == wanted)',
+        ("lit = mine > 0\n            mine[lit] += 0 * wanted[lit]"),
     ),
 ]

@@ -8,7 +8,7 @@ LOSES = (
 )
 REPLACE = [
     (
-        "mine, theirs = (pdf / most) ** 2, (other / most) ** 2",
-        "mine, theirs = pdf / most, other / most",
+        "weight[drawn] = (pdf[drawn] / np.hypot(pdf[drawn], other[drawn])) ** 2",
+        "weight[drawn] = pdf[drawn] / (pdf[drawn] + other[drawn])",
     ),
 ]

@@ -8,7 +8,11 @@ LOSES = (
 )
 REPLACE = [
     (
-        "mine, theirs = (pdf / most) ** 2, (other / most) ** 2",
-        "mine, theirs = (pdf / most) ** 3, (other / most) ** 3",
+        "weight[drawn] = (pdf[drawn] / np.hypot(pdf[drawn], other[drawn])) ** 2",
+        (
+            "most = np.maximum(pdf, other)[drawn]\n"
+            "    p, q = (pdf[drawn] / most) ** 3, (other[drawn] / most) ** 3\n"
+            "    weight[drawn] = p / (p + q)"
+        ),
     ),
 ]

@@ -9,7 +9,7 @@ LOSES = (
 )
 REPLACE = [
     (
-        "return np.where(pdf > 0, mine / np.where(pdf > 0, mine + theirs, 1.0), 0.0)",
-        "return np.where(pdf > 0, mine / (mine + theirs + 0.01), 0.0)",
+        "weight[drawn] = (pdf[drawn] / np.hypot(pdf[drawn], other[drawn])) ** 2",
+        "weight[drawn] = (pdf[drawn] / (np.hypot(pdf[drawn], other[drawn]) + 0.01)) ** 2",
     ),
 ]

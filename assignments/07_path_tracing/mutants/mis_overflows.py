@@ -4,7 +4,11 @@ TASKS = ("07.2",)
 LOSES = ("07.2.extremes",)
 REPLACE = [
     (
-        "return np.where(pdf > 0, mine / np.where(pdf > 0, mine + theirs, 1.0), 0.0)",
-        ('with np.errstate(all="ignore"):\n        return np.nan_to_num(mine / (mine + theirs))'),
+        "weight[drawn] = (pdf[drawn] / np.hypot(pdf[drawn], other[drawn])) ** 2",
+        (
+            'with np.errstate(all="ignore"):\n'
+            "        weight[drawn] = np.nan_to_num(pdf[drawn] ** 2 / (pdf[drawn] ** 2 + "
+            "other[drawn] ** 2))"
+        ),
     ),
 ]

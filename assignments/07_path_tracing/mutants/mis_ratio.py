@@ -9,10 +9,7 @@ LOSES = (
 )
 REPLACE = [
     (
-        "return np.where(pdf > 0, mine / np.where(pdf > 0, mine + theirs, 1.0), 0.0)",
-        (
-            "return np.where(pdf > 0, np.minimum(1.0, mine / np.where(theirs > 0, theirs, "
-            "1.0)), 0.0)"
-        ),
+        "weight[drawn] = (pdf[drawn] / np.hypot(pdf[drawn], other[drawn])) ** 2",
+        ("weight[drawn] = np.minimum(1.0, (pdf[drawn] / np.maximum(other[drawn], 1e-300)) ** 2)"),
     ),
 ]

@@ -9,7 +9,7 @@ LOSES = (
 )
 REPLACE = [
     (
-        "facing = -dot(wi[rows], front_normals(scene)[lamp])",
-        "facing = dot(wi[rows], front_normals(scene)[lamp])",
+        "facing = -np.sum(wi[rows] * front_normals(scene)[lamp], axis=1)",
+        "facing = np.sum(wi[rows] * front_normals(scene)[lamp], axis=1)",
     ),
 ]

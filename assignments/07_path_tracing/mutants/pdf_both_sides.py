@@ -4,7 +4,7 @@ TASKS = ("07.1",)
 LOSES = ("07.1.none",)
 REPLACE = [
     (
-        "facing = -dot(wi[rows], front_normals(scene)[lamp])",
-        "facing = np.abs(dot(wi[rows], front_normals(scene)[lamp]))",
+        "facing = -np.sum(wi[rows] * front_normals(scene)[lamp], axis=1)",
+        "facing = np.abs(np.sum(wi[rows] * front_normals(scene)[lamp], axis=1))",
     ),
 ]

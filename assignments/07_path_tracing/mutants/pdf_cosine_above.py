@@ -7,13 +7,7 @@ LOSES = (
 )
 REPLACE = [
     (
-        (
-            "pdf[rows[seen]] = distance[rows[seen]] ** 2 / (len(numbers) * area[seen] * "
-            "facing[seen])"
-        ),
-        (
-            "pdf[rows[seen]] = distance[rows[seen]] ** 2 * facing[seen] / (len(numbers) * "
-            "area[seen])"
-        ),
+        "small = len(numbers) * width[seen] * height[seen] * facing[seen]",
+        "small = len(numbers) * width[seen] * height[seen] / facing[seen]",
     ),
 ]

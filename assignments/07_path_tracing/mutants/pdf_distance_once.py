@@ -8,10 +8,7 @@ LOSES = (
 )
 REPLACE = [
     (
-        (
-            "pdf[rows[seen]] = distance[rows[seen]] ** 2 / (len(numbers) * area[seen] * "
-            "facing[seen])"
-        ),
-        ("pdf[rows[seen]] = distance[rows[seen]] / (len(numbers) * area[seen] * facing[seen])"),
+        "pdf[rows[seen]] = distance[rows[seen]] ** 2 / small",
+        "pdf[rows[seen]] = distance[rows[seen]] / small",
     ),
 ]

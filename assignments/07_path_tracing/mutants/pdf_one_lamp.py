@@ -8,10 +8,7 @@ LOSES = (
 )
 REPLACE = [
     (
-        (
-            "pdf[rows[seen]] = distance[rows[seen]] ** 2 / (len(numbers) * area[seen] * "
-            "facing[seen])"
-        ),
-        "pdf[rows[seen]] = distance[rows[seen]] ** 2 / (area[seen] * facing[seen])",
+        "small = len(numbers) * width[seen] * height[seen] * facing[seen]",
+        "small = width[seen] * height[seen] * facing[seen]",
     ),
 ]

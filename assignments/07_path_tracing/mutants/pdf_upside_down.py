@@ -8,10 +8,7 @@ LOSES = (
 )
 REPLACE = [
     (
-        (
-            "pdf[rows[seen]] = distance[rows[seen]] ** 2 / (len(numbers) * area[seen] * "
-            "facing[seen])"
-        ),
-        ("pdf[rows[seen]] = len(numbers) * area[seen] * facing[seen] / distance[rows[seen]] ** 2"),
+        "pdf[rows[seen]] = distance[rows[seen]] ** 2 / small",
+        "pdf[rows[seen]] = small / distance[rows[seen]] ** 2",
     ),
 ]

@@ -7,10 +7,7 @@ LOSES = (
 )
 REPLACE = [
     (
-        ("return np.where(alive[:, None], beta / np.where(alive, q, 1.0)[:, None], 0.0), alive"),
-        (
-            "return np.where(alive[:, None], beta * np.minimum(1 / np.where(alive, q, "
-            "1.0), 2.0)[:, None], 0.0), alive"
-        ),
+        "after[alive] = beta[alive] / q[alive, None]",
+        "after[alive] = beta[alive] * np.minimum(1 / q[alive, None], 2.0)",
     ),
 ]

@@ -8,7 +8,7 @@ LOSES = (
 )
 REPLACE = [
     (
-        ("return np.where(alive[:, None], beta / np.where(alive, q, 1.0)[:, None], 0.0), alive"),
-        "return beta / np.where(alive, q, 1.0)[:, None], alive",
+        "after = np.zeros(beta.shape)",
+        "after = beta.copy()",
     ),
 ]

@@ -7,7 +7,7 @@ LOSES = (
 )
 REPLACE = [
     (
-        "q = np.minimum(1.0, beta.max(axis=1))",
+        "q = beta.max(axis=1).clip(max=1.0)",
         "q = beta.max(axis=1)",
     ),
 ]

@@ -8,7 +8,7 @@ LOSES = (
 )
 REPLACE = [
     (
-        ("return np.where(alive[:, None], beta / np.where(alive, q, 1.0)[:, None], 0.0), alive"),
-        "return np.where(alive[:, None], beta, 0.0), alive",
+        "after[alive] = beta[alive] / q[alive, None]",
+        "after[alive] = beta[alive]",
     ),
 ]

@@ -7,10 +7,10 @@ LOSES = (
 )
 REPLACE = [
     (
-        "radiance[live] += beta * direct_light(scene, hit, u[0], u[1])",
+        "radiance[live] += beta * direct_light(scene, hit, *fresh[:2])",
         (
-            "radiance[live] += beta * (direct_light(scene, hit, u[0], u[1]) + (bounce > 0) "
-            "* emitted(scene, hit))"
+            "radiance[live] += beta * direct_light(scene, hit, *fresh[:2])\n"
+            "        radiance[live] += (bounce > 0) * beta * emitted(scene, hit)"
         ),
     ),
 ]

@@ -7,7 +7,7 @@ LOSES = (
 )
 REPLACE = [
     (
-        "radiance[live] += beta * direct_light(scene, hit, u[0], u[1])",
-        "radiance[live] += direct_light(scene, hit, u[0], u[1])",
+        "radiance[live] += beta * direct_light(scene, hit, *fresh[:2])",
+        "radiance[live] += direct_light(scene, hit, *fresh[:2])",
     ),
 ]

@@ -7,7 +7,7 @@ LOSES = (
 )
 REPLACE = [
     (
-        'share = dot(wi, hit["normals"]) / np.where(pdf > 0, pdf, 1.0)',
-        "share = 1 / np.where(pdf > 0, pdf, 1.0)",
+        "share = np.divide(cos, pdf, out=np.zeros(len(pdf)), where=pdf > 0)",
+        "share = np.divide(1, pdf, out=np.zeros(len(pdf)), where=pdf > 0)",
     ),
 ]

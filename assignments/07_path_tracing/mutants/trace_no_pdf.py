@@ -7,7 +7,7 @@ LOSES = (
 )
 REPLACE = [
     (
-        'share = dot(wi, hit["normals"]) / np.where(pdf > 0, pdf, 1.0)',
-        'share = dot(wi, hit["normals"])',
+        "share = np.divide(cos, pdf, out=np.zeros(len(pdf)), where=pdf > 0)",
+        "share = cos",
     ),
 ]

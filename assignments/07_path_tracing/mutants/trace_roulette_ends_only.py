@@ -4,7 +4,7 @@ TASKS = ("07.5",)
 LOSES = ("07.5.furnace",)
 REPLACE = [
     (
-        "beta, goes_on = roulette(beta, rng.random(len(live)))",
-        "goes_on = roulette(beta, rng.random(len(live)))[1]",
+        "beta, _ = roulette(beta, rng.random(len(live)))",
+        "beta = beta * roulette(beta, rng.random(len(live)))[1][:, None]",
     ),
 ]
