@@ -1,7 +1,7 @@
 """Checks of assignment 07.
 
 Most are exact: the numbers that a function would draw are arguments, and where they are nodes of a
-quadrature their mean is an integral. Eight judgements are of random draws. Where one is bad, at
+quadrature their mean is an integral. Eleven judgements are of random draws. Where one is bad, at
 2e-4, new draws get a second one: a right solution fails in less than one of a million hand-ins.
 """
 
@@ -22,7 +22,7 @@ from photograd_course.grading.adjoint_gate import (
 EXACT = Tolerance(1e-10, "right ones differ by 1e-15, wrong ones by 1e-3 or more")
 NODES = Tolerance(1e-7, "16 nodes an axis leave 1e-9, wrong ones are off by 0.1 or more")
 GATE = Tolerance(1e-6, "central differences leave 1e-9, wrong ones are off by 1e-3 or more")
-LEVEL = 2e-4  # of one judgement; eight draws are judged
+LEVEL = 2e-4  # of one judgement; eleven draws are judged
 TASK_3 = ("light_pdf", "mis_weight")
 TASK_5 = (*TASK_3, "direct_light", "roulette")
 UP = np.array([0.0, 1.0, 0.0])
@@ -110,14 +110,14 @@ def solid_angle(corners):
     return total
 
 
-def irradiance(corners):
-    """Of a surface at the origin that faces up, by a rectangle of radiance 1 above it (Lambert)."""
+def irradiance(corners, normal=UP):
+    """Of a surface at the origin, by a rectangle of radiance 1 wholly above it (Lambert)."""
     d = corners / np.linalg.norm(corners, axis=1, keepdims=True)
     total = np.zeros(3)
     for a, b in zip(d, np.roll(d, -1, axis=0), strict=True):
         c = np.cross(a, b)
         total += math.atan2(np.linalg.norm(c), a @ b) * c / np.linalg.norm(c)
-    return abs(total @ UP) / 2
+    return abs(total @ normal) / 2
 
 
 def nodes(count):
@@ -502,7 +502,7 @@ def depth_one(t):
 
 
 @check("07.5.integral", task="07.5", points=3, calls=("trace_paths",), needs=TASK_5,
-       kills=("trace_no_emission", "trace_one_less", "trace_one_more"),
+       kills=("trace_double_emission", "trace_no_emission", "trace_one_less", "trace_one_more"),
        hint="two straight pieces are direct light and what is emitted, nothing else",
        sole="depth two is the integral of assignment 04")  # fmt: skip
 def depth_two(t):
@@ -512,12 +512,44 @@ def depth_two(t):
     origins, directions = rays_inside(t, 1000)
     right = shine * (1 + color)
     require_mean(t, "depth 2", lambda: traced(t, scene, origins, directions, 2), right)
-    scene, hit, right = lit_floor(t, 1000)
-    corner = hit["points"][0] - [0.2, 0, 0.2]
-    scene["corners"][0], scene["edges_u"][0], scene["edges_v"][0] = corner, [0, 0, 0.4], [0.4, 0, 0]
-    origins = hit["points"] + 0.05 * hit["wo"]
-    require_mean(t, "a floor below a lamp",
-                 lambda: traced(t, scene, origins, -hit["wo"], 2), right)  # fmt: skip
+    point, size = t.rng.uniform(-0.1, 0.1, 3), t.rng.uniform(0.8, 1.2)
+    lamp = (point + np.array([0.5, 0.05, -1]), [0, 0, 2], [0, size, 0])
+    scene = scene_of([
+        (point - np.array([0.2, 0, 0.2]), [0, 0, 0.4], [0.4, 0, 0], {"base_color": color}),
+        (*lamp, {"emission": shine, "base_color": 0.0}), flake(base_color=0.9),
+    ])  # fmt: skip
+    right = color / np.pi * irradiance(corners_of(*lamp) - point) * shine
+    wo = ways(t.rng, 1000, 0.4)
+    for depth in (2, 4):
+        require_mean(t, f"a floor beside a lamp, depth {depth}",
+                     lambda d=depth: traced(t, scene, point + 0.05 * wo, -wo, d),
+                     right)  # fmt: skip
+
+
+@check("07.5.corner", task="07.5", points=2, calls=("trace_paths",), needs=TASK_5,
+       kills=("trace_no_attenuation", "trace_no_cosine", "trace_no_pdf", "trace_one_less",
+              "trace_one_more"),
+       hint="three pieces: the direction of the material leads to the wall, and there "
+       "direct light is asked for again, times what the floor reflects of it",
+       sole="light from where the path went, and from nowhere else")  # fmt: skip
+def around_a_corner(t):
+    """A floor that sees a lamp's back, and a wall on which it shines: three straight pieces."""
+    floor, wall, shine = t.rng.uniform(0.3, 0.6, 3), t.rng.uniform(0.4, 0.9, 3), 5.0
+    lamp = ((0.4, 1.3, -0.4), (0, 0.6, 0), (0, 0, 0.8))
+    scene = scene_of([
+        ((-0.1, 0, -0.1), (0, 0, 0.2), (0.2, 0, 0), {"base_color": floor}),
+        ((1, 0, -1), (0, 0, 2), (0, 1, 0), {"base_color": wall}),
+        (*lamp, {"emission": shine, "base_color": 0.0}),
+    ])  # fmt: skip
+    uv, weights = nodes(10)
+    places = np.column_stack([np.ones(100), uv[:, 0], 2 * uv[:, 1] - 1])
+    lit = [irradiance(corners_of(*lamp) - place, np.array([-1.0, 0, 0])) for place in places]
+    share = 2 * places[:, 1] / np.sum(places**2, axis=1) ** 2  # cosines, area, distance squared
+    right = floor * wall / np.pi**2 * shine * (weights * share @ np.array(lit))
+    wo = ways(t.rng, 3000, 0.4)
+    require_mean(t, "a floor in the shadow",
+                 lambda: traced(t, scene, 0.05 * wo, -wo, 3), right)  # fmt: skip
+    t.require(not traced(t, scene, 0.05 * wo, -wo, 2).any(), "at depth 2 the floor is black")
 
 
 def rays_inside(t, n):
@@ -527,7 +559,7 @@ def rays_inside(t, n):
     return np.tile(t.rng.uniform(-0.5, 0.5, 3), (n, 1)), d
 
 
-@check("07.5.furnace", task="07.5", points=5, calls=("trace_paths",), needs=TASK_5,
+@check("07.5.furnace", task="07.5", points=4, calls=("trace_paths",), needs=TASK_5,
        kills=("trace_double_emission", "trace_last_surface_only", "trace_no_attenuation",
               "trace_no_cosine", "trace_no_emission", "trace_no_pdf", "trace_one_less",
               "trace_one_more", "trace_roulette_ends_only"),
@@ -606,6 +638,9 @@ def zeros_and_doubles(t):
     t.require(not (once["base_color"][1].any() or once["roughness"][1]),
               "a thing that the hit does not contain has a derivative")  # fmt: skip
     t.require(once["roughness"][2] == 0, "a matte thing has a derivative by roughness")
+    turned = {**scene, "edges_u": scene["edges_v"], "edges_v": scene["edges_u"]}
+    for name, values in slopes(t, turned, hit, d, u).items():
+        t.require(not values.any(), f"d_{name} below a lamp's back is not zero")
     again = {name: np.concatenate([values, values]) for name, values in hit.items()}
     more = slopes(t, scene, again, np.tile(d, (2, 1)), np.tile(u, (1, 2, 1)))
     for name in once:
@@ -644,11 +679,11 @@ def the_mean_of_the_gradient(t):
 
 
 @check("07.6.cost", task="07.6", points=1, calls=("direct_light_backward",), needs=TASK_3,
-       kills=("back_density_too", "back_for_each_thing", "back_lamps_alone", "back_no_cosine",
+       kills=("back_by_differences", "back_density_too", "back_lamps_alone", "back_no_cosine",
               "back_no_emission", "back_no_weights", "back_overwritten", "back_sign",
               "back_weights_too"),
        hint="one pass over the same samples gives the derivative by everything",
-       sole="differences would pay two renderings for each number, loops over things one for each")  # fmt: skip
+       sole="differences would pay two renderings for each number")  # fmt: skip
 def the_gradient_is_cheap(t):
     """A scene of 100 things: the gradient costs at most 20 times what direct light costs."""
     scene, hit = small_scene(t, 30)
@@ -725,7 +760,7 @@ def random_roulette(t):
     t.close("beta", after, right)
 
 
-@check("07.5.hidden", task="07.5", points=4, calls=("trace_paths",), needs=TASK_5,
+@check("07.5.hidden", task="07.5", points=3, calls=("trace_paths",), needs=TASK_5,
        visibility="hidden",
        kills=("trace_double_emission", "trace_last_surface_only", "trace_no_attenuation",
               "trace_no_cosine", "trace_no_emission", "trace_no_pdf", "trace_one_less",

@@ -11,6 +11,10 @@ LOSES = (
 )
 REPLACE = [
     (
+        'np.add.at(d_base_color, both["thing"], by_color)',
+        'd_base_color[both["thing"]] = by_color',
+    ),
+    (
         'np.add.at(d_roughness, both["thing"], by_rough)',
         'd_roughness[both["thing"]] = by_rough',
     ),

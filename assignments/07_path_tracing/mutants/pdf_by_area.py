@@ -8,6 +8,10 @@ LOSES = (
 )
 REPLACE = [
     (
+        "small = len(numbers) * width[seen] * height[seen] * facing[seen]",
+        "small = len(numbers) * width[seen] * height[seen]",
+    ),
+    (
         "pdf[rows[seen]] = distance[rows[seen]] ** 2 / small",
         "pdf[rows[seen]] = 1 / small",
     ),

@@ -4,6 +4,7 @@ TASKS = ("07.5",)
 LOSES = (
     "07.5.furnace",
     "07.5.hidden",
+    "07.5.integral",
 )
 REPLACE = [
     (

@@ -2,6 +2,7 @@
 
 TASKS = ("07.5",)
 LOSES = (
+    "07.5.corner",
     "07.5.furnace",
     "07.5.hidden",
 )
