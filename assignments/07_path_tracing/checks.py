@@ -678,7 +678,8 @@ def the_mean_of_the_gradient(t):
     require_mean(t, "mean gradient", draw, np.array(right))
 
 
-@check("07.6.cost", task="07.6", points=1, calls=("direct_light_backward",), needs=TASK_3,
+@check("07.6.cost", task="07.6", points=1, calls=("direct_light_backward",),
+       needs=(*TASK_3, "direct_light"),
        kills=("back_by_differences", "back_density_too", "back_lamps_alone", "back_no_cosine",
               "back_no_emission", "back_no_weights", "back_overwritten", "back_sign",
               "back_weights_too"),
