@@ -146,7 +146,9 @@ def p_value(values, right, error=0.0):
     n = len(values)
     spread = np.hypot(values.std(axis=0, ddof=1) / math.sqrt(n), error)
     off = np.abs(values.mean(axis=0) - right)
-    off = np.where(off < 1e-12 * np.abs(right), 0.0, off / np.maximum(spread, 1e-300))
+    off = np.where(
+        off < 1e-12 * np.abs(right), 0.0, np.minimum(off / np.maximum(spread, 1e-9), 1e6)
+    )
     # Student's t, as a normal variable, by Wallace.
     z = np.sqrt((n - 1) * np.log1p(off**2 / (n - 1))) * (1 - 3 / (4 * n))
     return min(math.erfc(float(z.max()) / math.sqrt(2)) * len(off), 1.0)
