@@ -1,0 +1,523 @@
+"""Written from the handout alone, formula by formula."""
+
+from __future__ import annotations
+
+import numpy as np
+from reflectance import ggx_pdf, gltf, gltf_backward, sample_ggx
+
+T_MIN = 1e-6  # metres; nothing nearer counts as met
+ALWAYS = 2  # so many bounces of a path are never ended by roulette
+SIDE = 4  # SIDE x SIDE samples of each pixel, in a step of `recover`
+
+# Geometry ----------------------------------------------------------------------------------------
+
+
+def front_normals(scene):
+    """Unit normals (Q, 3) of the rectangles' fronts."""
+    normals = np.cross(scene["edges_u"], scene["edges_v"])
+    return normals / np.linalg.norm(normals, axis=1, keepdims=True)
+
+
+def meet(scene, origins, directions):
+    """The first thing along each ray: (t (N,), thing (N,)), infinite and -1 where there is none."""
+    u, v, normals = scene["edges_u"], scene["edges_v"], front_normals(scene)
+    slope = directions @ normals.T
+    height = origins @ normals.T - np.sum(scene["corners"] * normals, axis=1)
+    t = -height / np.where(slope == 0, np.nan, slope)
+    inside = t > T_MIN
+    for edge in (u, v):
+        along = (
+            origins @ edge.T + t * (directions @ edge.T) - np.sum(scene["corners"] * edge, axis=1)
+        )
+        inside &= np.abs(along / np.sum(edge**2, axis=1) - 0.5) <= 0.5 + 1e-9
+    t = np.where(inside, t, np.inf)
+    offset = origins[:, None] - scene["balls"][:, :3]
+    half_b = np.sum(offset * directions[:, None], axis=2)
+    rest = half_b**2 - np.sum(offset**2, axis=2) + scene["balls"][:, 3] ** 2
+    root = np.sqrt(np.maximum(rest, 0))
+    t_ball = np.where(-half_b - root > T_MIN, -half_b - root, root - half_b)
+    t_ball = np.where((rest > 0) & (t_ball > T_MIN), t_ball, np.inf)
+    t = np.concatenate([t, t_ball], axis=1)
+    thing = t.argmin(axis=1)
+    t = t[np.arange(len(t)), thing]
+    return t, np.where(np.isinf(t), -1, thing)
+
+
+def see(scene, origins, directions):
+    """What rays see first: a hit with N rows. Directions (N, 3) are unit vectors."""
+    t, thing = meet(scene, origins, directions)
+    far = np.where(np.isinf(t), 0.0, t)
+    points = origins + far[:, None] * directions
+    quads, balls = len(scene["corners"]), scene["balls"]
+    outward = -directions.copy()  # where nothing is seen
+    flat, round_ = (thing >= 0) & (thing < quads), thing >= quads
+    outward[flat] = front_normals(scene)[thing[flat]]
+    which = balls[thing[round_] - quads]
+    outward[round_] = (points[round_] - which[:, :3]) / which[:, 3:]
+    front = np.sum(outward * directions, axis=1) < 0
+    normals = np.where(front[:, None], outward, -outward)
+    return {"points": points, "normals": normals, "wo": -directions, "front": front, "t": t,
+            "thing": thing}  # fmt: skip
+
+
+def some(hit, rows):
+    """Those rows of a hit: by numbers, or by a mask (N,) of bool."""
+    return {name: values[rows] for name, values in hit.items()}
+
+
+def dot(a, b):
+    """Scalar products (N,) of rows."""
+    return np.sum(a * b, axis=1)
+
+
+def camera_rays(width, height, place, target, degrees):
+    """Rays (origins, directions), (height width, 3) each, row by row; y is up, `degrees` high."""
+    z = np.asarray(target, float) - place
+    z /= np.linalg.norm(z)
+    x = np.cross(z, [0.0, 1.0, 0.0])
+    x /= np.linalg.norm(x)
+    v, u = np.mgrid[:height, :width].reshape(2, -1) + 0.5
+    scale = 2 * np.tan(np.radians(degrees) / 2) / height
+    flat = [scale * (u - width / 2), scale * (v - height / 2), np.ones(len(u))]
+    directions = np.stack(flat, axis=1) @ np.stack([x, np.cross(z, x), z])
+    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    return np.tile(np.asarray(place, float), (len(u), 1)), directions
+
+
+# Materials and lamps -----------------------------------------------------------------------------
+
+
+def emitted(scene, hit):
+    """The radiance (N, 3) that what is seen sends to the viewer by itself: fronts of lamps do."""
+    shines = hit["front"] & (hit["thing"] >= 0)
+    return np.where(shines[:, None], scene["emission"][hit["thing"]], 0.0)
+
+
+def lamps(scene):
+    """The numbers (K,) of the things that shine."""
+    return np.flatnonzero(scene["emission"].any(axis=1))
+
+
+def sample_light(scene, points, u3):
+    """Draw a place on a lamp for each point: of K lamps each alike, of its places each alike.
+
+    Args:
+        scene: with at least one lamp.
+        points: (N, 3).
+        u3: (N, 3), uniform in [0, 1).
+
+    Returns:
+        (wi (N, 3), distance (N,), thing (N,)): to the place, how far it is, and the lamp. Whether
+        something stands in between is not looked at, nor which side of the lamp is seen.
+    """
+    numbers = lamps(scene)
+    thing = numbers[(u3[:, 0] * len(numbers)).astype(int)]
+    along = u3[:, 1:2] * scene["edges_u"][thing] + u3[:, 2:] * scene["edges_v"][thing]
+    wi = scene["corners"][thing] + along - points
+    distance = np.linalg.norm(wi, axis=1)
+    return wi / distance[:, None], distance, thing
+
+
+def _frames(normals):
+    """Two more unit vectors for each normal, and the normal: (N, 3, 3), a vector a row."""
+    low = np.abs(normals).argmin(axis=1)
+    x = np.cross(normals, np.eye(3)[low])
+    x /= np.linalg.norm(x, axis=1, keepdims=True)
+    return np.stack([x, np.cross(normals, x), normals], axis=1)
+
+
+def _local(hit, wi):
+    """wo, wi (N, 3) with the normal as +z; base colour, metalness and roughness follow by name."""
+    frames = _frames(hit["normals"])
+    return tuple(np.einsum("nij,nj->ni", frames, w) for w in (hit["wo"], wi))
+
+
+def _material(scene, hit):
+    return tuple(scene[name][hit["thing"]] for name in ("base_color", "metalness", "roughness"))
+
+
+def brdf(scene, hit, wi):
+    """How much light from wi goes to the viewer, (N, 3) in 1/sr, without the cosine."""
+    wo, wi = _local(hit, wi)
+    base_color, metalness, roughness = _material(scene, hit)
+    matte = np.where(((wo[:, 2] > 0) & (wi[:, 2] > 0))[:, None], base_color / np.pi, 0.0)
+    glossy = gltf(wo, wi, base_color, metalness, roughness)
+    return np.where(scene["matte"][hit["thing"]][:, None], matte, glossy)
+
+
+def brdf_backward(scene, hit, wi, d_f):
+    """The adjoint of `brdf` for one row each: (d_base_color (N, 3), d_roughness (N,)).
+
+    d_f (N, 3) is the derivative of some loss by what `brdf` returned; directions are held fixed.
+    """
+    wo, wi = _local(hit, wi)
+    matte = scene["matte"][hit["thing"]]
+    d_base_color, _, d_roughness = gltf_backward(wo, wi, *_material(scene, hit), d_f)
+    above = ((wo[:, 2] > 0) & (wi[:, 2] > 0))[:, None]
+    d_matte = np.where(above, d_f / np.pi, 0.0)
+    return np.where(matte[:, None], d_matte, d_base_color), np.where(matte, 0.0, d_roughness)
+
+
+def sample_brdf(scene, hit, u3):
+    """Draw directions wi (N, 3) by the material: one half by the cosine, one half mirrored by GGX.
+
+    Matte things have the first kind only. Some directions lead below the surface. u3 (N, 3).
+    """
+    wo = _local(hit, hit["normals"])[0]
+    phi, r = 2 * np.pi * u3[:, 1], np.sqrt(u3[:, 2])
+    even = np.stack([r * np.cos(phi), r * np.sin(phi), np.sqrt(1 - u3[:, 2])], axis=1)
+    mirrored = sample_ggx(wo, scene["roughness"][hit["thing"]], u3[:, 1:])
+    by_cosine = scene["matte"][hit["thing"]] | (u3[:, 0] < 0.5)
+    wi = np.where(by_cosine[:, None], even, mirrored)
+    return np.einsum("nij,ni->nj", _frames(hit["normals"]), wi)
+
+
+def brdf_pdf(scene, hit, wi):
+    """How densely `sample_brdf` draws directions, (N,) in 1/sr; 0 below the surface."""
+    wo, wi = _local(hit, wi)
+    even = np.maximum(wi[:, 2], 0) / np.pi
+    mirrored = ggx_pdf(wo, wi, scene["roughness"][hit["thing"]])
+    return np.where(scene["matte"][hit["thing"]], even, 0.5 * even + 0.5 * mirrored)
+
+
+# Your tasks ---------------------------------------------------------------------------------------
+
+
+def light_pdf(scene, thing, wi, distance):
+    """How densely `sample_light` draws directions, by solid angle.
+
+    Args:
+        scene: with K lamps.
+        thing: (N,), what lies in the direction wi; -1 for nothing.
+        wi: (N, 3), from the point towards it.
+        distance: (N,), how far away it is, in metres.
+
+    Returns:
+        (N,), in 1/sr; exactly 0 where the thing is no lamp, or its front is not seen. Handout
+        equations (5) and (6).
+    """
+    u, v = scene["edges_u"], scene["edges_v"]
+    areas = np.linalg.norm(u, axis=1) * np.linalg.norm(v, axis=1)
+    numbers = lamps(scene)
+    pdf = np.zeros(len(thing))
+    for k in numbers:
+        cosine = -(wi @ front_normals(scene)[k])
+        rows = (thing == k) & (cosine > 0)
+        pdf[rows] = 1 / (len(numbers) * areas[k]) * distance[rows] ** 2 / cosine[rows]
+    return pdf
+
+
+def mis_weight(pdf, other):
+    """How much a sample of one strategy counts, when another could have drawn it as well.
+
+    Args:
+        pdf: (N,), the density of the strategy that has drawn it, 0 or more, in 1/sr.
+        other: (N,), that of the other one, likewise. Both go from 0 to 1e200.
+
+    Returns:
+        (N,), 0 to 1, by the power heuristic: handout equation (7). 0 where `pdf` is 0.
+    """
+    larger = np.maximum(np.maximum(pdf, other), 1e-300)
+    p, q = pdf / larger, other / larger
+    weight = np.zeros(len(pdf))
+    rows = pdf > 0
+    weight[rows] = p[rows] ** 2 / (p[rows] ** 2 + q[rows] ** 2)
+    return weight
+
+
+def direct_light(scene, hit, u_light, u_surface, proposal=None):
+    """The light that comes straight from lamps and leaves the surface to the viewer.
+
+    Args:
+        scene: with at least one lamp.
+        hit: N places; something is seen in every row.
+        u_light: (N, 3), for `sample_light`: one direction for each row.
+        u_surface: (N, 3), for `sample_brdf`: another one.
+        proposal: the scene by which directions, densities and weights are made; None for `scene`
+            itself. Both scenes have the same shapes and lamps, materials may differ. What is seen
+            along a direction, and how the surface reflects it, is always that of `scene`.
+
+    Returns:
+        (N, 3), an estimate of the radiance, what the place emits by itself not included. Handout
+        equations (8) to (10).
+    """
+    if proposal is None:
+        proposal = scene
+    radiance = np.zeros((len(hit["thing"]), 3))
+    # A place on a lamp.
+    wi, distance, thing = sample_light(proposal, hit["points"], u_light)
+    there = see(scene, hit["points"], wi)
+    p = light_pdf(proposal, thing, wi, distance)
+    q = brdf_pdf(proposal, hit, wi)
+    cosine = np.maximum(dot(hit["normals"], wi), 0)
+    ok = (there["thing"] == thing) & (p > 0)
+    weight = mis_weight(p, q) * cosine / np.where(ok, p, 1) * ok
+    radiance += weight[:, None] * brdf(scene, hit, wi) * emitted(scene, there)
+    # A direction of the material.
+    wi = sample_brdf(proposal, hit, u_surface)
+    there = see(scene, hit["points"], wi)
+    p = light_pdf(proposal, there["thing"], wi, there["t"])
+    q = brdf_pdf(proposal, hit, wi)
+    cosine = np.maximum(dot(hit["normals"], wi), 0)
+    ok = q > 0
+    weight = mis_weight(q, p) * cosine / np.where(ok, q, 1) * ok
+    radiance += weight[:, None] * brdf(scene, hit, wi) * emitted(scene, there)
+    return radiance
+
+
+def roulette(beta, u):
+    """End paths that carry little; let the others carry more for it.
+
+    Args:
+        beta: (N, 3), what a path's light is multiplied with on its way to the viewer, 0 or more.
+        u: (N,), uniform in [0, 1).
+
+    Returns:
+        (beta (N, 3), alive (N,) of bool): the new factors, zeros where the path has ended, and
+        which paths go on. Handout equations (11) and (12).
+    """
+    q = np.clip(np.max(beta, axis=1), 0, 1)
+    alive = u < q
+    q = np.where(q > 0, q, 1)
+    return beta / q[:, None] * alive[:, None], alive
+
+
+def trace_paths(scene, origins, directions, depth, rng):
+    """The radiance that comes along rays, light over several surfaces included.
+
+    Args:
+        scene: with at least one lamp.
+        origins, directions: (N, 3), of the viewer's rays; unit directions.
+        depth: 1 or more: how many straight pieces a path may have, from the lamp to the viewer.
+            1 is what things emit towards the viewer, 2 has direct light as well, and so on.
+        rng: a generator; each ray gets random numbers of its own.
+
+    Returns:
+        (N, 3), one estimate for each ray; 0 where a ray sees nothing. Handout equations (13) to
+        (15).
+    """
+    hit = see(scene, origins, directions)
+    radiance = emitted(scene, hit)
+    ray = np.arange(len(origins))
+    beta = np.ones((len(origins), 3))
+    for j in range(depth - 1):
+        keep = hit["thing"] >= 0
+        hit, ray, beta = some(hit, keep), ray[keep], beta[keep]
+        n = len(ray)
+        radiance[ray] += beta * direct_light(scene, hit, rng.random((n, 3)), rng.random((n, 3)))
+        wi = sample_brdf(scene, hit, rng.random((n, 3)))
+        pdf = brdf_pdf(scene, hit, wi)
+        keep = pdf > 0
+        hit, ray, beta, wi, pdf = some(hit, keep), ray[keep], beta[keep], wi[keep], pdf[keep]
+        beta = beta * brdf(scene, hit, wi) * (dot(hit["normals"], wi) / pdf)[:, None]
+        if j >= ALWAYS:
+            beta, keep = roulette(beta, rng.random(len(ray)))
+            hit, ray, beta, wi = some(hit, keep), ray[keep], beta[keep], wi[keep]
+        hit = see(scene, hit["points"], wi)
+    return radiance
+
+
+def direct_light_backward(scene, hit, u_light, u_surface, d_radiance):
+    """The adjoint of `direct_light`, by what things are made of.
+
+    Directions, densities and weights are held fixed: it is the derivative of
+    `direct_light(scene, hit, u_light, u_surface, proposal)` by `scene` alone, where `proposal` is a
+    copy of `scene` that stays as it is.
+
+    Args:
+        scene, hit, u_light, u_surface: as for `direct_light`.
+        d_radiance: (N, 3), the derivative of some loss by each number that `direct_light` returned.
+
+    Returns:
+        (d_base_color (T, 3), d_roughness (T,)), one row for each thing of the scene, zero for
+        things that the hit does not contain. Handout equations (16) to (18).
+    """
+    things = len(scene["roughness"])
+    d_base_color, d_roughness = np.zeros((things, 3)), np.zeros(things)
+    wi, distance, thing = sample_light(scene, hit["points"], u_light)
+    there = see(scene, hit["points"], wi)
+    p, q = light_pdf(scene, thing, wi, distance), brdf_pdf(scene, hit, wi)
+    ok = (there["thing"] == thing) & (p > 0)
+    weight = mis_weight(p, q) * np.maximum(dot(hit["normals"], wi), 0) / np.where(ok, p, 1) * ok
+    d_f = weight[:, None] * emitted(scene, there) * d_radiance
+    first = brdf_backward(scene, hit, wi, d_f)
+    wi = sample_brdf(scene, hit, u_surface)
+    there = see(scene, hit["points"], wi)
+    p, q = light_pdf(scene, there["thing"], wi, there["t"]), brdf_pdf(scene, hit, wi)
+    ok = q > 0
+    weight = mis_weight(q, p) * np.maximum(dot(hit["normals"], wi), 0) / np.where(ok, q, 1) * ok
+    d_f = weight[:, None] * emitted(scene, there) * d_radiance
+    second = brdf_backward(scene, hit, wi, d_f)
+    for by_color, by_roughness in (first, second):
+        for c in range(3):
+            d_base_color[:, c] += np.bincount(hit["thing"], by_color[:, c], things)
+        d_roughness += np.bincount(hit["thing"], by_roughness, things)
+    return d_base_color, d_roughness
+
+
+# Scenes and a fit --------------------------------------------------------------------------------
+
+
+def rectangle(corner, edge_u, edge_v, **material):
+    """One rectangle for `assemble`; material: see `assemble`."""
+    return {"corner": corner, "edge_u": edge_u, "edge_v": edge_v, **material}
+
+
+def ball(center, radius, **material):
+    """One ball for `assemble`."""
+    return {"ball": [*center, radius], **material}
+
+
+def assemble(things):
+    """A scene of rectangles and balls; balls come last.
+
+    Each thing may have base_color, a number or three, emission likewise, metalness, roughness, and
+    matte; what is left out is 0.5, 0, 0, 0.5, and whether neither of the last two was given.
+    """
+    things = sorted(things, key=lambda thing: "ball" in thing)
+    flat = [thing for thing in things if "ball" not in thing]
+    scene = {
+        name: np.array([thing[key] for thing in flat], float).reshape(-1, 3)
+        for name, key in (("corners", "corner"), ("edges_u", "edge_u"), ("edges_v", "edge_v"))
+    }
+    balls = [thing["ball"] for thing in things if "ball" in thing]
+    scene["balls"] = np.array(balls, float).reshape(-1, 4)
+    for name, default in (("base_color", 0.5), ("emission", 0.0)):
+        scene[name] = np.array([np.ones(3) * thing.get(name, default) for thing in things])
+    for name, default in (("metalness", 0.0), ("roughness", 0.5)):
+        scene[name] = np.array([float(thing.get(name, default)) for thing in things])
+    glossy = [thing.get("matte", not {"metalness", "roughness"} & set(thing)) for thing in things]
+    scene["matte"] = np.array(glossy, bool)
+    return scene
+
+
+def demo_room():
+    """A room with a lamp in the ceiling, a glossy floor and a ball of metal: thing 7."""
+    lamp, white = {"emission": [9.0, 8.0, 6.5], "base_color": 0.0}, {"base_color": 0.7}
+    return assemble([
+        rectangle([-1, 0, -1], [0, 0, 2], [2, 0, 0], base_color=[0.4, 0.35, 0.3], roughness=0.35),
+        rectangle([-1, 2, -1], [2, 0, 0], [0, 0, 2], **white),
+        rectangle([-1, 0, -1], [2, 0, 0], [0, 2, 0], **white),
+        rectangle([-1, 0, -1], [0, 2, 0], [0, 0, 2], base_color=[0.65, 0.1, 0.1]),
+        rectangle([1, 0, -1], [0, 0, 2], [0, 2, 0], base_color=[0.15, 0.45, 0.15]),
+        rectangle([-0.35, 1.98, -0.35], [0.7, 0, 0], [0, 0, 0.7], **lamp),
+        rectangle([-0.95, 0.15, -0.95], [0.5, 0, -0.02], [0, 0.5, 0], base_color=[0.1, 0.2, 0.6]),
+        ball([0.25, 0.5, 0], 0.5, base_color=[0.9, 0.6, 0.3], metalness=1, roughness=0.4),
+    ])  # fmt: skip
+
+
+def demo_table(base_color=(0.8, 0.5, 0.2), roughness=0.35):
+    """A table under a slanted lamp; the table is thing 0. Its picture is 10 x 7 pixels small."""
+    return assemble([
+        rectangle([-1, 0, -1], [0, 0, 2], [2, 0, 0], base_color=base_color, roughness=roughness,
+                  metalness=0.5),
+        rectangle([-0.5, 0.4, -1], [1, 0, 0], [0, 0.5, 0.4], emission=[6, 5, 4], base_color=0),
+    ])  # fmt: skip
+
+
+def table_rays():
+    """The rays (origins, directions) of the picture of `demo_table`, (70, 3) each."""
+    return camera_rays(10, 7, [0, 0.9, 1.2], [0, 0, -0.3], 45)
+
+
+def repeated(hit, times):
+    """A hit with each row so many times in a row."""
+    return some(hit, np.repeat(np.arange(len(hit["thing"])), times))
+
+
+def strata(rng, pixels, side=SIDE):
+    """Random numbers (pixels side^2, 3), those of one pixel spread evenly: less noise, same mean.
+
+    Each of the last two numbers has a cell of a grid for itself; the first ones are dealt out.
+    """
+    cells = np.stack(np.mgrid[:side, :side], axis=-1).reshape(-1, 2)
+    dealt = rng.permuted(np.tile(np.arange(side**2), (pixels, 1)), axis=1)
+    first = (dealt + rng.random(dealt.shape)) / side**2
+    last = (cells + rng.random((pixels, side**2, 2))) / side
+    return np.concatenate([first[..., None], last], axis=2).reshape(-1, 3)
+
+
+def recover(scene, thing, origins, directions, picture, steps, rng):
+    """Find the base colour and the roughness of one thing in a picture, by your gradient.
+
+    Adam on the mean squared difference from the picture, relative to it (plus 0.1), so that the
+    highlight does not have all the say. The residual and the derivative that it is multiplied with
+    are made with random numbers of their own: section 6 of the handout says why.
+
+    Args:
+        scene: all is known of it but base_color and roughness of `thing`, where it is a start.
+        thing: its number.
+        origins, directions: (N, 3), the rays of the picture.
+        picture: (N, 3), direct light only.
+        steps: of descent.
+        rng: a generator.
+
+    Returns:
+        (base_color (3,), roughness, track (steps, 4)): the mean of the last third of the steps,
+        and base colour and roughness after each.
+    """
+    own = {
+        **scene,
+        "base_color": scene["base_color"].copy(),
+        "roughness": scene["roughness"].copy(),
+    }
+    hit = see(own, origins, directions)
+    mine = hit["thing"] == thing
+    pixels, samples = int(mine.sum()), SIDE**2
+    hit = repeated(some(hit, mine), samples)
+    x = np.append(own["base_color"][thing], own["roughness"][thing])
+    mean, square, track = np.zeros(4), np.zeros(4), []
+    for step in range(1, steps + 1):
+        u = [strata(rng, pixels) for _ in range(4)]
+        shown = direct_light(own, hit, u[0], u[1]).reshape(pixels, samples, 3).mean(axis=1)
+        d_shown = 2 * (shown - picture[mine]) / (picture[mine] + 0.1) ** 2
+        d_shown /= shown.size * samples
+        d_hit = np.repeat(d_shown, samples, axis=0)
+        d_base_color, d_roughness = direct_light_backward(own, hit, u[2], u[3], d_hit)
+        d_x = np.append(d_base_color[thing], d_roughness[thing])
+        mean, square = 0.8 * mean + 0.2 * d_x, 0.95 * square + 0.05 * d_x**2
+        pull = mean / (1 - 0.8**step) / np.sqrt(square / (1 - 0.95**step) + 1e-30)
+        x = np.clip(x - 0.06 * (1 - step / (steps + 1)) ** 2 * pull, 0.0, 1.0)
+        x[3] = max(x[3], 0.1)
+        own["base_color"][thing], own["roughness"][thing] = x[:3], x[3]
+        track.append(x.copy())
+    track = np.array(track)
+    found = track[-max(1, steps // 3) :].mean(axis=0)
+    return found[:3], float(found[3]), track
+
+
+def by_roughness(scene, thing, origins, directions, rng, side=12):
+    """How the mean of the channels of each pixel (N,) changes with a thing's roughness."""
+    hit, slope = see(scene, origins, directions), np.zeros(len(origins))
+    for k in np.flatnonzero(hit["thing"] == thing):
+        many = repeated(some(hit, [k]), side**2)
+        u = strata(rng, 1, side), strata(rng, 1, side)
+        d = np.full((side**2, 3), 1 / (3 * side**2))
+        slope[k] = direct_light_backward(scene, many, *u, d)[1][thing]
+    return slope
+
+
+# What the C++ core found for `demo_table`, in 1/10,000: red, green, blue and the derivative of
+# their mean by the roughness, for the last five rows of the picture; then what it recovered.
+_CORE = """
+    0 0 0 0  1178 614 197 291  2611 1362 439 945  4997 2612 848 3357  6452 3373 1096 4714
+    6421 3357 1090 4740  4990 2608 846 3357  2630 1372 442 936  1174 612 197 291  0 0 0 0
+    1262 658 212 391  2033 1061 343 980  3416 1793 592 4052  14160 7653 2805 -12737
+    17875 9664 3545 -9483  17984 9724 3570 -9048  14197 7673 2813 -13066  3428 1800 594 4063
+    2029 1060 342 979  1259 657 211 390  1219 636 206 545  1679 879 287 1372  3013 1595 543 5385
+    15243 8235 3013 -27004  20957 11332 4160 -30288  21018 11365 4173 -30916
+    15218 8221 3009 -27488  3012 1595 543 5368  1669 873 285 1373  1214 634 205 545
+    1015 530 172 597  1314 689 226 1404  2356 1250 429 4228  8852 4756 1709 -13224
+    12687 6826 2463 -16613  12669 6816 2459 -16709  8748 4700 1689 -13695  2365 1254 430 4302
+    1314 689 226 1416  1018 532 172 594  851 445 145 587  1049 550 181 1222  1605 849 289 2998
+    3235 1727 607 4747  4436 2374 841 6633  4404 2357 835 6691  3226 1722 605 4726
+    1600 847 288 3019  1050 551 181 1226  852 445 145 584
+"""
+_CORE_FOUND = "7907 4999 2035 3396"
+
+
+def core_answers():
+    """Direct light (7, 10, 3), its derivative by roughness (7, 10), recovered (4,): the core's."""
+    table = np.array(_CORE.split(), float).reshape(5, 10, 4) / 1e4
+    table = np.concatenate([np.zeros((2, 10, 4)), table])
+    return table[..., :3], table[..., 3], np.array(_CORE_FOUND.split(), float) / 1e4

@@ -1,0 +1,152 @@
+# %% [markdown]
+# # A room by all its bounces, and a material found in a picture
+# Draws a room with your path tracer, and a table with your direct light, your gradient, and what
+# `recover` makes of its picture. Beside them stands what the C++ core found; where the core is
+# installed it is asked anew. Never graded. `python explore.py` takes `--size` (pixels across),
+# `--depth`, `--samples` (a pixel, of the room), `--steps` (of the fit) and `--roughness` (of the
+# table; the core's table of answers is for 0.35).
+
+# %%
+from __future__ import annotations
+
+import importlib
+import sys
+import time
+
+import numpy as np
+import path_tracing as mine
+from matplotlib.figure import Figure
+
+
+def option(name, default):
+    """The value after --name on the command line; the default in a notebook."""
+    words = sys.argv[1:]
+    return type(default)(words[words.index(f"--{name}") + 1]) if f"--{name}" in words else default
+
+
+size, depth, samples = option("size", 48), option("depth", 5), option("samples", 16)
+steps, roughness = option("steps", 45), option("roughness", 0.35)
+rng = np.random.default_rng(0)
+
+# %% [markdown]
+# ## The room
+
+# %%
+width, height = size, size * 5 // 6
+room = mine.demo_room()
+origins, directions = mine.camera_rays(width, height, [0, 1, 3.4], [0, 1, 0], 38)
+before = time.perf_counter()
+total, squares = np.zeros((height * width, 3)), np.zeros((height * width, 3))
+for _ in range(samples):
+    seen = mine.trace_paths(room, origins, directions, depth, rng)
+    total += seen
+    squares += seen**2
+picture = total / samples
+noise = np.sqrt(np.maximum(squares / samples - picture**2, 0).mean() / samples) / picture.mean()
+print(f"room:  depth {depth}, {samples} samples a pixel, mean {picture.mean():.3f}, noise "
+      f"{noise:.0%}, {time.perf_counter() - before:.1f} s")  # fmt: skip
+
+# %% [markdown]
+# ## The table
+# Direct light alone, many samples, and how each pixel changes with the roughness of the table.
+
+# %%
+rays, truth = mine.table_rays(), mine.demo_table(roughness=roughness)
+hit = mine.see(truth, *rays)
+on = hit["thing"] == 0
+many, each = mine.repeated(mine.some(hit, on), mine.SIDE**2), mine.SIDE**2
+table = np.zeros((70, 3))
+for _ in range(16):
+    u = mine.strata(rng, on.sum()), mine.strata(rng, on.sum())
+    table[on] += mine.direct_light(truth, many, *u).reshape(-1, each, 3).mean(axis=1) / 16
+slope = mine.by_roughness(truth, 0, *rays, rng, side=24)
+theirs, their_slope, found = mine.core_answers()
+
+# %% [markdown]
+# ## The C++ core, where it is installed
+
+
+# %%
+def of_the_core(spp):
+    """(direct light (70, 3), its derivative by roughness (70,)) of the table by the core."""
+    transport = importlib.import_module("photograd.transport")
+    shapes = importlib.import_module("photograd.transport.shapes")
+    camera = importlib.import_module("photograd.data.camera").Camera
+    look_at = importlib.import_module("photograd.orbit").look_at
+    parts = [shapes.rectangle(f"thing{k}", *(truth[name][k] for name in
+                                             ("corners", "edges_u", "edges_v")),
+                              f"of{k}", truth["emission"][k]) for k in range(2)]  # fmt: skip
+    materials = {
+        f"of{k}": transport.Material(
+            "gltf", {name: truth[name][k] for name in ("base_color", "metalness", "roughness")}
+        )
+        for k in range(2)
+    }
+    cameras = [camera(1, 1, 1e5, 1e5, 0.5, 0.5, look_at(o, o + d))
+               for o, d in zip(*rays, strict=True)]  # fmt: skip
+    scene = transport.Scene("table", tuple(parts), materials, cameras[0])
+    tracer = transport.PathTracer(scene, dtype=np.float64)
+    light, change = np.zeros((70, 3)), np.zeros(70)
+    options = transport.PathOptions(max_depth=2)
+    for k in np.flatnonzero(on):
+        given = {"spp": spp, "options": options, "camera": cameras[k]}
+        light[k] = tracer.render(seed=int(k), **given).mean[0, 0]
+        back = tracer.render_backward(np.full((1, 1, 3), 1 / 3), seed=1000 + int(k), **given)
+        change[k] = back["materials.of0.roughness"]
+    return light, change
+
+
+def apart(a, b):
+    """Relative difference by norm."""
+    return float(np.linalg.norm(a - b) / np.linalg.norm(b))
+
+
+name = "core, as shipped"
+try:
+    light, change = of_the_core(4000)
+except (ImportError, AttributeError, TypeError):  # none, or another than this was written for
+    print("core:  not installed; the shipped answers stand for it")
+else:
+    shipped = apart(light, theirs.reshape(70, 3))
+    theirs, their_slope, name = light.reshape(7, 10, 3), change.reshape(7, 10), "core"
+    print(f"core:  asked anew, {shipped:.1%} from its shipped picture")
+print(f"table: your picture is {apart(table, theirs.reshape(70, 3)):.1%} from the core's, your "
+      f"gradient {apart(slope, their_slope.ravel()):.1%}")  # fmt: skip
+
+# %% [markdown]
+# ## What the picture says about the material
+# From grey and roughness 0.6, in the core's picture.
+
+# %%
+start = mine.demo_table((0.5, 0.5, 0.5), 0.6)
+before = time.perf_counter()
+color, rough, track = mine.recover(start, 0, *rays, theirs.reshape(70, 3), steps, rng)
+print(f"fit:   base colour {color.round(3)}, roughness {rough:.3f} in {steps} steps, "
+      f"{time.perf_counter() - before:.1f} s; the core found {found[:3].round(3)}, {found[3]:.3f} "
+      "where it is 0.8, 0.5, 0.2 and 0.35")  # fmt: skip
+
+# %% [markdown]
+# ## Pictures
+
+# %%
+figure = Figure(figsize=(10, 6), layout="constrained")
+axes = figure.subplots(2, 3)
+gamma = 1 / 2.2
+axes[0, 0].imshow(np.clip(picture.reshape(height, width, 3), 0, 1) ** gamma)
+axes[0, 0].set(title=f"room, depth {depth}")
+axes[0, 1].imshow(np.clip(table.reshape(7, 10, 3) / 2, 0, 1) ** gamma)
+axes[0, 1].set(title="table, yours")
+axes[0, 2].imshow(np.clip(theirs / 2, 0, 1) ** gamma)
+axes[0, 2].set(title=f"table, {name}")
+axes[1, 1].imshow(slope.reshape(7, 10), cmap="RdBu_r", vmin=-3, vmax=3)
+axes[1, 1].set(title="∂ / ∂ roughness, yours")
+axes[1, 2].imshow(their_slope, cmap="RdBu_r", vmin=-3, vmax=3)
+axes[1, 2].set(title=f"∂ / ∂ roughness, {name}")
+for axis in axes.flat:
+    axis.set(xticks=[], yticks=[])
+axes[1, 0].plot(track)
+for k in range(4):
+    axes[1, 0].axhline(found[k], color=f"C{k}", linestyle=":")
+axes[1, 0].set(title="fit; dotted: the core's", ylim=(0, 1), xticks=[0, steps], yticks=[0, 0.5, 1])
+figure.savefig("traced.png", dpi=110)
+print("wrote traced.png")

@@ -1,0 +1,440 @@
+"""The figures of assignment 07, and the facts that their captions claim."""
+
+from __future__ import annotations
+
+from types import ModuleType
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from photograd_course.viz.style import BLUE, GREY, INK, ORANGE, house_style
+from photograd_course.viz.style import RED as CRIMSON
+
+Facts = dict[str, bool | tuple[float, float, float]]
+Array = np.ndarray
+DOTS = 110  # per inch: 7 inches wide gives 770 pixels
+UP = np.array([0.0, 1.0, 0.0])
+GAMMA = 1 / 2.2
+
+
+def save(figure: Figure, path: object) -> None:
+    """Write a figure with the same bytes every time."""
+    with house_style():
+        figure.savefig(path, dpi=DOTS, facecolor="white", metadata={"Software": None})
+
+
+def fig1_measure(module: ModuleType) -> tuple[Figure, Facts]:
+    """Irradiance beside a lamp, by the density of the handout and by two wrong ones."""
+    aside = np.linspace(0.0, 4.0, 33)
+    lamp = module.rectangle([-0.5, 2, -0.5], [1, 0, 0], [0, 0, 1], emission=1.0)
+    scene = module.assemble([lamp])
+    x, w = np.polynomial.legendre.leggauss(6)
+    u, v = np.meshgrid((x + 1) / 2, (x + 1) / 2, indexing="ij")
+    u3 = np.stack([0 * u.ravel(), u.ravel(), v.ravel()], axis=1)
+    weights = np.outer(w, w).ravel() / 4
+    ours, by_area, no_cosine, right = [], [], [], []
+    for s in aside:
+        points = np.tile([s, 0.0, 0.0], (36, 1))
+        wi, distance, thing = module.sample_light(scene, points, u3)
+        pdf = module.light_pdf(scene, thing, wi, distance)
+        cosine = wi @ UP
+        ours.append(weights @ (cosine / np.where(pdf > 0, pdf, 1)))
+        by_area.append(weights @ cosine)
+        no_cosine.append(weights @ (cosine / distance**2))
+        right.append(_irradiance(np.array([[a - s, 2, b] for a, b in _SQUARE])))
+    ours, by_area, no_cosine, right = (np.array(e) for e in (ours, by_area, no_cosine, right))
+    facts: Facts = {
+        "dots on the line": (float(np.abs(ours / right - 1).max()), 0.0, 1e-6),
+        "by area 4 times too bright or more": (float((by_area / right).min()), 4.0, 8.0),
+        "more than 40 times at 4 m": (float(by_area[-1] / right[-1]), 40.0, 48.0),
+        "without the cosine right below the lamp": (float(no_cosine[0] / right[0]), 1.0, 1.1),
+        "at 4 m twice as bright or more": (float(no_cosine[-1] / right[-1]), 2.0, 3.0),
+    }
+    with house_style():
+        figure = Figure(figsize=(7.0, 2.9), layout="constrained")
+        axes = figure.subplots()
+        axes.semilogy(aside, right, color=GREY)
+        axes.semilogy(aside[::2], np.maximum(ours, 1e-9)[::2], "o", color=BLUE, markersize=4)
+        axes.semilogy(aside, by_area, color=CRIMSON)
+        axes.semilogy(aside, no_cosine, color=ORANGE)
+        axes.annotate("density by area", (2.6, by_area[21]), (0, 5), color=CRIMSON,
+                      textcoords="offset points")  # fmt: skip
+        axes.annotate("without the lamp's cosine", (2.6, no_cosine[21]), (0, 8), color=ORANGE,
+                      textcoords="offset points")  # fmt: skip
+        axes.annotate("yours, and Lambert's formula", (1.2, right[10]), (-60, -24), color=BLUE,
+                      textcoords="offset points")  # fmt: skip
+        axes.set(xlabel="aside of the lamp  [m]", ylabel="irradiance / radiance", ylim=(5e-3, 2))
+        _plain(axes)
+    return figure, facts
+
+
+def fig2_strategies(module: ModuleType) -> tuple[Figure, Facts]:
+    """Four strips of metal below a lamp, by three strategies; their noise."""
+    roughness, width, height, samples = (0.1, 0.2, 0.4, 0.8), 40, 28, 4
+    strips = [
+        module.rectangle([-1 + 0.5 * k, 0, -1], [0, 0, 2], [0.5, 0, 0], base_color=0.8,
+                         metalness=1.0, roughness=each)
+        for k, each in enumerate(roughness)
+    ]  # fmt: skip
+    lamp = module.rectangle([-1, 0.4, -1.4], [2, 0, 0], [0, 0.6, 0.3], emission=1.5)
+    scene = module.assemble([*strips, lamp])
+    origins, directions = module.camera_rays(width, height, [0, 1.3, 1.7], [0, 0, -0.1], 48)
+    hit = module.see(scene, origins, directions)
+    on = (hit["thing"] >= 0) & (hit["thing"] < 4)
+    rng = np.random.default_rng(3)
+    many = module.repeated(module.some(hit, on), samples)
+    u = rng.random((2, len(many["thing"]), 3))
+    pictures = [*_alone(module, scene, many, *u), module.direct_light(scene, many, *u)]
+    pictures = [p[:, 0].reshape(-1, samples) for p in pictures]
+    strip = hit["thing"][on]
+    spread = np.array([[np.sqrt(p[strip == k].var(axis=1).mean()) / p[strip == k].mean()
+                        for k in range(4)] for p in pictures])  # fmt: skip
+    means = np.array([[p[strip == k].mean() for k in range(4)] for p in pictures])
+    best = spread[:2].min(axis=0)
+    facts: Facts = {
+        "polished: lamps alone are noisier": (spread[0, 0] / spread[1, 0], 1.5, 30.0),
+        "rough: the metal alone is noisier": (spread[1, 3] / spread[0, 3], 1.5, 30.0),
+        "both: never much worse than the better one": (float((spread[2] / best).max()), 0.2, 1.3),
+        "polished: the metal's mean": (means[2, 0] / means[1, 0], 0.8, 1.25),
+        "rough: the lamps' mean": (means[2, 3] / means[0, 3], 0.8, 1.25),
+    }
+    with house_style():
+        figure = Figure(figsize=(7.0, 3.6), layout="constrained")
+        axes = figure.subplots(2, 3, height_ratios=(1.3, 1))
+        for column, (name, p) in enumerate(
+            zip(("lamps alone", "metal alone", "both"), pictures, strict=True)
+        ):
+            shown = np.zeros(width * height)
+            shown[on] = p.mean(axis=1)
+            shown[hit["thing"] == 4] = 1.5
+            grey = np.clip(shown.reshape(height, width), 0, 1) ** GAMMA
+            axes[0, column].imshow(grey, cmap="gray", vmin=0, vmax=1)
+            axes[0, column].set(xticks=[], yticks=[], title=name)
+            axes[1, column].bar(range(4), spread[column], color=(ORANGE, GREY, BLUE)[column])
+            axes[1, column].set(yscale="log", ylim=(0.5, 20), xlabel="roughness")
+            axes[1, column].set_xticks(range(4), [str(r) for r in roughness])
+        axes[1, 0].set(ylabel="noise / mean")
+    return figure, facts
+
+
+def fig3_depth(module: ModuleType) -> tuple[Figure, Facts]:
+    """A room at three depths; a furnace room by depth."""
+    scene = module.demo_room()
+    width, height, samples = 36, 30, 9
+    rays = module.camera_rays(width, height, [0, 1, 3.4], [0, 1, 0], 38)
+    rng = np.random.default_rng(4)
+    pictures = []
+    for depth in (1, 2, 5):
+        many = [np.repeat(each, 1 if depth == 1 else samples, axis=0) for each in rays]
+        seen = module.trace_paths(scene, *many, depth, rng)
+        pictures.append(seen.reshape(height * width, -1, 3).mean(axis=1))
+    albedo, depths = 0.6, np.arange(1, 8)
+    room, origins, directions = _furnace(module, albedo, 700, rng)
+    means, errors, double = [], [], []
+    for depth in depths:
+        seen = module.trace_paths(room, origins, directions, int(depth), rng)[:, 0]
+        means.append(seen.mean())
+        errors.append(seen.std() / np.sqrt(len(seen)))
+        powers = albedo ** np.arange(depth)
+        double.append(powers.sum() + powers[1:-1].sum())
+    right = (1 - albedo**depths) / (1 - albedo)
+    off = np.abs(np.array(means) - right) / np.maximum(errors, 1e-3)
+    ceiling = [float(each.reshape(height, width, 3)[0, 12:24].mean()) for each in pictures[1:]]
+    facts: Facts = {
+        "depth 1 is the lamp alone": (float((pictures[0].sum(axis=1) > 0).mean()), 0.003, 0.1),
+        "direct light leaves the ceiling black": (ceiling[0], 0.0, 1e-9),
+        "bounces light it": (ceiling[1], 0.02, 1.0),
+        "dots on the line": (float(off.max()), 0.0, 4.5),
+        "counted twice: too bright from depth 3 on": bool(
+            abs(double[1] - right[1]) < 1e-9 and double[2] > 1.2 * right[2]),
+    }  # fmt: skip
+    with house_style():
+        figure = Figure(figsize=(7.0, 2.3), layout="constrained")
+        axes = figure.subplots(1, 4, width_ratios=(1, 1, 1, 1.4))
+        for k, (depth, picture) in enumerate(zip((1, 2, 5), pictures, strict=True)):
+            shown = np.clip(picture.reshape(height, width, 3), 0, 1) ** GAMMA
+            axes[k].imshow(shown)
+            axes[k].set(xticks=[], yticks=[], title=f"depth {depth}")
+        axes[3].plot(depths, right, color=GREY)
+        axes[3].plot(depths, means, "o", color=BLUE, markersize=4)
+        axes[3].plot(depths, double, "x", color=CRIMSON, markersize=5)
+        axes[3].set(xlabel="depth", title="radiance of a furnace", ylim=(0.8, 4.2))
+        _plain(axes[3])
+    return figure, facts
+
+
+def fig4_roulette(module: ModuleType) -> tuple[Figure, Facts]:
+    """Mean, surfaces visited and price, with roulette and without."""
+    albedo, depths = 0.4, np.array([2, 4, 8, 12])
+    rng = np.random.default_rng(5)
+    room, origins, directions = _furnace(module, albedo, 2500, rng)
+    see, always = module.see, module.ALWAYS
+    means, visits, prices = [], [], []
+    for limit in (always, 99):
+        counted = [0]
+
+        def watched(scene: object, o: Array, d: Array, counted: list[int] = counted) -> object:
+            counted[0] += len(o)
+            return see(scene, o, d)
+
+        rows = []
+        for depth in depths:
+            counted[0] = 0
+            module.ALWAYS, module.see = limit, watched
+            seen = module.trace_paths(room, origins, directions, int(depth), rng)[:, 0]
+            module.ALWAYS, module.see = always, see
+            # Of each surface three rays start: two for direct light, one to go on.
+            visited = counted[0] / len(origins) / 3
+            rows.append((seen.mean(), seen.std() / np.sqrt(len(seen)), visited,
+                         seen.var() * visited))  # fmt: skip
+        mean, error, visited, price = np.array(rows).T
+        means.append((mean, error))
+        visits.append(visited)
+        prices.append(price)
+    right = (1 - albedo**depths) / (1 - albedo)
+    off = max(float((np.abs(m - right) / np.maximum(e, 1e-6)).max()) for m, e in means)
+    facts: Facts = {
+        "the means agree with the series": (off, 0.0, 4.5),
+        "with roulette below 4 surfaces": (float(visits[0][-1]), 2.0, 4.0),
+        "without it as many as the depth allows": (float(visits[1][-1]), 10.0, 13.0),
+        "dearer at depth 8": (float((prices[0] / prices[1])[2]), 1.1, 2.0),
+        "about even at depth 12": (float((prices[0] / prices[1])[3]), 0.7, 1.4),
+    }
+    with house_style():
+        figure = Figure(figsize=(7.0, 2.4), layout="constrained")
+        axes = figure.subplots(1, 3)
+        for k, (name, colour) in enumerate((("roulette", BLUE), ("none", ORANGE))):
+            shift = 0.12 * (2 * k - 1)
+            axes[0].errorbar(depths + shift, means[k][0], 3 * means[k][1], fmt="o", color=colour,
+                             markersize=4)  # fmt: skip
+            axes[1].plot(depths, visits[k], color=colour, marker="o", markersize=4, label=name)
+            axes[2].plot(depths, prices[k], color=colour, marker="o", markersize=4)
+        axes[0].plot(depths, right, color=GREY, zorder=0)
+        axes[1].legend(frameon=False)
+        for each, title in zip(
+            axes, ("mean", "surfaces visited", "variance × surfaces"), strict=True
+        ):
+            each.set(xlabel="depth", title=title)
+            _plain(each)
+    return figure, facts
+
+
+def fig5_gradient(module: ModuleType) -> tuple[Figure, Facts]:
+    """The gradient by roughness, and a fit with shared random numbers."""
+    rng = np.random.default_rng(6)
+    values, n = np.linspace(0.25, 0.75, 6), 1200
+    place = {"points": np.array([[0.1, 0, 0.1]]), "normals": UP[None], "thing": np.array([0]),
+             "wo": np.array([[0, 0.8, 0.6]]), "front": np.array([True]),
+             "t": np.ones(1)}  # fmt: skip
+    hit, d = module.repeated(place, n), np.full((n, 3), 1 / (3 * n))
+    ours, wrong, right, errors = [], [], [], []
+    for value in values:
+        scene = module.demo_table(roughness=value)
+        u = rng.random((2, n, 3))
+        parts = [module.direct_light_backward(scene, module.some(hit, rows), u[0, rows], u[1, rows],
+                                              d[rows])[1][0]
+                 for rows in np.arange(n).reshape(15, -1)]  # fmt: skip
+        ours.append(sum(parts))
+        errors.append(float(np.std(parts) * np.sqrt(15)))
+        wrong.append(ours[-1] + _through_density(module, scene, hit, u[1], value))
+        ends = [_fine(module, module.demo_table(roughness=value + e), place) for e in (1e-3, -1e-3)]
+        right.append((ends[0] - ends[1]) / 2e-3)
+    ours, wrong, right = (np.array(each) for each in (ours, wrong, right))
+    tracks = [_descent(module, shared) for shared in (False, True)]
+    facts: Facts = {
+        "dots on the line": (float((np.abs(ours - right) / errors).max()), 0.0, 4.5),
+        "crosses are not": (float((np.abs(wrong - right) / errors).max()), 6.0, 1e4),
+        "own numbers settle at the truth": (float(tracks[0][-40:].mean()), 0.57, 0.63),
+        "shared ones more than a tenth too dark": (float(tracks[1][-40:].mean()), 0.2, 0.54),
+    }
+    with house_style():
+        figure = Figure(figsize=(7.0, 2.8), layout="constrained")
+        left, side = figure.subplots(1, 2)
+        left.plot(values, right, color=GREY)
+        left.errorbar(values, ours, errors, fmt="o", color=BLUE, markersize=4)
+        left.plot(values, wrong, "x", color=CRIMSON)
+        left.set(xlabel="roughness", title="derivative by roughness")
+        side.axhline(0.6, color=GREY)
+        side.plot(tracks[0], color=BLUE, linewidth=1)
+        side.plot(tracks[1], color=CRIMSON, linewidth=1)
+        side.annotate("shared numbers", (60, tracks[1][60]), (10, -14), color=CRIMSON,
+                      textcoords="offset points")  # fmt: skip
+        side.annotate("own numbers", (70, 0.66), (0, 8), color=BLUE, textcoords="offset points")
+        side.set(xlabel="step", title="base colour", ylim=(0.25, 0.75))
+        for each in (left, side):
+            _plain(each)
+    return figure, facts
+
+
+def fig6_recover(module: ModuleType) -> tuple[Figure, Facts]:
+    """The table by the hand-in and by the core; a fit."""
+    truth, rays = module.demo_table(), module.table_rays()
+    picture, slope, core = module.core_answers()
+    rng = np.random.default_rng(7)
+    hit = module.see(truth, *rays)
+    on = hit["thing"] == 0
+    pixels, each = int(on.sum()), module.SIDE**2
+    many = module.repeated(module.some(hit, on), each)
+    seen = np.zeros((70, 3))
+    for _ in range(4):
+        u = module.strata(rng, pixels), module.strata(rng, pixels)
+        seen[on] += module.direct_light(truth, many, *u).reshape(pixels, each, 3).mean(axis=1) / 4
+    mine = module.by_roughness(truth, 0, *rays, rng).reshape(7, 10)
+    start = module.demo_table((0.5, 0.5, 0.5), 0.6)
+    color, rough, track = module.recover(start, 0, *rays, picture.reshape(70, 3), 45, rng)
+    exact = np.array([0.8, 0.5, 0.2, 0.35])
+    found = np.append(color, rough)
+    facts: Facts = {
+        "your picture is the core's": (_apart(seen.reshape(7, 10, 3), picture), 0.0, 0.1),
+        "your gradient is the core's": (_apart(mine, slope), 0.0, 0.35),
+        "base colour found within 0.02": (float(np.abs(found - exact)[:3].max()), 0.0, 0.02),
+        "roughness found within 0.02": (float(abs(found - exact)[3]), 0.0, 0.02),
+        "the core as well": (float(np.abs(core - exact).max()), 0.0, 0.02),
+    }
+    with house_style():
+        figure = Figure(figsize=(7.0, 4.0), layout="constrained")
+        above, below = figure.subfigures(2, 1, height_ratios=(1, 1.25))
+        axes = above.subplots(1, 4)
+        for each, shown in zip(axes, (seen.reshape(7, 10, 3), picture), strict=False):
+            each.imshow(np.clip(shown / 2, 0, 1) ** GAMMA)
+        for each, shown in zip(axes[2:], (mine, slope), strict=True):
+            each.imshow(shown, cmap="RdBu_r", vmin=-3, vmax=3)
+        for each, name in zip(
+            axes, ("yours", "the core's", "your gradient", "the core's"), strict=True
+        ):
+            each.set(xticks=[], yticks=[], title=name)
+        axis = below.subplots()
+        for k, colour in enumerate((CRIMSON, "#4a8f3c", BLUE, INK)):
+            axis.axhline(exact[k], color=colour, linewidth=0.7, linestyle=":")
+            axis.plot(np.arange(1, 46), track[:, k], color=colour)
+            axis.plot([46], [core[k]], "x", color=colour)
+        for k, name in enumerate(("red", "green", "blue", "roughness")):
+            axis.annotate(name, (8, track[8, k]), (3, 4), textcoords="offset points")
+        axis.set(xlabel="step", ylim=(0, 1))
+        _plain(axis)
+    return figure, facts
+
+
+_SQUARE = ((-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5))
+
+
+def _irradiance(corners: Array) -> float:
+    """Lambert's formula, of a surface at the origin that faces up."""
+    d = corners / np.linalg.norm(corners, axis=1, keepdims=True)
+    total = np.zeros(3)
+    for a, b in zip(d, np.roll(d, -1, axis=0), strict=True):
+        c = np.cross(a, b)
+        total += np.arctan2(np.linalg.norm(c), a @ b) * c / np.linalg.norm(c)
+    return float(abs(total @ UP) / 2)
+
+
+def _alone(module: ModuleType, scene: dict, hit: dict, u_light: Array, u_surface: Array) -> list:
+    """Direct light by one strategy alone, with weight 1: by lamps, by the material."""
+    found = []
+    for by_lamp in (True, False):
+        if by_lamp:
+            wi, _, lamp = module.sample_light(scene, hit["points"], u_light)
+        else:
+            wi = module.sample_brdf(scene, hit, u_surface)
+        there = module.see(scene, hit["points"], wi)
+        if by_lamp:
+            p = module.light_pdf(scene, there["thing"], wi, there["t"])
+            p = np.where(there["thing"] == lamp, p, 0.0)
+        else:
+            p = module.brdf_pdf(scene, hit, wi)
+        c = np.maximum(module.dot(wi, hit["normals"]), 0) / np.where(p > 0, p, np.inf)
+        found.append(module.brdf(scene, hit, wi) * module.emitted(scene, there) * c[:, None])
+    return found
+
+
+def _furnace(module: ModuleType, albedo: float, n: int, rng: np.random.Generator) -> tuple:
+    """(scene, origins, directions): a closed cube that shines, and rays inside."""
+    faces = (
+        ((-1, -1, -1), (0, 0, 2), (2, 0, 0)), ((-1, 1, -1), (2, 0, 0), (0, 0, 2)),
+        ((-1, -1, -1), (2, 0, 0), (0, 2, 0)), ((-1, -1, 1), (0, 2, 0), (2, 0, 0)),
+        ((-1, -1, -1), (0, 2, 0), (0, 0, 2)), ((1, -1, -1), (0, 0, 2), (0, 2, 0)),
+    )  # fmt: skip
+    scene = module.assemble([module.rectangle(*f, emission=1.0, base_color=albedo) for f in faces])
+    d = rng.normal(size=(n, 3))
+    return scene, np.zeros((n, 3)), d / np.linalg.norm(d, axis=1, keepdims=True)
+
+
+def _fine(module: ModuleType, scene: dict, place: dict) -> float:
+    """Mean of the channels of direct light from the one lamp, by a fine sum over it."""
+    x, w = np.polynomial.legendre.leggauss(24)
+    u, v = np.meshgrid((x + 1) / 2, (x + 1) / 2, indexing="ij")
+    hit = module.repeated(place, u.size)
+    u3 = np.stack([0 * u.ravel(), u.ravel(), v.ravel()], axis=1)
+    wi, far, _ = module.sample_light(scene, hit["points"], u3)
+    normal = module.front_normals(scene)[1]
+    area = float(np.linalg.norm(np.cross(scene["edges_u"][1], scene["edges_v"][1])))
+    light = (wi @ UP) * -(wi @ normal) * area / far**2 * np.outer(w, w).ravel() / 4
+    return float((light @ module.brdf(scene, hit, wi) * scene["emission"][1]).mean())
+
+
+def _through_density(module: ModuleType, scene: dict, hit: dict, u: Array, value: float) -> float:
+    """What is added where the density of the material is differentiated, too."""
+    wi = module.sample_brdf(scene, hit, u)
+    there = module.see(scene, hit["points"], wi)
+    p = module.light_pdf(scene, there["thing"], wi, there["t"])
+    q = module.brdf_pdf(scene, hit, wi)
+    near = module.brdf_pdf(module.demo_table(roughness=value + 1e-4), hit, wi)
+    c = module.mis_weight(q, p) * np.maximum(module.dot(wi, hit["normals"]), 0)
+    value_of = module.brdf(scene, hit, wi) * module.emitted(scene, there)
+    return float(
+        -(value_of.mean(axis=1) * c / np.where(q > 0, q, 1) ** 2 * (near - q) / 1e-4).mean()
+    )
+
+
+def _descent(module: ModuleType, shared: bool) -> Array:
+    """A matte base colour by plain descent, one sample a pixel, 110 steps."""
+    lamp = module.rectangle([-1.2, 0.5, -1.2], [2.4, 0, 0], [0, 0, 2.4], emission=1.0)
+    floor = module.rectangle([-1, 0, -1], [0, 0, 2], [2, 0, 0], base_color=0.6)
+    scene = module.assemble([floor, lamp])
+    rng = np.random.default_rng(8)
+    n = 40
+    points = np.column_stack([rng.uniform(-1, 1, n), np.zeros(n), rng.uniform(-1, 1, n)])
+    hit = {"points": points, "normals": np.tile(UP, (n, 1)), "wo": np.tile(UP, (n, 1)),
+           "front": np.ones(n, bool), "t": np.ones(n), "thing": np.zeros(n, int)}  # fmt: skip
+    many = module.repeated(hit, 144)
+    x = (np.arange(12) + 0.5) / 12
+    even = np.stack([0 * x.repeat(12), x.repeat(12), np.tile(x, 12)], axis=1)
+    wi, far, _ = module.sample_light(scene, many["points"], np.tile(even, (n, 1)))
+    light = (wi @ UP) ** 2 * 2.4**2 / far**2
+    picture = 0.6 / np.pi * light.reshape(n, 144).mean(axis=1)
+    track = []
+    for _ in range(110):
+        u = rng.random((4, n, 3))
+        residual = module.direct_light(scene, hit, u[0], u[1]) - picture[:, None]
+        which = u[:2] if shared else u[2:]
+        slope, _ = module.direct_light_backward(scene, hit, *which, 2 * residual / n)
+        scene["base_color"][0] = np.clip(scene["base_color"][0] - 0.15 * slope[0].mean(), 0, 1)
+        track.append(scene["base_color"][0, 0])
+    return np.array(track)
+
+
+def _apart(a: Array, b: Array) -> float:
+    return float(np.linalg.norm(a - b) / np.linalg.norm(b))
+
+
+def _plain(axes: Axes) -> None:
+    axes.grid(visible=True)
+    axes.spines[["top", "right"]].set_visible(False)
+
+
+FIGURES = {
+    "fig1_measure": fig1_measure,
+    "fig2_strategies": fig2_strategies,
+    "fig3_depth": fig3_depth,
+    "fig4_roulette": fig4_roulette,
+    "fig5_gradient": fig5_gradient,
+    "fig6_recover": fig6_recover,
+}
+RED = {
+    "fig1_measure": "pdf_no_cosine",
+    "fig2_strategies": "direct_weights_exchanged",
+    "fig3_depth": "trace_double_emission",
+    "fig4_roulette": "roulette_no_division",
+    "fig5_gradient": "back_density_too",
+    "fig6_recover": "back_sign",
+}

@@ -1,0 +1,13 @@
+"""1 / q is clamped: what was to make up for the ended paths is lost."""
+
+TASKS = ("07.4",)
+LOSES = (
+    "07.4.hidden",
+    "07.4.mean",
+)
+REPLACE = [
+    (
+        "after[alive] = beta[alive] / q[alive, None]",
+        "after[alive] = beta[alive] * np.minimum(1 / q[alive, None], 2.0)",
+    ),
+]
