@@ -45,6 +45,18 @@ def made(folder: Path, **material: Any) -> tuple[Material, list[str]]:
             "ggx_anisotropic",
             {"f0": [1, 1, 1], "anisotropy": 0.5, "rotation": 0.25, "roughness": 1},
         ),
+        (
+            core(roughnessFactor=0.75)
+            | extension("sheen", sheenColorFactor=[1, 0.5, 0], sheenRoughnessFactor=0.5),
+            "gltf_sheen",
+            {"sheen_color_factor": [1, 0.5, 0], "sheen_roughness_factor": 0.5, "roughness": 0.75},
+        ),
+        (extension("sheen"), "gltf", {"base_color": [1, 1, 1]}),
+        (
+            extension("iridescence", iridescenceFactor=0.5, iridescenceThicknessMaximum=550),
+            "gltf_iridescence",
+            {"iridescence_factor": 0.5, "iridescence_ior": 1.3, "iridescence_thickness": 550},
+        ),
         # f0 = 0.04 is reflectance 0.5; a quarter of it, 0.25. An index of 1.25: (1/9)^2 = 0.16 r^2.
         (extension("specular", specularFactor=0.25), "standard", {"reflectance": 0.25}),
         (extension("ior", ior=1.25), "standard", {"reflectance": 1 / 3.6}),
@@ -92,8 +104,20 @@ def test_which_model_a_material_becomes(
 @pytest.mark.parametrize(
     ("entries", "words"),
     [
-        (extension("sheen", sheenColorFactor=[1, 1, 1]), "KHR_materials_sheen: not supported"),
-        (extension("iridescence", iridescenceFactor=1), "KHR_materials_iridescence: not supported"),
+        (extension("sheen", sheenColorFactor=[1, 1, 1]), "sheen_roughness_factor: 0.0 is taken as"),
+        (
+            extension("iridescence", iridescenceFactor=1, iridescenceThicknessTexture={"index": 0}),
+            "iridescenceThicknessTexture: not supported",
+        ),
+        (
+            {
+                "extensions": {
+                    "KHR_materials_clearcoat": {"clearcoatFactor": 1},
+                    "KHR_materials_sheen": {"sheenColorFactor": [1, 0, 0]},
+                }
+            },
+            "KHR_materials_sheen: not supported by the model 'clearcoat'",
+        ),
         (extension("unlit"), "KHR_materials_unlit: not supported"),
         (extension("specular", specularColorFactor=[1, 0, 0]), "KHR_materials_specular: not supp"),
         (

@@ -90,6 +90,43 @@ def _anisotropy(draft: Draft) -> Material | None:
     return _material("ggx_anisotropic", values, draft)
 
 
+def _sheen(draft: Draft) -> Material | None:
+    """Cloth over what is below."""
+    node = draft.extension("sheen")
+    if node is None:
+        return None
+    draft.take("sheen")
+    if "sheenColorFactor" not in node or not node["sheenColorFactor"].numbers((3,)).any():
+        return None  # black sheen is none
+    draft.unread(node, "sheenRoughnessTexture")
+    draft.textured("sheen_color_factor", node, "sheenColorTexture", "srgb")
+    values = _metallic_roughness(draft) | {
+        "sheen_color_factor": node["sheenColorFactor"].numbers((3,)),
+        "sheen_roughness_factor": real(node, "sheenRoughnessFactor", 0.0),
+    }
+    return _material("gltf_sheen", values, draft)
+
+
+def _iridescence(draft: Draft) -> Material | None:
+    """A thin film; a texture can scale its thickness if it starts at nothing."""
+    node = draft.extension("iridescence")
+    if node is None or real(node, "iridescenceFactor", 0.0) <= 0:
+        return None
+    draft.take("iridescence")
+    draft.textured("iridescence_factor", node, "iridescenceTexture", "linear", 0)
+    if real(node, "iridescenceThicknessMinimum", 100.0) == 0:
+        key = "iridescenceThicknessTexture"
+        draft.textured("iridescence_thickness", node, key, "linear", 1)
+    else:
+        draft.unread(node, "iridescenceThicknessTexture")
+    values = _metallic_roughness(draft) | {
+        "iridescence_factor": real(node, "iridescenceFactor", 0.0),
+        "iridescence_ior": real(node, "iridescenceIor", 1.3),
+        "iridescence_thickness": real(node, "iridescenceThicknessMaximum", 400.0),
+    }
+    return _material("gltf_iridescence", values, draft)
+
+
 def _specular(draft: Draft) -> Material | None:
     """Dielectrics of another index, or a weaker reflection: f0 = 0.16 reflectance^2."""
     node, ior = draft.extension("specular"), draft.ior
@@ -111,7 +148,7 @@ def _plain(draft: Draft) -> Material:
     return _material("gltf", _metallic_roughness(draft), draft)
 
 
-RULES = (_transmission, _clearcoat, _anisotropy, _specular, _plain)
+RULES = (_transmission, _clearcoat, _anisotropy, _sheen, _iridescence, _specular, _plain)
 
 
 def read_material(node: JsonNode, pictures: Pictures, note: Callable[[str], None]) -> FileMaterial:
