@@ -1,7 +1,6 @@
 // Every model of bsdf/registry.h as a class of static functions on arrays, and {name: class} as _core.bsdfs; the same
 // for perfectly smooth ones as _core.delta_bsdfs.
 #include "bind_delta.h"
-#include "bind_principled.h"
 #include "model_args.h"
 #include "module.h"
 #include "photograd/bsdf/registry.h"
@@ -138,7 +137,6 @@ struct BoundBsdf {
 }  // namespace
 
 void bind_bsdf(py::module_& m) {
-    bind_principled(m);
     py::dict registry;
     Bsdfs::for_each(
         [&]<template <class> class M>() { registry[M<double>::name] = BoundBsdf<M>::bind(m); });

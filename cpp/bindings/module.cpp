@@ -1,5 +1,7 @@
 #include "module.h"
 
+#include "bind_principled.h"
+
 PYBIND11_MODULE(_core, m) {
     m.doc() = "photograd's C++ core. Use the typed faces in the package photograd instead.";
     m.attr("__version__") = PHOTOGRAD_VERSION;
@@ -9,6 +11,7 @@ PYBIND11_MODULE(_core, m) {
     photograd::bind_march(m);
     photograd::bind_geometry(m);
     photograd::bind_bsdf(m);
+    photograd::bind_principled(m);
     photograd::bind_light(m);
     photograd::bind_phase(m);
     photograd::bind_direct(m);
