@@ -20,7 +20,7 @@ RESULTS = ROOT / "docs" / "results.md"
 CAPTURES = {"nerf_synthetic_chair": 1, "banana": 2, "opensfm_berlin": 8}  # name -> downscale
 CONTENDERS = (
     "dense_grid:64", "dense_grid:128", "dense_grid:192",
-    "sparse_sh:128", "sparse_sh:192", "gaussians:30000",
+    "sparse_sh:128", "sparse_sh:192", "sparse_sh:256", "gaussians:30000",
 )  # fmt: skip
 """Representations with their voxels along the longest edge, or their number of Gaussians."""
 
