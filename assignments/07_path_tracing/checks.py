@@ -106,7 +106,7 @@ def solid_angle(corners):
         a, b, c = corners[0], corners[k], corners[k + 1]
         x, y, z = (np.linalg.norm(each) for each in (a, b, c))
         below = x * y * z + a @ b * z + b @ c * x + c @ a * y
-        total += 2 * math.atan2(abs(a @ np.cross(b, c)), below)
+        total += 2 * math.atan2(abs(np.linalg.det(np.stack([a, b, c]))), below)
     return total
 
 
