@@ -13,13 +13,13 @@ from tests.transport.gltf_samples import core, extension, square
 
 def test_a_mesh_file_is_seen_from_outside(photograd: Photograd, tmp_path: Path) -> None:
     red = square(**core(baseColorFactor=[0.9, 0.05, 0.05, 1], metallicFactor=0))
-    red.json["materials"][0] |= extension("sheen", sheenColorFactor=[1, 1, 1])
+    red.json["materials"][0] |= extension("unlit")
     model, out = tmp_path / "red.glb", tmp_path / "red.exr"
     model.write_bytes(red.bytes())
     done = photograd("trace", model, "--size", 24, "--spp", 16, "--out", out)
     assert done.code == 0, done.err
     told = " ".join(done.err.split())
-    assert "red.glb: materials[0]: extensions: KHR_materials_sheen: not supported" in told
+    assert "red.glb: materials[0]: extensions: KHR_materials_unlit: not supported" in told
     image = read_exr(out)
     assert image.shape == (24, 24, 4)
     middle = image[12, 12]
