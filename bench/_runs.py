@@ -12,6 +12,11 @@ from typing import Any
 import _agreement
 
 Row = dict[str, Any]
+EQUAL_ERROR = {
+    "mse x seconds": "seconds_x_mse",
+    "gradient error^2 x seconds": "seconds_x_rel_error_sq",
+}
+"""Seconds times squared error, of estimates; and where a quality row has it."""
 BUSY = 0.3  # cores used by others, above which a figure must not be quoted
 
 
@@ -26,8 +31,10 @@ class Runs:
     error: str | None = None
 
     def seconds(self, key: str) -> float | None:
-        """Median over the rows of "seconds_fwd", "seconds_fwdbwd", or of a part like "bounce"."""
+        """Median over the rows of "seconds_fwd", "seconds_fwdbwd", a part, or an equal error."""
         values = [row[key] if key in row else parts(row).get(key) for row in self.rows]
+        if key in EQUAL_ERROR:
+            values = [row["quality"].get(EQUAL_ERROR[key]) for row in self.rows]
         known = [value for value in values if value is not None]
         return statistics.median(known) if known else None
 
@@ -84,7 +91,7 @@ def comparison(ours: Runs, theirs: Runs) -> Row:
         "foreign": [ours.foreign(), theirs.foreign()],
         "times": {},
     }
-    for key in ("seconds_fwd", "seconds_fwdbwd", *parts(ours.rows[0])):
+    for key in ("seconds_fwd", "seconds_fwdbwd", *parts(ours.rows[0]), *EQUAL_ERROR):
         mine, other = ours.seconds(key), theirs.seconds(key)
         if mine and other:
             ratio = other / mine if valid else "INVALID"

@@ -44,6 +44,15 @@ PEERS = [
     Peer("W1", "mitsuba-llvm", "w1_rays_mitsuba.py", "mi"),
     Peer("W1", "embreex", "w1_rays_embreex.py", "ray"),
     Peer("W1", "open3d", "w1_rays_open3d.py", "o3d"),
+    Peer("W2", "mitsuba-llvm", "w2_path_mitsuba.py", "mi", ("--rr_depth", "5")),
+    Peer(
+        "W2", "mitsuba-scalar", "w2_path_mitsuba.py", "mi",
+        ("--rr_depth", "5", "--variant", "scalar_rgb"),
+    ),
+    Peer(
+        "W3", "mitsuba-llvm-prb", "w3_adjoint_mitsuba.py", "mi",
+        ("--rr_depth", "5", "--spp", "32"),
+    ),
     Peer("W4", "numba", "w4_volume_numba.py", "numba"),
     Peer("W4", "drjit-llvm", "w4_volume_drjit.py", "mi"),
     Peer("W4", "taichi", "w4_volume_taichi.py", "ti"),
@@ -62,9 +71,13 @@ PEERS = [
     Peer("W10", "torch-compile", "w10_bsdf_torch.py", "torch", ("--compile", "1")),
 ]  # fmt: skip
 VARIANTS: dict[str, list[tuple[str, ...]]] = {
+    "w2_path": [("--sphere", ball) for ball in ("principled", "simple")],
+    "w3_adjoint": [("--sphere", ball) for ball in ("principled", "simple")],
     "w10_bsdf": [("--params", kind) for kind in ("scalar", "texture")],
 }
 """Arguments with which a workload is measured, all programs alike; once without any by default."""
+REFERENCES = {"w2_path": "w2_{}.npy", "w3_adjoint": "w3_{}"}
+"""Files in the folder `reference` beside the peers' scripts, by the variant's last word."""
 
 
 def emit(row: Mapping[str, Any]) -> None:
@@ -101,6 +114,10 @@ def variants_of(script: Path, args: argparse.Namespace) -> list[list[str]]:
     found: list[list[str]] = []
     for words in VARIANTS.get(script.stem, [()]):
         mine = [] if words and words[0].removeprefix("--") in named else list(words)
+        if mine and args.peers and script.stem in REFERENCES and "reference" not in named:
+            file = args.peers.resolve() / "reference" / REFERENCES[script.stem].format(mine[-1])
+            if list(file.parent.glob(f"{file.name}*")):
+                mine += ["--reference", str(file)]
         if mine not in found:
             found.append(mine)
     return found
