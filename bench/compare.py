@@ -44,14 +44,14 @@ PEERS = [
     Peer("W1", "mitsuba-llvm", "w1_rays_mitsuba.py", "mi"),
     Peer("W1", "embreex", "w1_rays_embreex.py", "ray"),
     Peer("W1", "open3d", "w1_rays_open3d.py", "o3d"),
-    Peer("W2", "mitsuba-llvm", "w2_path_mitsuba.py", "mi", ("--rr_depth", "5")),
+    Peer("W2", "mitsuba-llvm", "w2_path_mitsuba.py", "mi", ("--rr-depth", "5")),
     Peer(
         "W2", "mitsuba-scalar", "w2_path_mitsuba.py", "mi",
-        ("--rr_depth", "5", "--variant", "scalar_rgb"),
+        ("--rr-depth", "5", "--variant", "scalar_rgb"),
     ),
     Peer(
         "W3", "mitsuba-llvm-prb", "w3_adjoint_mitsuba.py", "mi",
-        ("--rr_depth", "5", "--spp", "32"),
+        ("--rr-depth", "5", "--spp", "32"),
     ),
     Peer("W4", "numba", "w4_volume_numba.py", "numba"),
     Peer("W4", "drjit-llvm", "w4_volume_drjit.py", "mi"),

@@ -2,7 +2,8 @@
 
 The loss is the mean over pixels and channels of (I - 0.2)^2. The picture and its adjoint have paths
 of their own, so that the gradient is right on average; both have `--spp`. The adjoint goes without
-roulette: few bright pixels carry much of the gradient, and roulette looks at the path alone.
+roulette: few bright pixels carry much of the gradient, and roulette looks at the path alone. For
+the same reason its paths are dealt out by the pixels' cotangents (`--spread`).
 `--reference` names files
 NAME_texture.npy (64, 64, 3) and NAME_alpha.npy (value, standard error), the latter by alpha, the
 square of our roughness.
@@ -19,13 +20,14 @@ import _estimates
 import numpy as np
 from numpy.typing import NDArray
 from photograd.transport import PathOptions, PathTracer
+from photograd.transport.sample_counts import SPREADS
 
 Array = NDArray[Any]
 GOAL = 0.2
 
 
 def gradient(
-    tracer: PathTracer, options: PathOptions, spp: int, seed: int
+    tracer: PathTracer, options: PathOptions, spp: int, seed: int, spread: str
 ) -> tuple[float, Array, float]:
     """The loss, its derivative by the texels (64, 64, 3), and by the block's alpha."""
     image = tracer.render(spp=spp, seed=2 * seed, options=options).mean
@@ -33,7 +35,7 @@ def gradient(
     loss = float(np.square(error).mean())
     found = tracer.render_backward(
         error * (2 / error.size), spp=spp, seed=2 * seed + 1,
-        options=replace(options, roulette_from=None),
+        options=replace(options, roulette_from=None), spread=spread,
     )  # fmt: skip
     roughness = float(tracer.params["materials.block.roughness"])
     by_alpha = float(found["materials.block.roughness"]) / (2 * roughness)
@@ -41,9 +43,11 @@ def gradient(
 
 
 def main() -> None:
-    args = _estimates.options(
+    parser = _estimates.options(
         "W3: adjoint path tracing", spp=32, reference="start of the names of two files"
-    ).parse_args()
+    )
+    parser.add_argument("--spread", choices=SPREADS, default="cotangent")
+    args = parser.parse_args()
     tracer, options = _estimates.tracer(args)
     seeds = count()
     forward, _ = _common.measure(
@@ -53,7 +57,7 @@ def main() -> None:
     )
     found: list[tuple[float, Array, float]] = []
     both, _ = _common.measure(
-        lambda: found.append(gradient(tracer, options, args.spp, next(seeds))),
+        lambda: found.append(gradient(tracer, options, args.spp, next(seeds), args.spread)),
         args.reps, args.warmup,
     )  # fmt: skip
     quality: dict[str, Any] = {"loss": found[-1][0], "alpha_grad": [row[2] for row in found]}
@@ -70,7 +74,7 @@ def main() -> None:
         }
     _common.report(
         "W3", args, _estimates.size(args), quality, forward=forward, both=both,
-        roulette=args.roulette, sampler=args.sampler,
+        roulette=args.roulette, sampler=args.sampler, spread=args.spread,
     )  # fmt: skip
 
 

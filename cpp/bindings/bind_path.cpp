@@ -228,9 +228,9 @@ void trace(const PathGeometry& geometry, const std::vector<std::string>& models,
 void trace_backward(const PathGeometry& geometry, const std::vector<std::string>& models,
                     const py::array& parameters, const py::array& emission,
                     const LightTuples& lights, const std::vector<py::array>& textures,
-                    const py::tuple& camera_numbers, const Options& given, std::uint32_t first,
-                    std::uint32_t count, const py::array& d_image, py::array d_parameters,
-                    py::array d_emission, std::vector<py::array> d_lights,
+                    const py::tuple& camera_numbers, const Options& given, std::uint32_t spp,
+                    const std::optional<py::array>& counts, const py::array& d_image,
+                    py::array d_parameters, py::array d_emission, std::vector<py::array> d_lights,
                     std::vector<py::array> d_textures) {
     dispatch_real("trace_paths_backward", "parameters", parameters, [&](auto real) {
         using R = decltype(real);
@@ -253,10 +253,18 @@ void trace_backward(const PathGeometry& geometry, const std::vector<std::string>
         for (std::size_t t = 0; t < layouts.size(); ++t)
             to_textures.push_back(args.out<R>("d_textures", d_textures[t], axes_of(layouts[t])));
         const PathOptions options = options_of(args, given);
-        if (count < 1) args.range("count", "at least 1 sample", "0");
+        if (spp < 1) args.range("spp", "at least 1 sample", "0");
+        const std::uint32_t* own = nullptr;
+        if (counts) {
+            own = args.in<std::uint32_t>(
+                "counts", *counts,
+                std::to_string(camera.height) + " " + std::to_string(camera.width));
+            if (*std::min_element(own, own + std::int64_t{camera.height} * camera.width) < 1)
+                args.range("counts", "at least 1 sample of each pixel", "0");
+        }
         const py::gil_scoped_release release;
         trace_paths_backward(
-            numbers.scene, camera, options, {first, count}, d,
+            numbers.scene, camera, options, spp, own, d,
             PathDerivatives<R>{to_parameters, to_emission, to_lights, to_textures});
     });
 }
@@ -362,12 +370,12 @@ void bind_path(py::module_& m) {
           "heuristic, max_depth, roulette_from, sampler, seed).");
     m.def("trace_paths_backward", &trace_backward, py::arg("geometry"), py::arg("models"),
           py::arg("parameters"), py::arg("emission"), py::arg("lights"), py::arg("textures"),
-          py::arg("camera"), py::arg("options"), py::arg("first"), py::arg("count"),
+          py::arg("camera"), py::arg("options"), py::arg("spp"), py::arg("counts"),
           py::arg("d_image"), py::arg("d_parameters"), py::arg("d_emission"), py::arg("d_lights"),
           py::arg("d_textures"),
           "Adds to d_parameters (P,), d_emission (S, 3), d_lights, an array like the first of each "
           "light, and d_textures for dL/d(mean "
-          "radiance).");
+          "radiance). counts (H, W) uint32, or None: spp samples of each pixel.");
     m.def("trace_path", &path, py::arg("geometry"), py::arg("models"), py::arg("parameters"),
           py::arg("emission"), py::arg("lights"), py::arg("textures"), py::arg("camera"),
           py::arg("options"), py::arg("pixel"), py::arg("sample"),

@@ -3827,8 +3827,8 @@ def trace_paths_backward(
         typing.SupportsInt | typing.SupportsIndex,
         typing.SupportsInt | typing.SupportsIndex,
     ],
-    first: typing.SupportsInt | typing.SupportsIndex,
-    count: typing.SupportsInt | typing.SupportsIndex,
+    spp: typing.SupportsInt | typing.SupportsIndex,
+    counts: numpy.ndarray | None,
     d_image: numpy.ndarray,
     d_parameters: numpy.ndarray,
     d_emission: numpy.ndarray,
@@ -3836,7 +3836,7 @@ def trace_paths_backward(
     d_textures: collections.abc.Sequence[numpy.ndarray],
 ) -> None:
     """
-    Adds to d_parameters (P,), d_emission (S, 3), d_lights, an array like the first of each light, and d_textures for dL/d(mean radiance).
+    Adds to d_parameters (P,), d_emission (S, 3), d_lights, an array like the first of each light, and d_textures for dL/d(mean radiance). counts (H, W) uint32, or None: spp samples of each pixel.
     """
 
 def uniform(

@@ -23,7 +23,8 @@ STORED = json.loads(Path(__file__).with_name("metal_room.json").read_text(encodi
 OPTIONS = PathOptions(max_depth=8, roulette_from=2)
 # Few bright pixels carry much of the gradient: roulette, which looks at the path alone, adds noise.
 ADJOINT = PathOptions(max_depth=8, roulette_from=None)
-SIZE, SPP = 256, 16
+SIZE, SPP = 256, 8
+ALPHA_SPREAD = 2.8e-4  # of the derivative by alpha with SPP, measured over 12 seeds
 
 
 def blocks(image: Any, size: int) -> Any:
@@ -38,25 +39,28 @@ def test_the_picture_and_its_gradient(ball: str) -> None:
     found, expected = blocks(image, 32) / 32**2, np.array(STORED[ball]["image"])
     assert expected.min() > 1e-3
     relative = np.abs(found - expected) / expected
-    # By chance: measured 0.012 and 0.10 here for metal, half of that with four times the samples.
+    # By chance: measured 0.016 and 0.09 here for metal, half of that with four times the samples.
     assert relative.mean() < 0.02
     assert relative.max() < 0.2
     assert found.mean() == pytest.approx(expected.mean(), rel=0.006)
 
     d_image = 2 * (image - 0.2) / image.size
-    gradient = tracer.render_backward(d_image, spp=SPP, seed=2, options=ADJOINT)
+    gradient = tracer.render_backward(d_image, spp=SPP, seed=2, options=ADJOINT, spread="cotangent")
     by_texels, expected = (
         blocks(gradient["textures.picture"].astype(np.float64), 8),
         np.array(STORED[ball]["by_texels"]),
     )
     assert np.linalg.norm(expected) > 1e-4
-    # About 0.03 by chance; the loss is held to other paths than its adjoint.
+    # Over 20 seeds: 0.046 to 0.078, by chance; the loss is held to other paths than its adjoint.
     assert np.linalg.norm(by_texels - expected) < 0.1 * np.linalg.norm(expected)
 
-    value, spread = STORED[ball]["by_alpha"]
+    # The means over those seeds are 0.93e-3 +- 0.08e-3 and 1.16e-3 +- 0.08e-3, where 0.89e-3 and
+    # 1.13e-3 are stored; a single one can only be held to its own spread.
+    value, error = STORED[ball]["by_alpha"]
     roughness = float(tracer.params["materials.block.roughness"])
     by_alpha = float(gradient["materials.block.roughness"]) / (2 * roughness)
-    assert abs(by_alpha - value) < 6 * spread
+    assert by_alpha > 0
+    assert abs(by_alpha - value) < 3 * np.hypot(ALPHA_SPREAD, error)
 
 
 def test_another_ball_is_refused() -> None:

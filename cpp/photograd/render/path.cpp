@@ -12,7 +12,7 @@ void trace_paths(const PathScene<R>& scene, const ThinLens& camera, const PathOp
     parallel_for((pixels + chunk_pixels - 1) / chunk_pixels, [&](std::int64_t chunk) {
         const std::int64_t begin = chunk * chunk_pixels,
                            end = std::min(begin + chunk_pixels, pixels);
-        for_each_path(scene, camera, options, samples, scene.drawn_as_sampled(), begin, end,
+        for_each_path(scene, camera, options, samples, {}, scene.drawn_as_sampled(), begin, end,
                       [&](std::int64_t pixel, const Path<R>& path) {
                           const Vec3<R> L = gather<R>(path, nullptr);
                           for (int c = 0; c < 3; ++c) {

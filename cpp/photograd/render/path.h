@@ -39,12 +39,15 @@ struct PathDerivatives {
     std::span<R* const> lights, textures;
 };
 
-/// Adds derivatives for dL/d(mean radiance) (H, W, 3) of these samples. What is held at a time does not grow with the
-/// size of the picture or the number of samples.
+/// Adds derivatives for dL/d(mean radiance) (H, W, 3) of `spp` samples a pixel, or of `counts` (H, W), at least 1 each,
+/// if that is given. Numbers of samples may follow d_image, if its noise is not that of these paths: each pixel's part
+/// is the mean of its own samples, so that their number changes the noise of the sum, not what it tends to. What is held
+/// at a time does not grow with the size of the picture or the number of samples.
 template <Real R>
 void trace_paths_backward(const PathScene<R>& scene, const ThinLens& camera,
-                          const PathOptions& options, const SampleRange& samples,
-                          const double* d_image, const PathDerivatives<R>& out);
+                          const PathOptions& options, std::uint32_t spp,
+                          const std::uint32_t* counts, const double* d_image,
+                          const PathDerivatives<R>& out);
 
 /// One path, for those who want to look at its vertices.
 template <Real R>

@@ -119,13 +119,15 @@ void scatter_lookups(const PathScene<R>& scene, const std::vector<Seen<R>>& chun
 /// Adds one chunk's derivatives to `row` and returns what goes to texels.
 template <class R>
 Seen<R> chunk_backward(const PathScene<R>& scene, const ThinLens& camera,
-                       const PathOptions& options, const SampleRange& samples, double share,
-                       const double* d_image, std::int64_t begin, std::int64_t end, double* row) {
+                       const PathOptions& options, const SampleRange& samples,
+                       const SampleCounts& counts, const double* d_image, std::int64_t begin,
+                       std::int64_t end, double* row) {
     PathGradient<R> gradient(scene);
     std::vector<Vec3<R>> ahead(static_cast<std::size_t>(options.max_depth));
-    for_each_path(scene, camera, options, samples, false, begin, end,
+    for_each_path(scene, camera, options, samples, counts, false, begin, end,
                   [&](std::int64_t pixel, const Path<R>& path) {
                       const double* d = d_image + 3 * pixel;
+                      const double share = 1.0 / counts.of(pixel);
                       const Vec3<R> d_L(R(d[0] * share), R(d[1] * share), R(d[2] * share));
                       gather<R>(path, ahead.data());
                       gather_backward<R>(scene, path, ahead.data(), d_L, gradient);
@@ -142,11 +144,14 @@ Seen<R> chunk_backward(const PathScene<R>& scene, const ThinLens& camera,
 
 template <Real R>
 void trace_paths_backward(const PathScene<R>& scene, const ThinLens& camera,
-                          const PathOptions& options, const SampleRange& samples,
-                          const double* d_image, const PathDerivatives<R>& out) {
+                          const PathOptions& options, std::uint32_t spp,
+                          const std::uint32_t* own_counts, const double* d_image,
+                          const PathDerivatives<R>& out) {
     const std::int64_t pixels = static_cast<std::int64_t>(camera.width) * camera.height;
+    const SampleCounts counts{own_counts, spp};
+    const std::uint32_t most =
+        own_counts ? *std::max_element(own_counts, own_counts + pixels) : spp;
     const std::int64_t chunks = (pixels + chunk_pixels - 1) / chunk_pixels;
-    const double share = 1.0 / samples.count;
     DerivativeRow<R> row(scene);
     std::vector<std::vector<double>> texels(scene.lights.size());
     bool maps = !out.textures.empty();  // or textures: something that has texels
@@ -156,19 +161,19 @@ void trace_paths_backward(const PathScene<R>& scene, const ThinLens& camera,
             texels[i].assign(6 * height * height, 0.0);
             maps = true;
         }
-    const std::uint32_t batch = maps ? std::min(samples_at_once, samples.count) : samples.count;
+    const std::uint32_t batch = maps ? std::min(samples_at_once, most) : most;
     const std::int64_t slab =
         maps ? std::clamp(slab_paths / (chunk_pixels * batch), fewest_chunks, most_chunks)
              : most_chunks;
-    for (std::uint32_t done = 0; done < samples.count; done += batch) {
-        const SampleRange now{samples.first + done, std::min(batch, samples.count - done)};
+    for (std::uint32_t done = 0; done < most; done += batch) {
+        const SampleRange now{done, std::min(batch, most - done)};
         for (std::int64_t first = 0; first < chunks; first += slab) {
             const std::int64_t count = std::min(slab, chunks - first);
             std::vector<Seen<R>> seen(static_cast<std::size_t>(count));
             sum_partials<double>(count, row.sums(), [&](std::int64_t i, std::span<double> partial) {
                 const std::int64_t begin = (first + i) * chunk_pixels;
                 seen[static_cast<std::size_t>(i)] =
-                    chunk_backward(scene, camera, options, now, share, d_image, begin,
+                    chunk_backward(scene, camera, options, now, counts, d_image, begin,
                                    std::min(begin + chunk_pixels, pixels), partial.data());
             });
             for (std::size_t k = 0; k < texels.size(); ++k)
@@ -184,10 +189,10 @@ void trace_paths_backward(const PathScene<R>& scene, const ThinLens& camera,
 }
 
 template void trace_paths_backward(const PathScene<float>&, const ThinLens&, const PathOptions&,
-                                   const SampleRange&, const double*,
+                                   std::uint32_t, const std::uint32_t*, const double*,
                                    const PathDerivatives<float>&);
 template void trace_paths_backward(const PathScene<double>&, const ThinLens&, const PathOptions&,
-                                   const SampleRange&, const double*,
+                                   std::uint32_t, const std::uint32_t*, const double*,
                                    const PathDerivatives<double>&);
 
 }  // namespace photograd

@@ -18,6 +18,7 @@ from photograd.errors import DtypeError, RangeError, ShapeError, message
 from photograd.transport.accumulation import Accumulation
 from photograd.transport.core_arrays import instances_of, textures_of
 from photograd.transport.light_list import light_shapes, listed_lights
+from photograd.transport.sample_counts import sample_counts
 from photograd.transport.scene import Array, MeshShape, Scene, Shape, SphereShape
 
 STRATEGIES = ("light", "bsdf", "mis")
@@ -197,7 +198,7 @@ class PathTracer:
 
     def render_backward(
         self, d_image: Array, *, spp: int, seed: int, options: PathOptions = DEFAULTS,
-        camera: Camera | None = None,
+        camera: Camera | None = None, spread: str = "even",
     ) -> dict[str, Array]:  # fmt: skip
         """dL/dparams for dL/dimage (H, W, 3), estimated with `spp` paths a pixel.
 
@@ -206,9 +207,18 @@ class PathTracer:
         this estimate's, and their product is right on average. Geometry is held fixed: edges of
         shadows and silhouettes, and the directions into which smooth glass refracts.
 
+        Args:
+            d_image: dL/dimage (H, W, 3).
+            spp: paths a pixel, on average.
+            seed: of all random numbers.
+            options: how light is looked for.
+            camera: None takes the scene's.
+            spread: "even" gives each pixel as many paths, "cotangent" more to those that the loss
+                looks at (sample_counts.py); then `seed` must not be that of the picture.
+
         Raises:
             ShapeError: d_image of another shape than the picture.
-            RangeError: spp below 1.
+            RangeError: spp below 1, or another spread.
         """
         view = self.scene.camera if camera is None else camera
         wanted = (view.height, view.width, 3)
@@ -223,7 +233,8 @@ class PathTracer:
         d_lights = [np.zeros_like(row[1]) for row in arguments["lights"]]
         d_textures = [np.zeros_like(texels) for texels in arguments["textures"]]
         _core.trace_paths_backward(
-            **arguments, options=options.numbers(seed), first=0, count=spp,
+            **arguments, options=options.numbers(seed), spp=spp,
+            counts=sample_counts(d_image, spp, spread),
             d_image=np.ascontiguousarray(d_image, np.float64),
             d_parameters=d_rows, d_emission=d_emission, d_lights=d_lights, d_textures=d_textures,
         )  # fmt: skip
