@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -62,16 +63,21 @@ def evaluate(
     emit(as_result(result), as_json=as_json, title="evaluate")
 
 
-def draw_strips(result: Evaluation, path: Path, count: int = 3) -> None:
+def picked_views(psnr: Sequence[float]) -> list[int]:
+    """Numbers of the worst, the middle and the best view, in this order; all if they are fewer."""
+    ranked = sorted(range(len(psnr)), key=lambda i: psnr[i])
+    shown = min(3, len(ranked))
+    return [ranked[i * (len(ranked) - 1) // max(shown - 1, 1)] for i in range(shown)]
+
+
+def draw_strips(result: Evaluation, path: Path) -> None:
     """Truth, rendering and error of a few views, the worst among them."""
-    ranked = sorted(result.views, key=lambda view: view.psnr)
-    picked = [
-        ranked[i * (len(ranked) - 1) // max(count - 1, 1)] for i in range(min(count, len(ranked)))
-    ]
+    picked = [result.views[i] for i in picked_views([view.psnr for view in result.views])]
+    which = "Worst, middle and best of " if len(result.views) > len(picked) else ""
     figure = comparison_strips(
         [v.truth for v in picked], [v.render for v in picked],
         names=[v.name for v in picked], psnr=[v.psnr for v in picked],
         title=f"Held-out views: mean PSNR {result.psnr:.2f} dB",
-        caption=f"Worst, middle and best of {result.protocol}.",
+        caption=f"{which}{result.protocol}.",
     )  # fmt: skip
     save_figure(figure, path)
