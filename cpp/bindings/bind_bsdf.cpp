@@ -97,6 +97,20 @@ struct BoundBsdf {
             return out;
         });
     }
+    static py::array index_inside(const py::array& parameters) {
+        ArrayArgs args("index_inside");
+        const auto count = static_cast<std::int64_t>(parameter_count<M<double>>());
+        const double* rows =
+            args.in<double>("parameters", parameters, "N " + std::to_string(count));
+        py::array_t<double> out({args.size("N"), std::int64_t(3)});
+        for (std::int64_t n = 0; n < args.size("N"); ++n) {
+            Vec3<double> index(1.0);
+            if constexpr (transmits<M<double>>())
+                index = model_at(M<double>{}, rows + n * count).index_inside();
+            put_vec3(out.mutable_data(), n, index);
+        }
+        return out;
+    }
     static py::object bind(py::module_& m) {
         using T = M<double>;
         static constexpr const char* energies[] = {"conserving", "lossy", "gains"};
@@ -128,6 +142,9 @@ struct BoundBsdf {
         type.def_static(
             "reciprocal", [] { return T::reciprocal; },
             "Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.");
+        type.def_static("index_inside", &index_inside, py::arg("parameters"),
+                        "Refractive index below the surface over that above, per channel (N, 3), "
+                        "of parameters (N, P) float64.");
         type.def_static(
             "transmits", [] { return transmits<T>(); }, "Whether light may pass the surface.");
         return type;

@@ -82,9 +82,11 @@ TextureLayout layout_of(const ArrayArgs& args, const Layout& given) {
 void set_textures(PathGeometry& geometry, const std::vector<Layout>& layouts,
                   const std::vector<std::vector<Use>>& uses,
                   const std::vector<std::optional<BentNormals>>& normal_maps,
-                  const std::vector<bool>& directed) {
+                  const std::vector<bool>& directed, const std::vector<double>& cutoffs,
+                  const std::vector<std::pair<int, int>>& emission) {
     SurfaceTextures out;
     out.directed = directed;
+    out.cutoffs = cutoffs;
     ArrayArgs args("PathTracer");
     for (const Layout& given : layouts) out.layouts.push_back(layout_of(args, given));
     for (const std::vector<Use>& of_material : uses) {
@@ -96,6 +98,12 @@ void set_textures(PathGeometry& geometry, const std::vector<Layout>& layouts,
                 args.range("uses", "channels of textures that are there", "others");
             out.uses.back().push_back({texture, channel, first, count, lo, hi});
         }
+    }
+    for (const auto& [texture, channel] : emission) {
+        if (texture >= static_cast<int>(layouts.size()) || channel < 0 ||
+            (texture >= 0 && channel + 3 > out.layouts[static_cast<std::size_t>(texture)].channels))
+            args.range("emission", "three channels of a texture that is there", "others");
+        out.emission.push_back({texture, channel});
     }
     for (const std::optional<BentNormals>& given : normal_maps) {
         NormalMap map;
@@ -307,6 +315,7 @@ py::list path(const PathGeometry& geometry, const std::vector<std::string>& mode
         row["wi"] = colors(v.wi);
         row["value"] = colors(v.value);
         row["lobe"] = v.lobe;
+        row["passed"] = v.passed;
         row["weight"] = v.weight;
         row["survival"] = v.survival;
         out.append(row);
@@ -357,11 +366,14 @@ void bind_path(py::module_& m) {
         .def("choose_lights", &choose_lights, py::arg("u"),
              "(entries (N,) int64, their probabilities (N,)) by uniform u (N,): first lights of "
              "the list, then what emits of the shapes.")
-        .def("set_textures", &set_textures, py::arg("layouts"), py::arg("uses"),
-             py::arg("normal_maps"), py::arg("directed"),
-             "Layouts (H, W, C, wrap_u, wrap_v) of textures; for each material uses (texture, "
-             "channel, first,\ncount, lo, hi), and a normal map (values (H, W, 3) float32, wrap_u, "
-             "wrap_v) or None;\ndirected (M,), whether its frame follows u.");
+        .def(
+            "set_textures", &set_textures, py::arg("layouts"), py::arg("uses"),
+            py::arg("normal_maps"), py::arg("directed"), py::arg("cutoffs"), py::arg("emission"),
+            "Layouts (H, W, C, wrap_u, wrap_v) of textures; for each material uses (texture, "
+            "channel, first,\ncount, lo, hi), and a normal map (values (H, W, 3) float32, wrap_u, "
+            "wrap_v) or None;\ndirected (M,), whether its frame follows u; cutoffs (M,), of masks, "
+            "others below 0; emission,\nfor each shape (texture or -1, first of its three "
+            "channels).");
     m.def("trace_paths", &trace, py::arg("geometry"), py::arg("models"), py::arg("parameters"),
           py::arg("sampling_parameters"), py::arg("emission"), py::arg("lights"),
           py::arg("textures"), py::arg("sampling_textures"), py::arg("camera"), py::arg("options"),

@@ -40,13 +40,16 @@ __all__: list[str] = [
     "bsdf_clearcoat",
     "bsdf_cook_torrance",
     "bsdf_disney",
+    "bsdf_dispersive_dielectric",
     "bsdf_ggx_anisotropic",
     "bsdf_ggx_conductor",
     "bsdf_ggx_metal",
     "bsdf_ggx_metal_compensated",
     "bsdf_gltf",
     "bsdf_gltf_iridescence",
+    "bsdf_gltf_refraction",
     "bsdf_gltf_sheen",
+    "bsdf_gltf_transmission",
     "bsdf_lambert",
     "bsdf_oren_nayar_energy_preserving",
     "bsdf_oren_nayar_full",
@@ -62,6 +65,7 @@ __all__: list[str] = [
     "build_mips_backward",
     "cap_to_square",
     "cosine_hemisphere_to_square",
+    "delta_bsdf_dispersive_glass",
     "delta_bsdf_glass",
     "delta_bsdf_mirror",
     "delta_bsdf_thin_glass",
@@ -262,6 +266,11 @@ class bsdf_lambert:
         Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
         """
     @staticmethod
+    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
+        """
+        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
+        """
+    @staticmethod
     def jvp(
         parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
     ) -> numpy.ndarray:
@@ -318,6 +327,11 @@ class bsdf_phong:
     ) -> numpy.ndarray:
         """
         Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
+        """
+    @staticmethod
+    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
+        """
+        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
         """
     @staticmethod
     def jvp(
@@ -378,6 +392,11 @@ class bsdf_phong_reciprocal:
         Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
         """
     @staticmethod
+    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
+        """
+        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
+        """
+    @staticmethod
     def jvp(
         parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
     ) -> numpy.ndarray:
@@ -434,6 +453,11 @@ class bsdf_blinn_phong:
     ) -> numpy.ndarray:
         """
         Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
+        """
+    @staticmethod
+    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
+        """
+        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
         """
     @staticmethod
     def jvp(
@@ -494,6 +518,11 @@ class bsdf_blinn_phong_fitted:
         Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
         """
     @staticmethod
+    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
+        """
+        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
+        """
+    @staticmethod
     def jvp(
         parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
     ) -> numpy.ndarray:
@@ -550,6 +579,11 @@ class bsdf_oren_nayar_qualitative:
     ) -> numpy.ndarray:
         """
         Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
+        """
+    @staticmethod
+    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
+        """
+        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
         """
     @staticmethod
     def jvp(
@@ -610,6 +644,11 @@ class bsdf_oren_nayar_full:
         Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
         """
     @staticmethod
+    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
+        """
+        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
+        """
+    @staticmethod
     def jvp(
         parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
     ) -> numpy.ndarray:
@@ -666,6 +705,11 @@ class bsdf_oren_nayar_energy_preserving:
     ) -> numpy.ndarray:
         """
         Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
+        """
+    @staticmethod
+    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
+        """
+        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
         """
     @staticmethod
     def jvp(
@@ -726,6 +770,11 @@ class bsdf_burley_diffuse:
         Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
         """
     @staticmethod
+    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
+        """
+        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
+        """
+    @staticmethod
     def jvp(
         parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
     ) -> numpy.ndarray:
@@ -782,6 +831,11 @@ class bsdf_cook_torrance:
     ) -> numpy.ndarray:
         """
         Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
+        """
+    @staticmethod
+    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
+        """
+        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
         """
     @staticmethod
     def jvp(
@@ -842,6 +896,11 @@ class bsdf_ggx_metal:
         Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
         """
     @staticmethod
+    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
+        """
+        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
+        """
+    @staticmethod
     def jvp(
         parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
     ) -> numpy.ndarray:
@@ -898,6 +957,11 @@ class bsdf_ggx_metal_compensated:
     ) -> numpy.ndarray:
         """
         Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
+        """
+    @staticmethod
+    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
+        """
+        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
         """
     @staticmethod
     def jvp(
@@ -958,6 +1022,11 @@ class bsdf_ggx_conductor:
         Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
         """
     @staticmethod
+    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
+        """
+        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
+        """
+    @staticmethod
     def jvp(
         parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
     ) -> numpy.ndarray:
@@ -1014,6 +1083,11 @@ class bsdf_beckmann_conductor:
     ) -> numpy.ndarray:
         """
         Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
+        """
+    @staticmethod
+    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
+        """
+        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
         """
     @staticmethod
     def jvp(
@@ -1074,6 +1148,11 @@ class bsdf_ggx_anisotropic:
         Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
         """
     @staticmethod
+    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
+        """
+        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
+        """
+    @staticmethod
     def jvp(
         parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
     ) -> numpy.ndarray:
@@ -1130,6 +1209,11 @@ class bsdf_standard:
     ) -> numpy.ndarray:
         """
         Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
+        """
+    @staticmethod
+    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
+        """
+        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
         """
     @staticmethod
     def jvp(
@@ -1190,6 +1274,11 @@ class bsdf_gltf:
         Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
         """
     @staticmethod
+    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
+        """
+        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
+        """
+    @staticmethod
     def jvp(
         parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
     ) -> numpy.ndarray:
@@ -1246,6 +1335,11 @@ class bsdf_gltf_iridescence:
     ) -> numpy.ndarray:
         """
         Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
+        """
+    @staticmethod
+    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
+        """
+        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
         """
     @staticmethod
     def jvp(
@@ -1306,6 +1400,11 @@ class bsdf_gltf_sheen:
         Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
         """
     @staticmethod
+    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
+        """
+        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
+        """
+    @staticmethod
     def jvp(
         parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
     ) -> numpy.ndarray:
@@ -1362,6 +1461,11 @@ class bsdf_clearcoat:
     ) -> numpy.ndarray:
         """
         Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
+        """
+    @staticmethod
+    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
+        """
+        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
         """
     @staticmethod
     def jvp(
@@ -1422,6 +1526,11 @@ class bsdf_sheen:
         Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
         """
     @staticmethod
+    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
+        """
+        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
+        """
+    @staticmethod
     def jvp(
         parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
     ) -> numpy.ndarray:
@@ -1478,6 +1587,11 @@ class bsdf_disney:
     ) -> numpy.ndarray:
         """
         Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
+        """
+    @staticmethod
+    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
+        """
+        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
         """
     @staticmethod
     def jvp(
@@ -1538,6 +1652,200 @@ class bsdf_rough_dielectric:
         Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
         """
     @staticmethod
+    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
+        """
+        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
+        """
+    @staticmethod
+    def jvp(
+        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        Exact derivative of f along v, (N, 3), float64.
+        """
+    @staticmethod
+    def parameters() -> list[tuple[str, int, float, float, str]]:
+        """
+        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
+        """
+    @staticmethod
+    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Density of `sample` over solid angle, (N,).
+        """
+    @staticmethod
+    def reciprocal() -> bool:
+        """
+        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
+        """
+    @staticmethod
+    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
+        """
+        wi (N, 3) from uniform u2 (N, 2).
+        """
+    @staticmethod
+    def transmits() -> bool:
+        """
+        Whether light may pass the surface.
+        """
+
+class bsdf_dispersive_dielectric:
+    """
+    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
+    """
+    @staticmethod
+    def energy() -> tuple[str, float]:
+        """
+        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
+        """
+    @staticmethod
+    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Value without the cosine, (N, 3).
+        """
+    @staticmethod
+    def f_backward(
+        parameters: numpy.ndarray,
+        wo: numpy.ndarray,
+        wi: numpy.ndarray,
+        d_f: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
+        """
+    @staticmethod
+    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
+        """
+        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
+        """
+    @staticmethod
+    def jvp(
+        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        Exact derivative of f along v, (N, 3), float64.
+        """
+    @staticmethod
+    def parameters() -> list[tuple[str, int, float, float, str]]:
+        """
+        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
+        """
+    @staticmethod
+    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Density of `sample` over solid angle, (N,).
+        """
+    @staticmethod
+    def reciprocal() -> bool:
+        """
+        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
+        """
+    @staticmethod
+    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
+        """
+        wi (N, 3) from uniform u2 (N, 2).
+        """
+    @staticmethod
+    def transmits() -> bool:
+        """
+        Whether light may pass the surface.
+        """
+
+class bsdf_gltf_transmission:
+    """
+    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
+    """
+    @staticmethod
+    def energy() -> tuple[str, float]:
+        """
+        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
+        """
+    @staticmethod
+    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Value without the cosine, (N, 3).
+        """
+    @staticmethod
+    def f_backward(
+        parameters: numpy.ndarray,
+        wo: numpy.ndarray,
+        wi: numpy.ndarray,
+        d_f: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
+        """
+    @staticmethod
+    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
+        """
+        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
+        """
+    @staticmethod
+    def jvp(
+        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        Exact derivative of f along v, (N, 3), float64.
+        """
+    @staticmethod
+    def parameters() -> list[tuple[str, int, float, float, str]]:
+        """
+        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
+        """
+    @staticmethod
+    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Density of `sample` over solid angle, (N,).
+        """
+    @staticmethod
+    def reciprocal() -> bool:
+        """
+        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
+        """
+    @staticmethod
+    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
+        """
+        wi (N, 3) from uniform u2 (N, 2).
+        """
+    @staticmethod
+    def transmits() -> bool:
+        """
+        Whether light may pass the surface.
+        """
+
+class bsdf_gltf_refraction:
+    """
+    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
+    """
+    @staticmethod
+    def energy() -> tuple[str, float]:
+        """
+        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
+        """
+    @staticmethod
+    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Value without the cosine, (N, 3).
+        """
+    @staticmethod
+    def f_backward(
+        parameters: numpy.ndarray,
+        wo: numpy.ndarray,
+        wi: numpy.ndarray,
+        d_f: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
+        """
+    @staticmethod
+    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
+        """
+        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
+        """
+    @staticmethod
     def jvp(
         parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
     ) -> numpy.ndarray:
@@ -1594,6 +1902,11 @@ class bsdf_principled:
     ) -> numpy.ndarray:
         """
         Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
+        """
+    @staticmethod
+    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
+        """
+        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
         """
     @staticmethod
     def jvp(
@@ -1705,6 +2018,44 @@ class delta_bsdf_glass:
         """
 
 class delta_bsdf_thin_glass:
+    """
+    A perfectly smooth surface. Parameters (N, P), or (1, P) for all rows; wo (N, 3) in the shading frame, normal +Z, on either side.
+    """
+    @staticmethod
+    def jvp(
+        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray
+    ) -> tuple[typing.Any, ...]:
+        """
+        Exact derivatives of (wi, weight) along v, float64.
+        """
+    @staticmethod
+    def lobe_count() -> int:
+        """
+        L.
+        """
+    @staticmethod
+    def lobes(parameters: numpy.ndarray, wo: numpy.ndarray) -> tuple[typing.Any, ...]:
+        """
+        (wi, weight), (N, L, 3) each: L(wo) is the sum of weight L(wi).
+        """
+    @staticmethod
+    def lobes_backward(
+        parameters: numpy.ndarray,
+        wo: numpy.ndarray,
+        d_wi: numpy.ndarray,
+        d_weight: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
+        """
+    @staticmethod
+    def parameters() -> list[tuple[str, int, float, float, str]]:
+        """
+        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
+        """
+
+class delta_bsdf_dispersive_glass:
     """
     A perfectly smooth surface. Parameters (N, P), or (1, P) for all rows; wo (N, 3) in the shading frame, normal +Z, on either side.
     """
@@ -2808,11 +3159,18 @@ class PathGeometry:
             | None
         ],
         directed: collections.abc.Sequence[bool],
+        cutoffs: collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex],
+        emission: collections.abc.Sequence[
+            tuple[
+                typing.SupportsInt | typing.SupportsIndex, typing.SupportsInt | typing.SupportsIndex
+            ]
+        ],
     ) -> None:
         """
         Layouts (H, W, C, wrap_u, wrap_v) of textures; for each material uses (texture, channel, first,
         count, lo, hi), and a normal map (values (H, W, 3) float32, wrap_u, wrap_v) or None;
-        directed (M,), whether its frame follows u.
+        directed (M,), whether its frame follows u; cutoffs (M,), of masks, others below 0; emission,
+        for each shape (texture or -1, first of its three channels).
         """
 
 class TexturePlan:
@@ -3890,12 +4248,16 @@ bsdfs: dict[str, typing.Any] = {
     "sheen": bsdf_sheen,
     "disney": bsdf_disney,
     "rough_dielectric": bsdf_rough_dielectric,
+    "dispersive_dielectric": bsdf_dispersive_dielectric,
+    "gltf_transmission": bsdf_gltf_transmission,
+    "gltf_refraction": bsdf_gltf_refraction,
     "principled": bsdf_principled,
 }
 delta_bsdfs: dict[str, typing.Any] = {
     "mirror": delta_bsdf_mirror,
     "glass": delta_bsdf_glass,
     "thin_glass": delta_bsdf_thin_glass,
+    "dispersive_glass": delta_bsdf_dispersive_glass,
 }
 lights: dict[str, typing.Any] = {"sun": light_sun, "sky": light_sky, "constant": light_constant}
 ops: dict[str, typing.Any]

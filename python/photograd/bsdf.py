@@ -6,8 +6,10 @@ normal +Z, both leaving the surface; `f` does not contain the cosine.
 
 Models that follow an extension of glTF name its parameters as the extension does, in snake_case:
 `iridescence_factor`, `iridescence_ior` and `iridescence_thickness` (nm) of `gltf_iridescence`,
-`sheen_color_factor` and `sheen_roughness_factor` of `gltf_sheen`. The sliders of `disney` are those
-of [Burley2012]; his metallic is `metalness`, as in all models here.
+`sheen_color_factor` and `sheen_roughness_factor` of `gltf_sheen`. Its ior is `eta` here, as in all
+models of glass: the index inside over outside, at the d line where `dispersion` (20 / Abbe's
+number) parts the colours. `gltf_transmission` is a sheet, `gltf_refraction` a body. The sliders of
+`disney` are those of [Burley2012]; his metallic is `metalness`, as in all models here.
 """
 
 from __future__ import annotations
@@ -48,7 +50,7 @@ class BsdfModel:
         parameters: in the order in which the core packs them.
         energy: ("conserving" | "lossy" | "gains", bound on the directional albedo).
         reciprocal: whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; the index is 1
-            above the surface, and `eta` below it in models that transmit.
+            above the surface, and `index_inside` below it.
         transmits: whether light may pass; wo and wi may then lie on either side.
         core: the core's class of static functions.
     """
@@ -104,6 +106,14 @@ class BsdfModel:
         wo, wi = checked_directions(wo, wi)
         density: Array = self.core.pdf(self.pack(parameters, wo.dtype), wo, wi)
         return density
+
+    def index_inside(self, parameters: Parameters) -> Array:
+        """Refractive index below the surface over that above, per channel, (1, 3) or (N, 3).
+
+        It is 1 in models that do not transmit, and in sheets.
+        """
+        index: Array = self.core.index_inside(self.pack(parameters))
+        return index
 
     def at(self, fraction: float) -> dict[str, Array]:
         """All parameters at a fraction of their range; channels of colours differ a little."""

@@ -41,6 +41,11 @@ def without_eta_squared(f: Any, rows: Any, wo: Any, wi: Any) -> Any:
     return np.where(wo[:, 2:] * wi[:, 2:] < 0, f * e**2, f)
 
 
+def red_for_blue(f: Any, _: Any, wo: Any, wi: Any) -> Any:
+    """Refracted light in the channel of another index."""
+    return np.where(wo[:, 2:] * wi[:, 2:] < 0, f[:, ::-1], f)
+
+
 def through_the_surface(f: Any, _: Any, wo: Any, wi: Any) -> Any:
     """Light that leaks: the cosine's sign is forgotten."""
     return np.where(wo[:, 2:] * wi[:, 2:] < 0, 0.1, f)
@@ -54,6 +59,8 @@ def through_the_surface(f: Any, _: Any, wo: Any, wi: Any) -> Any:
         ("beckmann_conductor", "pdf", half_vector_density, prove_sampling),
         ("rough_dielectric", "f", without_eta_squared, prove_reciprocity),
         ("rough_dielectric", "f", without_eta_squared, prove_energy),
+        ("dispersive_dielectric", "f", red_for_blue, prove_reciprocity),
+        ("gltf_transmission", "pdf", half_vector_density, prove_energy),
         ("gltf", "f", through_the_surface, prove_horizon),
     ],
 )

@@ -37,7 +37,7 @@ class Proof:
         shape = (ROWS, self.model.lobe_count, 3)
         random = np.random.default_rng(3)
         self.d = {key: random.uniform(0.5, 1.5, shape) for key in ("wi", "weight")}
-        if name != "glass":  # the directions of the others do not depend on a parameter
+        if "glass" not in name or name == "thin_glass":  # the directions depend on no parameter
             del self.d["wi"]
 
     def rows(self, groups: dict[str, Any]) -> Any:

@@ -78,13 +78,12 @@ def albedo(model: BsdfModel, parameters: dict[str, Any], cosine: float) -> Array
 
 
 def index_of(model: BsdfModel, parameters: dict[str, Any], w: Array) -> Array:
-    """Refractive index (N, 1) on the side of each direction."""
-    inside = parameters["eta"] if model.transmits else 1.0
-    return np.where(w[:, 2:] < 0.0, inside, 1.0)
+    """Refractive index (N, 3) on the side of each direction."""
+    return np.where(w[:, 2:] < 0.0, model.index_inside(parameters), 1.0)
 
 
 def power_factor(model: BsdfModel, parameters: dict[str, Any], wo: Array, wi: Array) -> Array:
-    """What f is multiplied by to count energy (N, 1): the cosine, and what radiance gained."""
+    """What f is multiplied by to count energy (N, 3): the cosine, and what radiance gained."""
     indices = [index_of(model, parameters, w) for w in (wi, wo)]
     factor: Array = np.abs(wi[:, 2:]) * (indices[0] / indices[1]) ** 2
     return factor
@@ -249,7 +248,9 @@ def prove_energy(model: BsdfModel, *, seed: int = 5) -> None:
             weight = weight / np.where(pdf > 0, pdf, 1.0)
             error = 3.0 * weight.std(axis=0) / np.sqrt(samples)
             gap = np.abs(weight.mean(axis=0) - exact)
-            assert exact.max() > 0
+            assert (
+                exact.max() > 0 or cosine < 0
+            )  # a metal is dark inside; prove_horizon looks there
             assert (gap <= error + 0.005 * exact).all(), (
                 f"{model.name} at {fraction}, cos {cosine}: {gap} beyond {error}"
             )

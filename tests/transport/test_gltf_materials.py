@@ -7,13 +7,22 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.transport import Material, ModelFile
+from photograd.transport import Material, MeshShape, ModelFile
 from photograd.transport.texture import TextureUse, decode
 
 from tests.transport.gltf_samples import UV, core, extension, png, square
 from tests.transport.test_mesh_files import read
 
 PIXELS = np.array([[[255, 0, 0], [0, 128, 0]], [[0, 0, 64], [200, 100, 50]]], np.uint8)
+
+
+VOLUME = {"thicknessFactor": 1}
+
+
+def clear(factor: float = 1, **more: Any) -> dict[str, Any]:
+    """A material with KHR_materials_transmission, and perhaps others."""
+    entries = {"transmission": {"transmissionFactor": factor}, **more}
+    return {"extensions": {f"KHR_materials_{name}": entry for name, entry in entries.items()}}
 
 
 def only(model: ModelFile) -> Material:
@@ -61,33 +70,59 @@ def made(folder: Path, **material: Any) -> tuple[Material, list[str]]:
         (extension("specular", specularFactor=0.25), "standard", {"reflectance": 0.25}),
         (extension("ior", ior=1.25), "standard", {"reflectance": 1 / 3.6}),
         (
-            core(roughnessFactor=0) | extension("transmission", transmissionFactor=1),
+            core(roughnessFactor=0, metallicFactor=0) | clear(),
             "thin_glass",
             {"eta": 1.5, "tint": [1] * 3},
         ),
         (
-            core(roughnessFactor=0.4)
-            | {
-                "extensions": {
-                    "KHR_materials_transmission": {"transmissionFactor": 1},
-                    "KHR_materials_volume": {"thicknessFactor": 1},
-                    "KHR_materials_ior": {"ior": 1.4},
-                }
-            },
+            core(roughnessFactor=0.4, metallicFactor=0) | clear(volume=VOLUME, ior={"ior": 1.4}),
             "rough_dielectric",
             {"eta": 1.4, "roughness": 0.4},
         ),
         (
-            core(roughnessFactor=0, baseColorFactor=[0.5, 1, 1, 1])
-            | {
-                "extensions": {
-                    "KHR_materials_transmission": {"transmissionFactor": 1},
-                    "KHR_materials_volume": {"thicknessFactor": 1},
-                    "KHR_materials_ior": {"ior": 2.0},
-                }
-            },
+            core(roughnessFactor=0, metallicFactor=0, baseColorFactor=[0.5, 1, 1, 1])
+            | clear(volume=VOLUME, ior={"ior": 2.0}),
             "glass",
             {"eta": 2.0, "tint": [0.5, 1, 1]},
+        ),
+        # A metal lets nothing through; so does a factor of 0.
+        (clear(volume=VOLUME, dispersion={"dispersion": 1}), "gltf", {"metalness": 1}),
+        (core(metallicFactor=0) | clear(0, volume=VOLUME), "gltf", {"metalness": 0}),
+        (
+            core(roughnessFactor=0.4, metallicFactor=0.25, baseColorFactor=[0.5, 1, 0.75, 1])
+            | clear(0.75, ior={"ior": 1.25}),
+            "gltf_transmission",
+            {
+                "transmission": 0.75,
+                "eta": 1.25,
+                "roughness": 0.4,
+                "metalness": 0.25,
+                "base_color": [0.5, 1, 0.75],
+            },
+        ),
+        (
+            core(roughnessFactor=0.4, metallicFactor=0, baseColorFactor=[0.5, 1, 0.75, 1])
+            | clear(volume=VOLUME),
+            "gltf_refraction",
+            {"transmission": 1, "eta": 1.5, "roughness": 0.4, "base_color": [0.5, 1, 0.75]},
+        ),
+        # Crown glass has Abbe's number 59; a sheet spreads no colours.
+        (
+            core(roughnessFactor=0, metallicFactor=0)
+            | clear(volume=VOLUME, dispersion={"dispersion": 20 / 59}),
+            "dispersive_glass",
+            {"eta": 1.5, "dispersion": 20 / 59, "tint": [1, 1, 1]},
+        ),
+        (
+            core(roughnessFactor=0.25, metallicFactor=0)
+            | clear(volume=VOLUME, dispersion={"dispersion": 1.5}),
+            "dispersive_dielectric",
+            {"eta": 1.5, "dispersion": 1.5, "roughness": 0.25},
+        ),
+        (
+            core(roughnessFactor=0, metallicFactor=0) | clear(dispersion={"dispersion": 1}),
+            "thin_glass",
+            {"eta": 1.5},
         ),
     ],
 )
@@ -125,25 +160,29 @@ def test_which_model_a_material_becomes(
             "KHR_materials_anisotropy: not supported by the model 'gltf'",
         ),
         (
-            extension("transmission", transmissionFactor=0.25),
-            "KHR_materials_transmission: not supported",
+            core(metallicFactor=0) | clear(0.5, volume=VOLUME, dispersion={"dispersion": 1}),
+            "KHR_materials_dispersion: not supported by the model 'gltf_refraction'",
         ),
         (
-            extension("transmission", transmissionFactor=0.75),
-            "transmissionFactor below 1 is taken as 1",
+            core(metallicFactor=0, baseColorFactor=[1, 0, 0, 1])
+            | clear(volume=VOLUME, dispersion={"dispersion": 1}),
+            "dispersive_dielectric has no colour",
         ),
         (
-            {
-                "extensions": {
-                    "KHR_materials_transmission": {"transmissionFactor": 1},
-                    "KHR_materials_dispersion": {"dispersion": 1},
-                    "KHR_materials_ior": {"ior": 1.0},
-                }
-            },
-            "KHR_materials_dispersion: not supported",
+            core(metallicFactor=0) | clear(volume=VOLUME | {"attenuationDistance": 2}),
+            "attenuationDistance: not supported, left out",
+        ),
+        (
+            core(metallicFactor=0) | clear(0.5, volume=VOLUME, ior={"ior": 1.0}),
+            "gltf_refraction.eta: 1.0 is taken as 1.2",
         ),
         (extension("ior", ior=8.0), "standard.reflectance: 1.94"),
-        ({"alphaMode": "BLEND"}, "alphaMode BLEND: drawn opaque"),
+        ({"alphaMode": "HASHED"}, "alphaMode HASHED: unknown, drawn opaque"),
+        (
+            core(baseColorFactor=[1, 1, 1, 0.5])
+            | {"alphaMode": "BLEND", "emissiveFactor": [1] * 3},
+            "alphaMode BLEND: what shines is drawn opaque",
+        ),
     ],
 )
 def test_what_is_not_supported_is_named(
@@ -165,10 +204,13 @@ def test_light_of_surfaces(tmp_path: Path) -> None:
         "emissiveFactor": [1, 1, 1], "emissiveTexture": {"index": glb.image(PIXELS)}
     }  # fmt: skip
     model, told = read(tmp_path, glb.bytes())
-    assert "emissiveTexture: taken as its mean colour" in told[0]
-    np.testing.assert_allclose(
-        model.shapes[0].emission, decode(PIXELS / 255).mean(axis=(0, 1)), rtol=1e-6
-    )
+    assert told == []
+    shape = model.shapes[0]
+    assert isinstance(shape, MeshShape)
+    assert shape.glow is not None
+    np.testing.assert_array_equal(shape.emission, [1, 1, 1])
+    painted = model.textures[shape.glow.texture].values
+    np.testing.assert_allclose(painted, decode(PIXELS / 255), rtol=1e-6)
 
 
 def test_textures_scale_parameters(tmp_path: Path) -> None:

@@ -29,8 +29,9 @@ concept BsdfValue = requires(const T& model, T& d_model, const Vec3<R>& w) {
     { model.f_backward(w, w, w, d_model) } -> std::same_as<void>;
 };
 
-/// Models that refract as well say `transmits`, and have the index inside over outside as a parameter `eta`: their
-/// wo and wi may lie on either side. All others are 0 unless both are above.
+/// Models that let light through say `transmits`, and by `index_inside()` the refractive index inside over outside of each
+/// channel, 1 for a sheet with the same on both sides: their wo and wi may lie on either side. All others are 0 unless both
+/// are above.
 template <class T>
 constexpr bool transmits() {
     if constexpr (requires { T::transmits; })
@@ -46,8 +47,14 @@ concept BsdfSampler = requires(const T& model, const Vec3<R>& w, const Vec2<R>& 
     { model.pdf(w, w) } -> std::same_as<R>;
 };
 
+template <class T, class R>
+concept KnowsItsInside = !transmits<T>() || requires(const T& model) {
+    { model.index_inside() } -> std::same_as<Vec3<R>>;
+};
+
 template <template <class> class M>
 concept Bsdf = BsdfValue<M<double>, double> && BsdfValue<M<Dual<double>>, Dual<double>> &&
-               BsdfSampler<M<double>, double> && BsdfSampler<M<float>, float>;
+               BsdfSampler<M<double>, double> && BsdfSampler<M<float>, float> &&
+               KnowsItsInside<M<double>, double>;
 
 }  // namespace photograd

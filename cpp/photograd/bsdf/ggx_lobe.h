@@ -46,4 +46,22 @@ R ggx_lobe_pdf(const Vec3<R>& wo, const Vec3<R>& wi, R roughness) {
     return reflected_pdf(wo, wh, ggx_visible_pdf(wo, wh, alpha, alpha));
 }
 
+/// The lobe over a diffuse ground, which gets `ground_share` of the samples.
+template <Real R>
+Vec3<R> sample_ground_and_lobe(const Vec3<R>& wo, R ground_share, R roughness, Vec2<R> u2) {
+    if (take_first(ground_share, u2)) return square_to_cosine_hemisphere(u2);
+    return sample_ggx_lobe(wo, roughness, u2);
+}
+template <class R>
+R ground_and_lobe_pdf(const Vec3<R>& wo, const Vec3<R>& wi, R ground_share, R roughness) {
+    if (!both_above(wo, wi)) return R(0);
+    return ground_share * cosine_hemisphere_pdf(wi) +
+           (R(1) - ground_share) * ggx_lobe_pdf(wo, wi, roughness);
+}
+/// Half of a dielectric's samples; a metal has no ground.
+template <class R>
+R dielectric_ground_share(R metalness) {
+    return R(0.5) * (R(1) - metalness);
+}
+
 }  // namespace photograd

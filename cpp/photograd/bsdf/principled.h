@@ -40,14 +40,11 @@ struct Principled {
                             d_self.metalness, d_self.roughness);
     }
 
-    Vec3<R> sample(const Vec3<R>& wo, Vec2<R> u2) const {
-        if (take_first(ground_share(), u2)) return square_to_cosine_hemisphere(u2);
-        return sample_ggx_lobe(wo, roughness, u2);
+    Vec3<R> sample(const Vec3<R>& wo, const Vec2<R>& u2) const {
+        return sample_ground_and_lobe(wo, ground_share(), roughness, u2);
     }
     R pdf(const Vec3<R>& wo, const Vec3<R>& wi) const {
-        if (!both_above(wo, wi)) return R(0);
-        return ground_share() * cosine_hemisphere_pdf(wi) +
-               (R(1) - ground_share()) * ggx_lobe_pdf(wo, wi, roughness);
+        return ground_and_lobe_pdf(wo, wi, ground_share(), roughness);
     }
 
 private:

@@ -8,12 +8,15 @@
 #include "photograd/bsdf/conductor.h"
 #include "photograd/bsdf/cook_torrance.h"
 #include "photograd/bsdf/disney.h"
+#include "photograd/bsdf/dispersive_dielectric.h"
 #include "photograd/bsdf/ggx_anisotropic.h"
 #include "photograd/bsdf/ggx_metal.h"
 #include "photograd/bsdf/ggx_metal_compensated.h"
 #include "photograd/bsdf/gltf.h"
 #include "photograd/bsdf/gltf_iridescence.h"
+#include "photograd/bsdf/gltf_refraction.h"
 #include "photograd/bsdf/gltf_sheen.h"
+#include "photograd/bsdf/gltf_transmission.h"
 #include "photograd/bsdf/lambert.h"
 #include "photograd/bsdf/oren_nayar.h"
 #include "photograd/bsdf/oren_nayar_energy_preserving.h"
@@ -30,6 +33,7 @@ using Bsdfs =
     ModelList<Lambert, Phong, PhongReciprocal, BlinnPhong, BlinnPhongFitted, OrenNayarQualitative,
               OrenNayarFull, OrenNayarEnergyPreserving, BurleyDiffuse, CookTorrance, GgxMetal,
               GgxMetalCompensated, GgxConductor, BeckmannConductor, GgxAnisotropic, Standard, Gltf,
-              GltfIridescence, GltfSheen, Clearcoat, Sheen, Disney, RoughDielectric, Principled>;
+              GltfIridescence, GltfSheen, Clearcoat, Sheen, Disney, RoughDielectric,
+              DispersiveDielectric, GltfTransmission, GltfRefraction, Principled>;
 
 }  // namespace photograd

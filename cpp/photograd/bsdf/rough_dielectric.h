@@ -87,6 +87,7 @@ struct RoughDielectric {
         return w.mirrored ? share * reflected_pdf(w.o, w.h, pdf_h)
                           : (R(1) - share) * pdf_h * (w.e * w.e * -w.b / w.s2);
     }
+    Vec3<R> index_inside() const { return Vec3<R>(eta); }
 
 private:
     /// Two directions, flipped so that wo is above, and the facet that joins them.

@@ -58,15 +58,11 @@ struct Standard {
         ggx_lobe_backward(wo, wi, roughness, d_lobe, d_self.roughness);
     }
 
-    /// Half of the dielectric's samples go to its ground; a metal has none.
-    Vec3<R> sample(const Vec3<R>& wo, Vec2<R> u2) const {
-        if (take_first(ground_share(), u2)) return square_to_cosine_hemisphere(u2);
-        return sample_ggx_lobe(wo, roughness, u2);
+    Vec3<R> sample(const Vec3<R>& wo, const Vec2<R>& u2) const {
+        return sample_ground_and_lobe(wo, dielectric_ground_share(metalness), roughness, u2);
     }
     R pdf(const Vec3<R>& wo, const Vec3<R>& wi) const {
-        if (!both_above(wo, wi)) return R(0);
-        return ground_share() * cosine_hemisphere_pdf(wi) +
-               (R(1) - ground_share()) * ggx_lobe_pdf(wo, wi, roughness);
+        return ground_and_lobe_pdf(wo, wi, dielectric_ground_share(metalness), roughness);
     }
 
 private:
@@ -76,7 +72,6 @@ private:
     Vec3<R> dielectric(R o_dot_h, R lobe) const {
         return base_color * R(1 / pi) + Vec3<R>(fresnel(o_dot_h) * lobe);
     }
-    [[nodiscard]] R ground_share() const { return R(0.5) * (R(1) - metalness); }
 };
 
 static_assert(Bsdf<Standard>);

@@ -5,6 +5,7 @@
 
 #include "photograd/ops/beckmann.h"
 #include "photograd/ops/charlie.h"
+#include "photograd/ops/dispersion.h"
 #include "photograd/ops/erf.h"
 #include "photograd/ops/fresnel_conductor.h"
 #include "photograd/ops/fresnel_dielectric.h"
@@ -43,6 +44,27 @@ struct SchlickOp {
     template <class R>
     static void backward(const R* in, const R* d_out, R* d_in) {
         schlick_backward(in[0], in[1], in[2], d_out[0], d_in[0], d_in[1], d_in[2]);
+    }
+};
+
+/// f0 of an index, and the indices of three channels.
+struct IndexOp {
+    static constexpr const char* name = "refractive_index";
+    static constexpr std::array<InputGroup, 2> inputs{
+        {{"eta", 1, 1.1, 2.4}, {"dispersion", 1, 0.1, 2.0}}};
+    static constexpr int outputs = 4;
+
+    template <class R>
+    static void forward(const R* in, R* out) {
+        const Vec3<R> index = channel_indices(in[0], in[1]);
+        for (int k = 0; k < 3; ++k) out[k] = index[k];
+        out[3] = schlick_f0(in[0]);
+    }
+    template <class R>
+    static void backward(const R* in, const R* d_out, R* d_in) {
+        channel_indices_backward(in[0], in[1], Vec3<R>(d_out[0], d_out[1], d_out[2]), d_in[0],
+                                 d_in[1]);
+        schlick_f0_backward(in[0], d_out[3], d_in[0]);
     }
 };
 

@@ -233,7 +233,7 @@ using Ops =
              BilinearOp<true>, TrilinearOp<Border::clamp>, TrilinearOp<Border::zero>, CellBlendOp,
              ShColorOp, CompositeOp<Quadrature::alpha>, CompositeOp<Quadrature::riemann>,
              CovarianceOp, ProjectionOp<false>, ProjectionOp<true>, ConicOp, SplatColorOp,
-             SplatBlendOp, RayGaussianOp, RayColorOp, RayBlendOp, ErfOp, SchlickOp,
+             SplatBlendOp, RayGaussianOp, RayColorOp, RayBlendOp, ErfOp, SchlickOp, IndexOp,
              DielectricOp<false>, DielectricOp<true>, ConductorOp, GgxOp, BeckmannOp, CharlieOp>;
 
 }  // namespace photograd

@@ -12,6 +12,9 @@
 //   dL/dLe_k = d_k w_k     dL/df^l_k = d_k w^l_k L^l_k     dL/dL^l_k = d_k w^l_k f^l_k     dL/df_k = d_k s_k L_{k+1}
 //   d_0 = dL/dL_0,         d_{k+1} = d_k s_k f_k
 //
+// Where a surface covers only in part (coverage.h), all of L_k has a factor c_k, and L^l_k one `through` for the veils before
+// the light; a vertex where the path went straight on has s f = 1 and nothing else.
+//
 // A path that is held as a whole needs no division by f to find out what arrived from ahead (black surfaces have
 // derivatives too), and no subtraction from a total. It is replayed from its random numbers when the derivative is
 // wanted [Vicini2021], so memory is that of one path a thread.
@@ -23,14 +26,25 @@
 
 namespace photograd {
 
+/// What a shadow ray passed, and the part 1 - alpha of the light that it left.
+template <class R>
+struct Veil {
+    std::int32_t material;
+    Vec2<R> uv;
+    R left;
+};
+
 template <class R>
 struct LightVertex {
     std::int32_t shape = SceneLights::none;  // that emits, or SceneLights::background or ::delta
     std::int32_t listed = -1;                // number of a delta light
     Vec3<R> point{R(0)};                     // that is lit
     Vec3<R> direction{R(0)}, wi{R(0)};       // world, shading frame
+    Vec2<R> uv{R(0)};                        // of the shape that emits, where it has a texture
     Vec3<R> f{R(0)};
     Vec3<R> sent{R(0)};                // radiance, or a delta light's irradiance
+    std::vector<Veil<R>> veils;        // that stand before it
+    R through = R(1);                  // what all of them leave
     R weight = R(0);                   // 0 where something stands in front of it
     R pdf = R(0), scatter_pdf = R(0);  // of the light's choice; of the BSDF for the same direction
 };
@@ -49,7 +63,9 @@ struct PathVertex {
     Vec3<R> wo{R(0)}, wi{R(0)};  // shading frame; wi is where the path goes on
     Vec3<R> value{R(0)};         // f, or the weight of a smooth surface's lobe
     int lobe = -1;
-    R weight = R(0);    // 0: the path ends here
+    bool passed = false;  // the path went straight on, behind what covers only in part
+    R coverage = R(1), coverage_slope = R(0);  // c of everything here, dc/dalpha
+    R weight = R(0);                           // 0: the path ends here
     R survival = R(1);  // probability of roulette, which `weight` is divided by
 };
 
@@ -71,11 +87,31 @@ struct PathGradient {
     }
 };
 
+/// Adds the derivative of <d_L, E t(uv)>, the radiance E of a shape times its texture.
+template <Real R>
+void glow_backward(const PathScene<R>& scene, std::int32_t shape, const EmissionUse& use,
+                   const Vec2<R>& uv, const Vec3<R>& d_L, PathGradient<R>& d_scene) {
+    const auto t = static_cast<std::size_t>(use.texture);
+    const TextureLayout& layout = scene.geometry->textures.layouts[t];
+    const Vec2<R> at = layout.inside(uv);
+    const Vec3<R> d_color = d_L * scene.emitted(shape);
+    d_scene.emission[static_cast<std::size_t>(shape)] += d_L * scene.glow(use, uv);
+    TexelAdjoint<R>& record = d_scene.texels[t];
+    record.uv.insert(record.uv.end(), {at.x, at.y});
+    const std::size_t first = record.d_color.size();
+    record.d_color.resize(first + static_cast<std::size_t>(layout.channels), R(0));
+    for (int c = 0; c < 3; ++c)
+        record.d_color[first + static_cast<std::size_t>(use.channel + c)] = d_color[c];
+}
+
 /// Adds the derivative of <d_L, radiance of a shape, or of what lies behind everything>.
 template <Real R>
-void emitted_backward(const PathScene<R>& scene, std::int32_t shape, const Vec3<R>& direction,
-                      const Vec3<R>& d_L, PathGradient<R>& d_scene) {
+void emitted_backward(const PathScene<R>& scene, std::int32_t shape, const Vec2<R>& uv,
+                      const Vec3<R>& direction, const Vec3<R>& d_L, PathGradient<R>& d_scene) {
     if (shape >= 0) {
+        if (const EmissionUse* use =
+                scene.geometry->textures.glows(static_cast<std::size_t>(shape)))
+            return glow_backward(scene, shape, *use, uv, d_L, d_scene);
         d_scene.emission[static_cast<std::size_t>(shape)] += d_L;
         return;
     }
@@ -88,9 +124,40 @@ template <Real R>
 void sent_backward(const PathScene<R>& scene, const LightVertex<R>& light, const Vec3<R>& d_L,
                    PathGradient<R>& d_scene) {
     if (light.shape != SceneLights::delta)
-        return emitted_backward(scene, light.shape, light.direction, d_L, d_scene);
+        return emitted_backward(scene, light.shape, light.uv, light.direction, d_L, d_scene);
     const auto k = static_cast<std::size_t>(light.listed);
     delta_backward(scene.lights[k], light.point, d_L, d_scene.lights[k]);
+}
+
+/// Adds the derivatives of `through` by the alphas of the veils.
+template <Real R>
+void veils_backward(const PathScene<R>& scene, const LightVertex<R>& light, R d_through,
+                    PathGradient<R>& d_scene) {
+    for (std::size_t i = 0; i < light.veils.size(); ++i) {
+        const Veil<R>& veil = light.veils[i];
+        R d_alpha = -d_through;
+        for (std::size_t j = 0; j < light.veils.size(); ++j)
+            if (j != i) d_alpha *= light.veils[j].left;
+        const auto m = static_cast<std::size_t>(veil.material);
+        const SurfaceTextures& textures = scene.geometry->textures;
+        if (textures.of(m).empty()) {
+            d_scene.materials[m].alpha += d_alpha;
+            continue;
+        }
+        Material<R> d_own = scene.materials[m].zero();
+        d_own.alpha = d_alpha;
+        textured_backward(scene.materials[m], textures.of(m), textures, scene.texels, veil.uv,
+                          d_own, d_scene.materials[m], d_scene.texels);
+    }
+}
+
+/// What a vertex has but for c_k: the radiance of its three terms. `ahead` is L_{k+1}.
+template <Real R>
+Vec3<R> uncovered(const PathVertex<R>& v, const Vec3<R>& ahead) {
+    Vec3<R> L = ahead * (v.value * v.weight);
+    if (v.light.weight > R(0)) L += v.light.f * v.light.sent * (v.light.weight * v.light.through);
+    if (v.emission_weight > R(0)) L += v.emitted * v.emission_weight;
+    return L;
 }
 
 /// L_0. Fills ahead[k] with L_{k+1}, which the derivative needs, unless it is null.
@@ -100,9 +167,7 @@ Vec3<R> gather(const Path<R>& path, Vec3<R>* ahead) {
     for (std::size_t k = path.size(); k-- > 0;) {
         const PathVertex<R>& v = path[k];
         if (ahead) ahead[k] = L;
-        L *= v.value * v.weight;
-        if (v.light.weight > R(0)) L += v.light.f * v.light.sent * v.light.weight;
-        if (v.emission_weight > R(0)) L += v.emitted * v.emission_weight;
+        L = uncovered(v, L) * v.coverage;
     }
     return L;
 }
@@ -113,8 +178,10 @@ void gather_backward(const PathScene<R>& scene, const Path<R>& path, const Vec3<
                      Vec3<R> d_L, PathGradient<R>& d_scene) {
     for (std::size_t k = 0; k < path.size(); ++k) {
         const PathVertex<R>& v = path[k];
+        const R d_coverage = v.coverage_slope == R(0) ? R(0) : dot(d_L, uncovered(v, ahead[k]));
+        d_L *= v.coverage;
         if (v.emission_weight > R(0))
-            emitted_backward(scene, v.shape, v.direction, d_L * v.emission_weight, d_scene);
+            emitted_backward(scene, v.shape, v.uv, v.direction, d_L * v.emission_weight, d_scene);
         if (v.shape < 0) return;
         const auto m =
             static_cast<std::size_t>(scene.geometry->material[static_cast<std::size_t>(v.shape)]);
@@ -128,13 +195,17 @@ void gather_backward(const PathScene<R>& scene, const Path<R>& path, const Vec3<
         }
         const Material<R>& material = uses.empty() ? scene.materials[m] : own;
         Material<R>& d_material = uses.empty() ? d_scene.materials[m] : d_own;
+        d_material.alpha += d_coverage * v.coverage_slope;
         if (v.light.weight > R(0)) {
-            const Vec3<R> d = d_L * v.light.weight;
+            if (!v.light.veils.empty())
+                veils_backward(scene, v.light, dot(d_L, v.light.f * v.light.sent) * v.light.weight,
+                               d_scene);
+            const Vec3<R> d = d_L * (v.light.weight * v.light.through);
             sent_backward(scene, v.light, d * v.light.f, d_scene);
             material.value_backward(v.wo, v.light.wi, -1, d * v.light.sent, d_material);
         }
         const bool goes_on = v.weight > R(0);
-        if (goes_on)
+        if (goes_on && !v.passed)
             material.value_backward(v.wo, v.wi, v.lobe, d_L * ahead[k] * v.weight, d_material);
         if (!uses.empty())
             textured_backward(scene.materials[m], uses, textures, scene.texels, v.uv, d_own,

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "photograd/render/coverage.h"
 #include "photograd/render/path_options.h"
 #include "photograd/render/path_vertex.h"
 #include "photograd/render/ray_lanes.h"
@@ -25,6 +26,7 @@ public:
         : scene_(scene),
           options_(options),
           stop_when_black_(stop_when_black),
+          sheer_(any_sheer(scene)),
           numbers_(options.sampler) {}
 
     /// Samples the paths of `count` <= 16 camera rays; they are then in path(0), path(1), ...
@@ -44,7 +46,7 @@ public:
             if (depth + 1 == options_.max_depth) break;
             if (may_ask()) ask_lights(depth);
             for (Lane& lane : lanes_)
-                if (lane.alive) go_on(lane, depth);
+                if (lane.alive) lane.path.back().passed ? pass_on(lane) : go_on(lane, depth);
         }
     }
     [[nodiscard]] const Path<R>& path(int k) const { return lanes_[k].path; }
@@ -87,14 +89,14 @@ private:
         bool any = false;
         for (int k = 0; k < width; ++k) {
             if (!lanes_[k].alive) continue;
-            arrive(lanes_[k], found.instance[k], found.primitive[k], found.t[k]);
+            arrive(lanes_[k], depth, found.instance[k], found.primitive[k], found.t[k]);
             any = any || lanes_[k].alive;
         }
         return any;
     }
 
     /// A new vertex: what is there, and how much its emission counts.
-    void arrive(Lane& lane, std::int32_t instance, std::int32_t primitive, float t) {
+    void arrive(Lane& lane, int depth, std::int32_t instance, std::int32_t primitive, float t) {
         const PathGeometry& geometry = *scene_.geometry;
         PathVertex<R>& v = lane.path.emplace_back();
         v.direction = lane.ray.direction;
@@ -113,13 +115,35 @@ private:
         const Material<R>& material = sampling_of(lane);
         lane.side = SurfaceSide<R>(lane.hit, -v.direction, material.transmits());
         v.wo = lane.side.wo;
+        if (material.sheer && cover(lane, depth)) return;
         const R cosine = -dot(lane.hit.outside, v.direction);
         if (!(cosine > R(0))) return;  // the back of a light is dark
-        v.emitted = scene_.emitted(v.shape);
+        if (geometry.textures.glows(static_cast<std::size_t>(v.shape))) v.uv = lane.hit.uv;
+        v.emitted = scene_.emitted(v.shape, v.uv);
         const Vec3<R> way = lane.hit.position - lane.previous;
         v.light_pdf = geometry.lights.hit_pdf(geometry.bvh, v.shape, lane.hit.primitive,
                                               lane.previous, length(way), cosine);
         v.emission_weight = emission_weight(v);
+    }
+    /// Whether the path goes on behind a surface that covers only in part; draws the light block's fourth number.
+    bool cover(Lane& lane, int depth) {
+        PathVertex<R>& v = lane.path.back();
+        const Philox4 words = numbers_(lane.key, 1 + 2 * static_cast<std::uint32_t>(depth));
+        const Cover<R> chosen = choose_cover(sampling_of(lane).alpha, drawn_as(lane).alpha,
+                                             scene_.geometry->textures.cutoff(material_of(lane)),
+                                             uniform_from<R>(words[3]));
+        v.passed = chosen.passes;
+        v.coverage = chosen.weight;
+        v.coverage_slope = chosen.slope;
+        lane.beta *= chosen.sampled_weight;
+        return v.passed;
+    }
+    void pass_on(Lane& lane) {
+        PathVertex<R>& v = lane.path.back();
+        v.value = Vec3<R>(R(1));
+        v.weight = R(1);
+        lane.ray.origin = lane.side.start(lane.hit.position, v.direction, scene_.geometry->offset);
+        lane.alive = !(stop_when_black_ && is_black(lane.beta));
     }
     void look_up_textures(Lane& lane) const {
         const std::size_t m = material_of(lane);
@@ -141,6 +165,7 @@ private:
     }
 
     void ask_lights(int depth) {
+        if (sheer_) return ask_lights_through_veils(depth);
         RayPacket packet{};
         for (int k = 0; k < width; ++k) {
             Lane& lane = lanes_[k];
@@ -159,6 +184,26 @@ private:
         scene_.geometry->bvh.occluded(packet, false, blocked);
         for (int k = 0; k < width; ++k)
             if (lanes_[k].shadow && blocked[k]) lanes_[k].path.back().light.weight = R(0);
+    }
+
+    /// The same in scenes where surfaces cover only in part.
+    void ask_lights_through_veils(int depth) {
+        ShadowRay<R> shadows[width];
+        for (int k = 0; k < width; ++k) {
+            Lane& lane = lanes_[k];
+            lane.shadow = lane.alive && !lane.path.back().passed && !sampling_of(lane).is_delta() &&
+                          choose_light(lane, depth);
+            if (!lane.shadow) continue;
+            LightVertex<R>& light = lane.path.back().light;
+            const Vec3<R> start =
+                lane.side.start(lane.hit.position, light.direction, scene_.geometry->offset);
+            const Vec3<R> way = lane.light_far ? light.direction : lane.light_end - start;
+            const R end = lane.light_far ? std::numeric_limits<R>::infinity() : length(way);
+            shadows[k] = {true, false, {start, normalize(way)}, end, &light};
+        }
+        look_through(scene_, stop_when_black_, shadows);
+        for (int k = 0; k < width; ++k)
+            if (shadows[k].blocked) shadows[k].light->weight = R(0);
     }
 
     /// Draws a light, a direction to it and its weight, shadow aside; returns whether it can count at all.
@@ -181,10 +226,13 @@ private:
         const PathGeometry& geometry = *scene_.geometry;
         const LightPiece& piece = geometry.lights.piece(choice.index);
         light.shape = piece.shape;
-        light.sent = scene_.emitted(piece.shape);
         // A ball never lights itself; rounding could see it from a point on it.
         if (piece.shape == lane.hit.shape && piece.shape >= geometry.bvh.sphere_instance()) return;
         const PieceSample<R> found = geometry.lights.sample(geometry.bvh, piece, light.point, u2);
+        if (geometry.textures.glows(static_cast<std::size_t>(piece.shape)))
+            light.uv = piece_uv(geometry.bvh, piece,
+                                light.point + found.light.direction * found.light.distance);
+        light.sent = scene_.emitted(piece.shape, light.uv);
         light.direction = found.light.direction;
         light.pdf = R(choice.pmf) * found.light.pdf;
         lane.light_far = false;
@@ -234,7 +282,7 @@ private:
         const Philox4 words = numbers_(lane.key, 2 + 2 * vertex);
         const ScatterSample<R> next = sampling_of(lane).sample(
             v.wo, Vec2<R>(uniform_from<R>(words[0]), uniform_from<R>(words[1])),
-            uniform_from<R>(words[2]));
+            uniform_from<R>(words[2]), lane.beta);
         if (!(next.pdf > R(0))) return;
         const Vec3<R> direction = lane.side.frame.to_world(next.wi);
         if (!lane.side.agrees(direction, next.wi)) return;
@@ -273,6 +321,7 @@ private:
     const PathScene<R>& scene_;
     PathOptions options_;
     bool stop_when_black_;
+    bool sheer_;  // whether any surface covers only in part
     SampleNumbers numbers_;
     Lane lanes_[width];
 };

@@ -11,6 +11,10 @@ namespace {
 template <class T>
 concept Smooth = requires { T::lobe_count; };
 
+/// Surfaces that name a lobe for each channel.
+template <class T>
+constexpr bool parts_colors = requires { requires T::lobe_count > 3; };
+
 template <class R>
 R largest(const Vec3<R>& v) {
     return std::max({v.x, v.y, v.z});
@@ -19,11 +23,11 @@ R largest(const Vec3<R>& v) {
 /// A lobe in proportion to its weight, mixed with a small even share: a lobe of weight 0 is never looked along
 /// otherwise, and its derivative, which need not be 0, would be lost.
 template <class R, class Lobes>
-ScatterSample<R> choose_lobe(const Lobes& lobes, R u) {
+ScatterSample<R> choose_lobe(const Lobes& lobes, R u, const Vec3<R>& carried) {
     constexpr R even_share = R(0.1);
     R total = R(0), existing = R(0);
     for (const auto& lobe : lobes) {
-        total += largest(lobe.weight);
+        total += largest(lobe.weight * carried);
         existing += dot(lobe.wi, lobe.wi) > R(0) ? R(1) : R(0);
     }
     if (existing == R(0)) return {};
@@ -32,9 +36,10 @@ ScatterSample<R> choose_lobe(const Lobes& lobes, R u) {
     for (int k = 0; k < static_cast<int>(lobes.size()); ++k) {
         const auto& lobe = lobes[static_cast<std::size_t>(k)];
         if (!(dot(lobe.wi, lobe.wi) > R(0))) continue;
-        const R share = total > R(0) ? (R(1) - even_share) * largest(lobe.weight) / total +
-                                           even_share / existing
-                                     : R(1) / existing;
+        const R share = total > R(0)
+                            ? (R(1) - even_share) * largest(lobe.weight * carried) / total +
+                                  even_share / existing
+                            : R(1) / existing;
         chosen = {lobe.wi, lobe.weight, share, k};
         passed += share;
         if (u < passed) break;  // the last one takes what rounding leaves
@@ -46,13 +51,17 @@ ScatterSample<R> choose_lobe(const Lobes& lobes, R u) {
 
 template <Real R>
 Material<R> Material<R>::read(std::string_view name, const R* row) {
+    constexpr std::string_view mark = "+alpha";
     Material material;
+    material.sheer = name.ends_with(mark);
+    if (material.sheer) name.remove_suffix(mark.size());
     bool found = false;
     const auto look = [&]<template <class> class M>() {
         if (name != M<R>::name) return;
         M<R> model;
         const R* next = row;
         for_each_scalar([&](auto& x) { x = *next++; }, model);
+        if (material.sheer) material.alpha = *next;
         material.model = model;
         found = true;
     };
@@ -68,12 +77,13 @@ template <Real R>
 Material<R> Material<R>::zero() const {
     Material copy = *this;
     std::visit([](auto& m) { for_each_scalar([](auto& x) { x = R(0); }, m); }, copy.model);
+    copy.alpha = R(0);
     return copy;
 }
 
 template <Real R>
 int Material<R>::parameter_count() const {
-    return std::visit([](const auto& m) { return scalars_in(m.params); }, model);
+    return std::visit([](const auto& m) { return scalars_in(m.params); }, model) + (sheer ? 1 : 0);
 }
 
 template <Real R>
@@ -83,17 +93,20 @@ void Material<R>::add_to(double* out) const {
             for_each_scalar([&](const auto& x) { *out++ += static_cast<double>(x); }, m);
         },
         model);
+    if (sheer) *out += static_cast<double>(alpha);
 }
 
 template <Real R>
 void Material<R>::get(R* row) const {
     std::visit([&](const auto& m) { for_each_scalar([&](const auto& x) { *row++ = x; }, m); },
                model);
+    if (sheer) *row = alpha;
 }
 
 template <Real R>
 void Material<R>::set(const R* row) {
     std::visit([&](auto& m) { for_each_scalar([&](auto& x) { x = *row++; }, m); }, model);
+    if (sheer) alpha = *row;
 }
 
 template <Real R>
@@ -131,11 +144,12 @@ R Material<R>::pdf(const Vec3<R>& wo, const Vec3<R>& wi) const {
 }
 
 template <Real R>
-ScatterSample<R> Material<R>::sample(const Vec3<R>& wo, const Vec2<R>& u2, R u) const {
+ScatterSample<R> Material<R>::sample(const Vec3<R>& wo, const Vec2<R>& u2, R u,
+                                     const Vec3<R>& carried) const {
     return std::visit(
         [&]<class M>(const M& m) -> ScatterSample<R> {
             if constexpr (Smooth<M>) {
-                return choose_lobe(m.lobes(wo), u);
+                return choose_lobe(m.lobes(wo), u, parts_colors<M> ? carried : Vec3<R>(R(1)));
             } else {
                 const Vec3<R> wi = m.sample(wo, u2);
                 return {wi, m.f(wo, wi), m.pdf(wo, wi), -1};

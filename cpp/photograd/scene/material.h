@@ -39,8 +39,12 @@ inline constexpr int max_parameters = 64;  // numbers of one model
 template <Real R>
 struct Material {
     AnyModel<R> model;
+    /// Whether the surface covers only a part of what lies behind it; `alpha`, that part, is then its last parameter.
+    bool sheer = false;
+    R alpha = R(1);
 
-    /// The model `name` with parameters from `row`. Refuses (SceneError) a name that no registry has.
+    /// The model `name` with parameters from `row`; "+alpha" behind the name makes it sheer. Refuses (SceneError) a name
+    /// that no registry has.
     static Material read(std::string_view name, const R* row);
     /// The same model with all parameters 0: where derivatives are added up.
     [[nodiscard]] Material zero() const;
@@ -58,7 +62,10 @@ struct Material {
     /// f(wo, wi); 0 for smooth surfaces, which nobody meets by chance.
     [[nodiscard]] Vec3<R> f(const Vec3<R>& wo, const Vec3<R>& wi) const;
     [[nodiscard]] R pdf(const Vec3<R>& wo, const Vec3<R>& wi) const;
-    [[nodiscard]] ScatterSample<R> sample(const Vec3<R>& wo, const Vec2<R>& u2, R u) const;
+    /// `carried` is the weight of the path so far: of surfaces that send each colour another way, one that the path still
+    /// has is followed.
+    [[nodiscard]] ScatterSample<R> sample(const Vec3<R>& wo, const Vec2<R>& u2, R u,
+                                          const Vec3<R>& carried = Vec3<R>(R(1))) const;
 
     /// `value` of a sample that another material has drawn: f, or the weight of a lobe.
     [[nodiscard]] Vec3<R> value(const Vec3<R>& wo, const Vec3<R>& wi, int lobe) const;

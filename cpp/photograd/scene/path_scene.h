@@ -56,6 +56,18 @@ struct PathScene {
         const R* L = emission + 3 * static_cast<std::size_t>(shape);
         return {L[0], L[1], L[2]};
     }
+    /// The same at a point of it.
+    [[nodiscard]] Vec3<R> emitted(std::int32_t shape, const Vec2<R>& uv) const {
+        const EmissionUse* use = geometry->textures.glows(static_cast<std::size_t>(shape));
+        return use ? emitted(shape) * glow(*use, uv) : emitted(shape);
+    }
+    [[nodiscard]] Vec3<R> glow(const EmissionUse& use, const Vec2<R>& uv) const {
+        const TextureLayout& layout =
+            geometry->textures.layouts[static_cast<std::size_t>(use.texture)];
+        R color[max_channels];
+        layout.look_up(texels[static_cast<std::size_t>(use.texture)], layout.inside(uv), color);
+        return {color[use.channel], color[use.channel + 1], color[use.channel + 2]};
+    }
     /// All lights at infinity: radiance, and density of asking for this direction. `found` is what is already known of
     /// the light `known`.
     [[nodiscard]] Background<R> behind(const Vec3<R>& direction, std::int64_t known = -1,
@@ -116,6 +128,25 @@ void shade(const PathGeometry& scene, std::int32_t instance, std::int32_t primit
     const R size = length(sum);
     if (!(size > R(0))) return;
     hit.shading = sum * ((dot(sum, p.normal) < R(0) ? R(-1) : R(1)) / size);
+}
+
+/// Texture coordinates of a point of a light's piece.
+template <class R>
+Vec2<R> piece_uv(const Bvh& bvh, const LightPiece& piece, const Vec3<R>& position) {
+    if (piece.shape >= bvh.sphere_instance()) return Vec2<R>(R(0));
+    R u = R(0), v = R(0);
+    const std::int32_t last = piece.rectangle >= 0 ? 1 : piece.primitive;
+    std::int32_t face = piece.primitive;
+    for (;; ++face) {
+        Vec3<R> p[3];
+        bvh.corners(piece.shape, face, p);
+        const Vec3<R> a = p[1] - p[0], b = p[2] - p[0], q = position - p[0], n = cross(a, b);
+        u = dot(cross(q, b), n) / dot(n, n);
+        v = dot(cross(a, q), n) / dot(n, n);
+        const R least = std::min({u, v, R(1) - u - v});
+        if (face == last || !(least < R(-1e-5))) break;  // of a rectangle, the half that it is in
+    }
+    return bvh.texture_point(piece.shape, face, u, v);
 }
 
 template <class R>

@@ -61,13 +61,27 @@ struct NormalMap {
     std::vector<float> values;
 };
 
+/// A shape's radiance is scaled by three channels of a texture, from `channel` on; texture -1 for none.
+struct EmissionUse {
+    int texture = -1, channel = 0;
+};
+
 /// What a scene knows of textures, besides their texels.
 struct SurfaceTextures {
     std::vector<TextureLayout> layouts;
     std::vector<std::vector<TextureUse>> uses;  // of each material, those of one texture together
     std::vector<NormalMap> normal_maps;         // of each material
     std::vector<bool> directed;                 // of each material: whether it is brushed along u
+    std::vector<double> cutoffs;                // of each material that is a mask; others: below 0
+    std::vector<EmissionUse> emission;          // of each shape
 
+    [[nodiscard]] double cutoff(std::size_t material) const {
+        return material < cutoffs.size() ? cutoffs[material] : -1.0;
+    }
+    /// The texture of what a shape emits, or null.
+    [[nodiscard]] const EmissionUse* glows(std::size_t shape) const {
+        return shape < emission.size() && emission[shape].texture >= 0 ? &emission[shape] : nullptr;
+    }
     [[nodiscard]] std::span<const TextureUse> of(std::size_t material) const {
         return material < uses.size() ? std::span<const TextureUse>(uses[material])
                                       : std::span<const TextureUse>();

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from photograd.transport.scene import Array, Material, MeshShape, Scene
+from photograd.transport.scene import Array, Material, MeshShape, Scene, Shape
 from photograd.transport.texture import WRAPS
 
 Layout = tuple[int, int, int, int, int]
@@ -41,6 +41,28 @@ def textures_of(
         for material in scene.materials.values()
     ]
     return layouts, uses, maps, directed
+
+
+def cutoffs_of(scene: Scene) -> list[float]:
+    """Of each material that is a mask; -1 for all others."""
+    cutoffs = [material.alpha_cutoff for material in scene.materials.values()]
+    return [-1.0 if cutoff is None else cutoff for cutoff in cutoffs]
+
+
+def glows_of(scene: Scene, shapes: Sequence[Shape]) -> list[tuple[int, int]]:
+    """Of each shape the number of the texture that scales its emission, and the first channel."""
+    order = {name: number for number, name in enumerate(scene.textures)}
+    uses = [getattr(shape, "glow", None) for shape in shapes]
+    return [(-1, 0) if use is None else (order[use.texture], use.channel) for use in uses]
+
+
+def mean_emission(scene: Scene, shape: Shape) -> Array:
+    """Radiance (3,) of a shape, over its texture: how often it is asked as a light."""
+    use = getattr(shape, "glow", None)
+    if use is None:
+        return shape.emission
+    channels = scene.textures[use.texture].values[..., use.channel : use.channel + 3]
+    return np.asarray(shape.emission * channels.mean(axis=(0, 1), dtype=np.float64))
 
 
 def _uses(material: Material, order: dict[str, int]) -> list[Use]:

@@ -29,6 +29,8 @@ MODELS: dict[str, bsdf.BsdfModel | delta_bsdf.DeltaModel] = {
     **delta_bsdf.registry(),
 }
 """All reflectance models, rough and smooth, by name."""
+ALPHA = bsdf.Parameter("alpha", 1, 0.0, 1.0, "")
+"""What any material may have besides the parameters of its model."""
 
 
 @dataclass(frozen=True)
@@ -37,13 +39,16 @@ class Material:
 
     Attributes:
         model: a name of `MODELS`.
-        values: {parameter: number or (3,)}, all of them.
+        values: {parameter: number or (3,)}, all of them; and "alpha", if the surface covers only
+            that part of what lies behind it (0 to 1): the rest of the light goes straight through.
         textures: {parameter: the texture that scales its value}; the product is brought into the
             parameter's range.
         normal_map: bends the shading normals, or None.
+        alpha_cutoff: of a mask, or None: where alpha times its texture is at least this, the
+            surface covers all, elsewhere nothing. A mask has no derivative by alpha.
 
     Raises:
-        SceneError: no such model.
+        SceneError: no such model, or a cutoff without alpha.
         RangeError, ShapeError: parameters missing, unknown, not finite or of another shape.
     """
 
@@ -51,12 +56,16 @@ class Material:
     values: Mapping[str, Any]
     textures: Mapping[str, TextureUse] = field(default_factory=dict)
     normal_map: NormalMap | None = None
+    alpha_cutoff: float | None = None
 
     def __post_init__(self) -> None:
         if self.model not in MODELS:
             known = choose_from(self.model, MODELS)
             raise SceneError(message("Material", "model", "a reflectance model", self.model, known))
         self.row()
+        if self.alpha_cutoff is not None and not (self.sheer and self.alpha_cutoff >= 0):
+            expected, got = "at least 0, and a value of alpha", self.alpha_cutoff
+            raise SceneError(message("Material", "alpha_cutoff", expected, got))
         sizes = {parameter.name: parameter.size for parameter in self.parameters}
         object.__setattr__(self, "textures", checked_uses(self.model, sizes, self.textures))
 
@@ -66,9 +75,14 @@ class Material:
         return bool(self.textures) or self.normal_map is not None
 
     @property
+    def sheer(self) -> bool:
+        """Whether surfaces of this material cover only a part of what lies behind them."""
+        return ALPHA.name in self.values
+
+    @property
     def parameters(self) -> tuple[bsdf.Parameter, ...]:
         """Descriptions of the parameters, in the order in which the core packs them."""
-        return MODELS[self.model].parameters
+        return MODELS[self.model].parameters + ((ALPHA,) if self.sheer else ())
 
     def row(self) -> Array:
         """All parameters as one row of numbers (P,), float64."""
@@ -93,6 +107,7 @@ class MeshShape:
         uv: (V, 2) texture coordinates, v downwards, or None.
         places: world_from_object, (4, 4) each, of instances of this mesh; none places it once,
             where it is. All shine and reflect alike, and are kept in memory once.
+        glow: the texture that scales `emission`, three channels of it, or None.
 
     Raises:
         DtypeError, ShapeError: arrays of other types or shapes.
@@ -109,6 +124,7 @@ class MeshShape:
     normals: Array | None = None
     uv: Array | None = None
     places: tuple[Array, ...] = ()
+    glow: TextureUse | None = None
 
     def __post_init__(self) -> None:
         vertices = _float_rows(self.name, "vertices", self.vertices)
@@ -245,7 +261,8 @@ class Scene:
 
     Raises:
         SceneError: no shape, two of one name, a material or texture that does not exist, or a
-            textured shape without texture coordinates, or a light that is none.
+            textured shape without texture coordinates, a light that is none, or a shape that
+            shines and covers only in part.
     """
 
     name: str
@@ -276,6 +293,7 @@ class Scene:
                 argument = f"{shape.name}.material"
                 expected = "one of the scene's materials"
                 raise SceneError(message("Scene", argument, expected, shape.material, known))
+            _check_glow(shape, self.materials[shape.material], self.textures)
             if self.materials[shape.material].needs_uv and getattr(shape, "uv", None) is None:
                 expected = f"texture coordinates, which '{shape.material}' needs"
                 raise SceneError(message("Scene", f"{shape.name}.uv", expected, "none"))
@@ -294,6 +312,24 @@ def _check_textures(name: str, material: Material, textures: Mapping[str, Textur
         if last > textures[use.texture].channels:
             got = f"{textures[use.texture].channels} in '{use.texture}'"
             raise SceneError(message("Scene", argument, f"at least {last} channels", got))
+
+
+def _check_glow(shape: Shape, material: Material, textures: Mapping[str, Texture]) -> None:
+    if material.sheer and shape.emission.any():
+        expected = "a shape that shines, or a material with alpha"
+        raise SceneError(message("Scene", f"{shape.name}.material", expected, "both"))
+    if not isinstance(shape, MeshShape) or shape.glow is None:
+        return
+    argument, use = f"{shape.name}.glow", shape.glow
+    if use.texture not in textures:
+        known = choose_from(use.texture, textures)
+        expected = "one of the scene's textures"
+        raise SceneError(message("Scene", argument, expected, use.texture, known))
+    if use.channel < 0 or use.channel + 3 > textures[use.texture].channels:
+        got = f"{textures[use.texture].channels} in '{use.texture}'"
+        raise SceneError(message("Scene", argument, f"at least {use.channel + 3} channels", got))
+    if shape.uv is None:
+        raise SceneError(message("Scene", f"{shape.name}.uv", "texture coordinates", "none"))
 
 
 def _place(name: str, matrix: Any) -> Array:

@@ -22,6 +22,7 @@ edge_u = [2, 0, 0]
 edge_v = [0, 0, -2]
 material = "white"
 emission = [0, 0, 0]          # optional, of the front
+glow = "sign"                 # optional: the texture that scales it, where there are coordinates
 
 [[lights]]                    # optional; kinds and keys: light_nodes.py
 kind = "directional"
@@ -35,6 +36,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -46,7 +48,7 @@ from photograd.transport.builtin import camera_at
 from photograd.transport.lens import Lens
 from photograd.transport.light_nodes import light_of
 from photograd.transport.scene import Environment, Material, MeshShape, Scene, Shape, SphereShape
-from photograd.transport.scene_meshes import mesh_shapes, pictures_of, textures_in
+from photograd.transport.scene_meshes import mesh_shapes, pictures_of, texture_use, textures_in
 from photograd.transport.scene_node import Node
 from photograd.transport.shapes import box, rectangle
 from photograd.transport.texture import Texture
@@ -128,10 +130,11 @@ def _environment(node: Node) -> Environment:
 
 def _material(node: Node) -> Material:
     model = node.text("model")
-    others = ("model", "textures", "normal_map")
+    others = ("model", "textures", "normal_map", "alpha_cutoff")
     values = {key: node.value(key) for key in node.data if key not in others}
     uses, bent = pictures_of(node)
-    return node.built(lambda: Material(model, values, uses, bent))
+    cutoff = node.number("alpha_cutoff") if node.has("alpha_cutoff") else None
+    return node.built(lambda: Material(model, values, uses, bent, cutoff))
 
 
 def _shapes(
@@ -148,7 +151,7 @@ def _shapes(
     node.refuse_other_keys()
     brought[0].update(own_materials)
     brought[1].update(own_textures)
-    return shapes
+    return [*shapes]
 
 
 def _shape(node: Node, index: int, materials: dict[str, Material]) -> Shape:
@@ -157,6 +160,8 @@ def _shape(node: Node, index: int, materials: dict[str, Material]) -> Shape:
     material = node.choice("material", materials)
     emission = node.color("emission", [0.0, 0.0, 0.0])
     shape = node.built(lambda: KINDS[kind](node, name, material, emission))
+    if isinstance(shape, MeshShape) and node.has("glow"):
+        shape = replace(shape, glow=texture_use(node, "glow"))
     node.refuse_other_keys()
     return shape
 

@@ -2,7 +2,7 @@
 
 [textures.wood]
 file = "wood.png"             # beside the scene file
-encoding = "srgb"             # or "linear": numbers that are not colours
+encoding = "srgb"             # or "linear": numbers that are not colours; "alpha": the opacity
 wrap = "repeat"               # or mirror, clamp
 
 [materials.floor]
@@ -11,6 +11,8 @@ base_color = [1, 1, 1]        # times the texture
 metalness = 0
 roughness = 1
 textures = { base_color = "wood", roughness = ["rough", 1] }   # channel 1 of another one
+alpha = 1                     # optional: covers that part; textures may scale it
+alpha_cutoff = 0.5            # optional: a mask, which covers all or nothing
 normal_map = "bumps.png"
 
 [[shapes]]
@@ -33,7 +35,7 @@ import numpy as np
 from photograd.data.images import read_image
 from photograd.transport.mesh_files import ModelFile, read_model
 from photograd.transport.mesh_files.model_file import moved
-from photograd.transport.scene import Array, Material, MeshShape, Shape
+from photograd.transport.scene import Array, Material, MeshShape
 from photograd.transport.scene_node import Node
 from photograd.transport.texture import (
     ENCODINGS,
@@ -66,21 +68,25 @@ def pictures_of(node: Node) -> tuple[dict[str, TextureUse], NormalMap | None]:
     uses: dict[str, TextureUse] = {}
     if node.has("textures"):
         table = node.table("textures")
-        for parameter in table.data:
-            found = table.value(parameter)
-            name, channel = found if isinstance(found, list) and len(found) == 2 else (found, 0)
-            if not isinstance(name, str) or type(channel) is not int:
-                raise table.wrong(parameter, 'a texture\'s name, or ["name", channel]', found)
-            uses[parameter] = TextureUse(name, channel)
+        uses = {parameter: texture_use(table, parameter) for parameter in table.data}
     if not node.has("normal_map"):
         return uses, None
     path = node.path.parent / node.text("normal_map")
     return uses, node.built(lambda: NormalMap.from_image(read_image(path)))
 
 
+def texture_use(node: Node, key: str) -> TextureUse:
+    """A texture's name, or its name and a channel."""
+    found = node.value(key)
+    name, channel = found if isinstance(found, list) and len(found) == 2 else (found, 0)
+    if not isinstance(name, str) or type(channel) is not int:
+        raise node.wrong(key, 'a texture\'s name, or ["name", channel]', found)
+    return TextureUse(name, channel)
+
+
 def mesh_shapes(
     node: Node, name: str, material: str | None, emission: Any
-) -> tuple[list[Shape], dict[str, Material], dict[str, Texture]]:
+) -> tuple[list[MeshShape], dict[str, Material], dict[str, Texture]]:
     """The shapes of a table of kind "mesh", and what they bring along.
 
     Names of the file get the shape's name and a slash in front. Emission is the file's where the
@@ -94,15 +100,17 @@ def mesh_shapes(
     shapes = node.built(
         lambda: [_placed(mesh, name, material, emission, inner, places) for mesh in meshes]
     )
-    if material is not None:
-        return shapes, {}, {}
-    return shapes, *_renamed(model, name)
+    materials, textures = _renamed(model, name)
+    if material is None:
+        return shapes, materials, textures
+    lit = {shape.glow.texture for shape in shapes if shape.glow is not None}
+    return shapes, {}, {key: texture for key, texture in textures.items() if key in lit}
 
 
 def _placed(
     shape: MeshShape, name: str, material: str | None, emission: Any, inner: Array,
     places: list[Array],
-) -> Shape:  # fmt: skip
+) -> MeshShape:  # fmt: skip
     """A shape of the file, moved, with the instances of the file and of the table multiplied."""
     vertices, faces, normals, uv = shape.vertices, shape.faces, shape.normals, shape.uv
     own = [np.asarray(inner @ place) for place in shape.places]
@@ -111,10 +119,13 @@ def _placed(
     outer = places or [np.eye(4)]
     both = [far @ near for far in outer for near in (own or [np.eye(4)])]
     shining = shape.emission if emission is None else np.asarray(emission, np.float64)
+    glow = shape.glow if emission is None else None
+    if glow is not None:
+        glow = replace(glow, texture=f"{name}/{glow.texture}")
     return replace(
         shape, name=f"{name}/{shape.name}", vertices=vertices, faces=faces, normals=normals, uv=uv,
         material=material or f"{name}/{shape.material}", emission=shining,
-        places=tuple(both) if own or places else (),
+        places=tuple(both) if own or places else (), glow=glow,
     )  # fmt: skip
 
 

@@ -21,7 +21,7 @@ from photograd.errors import DtypeError, RangeError, ShapeError, message
 
 Array = npt.NDArray[Any]
 WRAPS = ("repeat", "mirror", "clamp")
-ENCODINGS = ("srgb", "linear")
+ENCODINGS = ("srgb", "linear", "alpha")
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,12 +96,13 @@ class NormalMap:
 def read_texture(
     path: Path, encoding: str = "srgb", wrap: tuple[str, str] = ("repeat", "repeat")
 ) -> Texture:
-    """The colours of an image file, without its alpha.
+    """The colours of an image file, without its alpha; or its alpha alone.
 
     Args:
         path: .png, .jpg or .exr.
         encoding: "srgb" for colours of 8 or 16 bits, which are decoded; "linear" for numbers that
-            are not colours (roughness), taken as they are. EXR is always linear.
+            are not colours (roughness), taken as they are; "alpha" for the opacity, (H, W, 1). EXR
+            is always linear.
         wrap: as of `Texture`.
 
     Raises:
@@ -110,7 +111,10 @@ def read_texture(
     """
     if encoding not in ENCODINGS:
         raise RangeError(message("read_texture", "encoding", ENCODINGS, encoding))
-    color = read_image(path)[..., :3]
+    color = read_image(path)
+    if encoding == "alpha":
+        return Texture(color[..., 3:], wrap)
+    color = color[..., :3]
     decoded = encoding == "srgb" and path.suffix.lower() != ".exr"
     return Texture(decode(color) if decoded else color, wrap)
 

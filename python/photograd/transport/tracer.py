@@ -16,7 +16,13 @@ from photograd.core import _core
 from photograd.data.camera import Camera
 from photograd.errors import DtypeError, RangeError, ShapeError, message
 from photograd.transport.accumulation import Accumulation
-from photograd.transport.core_arrays import instances_of, textures_of
+from photograd.transport.core_arrays import (
+    cutoffs_of,
+    glows_of,
+    instances_of,
+    mean_emission,
+    textures_of,
+)
 from photograd.transport.light_list import light_shapes, listed_lights
 from photograd.transport.sample_counts import sample_counts
 from photograd.transport.scene import Array, MeshShape, Scene, Shape, SphereShape
@@ -36,7 +42,8 @@ class PathOptions:
             and asks only what it cannot meet (point, spot, directional lights); "mis" does both and
             shares out the weight.
         heuristic: how "mis" does so: "balance" or "power".
-        max_depth: segments of the longest path; 1 sees lights alone, 2 is direct light.
+        max_depth: segments of the longest path; 1 sees lights alone, 2 is direct light. Passing
+            straight through what covers only in part (alpha, a mask's hole) ends a segment, too.
         roulette_from: the first vertex at which a path may end by chance; None never ends one.
         sampler: "even" spreads the random numbers of a pixel's samples as scrambled Sobol' points
             do, most evenly for powers of two of them; "independent" does not. Only with the latter
@@ -81,7 +88,8 @@ class PathTracer:
     Attributes:
         scene: what it was built from.
         params: {name: array}, to be changed freely between renderings:
-            "materials.NAME.PARAMETER", () or (3,); "textures.NAME" (H, W, C), linear;
+            "materials.NAME.PARAMETER", () or (3,), "materials.NAME.alpha" where it has one;
+            "textures.NAME" (H, W, C), linear;
             "emission.SHAPE" (3,) of shapes that shine;
             "environment" (3, 3), the radiance of zenith, horizon and ground;
             "lights.INDEX.PARAMETER" of the list, such as "lights.0.intensity" (3,) or
@@ -119,7 +127,7 @@ class PathTracer:
         # What the core counts as a shape is an instance; `_owner` says of which of ours.
         self._owner = np.concatenate([numbers, np.arange(len(meshes), len(self._shapes))])
         materials = np.array([material for _, _, material in placed], np.int32)
-        emission = np.array([shape.emission for shape in self._shapes], np.float64)
+        emission = np.array([mean_emission(scene, s) for s in self._shapes], np.float64)
         balls = [[*shape.center, shape.radius] for shape in spheres]
         self.params: dict[str, Array] = self._initial_params()
         self._geometry = _core.PathGeometry(
@@ -131,8 +139,10 @@ class PathTracer:
             emission=emission[self._owner],
             lights=[light.row(light.start, np.float64) for light in self._lights],
         )
-        self._geometry.set_textures(*textures_of(scene))
-        self._models = [*(material.model for material in scene.materials.values()), "lambert"]
+        glows = glows_of(scene, [self._shapes[owner] for owner in self._owner])
+        self._geometry.set_textures(*textures_of(scene), cutoffs_of(scene), glows)
+        marked = [m.model + "+alpha" * m.sheer for m in scene.materials.values()]
+        self._models = [*marked, "lambert"]
 
     def _initial_params(self) -> dict[str, Array]:
         params: dict[str, Any] = {}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +18,7 @@ from photograd.transport.mesh_files.gltf_materials import FileMaterial, read_mat
 from photograd.transport.mesh_files.model_file import ModelFile, Names, placed_shapes
 from photograd.transport.mesh_files.nodes import mesh_places
 from photograd.transport.mesh_files.pictures import TRANSFORM, Pictures
-from photograd.transport.scene import Shape
+from photograd.transport.scene import MeshShape, Shape
 
 Array = npt.NDArray[Any]
 DRACO = "KHR_draco_mesh_compression"
@@ -64,15 +65,26 @@ def read_gltf(path: Path, note: Callable[[str], None]) -> ModelFile:
             name = numbered[wanted]
             arrays = _arrays(container, part, materials[name], note)
             if arrays is not None:
-                shapes += placed_shapes(
-                    titles, title, arrays, name, materials[name].emission, places, note
-                )
+                made = materials[name]
+                placed = placed_shapes(titles, title, arrays, name, made.emission, places, note)
+                shapes += [_glowing(shape, made, note) for shape in placed]
     if not shapes:
         raise SceneError(message(NAME, f"{path}", "triangles in the scene", "none"))
     used = {name: made.material for name, made in materials.items()}
-    asked = {use.texture for made in used.values() for use in made.textures.values()}
+    asked = {use.texture for material in used.values() for use in material.textures.values()}
+    asked |= {made.glow.texture for made in materials.values() if made.glow is not None}
     textures = {name: pictures.textures[name] for name in pictures.textures if name in asked}
     return ModelFile(tuple(shapes), used, textures)
+
+
+def _glowing(shape: Shape, made: FileMaterial, note: Callable[[str], None]) -> Shape:
+    """The shape with the texture of its light, if it has coordinates for it."""
+    if made.glow is None or not isinstance(shape, MeshShape):
+        return shape
+    if shape.uv is None:
+        note(f"{shape.name}: emissiveTexture without texture coordinates, left out")
+        return shape
+    return replace(shape, glow=made.glow)
 
 
 def _check_required(container: Container) -> None:

@@ -10,6 +10,7 @@ import numpy as np
 
 from photograd.data.json_node import JsonNode
 from photograd.transport.mesh_files.container import real
+from photograd.transport.scene import MODELS, Material
 
 FOLLOWED = ("KHR_materials_emissive_strength",)
 """Extensions that no rule has to read."""
@@ -66,6 +67,13 @@ class Draft:
         return np.clip(self.core["baseColorFactor"].numbers((4,))[:3], 0, 1)
 
     @property
+    def alpha(self) -> float:
+        """0 to 1: the fourth number of the base colour."""
+        if "baseColorFactor" not in self.core:
+            return 1.0
+        return float(np.clip(self.core["baseColorFactor"].numbers((4,))[3], 0, 1))
+
+    @property
     def metalness(self) -> float:
         """0 to 1."""
         return min(max(real(self.core, "metallicFactor", 1.0), 0.0), 1.0)
@@ -80,3 +88,29 @@ class Draft:
         """Refractive index."""
         node = self.extension("ior")
         return PLAIN_IOR if node is None else real(node, "ior", PLAIN_IOR)
+
+
+def metallic_roughness(draft: Draft) -> dict[str, Any]:
+    """The parameters of the core model, and their textures."""
+    draft.textured("base_color", draft.core, "baseColorTexture", "srgb")
+    draft.textured("metalness", draft.core, "metallicRoughnessTexture", "linear", 2)
+    draft.textured("roughness", draft.core, "metallicRoughnessTexture", "linear", 1)
+    return {
+        "base_color": draft.base_color,
+        "metalness": draft.metalness,
+        "roughness": draft.roughness,
+    }
+
+
+def finished(model: str, values: dict[str, Any], draft: Draft) -> Material:
+    """Values brought into the range of the model; what moves by more than rounding is noted."""
+    inside = {}
+    for parameter in MODELS[model].parameters:
+        value = np.asarray(values[parameter.name], np.float64)
+        inside[parameter.name] = np.clip(value, parameter.lo, parameter.hi)
+        moved = float(np.abs(inside[parameter.name] - value).max())
+        # A perfectly smooth lobe is drawn as the smoothest there is; nobody can see the difference.
+        if moved > (0.15 if "roughness" in parameter.name else 1e-6):
+            taken = inside[parameter.name]
+            draft.note(f"{draft.node.place}: {model}.{parameter.name}: {value} is taken as {taken}")
+    return Material(model, inside)

@@ -15,46 +15,29 @@ import numpy as np
 
 from photograd.data.json_node import JsonNode
 from photograd.transport.mesh_files.container import real
-from photograd.transport.mesh_files.gltf_draft import PLAIN_IOR, Draft
+from photograd.transport.mesh_files.gltf_clear import transmission
+from photograd.transport.mesh_files.gltf_draft import (
+    PLAIN_IOR,
+    Draft,
+    finished,
+    metallic_roughness,
+)
 from photograd.transport.mesh_files.pictures import Coordinates, Pictures
-from photograd.transport.scene import MODELS, Material
+from photograd.transport.scene import Material
 from photograd.transport.texture import NormalMap, TextureUse
 
 
 @dataclass(frozen=True, eq=False)
 class FileMaterial:
-    """A material, the light of surfaces that have it, and the coordinates of its textures."""
+    """A material, the light of surfaces that have it, and the coordinates of its textures.
+
+    `glow` is the texture that scales the emission, or None.
+    """
 
     material: Material
     emission: Any
     coordinates: Coordinates
-
-
-def _transmission(draft: Draft) -> Material | None:
-    """Bodies with a volume become glass, clear or frosted; surfaces without become a pane."""
-    node = draft.extension("transmission")
-    if node is None or real(node, "transmissionFactor", 0.0) < 0.5:
-        return None
-    if real(node, "transmissionFactor", 0.0) < 1:
-        draft.note(f"{node.place}: transmissionFactor below 1 is taken as 1")
-    draft.unread(node, "transmissionTexture")
-    draft.take("transmission", "ior")
-    volume = draft.extension("volume")
-    thick = volume is not None and real(volume, "thicknessFactor", 0.0) > 0
-    if volume is not None:
-        draft.unread(volume, "attenuationDistance", "thicknessTexture")
-        draft.take("volume")
-    if thick and draft.roughness >= 0.1:
-        if draft.base_color.min() < 1 or "baseColorTexture" in draft.core:
-            draft.note(f"{draft.node.place}: rough_dielectric has no colour; left out")
-        return _material(
-            "rough_dielectric", {"eta": draft.ior, "roughness": draft.roughness}, draft
-        )
-    if not thick and draft.roughness >= 0.1:
-        draft.note(f"{draft.node.place}: thin_glass is smooth; roughnessFactor left out")
-    draft.textured("tint", draft.core, "baseColorTexture", "srgb")
-    model = "glass" if thick else "thin_glass"
-    return _material(model, {"eta": draft.ior, "tint": draft.base_color}, draft)
+    glow: TextureUse | None = None
 
 
 def _clearcoat(draft: Draft) -> Material | None:
@@ -65,11 +48,11 @@ def _clearcoat(draft: Draft) -> Material | None:
     draft.unread(node, "clearcoatNormalTexture")
     draft.textured("coat", node, "clearcoatTexture", "linear", 0)
     draft.textured("coat_roughness", node, "clearcoatRoughnessTexture", "linear", 1)
-    values = _metallic_roughness(draft) | {
+    values = metallic_roughness(draft) | {
         "coat": real(node, "clearcoatFactor", 0.0),
         "coat_roughness": real(node, "clearcoatRoughnessFactor", 0.0),
     }
-    return _material("clearcoat", values, draft)
+    return finished("clearcoat", values, draft)
 
 
 def _anisotropy(draft: Draft) -> Material | None:
@@ -87,7 +70,7 @@ def _anisotropy(draft: Draft) -> Material | None:
         "anisotropy": real(node, "anisotropyStrength", 0.0),
         "rotation": float(np.angle(np.exp(1j * real(node, "anisotropyRotation", 0.0)))),
     }
-    return _material("ggx_anisotropic", values, draft)
+    return finished("ggx_anisotropic", values, draft)
 
 
 def _sheen(draft: Draft) -> Material | None:
@@ -100,11 +83,11 @@ def _sheen(draft: Draft) -> Material | None:
         return None  # black sheen is none
     draft.unread(node, "sheenRoughnessTexture")
     draft.textured("sheen_color_factor", node, "sheenColorTexture", "srgb")
-    values = _metallic_roughness(draft) | {
+    values = metallic_roughness(draft) | {
         "sheen_color_factor": node["sheenColorFactor"].numbers((3,)),
         "sheen_roughness_factor": real(node, "sheenRoughnessFactor", 0.0),
     }
-    return _material("gltf_sheen", values, draft)
+    return finished("gltf_sheen", values, draft)
 
 
 def _iridescence(draft: Draft) -> Material | None:
@@ -119,12 +102,12 @@ def _iridescence(draft: Draft) -> Material | None:
         draft.textured("iridescence_thickness", node, key, "linear", 1)
     else:
         draft.unread(node, "iridescenceThicknessTexture")
-    values = _metallic_roughness(draft) | {
+    values = metallic_roughness(draft) | {
         "iridescence_factor": real(node, "iridescenceFactor", 0.0),
         "iridescence_ior": real(node, "iridescenceIor", 1.3),
         "iridescence_thickness": real(node, "iridescenceThicknessMaximum", 400.0),
     }
-    return _material("gltf_iridescence", values, draft)
+    return finished("gltf_iridescence", values, draft)
 
 
 def _specular(draft: Draft) -> Material | None:
@@ -140,15 +123,15 @@ def _specular(draft: Draft) -> Material | None:
         draft.unread(node, "specularTexture", "specularColorTexture", "specularColorFactor")
     draft.take("specular", "ior")
     f0 = strength * ((ior - 1) / (ior + 1)) ** 2 if ior > 0 else strength
-    values = _metallic_roughness(draft) | {"reflectance": float(np.sqrt(max(f0, 0) / 0.16))}
-    return _material("standard", values, draft)
+    values = metallic_roughness(draft) | {"reflectance": float(np.sqrt(max(f0, 0) / 0.16))}
+    return finished("standard", values, draft)
 
 
 def _plain(draft: Draft) -> Material:
-    return _material("gltf", _metallic_roughness(draft), draft)
+    return finished("gltf", metallic_roughness(draft), draft)
 
 
-RULES = (_transmission, _clearcoat, _anisotropy, _sheen, _iridescence, _specular, _plain)
+RULES = (transmission, _clearcoat, _anisotropy, _sheen, _iridescence, _specular, _plain)
 
 
 def read_material(node: JsonNode, pictures: Pictures, note: Callable[[str], None]) -> FileMaterial:
@@ -166,9 +149,26 @@ def read_material(node: JsonNode, pictures: Pictures, note: Callable[[str], None
         for name, extension in node["extensions"].members():
             if name not in draft.read:
                 note(f"{extension.place}: not supported by the model '{material.model}', left out")
-    if "alphaMode" in node and node["alphaMode"].text() != "OPAQUE":
-        note(f"{node.place}: alphaMode {node['alphaMode'].text()[:20]}: drawn opaque")
+    material = _covering(draft, material)
     return _with_pictures(draft, material, pictures)
+
+
+def _covering(draft: Draft, material: Material) -> Material:
+    """The material with its alpha, unless it covers everything; blending is done by chance."""
+    node = draft.node
+    mode = node["alphaMode"].text() if "alphaMode" in node else "OPAQUE"
+    if mode == "OPAQUE":
+        return material
+    if mode not in ("MASK", "BLEND"):
+        draft.note(f"{node.place}: alphaMode {mode[:20]}: unknown, drawn opaque")
+        return material
+    if _radiance(draft).any():
+        draft.note(f"{node.place}: alphaMode {mode}: what shines is drawn opaque")
+        return material
+    draft.textured("alpha", draft.core, "baseColorTexture", "alpha")
+    cutoff = max(real(node, "alphaCutoff", 0.5), 0.0) if mode == "MASK" else None
+    values = {**material.values, "alpha": draft.alpha}
+    return Material(material.model, values, alpha_cutoff=cutoff)
 
 
 def _with_pictures(draft: Draft, material: Material, pictures: Pictures) -> FileMaterial:
@@ -194,12 +194,26 @@ def _with_pictures(draft: Draft, material: Material, pictures: Pictures) -> File
             if place != first:
                 draft.note(f"{info.place}: other coordinates than the first texture's")
             bent = NormalMap.from_image(found[0], real(info, "scale", 1.0), found[1])
-    finished = Material(material.model, material.values, uses, bent)
-    return FileMaterial(finished, _emission(draft, pictures), first or Coordinates())
+    values, cutoff, alpha = dict(material.values), material.alpha_cutoff, draft.alpha
+    if material.sheer and "alpha" not in uses and alpha >= (1 if cutoff is None else cutoff):
+        del values["alpha"]  # it covers everything
+        cutoff = None
+    emission, glow = _radiance(draft), None
+    if "emissiveTexture" in node and emission.any():
+        info = node["emissiveTexture"]
+        name = pictures.texture(info, "srgb")
+        if name is not None:
+            glow = TextureUse(name)
+            place = pictures.coordinates(info)
+            first = first or place
+            if place != first:
+                draft.note(f"{info.place}: other coordinates than the first texture's")
+    whole = Material(material.model, values, uses, bent, cutoff)
+    return FileMaterial(whole, emission, first or Coordinates(), glow)
 
 
-def _emission(draft: Draft, pictures: Pictures) -> Any:
-    """(3,) radiance; a texture of it counts with its mean colour."""
+def _radiance(draft: Draft) -> Any:
+    """(3,) without its texture."""
     node = draft.node
     if "emissiveFactor" not in node:
         return np.zeros(3)
@@ -207,35 +221,4 @@ def _emission(draft: Draft, pictures: Pictures) -> Any:
     strength = draft.extension("emissive_strength")
     if strength is not None:
         emission = emission * max(real(strength, "emissiveStrength", 1.0), 0.0)
-    if "emissiveTexture" in node and emission.any():
-        name = pictures.texture(node["emissiveTexture"], "srgb")
-        if name is not None:
-            draft.note(f"{node.place}: emissiveTexture: taken as its mean colour")
-            emission = emission * pictures.textures[name].values.mean(axis=(0, 1))
     return emission
-
-
-def _metallic_roughness(draft: Draft) -> dict[str, Any]:
-    """The parameters of the core model, and their textures."""
-    draft.textured("base_color", draft.core, "baseColorTexture", "srgb")
-    draft.textured("metalness", draft.core, "metallicRoughnessTexture", "linear", 2)
-    draft.textured("roughness", draft.core, "metallicRoughnessTexture", "linear", 1)
-    return {
-        "base_color": draft.base_color,
-        "metalness": draft.metalness,
-        "roughness": draft.roughness,
-    }
-
-
-def _material(model: str, values: dict[str, Any], draft: Draft) -> Material:
-    """Values brought into the range of the model; what moves by more than rounding is noted."""
-    inside = {}
-    for parameter in MODELS[model].parameters:
-        value = np.asarray(values[parameter.name], np.float64)
-        inside[parameter.name] = np.clip(value, parameter.lo, parameter.hi)
-        moved = float(np.abs(inside[parameter.name] - value).max())
-        # A perfectly smooth lobe is drawn as the smoothest there is; nobody can see the difference.
-        if moved > (0.15 if "roughness" in parameter.name else 1e-6):
-            taken = inside[parameter.name]
-            draft.note(f"{draft.node.place}: {model}.{parameter.name}: {value} is taken as {taken}")
-    return Material(model, inside)

@@ -65,7 +65,8 @@ class Pictures:
 
     def texture(self, info: JsonNode, encoding: str) -> str | None:
         """The name of the texture that a textureInfo object points at; None, with a note, if the
-        image is missing or damaged.
+        image is missing or damaged. Of the encoding "alpha" it is its opacity, (H, W, 1), and
+        None without a note if that is 1 everywhere.
         """
         number = whole(info, 0, 1 << 31, "index")
         found = self._pixels(info)
@@ -73,13 +74,17 @@ class Pictures:
             return None
         image, wrap, label = found
         name = f"{label} ({encoding}, {number})"
+        if encoding == "alpha" and bool((image[..., 3] == 1).all()):
+            return None
         if name not in self.textures:
-            color = decode(image) if encoding == "srgb" else image
+            parts = {"srgb": slice(0, 3), "linear": slice(0, 3), "alpha": slice(3, 4)}
+            color = image[..., parts[encoding]]
+            color = decode(color) if encoding == "srgb" else color
             self.textures[name] = Texture(np.asarray(color, np.float32), wrap)
         return name
 
     def normal_map(self, info: JsonNode) -> tuple[Array, tuple[str, str]] | None:
-        """Pixels (H, W, 3) and wrap of a texture that holds normals."""
+        """Pixels (H, W, 4) and wrap of a texture that holds normals."""
         found = self._pixels(info)
         return None if found is None else found[:2]
 
@@ -107,7 +112,7 @@ class Pictures:
         return None if pixels is None else (pixels, wrap, PurePath(name).name or f"image {number}")
 
     def _decoded(self, image: JsonNode) -> Array:
-        """(H, W, 3) float32 in 0..1, as stored; alpha is left out."""
+        """(H, W, 4) float32 in 0..1, as stored; alpha is 1 where the file has none."""
         if "bufferView" in image:
             data = bytes(self.container.view(image["bufferView"])[0])
         else:
@@ -115,7 +120,7 @@ class Pictures:
         try:
             with Image.open(io.BytesIO(data), formats=("PNG", "JPEG")) as opened:
                 self.container.spend(image, opened.width * opened.height)
-                return np.asarray(opened.convert("RGB"), np.float32) / np.float32(255)
+                return np.asarray(opened.convert("RGBA"), np.float32) / np.float32(255)
         except IoError:
             raise
         except Exception as failure:  # Pillow's plugins do not share an exception
