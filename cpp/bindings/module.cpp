@@ -1,5 +1,6 @@
 #include "module.h"
 
+#include "bind_particles.h"
 #include "bind_principled.h"
 
 PYBIND11_MODULE(_core, m) {
@@ -16,6 +17,8 @@ PYBIND11_MODULE(_core, m) {
     photograd::bind_phase(m);
     photograd::bind_direct(m);
     photograd::bind_path(m);
+    photograd::bind_path_tangent(m);
+    photograd::bind_particles(m);
     photograd::bind_sampling(m);
     photograd::bind_sh(m);
     photograd::bind_texture(m);

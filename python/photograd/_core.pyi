@@ -19,6 +19,7 @@ __all__: list[str] = [
     "Octree",
     "Op",
     "PathGeometry",
+    "PhotonMap",
     "PreparedRays32",
     "PreparedRays64",
     "PreparedSplats32",
@@ -71,6 +72,7 @@ __all__: list[str] = [
     "delta_bsdf_thin_glass",
     "delta_bsdfs",
     "disk_to_square",
+    "emit_particles",
     "even_words",
     "exp",
     "expm1",
@@ -128,9 +130,11 @@ __all__: list[str] = [
     "ssim_backward",
     "thread_count",
     "tiny_network_parameters",
+    "trace_light",
     "trace_path",
     "trace_paths",
     "trace_paths_backward",
+    "trace_paths_tangent",
     "uniform",
     "write_vdb",
 ]
@@ -3173,6 +3177,58 @@ class PathGeometry:
         for each shape (texture or -1, first of its three channels).
         """
 
+class PhotonMap:
+    """
+    Particles where they have landed.
+    """
+    def __init__(
+        self,
+        geometry: PathGeometry,
+        models: collections.abc.Sequence[str],
+        parameters: numpy.ndarray,
+        emission: numpy.ndarray,
+        lights: collections.abc.Sequence[tuple[typing.Any, ...]],
+        textures: collections.abc.Sequence[numpy.ndarray],
+        options: tuple[
+            typing.SupportsInt | typing.SupportsIndex,
+            typing.SupportsInt | typing.SupportsIndex,
+            typing.SupportsInt | typing.SupportsIndex,
+        ],
+        count: typing.SupportsInt | typing.SupportsIndex,
+        radius: typing.SupportsFloat | typing.SupportsIndex,
+        direct: bool,
+    ) -> None: ...
+    def __len__(self) -> int: ...
+    def irradiance(self, points: numpy.ndarray, normals: numpy.ndarray) -> numpy.ndarray:
+        """
+        (N, 3) W/m^2 at points (N, 3) with geometric normals (N, 3), float64.
+        """
+    def trace(
+        self,
+        geometry: PathGeometry,
+        models: collections.abc.Sequence[str],
+        parameters: numpy.ndarray,
+        emission: numpy.ndarray,
+        lights: collections.abc.Sequence[tuple[typing.Any, ...]],
+        textures: collections.abc.Sequence[numpy.ndarray],
+        camera: tuple[typing.Any, ...],
+        options: tuple[
+            typing.SupportsInt | typing.SupportsIndex,
+            typing.SupportsInt | typing.SupportsIndex,
+            typing.SupportsInt | typing.SupportsIndex,
+            typing.SupportsInt | typing.SupportsIndex,
+            typing.SupportsInt | typing.SupportsIndex,
+            typing.SupportsInt | typing.SupportsIndex,
+        ],
+        first: typing.SupportsInt | typing.SupportsIndex,
+        count: typing.SupportsInt | typing.SupportsIndex,
+        radiance: numpy.ndarray,
+        squares: numpy.ndarray,
+    ) -> None:
+        """
+        Adds samples of a picture, as trace_paths does.
+        """
+
 class TexturePlan:
     """
     Points sorted by tile, with their colours.
@@ -3703,6 +3759,22 @@ def disk_to_square(p: numpy.ndarray) -> numpy.ndarray:
     The inverse of square_to_disk.
     """
 
+def emit_particles(
+    geometry: PathGeometry,
+    models: collections.abc.Sequence[str],
+    parameters: numpy.ndarray,
+    emission: numpy.ndarray,
+    lights: collections.abc.Sequence[tuple[typing.Any, ...]],
+    textures: collections.abc.Sequence[numpy.ndarray],
+    seed: typing.SupportsInt | typing.SupportsIndex,
+    first: typing.SupportsInt | typing.SupportsIndex,
+    count: typing.SupportsInt | typing.SupportsIndex,
+) -> tuple[typing.Any, ...]:
+    """
+    (origins (N, 3), directions (N, 3), flux (N, 3) W, entries (N,) of the table of lights) of particles
+    as they leave their lights.
+    """
+
 def even_words(
     seed: typing.SupportsInt | typing.SupportsIndex,
     step: typing.SupportsInt | typing.SupportsIndex,
@@ -4119,6 +4191,29 @@ def ssim_backward(
     """
 
 def thread_count() -> int: ...
+def trace_light(
+    geometry: PathGeometry,
+    models: collections.abc.Sequence[str],
+    parameters: numpy.ndarray,
+    emission: numpy.ndarray,
+    lights: collections.abc.Sequence[tuple[typing.Any, ...]],
+    textures: collections.abc.Sequence[numpy.ndarray],
+    options: tuple[
+        typing.SupportsInt | typing.SupportsIndex,
+        typing.SupportsInt | typing.SupportsIndex,
+        typing.SupportsInt | typing.SupportsIndex,
+    ],
+    first: typing.SupportsInt | typing.SupportsIndex,
+    count: typing.SupportsInt | typing.SupportsIndex,
+    rectangle: numpy.ndarray,
+    irradiance: numpy.ndarray,
+    squares: numpy.ndarray,
+) -> None:
+    """
+    Adds what particles bring to a rectangle (corner, edge_x, edge_y) (3, 3) to irradiance (H, W, 3),
+    and its squares, float64. options: (max_depth, roulette_from, seed).
+    """
+
 def trace_path(
     geometry: PathGeometry,
     models: collections.abc.Sequence[str],
@@ -4195,6 +4290,38 @@ def trace_paths_backward(
 ) -> None:
     """
     Adds to d_parameters (P,), d_emission (S, 3), d_lights, an array like the first of each light, and d_textures for dL/d(mean radiance). counts (H, W) uint32, or None: spp samples of each pixel.
+    """
+
+def trace_paths_tangent(
+    geometry: PathGeometry,
+    models: collections.abc.Sequence[str],
+    parameters: numpy.ndarray,
+    emission: numpy.ndarray,
+    lights: collections.abc.Sequence[tuple[typing.Any, ...]],
+    textures: collections.abc.Sequence[numpy.ndarray],
+    v_parameters: numpy.ndarray,
+    v_emission: numpy.ndarray,
+    v_lights: collections.abc.Sequence[tuple[typing.Any, ...]],
+    v_textures: collections.abc.Sequence[numpy.ndarray],
+    camera: tuple[typing.Any, ...],
+    options: tuple[
+        typing.SupportsInt | typing.SupportsIndex,
+        typing.SupportsInt | typing.SupportsIndex,
+        typing.SupportsInt | typing.SupportsIndex,
+        typing.SupportsInt | typing.SupportsIndex,
+        typing.SupportsInt | typing.SupportsIndex,
+        typing.SupportsInt | typing.SupportsIndex,
+    ],
+    first: typing.SupportsInt | typing.SupportsIndex,
+    count: typing.SupportsInt | typing.SupportsIndex,
+    radiance: numpy.ndarray,
+    squares: numpy.ndarray,
+    d_radiance: numpy.ndarray,
+    d_squares: numpy.ndarray,
+) -> None:
+    """
+    As trace_paths, and adds to d_radiance (H, W, 3) and d_squares how the samples change along v,
+    which has the shapes of what it moves. float64.
     """
 
 def uniform(

@@ -45,6 +45,21 @@ Vec3<R> front_of(const TriangleLight<R>& triangle, const Vec3<R>&) {
     return triangle.normal();
 }
 
+PiecePoint even_point(const SphereLight<double>& ball, const Vec2<double>& u2) {
+    const Vec3<double> out = square_to_cap(u2, 2.0);
+    return {ball.center + ball.radius * out, out, 4 * pi * ball.radius * ball.radius};
+}
+PiecePoint even_point(const QuadLight<double>& quad, const Vec2<double>& u2) {
+    const Vec3<double> across = cross(quad.edge_x, quad.edge_y);
+    return {quad.corner + u2.x * quad.edge_x + u2.y * quad.edge_y, normalize(across),
+            length(across)};
+}
+PiecePoint even_point(const TriangleLight<double>& triangle, const Vec2<double>& u2) {
+    const Vec2<double> q = square_to_triangle(u2);
+    return {triangle.a + q.x * (triangle.b - triangle.a) + q.y * (triangle.c - triangle.a),
+            triangle.normal(), triangle.area()};
+}
+
 }  // namespace
 
 SceneLights::SceneLights(const Bvh& bvh, std::span<const double> emission,
@@ -134,6 +149,11 @@ PieceSample<R> SceneLights::sample(const Bvh& bvh, const LightPiece& piece, cons
         if (!(found.pdf > R(0))) return {};
         return {found, front_of(light, point + found.direction * found.distance)};
     });
+}
+
+PiecePoint SceneLights::point_on(const Bvh& bvh, const LightPiece& piece,
+                                 const Vec2<double>& u2) const {
+    return as_light<double>(bvh, piece, [&](const auto& light) { return even_point(light, u2); });
 }
 
 template <Real R>

@@ -38,6 +38,12 @@ struct PieceSample {
     Vec3<R> normal{R(0)};
 };
 
+/// A point of a piece, drawn evenly over its area, m^2; `normal` is the side that emits.
+struct PiecePoint {
+    Vec3<double> position, normal;
+    double area;
+};
+
 class SceneLights {
 public:
     /// What a direction meets that meets no shape, and what else is no shape.
@@ -69,6 +75,9 @@ public:
     template <Real R>
     [[nodiscard]] PieceSample<R> sample(const Bvh& bvh, const LightPiece& piece,
                                         const Vec3<R>& point, const Vec2<R>& u2) const;
+    /// A point of a piece, whoever may see it.
+    [[nodiscard]] PiecePoint point_on(const Bvh& bvh, const LightPiece& piece,
+                                      const Vec2<double>& u2) const;
     /// The density over solid angle of arriving at this primitive by a choice and a sample; 0 if it is no light. The
     /// front was hit at `distance`, with `cosine`.
     template <Real R>

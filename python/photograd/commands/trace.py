@@ -25,8 +25,15 @@ from photograd_course.cli import (
 from photograd_course.color import srgb_encode
 
 from photograd.commands.shared import StopRequest, stop_on_signals, use_threads
+from photograd.commands.trace_estimates import (
+    INTEGRATORS,
+    DerivativeOption,
+    Estimate,
+    PhotonsOption,
+    write_derivative,
+)
 from photograd.data.image_write import write_exr, write_png
-from photograd.errors import IoError, RangeError, message
+from photograd.errors import IoError, message
 from photograd.lights import EnvironmentMap
 from photograd.transport.accumulation import Accumulation, load_accumulation
 from photograd.transport.builtin import BUILTIN, builtin_scene
@@ -38,7 +45,6 @@ from photograd.transport.tracer import HEURISTICS, STRATEGIES, PathOptions, Path
 PASS_SPP = 8
 """Samples between two looks at the clock; a resumed picture is cut at the same places."""
 SAVE_SECONDS = 10.0
-INTEGRATORS = ("path", "direct", "occlusion")
 
 
 SceneArgument = Annotated[
@@ -72,7 +78,8 @@ DepthOption = Annotated[
     int, typer.Option("--max-depth", min=1, help="Segments of the longest path.")
 ]
 RadiusOption = Annotated[
-    float, typer.Option("--radius", help="Metres within which a surface occludes.")
+    float,
+    typer.Option("--radius", help="Metres within which a surface occludes, or photons count."),
 ]
 ResumeOption = Annotated[
     bool, typer.Option("--resume", help="Add samples to those of an earlier run.")
@@ -94,6 +101,8 @@ def trace(
     heuristic: HeuristicOption = "power",
     max_depth: DepthOption = 64,
     radius: RadiusOption = math.inf,
+    photons: PhotonsOption = 200_000,
+    derivative: DerivativeOption = "",
     resume: ResumeOption = False,
     seed: SeedOption = 0,
     threads: ThreadsOption = 0,
@@ -108,18 +117,20 @@ def trace(
     Writes the picture as linear EXR, a PNG preview beside it every ten seconds, and OUT.sums.npz,
     from which --resume goes on: after Ctrl-C, or for more samples.
 
+    With --derivative, what is written is how every pixel changes with one parameter instead: signed
+    in the EXR, red where it grows and blue where it falls in the PNG.
+
     Example: photograd trace cornell-box --spp 256 --out cornell.exr
     """
     use_threads(threads)
-    if integrator not in INTEGRATORS:
-        raise RangeError(message("trace", "--integrator", INTEGRATORS, integrator))
     if out.suffix.lower() not in (".exr", ".png"):
         raise IoError(message("trace", "--out", "a name that ends in .exr or .png", out))
     options = PathOptions(strategy, heuristic, 2 if integrator == "direct" else max_depth)
+    estimate = Estimate(integrator, options, seed, radius, photons, derivative)
     described, fingerprint = _load(scene, size)
     key = {
         "scene": fingerprint, "seed": seed, "integrator": integrator, "radius": repr(radius),
-        **asdict(options),
+        **asdict(options), **estimate.key,
     }  # fmt: skip
     sums_path = out.with_suffix(".sums.npz")
     if resume:
@@ -127,17 +138,11 @@ def trace(
         note(f"resumed at {sums.count} of {spp} samples")
     else:
         sums = Accumulation.empty(described.camera.height, described.camera.width)
-    tracer = PathTracer(described)
-
-    def add(count: int) -> None:
-        if integrator == "occlusion":
-            tracer.add_occlusion(sums, count, seed=seed, radius=radius)
-        else:
-            tracer.add_samples(sums, count, seed=seed, options=options)
+    add = estimate.adder(PathTracer(described), sums)
 
     def save() -> None:
         sums.save(sums_path, key)
-        write_pictures(sums, out)
+        (write_derivative if derivative else write_pictures)(sums, out)
 
     with stop_on_signals() as stopping:
         seconds = _run(add, save, sums, spp, stopping)

@@ -9,8 +9,21 @@ from __future__ import annotations
 
 from photograd.transport.accumulation import Accumulation
 from photograd.transport.builtin import BUILTIN, builtin_scene
+from photograd.transport.derivative import (
+    add_derivative_samples,
+    derivative_image,
+    direction_of,
+)
 from photograd.transport.lens import Lens
 from photograd.transport.mesh_files import ModelFile, model_scene, read_model
+from photograd.transport.particles import (
+    Emitted,
+    ParticleOptions,
+    Receiver,
+    emit_particles,
+    trace_light,
+)
+from photograd.transport.photons import PhotonMap
 from photograd.transport.scene import Environment, Material, MeshShape, Scene, SphereShape
 from photograd.transport.scene_file import read_scene
 from photograd.transport.texture import NormalMap, Texture, TextureUse, read_texture
@@ -19,21 +32,30 @@ from photograd.transport.tracer import PathOptions, PathTracer
 __all__ = [
     "BUILTIN",
     "Accumulation",
+    "Emitted",
     "Environment",
     "Lens",
     "Material",
     "MeshShape",
     "ModelFile",
     "NormalMap",
+    "ParticleOptions",
     "PathOptions",
     "PathTracer",
+    "PhotonMap",
+    "Receiver",
     "Scene",
     "SphereShape",
     "Texture",
     "TextureUse",
+    "add_derivative_samples",
     "builtin_scene",
+    "derivative_image",
+    "direction_of",
+    "emit_particles",
     "model_scene",
     "read_model",
     "read_scene",
     "read_texture",
+    "trace_light",
 ]

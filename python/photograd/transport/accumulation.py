@@ -67,8 +67,8 @@ class Accumulation:
 
     @property
     def noise(self) -> float:
-        """The standard error's root mean square as a part of the mean radiance; 0 if black."""
-        level = float(self.mean.mean())
+        """The standard error's root mean square as a part of the mean of |mean|; 0 if black."""
+        level = float(np.abs(self.mean).mean())
         return float(np.sqrt(np.square(self.standard_error).mean())) / level if level > 0 else 0.0
 
     def check_finite(self, function: str) -> None:

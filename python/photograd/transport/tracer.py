@@ -291,11 +291,7 @@ class PathTracer:
 
         `pixel` is row * width + column. In float64, whatever the tracer's dtype.
         """
-        arguments = self._arguments(self.scene.camera)
-        for name in ("parameters", "emission"):
-            arguments[name] = arguments[name].astype(np.float64)
-        arguments["textures"] = [texels.astype(np.float64) for texels in arguments["textures"]]
-        arguments["lights"] = [light.row(self.params, np.float64) for light in self._lights]
+        arguments = self.wide_arguments()
         found: list[dict[str, Any]] = _core.trace_path(
             **arguments, options=options.numbers(seed), pixel=pixel, sample=sample
         )
@@ -325,17 +321,33 @@ class PathTracer:
             for name in self.scene.textures
         ]
 
-    def _arguments(self, camera: Camera) -> dict[str, Any]:
+    def wide_arguments(
+        self, params: dict[str, Array] | None = None, camera: Camera | None = None
+    ) -> dict[str, Any]:
+        """The scene as those functions of the core take it that calculate in double alone.
+
+        `params` is what to say instead of the tracer's own; `camera` None takes the scene's.
+        """
+        given = self.params if params is None else params
+        arguments = self._arguments(self.scene.camera if camera is None else camera, given)
+        for name in ("parameters", "emission"):
+            arguments[name] = arguments[name].astype(np.float64)
+        arguments["textures"] = [texels.astype(np.float64) for texels in arguments["textures"]]
+        arguments["lights"] = [light.row(given, np.float64) for light in self._lights]
+        return arguments
+
+    def _arguments(self, camera: Camera, params: dict[str, Array] | None = None) -> dict[str, Any]:
+        given = self.params if params is None else params
         black = np.zeros(3, self.dtype)
-        emission = [self.params.get(name, black) for name in self._emissions]
+        emission = [given.get(name, black) for name in self._emissions]
         shining = np.array(emission, self.dtype)
         return {
             "geometry": self._geometry,
             "models": self._models,
-            "parameters": self._material_row(self.params),
+            "parameters": self._material_row(given),
             "emission": shining[self._owner],
-            "lights": [light.row(self.params, self.dtype) for light in self._lights],
-            "textures": self._texels(self.params),
+            "lights": [light.row(given, self.dtype) for light in self._lights],
+            "textures": self._texels(given),
             "camera": (*_numbers(camera), self.scene.lens.radius, self.scene.lens.focus),
         }
 

@@ -1,0 +1,154 @@
+// Particles from lights: emission, irradiance of a rectangle, photon maps.
+#include "bind_particles.h"
+
+#include <memory>
+
+#include "camera_args.h"
+#include "path_args.h"
+#include "photograd/render/photon_map.h"
+
+namespace photograd {
+namespace {
+
+/// (max_depth, roulette_from, seed)
+using ParticleNumbers = std::tuple<int, int, std::uint64_t>;
+using Models = std::vector<std::string>;
+using Textures = std::vector<py::array>;
+
+ParticleOptions particles_of(const ArrayArgs& args, const PathGeometry& geometry,
+                             const ParticleNumbers& given) {
+    const auto [max_depth, roulette_from, seed] = given;
+    if (max_depth < 1 || max_depth > 4096)
+        args.range("max_depth", "1 to 4096 segments", std::to_string(max_depth));
+    if (roulette_from < 0) args.range("roulette_from", "at least 0", std::to_string(roulette_from));
+    if (geometry.lights.empty()) args.range("scene", "a scene with lights", "one without");
+    return {max_depth, roulette_from, seed};
+}
+
+SceneNumbers<double> scene_of(ArrayArgs& args, const PathGeometry& geometry, const Models& models,
+                              const py::array& parameters, const py::array& emission,
+                              const LightTuples& lights, const Textures& textures) {
+    return {args,     geometry, models,   parameters,  std::nullopt,
+            emission, lights,   textures, std::nullopt};
+}
+
+/// origins, directions and flux (N, 3), entries of the table of lights (N,).
+py::tuple emit_rows(const PathGeometry& geometry, const Models& models, const py::array& parameters,
+                    const py::array& emission, const LightTuples& lights, const Textures& textures,
+                    std::uint64_t seed, std::uint64_t first, std::uint64_t count) {
+    ArrayArgs args("emit_particles");
+    const auto at = scene_of(args, geometry, models, parameters, emission, lights, textures);
+    particles_of(args, geometry, {1, 0, seed});
+    const auto rows = static_cast<std::int64_t>(count);
+    py::array_t<double> origins({rows, std::int64_t(3)}), directions({rows, std::int64_t(3)}),
+        flux({rows, std::int64_t(3)});
+    py::array_t<std::int64_t> entries(rows);
+    double *o = origins.mutable_data(), *d = directions.mutable_data(), *f = flux.mutable_data();
+    std::int64_t* e = entries.mutable_data();
+    for (std::int64_t n = 0; n < rows; ++n) {
+        const Particle one =
+            emitted_particle(at.scene, seed, first + static_cast<std::uint64_t>(n));
+        for (int c = 0; c < 3; ++c) {
+            o[3 * n + c] = one.origin[c];
+            d[3 * n + c] = one.direction[c];
+            f[3 * n + c] = one.flux[c];
+        }
+        e[n] = one.entry;
+    }
+    return py::make_tuple(origins, directions, flux, entries);
+}
+
+void land(const PathGeometry& geometry, const Models& models, const py::array& parameters,
+          const py::array& emission, const LightTuples& lights, const Textures& textures,
+          const ParticleNumbers& given, std::uint64_t first, std::uint64_t count,
+          const py::array& rectangle, py::array irradiance, py::array squares) {
+    ArrayArgs args("trace_light");
+    const auto at = scene_of(args, geometry, models, parameters, emission, lights, textures);
+    const ParticleOptions options = particles_of(args, geometry, given);
+    const double* r = args.in<double>("rectangle", rectangle, "3 3");
+    const PathSums sums{args.out<double>("irradiance", irradiance, "H W 3"),
+                        args.out<double>("squares", squares, "H W 3")};
+    const auto row = [r](int k) { return Vec3<double>(r[3 * k], r[3 * k + 1], r[3 * k + 2]); };
+    const Receiver receiver{row(0), row(1), row(2), args.size("H"), args.size("W")};
+    const py::gil_scoped_release release;
+    trace_light(at.scene, options, {first, count}, receiver, sums);
+}
+
+std::unique_ptr<PhotonMap> gather_photons(const PathGeometry& geometry, const Models& models,
+                                          const py::array& parameters, const py::array& emission,
+                                          const LightTuples& lights, const Textures& textures,
+                                          const ParticleNumbers& given, std::uint64_t count,
+                                          double radius, bool direct) {
+    ArrayArgs args("PhotonMap");
+    const auto at = scene_of(args, geometry, models, parameters, emission, lights, textures);
+    const ParticleOptions options = particles_of(args, geometry, given);
+    if (count < 1) args.range("particles", "at least 1", "0");
+    if (!(radius > 0) || !std::isfinite(radius))
+        args.range("radius", "above 0 m, and finite", std::to_string(radius));
+    const py::gil_scoped_release release;
+    return std::make_unique<PhotonMap>(at.scene, options, count, radius, direct);
+}
+
+py::array irradiance_rows(const PhotonMap& map, const py::array& points, const py::array& normals) {
+    ArrayArgs args("PhotonMap.irradiance");
+    const double *x = args.in<double>("points", points, "N 3"),
+                 *n = args.in<double>("normals", normals, "N 3");
+    const std::int64_t count = args.size("N");
+    py::array_t<double> out({count, std::int64_t(3)});
+    double* E = out.mutable_data();
+    const auto at = [](const double* rows, std::int64_t i) {
+        return Vec3<double>(rows[3 * i], rows[3 * i + 1], rows[3 * i + 2]);
+    };
+    for (std::int64_t i = 0; i < count; ++i) {
+        const Vec3<double> found = map.irradiance(at(x, i), at(n, i));
+        for (int c = 0; c < 3; ++c) E[3 * i + c] = found[c];
+    }
+    return out;
+}
+
+void picture(const PhotonMap& map, const PathGeometry& geometry, const Models& models,
+             const py::array& parameters, const py::array& emission, const LightTuples& lights,
+             const Textures& textures, const py::tuple& camera_numbers, const Options& given,
+             std::uint32_t first, std::uint32_t count, py::array radiance, py::array squares) {
+    ArrayArgs args("trace_photons");
+    const auto at = scene_of(args, geometry, models, parameters, emission, lights, textures);
+    const ThinLens camera = thin_lens(camera_numbers);
+    const std::string axes =
+        std::to_string(camera.height) + " " + std::to_string(camera.width) + " 3";
+    const PathSums sums{args.out<double>("radiance", radiance, axes),
+                        args.out<double>("squares", squares, axes)};
+    const PathOptions options = options_of(args, given);
+    const py::gil_scoped_release release;
+    trace_photons(at.scene, map, camera, options, {first, count}, sums);
+}
+
+}  // namespace
+
+void bind_particles(py::module_& m) {
+    const auto scene = [](auto&& define) {
+        define(py::arg("geometry"), py::arg("models"), py::arg("parameters"), py::arg("emission"),
+               py::arg("lights"), py::arg("textures"));
+    };
+    scene([&](auto... of) {
+        m.def("emit_particles", &emit_rows, of..., py::arg("seed"), py::arg("first"),
+              py::arg("count"),
+              "(origins (N, 3), directions (N, 3), flux (N, 3) W, entries (N,) of the table of "
+              "lights) of particles\nas they leave their lights.");
+        m.def("trace_light", &land, of..., py::arg("options"), py::arg("first"), py::arg("count"),
+              py::arg("rectangle"), py::arg("irradiance"), py::arg("squares"),
+              "Adds what particles bring to a rectangle (corner, edge_x, edge_y) (3, 3) to "
+              "irradiance (H, W, 3),\nand its squares, float64. options: (max_depth, "
+              "roulette_from, seed).");
+        py::class_<PhotonMap>(m, "PhotonMap", "Particles where they have landed.")
+            .def(py::init(&gather_photons), of..., py::arg("options"), py::arg("count"),
+                 py::arg("radius"), py::arg("direct"))
+            .def("__len__", [](const PhotonMap& map) { return map.photons().size(); })
+            .def("irradiance", &irradiance_rows, py::arg("points"), py::arg("normals"),
+                 "(N, 3) W/m^2 at points (N, 3) with geometric normals (N, 3), float64.")
+            .def("trace", &picture, of..., py::arg("camera"), py::arg("options"), py::arg("first"),
+                 py::arg("count"), py::arg("radiance"), py::arg("squares"),
+                 "Adds samples of a picture, as trace_paths does.");
+    });
+}
+
+}  // namespace photograd

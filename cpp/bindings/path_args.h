@@ -1,0 +1,105 @@
+// The numbers of a scene for path tracing, and options, as Python hands them over.
+#pragma once
+
+#include <optional>
+
+#include "listed_lights.h"
+#include "photograd/render/path_options.h"
+#include "photograd/scene/path_scene.h"
+
+namespace photograd {
+
+/// (strategy, heuristic, max_depth, roulette_from, sampler, seed)
+using Options = std::tuple<int, int, int, int, int, std::uint64_t>;
+
+inline std::string axes_of(const TextureLayout& layout) {
+    return std::to_string(layout.shape.height) + " " + std::to_string(layout.shape.width) + " " +
+           std::to_string(layout.channels);
+}
+
+/// Checked numbers of a scene, and the materials that they describe.
+template <class R>
+struct SceneNumbers {
+    std::vector<Material<R>> drawn, sampling;
+    std::vector<const R*> texels, sampling_texels;
+    std::vector<AnyLight<R>> lights;
+    PathScene<R> scene;
+
+    SceneNumbers(ArrayArgs& args, const PathGeometry& geometry,
+                 const std::vector<std::string>& models, const py::array& parameters,
+                 const std::optional<py::array>& sampling_parameters, const py::array& emission,
+                 const LightTuples& light_rows, const std::vector<py::array>& textures,
+                 const std::optional<std::vector<py::array>>& sampling_textures)
+        : lights(listed_lights<R>(light_rows)) {
+        for (const std::int32_t m : geometry.material)
+            if (m < 0 || m >= static_cast<std::int32_t>(models.size()))
+                args.range("material", "numbers below " + std::to_string(models.size()),
+                           std::to_string(m));
+        read(args, models, "parameters", parameters, drawn);
+        if (sampling_parameters)
+            read(args, models, "sampling_parameters", *sampling_parameters, sampling);
+        const R* e =
+            args.in<R>("emission", emission, std::to_string(geometry.shape_count()) + " 3");
+        const std::size_t count = static_cast<std::size_t>(geometry.lights.listed_count());
+        if (lights.size() != count)
+            args.range("lights", std::to_string(count) + ", as when the scene was built",
+                       std::to_string(lights.size()));
+        scene = {&geometry, drawn, sampling_parameters ? sampling : drawn, e, lights};
+        texels = texels_of(args, geometry, "textures", textures);
+        if (sampling_textures)
+            sampling_texels = texels_of(args, geometry, "textures", *sampling_textures);
+        scene.texels = texels;
+        scene.sampling_texels = sampling_textures ? sampling_texels : texels;
+        for (std::size_t m = 0; m < drawn.size(); ++m)
+            for (const TextureUse& use : geometry.textures.of(m))
+                if (use.first + use.count > drawn[m].parameter_count())
+                    args.range("uses", "parameters of the material", "others");
+    }
+
+private:
+    static std::vector<const R*> texels_of(ArrayArgs& args, const PathGeometry& geometry,
+                                           const char* name,
+                                           const std::vector<py::array>& textures) {
+        std::vector<const R*> out;
+        const auto& layouts = geometry.textures.layouts;
+        if (textures.size() != layouts.size())
+            args.range(name, std::to_string(layouts.size()) + " textures",
+                       std::to_string(textures.size()));
+        for (std::size_t t = 0; t < layouts.size(); ++t)
+            out.push_back(args.in<R>(name, textures[t], axes_of(layouts[t])));
+        return out;
+    }
+    static void read(ArrayArgs& args, const std::vector<std::string>& models, const char* name,
+                     const py::array& parameters, std::vector<Material<R>>& out) {
+        const R* row = args.in<R>(name, parameters, "P");
+        std::int64_t used = 0;
+        for (const std::string& model : models) {
+            // The first reading only counts; the row may end before this model's parameters do.
+            static constexpr R zeros[64] = {};
+            const int count = Material<R>::read(model, zeros).parameter_count();
+            if (used + count > args.size("P"))
+                args.range(name, "the parameters of all materials", "too few");
+            out.push_back(Material<R>::read(model, row + used));
+            used += count;
+        }
+        if (used != args.size("P")) args.range(name, std::to_string(used), "too many");
+    }
+};
+
+inline PathOptions options_of(const ArrayArgs& args, const Options& given) {
+    const auto [strategy, heuristic, max_depth, roulette_from, sampler, seed] = given;
+    if (strategy < 0 || strategy > 2 || heuristic < 0 || heuristic > 1 || sampler < 0 ||
+        sampler > 1)
+        args.range("options", "a strategy, a heuristic and a sampler", "others");
+    if (max_depth < 1 || max_depth > 4096)
+        args.range("max_depth", "1 to 4096 segments", std::to_string(max_depth));
+    if (roulette_from < 0) args.range("roulette_from", "at least 0", std::to_string(roulette_from));
+    return {static_cast<Strategy>(strategy),
+            static_cast<Heuristic>(heuristic),
+            max_depth,
+            roulette_from,
+            seed,
+            static_cast<Sampler>(sampler)};
+}
+
+}  // namespace photograd

@@ -1,0 +1,41 @@
+// Derivative pictures: how every pixel changes along one direction v of the parameters, in the pass of the picture.
+//
+// render/path_vertex.h writes the radiance of a path as a polynomial in what the scene lets change. Its tangent follows
+// the same recursion, from the end of the path to the camera, with t(x) the change of x along v:
+//
+//   t_k = w_k t(Le_k) + w^l_k (t(f^l_k) L^l_k + f^l_k t(L^l_k)) + s_k (t(f_k) L_{k+1} + f_k t_{k+1})       t_n = 0
+//
+// All weights are detached, as in the adjoint: <d_image, t> is <v, derivative of trace_paths_backward> for the same
+// paths. One pass costs little more than a picture and gives one parameter's derivative in all pixels, where the adjoint
+// gives all parameters' in one number. In double alone: such a picture is looked at and compared, not fitted.
+#pragma once
+
+#include "photograd/render/path.h"
+
+namespace photograd {
+
+/// L_0, and its change along `along`, a scene of the same geometry whose numbers say how those of `scene` change.
+class PathTangent {
+public:
+    PathTangent(const PathScene<double>& scene, const PathScene<double>& along);
+
+    struct Pair {
+        Vec3<double> value, tangent;
+    };
+    [[nodiscard]] Pair gather(const Path<double>& path) const;
+
+private:
+    [[nodiscard]] Vec3<double> emitted(std::int32_t shape, const Vec3<double>& direction) const;
+    [[nodiscard]] Vec3<double> sent(const LightVertex<double>& light) const;
+
+    const PathScene<double>&scene_, &along_;
+    std::vector<bool> moving_;  // of each material: whether anything of it changes
+};
+
+/// Adds samples to both sums: of the picture, and of its change along `along`.
+void trace_paths_tangent(const PathScene<double>& scene, const PathScene<double>& along,
+                         const ThinLens& camera, const PathOptions& options,
+                         const SampleRange& samples, const PathSums& picture,
+                         const PathSums& tangent);
+
+}  // namespace photograd

@@ -1,0 +1,92 @@
+#include "photograd/scene/emit.h"
+
+#include "photograd/sampling/warp.h"
+
+namespace photograd {
+namespace {
+
+struct BoundingSphere {
+    Vec3<double> center;
+    double radius;
+
+    explicit BoundingSphere(const Box& box) {
+        Vec3<double> half;
+        for (int k = 0; k < 3; ++k) {
+            center[k] = 0.5 * (double(box.lo[k]) + double(box.hi[k]));
+            half[k] = 0.5 * (double(box.hi[k]) - double(box.lo[k]));
+        }
+        radius = length(half);
+    }
+};
+
+/// Parallel light of irradiance E from `towards`, through a point of the disc.
+Particle from_far(const BoundingSphere& around, const Vec3<double>& towards, const Vec3<double>& E,
+                  const Vec2<double>& place) {
+    const Vec2<double> p = square_to_disk(place);
+    const auto frame = Frame<double>::from_normal(towards);
+    Particle out;
+    out.origin =
+        around.center + around.radius * (p.x * frame.tangent + p.y * frame.bitangent + towards);
+    out.direction = -towards;
+    out.flux = E * (pi * around.radius * around.radius);
+    return out;
+}
+
+/// From a light without size at `position`, into a cap of directions around `axis`.
+template <class L>
+Particle from_point(const L& light, const Vec3<double>& axis, double height,
+                    const Vec2<double>& way) {
+    Particle out;
+    out.origin = light.position;
+    out.direction = Frame<double>::from_normal(axis).to_world(square_to_cap(way, height));
+    // The irradiance a metre away is what one steradian gets.
+    out.flux = light.at(out.origin + out.direction).radiance * (2 * pi * height);
+    return out;
+}
+
+Particle from_listed(const AnyLight<double>& any, const BoundingSphere& around,
+                     const Vec2<double>& place, const Vec2<double>& way) {
+    return std::visit(
+        [&]<class L>(const L& light) -> Particle {
+            if constexpr (requires { light.cos_outer; }) {
+                return from_point(light, light.axis, 1 - light.cos_outer, way);
+            } else if constexpr (requires { light.intensity; }) {
+                return from_point(light, Vec3<double>(0, 0, 1), 2.0, way);
+            } else {
+                const LightSample<double> s = sample_light(light, around.center, way);
+                if (!(s.pdf > 0)) return {};
+                return from_far(around, s.direction, s.radiance * (1 / s.pdf), place);
+            }
+        },
+        any.model);
+}
+
+Particle from_surface(const PathScene<double>& scene, const LightPiece& piece,
+                      const Vec2<double>& place, const Vec2<double>& way) {
+    const PathGeometry& geometry = *scene.geometry;
+    const PiecePoint at = geometry.lights.point_on(geometry.bvh, piece, place);
+    Particle out;
+    out.normal = at.normal;
+    out.direction =
+        Frame<double>::from_normal(at.normal).to_world(square_to_cosine_hemisphere(way));
+    out.origin = at.position + at.normal * geometry.offset;
+    out.flux = scene.emitted(piece.shape) * (pi * at.area);
+    return out;
+}
+
+}  // namespace
+
+Particle emit(const PathScene<double>& scene, double u, const Vec2<double>& place,
+              const Vec2<double>& way) {
+    const SceneLights& lights = scene.geometry->lights;
+    const Choice choice = lights.choose(u);
+    Particle out = choice.index < lights.listed_count()
+                       ? from_listed(scene.lights[static_cast<std::size_t>(choice.index)],
+                                     BoundingSphere(scene.geometry->bvh.bounds()), place, way)
+                       : from_surface(scene, lights.piece(choice.index), place, way);
+    out.flux *= 1 / choice.pmf;
+    out.entry = choice.index;
+    return out;
+}
+
+}  // namespace photograd

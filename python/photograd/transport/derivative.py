@@ -1,0 +1,140 @@
+"""Derivative pictures: how every pixel changes with one number of a scene.
+
+The mathematics is in cpp/photograd/render/path_tangent.h. Where `PathTracer.render_backward` gives
+the derivatives of one number by all parameters, this gives the derivative of all pixels by one.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+
+import numpy as np
+from photograd_course.suggest import choose_from
+
+from photograd.core import _core
+from photograd.data.camera import Camera
+from photograd.errors import RangeError, ShapeError, message
+from photograd.transport.accumulation import Accumulation
+from photograd.transport.scene import Array
+from photograd.transport.tracer import DEFAULTS, PathOptions, PathTracer
+
+SPELLING = re.compile(r"(?P<name>[^\[\]]+)(\[(?P<index>\d+(\s*,\s*\d+)*)\])?")
+
+
+def direction_of(params: Mapping[str, Array], parameter: str) -> dict[str, Array]:
+    """A step of one along a parameter: {its name: an array of its shape}.
+
+    Args:
+        params: those of a `PathTracer`.
+        parameter: a name, with the place of one entry or without: "materials.red.albedo[0]",
+            "textures.wood[2, 5, 0]". Without, all entries of the array rise together: all texels of
+            a texture, all channels of a colour.
+
+    Raises:
+        RangeError: no such parameter, or no such entry.
+    """
+    found = SPELLING.fullmatch(parameter.strip())
+    name = found["name"] if found else parameter
+    if found is None or name not in params:
+        known = choose_from(name, params)
+        raise RangeError(message("direction_of", "parameter", "one of the scene's", name, known))
+    shape = params[name].shape
+    if found["index"] is None:
+        return {name: np.ones(shape)}
+    index = tuple(int(part) for part in found["index"].split(","))
+    if len(index) != len(shape) or any(i >= n for i, n in zip(index, shape, strict=True)):
+        expected = f"a place in an array of shape {shape}"
+        raise RangeError(message("direction_of", "parameter", expected, parameter))
+    step = np.zeros(shape)
+    step[index] = 1.0
+    return {name: step}
+
+
+def derivative_image(
+    tracer: PathTracer, along: str | Mapping[str, Array], *, spp: int, seed: int,
+    options: PathOptions = DEFAULTS, camera: Camera | None = None,
+) -> tuple[Accumulation, Accumulation]:  # fmt: skip
+    """A picture and its derivative, from the same paths.
+
+    Both are linear radiance (H, W, 3); the derivative is per unit of the parameter. Paths and their
+    weights are held fixed, as in `PathTracer.render_backward`, whose interior term this is: edges
+    of shadows and silhouettes do not move. In float64, whatever the tracer's dtype.
+
+    Args:
+        tracer: the scene, at its present `params`.
+        along: what changes: a parameter as `direction_of` spells it, or {name: array} with a
+            change for each number of some of the params.
+        spp: samples a pixel.
+        seed: of all random numbers.
+        options: how light is looked for.
+        camera: None takes the scene's.
+
+    Returns:
+        The picture, and its derivative.
+
+    Raises:
+        RangeError: spp below 1, no such parameter, or a change that is not finite.
+        ShapeError: a change of another shape than its parameter.
+        Error: radiance that is not finite; names the pixel.
+    """
+    view = tracer.scene.camera if camera is None else camera
+    picture = Accumulation.empty(view.height, view.width)
+    derivative = Accumulation.empty(view.height, view.width)
+    add_derivative_samples(
+        tracer, picture, derivative, along, spp, seed=seed, options=options, camera=camera
+    )
+    return picture, derivative
+
+
+def add_derivative_samples(
+    tracer: PathTracer, picture: Accumulation, derivative: Accumulation,
+    along: str | Mapping[str, Array], spp: int, *, seed: int, options: PathOptions = DEFAULTS,
+    camera: Camera | None = None,
+) -> None:  # fmt: skip
+    """Add the next `spp` samples to both sums, in place; arguments as for `derivative_image`.
+
+    Raises:
+        As `derivative_image`; ShapeError: sums of another size; RangeError: of other counts.
+    """
+    view = tracer.scene.camera if camera is None else camera
+    shape = (view.height, view.width, 3)
+    for name, sums in (("picture", picture), ("derivative", derivative)):
+        if sums.radiance.shape != shape:
+            got = sums.radiance.shape
+            raise ShapeError(message("derivative_image", name, f"shape {shape}", got))
+    if picture.count != derivative.count:
+        expected = f"{picture.count} samples, as of the picture"
+        raise RangeError(message("derivative_image", "derivative", expected, derivative.count))
+    if spp < 1:
+        raise RangeError(message("derivative_image", "spp", "at least 1", spp))
+    step = direction_of(tracer.params, along) if isinstance(along, str) else along
+    moved = tracer.wide_arguments(_whole_direction(tracer.params, step), view)
+    _core.trace_paths_tangent(
+        **tracer.wide_arguments(camera=view),
+        **{f"v_{name}": moved[name] for name in ("parameters", "emission", "lights", "textures")},
+        options=options.numbers(seed), first=picture.count, count=spp,
+        radiance=picture.radiance, squares=picture.squares,
+        d_radiance=derivative.radiance, d_squares=derivative.squares,
+    )  # fmt: skip
+    picture.count += spp
+    derivative.count += spp
+    picture.check_finite("derivative_image")
+    derivative.check_finite("derivative_image")
+
+
+def _whole_direction(params: Mapping[str, Array], step: Mapping[str, Array]) -> dict[str, Array]:
+    """A change of every parameter, 0 where `step` says nothing."""
+    whole = {name: np.zeros(np.shape(value)) for name, value in params.items()}
+    for name, value in step.items():
+        if name not in params:
+            known = choose_from(name, params)
+            raise RangeError(message("derivative_image", "along", "parameters", name, known))
+        change = np.asarray(value, np.float64)
+        if change.shape != np.shape(params[name]):
+            expected = f"shape {np.shape(params[name])}"
+            raise ShapeError(message("derivative_image", name, expected, change.shape))
+        if not np.isfinite(change).all():
+            raise RangeError(message("derivative_image", name, "finite numbers", change))
+        whole[name] = change
+    return whole

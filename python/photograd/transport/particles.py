@@ -1,0 +1,180 @@
+"""Light tracing: particles from the lights, and the irradiance of what they land on.
+
+The mathematics is in cpp/photograd/scene/emit.h (how they leave), render/particle_walk.h (what
+surfaces do to them) and render/light_map.h (where they land).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from photograd.core import _core
+from photograd.errors import RangeError, ShapeError, message
+from photograd.transport.accumulation import Accumulation
+from photograd.transport.scene import Array
+from photograd.transport.tracer import NEVER, PathTracer
+
+
+@dataclass(frozen=True)
+class ParticleOptions:
+    """How far particles are followed.
+
+    Attributes:
+        max_depth: segments of the longest way; 1 lands straight from the lights.
+        roulette_from: the first surface at which a particle may end by chance; None never ends one.
+
+    Raises:
+        RangeError: none of these.
+    """
+
+    max_depth: int = 64
+    roulette_from: int | None = 4
+
+    def __post_init__(self) -> None:
+        if not 1 <= self.max_depth <= 4096:
+            raise RangeError(message("ParticleOptions", "max_depth", "1 to 4096", self.max_depth))
+        if self.roulette_from is not None and self.roulette_from < 0:
+            got = self.roulette_from
+            raise RangeError(message("ParticleOptions", "roulette_from", "at least 0", got))
+
+    def numbers(self, seed: int) -> tuple[int, int, int]:
+        """As the core takes them."""
+        late = NEVER if self.roulette_from is None else self.roulette_from
+        return self.max_depth, late, seed
+
+
+PARTICLES = ParticleOptions()
+
+
+@dataclass(frozen=True, eq=False)
+class Receiver:
+    """A rectangle of cells that counts the light through its front and lets it go on.
+
+    It may lie on a surface. Seen from its front with edge_x to the right and edge_y up, row 0 is on
+    top.
+
+    Attributes:
+        corner: (3,) metres.
+        edge_x, edge_y: (3,) metres, perpendicular; the front is the side of edge_x x edge_y.
+        height, width: cells.
+
+    Raises:
+        ShapeError: numbers that are not three finite ones.
+        RangeError: edges without length or not perpendicular, or no cells.
+    """
+
+    corner: Any
+    edge_x: Any
+    edge_y: Any
+    height: int
+    width: int
+
+    def __post_init__(self) -> None:
+        for name in ("corner", "edge_x", "edge_y"):
+            value = np.array(getattr(self, name), np.float64)
+            if value.shape != (3,) or not np.isfinite(value).all():
+                raise ShapeError(message("Receiver", name, "three finite numbers", value))
+            object.__setattr__(self, name, value)
+        x, y = np.linalg.norm(self.edge_x), np.linalg.norm(self.edge_y)
+        if not (x > 0 and y > 0) or abs(float(self.edge_x @ self.edge_y)) > 1e-6 * x * y:
+            expected = "perpendicular edges of some length"
+            got = f"{self.edge_x} and {self.edge_y}"
+            raise RangeError(message("Receiver", "edge_x, edge_y", expected, got))
+        if self.height < 1 or self.width < 1:
+            got = f"{self.height} by {self.width}"
+            raise RangeError(message("Receiver", "height, width", "at least 1 cell", got))
+
+    @property
+    def cell_area(self) -> float:
+        """m^2."""
+        whole = np.linalg.norm(np.cross(self.edge_x, self.edge_y))
+        return float(whole) / (self.height * self.width)
+
+    @property
+    def rows(self) -> Array:
+        """(3, 3) corner and edges, as the core takes them."""
+        return np.array([self.corner, self.edge_x, self.edge_y])
+
+
+def trace_light(
+    tracer: PathTracer, receiver: Receiver, particles: int, *, seed: int,
+    options: ParticleOptions = PARTICLES, sums: Accumulation | None = None,
+) -> Accumulation:  # fmt: skip
+    """The irradiance of a receiver, by particles from all lights of the scene.
+
+    `mean` of what is returned is (H, W, 3) in W/m^2, linear Rec. 709, and times `cell_area` the
+    watts that each cell gets; `standard_error` is right where a particle seldom comes to a cell
+    twice. The same seed gives the same bits on any number of threads. In float64, whatever the
+    tracer's dtype.
+
+    Args:
+        tracer: the scene, at its present `params`.
+        receiver: what is lit.
+        particles: how many leave the lights.
+        seed: of all random numbers.
+        options: how far particles are followed.
+        sums: of earlier particles of the same seed, to go on with; changed in place.
+
+    Raises:
+        RangeError: particles below 1, or a scene without lights.
+        ShapeError: sums of another shape than the receiver.
+    """
+    shape = (receiver.height, receiver.width, 3)
+    total = Accumulation.empty(*shape[:2]) if sums is None else sums
+    if total.radiance.shape != shape:
+        raise ShapeError(message("trace_light", "sums", f"shape {shape}", total.radiance.shape))
+    _check_count("trace_light", particles)
+    _core.trace_light(
+        **scene_arguments(tracer), options=options.numbers(seed), first=total.count,
+        count=particles, rectangle=receiver.rows, irradiance=total.radiance,
+        squares=total.squares,
+    )  # fmt: skip
+    total.count += particles
+    total.check_finite("trace_light")
+    return total
+
+
+@dataclass(frozen=True, eq=False)
+class Emitted:
+    """Particles as they leave their lights.
+
+    Attributes:
+        origins: (N, 3) metres.
+        directions: (N, 3) of unit length, the way the light goes.
+        flux: (N, 3) W; its mean over all particles is the power of all lights, of those at infinity
+            what falls onto the disc that their particles start from.
+        entries: (N,) which light: first those of the list without a surface, in their order, then
+            what emits of the shapes, piece by piece.
+    """
+
+    origins: Array
+    directions: Array
+    flux: Array
+    entries: Array
+
+
+def emit_particles(tracer: PathTracer, count: int, *, seed: int, first: int = 0) -> Emitted:
+    """The particles that `trace_light` follows, `first` to `first + count - 1`.
+
+    Raises:
+        RangeError: count below 1, or a scene without lights.
+    """
+    _check_count("emit_particles", count)
+    return Emitted(
+        *_core.emit_particles(**scene_arguments(tracer), seed=seed, first=first, count=count)
+    )
+
+
+def scene_arguments(tracer: PathTracer) -> dict[str, Any]:
+    """The scene as the core's functions take it that have no camera."""
+    arguments = tracer.wide_arguments()
+    del arguments["camera"]
+    return arguments
+
+
+def _check_count(function: str, particles: int) -> None:
+    if particles < 1:
+        raise RangeError(message(function, "particles", "at least 1", particles))
