@@ -18,7 +18,7 @@
 // which holds whatever the lobe, as long as it is its own way back. What lies between surfaces is not looked at.
 //
 // Numbers are a function of seed, particle and vertex: block 0 chooses the light and the place, 1 the way, 2 + k what
-// vertex k does. The step of the key is 1, so that they are not those of a picture of the same seed.
+// vertex k does, 2^20 + k whether it is passed (coverage.h). The step of the key is 1, so that they are not those of a picture of the same seed.
 #pragma once
 
 #include <algorithm>
@@ -26,6 +26,7 @@
 #include <limits>
 #include <optional>
 
+#include "photograd/render/coverage.h"
 #include "photograd/render/ray_lanes.h"
 #include "photograd/scene/emit.h"
 
@@ -148,6 +149,7 @@ private:
         const Material<double>& material = material_of(lane);
         const Vec3<double> back = -lane.ray.direction;
         const SurfaceSide<double> side(*lane.hit, back, material.transmits());
+        if (material.sheer && passes(lane, material, side, depth)) return;
         const Philox4 words = random_block(lane.key, 2 + static_cast<std::uint32_t>(depth));
         const Vec2<double> u2(uniform_from<double>(words[0]), uniform_from<double>(words[1]));
         Vec3<double> out;
@@ -165,6 +167,22 @@ private:
         lane.smooth = lane.smooth && next.lobe >= 0;
         lane.ray = {side.start(lane.hit->position, out, scene_.geometry->offset), out};
         lane.alive = true;
+    }
+    /// Whether the particle goes straight on behind a surface that covers only in part.
+    bool passes(Lane& lane, const Material<double>& material, const SurfaceSide<double>& side,
+                int depth) const {
+        constexpr std::uint32_t cover_block = 1u << 20;  // behind those of all vertices
+        const Philox4 words =
+            random_block(lane.key, cover_block + static_cast<std::uint32_t>(depth));
+        const Cover<double> chosen = choose_cover(material.alpha, material.alpha,
+                                                  scene_.geometry->textures.cutoff(number_of(lane)),
+                                                  uniform_from<double>(words[0]));
+        lane.beta *= chosen.weight;
+        if (!chosen.passes) return false;
+        const Vec3<double>& way = lane.ray.direction;
+        lane.ray.origin = side.start(lane.hit->position, way, scene_.geometry->offset);
+        lane.alive = !is_black(lane.beta);
+        return true;
     }
     /// A direction `out` and its density. Where normals are bent, half of the directions of rough models are drawn as
     /// around the geometric one: those that the surface can see and its shading normal cannot are then drawn as well.

@@ -37,8 +37,23 @@ PathTangent::PathTangent(const PathScene<double>& scene, const PathScene<double>
     }
 }
 
-Vec3<double> PathTangent::emitted(std::int32_t shape, const Vec3<double>& direction) const {
-    if (shape >= 0) return along_.emitted(shape);
+PathTangent::Here PathTangent::at(std::size_t material, const Vec2<double>& uv) const {
+    const SurfaceTextures& textures = scene_.geometry->textures;
+    const std::span<const TextureUse> uses = textures.of(material);
+    const Material<double>&base = scene_.materials[material], &along = along_.materials[material];
+    if (uses.empty()) return {base, along};
+    return {textured(base, uses, textures, scene_.texels, uv),
+            textured_tangent(base, along, uses, textures, scene_.texels, along_.texels, uv)};
+}
+
+Vec3<double> PathTangent::emitted(std::int32_t shape, const Vec2<double>& uv,
+                                  const Vec3<double>& direction) const {
+    if (shape >= 0) {
+        const EmissionUse* use = scene_.geometry->textures.glows(static_cast<std::size_t>(shape));
+        if (use == nullptr) return along_.emitted(shape);
+        return along_.emitted(shape) * scene_.glow(*use, uv) +
+               scene_.emitted(shape) * along_.glow(*use, uv);
+    }
     Vec3<double> sum(0);
     for (const std::int32_t i : scene_.geometry->lights.at_infinity()) {
         const auto k = static_cast<std::size_t>(i);
@@ -48,40 +63,59 @@ Vec3<double> PathTangent::emitted(std::int32_t shape, const Vec3<double>& direct
 }
 
 Vec3<double> PathTangent::sent(const LightVertex<double>& light) const {
-    if (light.shape != SceneLights::delta) return emitted(light.shape, light.direction);
+    if (light.shape != SceneLights::delta) return emitted(light.shape, light.uv, light.direction);
     const auto k = static_cast<std::size_t>(light.listed);
     return delta_tangent(scene_.lights[k], along_.lights[k], light.point);
+}
+
+/// t of what all veils leave, a product.
+double PathTangent::through(const LightVertex<double>& light) const {
+    double t = 0;
+    for (std::size_t i = 0; i < light.veils.size(); ++i) {
+        const auto m = static_cast<std::size_t>(light.veils[i].material);
+        if (!moving_[m]) continue;
+        double part = -at(m, light.veils[i].uv).change.alpha;
+        for (std::size_t j = 0; j < light.veils.size(); ++j)
+            if (j != i) part *= light.veils[j].left;
+        t += part;
+    }
+    return t;
+}
+
+/// What f and f^l add to t(U), where the material changes.
+Vec3<double> PathTangent::reflected(const PathVertex<double>& v, const Here& here,
+                                    const Vec3<double>& ahead) const {
+    Vec3<double> t(0);
+    if (v.weight > 0 && !v.passed)
+        t += value_tangent(here.value, here.change, v.wo, v.wi, v.lobe) * ahead * v.weight;
+    if (v.light.weight > 0)
+        t += value_tangent(here.value, here.change, v.wo, v.light.wi, -1) * v.light.sent *
+             (v.light.weight * v.light.through);
+    return t;
 }
 
 PathTangent::Pair PathTangent::gather(const Path<double>& path) const {
     Vec3<double> L(0), t(0);
     for (std::size_t k = path.size(); k-- > 0;) {
         const PathVertex<double>& v = path[k];
-        const bool lit = v.light.weight > 0, goes_on = v.weight > 0;
+        const Vec3<double> U = uncovered(v, L);
         t *= v.value * v.weight;
-        if (v.shape >= 0 && (lit || goes_on)) {
+        double d_coverage = 0;
+        if (v.shape >= 0) {
             const auto m = static_cast<std::size_t>(
                 scene_.geometry->material[static_cast<std::size_t>(v.shape)]);
             if (moving_[m]) {
-                const SurfaceTextures& textures = scene_.geometry->textures;
-                const std::span<const TextureUse> uses = textures.of(m);
-                Material<double> here = scene_.materials[m], change = along_.materials[m];
-                if (!uses.empty()) {
-                    change = textured_tangent(here, change, uses, textures, scene_.texels,
-                                              along_.texels, v.uv);
-                    here = textured(here, uses, textures, scene_.texels, v.uv);
-                }
-                if (goes_on) t += value_tangent(here, change, v.wo, v.wi, v.lobe) * L * v.weight;
-                if (lit)
-                    t += value_tangent(here, change, v.wo, v.light.wi, -1) * v.light.sent *
-                         v.light.weight;
+                const Here here = at(m, v.uv);
+                t += reflected(v, here, L);
+                d_coverage = v.coverage_slope * here.change.alpha;
             }
         }
-        if (lit) t += v.light.f * sent(v.light) * v.light.weight;
-        if (v.emission_weight > 0) t += emitted(v.shape, v.direction) * v.emission_weight;
-        L *= v.value * v.weight;
-        if (lit) L += v.light.f * v.light.sent * v.light.weight;
-        if (v.emission_weight > 0) L += v.emitted * v.emission_weight;
+        if (v.light.weight > 0)
+            t += v.light.f * (sent(v.light) * v.light.through + v.light.sent * through(v.light)) *
+                 v.light.weight;
+        if (v.emission_weight > 0) t += emitted(v.shape, v.uv, v.direction) * v.emission_weight;
+        t = t * v.coverage + U * d_coverage;
+        L = U * v.coverage;
     }
     return {L, t};
 }

@@ -5,6 +5,9 @@
 //
 //   t_k = w_k t(Le_k) + w^l_k (t(f^l_k) L^l_k + f^l_k t(L^l_k)) + s_k (t(f_k) L_{k+1} + f_k t_{k+1})       t_n = 0
 //
+// What covers only in part (coverage.h) multiplies: with U_k the sum of the three terms of L_k, veils as a factor of L^l_k,
+// and the weight c_k of staying or passing, t_k = c_k t(U_k) + U_k dc_k/dalpha t(alpha).
+//
 // All weights are detached, as in the adjoint: <d_image, t> is <v, derivative of trace_paths_backward> for the same
 // paths. One pass costs little more than a picture and gives one parameter's derivative in all pixels, where the adjoint
 // gives all parameters' in one number. In double alone: such a picture is looked at and compared, not fitted.
@@ -25,7 +28,16 @@ public:
     [[nodiscard]] Pair gather(const Path<double>& path) const;
 
 private:
-    [[nodiscard]] Vec3<double> emitted(std::int32_t shape, const Vec3<double>& direction) const;
+    /// A material as it is at one point, and how it changes there.
+    struct Here {
+        Material<double> value, change;
+    };
+    [[nodiscard]] Here at(std::size_t material, const Vec2<double>& uv) const;
+    [[nodiscard]] Vec3<double> emitted(std::int32_t shape, const Vec2<double>& uv,
+                                       const Vec3<double>& direction) const;
+    [[nodiscard]] double through(const LightVertex<double>& light) const;
+    [[nodiscard]] Vec3<double> reflected(const PathVertex<double>& v, const Here& here,
+                                         const Vec3<double>& ahead) const;
     [[nodiscard]] Vec3<double> sent(const LightVertex<double>& light) const;
 
     const PathScene<double>&scene_, &along_;

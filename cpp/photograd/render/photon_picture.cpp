@@ -59,12 +59,27 @@ private:
             own = textured(scene_.materials[m], uses, geometry.textures, scene_.texels, hit.uv);
         const Material<double>& material = uses.empty() ? scene_.materials[m] : own;
         const Vec3<double> back = -view.ray.direction;
-        if (dot(hit.outside, back) > 0) view.L += view.beta * scene_.emitted(hit.shape);
         const SurfaceSide<double> side(hit, back, material.transmits());
+        if (material.sheer && passes(view, depth, m, material, hit, side)) return;
+        if (dot(hit.outside, back) > 0) view.L += view.beta * scene_.emitted(hit.shape, hit.uv);
         if (material.is_delta())
             go_on(view, depth, material, hit, side);
         else
             view.L += view.beta * reflected(material, hit, side);
+    }
+
+    /// Whether the view goes on behind a surface that covers only in part.
+    bool passes(View& view, int depth, std::size_t number, const Material<double>& material,
+                const SurfaceHit<double>& hit, const SurfaceSide<double>& side) {
+        const Philox4 words = numbers_(view.key, 1 + static_cast<std::uint32_t>(depth));
+        const Cover<double> chosen =
+            choose_cover(material.alpha, material.alpha, scene_.geometry->textures.cutoff(number),
+                         uniform_from<double>(words[1]));
+        view.beta *= chosen.weight;
+        if (!chosen.passes) return false;
+        view.ray.origin = side.start(hit.position, view.ray.direction, scene_.geometry->offset);
+        view.alive = true;
+        return true;
     }
 
     /// What the photons around a place send to the viewer.

@@ -70,7 +70,10 @@ Particle from_surface(const PathScene<double>& scene, const LightPiece& piece,
     out.direction =
         Frame<double>::from_normal(at.normal).to_world(square_to_cosine_hemisphere(way));
     out.origin = at.position + at.normal * geometry.offset;
-    out.flux = scene.emitted(piece.shape) * (pi * at.area);
+    const bool painted = geometry.textures.glows(static_cast<std::size_t>(piece.shape)) != nullptr;
+    const Vec2<double> uv =
+        painted ? piece_uv(geometry.bvh, piece, at.position) : Vec2<double>(0.0);
+    out.flux = scene.emitted(piece.shape, uv) * (pi * at.area);
     return out;
 }
 
