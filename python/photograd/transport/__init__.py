@@ -10,6 +10,7 @@ from __future__ import annotations
 from photograd.transport.accumulation import Accumulation
 from photograd.transport.builtin import BUILTIN, builtin_scene
 from photograd.transport.lens import Lens
+from photograd.transport.medium import BOUNDARY, VACUUM, DensityGrid, Medium
 from photograd.transport.mesh_files import ModelFile, model_scene, read_model
 from photograd.transport.scene import Environment, Material, MeshShape, Scene, SphereShape
 from photograd.transport.scene_file import read_scene
@@ -17,11 +18,15 @@ from photograd.transport.texture import NormalMap, Texture, TextureUse, read_tex
 from photograd.transport.tracer import PathOptions, PathTracer
 
 __all__ = [
+    "BOUNDARY",
     "BUILTIN",
+    "VACUUM",
     "Accumulation",
+    "DensityGrid",
     "Environment",
     "Lens",
     "Material",
+    "Medium",
     "MeshShape",
     "ModelFile",
     "NormalMap",
