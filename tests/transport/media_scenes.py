@@ -22,7 +22,7 @@ from photograd.transport.shapes import box, rectangle
 from tests.transport.scenes import BLACK, FLOOR, GREY, LAMP, view
 
 GLASS = Material("glass", {"eta": 1.4, "tint": [1.0, 1.0, 1.0]})
-FROSTED = Material("rough_dielectric", {"eta": 1.4, "roughness": 0.5})
+FROSTED = Material("rough_dielectric", {"eta": 1.4, "roughness": 0.8})
 FOG = Medium([0.9, 0.6, 0.4], [0.8, 0.7, 0.9], values={"g": 0.4})
 WAX = Medium([4.0, 5.0, 6.0], [0.95, 0.9, 0.8], "cornette_shanks", {"g": 0.2})
 INK = Medium([0.3, 1.1, 2.2])

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
 from photograd.core import _core
-from photograd.lights import PointLight
-from photograd.transport import Material, Medium, PathOptions, PathTracer, Scene
+from photograd.lights import DirectionalLight, PointLight
+from photograd.transport import Accumulation, Material, Medium, PathOptions, PathTracer, Scene
 from photograd_course.gradcheck import check_gradient
 from photograd_course.mutants import check_mutants
 
@@ -22,9 +21,12 @@ from tests.transport.media_scenes import (
     ball_of,
     fog_box,
     haze,
+    pencil,
     smoke,
 )
 from tests.transport.test_adjoint import proof
+from tests.transport.test_media_closed_forms import h_function, slab
+from tests.transport.test_strategies import assert_same_mean
 
 OPTIONS = PathOptions(max_depth=5, roulette_from=2, sampler="independent")
 LAMP = (PointLight([0.8, 1.6, 0.9], [5.0, 4.0, 3.0]),)
@@ -66,7 +68,7 @@ def test_every_strategy(strategy: str) -> None:
 
 
 def test_wrong_gradients_die() -> None:
-    scene = ball_of(smoke(), size=3, lights=LAMP, floor=True)
+    scene = ball_of(FOG, size=3, floor=True)
     function, backward, start = proof(scene, OPTIONS)
     d = 0.2 + np.random.default_rng(5).random((3, 3, 3))
     deaths = check_mutants(
@@ -93,38 +95,67 @@ def test_empty_and_black_media_have_derivatives() -> None:
     assert np.abs(backward(start, np.ones((6, 6, 3)))["media.fog.density"]).min() > 0
 
 
-MEANS: dict[str, tuple[Any, int]] = {
-    "fog": (lambda: ball_of(FOG, size=4, lights=LAMP, sky=0.3), 12288),
-    "grid": (
-        lambda: ball_of(
-            replace(smoke(), sigma_t=np.array([2.0, 1.6, 1.2])), size=4, lights=LAMP, sky=0.3
-        ),
-        12288,
-    ),
-    "wax": (lambda: ball_of(WAX, FROSTED, size=4, sky=1.0), 12288),
-}
+def test_derivatives_in_closed_form() -> None:
+    # Nothing is held. Sunlight from above, scattered once at the depth h in a slab of thickness d:
+    # L = albedo p(0) E exp(-sigma h) (1 - exp(-sigma d)), as in test_media_closed_forms.
+    g, h, d, E = 0.3, 0.25, 0.75, 2.0
+    sigma, albedo = np.array([0.3, 1.1, 2.2]), np.array([0.9, 0.5, 0.2])
+    camera = pencil((0, 1.0 - h, 1), (0, 1.0 - h, 0))
+    sun = DirectionalLight([0, 1, 0], [E] * 3)
+    scene = slab(Medium(sigma, albedo, values={"g": g}), d, camera, sun, sky=0.0)
+    tracer = PathTracer(scene, dtype=np.float64)
+    found = tracer.render_backward(
+        np.ones((1, 1, 3)), spp=32768, seed=3, options=PathOptions(max_depth=2)
+    )
+    p = (1 - g * g) / (4 * np.pi * (1 + g * g) ** 1.5)
+    lost, T = np.exp(-sigma * h), np.exp(-sigma * d)
+    L = albedo * p * E * lost * (1 - T)
+    by_g = -2 * g / (1 - g * g) - 3 * g / (1 + g * g)
+    assert found["media.inside.g"] == pytest.approx(by_g * L.sum(), rel=0.01)
+    np.testing.assert_allclose(found["media.inside.albedo"], L / albedo, rtol=0.01)
+    less, more = h * L, albedo * p * E * lost * d * T  # which nearly cancel in the third channel
+    error = np.abs(found["media.inside.sigma_t"] - (more - less))
+    assert (error < 0.01 * (more + less)).all()
 
 
-@pytest.mark.parametrize("name", MEANS)
-def test_differences_of_converged_means(name: str) -> None:
-    # Nothing is held but the random numbers: paths move with the parameters, and the derivative
-    # has paths of its own. All coordinates of a parameter move together.
-    make, spp = MEANS[name]
-    tracer = PathTracer(make(), dtype=np.float64)
-    start = {key: value.copy() for key, value in tracer.params.items()}
-    d = np.full((4, 4, 3), 1.0)
-    options = PathOptions(max_depth=6, roulette_from=None)
-    found = tracer.render_backward(d, spp=spp, seed=11, options=options)
-    for key in (key for key in start if key.startswith("media.")):
-        step = 0.02 if key.endswith(".g") else 0.05
-        v = np.ones_like(start[key]) if key.endswith(".g") else start[key]
-        values = []
-        for sign in (-1, 1):
-            tracer.params = {**start, key: start[key] + sign * step * v}
-            picture = tracer.render(spp=spp, seed=12, options=options)
-            values.append(float((d * picture.mean).sum()))
-        difference = (values[1] - values[0]) / (2 * step)
-        assert float((found[key] * v).sum()) == pytest.approx(difference, rel=0.01), key
+def test_derivative_of_a_half_space_by_its_albedo() -> None:
+    # All orders of scattering: R = 1 - H(mu) sqrt(1 - a), differentiated numerically.
+    a = np.array([0.5, 0.7, 0.85])
+    scene = slab(Medium(1.0, a), 60.0, pencil((0, 0, 5), (0, 0, 0)), width=4000.0)
+    options = PathOptions("bsdf", max_depth=400)
+    found = PathTracer(scene, dtype=np.float64).render_backward(
+        np.ones((1, 1, 3)), spp=32768, seed=4, options=options
+    )
+
+    def R(albedo: float) -> float:
+        return 1 - h_function(albedo, 1.0) * np.sqrt(1 - albedo)
+
+    expected = [(R(x + 1e-4) - R(x - 1e-4)) / 2e-4 for x in a]
+    np.testing.assert_allclose(found["media.inside.albedo"], expected, rtol=0.01)
+    # A half space has no length to compare sigma_t with.
+    assert np.abs(found["media.inside.sigma_t"]).max() < 0.02
+
+
+@pytest.mark.parametrize("medium", [FOG, smoke()])
+def test_paths_of_other_media_keep_the_mean(medium: Medium) -> None:
+    # What the derivative differentiates is the picture of some media by paths drawn for others;
+    # its mean is that of paths drawn for themselves. So the derivative is the mean's.
+    tracer = PathTracer(ball_of(medium, size=4, lights=LAMP, sky=0.3), dtype=np.float64)
+    options = PathOptions(max_depth=5, roulette_from=None, sampler="independent")
+    start = dict(tracer.params)
+    moved = {"sigma_t": 1.25, "albedo": 0.9, "g": 1.3, "density": 0.8}
+    tracer.params = {
+        key: value * moved[key.split(".")[-1]] if key.startswith("media.") else value
+        for key, value in start.items()
+    }
+    own = tracer.render(spp=4096, seed=1, options=options)
+    other = Accumulation.empty(4, 4)
+    tracer.add_samples(other, 4096, seed=2, options=options, sampling_params=start)
+    tracer.params = start
+    unmoved = tracer.render(spp=4096, seed=3, options=options)
+    assert_same_mean(own, other, 2, 0.05)
+    with pytest.raises(AssertionError):
+        assert_same_mean(unmoved, other, 2, 0.05)
 
 
 @pytest.mark.parametrize("medium", [FOG, smoke()])

@@ -26,7 +26,6 @@ SCENES = {
 }
 WRONG_PICTURE = {
     "one channel's density": "divided by the density of red, though any channel may have drawn",
-    "channels weighed one by one": "each channel is divided by its own density",
     "light through fog": "nothing is lost on the way from a light",
     "camera through fog": "nothing is lost on the way to a vertex",
     "albedo forgotten": "all that is lost is scattered",
@@ -115,8 +114,6 @@ def product(steps: Any, name: str, wrong: str | None, *, shadow: bool) -> tuple[
 def segment_weight(v: dict[str, Any], shares: Any, wrong: str | None) -> Any:
     if wrong == "one channel's density":
         return shares[0] / v["chance"][0]
-    if wrong == "channels weighed one by one":
-        return shares / v["chance"]
     return 1 / v["chance"].mean()
 
 

@@ -31,13 +31,12 @@ def wax(size: int = 256) -> Scene:
     smoke_at = np.array([1.1, RADIUS, 0.0])
     shapes: tuple[Shape, ...] = (
         rectangle("table", [-4, 0, 3], [8, 0, 0], [0, 0, -7], "table"),
-        SphereShape("wax ball", np.array([-1.1, RADIUS, 0.0]), RADIUS, "skin", interior="wax"),
+        SphereShape("wax ball", np.array([-1.1, RADIUS, 0.0]), RADIUS, BOUNDARY, interior="wax"),
         SphereShape("amber ball", np.array([0.0, RADIUS, -0.2]), RADIUS, "glass", interior="amber"),
         SphereShape("smoke ball", smoke_at, RADIUS, BOUNDARY, interior="smoke"),
     )
     materials = {
         "table": Material("lambert", {"albedo": [0.5, 0.48, 0.45]}),
-        "skin": Material("rough_dielectric", {"eta": 1.4, "roughness": 0.35}),
         "glass": Material("glass", {"eta": 1.54, "tint": [1.0, 1.0, 1.0]}),
     }
     box = np.eye(4)
