@@ -6,6 +6,8 @@
 #include "path_args.h"
 #include "photograd/render/ambient_occlusion.h"
 #include "photograd/render/path.h"
+#include "photograd/render/volume_path.h"
+#include "texture_args.h"
 
 namespace photograd {
 namespace {
@@ -64,72 +66,21 @@ std::shared_ptr<PathGeometry> build(const std::vector<MeshArrays>& meshes, const
         listed);
 }
 
-/// (H, W, C, wrap_u, wrap_v); (texture, channel, first, count, lo, hi); (values, wrap_u, wrap_v).
-using Layout = std::tuple<int, int, int, int, int>;
-using Use = std::tuple<int, int, int, int, double, double>;
-using BentNormals = std::tuple<py::array, int, int>;
-
-TextureLayout layout_of(const ArrayArgs& args, const Layout& given) {
-    const auto [height, width, channels, u, v] = given;
-    if (height < 1 || width < 1 || channels < 1 || channels > max_channels)
-        args.range("layouts", "textures (H, W, 1 to 4)", "others");
-    if (u < 0 || u > 2 || v < 0 || v > 2) args.range("wrap", "0 to 2", "others");
-    return {{height, width}, channels, static_cast<Wrap>(u), static_cast<Wrap>(v)};
-}
-
-void set_textures(PathGeometry& geometry, const std::vector<Layout>& layouts,
-                  const std::vector<std::vector<Use>>& uses,
-                  const std::vector<std::optional<BentNormals>>& normal_maps,
-                  const std::vector<bool>& directed, const std::vector<double>& cutoffs,
-                  const std::vector<std::pair<int, int>>& emission) {
-    SurfaceTextures out;
-    out.directed = directed;
-    out.cutoffs = cutoffs;
-    ArrayArgs args("PathTracer");
-    for (const Layout& given : layouts) out.layouts.push_back(layout_of(args, given));
-    for (const std::vector<Use>& of_material : uses) {
-        out.uses.emplace_back();
-        for (const auto& [texture, channel, first, count, lo, hi] : of_material) {
-            if (texture < 0 || texture >= static_cast<int>(layouts.size()) || channel < 0 ||
-                first < 0 || count < 1 || first + count > max_parameters ||
-                channel + count > out.layouts[static_cast<std::size_t>(texture)].channels)
-                args.range("uses", "channels of textures that are there", "others");
-            out.uses.back().push_back({texture, channel, first, count, lo, hi});
-        }
-    }
-    for (const auto& [texture, channel] : emission) {
-        if (texture >= static_cast<int>(layouts.size()) || channel < 0 ||
-            (texture >= 0 && channel + 3 > out.layouts[static_cast<std::size_t>(texture)].channels))
-            args.range("emission", "three channels of a texture that is there", "others");
-        out.emission.push_back({texture, channel});
-    }
-    for (const std::optional<BentNormals>& given : normal_maps) {
-        NormalMap map;
-        if (given) {
-            const auto& [values, u, v] = *given;
-            ArrayArgs own("PathTracer");
-            const float* n = own.in<float>("normal_maps", values, "H W 3");
-            const auto H = static_cast<int>(own.size("H")), W = static_cast<int>(own.size("W"));
-            map.layout = layout_of(own, {H, W, 3, u, v});
-            map.values.assign(n, n + 3 * map.layout.shape.texels());
-        }
-        out.normal_maps.push_back(std::move(map));
-    }
-    geometry.textures = std::move(out);
-}
-
 void trace(const PathGeometry& geometry, const std::vector<std::string>& models,
            const py::array& parameters, const std::optional<py::array>& sampling_parameters,
            const py::array& emission, const LightTuples& lights,
            const std::vector<py::array>& textures,
            const std::optional<std::vector<py::array>>& sampling_textures,
+           const std::vector<MediumTuple>& media,
+           const std::optional<std::vector<MediumTuple>>& sampling_media,
            const py::tuple& camera_numbers, const Options& given, std::uint32_t first,
            std::uint32_t count, py::array radiance, py::array squares) {
     dispatch_real("trace_paths", "parameters", parameters, [&](auto real) {
         using R = decltype(real);
         ArrayArgs args("trace_paths");
         const SceneNumbers<R> numbers(args, geometry, models, parameters, sampling_parameters,
-                                      emission, lights, textures, sampling_textures);
+                                      emission, lights, textures, sampling_textures, media,
+                                      sampling_media);
         const ThinLens camera = thin_lens(camera_numbers);
         const std::string axes =
             std::to_string(camera.height) + " " + std::to_string(camera.width) + " 3";
@@ -144,15 +95,17 @@ void trace(const PathGeometry& geometry, const std::vector<std::string>& models,
 void trace_backward(const PathGeometry& geometry, const std::vector<std::string>& models,
                     const py::array& parameters, const py::array& emission,
                     const LightTuples& lights, const std::vector<py::array>& textures,
-                    const py::tuple& camera_numbers, const Options& given, std::uint32_t spp,
-                    const std::optional<py::array>& counts, const py::array& d_image,
-                    py::array d_parameters, py::array d_emission, std::vector<py::array> d_lights,
-                    std::vector<py::array> d_textures) {
+                    const std::vector<MediumTuple>& media, const py::tuple& camera_numbers,
+                    const Options& given, std::uint32_t spp, const std::optional<py::array>& counts,
+                    const py::array& d_image, py::array d_parameters, py::array d_emission,
+                    std::vector<py::array> d_lights, std::vector<py::array> d_textures,
+                    std::vector<py::array> d_media,
+                    std::vector<std::optional<py::array>> d_densities) {
     dispatch_real("trace_paths_backward", "parameters", parameters, [&](auto real) {
         using R = decltype(real);
         ArrayArgs args("trace_paths_backward");
         const SceneNumbers<R> numbers(args, geometry, models, parameters, std::nullopt, emission,
-                                      lights, textures, std::nullopt);
+                                      lights, textures, std::nullopt, media, std::nullopt);
         const ThinLens camera = thin_lens(camera_numbers);
         const double* d = args.in<double>(
             "d_image", d_image,
@@ -168,6 +121,7 @@ void trace_backward(const PathGeometry& geometry, const std::vector<std::string>
                        std::to_string(d_textures.size()));
         for (std::size_t t = 0; t < layouts.size(); ++t)
             to_textures.push_back(args.out<R>("d_textures", d_textures[t], axes_of(layouts[t])));
+        const MediaOutputs<R> to_media(geometry, numbers.media, d_media, d_densities);
         const PathOptions options = options_of(args, given);
         if (spp < 1) args.range("spp", "at least 1 sample", "0");
         const std::uint32_t* own = nullptr;
@@ -179,9 +133,9 @@ void trace_backward(const PathGeometry& geometry, const std::vector<std::string>
                 args.range("counts", "at least 1 sample of each pixel", "0");
         }
         const py::gil_scoped_release release;
-        trace_paths_backward(
-            numbers.scene, camera, options, spp, own, d,
-            PathDerivatives<R>{to_parameters, to_emission, to_lights, to_textures});
+        trace_paths_backward(numbers.scene, camera, options, spp, own, d,
+                             PathDerivatives<R>{to_parameters, to_emission, to_lights, to_textures,
+                                                to_media.rows, to_media.densities});
     });
 }
 
@@ -191,41 +145,70 @@ py::list colors(const Vec3<double>& v) {
     return out;
 }
 
+py::dict vertex_row(const PathVertex<double>& v) {
+    py::dict row;
+    row["shape"] = v.shape;
+    row["direction"] = colors(v.direction);
+    row["emitted"] = colors(v.emitted);
+    row["emission_weight"] = v.emission_weight;
+    row["pdf"] = v.pdf;
+    row["light_pdf"] = v.light_pdf;
+    row["light_shape"] = v.light.shape;
+    row["light_listed"] = v.light.listed;
+    row["light_direction"] = colors(v.light.direction);
+    row["light_f"] = colors(v.light.f);
+    row["light_emitted"] = colors(v.light.weight > 0 ? v.light.sent : Vec3<double>(0));
+    row["light_weight"] = v.light.weight;
+    row["light_cosine"] = std::abs(v.light.wi.z);
+    row["light_chosen_pdf"] = v.light.pdf;
+    row["light_scatter_pdf"] = v.light.scatter_pdf;
+    row["wo"] = colors(v.wo);
+    row["wi"] = colors(v.wi);
+    row["value"] = colors(v.value);
+    row["lobe"] = v.lobe;
+    row["passed"] = v.passed;
+    row["weight"] = v.weight;
+    row["survival"] = v.survival;
+    return row;
+}
+
+/// (medium, kind, length, position, value) of each step of a product.
+py::list step_rows(const MediaTrail<double>& trail, const StepProduct<double>& product) {
+    py::list out;
+    for (std::int32_t i = product.first; i < product.last; ++i) {
+        const MediumStep<double>& step = trail.steps[static_cast<std::size_t>(i)];
+        out.append(py::make_tuple(step.medium, static_cast<int>(step.kind), step.length,
+                                  colors(step.position), colors(step.value)));
+    }
+    return out;
+}
+
 /// One path as a list of dictionaries, double precision.
 py::list path(const PathGeometry& geometry, const std::vector<std::string>& models,
               const py::array& parameters, const py::array& emission, const LightTuples& lights,
-              const std::vector<py::array>& textures, const py::tuple& camera_numbers,
-              const Options& given, std::uint32_t pixel, std::uint32_t sample) {
+              const std::vector<py::array>& textures, const std::vector<MediumTuple>& media,
+              const py::tuple& camera_numbers, const Options& given, std::uint32_t pixel,
+              std::uint32_t sample) {
     ArrayArgs args("trace_path");
     const SceneNumbers<double> numbers(args, geometry, models, parameters, std::nullopt, emission,
-                                       lights, textures, std::nullopt);
+                                       lights, textures, std::nullopt, media, std::nullopt);
     const ThinLens camera = thin_lens(camera_numbers);
+    const PathOptions options = options_of(args, given);
     py::list out;
-    for (const PathVertex<double>& v :
-         trace_path(numbers.scene, camera, options_of(args, given), pixel, sample)) {
-        py::dict row;
-        row["shape"] = v.shape;
-        row["direction"] = colors(v.direction);
-        row["emitted"] = colors(v.emitted);
-        row["emission_weight"] = v.emission_weight;
-        row["pdf"] = v.pdf;
-        row["light_pdf"] = v.light_pdf;
-        row["light_shape"] = v.light.shape;
-        row["light_listed"] = v.light.listed;
-        row["light_direction"] = colors(v.light.direction);
-        row["light_f"] = colors(v.light.f);
-        row["light_emitted"] = colors(v.light.weight > 0 ? v.light.sent : Vec3<double>(0));
-        row["light_weight"] = v.light.weight;
-        row["light_cosine"] = std::abs(v.light.wi.z);
-        row["light_chosen_pdf"] = v.light.pdf;
-        row["light_scatter_pdf"] = v.light.scatter_pdf;
-        row["wo"] = colors(v.wo);
-        row["wi"] = colors(v.wi);
-        row["value"] = colors(v.value);
-        row["lobe"] = v.lobe;
-        row["passed"] = v.passed;
-        row["weight"] = v.weight;
-        row["survival"] = v.survival;
+    if (!geometry.media.any()) {
+        for (const auto& v : trace_path(numbers.scene, camera, options, pixel, sample))
+            out.append(vertex_row(v));
+        return out;
+    }
+    const auto found = trace_volume_path(numbers.scene, camera, options, pixel, sample);
+    for (std::size_t k = 0; k < found.path.size(); ++k) {
+        const MediumVertex<double>& m = found.trail.vertices[k];
+        py::dict row = vertex_row(found.path[k]);
+        row["medium"] = m.medium;
+        row["chance"] = colors(m.chance);
+        row["segment_weight"] = m.weight;
+        row["steps"] = step_rows(found.trail, m.arrival);
+        row["shadow_steps"] = step_rows(found.trail, m.shadow);
         out.append(row);
     }
     return out;
@@ -281,24 +264,31 @@ void bind_path(py::module_& m) {
             "channel, first,\ncount, lo, hi), and a normal map (values (H, W, 3) float32, wrap_u, "
             "wrap_v) or None;\ndirected (M,), whether its frame follows u; cutoffs (M,), of masks, "
             "others below 0; emission,\nfor each shape (texture or -1, first of its three "
-            "channels).");
+            "channels).")
+        .def("set_media", &set_media, py::arg("interior"), py::arg("boundary"), py::arg("world"),
+             py::arg("grids"),
+             "interior (S,) int32: the number of a medium, -1 for nothing, -2 for what is around; "
+             "boundary (S,) bool;\nworld: the number of a medium or -1; for each medium "
+             "((X, Y, Z), box_from_world (3, 4) float64) or None.");
     m.def("trace_paths", &trace, py::arg("geometry"), py::arg("models"), py::arg("parameters"),
           py::arg("sampling_parameters"), py::arg("emission"), py::arg("lights"),
-          py::arg("textures"), py::arg("sampling_textures"), py::arg("camera"), py::arg("options"),
-          py::arg("first"), py::arg("count"), py::arg("radiance"), py::arg("squares"),
+          py::arg("textures"), py::arg("sampling_textures"), py::arg("media"),
+          py::arg("sampling_media"), py::arg("camera"), py::arg("options"), py::arg("first"),
+          py::arg("count"), py::arg("radiance"), py::arg("squares"),
           "Adds samples to radiance (H, W, 3) and squares (H, W, 3), float64. options: (strategy, "
-          "heuristic, max_depth, roulette_from, sampler, seed).");
+          "heuristic, max_depth, roulette_from, sampler, seed).\nmedia: (phase function or \"\", "
+          "parameters (P,), densities (X, Y, Z) or None, sigma_maj).");
     m.def("trace_paths_backward", &trace_backward, py::arg("geometry"), py::arg("models"),
           py::arg("parameters"), py::arg("emission"), py::arg("lights"), py::arg("textures"),
-          py::arg("camera"), py::arg("options"), py::arg("spp"), py::arg("counts"),
-          py::arg("d_image"), py::arg("d_parameters"), py::arg("d_emission"), py::arg("d_lights"),
-          py::arg("d_textures"),
+          py::arg("media"), py::arg("camera"), py::arg("options"), py::arg("spp"),
+          py::arg("counts"), py::arg("d_image"), py::arg("d_parameters"), py::arg("d_emission"),
+          py::arg("d_lights"), py::arg("d_textures"), py::arg("d_media"), py::arg("d_densities"),
           "Adds to d_parameters (P,), d_emission (S, 3), d_lights, an array like the first of each "
-          "light, and d_textures for dL/d(mean "
+          "light, d_textures, d_media (rows) and d_densities (grids or None) for dL/d(mean "
           "radiance). counts (H, W) uint32, or None: spp samples of each pixel.");
     m.def("trace_path", &path, py::arg("geometry"), py::arg("models"), py::arg("parameters"),
-          py::arg("emission"), py::arg("lights"), py::arg("textures"), py::arg("camera"),
-          py::arg("options"), py::arg("pixel"), py::arg("sample"),
+          py::arg("emission"), py::arg("lights"), py::arg("textures"), py::arg("media"),
+          py::arg("camera"), py::arg("options"), py::arg("pixel"), py::arg("sample"),
           "One path, a dictionary a vertex.");
     m.def("ambient_occlusion", &ambient_occlusion, py::arg("geometry"), py::arg("camera"),
           py::arg("radius"), py::arg("seed"), py::arg("first"), py::arg("count"), py::arg("sums"),

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "listed_lights.h"
+#include "media_args.h"
 #include "photograd/render/path_options.h"
 #include "photograd/scene/path_scene.h"
 
@@ -23,14 +24,17 @@ struct SceneNumbers {
     std::vector<Material<R>> drawn, sampling;
     std::vector<const R*> texels, sampling_texels;
     std::vector<AnyLight<R>> lights;
+    std::vector<Medium<R>> media, sampling_media;
     PathScene<R> scene;
 
     SceneNumbers(ArrayArgs& args, const PathGeometry& geometry,
                  const std::vector<std::string>& models, const py::array& parameters,
                  const std::optional<py::array>& sampling_parameters, const py::array& emission,
                  const LightTuples& light_rows, const std::vector<py::array>& textures,
-                 const std::optional<std::vector<py::array>>& sampling_textures)
-        : lights(listed_lights<R>(light_rows)) {
+                 const std::optional<std::vector<py::array>>& sampling_textures,
+                 const std::vector<MediumTuple>& media_rows = {},
+                 const std::optional<std::vector<MediumTuple>>& sampling_media_rows = std::nullopt)
+        : lights(listed_lights<R>(light_rows)), media(media_of<R>(geometry, media_rows)) {
         for (const std::int32_t m : geometry.material)
             if (m < 0 || m >= static_cast<std::int32_t>(models.size()))
                 args.range("material", "numbers below " + std::to_string(models.size()),
@@ -48,6 +52,9 @@ struct SceneNumbers {
         texels = texels_of(args, geometry, "textures", textures);
         if (sampling_textures)
             sampling_texels = texels_of(args, geometry, "textures", *sampling_textures);
+        if (sampling_media_rows) sampling_media = media_of<R>(geometry, *sampling_media_rows);
+        scene.media = media;
+        scene.sampling_media = sampling_media_rows ? sampling_media : media;
         scene.texels = texels;
         scene.sampling_texels = sampling_textures ? sampling_texels : texels;
         for (std::size_t m = 0; m < drawn.size(); ++m)

@@ -3131,6 +3131,26 @@ class PathGeometry:
         """
         (entries (N,) int64, their probabilities (N,)) by uniform u (N,): first lights of the list, then what emits of the shapes.
         """
+    def set_media(
+        self,
+        interior: numpy.ndarray,
+        boundary: numpy.ndarray,
+        world: typing.SupportsInt | typing.SupportsIndex,
+        grids: collections.abc.Sequence[
+            tuple[
+                typing.Annotated[
+                    collections.abc.Sequence[typing.SupportsInt | typing.SupportsIndex],
+                    "FixedSize(3)",
+                ],
+                numpy.ndarray,
+            ]
+            | None
+        ],
+    ) -> None:
+        """
+        interior (S,) int32: the number of a medium, -1 for nothing, -2 for what is around; boundary (S,) bool;
+        world: the number of a medium or -1; for each medium ((X, Y, Z), box_from_world (3, 4) float64) or None.
+        """
     def set_textures(
         self,
         layouts: collections.abc.Sequence[
@@ -4221,6 +4241,9 @@ def trace_path(
     emission: numpy.ndarray,
     lights: collections.abc.Sequence[tuple[typing.Any, ...]],
     textures: collections.abc.Sequence[numpy.ndarray],
+    media: collections.abc.Sequence[
+        tuple[str, numpy.ndarray, numpy.ndarray | None, typing.SupportsFloat | typing.SupportsIndex]
+    ],
     camera: tuple[typing.Any, ...],
     options: tuple[
         typing.SupportsInt | typing.SupportsIndex,
@@ -4246,6 +4269,13 @@ def trace_paths(
     lights: collections.abc.Sequence[tuple[typing.Any, ...]],
     textures: collections.abc.Sequence[numpy.ndarray],
     sampling_textures: collections.abc.Sequence[numpy.ndarray] | None,
+    media: collections.abc.Sequence[
+        tuple[str, numpy.ndarray, numpy.ndarray | None, typing.SupportsFloat | typing.SupportsIndex]
+    ],
+    sampling_media: collections.abc.Sequence[
+        tuple[str, numpy.ndarray, numpy.ndarray | None, typing.SupportsFloat | typing.SupportsIndex]
+    ]
+    | None,
     camera: tuple[typing.Any, ...],
     options: tuple[
         typing.SupportsInt | typing.SupportsIndex,
@@ -4262,6 +4292,7 @@ def trace_paths(
 ) -> None:
     """
     Adds samples to radiance (H, W, 3) and squares (H, W, 3), float64. options: (strategy, heuristic, max_depth, roulette_from, sampler, seed).
+    media: (phase function or "", parameters (P,), densities (X, Y, Z) or None, sigma_maj).
     """
 
 def trace_paths_backward(
@@ -4271,6 +4302,9 @@ def trace_paths_backward(
     emission: numpy.ndarray,
     lights: collections.abc.Sequence[tuple[typing.Any, ...]],
     textures: collections.abc.Sequence[numpy.ndarray],
+    media: collections.abc.Sequence[
+        tuple[str, numpy.ndarray, numpy.ndarray | None, typing.SupportsFloat | typing.SupportsIndex]
+    ],
     camera: tuple[typing.Any, ...],
     options: tuple[
         typing.SupportsInt | typing.SupportsIndex,
@@ -4287,9 +4321,11 @@ def trace_paths_backward(
     d_emission: numpy.ndarray,
     d_lights: collections.abc.Sequence[numpy.ndarray],
     d_textures: collections.abc.Sequence[numpy.ndarray],
+    d_media: collections.abc.Sequence[numpy.ndarray],
+    d_densities: collections.abc.Sequence[numpy.ndarray | None],
 ) -> None:
     """
-    Adds to d_parameters (P,), d_emission (S, 3), d_lights, an array like the first of each light, and d_textures for dL/d(mean radiance). counts (H, W) uint32, or None: spp samples of each pixel.
+    Adds to d_parameters (P,), d_emission (S, 3), d_lights, an array like the first of each light, d_textures, d_media (rows) and d_densities (grids or None) for dL/d(mean radiance). counts (H, W) uint32, or None: spp samples of each pixel.
     """
 
 def trace_paths_tangent(

@@ -2,6 +2,7 @@
 
 #include "photograd/core/parallel.h"
 #include "photograd/render/path_samples.h"
+#include "photograd/render/volume_path.h"
 
 namespace photograd {
 
@@ -12,15 +13,25 @@ void trace_paths(const PathScene<R>& scene, const ThinLens& camera, const PathOp
     parallel_for((pixels + chunk_pixels - 1) / chunk_pixels, [&](std::int64_t chunk) {
         const std::int64_t begin = chunk * chunk_pixels,
                            end = std::min(begin + chunk_pixels, pixels);
-        for_each_path(scene, camera, options, samples, {}, scene.drawn_as_sampled(), begin, end,
-                      [&](std::int64_t pixel, const Path<R>& path) {
-                          const Vec3<R> L = gather<R>(path, nullptr);
-                          for (int c = 0; c < 3; ++c) {
-                              const double value = static_cast<double>(L[c]);
-                              sums.radiance[3 * pixel + c] += value;
-                              sums.squares[3 * pixel + c] += value * value;
-                          }
-                      });
+        const auto add = [&](std::int64_t pixel, const Vec3<R>& L) {
+            for (int c = 0; c < 3; ++c) {
+                const double value = static_cast<double>(L[c]);
+                sums.radiance[3 * pixel + c] += value;
+                sums.squares[3 * pixel + c] += value * value;
+            }
+        };
+        const bool black_ends = scene.drawn_as_sampled();
+        if (scene.geometry->media.any())
+            for_each_volume_path<R>(
+                scene, camera, options, samples, {}, black_ends, begin, end,
+                [&](std::int64_t pixel, const Path<R>& path, const MediaTrail<R>& trail) {
+                    add(pixel, gather_through<R>(path, trail, nullptr));
+                });
+        else
+            for_each_path(scene, camera, options, samples, {}, black_ends, begin, end,
+                          [&](std::int64_t pixel, const Path<R>& path) {
+                              add(pixel, gather<R>(path, nullptr));
+                          });
     });
 }
 

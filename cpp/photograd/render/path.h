@@ -9,6 +9,8 @@
 // which smooth surfaces refract.
 #pragma once
 
+#include <algorithm>
+
 #include "photograd/camera/thin_lens.h"
 #include "photograd/render/path_options.h"
 #include "photograd/render/path_vertex.h"
@@ -18,6 +20,19 @@ namespace photograd {
 /// Samples `first` to `first + count - 1` of each pixel.
 struct SampleRange {
     std::uint32_t first = 0, count = 16;
+};
+
+/// How many samples each pixel has: the same number, or one of its own.
+struct SampleCounts {
+    const std::uint32_t* own = nullptr;  // (H W), or nullptr: all have `same`
+    std::uint32_t same = 0;
+
+    [[nodiscard]] std::uint32_t of(std::int64_t pixel) const { return own ? own[pixel] : same; }
+    /// Of the samples in `range`, those that the pixel has.
+    [[nodiscard]] std::uint32_t within(const SampleRange& range, std::int64_t pixel) const {
+        if (!own) return range.count;
+        return std::min(own[pixel] - std::min(own[pixel], range.first), range.count);
+    }
 };
 
 /// Sums over samples (H, W, 3), of the radiance and of its square: mean and variance, whatever samples come later. Calls
@@ -32,11 +47,12 @@ void trace_paths(const PathScene<R>& scene, const ThinLens& camera, const PathOp
                  const SampleRange& samples, const PathSums& sums);
 
 /// Where derivatives are added: parameters of all materials one after another; emission (S, 3); for each light of the
-/// list its parameters, or the texels (H, 2 H, 3) of a map; texels (H, W, C) of each texture.
+/// list its parameters, or the texels (H, 2 H, 3) of a map; texels (H, W, C) of each texture; the parameters of each
+/// medium, and the values (X, Y, Z) of its grid, or null.
 template <Real R>
 struct PathDerivatives {
     R *parameters, *emission;
-    std::span<R* const> lights, textures;
+    std::span<R* const> lights, textures, media, densities;
 };
 
 /// Adds derivatives for dL/d(mean radiance) (H, W, 3) of `spp` samples a pixel, or of `counts` (H, W), at least 1 each,

@@ -2,7 +2,9 @@
 
 #include "photograd/core/scatter.h"
 #include "photograd/light/environment_gradient.h"
+#include "photograd/medium/density_gradient.h"
 #include "photograd/render/path_samples.h"
+#include "photograd/render/volume_path.h"
 #include "photograd/texture/sample.h"
 
 namespace photograd {
@@ -12,12 +14,16 @@ namespace {
 // in which maps were seen are kept, and scattered by the owners of texels. Both are done slab by slab.
 constexpr std::int64_t slab_paths = 1 << 18, fewest_chunks = 16, most_chunks = 2048;
 constexpr std::uint32_t samples_at_once = 256;  // of a pixel, where there are maps
+// A path looks into a grid of densities at many points, all of which are kept: fewer paths.
+constexpr std::int64_t slab_paths_in_grids = 1 << 14;
+constexpr std::uint32_t samples_in_grids = 16;
 
-/// What of a chunk goes to texels: of maps, for each light of the list, and of textures.
+/// What of a chunk goes to texels: of maps, for each light of the list, of textures, and of media's grids.
 template <class R>
 struct Seen {
     std::vector<SeenDirections<R>> directions;
     std::vector<TexelAdjoint<R>> lookups;
+    std::vector<DensityAdjoint<R>> densities;
 };
 
 template <class R>
@@ -25,7 +31,7 @@ bool is_map(const AnyLight<R>& light) {
     return std::holds_alternative<Environment<R>>(light.model);
 }
 
-/// Derivatives of everything but texels, as one row: materials, emission, lights.
+/// Derivatives of everything but texels, as one row: materials, emission, lights, media.
 template <class R>
 class DerivativeRow {
 public:
@@ -36,6 +42,7 @@ public:
         for (const Material<R>& m : zero.materials)
             parameters += static_cast<std::size_t>(m.parameter_count());
         for (auto& light : zero.lights) for_each_number(light, [&](R) { ++parameters; });
+        for (Medium<R>& medium : zero.media) medium.for_each([&](R) { ++parameters; });
         sums_.resize(emission_ + parameters, 0.0);
     }
     [[nodiscard]] std::span<double> sums() { return sums_; }
@@ -49,6 +56,8 @@ public:
             for (int c = 0; c < 3; ++c) *to++ += static_cast<double>(v[c]);
         for (auto& light : from.lights)
             for_each_number(light, [&](R x) { *to++ += static_cast<double>(x); });
+        for (Medium<R>& medium : from.media)
+            medium.for_each([&](R x) { *to++ += static_cast<double>(x); });
     }
     void add_to(const PathScene<R>& scene, const PathDerivatives<R>& out) const {
         const double* next = sums_.data();
@@ -66,6 +75,8 @@ public:
             for_each_number(zero, [&](R) { ++count; });
             take(out.lights[i], count);
         }
+        for (std::size_t i = 0; i < scene.media.size(); ++i)
+            take(out.media[i], static_cast<std::size_t>(scene.media[i].parameter_count()));
     }
 
 private:
@@ -116,6 +127,22 @@ void scatter_lookups(const PathScene<R>& scene, const std::vector<Seen<R>>& chun
     }
 }
 
+/// The same of media's grids, by the owners of their voxels (medium/density_gradient.h).
+template <class R>
+void scatter_densities(const PathScene<R>& scene, const std::vector<Seen<R>>& chunks,
+                       std::vector<std::vector<double>>& d_densities) {
+    for (std::size_t m = 0; m < d_densities.size(); ++m) {
+        if (d_densities[m].empty()) continue;
+        DensityAdjoint<R> all;
+        for (const Seen<R>& of_chunk : chunks) {
+            const DensityAdjoint<R>& own = of_chunk.densities[m];
+            all.world.insert(all.world.end(), own.world.begin(), own.world.end());
+            all.d_density.insert(all.d_density.end(), own.d_density.begin(), own.d_density.end());
+        }
+        density_backward(scene.geometry->media.grids[m], all, d_densities[m].data());
+    }
+}
+
 /// Adds one chunk's derivatives to `row` and returns what goes to texels.
 template <class R>
 Seen<R> chunk_backward(const PathScene<R>& scene, const ThinLens& camera,
@@ -124,16 +151,29 @@ Seen<R> chunk_backward(const PathScene<R>& scene, const ThinLens& camera,
                        std::int64_t end, double* row) {
     PathGradient<R> gradient(scene);
     std::vector<Vec3<R>> ahead(static_cast<std::size_t>(options.max_depth));
-    for_each_path(scene, camera, options, samples, counts, false, begin, end,
-                  [&](std::int64_t pixel, const Path<R>& path) {
-                      const double* d = d_image + 3 * pixel;
-                      const double share = 1.0 / counts.of(pixel);
-                      const Vec3<R> d_L(R(d[0] * share), R(d[1] * share), R(d[2] * share));
-                      gather<R>(path, ahead.data());
-                      gather_backward<R>(scene, path, ahead.data(), d_L, gradient);
-                  });
+    const auto d_radiance = [&](std::int64_t pixel) {
+        const double* d = d_image + 3 * pixel;
+        const double share = 1.0 / counts.of(pixel);
+        return Vec3<R>(R(d[0] * share), R(d[1] * share), R(d[2] * share));
+    };
+    if (scene.geometry->media.any())
+        for_each_volume_path<R>(
+            scene, camera, options, samples, counts, false, begin, end,
+            [&](std::int64_t pixel, const Path<R>& path, const MediaTrail<R>& trail) {
+                gather_through<R>(path, trail, ahead.data());
+                gather_through_backward<R>(scene, path, trail, ahead.data(), d_radiance(pixel),
+                                           gradient);
+            });
+    else
+        for_each_path(scene, camera, options, samples, counts, false, begin, end,
+                      [&](std::int64_t pixel, const Path<R>& path) {
+                          gather<R>(path, ahead.data());
+                          gather_backward<R>(scene, path, ahead.data(), d_radiance(pixel),
+                                             gradient);
+                      });
     DerivativeRow<R>::put(gradient, row);
-    Seen<R> seen{std::vector<SeenDirections<R>>(scene.lights.size()), std::move(gradient.texels)};
+    Seen<R> seen{std::vector<SeenDirections<R>>(scene.lights.size()), std::move(gradient.texels),
+                 std::move(gradient.densities)};
     for (std::size_t i = 0; i < seen.directions.size(); ++i)
         if (is_map(scene.lights[i]))
             seen.directions[i] = std::move(std::get<SeenDirections<R>>(gradient.lights[i].model));
@@ -161,10 +201,19 @@ void trace_paths_backward(const PathScene<R>& scene, const ThinLens& camera,
             texels[i].assign(6 * height * height, 0.0);
             maps = true;
         }
-    const std::uint32_t batch = maps ? std::min(samples_at_once, most) : most;
+    std::vector<std::vector<double>> densities(scene.media.size());
+    bool grids = false;
+    for (std::size_t m = 0; m < densities.size(); ++m)
+        if (scene.media[m].density) {
+            const auto voxels = scene.geometry->media.grids[m].shape.size();
+            densities[m].assign(static_cast<std::size_t>(voxels), 0.0);
+            maps = grids = true;
+        }
+    const std::uint32_t at_once = grids ? samples_in_grids : samples_at_once;
+    const std::uint32_t batch = maps ? std::min(at_once, most) : most;
+    const std::int64_t paths = grids ? slab_paths_in_grids : slab_paths;
     const std::int64_t slab =
-        maps ? std::clamp(slab_paths / (chunk_pixels * batch), fewest_chunks, most_chunks)
-             : most_chunks;
+        maps ? std::clamp(paths / (chunk_pixels * batch), fewest_chunks, most_chunks) : most_chunks;
     for (std::uint32_t done = 0; done < most; done += batch) {
         const SampleRange now{done, std::min(batch, most - done)};
         for (std::int64_t first = 0; first < chunks; first += slab) {
@@ -180,12 +229,16 @@ void trace_paths_backward(const PathScene<R>& scene, const ThinLens& camera,
                 if (const auto* map = std::get_if<Environment<R>>(&scene.lights[k].model))
                     scatter_directions(*map, k, seen, texels[k]);
             scatter_lookups(scene, seen, out.textures);
+            scatter_densities(scene, seen, densities);
         }
     }
     row.add_to(scene, out);
     for (std::size_t i = 0; i < texels.size(); ++i)
         for (std::size_t k = 0; k < texels[i].size(); ++k)
             out.lights[i][k] += static_cast<R>(texels[i][k]);
+    for (std::size_t m = 0; m < densities.size(); ++m)
+        for (std::size_t k = 0; k < densities[m].size(); ++k)
+            out.densities[m][k] += static_cast<R>(densities[m][k]);
 }
 
 template void trace_paths_backward(const PathScene<float>&, const ThinLens&, const PathOptions&,

@@ -14,26 +14,13 @@ inline RandomKey key_of(const PathOptions& options, std::int64_t pixel, std::uin
     return {options.seed, 0, static_cast<std::uint32_t>(pixel), sample};
 }
 
-/// How many samples each pixel has: the same number, or one of its own.
-struct SampleCounts {
-    const std::uint32_t* own = nullptr;  // (H W), or nullptr: all have `same`
-    std::uint32_t same = 0;
-
-    [[nodiscard]] std::uint32_t of(std::int64_t pixel) const { return own ? own[pixel] : same; }
-    /// Of the samples in `range`, those that the pixel has.
-    [[nodiscard]] std::uint32_t within(const SampleRange& range, std::int64_t pixel) const {
-        if (!own) return range.count;
-        return std::min(own[pixel] - std::min(own[pixel], range.first), range.count);
-    }
-};
-
-/// visit(pixel, path) for every sample of the pixels [begin, end), pixel by pixel. Lanes hold successive samples.
-template <class R, class Visit>
-void for_each_path(const PathScene<R>& scene, const ThinLens& camera, const PathOptions& options,
-                   const SampleRange& samples, const SampleCounts& counts, bool stop_when_black,
-                   std::int64_t begin, std::int64_t end, Visit&& visit) {
+/// Walks every sample of the pixels [begin, end), pixel by pixel; lanes hold successive samples. visit(pixel, k) finds
+/// the path in lane k of the walk.
+template <class R, class Walk, class Visit>
+void walk_samples(Walk& walk, const ThinLens& camera, const PathOptions& options,
+                  const SampleRange& samples, const SampleCounts& counts, std::int64_t begin,
+                  std::int64_t end, Visit&& visit) {
     constexpr int width = RayPacket::width;
-    PathWalk<R> walk(scene, options, stop_when_black);
     SampleNumbers numbers(options.sampler);
     Ray<R> rays[width];
     RandomKey keys[width];
@@ -41,7 +28,7 @@ void for_each_path(const PathScene<R>& scene, const ThinLens& camera, const Path
     int filled = 0;
     const auto trace = [&] {
         walk.trace(rays, keys, filled);
-        for (int k = 0; k < filled; ++k) visit(pixels[k], walk.path(k));
+        for (int k = 0; k < filled; ++k) visit(pixels[k], k);
         filled = 0;
     };
     for (std::int64_t pixel = begin; pixel < end; ++pixel) {
@@ -54,6 +41,16 @@ void for_each_path(const PathScene<R>& scene, const ThinLens& camera, const Path
         }
     }
     if (filled > 0) trace();
+}
+
+/// visit(pixel, path) for every sample of the pixels [begin, end).
+template <class R, class Visit>
+void for_each_path(const PathScene<R>& scene, const ThinLens& camera, const PathOptions& options,
+                   const SampleRange& samples, const SampleCounts& counts, bool stop_when_black,
+                   std::int64_t begin, std::int64_t end, Visit&& visit) {
+    PathWalk<R> walk(scene, options, stop_when_black);
+    walk_samples<R>(walk, camera, options, samples, counts, begin, end,
+                    [&](std::int64_t pixel, int k) { visit(pixel, walk.path(k)); });
 }
 
 }  // namespace photograd

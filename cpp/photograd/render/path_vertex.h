@@ -79,9 +79,14 @@ struct PathGradient {
     std::vector<Vec3<R>> emission;
     std::vector<AnyLightGradient<R>> lights;  // of the list
     std::vector<TexelAdjoint<R>> texels;      // of each texture, to be added up
+    std::vector<Medium<R>> media;
+    std::vector<DensityAdjoint<R>> densities;  // of each medium, to be added up
 
     explicit PathGradient(const PathScene<R>& scene)
-        : emission(scene.geometry->shape_count(), Vec3<R>(R(0))), texels(scene.texels.size()) {
+        : emission(scene.geometry->shape_count(), Vec3<R>(R(0))),
+          texels(scene.texels.size()),
+          densities(scene.media.size()) {
+        for (const Medium<R>& m : scene.media) media.push_back(m.zero());
         for (const Material<R>& m : scene.materials) materials.push_back(m.zero());
         for (const AnyLight<R>& light : scene.lights) lights.push_back(zero_gradient(light));
     }
@@ -172,6 +177,32 @@ Vec3<R> gather(const Path<R>& path, Vec3<R>* ahead) {
     return L;
 }
 
+/// Adds the derivatives of <d_light, f^l> + <d_onward, f> at a surface, the value of the light's sample and that of the
+/// direction in which the path goes on, and `d_alpha` by what it covers, to d_scene.
+template <Real R>
+void surface_backward(const PathScene<R>& scene, const PathVertex<R>& v, const Vec3<R>& d_light,
+                      const Vec3<R>& d_onward, R d_alpha, PathGradient<R>& d_scene) {
+    const auto m =
+        static_cast<std::size_t>(scene.geometry->material[static_cast<std::size_t>(v.shape)]);
+    const SurfaceTextures& textures = scene.geometry->textures;
+    const std::span<const TextureUse> uses = textures.of(m);
+    // With textures the material at this point, and its derivative, are copies that textured_backward takes apart.
+    Material<R> own, d_own;
+    if (!uses.empty()) {
+        own = textured(scene.materials[m], uses, textures, scene.texels, v.uv);
+        d_own = own.zero();
+    }
+    const Material<R>& material = uses.empty() ? scene.materials[m] : own;
+    Material<R>& d_material = uses.empty() ? d_scene.materials[m] : d_own;
+    d_material.alpha += d_alpha;
+    if (v.light.weight > R(0)) material.value_backward(v.wo, v.light.wi, -1, d_light, d_material);
+    if (v.weight > R(0) && !v.passed)
+        material.value_backward(v.wo, v.wi, v.lobe, d_onward, d_material);
+    if (!uses.empty())
+        textured_backward(scene.materials[m], uses, textures, scene.texels, v.uv, d_own,
+                          d_scene.materials[m], d_scene.texels);
+}
+
 /// Adds the derivatives of <d_L, L_0> to d_scene.
 template <Real R>
 void gather_backward(const PathScene<R>& scene, const Path<R>& path, const Vec3<R>* ahead,
@@ -183,34 +214,18 @@ void gather_backward(const PathScene<R>& scene, const Path<R>& path, const Vec3<
         if (v.emission_weight > R(0))
             emitted_backward(scene, v.shape, v.uv, v.direction, d_L * v.emission_weight, d_scene);
         if (v.shape < 0) return;
-        const auto m =
-            static_cast<std::size_t>(scene.geometry->material[static_cast<std::size_t>(v.shape)]);
-        const SurfaceTextures& textures = scene.geometry->textures;
-        const std::span<const TextureUse> uses = textures.of(m);
-        // With textures the material at this point, and its derivative, are copies that textured_backward takes apart.
-        Material<R> own, d_own;
-        if (!uses.empty()) {
-            own = textured(scene.materials[m], uses, textures, scene.texels, v.uv);
-            d_own = own.zero();
-        }
-        const Material<R>& material = uses.empty() ? scene.materials[m] : own;
-        Material<R>& d_material = uses.empty() ? d_scene.materials[m] : d_own;
-        d_material.alpha += d_coverage * v.coverage_slope;
+        Vec3<R> d_light(R(0));
         if (v.light.weight > R(0)) {
             if (!v.light.veils.empty())
                 veils_backward(scene, v.light, dot(d_L, v.light.f * v.light.sent) * v.light.weight,
                                d_scene);
             const Vec3<R> d = d_L * (v.light.weight * v.light.through);
             sent_backward(scene, v.light, d * v.light.f, d_scene);
-            material.value_backward(v.wo, v.light.wi, -1, d * v.light.sent, d_material);
+            d_light = d * v.light.sent;
         }
-        const bool goes_on = v.weight > R(0);
-        if (goes_on && !v.passed)
-            material.value_backward(v.wo, v.wi, v.lobe, d_L * ahead[k] * v.weight, d_material);
-        if (!uses.empty())
-            textured_backward(scene.materials[m], uses, textures, scene.texels, v.uv, d_own,
-                              d_scene.materials[m], d_scene.texels);
-        if (!goes_on) return;
+        surface_backward(scene, v, d_light, d_L * ahead[k] * v.weight,
+                         d_coverage * v.coverage_slope, d_scene);
+        if (!(v.weight > R(0))) return;
         d_L *= v.value * v.weight;
     }
 }

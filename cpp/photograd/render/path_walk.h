@@ -31,17 +31,7 @@ public:
 
     /// Samples the paths of `count` <= 16 camera rays; they are then in path(0), path(1), ...
     void trace(const Ray<R>* rays, const RandomKey* keys, int count) {
-        for (int k = 0; k < width; ++k) {
-            Lane& lane = lanes_[k];
-            lane.alive = k < count;
-            lane.path.clear();
-            if (!lane.alive) continue;
-            lane.ray = rays[k];
-            lane.previous = rays[k].origin;
-            lane.key = keys[k];
-            lane.beta = Vec3<R>(R(1));
-            lane.pdf = R(0);
-        }
+        begin(rays, keys, count);
         for (int depth = 0; depth < options_.max_depth && find_hits(depth); ++depth) {
             if (depth + 1 == options_.max_depth) break;
             if (may_ask()) ask_lights(depth);
@@ -51,7 +41,7 @@ public:
     }
     [[nodiscard]] const Path<R>& path(int k) const { return lanes_[k].path; }
 
-private:
+protected:  // what a walk through media (volume_walk.h) shares
     struct Lane {
         bool alive = false, shadow = false;
         Ray<R> ray;
@@ -67,6 +57,20 @@ private:
         Vec3<R> light_end;  // of the shadow ray, unless the light is at infinity
         bool light_far = false;
     };
+
+    void begin(const Ray<R>* rays, const RandomKey* keys, int count) {
+        for (int k = 0; k < width; ++k) {
+            Lane& lane = lanes_[k];
+            lane.alive = k < count;
+            lane.path.clear();
+            if (!lane.alive) continue;
+            lane.ray = rays[k];
+            lane.previous = rays[k].origin;
+            lane.key = keys[k];
+            lane.beta = Vec3<R>(R(1));
+            lane.pdf = R(0);
+        }
+    }
 
     /// Those who wait for light to be met ask for what cannot be met.
     [[nodiscard]] bool may_ask() const {
@@ -89,19 +93,24 @@ private:
         bool any = false;
         for (int k = 0; k < width; ++k) {
             if (!lanes_[k].alive) continue;
-            arrive(lanes_[k], depth, found.instance[k], found.primitive[k], found.t[k]);
+            Lane& lane = lanes_[k];
+            const bool met = found.primitive[k] >= 0;
+            if (met)
+                lane.hit = surface_hit(*scene_.geometry, lane.ray, found.instance[k],
+                                       found.primitive[k], found.t[k]);
+            arrive(lane, met);
             any = any || lanes_[k].alive;
         }
         return any;
     }
 
-    /// A new vertex: what is there, and how much its emission counts.
-    void arrive(Lane& lane, int depth, std::int32_t instance, std::int32_t primitive, float t) {
+    /// A new vertex, where a surface was `met` or none: what is there, and how much its emission counts.
+    void arrive(Lane& lane, bool met) {
         const PathGeometry& geometry = *scene_.geometry;
         PathVertex<R>& v = lane.path.emplace_back();
         v.direction = lane.ray.direction;
         v.pdf = lane.pdf;
-        if (primitive < 0) {
+        if (!met) {
             const Background<R> behind = scene_.behind(v.direction);
             v.emitted = behind.radiance;
             v.light_pdf = behind.pdf;
@@ -109,13 +118,12 @@ private:
             lane.alive = false;
             return;
         }
-        lane.hit = surface_hit(geometry, lane.ray, instance, primitive, t);
         v.shape = lane.hit.shape;
         look_up_textures(lane);
         const Material<R>& material = sampling_of(lane);
         lane.side = SurfaceSide<R>(lane.hit, -v.direction, material.transmits());
         v.wo = lane.side.wo;
-        if (material.sheer && cover(lane, depth)) return;
+        if (material.sheer && cover(lane)) return;
         const R cosine = -dot(lane.hit.outside, v.direction);
         if (!(cosine > R(0))) return;  // the back of a light is dark
         if (geometry.textures.glows(static_cast<std::size_t>(v.shape))) v.uv = lane.hit.uv;
@@ -126,9 +134,10 @@ private:
         v.emission_weight = emission_weight(v);
     }
     /// Whether the path goes on behind a surface that covers only in part; draws the light block's fourth number.
-    bool cover(Lane& lane, int depth) {
+    bool cover(Lane& lane) {
         PathVertex<R>& v = lane.path.back();
-        const Philox4 words = numbers_(lane.key, 1 + 2 * static_cast<std::uint32_t>(depth));
+        const auto vertex = static_cast<std::uint32_t>(lane.path.size()) - 1;
+        const Philox4 words = numbers_(lane.key, 1 + 2 * vertex);
         const Cover<R> chosen = choose_cover(sampling_of(lane).alpha, drawn_as(lane).alpha,
                                              scene_.geometry->textures.cutoff(material_of(lane)),
                                              uniform_from<R>(words[3]));
@@ -208,6 +217,11 @@ private:
 
     /// Draws a light, a direction to it and its weight, shadow aside; returns whether it can count at all.
     bool choose_light(Lane& lane, int depth) {
+        find_light(lane, depth);
+        LightVertex<R>& light = lane.path.back().light;
+        return light.pdf > R(0) && weigh_light(lane, light);
+    }
+    void find_light(Lane& lane, int depth) {
         const SceneLights& lights = scene_.geometry->lights;
         const Philox4 words = numbers_(lane.key, 1 + 2 * static_cast<std::uint32_t>(depth));
         const Vec2<R> u2(uniform_from<R>(words[1]), uniform_from<R>(words[2]));
@@ -220,7 +234,6 @@ private:
             ask_piece(lane, light, choice, u2);
         else
             ask_listed(lane, light, choice, u2);
-        return light.pdf > R(0) && weigh_light(lane, light);
     }
     void ask_piece(Lane& lane, LightVertex<R>& light, const Choice& choice, const Vec2<R>& u2) {
         const PathGeometry& geometry = *scene_.geometry;
@@ -266,12 +279,13 @@ private:
         light.f = drawn_as(lane).f(wo, light.wi);
         if (stop_when_black_ && is_black(light.f)) return false;
         light.scatter_pdf = sampling_of(lane).pdf(wo, light.wi);
-        // No ray meets a delta light: it is the light sample's alone.
-        const bool alone =
-            options_.strategy == Strategy::light || light.shape == SceneLights::delta;
-        const R share = alone ? R(1) : mis_weight(options_.heuristic, light.pdf, light.scatter_pdf);
-        light.weight = share * std::abs(light.wi.z) / light.pdf;
+        light.weight = light_share(light) * std::abs(light.wi.z) / light.pdf;
         return true;
+    }
+    R light_share(const LightVertex<R>& light) const {
+        // No ray meets a delta light: it is the light sample's alone.
+        if (options_.strategy == Strategy::light || light.shape == SceneLights::delta) return R(1);
+        return mis_weight(options_.heuristic, light.pdf, light.scatter_pdf);
     }
 
     /// Lets the material choose a direction; ends the path where it has none, or by roulette.
@@ -290,20 +304,27 @@ private:
         v.lobe = next.lobe;
         v.value = scene_.drawn_as_sampled() ? next.value : drawn_as(lane).value(v.wo, v.wi, v.lobe);
         const R weight = (next.lobe < 0 ? std::abs(next.wi.z) : R(1)) / next.pdf;
-        lane.beta *= next.value * weight;
-        if (stop_when_black_ && is_black(lane.beta)) return;
-        if (depth >= options_.roulette_from) {
-            const R largest = std::max({lane.beta.x, lane.beta.y, lane.beta.z});
-            v.survival = std::clamp(largest, R(0.05), R(0.95));
-            if (uniform_from<R>(words[3]) >= v.survival) return;
-            lane.beta *= R(1) / v.survival;
-        }
-        v.weight = weight / v.survival;
+        if (!survives(lane, depth, next.value, weight, uniform_from<R>(words[3]))) return;
         lane.pdf = next.lobe < 0 ? next.pdf : R(0);
         lane.previous = lane.hit.position;
         lane.ray = {lane.side.start(lane.hit.position, direction, scene_.geometry->offset),
                     direction};
         lane.alive = true;
+    }
+
+    /// Weighs the path with where it goes on; false where it ends, black or by roulette.
+    bool survives(Lane& lane, int depth, const Vec3<R>& value, R weight, R u) {
+        PathVertex<R>& v = lane.path.back();
+        lane.beta *= value * weight;
+        if (stop_when_black_ && is_black(lane.beta)) return false;
+        if (depth >= options_.roulette_from) {
+            const R largest = std::max({lane.beta.x, lane.beta.y, lane.beta.z});
+            v.survival = std::clamp(largest, R(0.05), R(0.95));
+            if (u >= v.survival) return false;
+            lane.beta *= R(1) / v.survival;
+        }
+        v.weight = weight / v.survival;
+        return true;
     }
 
     static bool is_black(const Vec3<R>& v) { return v.x == R(0) && v.y == R(0) && v.z == R(0); }

@@ -10,8 +10,10 @@
 #include <vector>
 
 #include "photograd/core/frame.h"
+#include "photograd/medium/medium.h"
 #include "photograd/scene/bent_normal.h"
 #include "photograd/scene/material.h"
+#include "photograd/scene/media.h"
 #include "photograd/scene/scene_lights.h"
 #include "photograd/scene/textured.h"
 
@@ -23,6 +25,7 @@ struct PathGeometry {
     std::vector<std::vector<float>> normals;  // of each mesh: (V, 3) shading normals, or none
     SceneLights lights;
     SurfaceTextures textures;
+    MediaGeometry media;
     double offset;  // by which rays start away from a surface, metres
 
     PathGeometry(Bvh hierarchy, std::vector<std::int32_t> materials,
@@ -51,6 +54,7 @@ struct PathScene {
     const R* emission;                                            // (S, 3)
     std::span<const AnyLight<R>> lights;                          // of the list
     std::span<const R* const> texels = {}, sampling_texels = {};  // (H, W, C) of each texture
+    std::span<const Medium<R>> media = {}, sampling_media = {};
 
     [[nodiscard]] Vec3<R> emitted(std::int32_t shape) const {
         const R* L = emission + 3 * static_cast<std::size_t>(shape);
@@ -82,7 +86,8 @@ struct PathScene {
         return sum;
     }
     [[nodiscard]] bool drawn_as_sampled() const {
-        return materials.data() == sampling.data() && texels.data() == sampling_texels.data();
+        return materials.data() == sampling.data() && texels.data() == sampling_texels.data() &&
+               media.data() == sampling_media.data();
     }
 };
 

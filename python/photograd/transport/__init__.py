@@ -15,6 +15,7 @@ from photograd.transport.derivative import (
     direction_of,
 )
 from photograd.transport.lens import Lens
+from photograd.transport.medium import BOUNDARY, VACUUM, DensityGrid, Medium
 from photograd.transport.mesh_files import ModelFile, model_scene, read_model
 from photograd.transport.particles import (
     Emitted,
@@ -30,12 +31,16 @@ from photograd.transport.texture import NormalMap, Texture, TextureUse, read_tex
 from photograd.transport.tracer import PathOptions, PathTracer
 
 __all__ = [
+    "BOUNDARY",
     "BUILTIN",
+    "VACUUM",
     "Accumulation",
+    "DensityGrid",
     "Emitted",
     "Environment",
     "Lens",
     "Material",
+    "Medium",
     "MeshShape",
     "ModelFile",
     "NormalMap",

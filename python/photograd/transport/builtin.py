@@ -1,4 +1,4 @@
-"""Scenes by name: a Cornell box, a furnace, balls under an evening sky."""
+"""Scenes by name: a Cornell box, a furnace, balls under an evening sky, balls of wax and smoke."""
 
 from __future__ import annotations
 
@@ -7,22 +7,13 @@ from collections.abc import Callable
 import numpy as np
 from photograd_course.suggest import choose_from
 
-from photograd.data.camera import Camera
 from photograd.errors import RangeError, SceneError, message
 from photograd.lights import EnvironmentMap
-from photograd.orbit import look_at
+from photograd.transport.builtin_media import wax
+from photograd.transport.camera_place import camera_at
 from photograd.transport.evening import evening_map
 from photograd.transport.scene import Environment, Material, MeshShape, Scene, Shape, SphereShape
 from photograd.transport.shapes import box, rectangle
-
-
-def camera_at(
-    position: object, target: object, field_of_view: float, width: int, height: int
-) -> Camera:
-    """A camera that looks from one point to another; field_of_view is vertical, in degrees."""
-    focal = 0.5 * height / float(np.tan(np.radians(field_of_view) / 2))
-    pose = look_at(np.asarray(position, np.float64), np.asarray(target, np.float64))
-    return Camera(width, height, focal, focal, width / 2, height / 2, pose)
 
 
 def cornell_box(size: int = 256) -> Scene:
@@ -86,12 +77,15 @@ def evening(size: int = 256) -> Scene:
     return Scene("evening", shapes, materials, camera, lights=(EnvironmentMap(evening_map()),))
 
 
+__all__ = ["BUILTIN", "builtin_scene", "camera_at"]
+
 BUILTIN: dict[str, Callable[[int], Scene]] = {
     "cornell-box": cornell_box,
     "cornell-spheres": cornell_spheres,
     "furnace-box": furnace_box,
     "white-ball": white_ball,
     "evening": evening,
+    "wax": wax,
 }
 """Scenes by name, made for pictures of a given size."""
 

@@ -76,6 +76,7 @@ def derivative_image(
     Raises:
         RangeError: spp below 1, no such parameter, or a change that is not finite.
         ShapeError: a change of another shape than its parameter.
+        SceneError: a scene with media.
         Error: radiance that is not finite; names the pixel.
     """
     view = tracer.scene.camera if camera is None else camera
@@ -109,9 +110,9 @@ def add_derivative_samples(
     if spp < 1:
         raise RangeError(message("derivative_image", "spp", "at least 1", spp))
     step = direction_of(tracer.params, along) if isinstance(along, str) else along
-    moved = tracer.wide_arguments(_whole_direction(tracer.params, step), view)
+    moved = tracer.wide_arguments("derivative_image", _whole_direction(tracer.params, step), view)
     _core.trace_paths_tangent(
-        **tracer.wide_arguments(camera=view),
+        **tracer.wide_arguments("derivative_image", camera=view),
         **{f"v_{name}": moved[name] for name in ("parameters", "emission", "lights", "textures")},
         options=options.numbers(seed), first=picture.count, count=spp,
         radiance=picture.radiance, squares=picture.squares,

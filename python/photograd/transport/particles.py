@@ -128,7 +128,7 @@ def trace_light(
         raise ShapeError(message("trace_light", "sums", f"shape {shape}", total.radiance.shape))
     _check_count("trace_light", particles)
     _core.trace_light(
-        **scene_arguments(tracer), options=options.numbers(seed), first=total.count,
+        **scene_arguments("trace_light", tracer), options=options.numbers(seed), first=total.count,
         count=particles, rectangle=receiver.rows, irradiance=total.radiance,
         squares=total.squares,
     )  # fmt: skip
@@ -164,13 +164,15 @@ def emit_particles(tracer: PathTracer, count: int, *, seed: int, first: int = 0)
     """
     _check_count("emit_particles", count)
     return Emitted(
-        *_core.emit_particles(**scene_arguments(tracer), seed=seed, first=first, count=count)
+        *_core.emit_particles(
+            **scene_arguments("emit_particles", tracer), seed=seed, first=first, count=count
+        )
     )
 
 
-def scene_arguments(tracer: PathTracer) -> dict[str, Any]:
-    """The scene as the core's functions take it that have no camera."""
-    arguments = tracer.wide_arguments()
+def scene_arguments(function: str, tracer: PathTracer) -> dict[str, Any]:
+    """The scene as the core's functions take it that have no camera; refuses media."""
+    arguments = tracer.wide_arguments(function)
     del arguments["camera"]
     return arguments
 

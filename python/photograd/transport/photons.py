@@ -49,7 +49,7 @@ class PhotonMap:
         self.tracer = tracer
         self.radius = radius
         self._map = _core.PhotonMap(
-            **scene_arguments(tracer), options=options.numbers(seed), count=particles,
+            **scene_arguments("PhotonMap", tracer), options=options.numbers(seed), count=particles,
             radius=radius, direct=direct,
         )  # fmt: skip
 
@@ -92,8 +92,8 @@ class PhotonMap:
             got = sums.radiance.shape
             raise ShapeError(message("PhotonMap.add_samples", "sums", f"shape {shape}", got))
         self._map.trace(
-            **self.tracer.wide_arguments(), options=options.numbers(seed), first=sums.count,
-            count=spp, radiance=sums.radiance, squares=sums.squares,
+            **self.tracer.wide_arguments("PhotonMap"), options=options.numbers(seed),
+            first=sums.count, count=spp, radiance=sums.radiance, squares=sums.squares,
         )  # fmt: skip
         sums.count += spp
         sums.check_finite("PhotonMap.add_samples")

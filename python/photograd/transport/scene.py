@@ -21,6 +21,8 @@ from photograd.errors import DtypeError, RangeError, SceneError, ShapeError, mes
 from photograd.lights import Light
 from photograd.mesh import drop_degenerate
 from photograd.transport.lens import PINHOLE, Lens
+from photograd.transport.media_list import check_media
+from photograd.transport.medium import BOUNDARY, Medium
 from photograd.transport.texture import NormalMap, Texture, TextureUse, checked_uses
 
 Array = npt.NDArray[Any]
@@ -101,13 +103,15 @@ class MeshShape:
         name: unique in its scene.
         vertices: (V, 3) floating point, metres; kept as float32.
         faces: (F, 3) integers, counter-clockwise seen from the side that emits.
-        material: name of one of the scene's materials.
+        material: name of one of the scene's materials, or `medium.BOUNDARY`: it is not seen.
         emission: (3,) radiance of the front; 0 for all that does not shine.
         normals: (V, 3) shading normals of any length, or None for flat triangles.
         uv: (V, 2) texture coordinates, v downwards, or None.
         places: world_from_object, (4, 4) each, of instances of this mesh; none places it once,
             where it is. All shine and reflect alike, and are kept in memory once.
         glow: the texture that scales `emission`, three channels of it, or None.
+        interior: name of the medium that fills the mesh, which has to be closed, or
+            `medium.VACUUM`. None: nothing in glass, and whatever is around in other surfaces.
 
     Raises:
         DtypeError, ShapeError: arrays of other types or shapes.
@@ -125,6 +129,7 @@ class MeshShape:
     uv: Array | None = None
     places: tuple[Array, ...] = ()
     glow: TextureUse | None = None
+    interior: str | None = None
 
     def __post_init__(self) -> None:
         vertices = _float_rows(self.name, "vertices", self.vertices)
@@ -183,7 +188,7 @@ class SphereShape:
         name: unique in its scene.
         center: (3,) metres.
         radius: metres, above 0.
-        material: name of one of the scene's materials.
+        material, interior: as for `MeshShape`.
         emission: (3,) radiance.
 
     Raises:
@@ -195,6 +200,7 @@ class SphereShape:
     radius: float
     material: str
     emission: Array = field(default_factory=lambda: np.zeros(3))
+    interior: str | None = None
 
     def __post_init__(self) -> None:
         center = np.asarray(self.center, np.float64)
@@ -258,11 +264,16 @@ class Scene:
             the environment.
         textures: by the names that materials use.
         lens: of the camera.
+        media: by the names that interiors use.
+        world: name of the medium around everything, or None. It has no end: what lies behind
+            everything, lights at infinity included, is not seen through it. Fog under a sky is
+            the interior of a large box.
 
     Raises:
-        SceneError: no shape, two of one name, a material or texture that does not exist, or a
-            textured shape without texture coordinates, a light that is none, or a shape that
-            shines and covers only in part.
+        SceneError: no shape, two of one name, a material, texture or medium that does not exist, or
+            a textured shape without texture coordinates, a light that is none, a shape that shines
+            and covers only in part, an interior of a shape that is open or lets no light in, or
+            media beside surfaces that cover only in part.
     """
 
     name: str
@@ -273,6 +284,8 @@ class Scene:
     lights: tuple[Light, ...] = ()
     textures: Mapping[str, Texture] = field(default_factory=dict)
     lens: Lens = PINHOLE
+    media: Mapping[str, Medium] = field(default_factory=dict)
+    world: str | None = None
 
     def __post_init__(self) -> None:
         for i, light in enumerate(self.lights):
@@ -288,6 +301,8 @@ class Scene:
             if names[shape.name] > 1:
                 got = f"two of the name '{shape.name}'"
                 raise SceneError(message("Scene", "shapes", "names of their own", got))
+            if shape.material == BOUNDARY:
+                continue
             if shape.material not in self.materials:
                 known = choose_from(shape.material, self.materials)
                 argument = f"{shape.name}.material"
@@ -297,6 +312,7 @@ class Scene:
             if self.materials[shape.material].needs_uv and getattr(shape, "uv", None) is None:
                 expected = f"texture coordinates, which '{shape.material}' needs"
                 raise SceneError(message("Scene", f"{shape.name}.uv", expected, "none"))
+        check_media(self)
 
 
 def _check_textures(name: str, material: Material, textures: Mapping[str, Texture]) -> None:

@@ -29,7 +29,8 @@ kind = "directional"
 direction = [0.3, 1, 0.2]     # towards the light
 irradiance = 2
 
-Textures, and meshes from files, are described in `scene_meshes`.
+Textures, and meshes from files, are described in `scene_meshes`; fog, milk and coloured glass in
+`media_nodes`.
 """
 
 from __future__ import annotations
@@ -47,6 +48,8 @@ from photograd.errors import IoError, SceneError, message
 from photograd.transport.builtin import camera_at
 from photograd.transport.lens import Lens
 from photograd.transport.light_nodes import light_of
+from photograd.transport.media_nodes import filled, media_in
+from photograd.transport.medium import BOUNDARY
 from photograd.transport.scene import Environment, Material, MeshShape, Scene, Shape, SphereShape
 from photograd.transport.scene_meshes import mesh_shapes, pictures_of, texture_use, textures_in
 from photograd.transport.scene_node import Node
@@ -87,16 +90,18 @@ def _scene(root: Node, name: str) -> Scene:
         tables = root.table("materials")
         materials = {key: _material(tables.table(key)) for key in tables.data}
     textures = textures_in(root)
+    media, world = media_in(root)
     brought = (dict(materials), textures)
     shapes = [
         shape
         for i, node in enumerate(root.tables("shapes"))
-        for shape in _shapes(node, i, materials, brought)
+        for shape in filled(node, media, _shapes(node, i, materials, brought))
     ]
     lights = tuple(map(light_of, root.tables("lights"))) if root.has("lights") else ()
     return Scene(
-        name, tuple(shapes), brought[0], camera, environment, lights, textures=textures, lens=lens
-    )
+        name, tuple(shapes), brought[0], camera, environment, lights, textures=textures, lens=lens,
+        media=media, world=world,
+    )  # fmt: skip
 
 
 def _camera(node: Node) -> tuple[Camera, Lens]:
@@ -142,10 +147,11 @@ def _shapes(
     brought: tuple[dict[str, Material], dict[str, Texture]],
 ) -> list[Shape]:  # fmt: skip
     """What a table describes; materials and textures of a mesh file are added to `brought`."""
+    node.has("interior")  # read by `filled`
     if node.choice("kind", (*KINDS, "mesh")) != "mesh":
         return [_shape(node, index, materials)]
     name = node.text("name", f"mesh {index}")
-    material = node.choice("material", materials) if node.has("material") else None
+    material = node.choice("material", (*materials, BOUNDARY)) if node.has("material") else None
     emission = node.color("emission") if node.has("emission") else None
     shapes, own_materials, own_textures = mesh_shapes(node, name, material, emission)
     node.refuse_other_keys()
@@ -157,7 +163,7 @@ def _shapes(
 def _shape(node: Node, index: int, materials: dict[str, Material]) -> Shape:
     kind = node.choice("kind", KINDS)
     name = node.text("name", f"{kind} {index}")
-    material = node.choice("material", materials)
+    material = node.choice("material", (*materials, BOUNDARY))
     emission = node.color("emission", [0.0, 0.0, 0.0])
     shape = node.built(lambda: KINDS[kind](node, name, material, emission))
     if isinstance(shape, MeshShape) and node.has("glow"):

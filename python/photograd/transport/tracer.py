@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from photograd.core import _core
 from photograd.data.camera import Camera
-from photograd.errors import DtypeError, RangeError, ShapeError, message
+from photograd.errors import DtypeError, RangeError, SceneError, ShapeError, message
 from photograd.transport.accumulation import Accumulation
 from photograd.transport.core_arrays import (
     cutoffs_of,
@@ -24,6 +24,7 @@ from photograd.transport.core_arrays import (
     textures_of,
 )
 from photograd.transport.light_list import light_shapes, listed_lights
+from photograd.transport.media_list import ListedMedia
 from photograd.transport.sample_counts import sample_counts
 from photograd.transport.scene import Array, MeshShape, Scene, Shape, SphereShape
 
@@ -95,7 +96,8 @@ class PathTracer:
             "lights.INDEX.PARAMETER" of the list, such as "lights.0.intensity" (3,) or
             "lights.0.texels" (H, 2 H, 3). How often a light is asked stays as it was when the
             tracer was built: pictures stay right, but a tracer that is built again is less noisy
-            where a light has become much stronger. Places and directions of lights are fixed.
+            where a light has become much stronger. Places and directions of lights are fixed;
+            "media.NAME.sigma_t" and ".albedo" (3,), ".g" (), ".density" (X, Y, Z).
     """
 
     def __init__(self, scene: Scene, *, dtype: npt.DTypeLike = np.float32) -> None:
@@ -111,11 +113,12 @@ class PathTracer:
             raise DtypeError(message("PathTracer", "dtype", expected, self.dtype))
         self.scene = scene
         self._lights = listed_lights(scene)
+        self._media = ListedMedia(scene)
         names = {name: number for number, name in enumerate(scene.materials)}
         # (name of the emission among the params, shape, number of its material); lights reflect
-        # nothing, by a material that is no parameter.
+        # nothing, by a material that is no parameter, and boundaries have none.
         placed: list[tuple[str, Shape, int]] = [
-            *((f"emission.{s.name}", s, names[s.material]) for s in scene.shapes),
+            *((f"emission.{s.name}", s, names.get(s.material, len(names))) for s in scene.shapes),
             *((name, s, len(names)) for name, s in light_shapes(scene).items()),
         ]
         placed.sort(key=lambda entry: isinstance(entry[1], SphereShape))  # meshes come first
@@ -141,6 +144,9 @@ class PathTracer:
         )
         glows = glows_of(scene, [self._shapes[owner] for owner in self._owner])
         self._geometry.set_textures(*textures_of(scene), cutoffs_of(scene), glows)
+        places = self._media.places(self._shapes, self._owner)
+        if places is not None:
+            self._geometry.set_media(**places)
         marked = [m.model + "+alpha" * m.sheer for m in scene.materials.values()]
         self._models = [*marked, "lambert"]
 
@@ -156,6 +162,7 @@ class PathTracer:
                 params[name] = shape.emission
         for light in self._lights:
             params.update(light.start)
+        params.update(self._media.start)
         return {name: np.array(value, self.dtype) for name, value in params.items()}
 
     def render(
@@ -198,9 +205,10 @@ class PathTracer:
         self._check_sums("add_samples", sums, spp, view)
         other = None if sampling_params is None else self._material_row(sampling_params)
         texels = None if sampling_params is None else self._texels(sampling_params)
+        media = None if sampling_params is None else self._media.rows(sampling_params, self.dtype)
         _core.trace_paths(
             **self._arguments(view), sampling_parameters=other, sampling_textures=texels,
-            options=options.numbers(seed),
+            sampling_media=media, options=options.numbers(seed),
             first=sums.count, count=spp, radiance=sums.radiance, squares=sums.squares,
         )  # fmt: skip
         sums.count += spp
@@ -242,11 +250,15 @@ class PathTracer:
         d_emission = np.zeros_like(arguments["emission"])
         d_lights = [np.zeros_like(row[1]) for row in arguments["lights"]]
         d_textures = [np.zeros_like(texels) for texels in arguments["textures"]]
+        d_media = [np.zeros_like(row) for _, row, _, _ in arguments["media"]]
+        grids = [grid for _, _, grid, _ in arguments["media"]]
+        d_densities = [None if grid is None else np.zeros_like(grid) for grid in grids]
         _core.trace_paths_backward(
             **arguments, options=options.numbers(seed), spp=spp,
             counts=sample_counts(d_image, spp, spread),
             d_image=np.ascontiguousarray(d_image, np.float64),
             d_parameters=d_rows, d_emission=d_emission, d_lights=d_lights, d_textures=d_textures,
+            d_media=d_media, d_densities=d_densities,
         )  # fmt: skip
         d_shapes = np.zeros((len(self._shapes), 3), self.dtype)
         np.add.at(d_shapes, self._owner, d_emission)
@@ -262,6 +274,7 @@ class PathTracer:
                 start += parameter.size
         for light, derivative in zip(self._lights, d_lights, strict=True):
             gradients.update(light.named(derivative))
+        gradients.update(self._media.named(d_media, d_densities))
         return {name: gradients[name] for name in self.params}
 
     def add_occlusion(
@@ -291,7 +304,7 @@ class PathTracer:
 
         `pixel` is row * width + column. In float64, whatever the tracer's dtype.
         """
-        arguments = self.wide_arguments()
+        arguments = self._wide(self.params, self.scene.camera)
         found: list[dict[str, Any]] = _core.trace_path(
             **arguments, options=options.numbers(seed), pixel=pixel, sample=sample
         )
@@ -322,18 +335,32 @@ class PathTracer:
         ]
 
     def wide_arguments(
-        self, params: dict[str, Array] | None = None, camera: Camera | None = None
+        self, function: str, params: dict[str, Array] | None = None, camera: Camera | None = None
     ) -> dict[str, Any]:
-        """The scene as those functions of the core take it that calculate in double alone.
+        """The scene as functions of the core take it that calculate in double, without media.
 
         `params` is what to say instead of the tracer's own; `camera` None takes the scene's.
+
+        Raises:
+            SceneError: a scene with media; names `function`.
         """
+        if self.scene.media:
+            expected, remedy = "a scene without media", "trace it with PathTracer.render"
+            raise SceneError(
+                message(function, "scene.media", expected, list(self.scene.media), remedy)
+            )
         given = self.params if params is None else params
-        arguments = self._arguments(self.scene.camera if camera is None else camera, given)
+        arguments = self._wide(given, self.scene.camera if camera is None else camera)
+        del arguments["media"]
+        return arguments
+
+    def _wide(self, params: dict[str, Array], camera: Camera) -> dict[str, Any]:
+        arguments = self._arguments(camera, params)
         for name in ("parameters", "emission"):
             arguments[name] = arguments[name].astype(np.float64)
         arguments["textures"] = [texels.astype(np.float64) for texels in arguments["textures"]]
-        arguments["lights"] = [light.row(given, np.float64) for light in self._lights]
+        arguments["lights"] = [light.row(params, np.float64) for light in self._lights]
+        arguments["media"] = self._media.rows(params, np.float64)
         return arguments
 
     def _arguments(self, camera: Camera, params: dict[str, Array] | None = None) -> dict[str, Any]:
@@ -348,6 +375,7 @@ class PathTracer:
             "emission": shining[self._owner],
             "lights": [light.row(given, self.dtype) for light in self._lights],
             "textures": self._texels(given),
+            "media": self._media.rows(given, self.dtype),
             "camera": (*_numbers(camera), self.scene.lens.radius, self.scene.lens.focus),
         }
 

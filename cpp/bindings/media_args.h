@@ -1,0 +1,108 @@
+// Media of a scene as Python gives them: where they are, once, and their numbers, for each rendering.
+//
+//   (name of the phase function or "", parameters (P,), densities (X, Y, Z) or None, sigma_maj)
+#pragma once
+
+#include <pybind11/stl.h>
+
+#include <optional>
+#include <tuple>
+
+#include "array_args.h"
+#include "photograd/scene/path_scene.h"
+
+namespace photograd {
+
+using MediumTuple = std::tuple<std::string, py::array, std::optional<py::array>, double>;
+/// (X, Y, Z) and box_from_world (3, 4), or None.
+using GridPlaces = std::vector<std::optional<std::tuple<std::array<int, 3>, py::array>>>;
+
+inline void set_media(PathGeometry& geometry, const py::array& interior, const py::array& boundary,
+                      std::int32_t world, const GridPlaces& grids) {
+    ArrayArgs args("PathTracer");
+    const std::string axes = std::to_string(geometry.shape_count());
+    const std::int32_t* inside = args.in<std::int32_t>("interior", interior, axes);
+    const bool* is_boundary = args.in<bool>("boundary", boundary, axes);
+    MediaGeometry out;
+    const auto count = static_cast<std::int32_t>(grids.size());
+    for (std::size_t s = 0; s < geometry.shape_count(); ++s) {
+        if (inside[s] < MediaGeometry::unchanged || inside[s] >= count)
+            args.range("interior", "numbers of media, -1 or -2", std::to_string(inside[s]));
+        out.interior.push_back(inside[s]);
+        out.boundary.push_back(is_boundary[s]);
+    }
+    if (world < MediaGeometry::vacuum || world >= count)
+        args.range("world", "the number of a medium or -1", std::to_string(world));
+    out.world = world;
+    for (const auto& place : grids) {
+        DensityLayout layout;
+        if (place) {
+            const auto& [shape, matrix] = *place;
+            if (shape[0] < 2 || shape[1] < 2 || shape[2] < 2)
+                args.range("density", "at least two voxels along each axis", "fewer");
+            layout.shape = {shape[0], shape[1], shape[2]};
+            ArrayArgs own("PathTracer");
+            std::copy_n(own.in<double>("box_from_world", matrix, "3 4"), 12,
+                        layout.box_from_world.begin());
+        }
+        out.grids.push_back(layout);
+    }
+    geometry.media = std::move(out);
+}
+
+inline std::string axes_of(const GridShape& shape) {
+    return std::to_string(shape.x) + " " + std::to_string(shape.y) + " " + std::to_string(shape.z);
+}
+
+template <class R>
+std::vector<Medium<R>> media_of(const PathGeometry& geometry,
+                                const std::vector<MediumTuple>& rows) {
+    const auto& grids = geometry.media.grids;
+    ArrayArgs args("trace_paths");
+    if (rows.size() != grids.size())
+        args.range("media", std::to_string(grids.size()) + ", as when the scene was built",
+                   std::to_string(rows.size()));
+    std::vector<Medium<R>> out;
+    for (std::size_t m = 0; m < rows.size(); ++m) {
+        const auto& [phase, row, density, sigma_maj] = rows[m];
+        Medium<R> medium;
+        if (!phase.empty()) medium.phase = AnyPhase<R>::named(phase);
+        ArrayArgs own("trace_paths");
+        const R* next = own.in<R>("media", row, std::to_string(medium.parameter_count()));
+        medium.for_each([&](R& x) { x = *next++; });
+        if (density.has_value() == grids[m].empty())
+            args.range("media", "densities for media with a grid alone", "others");
+        if (density) {
+            medium.density = own.in<R>("density", *density, axes_of(grids[m].shape));
+            medium.sigma_maj = R(sigma_maj);
+        }
+        out.push_back(medium);
+    }
+    return out;
+}
+
+/// Where derivatives by media go: rows like their parameters, and arrays like their grids or None.
+template <class R>
+struct MediaOutputs {
+    std::vector<R*> rows, densities;
+
+    MediaOutputs(const PathGeometry& geometry, const std::vector<Medium<R>>& media,
+                 std::vector<py::array>& d_media,
+                 std::vector<std::optional<py::array>>& d_densities) {
+        ArrayArgs args("trace_paths_backward");
+        if (d_media.size() != media.size() || d_densities.size() != media.size())
+            args.range("d_media", std::to_string(media.size()) + " rows and grids", "others");
+        for (std::size_t m = 0; m < media.size(); ++m) {
+            ArrayArgs own("trace_paths_backward");
+            rows.push_back(
+                own.out<R>("d_media", d_media[m], std::to_string(media[m].parameter_count())));
+            densities.push_back(nullptr);
+            if (!media[m].density) continue;
+            if (!d_densities[m]) args.range("d_densities", "an array for each grid", "None");
+            densities.back() =
+                own.out<R>("d_densities", *d_densities[m], axes_of(geometry.media.grids[m].shape));
+        }
+    }
+};
+
+}  // namespace photograd

@@ -1,0 +1,171 @@
+"""The media of a scene as the core takes them, and what of a scene's shapes they need."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+from photograd_course.suggest import choose_from
+
+from photograd import bsdf, delta_bsdf
+from photograd.errors import SceneError, ShapeError, message
+from photograd.transport.medium import BOUNDARY, VACUUM, Medium
+
+if TYPE_CHECKING:
+    from photograd.transport.scene import Scene, Shape
+
+Array = npt.NDArray[Any]
+NOTHING, UNCHANGED = -1, -2  # interiors that are no medium, as the core counts them
+SOLID = ("glass", "rough_dielectric", BOUNDARY)
+"""Surfaces whose inside is empty unless the shape says otherwise. Others that light can pass are
+taken for thin sheets: on both sides is what is around."""
+
+
+def check_media(scene: Scene) -> None:
+    """Raise SceneError for names that do not exist, and interiors that no light could enter."""
+    sheer = [name for name, material in scene.materials.items() if material.sheer]
+    if scene.media and sheer:
+        remedy = "leave out alpha, or the media: paths through both are not known yet"
+        raise SceneError(message("Scene", "media", "materials without alpha", sheer, remedy))
+    for name in (BOUNDARY, VACUUM):
+        if name in scene.materials or name in scene.media:
+            expected = "another name, this one has a meaning of its own"
+            raise SceneError(message("Scene", "materials and media", expected, name))
+    if scene.world is not None and scene.world not in scene.media:
+        known = choose_from(scene.world, scene.media)
+        raise SceneError(message("Scene", "world", "one of the scene's media", scene.world, known))
+    for shape in scene.shapes:
+        if shape.material == BOUNDARY and shape.emission.any():
+            expected = "none, for a boundary cannot be seen"
+            raise SceneError(message("Scene", f"{shape.name}.emission", expected, shape.emission))
+        if shape.interior is not None:
+            _check_interior(scene, shape)
+
+
+def _check_interior(scene: Scene, shape: Shape) -> None:
+    argument = f"{shape.name}.interior"
+    if shape.interior != VACUUM and shape.interior not in scene.media:
+        known = choose_from(str(shape.interior), scene.media)
+        expected = f"one of the scene's media, or {VACUUM}"
+        raise SceneError(message("Scene", argument, expected, shape.interior, known))
+    if not is_closed(shape):
+        expected = "a closed mesh, counter-clockwise seen from outside"
+        remedy = "give it back and sides, or turn its faces around"
+        raise SceneError(message("Scene", argument, expected, f"'{shape.name}' is not", remedy))
+    if shape.material != BOUNDARY and not transmits(scene.materials[shape.material].model):
+        expected = f"a surface that lets light in, or {BOUNDARY}"
+        got = f"'{scene.materials[shape.material].model}'"
+        raise SceneError(message("Scene", argument, expected, got))
+
+
+def transmits(model: str) -> bool:
+    """Whether light passes a surface of this model."""
+    rough, smooth = bsdf.registry(), delta_bsdf.registry()
+    return rough[model].transmits if model in rough else smooth[model].lobe_count > 1
+
+
+def is_closed(shape: Any) -> bool:
+    """Whether a shape has an inside: every edge of a mesh is passed once in each direction.
+
+    Vertices at one place count as one. The volume within has to be positive: outside is where
+    faces are counter-clockwise.
+    """
+    if not hasattr(shape, "faces"):  # a sphere
+        return True
+    places, same = np.unique(shape.vertices, axis=0, return_inverse=True)
+    faces = same.reshape(-1)[shape.faces.astype(np.int64)]
+    faces = faces[(faces != np.roll(faces, 1, axis=1)).all(axis=1)]  # slivers of a welded edge
+    edges = np.concatenate([faces[:, [i, (i + 1) % 3]] for i in range(3)])
+    forth = edges[:, 0] * len(places) + edges[:, 1]
+    back = edges[:, 1] * len(places) + edges[:, 0]
+    if not np.array_equal(np.sort(forth), np.sort(back)):
+        return False
+    a, b, c = (places[faces[:, k]].astype(np.float64) - places[0] for k in range(3))
+    return float(np.einsum("ij,ij->", a, np.cross(b, c))) > 0
+
+
+class ListedMedia:
+    """The media of a scene, numbered, and where they are."""
+
+    def __init__(self, scene: Scene) -> None:
+        """Of a scene that has been checked."""
+        self.media: Mapping[str, Medium] = scene.media
+        self._numbers = {name: number for number, name in enumerate(scene.media)}
+        self._scene = scene
+        self.start = {
+            f"media.{name}.{key}": value
+            for name, medium in scene.media.items()
+            for key, value in medium.start.items()
+        }
+
+    def places(self, shapes: Sequence[Shape], owner: Array) -> dict[str, Any] | None:
+        """Arguments of the core's `set_media`, or None for a scene of surfaces alone.
+
+        `shapes` are the tracer's, `owner` (S,) says which of them each of the core's is of.
+        """
+        scene = self._scene
+        boundary = np.array([shape.material == BOUNDARY for shape in shapes])
+        if not self.media and not boundary.any():
+            return None
+        interior = np.array([self._interior(shape) for shape in shapes], np.int32)
+        grids = [
+            None
+            if medium.density is None
+            else (medium.density.values.shape, medium.density.box_from_world)
+            for medium in self.media.values()
+        ]
+        world = NOTHING if scene.world is None else self._numbers[scene.world]
+        return {
+            "interior": interior[owner], "boundary": boundary[owner], "world": world,
+            "grids": grids,
+        }  # fmt: skip
+
+    def _interior(self, shape: Shape) -> int:
+        if shape.interior is not None:
+            return NOTHING if shape.interior == VACUUM else self._numbers[shape.interior]
+        known = self._scene.materials
+        solid = shape.material == BOUNDARY or (
+            shape.material in known and known[shape.material].model in SOLID
+        )
+        return NOTHING if solid and is_closed(shape) else UNCHANGED
+
+    def rows(self, params: Mapping[str, Array], dtype: npt.DTypeLike) -> list[tuple[Any, ...]]:
+        """For the core: (phase function, parameters (P,), densities (X, Y, Z) or None, sigma_maj).
+
+        Raises:
+            ShapeError: params of another shape than at the start.
+            RangeError: params that are no medium.
+        """
+        found = []
+        for name, medium in self.media.items():
+            prefix = f"media.{name}."
+            for key, value in medium.start.items():
+                if np.shape(params[prefix + key]) != value.shape:
+                    got = np.shape(params[prefix + key])
+                    expected = f"shape {value.shape}"
+                    raise ShapeError(message("PathTracer", prefix + key, expected, got))
+            values = {key: np.asarray(params[prefix + key], dtype) for key in medium.start}
+            row = np.ascontiguousarray(medium.row("PathTracer", prefix, values), dtype)
+            density, sigma_maj = values.get("density"), 0.0
+            if medium.density is not None and density is not None:
+                largest = medium.density.largest("PathTracer", f"{prefix}density", density)
+                sigma_maj = float(values["sigma_t"].max()) * largest
+                density = np.ascontiguousarray(density)
+            found.append((medium.phase_name, row, density, sigma_maj))
+        return found
+
+    def named(self, d_rows: Sequence[Array], d_densities: Sequence[Any]) -> dict[str, Array]:
+        """Derivatives by the second and third entries of `rows`, under the names of the params."""
+        gradients: dict[str, Array] = {}
+        for (name, medium), row, grid in zip(self.media.items(), d_rows, d_densities, strict=True):
+            first = 0
+            for key, value in medium.start.items():
+                if key == "density":
+                    gradients[f"media.{name}.{key}"] = grid
+                    continue
+                part = row[first : first + value.size]
+                gradients[f"media.{name}.{key}"] = part.reshape(value.shape)
+                first += value.size
+        return gradients
