@@ -19,9 +19,6 @@ REPLACE = [
     ),
     (
         'np.add.at(d_roughness, both["thing"], by_rough)',
-        (
-            'd_roughness[hit["thing"]] += by_rough[:n]\n'
-            '    d_roughness[hit["thing"]] += by_rough[n:]'
-        ),
+        'd_roughness[both["thing"]] += by_rough',
     ),
 ]
