@@ -141,10 +141,10 @@ def dome(heights=40, turns=64):
 # Judgements ---------------------------------------------------------------------------------------
 
 
-def p_value(values, right, error=0.0):
-    """Of draws (n, C) whose means should be `right` (C,), give or take `error`: the least by C."""
+def p_value(values, right):
+    """Of draws (n, C) whose means should be `right` (C,): the least by C."""
     n = len(values)
-    spread = np.hypot(values.std(axis=0, ddof=1) / math.sqrt(n), error)
+    spread = values.std(axis=0, ddof=1) / math.sqrt(n)
     off = np.abs(values.mean(axis=0) - right)
     off = np.where(
         off < 1e-12 * np.abs(right), 0.0, np.minimum(off / np.maximum(spread, 1e-9), 1e6)
@@ -154,17 +154,22 @@ def p_value(values, right, error=0.0):
     return min(math.erfc(float(z.max()) / math.sqrt(2)) * len(off), 1.0)
 
 
-def require_mean(t, what, draw, right, error=0.0):
-    """Require that draws have the right mean; draws that look bad get a second chance."""
+def require_mean(t, what, draw, right, mistakes=(), hint=""):
+    """Require that draws have the right mean; draws that look bad get a second chance.
+
+    `mistakes` are (mean that it would have, what to say of it); `hint` is for all others.
+    """
     values = draw()
-    if p_value(values, right, error) < LEVEL:
+    if p_value(values, right) < LEVEL:
         values = draw()
-        if p_value(values, right, error) < LEVEL:
+        if p_value(values, right) < LEVEL:
             mean, spread = values.mean(axis=0), values.std(axis=0) / math.sqrt(len(values))
             worst = int(np.argmax(np.abs(mean - right)))
+            fits = [(p_value(values, wrong), said) for wrong, said in mistakes]
+            fits = [(p, said) for p, said in fits if p > 5 * LEVEL]
             t.require(False, f"{what}: the mean of {len(values)} samples, {mean[worst]:.4g}, give "
                              f"or take {spread[worst]:.1g}, is not {right[worst]:.4g} "
-                             f"(channel {worst})")  # fmt: skip
+                             f"(channel {worst})", hint=max(fits)[1] if fits else hint)  # fmt: skip
     t.require(True, "")
 
 
@@ -293,6 +298,10 @@ def direct(t, scene, hit, u=None, proposal=None):
     return t.call("direct_light", scene, hit, u[0], u[1], *more, returns=Array((n, 3)))
 
 
+TWICE = ("twice as bright as it should be: the light is counted in full by both strategies; "
+         "in each direction their weights must sum to 1")  # fmt: skip
+
+
 def lit_floor(t, n=2000, size=1.3, height=0.45):
     """(scene, hit, right): a matte place below a lamp, and the radiance that leaves it."""
     color, shine = t.rng.uniform(0.2, 0.9, 3), t.rng.uniform(0.5, 4, 3)
@@ -311,12 +320,13 @@ def lit_floor(t, n=2000, size=1.3, height=0.45):
               "direct_no_weights", "direct_other_pdf", "direct_weights_exchanged",
               "direct_wrong_measure"),
        hint="equations (8) to (10): reflectance times cosine times radiance, over "
-       "the density of the strategy that has drawn it, by its weight",
+       "the density of the strategy that has drawn it, by its weight; weights sum to 1",
        sole="the irradiance from a rectangle has been known since Lambert")  # fmt: skip
 def light_from_a_rectangle(t):
     """A matte place below a large lamp: the mean is Lambert's formula. A small lamp: no noise."""
     scene, hit, right = lit_floor(t)
-    require_mean(t, "light from a lamp", lambda: direct(t, scene, hit), right)
+    mistakes = [(2 * right, TWICE)]
+    require_mean(t, "light from a lamp", lambda: direct(t, scene, hit), right, mistakes)
     # Of 2000 directions by the cosine some 40 find this lamp: drawing its places is far better.
     scene, hit, right = lit_floor(t, 2000, 0.5, 2.0)
     spread = float((direct(t, scene, hit).std(axis=0) / right).max())
@@ -351,31 +361,39 @@ def albedo(t, scene, hit):
 def a_bright_room_shows_the_albedo(t):
     """A glossy place in a room of radiance 1: the mean is the integral of assignment 04."""
     scene, hit = furnace(t)
-    require_mean(t, "albedo", lambda: direct(t, scene, hit), albedo(t, scene, hit))
+    right = albedo(t, scene, hit)
+    require_mean(t, "albedo", lambda: direct(t, scene, hit), right, [(2 * right, TWICE)])
 
 
 @check("07.3.proposal", task="07.3", points=3, calls=("direct_light",), needs=TASK_3,
        kills=("direct_lamps_alone", "direct_material_alone", "direct_no_cosine",
               "direct_no_division", "direct_no_weights", "direct_other_pdf",
-              "direct_proposal_forgotten", "direct_proposal_reflects", "direct_wrong_measure"),
+              "direct_proposal_forgotten", "direct_proposal_ignored", "direct_proposal_reflects",
+              "direct_wrong_measure"),
        hint="directions, densities and weights by `proposal`, reflectance by `scene`",
        sole="the mean does not depend on how samples are drawn")  # fmt: skip
 def another_proposal_has_the_same_mean(t):
-    """Directions drawn by a rougher material: the mean is still that of the scene."""
+    """Directions drawn by a rougher material: other estimates, and the mean of the scene."""
     scene, hit = furnace(t)
     other = {**scene, "roughness": scene["roughness"] + 0.2,
              "base_color": 1 - scene["base_color"]}  # fmt: skip
     right = albedo(t, scene, hit)
     require_mean(t, "albedo", lambda: direct(t, scene, hit, proposal=other), right)
+    few, u = {name: rows[:50] for name, rows in hit.items()}, t.rng.random((2, 50, 3))
+    apart = np.abs(direct(t, scene, few, u, other) - direct(t, scene, few, u)) > 1e-6
+    t.require(bool(apart.any(axis=1).mean() > 0.5),
+              "for the same random numbers a rougher proposal gives the same estimates",
+              hint="`proposal` is not looked at: directions, densities and weights come from it "
+              "wherever it is given")  # fmt: skip
 
 
 @check("07.3.dark", task="07.3", points=2, calls=("direct_light",), needs=TASK_3,
-       kills=("direct_material_alone",),
+       kills=("direct_material_alone", "direct_through_walls"),
        hint="what counts is the first thing that is met along the direction, and it must "
        "be the lamp that was drawn",
        sole="shadows")  # fmt: skip
 def no_light_arrives(t):
-    """A lamp behind a wall, behind a ball, below the horizon or seen from behind: exactly 0."""
+    """A lamp behind a wall, a ball or a lamp, below the horizon or seen from behind: exactly 0."""
     n, x = 60, float(t.rng.uniform(0.5, 1.0))
     glossy = flake(base_color=0.8, metalness=0.5, roughness=0.6)
     lamp = ((-x, 2, -x), (2 * x, 0, 0), (0, 0, 2 * x), {"emission": 3.0})
@@ -393,6 +411,22 @@ def no_light_arrives(t):
     ):
         got = direct(t, scene, hit)
         t.require(not got.any(), f"{told}: no light arrives, but yours is {got.max():.3g}")
+    scene = scene_of([glossy, lamp, (*wall[:3], {"emission": 1.0})])
+    got = direct(t, scene, hit, all_draw(t, n, 0.9))
+    t.require(bool(got.any(axis=1).all()), "two lamps: the nearer one, if drawn, brings light")
+    got = direct(t, scene, hit, all_draw(t, n, 0.1))
+    t.require(not got.any(), "two lamps, the farther one drawn, the nearer one met: this sample "
+                             f"brings nothing, but yours is {got.max():.3g}",
+              hint="the lamp that is met is not the one that was drawn; it has samples of its "
+              "own, and would count twice")  # fmt: skip
+
+
+def all_draw(t, n, share):
+    """Numbers by which the lamp at this share of all is drawn, and ways that lead past lamps."""
+    u = t.rng.random((2, n, 3))
+    u[0, :, 0] = share
+    u[1, :, 0], u[1, :, 2] = 0.2, 0.9999  # by the cosine, and almost level
+    return u
 
 
 def mixed_room(t):
@@ -431,17 +465,24 @@ def played(t, beta, u):
 
 
 @check("07.4.values", task="07.4", points=2, calls=("roulette",), tolerance=EXACT,
-       kills=("roulette_dead_carry", "roulette_mean_channel", "roulette_no_division",
-              "roulette_reversed"),
+       kills=("roulette_clamped", "roulette_clamped_late", "roulette_dead_carry",
+              "roulette_divided_by_rest", "roulette_floor", "roulette_mean_channel",
+              "roulette_no_division", "roulette_reversed"),
        hint="equations (11) and (12): the brightest channel decides, u < q goes on",
        sole="one path that goes on and one that ends")  # fmt: skip
 def known_ends(t):
-    """A path with (0.2, 0.5, 0.1) goes on in half of all cases, with (0.4, 1, 0.2)."""
+    """A path with (0.2, 0.5, 0.1) goes on in half of all cases, as (0.4, 1, 0.2); dark ones too."""
     u = [float(t.rng.uniform(0.3, 0.49)), float(t.rng.uniform(0.51, 0.9)), 0.0, 0.5]
     beta, alive = played(t, [[0.2, 0.5, 0.1]] * 4, u)
     right = [True, False, True, False]
     t.require(alive.tolist() == right, f"alive is {alive.tolist()} for u = {u}, q = 0.5")
     t.close("beta", beta, np.outer(right, [0.4, 1, 0.2]), reveal=True)
+    q = np.array([0.1, 0.001])
+    beta, alive = played(t, np.outer(q, [0.4, 1, 0.2]), t.rng.uniform(0.1, 0.9) * q)
+    t.require(bool(alive.all()), "a path with u < q has ended: q is 0.1 or 0.001")
+    t.close("beta of dark paths", beta, np.tile([0.4, 1, 0.2], (2, 1)), reveal=True,
+            hint="1 / q is 10 and 1000 here, and nothing may limit it: those who go on speak for "
+            "all who have ended")  # fmt: skip
 
 
 @check("07.4.mean", task="07.4", points=3, calls=("roulette",), tolerance=EXACT,
@@ -503,17 +544,35 @@ def depth_one(t):
         t.close(f"a black lamp and nothing, at depth {depth}", got[[0, 1, 3]], right[[0, 1, 3]])
 
 
+# What the best known mistakes say of themselves by the mean that they have.
+AGAIN = ("what a path meets after a bounce adds its emission: direct light at the place before has "
+         "counted it already")  # fmt: skip
+ANEW = ("beta is started anew, or left out: it is the product of all surfaces since the viewer, "
+        "equation (14)")  # fmt: skip
+LAST = "beta is that of the last surface alone; equation (14) multiplies it by the one before"
+EARLY = "beta is multiplied before direct light is added: at each place direct light comes first"
+DARK = "what the first place emits towards the viewer is missing"
+FEWER = "a piece too few: direct light is asked for depth - 1 times"
+MORE = "a piece too many: direct light is asked for depth - 1 times"
+
+
 @check("07.5.integral", task="07.5", points=3, calls=("trace_paths",), needs=TASK_5,
        kills=("trace_double_emission", "trace_no_emission", "trace_one_less", "trace_one_more"),
        hint="two straight pieces are direct light and what is emitted, nothing else",
        sole="depth two is the integral of assignment 04")  # fmt: skip
 def depth_two(t):
-    """Two straight pieces in a closed room: emission plus the integral over all directions."""
+    """Emission plus the integral over all directions; more pieces change nothing where none lead.
+
+    First two pieces in a closed room. Then a floor that sees a black lamp and nothing besides.
+    """
     shine, color = t.rng.uniform(0.5, 2, 3), t.rng.uniform(0.2, 0.8, 3)
     scene = scene_of(cube(emission=shine, base_color=color))
     origins, directions = rays_inside(t, 1000)
     right = shine * (1 + color)
-    require_mean(t, "depth 2", lambda: traced(t, scene, origins, directions, 2), right)
+    mistakes = [(shine, FEWER), (right + shine * color**2, MORE), (shine * color, DARK),
+                (right + shine * color, AGAIN), (shine * (1 + color**2), EARLY)]  # fmt: skip
+    require_mean(t, "a closed room, depth 2", lambda: traced(t, scene, origins, directions, 2),
+                 right, mistakes)  # fmt: skip
     point, size = t.rng.uniform(-0.1, 0.1, 3), t.rng.uniform(0.8, 1.2)
     lamp = (point + np.array([0.5, 0.05, -1]), [0, 0, 2], [0, size, 0])
     scene = scene_of([
@@ -524,8 +583,10 @@ def depth_two(t):
     wo = ways(t.rng, 1000, 0.4)
     for depth in (2, 4):
         require_mean(t, f"a floor beside a lamp, depth {depth}",
-                     lambda d=depth: traced(t, scene, point + 0.05 * wo, -wo, d),
-                     right)  # fmt: skip
+                     lambda d=depth: traced(t, scene, point + 0.05 * wo, -wo, d), right,
+                     [(2 * right, AGAIN), (right * color, EARLY)],
+                     hint="the floor sees a black lamp and nothing else: direct light at its one "
+                     "place is all there is, at any depth")  # fmt: skip
 
 
 @check("07.5.corner", task="07.5", points=2, calls=("trace_paths",), needs=TASK_5,
@@ -549,8 +610,10 @@ def around_a_corner(t):
     share = 2 * places[:, 1] / np.sum(places**2, axis=1) ** 2  # cosines, area, distance squared
     right = floor * wall / np.pi**2 * shine * (weights * share @ np.array(lit))
     wo = ways(t.rng, 3000, 0.4)
-    require_mean(t, "a floor in the shadow",
-                 lambda: traced(t, scene, 0.05 * wo, -wo, 3), right)  # fmt: skip
+    require_mean(t, "a floor in the shadow", lambda: traced(t, scene, 0.05 * wo, -wo, 3), right,
+                 [(right / floor, "the wall's light counts as if the floor reflected all of it: is "
+                   "beta multiplied by reflectance times cosine over density, (14)?"),
+                  (right * wall, EARLY), (0 * right, FEWER)])  # fmt: skip
     t.require(not traced(t, scene, 0.05 * wo, -wo, 2).any(), "at depth 2 the floor is black")
 
 
@@ -570,13 +633,26 @@ def rays_inside(t, n):
        sole="a room whose light is a geometric series")  # fmt: skip
 def a_room_that_shines(t):
     """A closed room that shines and reflects everywhere: a geometric series, by depth."""
+    # Roulette has no say before depth 5, so that at 4 mistakes have means in closed form.
     shine, color = t.rng.uniform(0.5, 2, 3), t.rng.permutation([0.3, 0.5, 0.8])
     scene = scene_of(cube(emission=shine, base_color=color))
     origins, directions = rays_inside(t, 1000)
-    for depth in (3, 9):
-        right = shine * (1 - color**depth) / (1 - color)
-        require_mean(t, f"depth {depth}",
-                     lambda d=depth: traced(t, scene, origins, directions, d), right)  # fmt: skip
+    first = shine * (1 + color + color**2)
+    right = first + shine * color**3
+    mistakes = [
+        (right + shine * (color + color**2), AGAIN),
+        (shine * (1 + 3 * color), ANEW),
+        (shine * (1 + color + 2 * color**2), LAST),
+        (right - shine, DARK),
+        (first, FEWER),
+        (shine + color * (right - shine), EARLY),
+        (right + shine * color**4, MORE),
+    ]
+    require_mean(t, "depth 4", lambda: traced(t, scene, origins, directions, 4), right, mistakes)
+    require_mean(t, "depth 9", lambda: traced(t, scene, origins, directions, 9),
+                 shine * (1 - color**9) / (1 - color),
+                 hint="depth 4 is right, and roulette begins after it: what it returns is the new "
+                 "beta, (12), of the paths that go on")  # fmt: skip
 
 
 # 07.6 ---------------------------------------------------------------------------------------------
@@ -607,7 +683,8 @@ def small_scene(t, n):
 @check("07.6.differences", task="07.6", points=5, calls=("direct_light_backward",),
        needs=(*TASK_3, "direct_light"), tolerance=GATE,
        kills=("back_density_too", "back_lamps_alone", "back_no_cosine", "back_no_emission",
-              "back_no_weights", "back_overwritten", "back_sign", "back_weights_too"),
+              "back_no_weights", "back_overwritten", "back_overwritten_in_turn", "back_sign",
+              "back_weights_too"),
        hint="equation (17): reflectance is differentiated, all that was drawn stays",
        sole="the definition: your own direct light, its proposal held fixed")  # fmt: skip
 def the_gradient_agrees_with_differences(t):
@@ -622,9 +699,13 @@ def the_gradient_agrees_with_differences(t):
     require_gradients(t, slopes(t, scene, hit, d, u), forward, point, d, GATE)
 
 
+ROWS = ("a thing has many rows, and all of them add up; d[things] += rows keeps the last row of "
+        "each thing alone: see np.add.at")  # fmt: skip
+
+
 @check("07.6.zero", task="07.6", points=2, calls=("direct_light_backward",), needs=TASK_3,
        tolerance=GATE,
-       kills=("back_overwritten",),
+       kills=("back_overwritten", "back_overwritten_in_turn", "back_through_lamps"),
        hint="it is linear in d_radiance, and what was not seen has no derivative",
        sole="what must be zero, and what must double")  # fmt: skip
 def zeros_and_doubles(t):
@@ -635,7 +716,7 @@ def zeros_and_doubles(t):
     require_zero_for_zero(t, slopes(t, scene, hit, 0 * d, u))
     once, twice = slopes(t, scene, hit, d, u), slopes(t, scene, hit, 2 * d, u)
     for name in once:
-        t.require(bool(once[name].any()), f"d_{name} is zero everywhere")
+        t.require(bool(once[name].any()), f"d_{name} is zero everywhere", hint=ROWS)
         t.close(f"d_{name} for twice the cotangent", twice[name], 2 * once[name])
     t.require(not (once["base_color"][1].any() or once["roughness"][1]),
               "a thing that the hit does not contain has a derivative")  # fmt: skip
@@ -646,12 +727,20 @@ def zeros_and_doubles(t):
     again = {name: np.concatenate([values, values]) for name, values in hit.items()}
     more = slopes(t, scene, again, np.tile(d, (2, 1)), np.tile(u, (1, 2, 1)))
     for name in once:
-        t.close(f"d_{name} of the same places twice", more[name], 2 * once[name])
+        t.close(f"d_{name} of the same places twice", more[name], 2 * once[name],
+                hint=ROWS)  # fmt: skip
+    nearer = ((-3, 0.5, -3), (6, 0, 0), (0, 0, 6), {"emission": 1.0})
+    hidden = scene_of([flake(), flake(), nearer])
+    hidden = {name: np.concatenate([scene[name], rows[2:]]) for name, rows in hidden.items()}
+    hidden["balls"] = scene["balls"]
+    for name, values in slopes(t, hidden, hit, d, all_draw(t, 30, 0.1)).items():
+        t.require(not values.any(), f"d_{name} is not zero where another lamp hides the one that "
+                                    "was drawn")  # fmt: skip
 
 
 @check("07.6.mean", task="07.6", points=3, calls=("direct_light_backward",), needs=TASK_3,
        kills=("back_density_too", "back_lamps_alone", "back_no_cosine", "back_no_weights",
-              "back_overwritten", "back_sign"),
+              "back_overwritten", "back_overwritten_in_turn", "back_sign"),
        hint="equation (18): the mean over samples is the derivative of the integral",
        sole="the mean of the gradient is the gradient of the mean")  # fmt: skip
 def the_mean_of_the_gradient(t):
@@ -683,8 +772,8 @@ def the_mean_of_the_gradient(t):
 @check("07.6.cost", task="07.6", points=1, calls=("direct_light_backward",),
        needs=(*TASK_3, "direct_light"),
        kills=("back_by_differences", "back_density_too", "back_lamps_alone", "back_no_cosine",
-              "back_no_emission", "back_no_weights", "back_overwritten", "back_sign",
-              "back_weights_too"),
+              "back_no_emission", "back_no_weights", "back_overwritten",
+              "back_overwritten_in_turn", "back_sign", "back_weights_too"),
        hint="one pass over the same samples gives the derivative by everything",
        sole="differences would pay two renderings for each number")  # fmt: skip
 def the_gradient_is_cheap(t):
@@ -696,9 +785,11 @@ def the_gradient_is_cheap(t):
     u, d = t.rng.random((2, 30, 3)), random_cotangent(t.rng, (30, 3))
     n = len(scene["matte"])
     parts = Items(Array((n, 3)), Array((n,)))
+    # Where nobody can measure (a student's machine) there must be a gradient at least.
+    got = t.call("direct_light_backward", scene, hit, u[0], u[1], d, returns=parts)
+    t.require(bool(got[0].any() and got[1].any()), "the gradient is zero everywhere")
     require_cheap(t, ("direct_light", (scene, hit, u[0], u[1]), Array((30, 3))),
                   ("direct_light_backward", (scene, hit, u[0], u[1], d), parts))  # fmt: skip
-    t.require(True, "")
 
 
 # >>> hidden
@@ -749,9 +840,9 @@ def direct_light_of_a_room(t):
 
 @check("07.4.hidden", task="07.4", points=1, calls=("roulette",), visibility="hidden",
        tolerance=EXACT,
-       kills=("roulette_clamped", "roulette_dead_carry", "roulette_divided_by_rest",
-              "roulette_floor", "roulette_gain", "roulette_mean_channel", "roulette_no_division",
-              "roulette_reversed"),
+       kills=("roulette_clamped", "roulette_clamped_late", "roulette_dead_carry",
+              "roulette_divided_by_rest", "roulette_floor", "roulette_gain",
+              "roulette_mean_channel", "roulette_no_division", "roulette_reversed"),
        sole="paths that are not known beforehand")  # fmt: skip
 def random_roulette(t):
     """Random paths."""
@@ -791,8 +882,8 @@ def paths_of_a_room(t):
 @check("07.6.hidden", task="07.6", points=2, calls=("direct_light_backward",), needs=TASK_3,
        visibility="hidden", tolerance=GATE,
        kills=("back_density_too", "back_lamps_alone", "back_no_cosine", "back_no_emission",
-              "back_no_weights", "back_overwritten", "back_sign", "back_through_lamps",
-              "back_weights_too"),
+              "back_no_weights", "back_overwritten", "back_overwritten_in_turn", "back_sign",
+              "back_through_lamps", "back_weights_too"),
        sole="two lamps, shadows, a ball and something matte")  # fmt: skip
 def the_gradient_of_a_room(t):
     """A room with two lamps, a ball and shadows, against the solution."""
@@ -816,11 +907,12 @@ def glossy_table(color, metalness, roughness):
 
 @check("07.6.recover", task="07.6", points=3, calls=("direct_light_backward",),
        needs=(*TASK_3, "direct_light"), visibility="hidden",
-       kills=("back_overwritten", "back_sign"),
+       kills=("back_overwritten", "back_overwritten_in_turn", "back_sign"),
        sole="what it is for: a base colour and a roughness, found in a picture")  # fmt: skip
 def a_material_is_recovered(t):
     """The base colour within 0.01 and the roughness within 0.02, from an unseen picture."""
-    color, roughness = t.rng.uniform(0.3, 0.9, 3), float(t.rng.uniform(0.25, 0.5))
+    # A polished table, or one channel far from the others, takes more steps than these.
+    color, roughness = t.rng.uniform(0.3, 0.8, 3), float(t.rng.uniform(0.35, 0.5))
     truth = glossy_table(color, 0.5, roughness)
     start = glossy_table([0.5, 0.5, 0.5], 0.5, 0.6)
     origins, directions = t.reference.camera_rays(10, 7, [0, 0.9, 1.2], [0, 0, -0.3], 45)
@@ -839,7 +931,7 @@ def a_material_is_recovered(t):
 
     def off():
         seed = int(t.rng.integers(2**31))
-        found, rough = t.call("adapters.recovered", start, 0, origins, directions, picture, 45,
+        found, rough = t.call("adapters.recovered", start, 0, origins, directions, picture, 60,
                               seed, returns=parts)  # fmt: skip
         return max(float(np.abs(found - color).max()) / 0.01, abs(rough - roughness) / 0.02)
 

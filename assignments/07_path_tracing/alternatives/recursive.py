@@ -6,7 +6,7 @@ import numpy as np
 from reflectance import ggx_pdf, gltf, gltf_backward, sample_ggx
 
 T_MIN = 1e-6  # metres; nothing nearer counts as met
-ALWAYS = 2  # so many bounces of a path are never ended by roulette
+ALWAYS = 2  # at a path's first two places, from the one that is seen on, nobody plays roulette
 SIDE = 4  # SIDE x SIDE samples of each pixel, in a step of `recover`
 
 # Geometry ----------------------------------------------------------------------------------------
@@ -127,7 +127,7 @@ def _frames(normals):
 
 
 def _local(hit, wi):
-    """wo, wi (N, 3) with the normal as +z; base colour, metalness and roughness follow by name."""
+    """wo, wi (N, 3) each, turned so that the normal is +z."""
     frames = _frames(hit["normals"])
     return tuple(np.einsum("nij,nj->ni", frames, w) for w in (hit["wo"], wi))
 
@@ -457,7 +457,7 @@ def recover(scene, thing, origins, directions, picture, steps, rng):
         thing: its number.
         origins, directions: (N, 3), the rays of the picture.
         picture: (N, 3), direct light only.
-        steps: of descent.
+        steps: of descent, 1 or more.
         rng: a generator.
 
     Returns:

@@ -1,4 +1,4 @@
-"""A thing that is seen in several places gets the derivative of the last one; they add up."""
+"""Of all rows of one thing the last alone counts, as by `d[things] += rows`: see np.add.at."""
 
 TASKS = ("07.6",)
 LOSES = (

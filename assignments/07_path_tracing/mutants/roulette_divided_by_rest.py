@@ -4,6 +4,7 @@ TASKS = ("07.4",)
 LOSES = (
     "07.4.hidden",
     "07.4.mean",
+    "07.4.values",
 )
 REPLACE = [
     (

@@ -17,7 +17,9 @@ from course.assignments.support import (
     SECRET,
     AssignmentTests,
     apply_mutant,
+    judge,
     load_module,
+    source,
     starter,
 )
 
@@ -89,6 +91,7 @@ def test_check_values_of_densities_weights_and_roulette(solution) -> None:
     beta, alive = solution.roulette(np.tile([0.2, 0.5, 0.1], (2, 1)), np.array([0.3, 0.6]))
     close(beta, [0.4, 1, 0.2, 0, 0, 0])
     assert alive.tolist() == [True, False]
+    close(solution.roulette(np.array([[0.04, 0.1, 0.02]]), np.array([0.03]))[0], [0.4, 1, 0.2])
 
 
 def test_check_values_of_direct_light_and_its_gradient(solution) -> None:
@@ -133,6 +136,28 @@ def test_right_draws_are_rejected_as_rarely_as_they_should(solution, checks) -> 
     for name in ("direct_no_cosine", "direct_lamps_alone", "direct_wrong_measure"):
         values = mutant(name).direct_light(scene, part, *u[:, :2000])
         assert checks.p_value(values, right) < checks.LEVEL / 1000
+
+
+def test_a_wrong_mean_is_named_by_the_mistake_that_has_it(checks) -> None:
+    class Judged:
+        def require(self, condition: bool, text: str, hint: str = "") -> None:
+            assert condition, f"{text}: {hint}"
+
+    rng, one = np.random.default_rng(14), np.ones(3)
+    known = [(2 * one, "twice"), (3 * one, "thrice")]
+    for mean, said in ((2.0, "twice"), (3.0, "thrice"), (2.5, "another")):
+        with pytest.raises(AssertionError, match=f"is not 1 .*: {said}"):
+            checks.require_mean(Judged(), "x", lambda m=mean: rng.normal(m, 0.1, (500, 3)), one,
+                                known, "another")  # fmt: skip
+    checks.require_mean(Judged(), "x", lambda: rng.normal(1, 0.1, (500, 3)), one, known)
+    # The one of those in task 5 that is no named mutant: beta comes before direct light.
+    add = "radiance[live] += beta * direct_light(scene, hit, *fresh[:2])"
+    times = "beta = beta * brdf(scene, hit, wi) * share[:, None]"
+    text = source(FOLDER).replace(add, "light = direct_light(scene, hit, *fresh[:2])")
+    text = text.replace(times, f"{times}\n        radiance[live] += beta * light")
+    hints = {each.id: each.hint for each in judge(FOLDER, text, tasks=("07.5",))}
+    for name in ("integral", "corner", "furnace"):
+        assert "beta is multiplied before direct light" in hints[f"07.5.{name}"]
 
 
 def test_predictions_and_diagnoses_come_true(checks) -> None:
@@ -217,3 +242,34 @@ def test_the_exploration_runs_beside_the_core(tmp_path: Path) -> None:
     assert float(done.stdout.split("gradient ")[1].split("%")[0]) < 40
     assert "core" in done.stdout
     assert (tmp_path / "traced.png").stat().st_size > 5_000
+
+
+ALONE = """
+import runpy, sys
+sys.modules["photograd"] = None
+sys.argv[0] = "explore.py"
+runpy.run_path("explore.py", run_name="__main__")
+"""
+
+
+def test_the_exploration_without_the_core_fits_the_table_that_is_asked_for(tmp_path: Path) -> None:
+    for name in ("path_tracing.py", "explore.py"):
+        shutil.copy(FOLDER / name, tmp_path / name)
+    shutil.copy(ASSIGNMENTS / "04_reflectance" / "reflectance.py", tmp_path)
+    (tmp_path / "alone.py").write_text(ALONE, encoding="utf-8")
+
+    def explore(*words: str) -> subprocess.CompletedProcess[str]:
+        return subprocess.run([sys.executable, "alone.py", "--size", "6", *words], cwd=tmp_path,
+                              capture_output=True, text=True, check=False)  # fmt: skip
+
+    done = explore("--samples", "1", "--roughness", "0.15", "--steps", "25")
+    assert done.returncode == 0, done.stderr
+    assert "noise unknown" in done.stdout
+    assert "not compared" in done.stdout
+    assert "from the core's" not in done.stdout
+    found = float(done.stdout.split("roughness ")[1].split(" in ")[0])
+    assert found == pytest.approx(0.15, abs=0.05)
+    none = explore("--steps", "0")
+    assert none.returncode == 1
+    assert "steps are 1 or more" in none.stderr
+    assert "Traceback" not in none.stderr

@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
+import io
 from pathlib import Path
 
 import numpy as np
 import pytest
+import typer
 from matplotlib.image import imread
+from photograd_course.assignment.bundle import read_folder
 from photograd_course.assignment.manifest import read_manifest
 from photograd_course.cli.course.start import _next_steps
 from photograd_course.errors import IoError
 from photograd_course.grading import Check, Trial, check
 from photograd_course.grading.outcome import Outcome, Status
+from photograd_course.student.folder import WorkFolder
 from photograd_course.student.pictures import _planes, draw_failure, slice_name, worst_index
-from photograd_course.student.session import earlier_functions, require_brought
+from photograd_course.student.session import ask, earlier_functions, require_brought
+from photograd_course.student.terminal import said_of
+from rich.console import Console
 
 from support.tree import ROOT
 
@@ -42,6 +48,35 @@ def test_a_missing_file_of_an_earlier_assignment_is_named() -> None:
     require_brought(manifest, {"volume_recovery.py", "volume_rendering.py"})
     with pytest.raises(IoError, match=r"volume_rendering\.py: expected .* assignment 08 beside"):
         require_brought(manifest, {"volume_recovery.py"})
+
+
+def test_a_stub_of_an_earlier_assignment_says_which_file_to_copy() -> None:
+    manifest = read_manifest(ROOT / "assignments" / "07_path_tracing")
+    said = said_of("04.5 gltf: see the handout, section 5", manifest)
+    assert "copy your finished reflectance.py" in said
+    assert "gltf is from assignment 04" in said
+    for own in ("07.2 mis_weight: see the handout, section 2", "ValueError: 04.5 gltf"):
+        assert said_of(own, manifest) == own
+
+
+def test_an_input_that_ends_says_what_is_kept(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    manifest = read_manifest(ROOT / "assignments" / "07_path_tracing")
+    questions = [q for q in read_folder(manifest.folder).questions if q.kind == "prediction"]
+    (tmp_path / "answers.toml").write_text("[answers]\n", encoding="utf-8")
+    console, given = Console(file=io.StringIO()), iter("b")
+
+    def prompt(_: str) -> str:
+        for letter in given:
+            return letter
+        raise typer.Abort
+
+    monkeypatch.setattr(typer, "prompt", prompt)
+    with pytest.raises(typer.Abort):
+        ask(questions, WorkFolder(tmp_path, manifest), console)
+    assert "are saved in answers.toml; run this again" in console.file.getvalue()
+    assert (tmp_path / "answers.toml").read_text("utf-8").endswith(f'"{questions[0].id}" = "b"\n')
 
 
 def test_predictions_come_before_reading() -> None:

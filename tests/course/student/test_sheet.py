@@ -51,6 +51,16 @@ def test_answers_are_written_in_place_and_the_rest_stays(work: WorkFolder) -> No
     assert work.answers() == ("Ada", {"90.p1": "", "90.d1": "b", "90.g1": ""})
 
 
+def test_a_comment_behind_an_answer_stays(work: WorkFolder) -> None:
+    path = work.path / "answers.toml"
+    form = '  # diagnosis: a letter, a to c; don\'t "guess"'
+    for value, comment in (('""', form), ("'a # b'", form), ("3 ", "# 2"), ('"x"', "")):
+        path.write_text(f'[answers]\n"90.d1" = {value}{comment}\n', encoding="utf-8")
+        answer(work, d1="b")
+        kept = (" " if value == "3 " else "") + comment
+        assert path.read_text("utf-8") == f'[answers]\n"90.d1" = "b"{kept}\n'
+
+
 def test_everything_open_is_named(bundle: Bundle, work: WorkFolder) -> None:
     remember_shown(bundle, work)
     (note,) = notes_before_handin(bundle, work)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from collections.abc import Collection, Container, Sequence
 from pathlib import Path
@@ -22,6 +23,9 @@ from .folder import LOCK_NAME, WorkFolder, find_folder
 from .pictures import draw_failure, remove_picture
 from .predictions import prediction_letters, write_lock
 from .terminal import print_outcome, print_rest, print_summary
+
+# A line of an answer with a comment behind it; a # within quotes begins none.
+_COMMENTED = re.compile(r"""[^=]*=\s*(?:"[^"]*"|'[^']*'|[^"'#]*?)(\s*#.*)""")
 
 
 def run_check_command(
@@ -44,7 +48,7 @@ def run_check_command(
     lock_predictions(bundle, folder, console)
 
     def show(outcome: Outcome) -> None:
-        print_outcome(outcome, console)
+        print_outcome(outcome, console, bundle.manifest)
         remove_picture(outcome, folder.path)
         if pictures and (path := draw_failure(outcome, folder.path)) is not None:
             console.print(f"    picture: {path.name}", soft_wrap=True)
@@ -152,20 +156,31 @@ def ask(questions: list[Question], folder: WorkFolder, console: Console) -> dict
             console.print(f"  {letter}) {option}", soft_wrap=True, markup=False)
         answer = ""
         while len(answer) != 1 or answer not in letters:
-            answer = str(typer.prompt(f"Your prediction ({'/'.join(letters)})")).strip().lower()
+            answer = _prompt(f"Your prediction ({'/'.join(letters)})", console)
         made[question.id] = answer
         write_answers(folder.path / "answers.toml", {question.id: answer})  # kept if interrupted
     return made
 
 
+def _prompt(text: str, console: Console) -> str:
+    """One answer; where the input ends instead, say that nothing is lost."""
+    try:
+        return str(typer.prompt(text)).strip().lower()
+    except typer.Abort:
+        said = "\nAnswers so far are saved in answers.toml; run this again for those that are open."
+        console.print(said, soft_wrap=True)
+        raise
+
+
 def write_answers(path: Path, made: dict[str, str]) -> None:
-    """Fill in answers of a TOML file, leaving everything else as it is."""
+    """Fill in answers of a TOML file, leaving everything else as it is, comments included."""
     lines = path.read_text(encoding="utf-8").splitlines() if path.exists() else ["[answers]"]
     for name, answer in made.items():
         line = f'"{name}" = "{answer}"'
         at = [k for k, text in enumerate(lines) if text.split("=")[0].strip() == f'"{name}"']
         if at:
-            lines[at[0]] = line
+            commented = _COMMENTED.fullmatch(lines[at[0]])
+            lines[at[0]] = line + (commented[1] if commented else "")
         else:
             lines.append(line)
     atomic_write(path, ("\n".join(lines) + "\n").encode())

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
 from rich.console import Console
 from rich.text import Text
 
 from ..assignment.bundle import Bundle
+from ..assignment.manifest import Manifest
 from ..grading.outcome import Outcome, Status
 
 # Sign and colour: the sign alone says it, for those who do not see the colour.
@@ -17,10 +19,12 @@ MARKS = {
     Status.BLOCKED: ("·", "yellow"),
     Status.ERROR_OURS: ("!", "magenta"),
 }
+# What a stub raises; see `build.regions`.
+STUB = re.compile(r"(\d\d)\.\d+ (\w+): see the handout, section \d+")
 
 
-def print_outcome(outcome: Outcome, console: Console) -> None:
-    """One check: its verdict, and under it what to do."""
+def print_outcome(outcome: Outcome, console: Console, manifest: Manifest | None = None) -> None:
+    """One check: its verdict, and under it what to do; `manifest`: on a student's machine."""
     mark, colour = MARKS[outcome.status]
     head = Text(f"{mark} {outcome.id:<20} ", style=colour)
     head.append(outcome.title, style="default")
@@ -29,7 +33,7 @@ def print_outcome(outcome: Outcome, console: Console) -> None:
         return
     lines = [outcome.text]
     if said := outcome.details.get("exception"):
-        lines.append(str(said))
+        lines.append(str(said) if manifest is None else said_of(str(said), manifest))
     if outcome.status is Status.ERROR_OURS:
         lines.append("this is a fault of the checks, not yours; please report it")
     if outcome.hint:
@@ -37,6 +41,18 @@ def print_outcome(outcome: Outcome, console: Console) -> None:
     for line in lines:
         for part in str(line).splitlines()[:6]:
             console.print(Text(f"    {part}"), soft_wrap=True)
+
+
+def said_of(said: str, manifest: Manifest) -> str:
+    """The text of an exception; of a stub of an earlier assignment, what to do about it."""
+    stub = STUB.fullmatch(said)
+    if stub is None or stub[1] == manifest.id:
+        return said  # the handout that it names is this assignment's
+    files = " or ".join(f"{name}.py" for name in manifest.brought) or "the file that has it"
+    return (
+        f"{stub[2]} is from assignment {stub[1]} and not written in this folder: copy your "
+        f"finished {files} over the stub that came with the kit"
+    )
 
 
 def print_summary(outcomes: Sequence[Outcome], console: Console) -> None:
