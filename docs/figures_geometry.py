@@ -187,7 +187,7 @@ def draw_bodies(picture: Axes, change: Axes, size: int = 200) -> None:
     camera = camera_at([1.6, 2.2, 3.2], [0.0, 0.55, 0.0], 38.0, size, size)
     drawn = draw_body(body, camera, albedo=[0.75, 0.68, 0.55], sky=0.4)
     picture.imshow(srgb_encode(np.clip(drawn.radiance, 0, 1)))
-    picture.set_title(f"signed distances: {drawn.steps.mean():.0f} steps a ray")
+    picture.set_title(f"a body: {drawn.steps.mean():.0f} steps a ray")
     origins, directions = camera.rays()
     hits = body.trace(origins, directions, t_max=100.0)
     width = next(i for i, name in enumerate(body.names) if "width" in name)
@@ -201,7 +201,7 @@ def draw_bodies(picture: Axes, change: Axes, size: int = 200) -> None:
     change.imshow(
         slope.reshape(size, size), cmap=style.signed_colour_map(), norm=style.symmetric_scale(limit)
     )
-    change.set_title("d distance / d width of the seam")
+    change.set_title("derivative by the width of the seam")
 
 
 def geometry_figure() -> Figure:
@@ -226,9 +226,9 @@ def geometry_figure() -> Figure:
         style.write_caption(
             figure,
             "A hierarchy of boxes spares a ray nearly all triangles. Bars that overlap in a circle "
-            "have no order until they are cut. An octree drops whole cells (pale) that lie beside "
-            "the view. Far away, fewer triangles do. A body of signed distances has a derivative "
-            "at every hit: where the seam is wider, the surface comes nearer (blue).",
+            "have no order until they are cut. An octree drops whole cells (thin lines) that lie "
+            "beside the view. Far away, fewer triangles do. A body of signed distances has a "
+            "derivative at every hit: where the seam is wider, the surface comes nearer (blue).",
             left=LEFT, right=LEFT,
         )  # fmt: skip
     return figure

@@ -23,7 +23,7 @@ def circle_of_bars() -> Array:
     corners = []
     for angle in turn:
         c, s = np.cos(angle), np.sin(angle)
-        bar = np.array([[-1.0, 0.5, -0.3], [1.2, 0.55, 0.3], [1.2, 0.25, 0.3]])
+        bar = np.array([[-1.0, 0.5, -0.3], [1.2, 0.8, 0.3], [1.2, 0.1, 0.3]])
         corners.append(bar @ np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]]).T)
     return np.array(corners)
 
@@ -107,11 +107,12 @@ def test_back_to_front_from_ten_thousand_views(make: Any) -> None:
     )
     rank = rank_of(order)
     pairs, wrong = disorder(corners, owner, rank, eyes, ways)
-    assert pairs > 1000
+    assert pairs > 100
     assert wrong == 0
     # The check sees a wrong order: front to back is always wrong, and whole triangles sorted by the
     # distance of their middles are wrong often enough to be noticed.
-    assert disorder(corners, owner, -rank, eyes, ways) == (pairs, pairs)
+    few = disorder(corners, owner, -rank[:500], eyes[:500], ways[:500])
+    assert few[1] == few[0] > 50
     distance = np.linalg.norm(whole.mean(axis=1)[None] - eyes[:, None], axis=2)
     by_middle = rank_of(np.argsort(-distance, axis=1))
     pairs, wrong = disorder(whole, np.arange(len(whole)), by_middle, eyes, ways)
@@ -148,8 +149,8 @@ def test_a_convex_body_is_never_cut_and_may_be_a_chain() -> None:
     assert len(tree.face) == len(ball.faces) == 1280
     assert tree.depth.max() > 600
     order = tree.back_to_front([[0.0, 0.0, 5.0]])[0]
-    middles = ball.vertices[ball.faces].mean(axis=1)[tree.face[order]]
-    facing = np.einsum("ij,ij->i", middles, [0, 0, 5.0] - middles) > 0
+    a, b, c = ball.vertices.astype("f4").astype("f8")[ball.faces[tree.face[order]]].swapaxes(0, 1)
+    facing = (np.cross(b - a, c - a) * ([0, 0, 5.0] - a)).sum(axis=1) > 0
     # Of a convex body, what faces away is painted before what faces the eye.
     assert not np.diff(facing.astype(int)).min() < 0
 

@@ -23,7 +23,7 @@ FACES = np.array(
 )
 
 
-def objects(count: int = 300) -> Array:
+def objects(count: int = 240) -> Array:
     """Corners (N, 6, 3) of octahedra, mostly small, in a flat world of 20 m."""
     u = uniform(1, pixel=np.arange(count)[:, None], dimension=np.arange(6))
     centre = (u[:, :3] - 0.5) * [20.0, 4.0, 20.0]
@@ -31,8 +31,11 @@ def objects(count: int = 300) -> Array:
     return centre[:, None] + size[:, None] * OCTAHEDRON
 
 
+U = uniform(2, pixel=np.arange(CAMERAS)[:, None], dimension=np.arange(10))
+
+
 def random_camera(k: int) -> Camera:
-    u = uniform(2, pixel=k, dimension=np.arange(10))
+    u = U[k]
     eye = (u[:3] - 0.5) * [24.0, 6.0, 24.0]
     target = (u[3:6] - 0.5) * [20.0, 4.0, 20.0]
     focal = 40.0 + 150.0 * u[6]
@@ -55,7 +58,7 @@ def seen_by(camera: Camera) -> Array:
 
 def test_ten_thousand_cameras_miss_nothing() -> None:
     tree = CullingTree(BOXES)
-    seen = kept = tested = missed = 0
+    seen = kept = missed = 0
     for k in range(CAMERAS):
         camera = random_camera(k)
         frustum = Frustum.of_camera(camera, NEAR, FAR)
@@ -66,14 +69,24 @@ def test_ten_thousand_cameras_miss_nothing() -> None:
             np.testing.assert_array_equal(culled.visible, ~frustum.misses(BOXES))
         seen += int(visible.sum())
         kept += int(culled.visible.sum())
-        tested += culled.tested
     assert missed == 0
     assert seen > 10 * CAMERAS
-    # Of 300 objects a camera sees 24, the tree keeps 27 and compares 85 boxes for it.
-    every = CAMERAS * len(BOXES)
+    # Of 240 objects a camera sees 23 on average, and the tree keeps 26.
     assert kept < 1.3 * seen
-    assert kept < 0.15 * every
-    assert tested < 0.4 * every
+    assert kept < 0.15 * CAMERAS * len(BOXES)
+
+
+def test_groups_spare_tests() -> None:
+    corners = objects(4000)
+    boxes = np.stack([corners.min(axis=1), corners.max(axis=1)], axis=1)
+    tree = CullingTree(boxes)
+    frusta = [Frustum.of_camera(random_camera(k), NEAR, FAR) for k in range(60)]
+    culled = [tree.cull(frustum) for frustum in frusta]
+    tested = float(np.mean([found.tested for found in culled]))
+    kept = float(np.mean([found.visible.sum() for found in culled]))
+    assert 0.02 < kept / len(boxes) < 0.2
+    # Of 4000 objects 9 % are kept, for 1100 comparisons.
+    assert tested < 0.33 * len(boxes)
 
 
 def test_what_rays_hit_is_kept() -> None:
@@ -81,7 +94,7 @@ def test_what_rays_hit_is_kept() -> None:
     bvh = Bvh([Mesh(c, FACES) for c in CORNERS.astype(np.float32)])
     tree = CullingTree(BOXES)
     found = 0
-    for k in range(300):
+    for k in range(150):
         camera = random_camera(k)
         origins, directions = camera.rays()
         along = directions @ camera.forward
@@ -89,19 +102,19 @@ def test_what_rays_hit_is_kept() -> None:
         met = np.unique(hits.instance[hits.hit])
         found += len(met)
         assert tree.cull(Frustum.of_camera(camera, NEAR, FAR)).visible[met].all()
-    assert found > 1000
+    assert found > 500
 
 
 @pytest.mark.parametrize("plane", range(6))
 def test_a_wrong_plane_is_seen(plane: int) -> None:
-    missed = 0
-    for k in range(400):
+    tree, missed = CullingTree(BOXES), 0
+    for k in range(100):
         camera = random_camera(k)
         frustum = Frustum.of_camera(camera, NEAR, FAR)
         wrong = frustum.planes.copy()
         # The sides lean inwards; what is near or far begins or ends a metre too soon.
         wrong[plane] -= 0.2 * frustum.planes[4] if plane < 4 else np.array([0, 0, 0, 1.0])
-        missed += int((seen_by(camera) & ~CullingTree(BOXES).cull(Frustum(wrong)).visible).sum())
+        missed += int((seen_by(camera) & ~tree.cull(Frustum(wrong)).visible).sum())
     assert missed > 0
 
 
@@ -110,7 +123,7 @@ def test_the_shape_of_the_tree() -> None:
     assert tree.parent[0] == -1
     assert (tree.parent[1:] < np.arange(1, len(tree.parent))).all()
     assert (tree.level[1:] == tree.level[tree.parent[1:]] + 1).all()
-    assert tree.level.max() == 4
+    assert 2 <= tree.level.max() <= 4
     for inner, outer in ((tree.node_boxes[1:], tree.node_boxes[tree.parent[1:]]),
                          (BOXES, tree.node_boxes[tree.node])):  # fmt: skip
         assert (inner[:, 0] >= outer[:, 0]).all()

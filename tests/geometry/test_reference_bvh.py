@@ -21,7 +21,7 @@ BUMPY = Mesh(*bumpy_sphere())
 def soup(count: int = 400) -> Mesh:
     """Triangles of all sizes, in all directions, through each other."""
     u = uniform(3, pixel=np.arange(count)[:, None], dimension=np.arange(12)) - 0.5
-    size = 10.0 ** (-2.0 - 2.0 * u[:, 9:10])
+    size = 10.0 ** (-0.7 - 1.6 * u[:, 9:10])
     corners = [2.0 * u[:, :3] + size * u[:, 3 * k : 3 * k + 3] for k in range(3)]
     return Mesh(np.stack(corners, axis=1).reshape(-1, 3), np.arange(3 * count).reshape(-1, 3))
 

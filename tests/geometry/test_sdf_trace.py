@@ -57,7 +57,8 @@ def test_a_million_rays_stop_at_the_first_surface() -> None:
     origins, directions = random_rays(1_000_000, seed=1)
     exact, inside = known_hits(origins, directions)
     exact = np.where(inside, 0.0, exact)
-    hits = known_body().trace(origins, directions, t_max=20.0)
+    # A ray that starts low and runs nearly level comes down to the floor by very many steps.
+    hits = known_body().trace(origins, directions, t_max=20.0, max_steps=100_000)
     assert 0.5 < hits.hit.mean() < 0.95
     assert not (hits.end == GAVE_UP).any()
     # A hit beyond t_max, of the floor under a nearly level ray, is a miss.
@@ -66,9 +67,9 @@ def test_a_million_rays_stop_at_the_first_surface() -> None:
     # Nor too early: but within the tolerance of 1e-6 m a ray that passes by has touched, at up to
     # sqrt(2 radius tolerance) = 1 mm before the place where it is nearest.
     early = hits.hit & (hits.t < exact - 1e-9)
-    assert early.mean() < 1e-4
+    assert early.sum() < 100
     touched = origins[early] + hits.t[early, None] * directions[early]
-    assert np.abs(known_body().distance(touched)).max() <= 1e-6
+    assert np.abs(known_body().distance(touched)).max(initial=0.0) <= 1e-6
 
 
 def march(body: Body, origins: Array, directions: Array, stride: float) -> Array:
@@ -147,10 +148,14 @@ def test_derivatives_of_a_hit() -> None:
     }  # fmt: skip
     # Every number of every shape moves some hit: a derivative of zero would not be checked.
     assert (backward(place, np.ones(150))["numbers"] != 0).all()
-    report = check_gradient(forward, backward, place, seed=4, coordinates=40)
+    # Larger steps would make rays miss.
+    steps = (1e-4, 1e-5, 1e-6)
+    report = check_gradient(forward, backward, place, seed=4, coordinates=20, steps=steps)
     assert report, str(report)
     mutants = check_mutants(
-        lambda wrong: check_gradient(forward, wrong, place, seed=5, coordinates=16),
+        lambda wrong: check_gradient(
+            forward, wrong, place, seed=5, coordinates=6, directions=3, steps=steps[:2]
+        ),
         backward, place, 0.5 + np.arange(150) / 150,
     )  # fmt: skip
     assert mutants, str(mutants)

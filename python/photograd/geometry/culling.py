@@ -1,8 +1,9 @@
 """Which objects may a camera see? An octree of their boxes answers for whole groups at once.
 
-An object lies in the smallest cell of the octree that contains all of its box, as a cell of the
-level at which its corners part. What is compared with the camera's view is not the cell, but the
-box of all that lies in it and below.
+An object lies in the cell of its centre, on the deepest level whose cells are as large as the
+object: it may reach over the border, by half a cell at most. (In the smallest cell that contains
+all of it, a small object across the middle of the world would lie in the root.) What is compared
+with the camera's view is the box of all that lies in a cell and below.
 """
 
 from __future__ import annotations
@@ -68,8 +69,7 @@ class Frustum:
         highest = middle @ normals + reach + offsets
         # Far more than the rounding of these sums: what touches a plane is kept.
         slack = 1e-12 * (np.abs(middle) @ np.abs(normals) + reach + np.abs(offsets))
-        missed: npt.NDArray[np.bool_] = (highest < -slack).any(axis=1)
-        return missed
+        return np.asarray((highest < -slack).any(axis=1))
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,7 +97,7 @@ class CullingTree:
         level: (M,) 0 at the root.
     """
 
-    def __init__(self, boxes: Any, *, max_depth: int = 6) -> None:
+    def __init__(self, boxes: Any, *, max_depth: int = 4) -> None:
         """Sort the objects into cells.
 
         Args:
@@ -151,14 +151,14 @@ class CullingTree:
 
 
 def _places(boxes: Array, depth: int) -> tuple[Array, Array]:
-    """Level (N,) of the smallest cell around each box, and its finest lower cell (N, 3)."""
+    """Level (N,) of each object, and the finest cell (N, 3) in which its centre lies."""
     low = boxes[:, 0].min(axis=0)
     side = max(float((boxes[:, 1].max(axis=0) - low).max()), 1e-300)
+    size = np.maximum((boxes[:, 1] - boxes[:, 0]).max(axis=1), side * 2.0**-depth)
+    level = np.floor(np.log2(side / size)).astype(np.int64).clip(0, depth)
+    middle = 0.5 * (boxes[:, 0] + boxes[:, 1])
     cells = 1 << depth
-    corners = np.clip(((boxes - low) / side * cells).astype(np.int64), 0, cells - 1)
-    # Two numbers part at their highest different bit; frexp gives its place.
-    part = np.frexp((corners[:, 0] ^ corners[:, 1]).max(axis=1).astype(np.float64))[1]
-    return depth - part, corners[:, 0]
+    return level, np.clip(((middle - low) / side * cells).astype(np.int64), 0, cells - 1)
 
 
 def _checked_boxes(boxes: Any) -> Array:

@@ -20,6 +20,8 @@ def nearest_on_mesh(points: Any, mesh: Mesh) -> tuple[Array, Array]:
         ShapeError, RangeError: points that are not (N, 3) or not finite.
     """
     rows = finite_rows("nearest_on_mesh", "points", points)
+    if not len(rows):
+        return np.zeros(0), np.zeros((0, 3))
     corners = mesh.vertices.astype(np.float64)[mesh.faces]
     step = max(1, 100_000 // len(corners))  # pairs at a time: 2.4 MB a vector
     parts = [_nearest(rows[i : i + step], corners) for i in range(0, len(rows), step)]

@@ -42,7 +42,7 @@ class SdfHits:
     @property
     def hit(self) -> npt.NDArray[np.bool_]:
         """(R,) whether the body was met."""
-        return self.end == HIT
+        return np.asarray(self.end == HIT)
 
 
 class Body:
@@ -123,7 +123,8 @@ class Body:
         require_number("trace", "tolerance", tolerance, least=0.0, open_ends=True)
         require_integer("trace", "max_steps", max_steps, least=1, most=1 << 20)
         march = (low, high, float(tolerance), int(max_steps))
-        return SdfHits(*self._core.trace(self._numbers(), *rays, march), march)
+        t, steps, end = self._core.trace(self._numbers(), *rays, march)
+        return SdfHits(t, steps, end, march)
 
     def trace_backward(
         self, origins: Any, directions: Any, hits: SdfHits, d_t: Any

@@ -19,9 +19,11 @@ struct Aabb {
             hi[k] = std::max(hi[k], p[k]);
         }
     }
-    void add(const Aabb& box) {
-        add(box.lo);
-        add(box.hi);
+    void add(const Aabb& box) {  // by ends, not by corners: an empty box adds nothing
+        for (int k = 0; k < 3; ++k) {
+            lo[k] = std::min(lo[k], box.lo[k]);
+            hi[k] = std::max(hi[k], box.hi[k]);
+        }
     }
     [[nodiscard]] bool empty() const { return !(lo.x <= hi.x); }
     /// Half the surface: what the chance of being met by a random line is proportional to.

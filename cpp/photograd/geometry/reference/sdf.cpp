@@ -157,11 +157,11 @@ void Sdf::backward(std::int32_t at, const double* numbers, const Vec3<double>& p
             break;
         }
         case SdfKind::scale: {
-            // f = s g(q), q = p / s:   df/dp = dg/dq    df/ds = g - <dg/dq, q>
+            // f = s g(q), q = p / s:   dL/dg = s dL/df    dL/dp = dL/dq / s    dL/ds = g dL/df - <dL/dq, q> / s
             const Vec3<double> q = p / x[0];
-            pass(node.first, d_f, q, d_local);
-            d_p += d_local;
-            d_x[0] += d_f * distance(node.first, numbers, q) - dot(d_local, q);
+            pass(node.first, x[0] * d_f, q, d_local);
+            d_p += d_local / x[0];
+            d_x[0] += d_f * distance(node.first, numbers, q) - dot(d_local, q) / x[0];
         }
     }
 }
