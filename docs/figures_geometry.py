@@ -159,7 +159,7 @@ def shaded(mesh: Mesh, camera: Camera) -> Array:
 
 
 def draw_levels(axes: Axes, mesh: Mesh) -> None:
-    """Each level at the distance at which its error is a pixel."""
+    """Three levels, the coarser ones where they are seen smaller."""
     detail = LevelsOfDetail(mesh, [0.12, 0.25])
     parts = []
     for level, size in zip(detail.levels, (120, 60, 60), strict=True):
@@ -201,7 +201,7 @@ def draw_bodies(picture: Axes, change: Axes, size: int = 200) -> None:
     change.imshow(
         slope.reshape(size, size), cmap=style.signed_colour_map(), norm=style.symmetric_scale(limit)
     )
-    change.set_title("derivative by the width of the seam")
+    change.set_title("change with the seam's width")
 
 
 def geometry_figure() -> Figure:

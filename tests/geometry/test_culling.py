@@ -23,7 +23,7 @@ FACES = np.array(
 )
 
 
-def objects(count: int = 240) -> Array:
+def objects(count: int = 120) -> Array:
     """Corners (N, 6, 3) of octahedra, mostly small, in a flat world of 20 m."""
     u = uniform(1, pixel=np.arange(count)[:, None], dimension=np.arange(6))
     centre = (u[:, :3] - 0.5) * [20.0, 4.0, 20.0]
@@ -70,8 +70,8 @@ def test_ten_thousand_cameras_miss_nothing() -> None:
         seen += int(visible.sum())
         kept += int(culled.visible.sum())
     assert missed == 0
-    assert seen > 10 * CAMERAS
-    # Of 240 objects a camera sees 23 on average, and the tree keeps 26.
+    assert seen > 8 * CAMERAS
+    # The boxes of what is kept and not seen mostly lie beside an edge of the view.
     assert kept < 1.3 * seen
     assert kept < 0.15 * CAMERAS * len(BOXES)
 
@@ -102,18 +102,18 @@ def test_what_rays_hit_is_kept() -> None:
         met = np.unique(hits.instance[hits.hit])
         found += len(met)
         assert tree.cull(Frustum.of_camera(camera, NEAR, FAR)).visible[met].all()
-    assert found > 500
+    assert found > 300
 
 
 @pytest.mark.parametrize("plane", range(6))
 def test_a_wrong_plane_is_seen(plane: int) -> None:
     tree, missed = CullingTree(BOXES), 0
-    for k in range(100):
+    for k in range(200):
         camera = random_camera(k)
         frustum = Frustum.of_camera(camera, NEAR, FAR)
         wrong = frustum.planes.copy()
-        # The sides lean inwards; what is near or far begins or ends a metre too soon.
-        wrong[plane] -= 0.2 * frustum.planes[4] if plane < 4 else np.array([0, 0, 0, 1.0])
+        # The sides lean inwards; what is near or far begins or ends 4 m off.
+        wrong[plane] -= 0.2 * frustum.planes[4] if plane < 4 else np.array([0, 0, 0, 4.0])
         missed += int((seen_by(camera) & ~tree.cull(Frustum(wrong)).visible).sum())
     assert missed > 0
 

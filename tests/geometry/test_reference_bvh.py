@@ -84,12 +84,10 @@ def test_embree_names_the_same_triangles() -> None:
     # Embree decides in float: rays within 1e-7 of an edge, about 1 in 100,000, may differ.
     assert (~same).sum() <= 10
     np.testing.assert_allclose(found.t[same], fast.t[same], rtol=1e-12)
-    near = np.linspace(0.1, 1.5, len(origins))
-    blocked = Bvh(BUMPY).occluded(origins, directions, 0.0, near)
-    any_hit = ReferenceBvh(BUMPY).any_hit(origins, directions / 1.0, 0.0, 0.8)
-    exact = found.t <= 0.8
-    np.testing.assert_array_equal(any_hit.hit, exact)
-    assert 0 < (blocked != (fast.t <= near)).sum() + blocked.sum() < len(origins)
+    any_hit = ReferenceBvh(BUMPY).any_hit(origins, directions, 0.0, 0.8).hit
+    np.testing.assert_array_equal(any_hit, found.t <= 0.8)
+    assert (any_hit != Bvh(BUMPY).occluded(origins, directions, 0.0, 0.8)).sum() <= 10
+    assert 0.1 < any_hit.mean() < 0.9
 
 
 def test_any_hit_costs_less_than_the_nearest() -> None:
@@ -128,7 +126,7 @@ def test_what_the_hierarchy_spares() -> None:
         origins, directions = random_rays(4000, seed=5)
         found = bvh.trace(origins, directions)
         tests.append(float((found.boxes + found.triangles).mean()))
-    # Four times as many triangles cost about two levels more: here 19, 23 and 27 tests a ray.
+    # Four times as many triangles cost about two levels more: 12.7, 15.3 and 17.9 tests a ray.
     assert tests[-1] < 0.01 * 2 * 48 * 80
     assert tests[2] - tests[1] < 1.5 * (tests[1] - tests[0]) < 12
     # The heuristic prefers the tree with many candidates, and so do rays.

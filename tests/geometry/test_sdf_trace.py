@@ -54,22 +54,25 @@ def stepped_past(t: Array, exact: Array) -> Array:
 
 
 def test_a_million_rays_stop_at_the_first_surface() -> None:
-    origins, directions = random_rays(1_000_000, seed=1)
-    exact, inside = known_hits(origins, directions)
-    exact = np.where(inside, 0.0, exact)
-    # A ray that starts low and runs nearly level comes down to the floor by very many steps.
-    hits = known_body().trace(origins, directions, t_max=20.0, max_steps=100_000)
-    assert 0.5 < hits.hit.mean() < 0.95
-    assert not (hits.end == GAVE_UP).any()
-    # A hit beyond t_max, of the floor under a nearly level ray, is a miss.
-    exact = np.where(exact > 20.0, np.inf, exact)
-    assert stepped_past(np.where(hits.hit, hits.t, np.inf), exact).size == 0
-    # Nor too early: but within the tolerance of 1e-6 m a ray that passes by has touched, at up to
-    # sqrt(2 radius tolerance) = 1 mm before the place where it is nearest.
-    early = hits.hit & (hits.t < exact - 1e-9)
-    assert early.sum() < 100
-    touched = origins[early] + hits.t[early, None] * directions[early]
-    assert np.abs(known_body().distance(touched)).max(initial=0.0) <= 1e-6
+    body, early_rays = known_body(), 0
+    for seed in range(4):
+        origins, directions = random_rays(250_000, seed=seed)
+        exact, inside = known_hits(origins, directions)
+        exact = np.where(inside, 0.0, exact)
+        # A ray that starts low and runs nearly level comes down to the floor by very many steps.
+        hits = body.trace(origins, directions, t_max=20.0, max_steps=100_000)
+        assert 0.5 < hits.hit.mean() < 0.95
+        assert not (hits.end == GAVE_UP).any()
+        # A hit beyond t_max, of the floor under a nearly level ray, is a miss.
+        exact = np.where(exact > 20.0, np.inf, exact)
+        assert stepped_past(np.where(hits.hit, hits.t, np.inf), exact).size == 0
+        # Nor too early: but within the tolerance of 1e-6 m a ray that passes by has touched, at up
+        # to sqrt(2 radius tolerance) = 1 mm before the place where it is nearest.
+        early = hits.hit & (hits.t < exact - 1e-9)
+        early_rays += int(early.sum())
+        touched = origins[early] + hits.t[early, None] * directions[early]
+        assert np.abs(body.distance(touched)).max(initial=0.0) <= 1e-6
+    assert early_rays < 100
 
 
 def march(body: Body, origins: Array, directions: Array, stride: float) -> Array:

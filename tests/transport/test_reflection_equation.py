@@ -45,13 +45,14 @@ def quadrature(model: Any, parameters: Any, light: EnvironmentMap, nodes: int) -
 @pytest.mark.parametrize("sky", MAPS)
 @pytest.mark.parametrize("name", BRDFS)
 def test_quadrature_and_chance_agree(name: str, sky: str) -> None:
-    # One pixel of 0.01 degrees on a floor. 15 tests of 3 channels, each with 16 batches.
+    # One pixel of 0.01 degrees on a floor. 15 tests of 3 channels, each with 16 batches of even
+    # samples, independent of each other.
     material, light = any_material(name), MAPS[sky]
     camera = camera_at(EYE, POINT, 0.01, 1, 1)
     floor = rectangle("floor", *FLOOR, "m")
     scene = Scene("pixel", (floor,), {"m": material}, camera, lights=(light,))
     tracer = PathTracer(scene, dtype=np.float64)
-    options = PathOptions(max_depth=2, sampler="independent")
+    options = PathOptions(max_depth=2)
     means = np.array(
         [tracer.render(spp=2048, seed=s, options=options).mean[0, 0] for s in range(16)]
     )
