@@ -2,6 +2,7 @@
 
 #include "bind_particles.h"
 #include "bind_principled.h"
+#include "bind_reference.h"
 
 PYBIND11_MODULE(_core, m) {
     m.doc() = "photograd's C++ core. Use the typed faces in the package photograd instead.";
@@ -11,6 +12,8 @@ PYBIND11_MODULE(_core, m) {
     photograd::bind_ops(m);
     photograd::bind_march(m);
     photograd::bind_geometry(m);
+    photograd::bind_reference(m);
+    photograd::bind_sdf(m);
     photograd::bind_bsdf(m);
     photograd::bind_principled(m);
     photograd::bind_light(m);

@@ -11,6 +11,7 @@ import typing
 
 __all__: list[str] = [
     "BrickTopology",
+    "BspTree",
     "Bvh",
     "CellTable",
     "EmittingMesh",
@@ -26,6 +27,8 @@ __all__: list[str] = [
     "PreparedSplats64",
     "Quadtree",
     "RayOptions",
+    "ReferenceBvh",
+    "Sdf",
     "SparseGrid",
     "SparseStatistics",
     "SplatImage",
@@ -89,6 +92,7 @@ __all__: list[str] = [
     "mip_level",
     "mip_shapes",
     "ops",
+    "order_by_depth",
     "phase_cornette_shanks",
     "phase_henyey_greenstein",
     "phases",
@@ -243,6 +247,140 @@ class Bvh:
         """
         Lower and upper corner (2, 3) of everything.
         """
+
+class ReferenceBvh:
+    """
+    A hierarchy of boxes, written to be read.
+    """
+    def __init__(
+        self,
+        vertices: numpy.ndarray,
+        faces: numpy.ndarray,
+        leaf_size: typing.SupportsInt | typing.SupportsIndex,
+        bins: typing.SupportsInt | typing.SupportsIndex,
+        max_depth: typing.SupportsInt | typing.SupportsIndex,
+    ) -> None: ...
+    def nodes(self) -> tuple[typing.Any, ...]:
+        """
+        Boxes (N, 2, 3); first, count, right and depth (N, 4); order (F,) of triangles.
+        """
+    def trace(
+        self,
+        origins: numpy.ndarray,
+        directions: numpy.ndarray,
+        t_min: typing.SupportsFloat | typing.SupportsIndex,
+        t_max: typing.SupportsFloat | typing.SupportsIndex,
+        any: bool,
+        t: numpy.ndarray,
+        primitive: numpy.ndarray,
+        barycentrics: numpy.ndarray,
+        visits: numpy.ndarray,
+    ) -> None:
+        """
+        Fills t (R,), primitive (R,) int32, barycentrics (R, 2) and visits (2, R) int32.
+        """
+    def trace_all(
+        self,
+        origins: numpy.ndarray,
+        directions: numpy.ndarray,
+        t_min: typing.SupportsFloat | typing.SupportsIndex,
+        t_max: typing.SupportsFloat | typing.SupportsIndex,
+        t: numpy.ndarray,
+        primitive: numpy.ndarray,
+        barycentrics: numpy.ndarray,
+        visits: numpy.ndarray,
+    ) -> None:
+        """
+        The same, by a test of every triangle.
+        """
+
+class BspTree:
+    """
+    A binary space partition of triangles.
+    """
+    def __init__(
+        self,
+        vertices: numpy.ndarray,
+        faces: numpy.ndarray,
+        candidates: typing.SupportsInt | typing.SupportsIndex,
+        max_polygons: typing.SupportsInt | typing.SupportsIndex,
+    ) -> None: ...
+    def back_to_front(self, eyes: numpy.ndarray) -> numpy.typing.NDArray[numpy.uint32]:
+        """
+        Numbers (E, P) of all polygons, for each eye (E, 3), hidden ones first.
+        """
+    def nodes(self) -> tuple[typing.Any, ...]:
+        """
+        Planes (N, 4); front, back, first, count and depth (N, 5).
+        """
+    def polygons(self) -> tuple[typing.Any, ...]:
+        """
+        Points (Q, 3), where each begins (P + 1,), triangles (P,).
+        """
+
+class Sdf:
+    """
+    A body as a tree of signed distances.
+    """
+    def __init__(self, nodes: numpy.ndarray) -> None:
+        """
+        Nodes (N, 4) int32: kind, two children or -1, where its numbers begin.
+        """
+    def distance(
+        self, numbers: numpy.ndarray, points: numpy.ndarray
+    ) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        f (N,) of points (N, 3).
+        """
+    def distance_backward(
+        self,
+        numbers: numpy.ndarray,
+        points: numpy.ndarray,
+        d_f: numpy.ndarray,
+        d_points: numpy.ndarray,
+        d_numbers: numpy.ndarray,
+    ) -> None:
+        """
+        Adds the derivatives to d_points (N, 3) and d_numbers (P,).
+        """
+    def trace(
+        self,
+        numbers: numpy.ndarray,
+        origins: numpy.ndarray,
+        directions: numpy.ndarray,
+        march: tuple[
+            typing.SupportsFloat | typing.SupportsIndex,
+            typing.SupportsFloat | typing.SupportsIndex,
+            typing.SupportsFloat | typing.SupportsIndex,
+            typing.SupportsInt | typing.SupportsIndex,
+        ],
+    ) -> tuple[typing.Any, ...]:
+        """
+        t (R,), steps (R,) int32, end (R,) int8: missed, hit, gave up.
+        """
+    def trace_backward(
+        self,
+        numbers: numpy.ndarray,
+        origins: numpy.ndarray,
+        directions: numpy.ndarray,
+        march: tuple[
+            typing.SupportsFloat | typing.SupportsIndex,
+            typing.SupportsFloat | typing.SupportsIndex,
+            typing.SupportsFloat | typing.SupportsIndex,
+            typing.SupportsInt | typing.SupportsIndex,
+        ],
+        t: numpy.ndarray,
+        end: numpy.ndarray,
+        d_t: numpy.ndarray,
+        d_numbers: numpy.ndarray,
+        d_origins: numpy.ndarray,
+        d_directions: numpy.ndarray,
+    ) -> None:
+        """
+        Adds the derivatives of t to d_numbers (P,), d_origins and d_directions (R, 3).
+        """
+    @property
+    def number_count(self) -> int: ...
 
 class bsdf_lambert:
     """
@@ -3925,6 +4063,11 @@ def mip_shapes(
 ) -> list[tuple[int, int]]:
     """
     Height and width of every level of a mip map.
+    """
+
+def order_by_depth(depth: numpy.ndarray, far_first: bool) -> numpy.typing.NDArray[numpy.uint32]:
+    """
+    Rows (N,) uint32 by depth (N,) float64, none below 0; equals keep their order.
     """
 
 def philox4x32(counter: numpy.ndarray, key: numpy.ndarray) -> numpy.typing.NDArray[numpy.uint32]:

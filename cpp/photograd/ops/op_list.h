@@ -15,6 +15,7 @@
 #include "photograd/ops/facet_op_list.h"
 #include "photograd/ops/input_group.h"
 #include "photograd/ops/ray_op_list.h"
+#include "photograd/ops/sdf_op_list.h"
 #include "photograd/ops/sh.h"
 #include "photograd/ops/splat_op_list.h"
 #include "photograd/ops/trilinear.h"
@@ -234,6 +235,8 @@ using Ops =
              ShColorOp, CompositeOp<Quadrature::alpha>, CompositeOp<Quadrature::riemann>,
              CovarianceOp, ProjectionOp<false>, ProjectionOp<true>, ConicOp, SplatColorOp,
              SplatBlendOp, RayGaussianOp, RayColorOp, RayBlendOp, ErfOp, SchlickOp, IndexOp,
-             DielectricOp<false>, DielectricOp<true>, ConductorOp, GgxOp, BeckmannOp, CharlieOp>;
+             DielectricOp<false>, DielectricOp<true>, ConductorOp, GgxOp, BeckmannOp, CharlieOp,
+             SdfSphereOp, SdfPlaneOp, SdfTorusOp, SdfBoxOp<false>, SdfBoxOp<true>, SmoothUnionOp,
+             ToShapeOp>;
 
 }  // namespace photograd

@@ -1,0 +1,181 @@
+"""Bodies of signed distances: shapes, how they combine, and where rays meet them [Hart1996].
+
+A shape is a description; `Body` makes it ready to be asked. All numbers of a body (radii, places)
+are in one array, `Body.numbers`, to be printed, changed and fitted. The mathematics is in
+cpp/photograd/ops/sdf_shapes.h, sdf_combine.h and geometry/reference/sphere_trace.h.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from photograd_course.checks import require_integer, require_number
+
+from photograd.core import _core
+from photograd.errors import RangeError, ShapeError, message
+from photograd.geometry.checks import Array, checked_interval, checked_rays, finite_rows
+from photograd.geometry.sdf_shapes import KINDS, Shape
+
+MISSED, HIT, GAVE_UP = 0, 1, 2
+
+
+@dataclass(frozen=True, eq=False)
+class SdfHits:
+    """Where R rays met a body.
+
+    Attributes:
+        t: (R,) distance in lengths of the direction; infinite where the body was missed. Where the
+            march gave up, how far the way is known to be free.
+        steps: (R,) int32, how often the distance was asked.
+        end: (R,) int8, MISSED, HIT or GAVE_UP (after max_steps).
+        march: t_min, t_max, tolerance and max_steps, for `Body.trace_backward`.
+    """
+
+    t: Array
+    steps: npt.NDArray[np.int32]
+    end: npt.NDArray[np.int8]
+    march: tuple[float, float, float, int]
+
+    @property
+    def hit(self) -> npt.NDArray[np.bool_]:
+        """(R,) whether the body was met."""
+        return np.asarray(self.end == HIT)
+
+
+class Body:
+    """A shape, ready to be asked.
+
+    Attributes:
+        numbers: (P,) float64, the parameters of all shapes; change them freely.
+        names: (P,) what each of them is, such as "sphere 0: radius".
+    """
+
+    def __init__(self, shape: Shape) -> None:
+        """Lay out the tree.
+
+        Raises:
+            RangeError: a tree deeper than 256.
+        """
+        rows: list[tuple[int, int, int, int]] = []
+        values: list[float] = []
+        names: list[str] = []
+        for number, (node, children) in enumerate(_postorder(shape)):
+            kind = list(KINDS).index(node.kind)
+            first, second = (*children, -1, -1)[:2]
+            rows.append((kind, first, second, len(values)))
+            values.extend(node.numbers)
+            names.extend(f"{node.kind} {number}: {name}" for name in KINDS[node.kind])
+        self._core = _core.Sdf(np.array(rows, np.int32))
+        self.numbers: Array = np.array(values, np.float64)
+        self.names = tuple(names)
+
+    def distance(self, points: Any) -> Array:
+        """Distances f (N,) in metres, negative inside; the surface is never nearer than |f|.
+
+        Args:
+            points: (N, 3), m.
+
+        Raises:
+            ShapeError, RangeError: points that are not (N, 3) or not finite; numbers that have
+                become useless, such as a radius of 0.
+        """
+        rows = finite_rows("distance", "points", points)
+        found: Array = self._core.distance(self._numbers(), rows)
+        return found
+
+    def distance_backward(self, points: Any, d_f: Any) -> tuple[Array, Array]:
+        """dL/dpoints (N, 3) and dL/dnumbers (P,) of d_f (N,)."""
+        rows = finite_rows("distance_backward", "points", points)
+        d_points, d_numbers = np.zeros_like(rows), np.zeros_like(self.numbers)
+        weights = _same_rows("distance_backward", "d_f", d_f, rows)
+        self._core.distance_backward(self._numbers(), rows, weights, d_points, d_numbers)
+        return d_points, d_numbers
+
+    def normals(self, points: Any) -> Array:
+        """Unit gradients of the distance (N, 3), which point out of the surface; 0 in a centre."""
+        rows = finite_rows("normals", "points", points)
+        gradient, _ = self.distance_backward(rows, np.ones(len(rows)))
+        size = np.linalg.norm(gradient, axis=1, keepdims=True)
+        return np.asarray(gradient / np.where(size > 0.0, size, 1.0))
+
+    def trace(
+        self, origins: Any, directions: Any, *, t_min: float = 0.0, t_max: float = 1e3,
+        tolerance: float = 1e-6, max_steps: int = 1000,
+    ) -> SdfHits:  # fmt: skip
+        """Where each ray first meets the body, by steps of the distance.
+
+        Args:
+            origins, directions: (R, 3); directions of any length but 0. A ray that starts inside
+                has its hit at t_min.
+            t_min, t_max: in lengths of the direction; t_max must be finite.
+            tolerance: m; nearer than this counts as a hit, and is then improved to rounding.
+            max_steps: after which a ray gives up; grazing rays take many.
+
+        Raises:
+            ShapeError, RangeError: rays that are none, or options out of range.
+        """
+        rays = checked_rays("trace", origins, directions)
+        low, high = checked_interval("trace", t_min, t_max)
+        require_number("trace", "t_max", high)
+        require_number("trace", "tolerance", tolerance, least=0.0, open_ends=True)
+        require_integer("trace", "max_steps", max_steps, least=1, most=1 << 20)
+        march = (low, high, float(tolerance), int(max_steps))
+        t, steps, end = self._core.trace(self._numbers(), *rays, march)
+        return SdfHits(t, steps, end, march)
+
+    def trace_backward(
+        self, origins: Any, directions: Any, hits: SdfHits, d_t: Any
+    ) -> tuple[Array, Array, Array]:
+        """dL/dnumbers (P,), dL/dorigins and dL/ddirections (R, 3) of d_t (R,).
+
+        Interior term only: that a ray at a silhouette may come to miss is not in it. Rows that did
+        not end in a hit beyond t_min count for nothing.
+
+        Raises:
+            As `trace`; ShapeError: hits or d_t of other rays.
+        """
+        rays = checked_rays("trace_backward", origins, directions)
+        weights = _same_rows("trace_backward", "d_t", d_t, rays[0])
+        t = _same_rows("trace_backward", "hits", hits.t, rays[0])
+        d_numbers = np.zeros_like(self.numbers)
+        d_origins, d_directions = np.zeros_like(rays[0]), np.zeros_like(rays[1])
+        self._core.trace_backward(
+            self._numbers(), *rays, hits.march, t, hits.end, weights,
+            d_numbers, d_origins, d_directions,
+        )  # fmt: skip
+        return d_numbers, d_origins, d_directions
+
+    def _numbers(self) -> Array:
+        return np.ascontiguousarray(self.numbers, np.float64)
+
+
+def _postorder(shape: Shape) -> list[tuple[Shape, tuple[int, ...]]]:
+    """All shapes of the tree, children first, with the numbers of theirs."""
+    found: list[tuple[Shape, tuple[int, ...]]] = []
+    waiting: list[tuple[Shape, bool]] = [(shape, False)]  # no recursion: chains may be long
+    done: list[int] = []
+    while waiting:
+        node, opened = waiting.pop()
+        if not opened and node.children:
+            waiting.append((node, True))
+            waiting.extend((child, False) for child in reversed(node.children))
+            continue
+        keep = len(done) - len(node.children)
+        children = tuple(done[keep:])
+        del done[keep:]
+        done.append(len(found))
+        found.append((node, children))
+    return found
+
+
+def _same_rows(function: str, argument: str, value: Any, rows: Array) -> Array:
+    numbers = np.ascontiguousarray(value, np.float64)
+    if numbers.shape != (len(rows),):
+        raise ShapeError(message(function, argument, f"shape ({len(rows)},)", numbers.shape))
+    if np.isnan(numbers).any():
+        row = int(np.flatnonzero(np.isnan(numbers))[0])
+        raise RangeError(message(function, argument, "numbers", f"NaN in row {row}"))
+    return numbers
