@@ -14,9 +14,6 @@ from pathlib import Path
 from types import ModuleType
 
 import numpy as np
-import recover_environment
-import recover_materials
-import recover_measured
 import recover_walls
 from matplotlib.figure import Figure
 from photograd_course.viz import save_figure
@@ -29,9 +26,6 @@ LARGEST = 150_000  # bytes of a picture
 
 SECTIONS: dict[str, tuple[str, ModuleType]] = {
     "walls": ("Wall colours from one picture", recover_walls),
-    "materials": ("Textures, roughness and metalness", recover_materials),
-    "environment": ("The light around a ball", recover_environment),
-    "measured": ("Measured reflectance, by four models", recover_measured),
 }
 """Name: (title, module with `measure(data) -> (lines, figure)` and the name of its `IMAGE`)."""
 

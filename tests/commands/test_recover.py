@@ -29,12 +29,12 @@ def test_a_colour_is_found_and_resumed(
 ) -> None:
     scene, target = taken
     out = tmp_path / "found"
-    words = ("recover", scene, "--target", target, *WORDS, "--steps", 30, "--out", out)
+    words = ("recover", scene, "--target", target, *WORDS, "--steps", 60, "--out", out)
     done = photograd(*words, "--camera", scene, "--json")
     assert done.code == 0, done.err
     found = json.loads((out / "found.json").read_text(encoding="utf-8"))
     np.testing.assert_allclose(found["found"]["materials.grey.albedo"], 0.5, atol=0.03)
-    assert done.result()["step"] == 30
+    assert done.result()["step"] == 60
     for name in ("comparison.png", "curves.png"):
         assert np.ptp(np.asarray(Image.open(out / name))) > 100
     again = photograd(*words)
@@ -42,7 +42,7 @@ def test_a_colour_is_found_and_resumed(
     assert "a folder without a recovery" in " ".join(again.err.split())
     more = photograd(*words, "--camera", scene, "--resume")
     assert more.code == 0, more.err
-    assert "resumed at step 30 of 30" in more.err
+    assert "resumed at step 60 of 60" in more.err
 
 
 @pytest.mark.parametrize(

@@ -146,7 +146,7 @@ def test_the_gradient_is_right_on_average_and_with_equal_seeds_it_is_not() -> No
     assert np.mean(found["equal"]) - reference > 8 * spread["equal"]
 
 
-OPTIONS = RecoveryOptions(steps=40, spp=4, learning_rate=0.25, path=PathOptions(max_depth=5))
+OPTIONS = RecoveryOptions(steps=60, spp=4, learning_rate=0.4, path=PathOptions(max_depth=5))
 WALLS = [Unknown(f"materials.{name}.albedo", start=0.5) for name in ("red", "green")]
 
 
@@ -162,12 +162,12 @@ def test_wall_colours_are_found_and_a_resumed_search_has_the_same_bits(
     scene, picture = room
     whole = recover(scene, picture, WALLS, options=OPTIONS)
     assert whole.finished
-    assert whole.history.shape == (40, 3)
+    assert whole.history.shape == (60, 3)
     for name, value in whole.params.items():
         material = name.split(".")[1]
         truth = scene.materials[material].values["albedo"]
-        assert np.abs(value - truth).max() < 0.06  # 16 pixels, 40 steps; from 0.5: 0.45 at first
-        assert whole.curves[name].shape == (41, 3)
+        assert np.abs(value - truth).max() < 0.05  # 0.03; 0.45 at first
+        assert whole.curves[name].shape == (61, 3)
         np.testing.assert_allclose(whole.curves[name][0], 0.5)
         np.testing.assert_array_equal(whole.scene.materials[material].values["albedo"], value)
     parts = Recovery(scene, picture, WALLS, OPTIONS)
