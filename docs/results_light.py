@@ -14,6 +14,7 @@ from pathlib import Path
 from types import ModuleType
 
 import numpy as np
+import recover_environment
 import recover_walls
 from matplotlib.figure import Figure
 from photograd_course.viz import save_figure
@@ -26,6 +27,7 @@ LARGEST = 150_000  # bytes of a picture
 
 SECTIONS: dict[str, tuple[str, ModuleType]] = {
     "walls": ("Wall colours from one picture", recover_walls),
+    "environment": ("The light around a ball", recover_environment),
 }
 """Name: (title, module with `measure(data) -> (lines, figure)` and the name of its `IMAGE`)."""
 
