@@ -15,6 +15,7 @@ from types import ModuleType
 
 import numpy as np
 import recover_environment
+import recover_measured
 import recover_walls
 from matplotlib.figure import Figure
 from photograd_course.viz import save_figure
@@ -28,6 +29,7 @@ LARGEST = 150_000  # bytes of a picture
 SECTIONS: dict[str, tuple[str, ModuleType]] = {
     "walls": ("Wall colours from one picture", recover_walls),
     "environment": ("The light around a ball", recover_environment),
+    "measured": ("Measured reflectance, by four models", recover_measured),
 }
 """Name: (title, module with `measure(data) -> (lines, figure)` and the name of its `IMAGE`)."""
 
@@ -47,7 +49,7 @@ def rewritten(page: str, name: str, lines: list[str]) -> str:
 
 
 def save_small(figure: Figure, path: Path) -> None:
-    """Write a figure with 64 levels a channel, which noisy pictures do not suffer from.
+    """Write a figure with 64 levels a channel, and if it is large still, with 256 colours.
 
     Raises:
         SystemExit: it is larger than `LARGEST`.
@@ -56,7 +58,11 @@ def save_small(figure: Figure, path: Path) -> None:
     with Image.open(path) as image:
         pixels = np.asarray(image.convert("RGB"), np.float64)
     levels = np.rint(np.rint(pixels * (63 / 255)) * (255 / 63)).astype(np.uint8)
-    Image.fromarray(levels).save(path, optimize=True)
+    small = Image.fromarray(levels)
+    small.save(path, optimize=True)
+    if path.stat().st_size > LARGEST:
+        palette = small.quantize(256, Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
+        palette.save(path, optimize=True)
     if path.stat().st_size > LARGEST:
         raise SystemExit(f"{path.name} has {path.stat().st_size} bytes")
 
