@@ -16,6 +16,7 @@ from photograd.commands import (
     fit,
     gradients,
     info,
+    recover,
     render,
     trace,
 )
@@ -28,6 +29,7 @@ def register(app: typer.Typer) -> None:
         fit,
         render,
         trace,
+        recover,
         convert,
         evaluate,
         gradients,

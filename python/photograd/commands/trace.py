@@ -127,7 +127,7 @@ def trace(
         raise IoError(message("trace", "--out", "a name that ends in .exr or .png", out))
     options = PathOptions(strategy, heuristic, 2 if integrator == "direct" else max_depth)
     estimate = Estimate(integrator, options, seed, radius, photons, derivative)
-    described, fingerprint = _load(scene, size)
+    described, fingerprint = load_scene(scene, size)
     key = {
         "scene": fingerprint, "seed": seed, "integrator": integrator, "radius": repr(radius),
         **asdict(options), **estimate.key,
@@ -194,8 +194,8 @@ def scene_size(scene: Scene) -> tuple[int, int]:
     return sum(len(shape.faces) for shape in meshes), texels
 
 
-def _load(name: str, size: int) -> tuple[Scene, str]:
-    """The scene, and a text that changes with it."""
+def load_scene(name: str, size: int) -> tuple[Scene, str]:
+    """The scene of an argument SCENE, and a text that changes with it; warnings become notes."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         if name in BUILTIN:

@@ -1,8 +1,8 @@
 """Light transport: scenes of shapes and materials, path traced, with derivatives.
 
 `Scene` says what there is, `PathTracer` draws it; `read_scene`, `read_model` (mesh files) and
-`builtin` bring scenes from files and by name. The mathematics is in
-cpp/photograd/render/path_vertex.h and path_walk.h.
+`builtin` bring scenes from files and by name; `recover` finds in pictures what a scene is made of.
+The mathematics is in cpp/photograd/render/path_vertex.h and path_walk.h.
 """
 
 from __future__ import annotations
@@ -25,6 +25,15 @@ from photograd.transport.particles import (
     trace_light,
 )
 from photograd.transport.photons import PhotonMap
+from photograd.transport.recovery import (
+    Recovery,
+    RecoveryOptions,
+    RecoveryResult,
+    Target,
+    Unknown,
+    recover,
+    scene_with,
+)
 from photograd.transport.scene import Environment, Material, MeshShape, Scene, SphereShape
 from photograd.transport.scene_file import read_scene
 from photograd.transport.texture import NormalMap, Texture, TextureUse, read_texture
@@ -49,10 +58,15 @@ __all__ = [
     "PathTracer",
     "PhotonMap",
     "Receiver",
+    "Recovery",
+    "RecoveryOptions",
+    "RecoveryResult",
     "Scene",
     "SphereShape",
+    "Target",
     "Texture",
     "TextureUse",
+    "Unknown",
     "add_derivative_samples",
     "builtin_scene",
     "derivative_image",
@@ -62,5 +76,7 @@ __all__ = [
     "read_model",
     "read_scene",
     "read_texture",
+    "recover",
+    "scene_with",
     "trace_light",
 ]

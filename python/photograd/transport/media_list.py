@@ -18,7 +18,10 @@ if TYPE_CHECKING:
 
 Array = npt.NDArray[Any]
 NOTHING, UNCHANGED = -1, -2  # interiors that are no medium, as the core counts them
-SOLID = ("glass", "rough_dielectric", BOUNDARY)
+SOLID = (
+    "glass", "rough_dielectric", "dispersive_glass", "dispersive_dielectric", "gltf_refraction",
+    BOUNDARY,
+)  # fmt: skip
 """Surfaces whose inside is empty unless the shape says otherwise. Others that light can pass are
 taken for thin sheets: on both sides is what is around."""
 

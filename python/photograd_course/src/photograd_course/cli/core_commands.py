@@ -15,6 +15,7 @@ CORE_COMMANDS: tuple[tuple[str, str], ...] = (
     ("fit", "Recover a scene from photographs."),
     ("render", "Render a recovered scene, for example as a turntable."),
     ("trace", "Path trace a described scene."),
+    ("recover", "Recover materials, textures and lights of a path traced scene from pictures."),
     ("convert", "Convert a file of Gaussians to another format."),
     ("evaluate", "Compare a recovered scene with held-out photographs."),
     ("gradients", "Draw where the loss wants matter to appear and to vanish."),

@@ -1,0 +1,205 @@
+"""`photograd recover`: materials, textures and lights of a path traced scene, from pictures."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+import typer
+from photograd_course.atomic_io import atomic_write
+from photograd_course.cli import (
+    Column,
+    DebugOption,
+    JsonOption,
+    SeedOption,
+    ThreadsOption,
+    emit,
+    note,
+)
+from photograd_course.cli import Progress as Bar
+
+from photograd.commands.shared import StopRequest, stop_on_signals, use_threads
+from photograd.commands.trace import SceneArgument, load_scene
+from photograd.data.exr import read_exr
+from photograd.data.image_write import write_exr
+from photograd.errors import IoError, RangeError, message
+from photograd.transport.recovery import Recovery, RecoveryOptions, RecoveryResult, Target, Unknown
+from photograd.transport.recovery.options import LOSSES
+from photograd.transport.recovery.result import Progress
+from photograd.transport.recovery.saved import FILE_NAME
+from photograd.transport.scene_file import read_scene
+from photograd.transport.tracer import PathOptions, PathTracer
+
+DEFAULTS = RecoveryOptions()
+LOOK_SPP = 64  # samples a pixel of the picture that is shown beside the target
+TargetOption = Annotated[
+    list[Path], typer.Option("--target", help="A picture to match, linear .exr; may be repeated.")
+]
+CameraOption = Annotated[
+    list[Path] | None,
+    typer.Option("--camera", help="A scene file whose camera took a target; one for each."),
+]
+UnknownOption = Annotated[
+    list[str],
+    typer.Option(
+        "--unknown",
+        help="A parameter to find: materials.NAME.PARAMETER, textures.NAME, emission.SHAPE, "
+        "lights.INDEX.PARAMETER; NAME=0.5 begins at a value. May be repeated.",
+    ),
+]
+OutOption = Annotated[Path, typer.Option("--out", help="Folder for the result and checkpoints.")]
+StepsOption = Annotated[int, typer.Option("--steps", min=1, help="Steps of gradient descent.")]
+SppOption = Annotated[
+    int, typer.Option("--spp", min=1, help="Samples a pixel of each of a step's two halves.")
+]
+RateOption = Annotated[float, typer.Option("--learning-rate", help="Of Adam, at the first step.")]
+LossOption = Annotated[
+    str, typer.Option("--loss", help=f"What is made small: {', '.join(LOSSES)}.")
+]
+DepthOption = Annotated[
+    int, typer.Option("--max-depth", min=1, help="Segments of the longest path.")
+]
+ViewsOption = Annotated[
+    int, typer.Option("--views", min=0, help="Targets a step looks at; 0 looks at all.")
+]
+SizeOption = Annotated[
+    int | None,
+    typer.Option(
+        "--size", min=1, help="Pixels along an edge of a built-in scene.",
+        show_default="the target's",
+    ),
+]  # fmt: skip
+ResumeOption = Annotated[bool, typer.Option("--resume", help="Go on with the recovery in --out.")]
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command."""
+    app.command("recover")(recover)
+
+
+def recover(
+    scene: SceneArgument,
+    target: TargetOption,
+    unknown: UnknownOption,
+    out: OutOption,
+    camera: CameraOption = None,
+    steps: StepsOption = DEFAULTS.steps,
+    spp: SppOption = DEFAULTS.spp,
+    learning_rate: RateOption = DEFAULTS.learning_rate,
+    loss: LossOption = DEFAULTS.loss,
+    max_depth: DepthOption = DEFAULTS.path.max_depth,
+    views: ViewsOption = DEFAULTS.views,
+    size: SizeOption = None,
+    resume: ResumeOption = False,
+    seed: SeedOption = 0,
+    threads: ThreadsOption = 0,
+    as_json: JsonOption = False,
+    debug: DebugOption = False,  # noqa: ARG001  read by the command line's frame
+) -> None:
+    """Recover parameters of a path traced scene from pictures of it.
+
+    SCENE says all that is known, and first guesses of what is not. Writes OUT/recovery.npz every 30
+    seconds and on Ctrl-C, from which --resume goes on to the same bits; at the end OUT/found.json,
+    pictures of textures and maps, curves.png and comparison.png.
+
+    Example: photograd recover cornell-box --target cornell.exr --unknown materials.red.albedo=0.5
+    --out found
+    """
+    use_threads(threads)
+    images = [read_target(path) for path in target]
+    described, _ = load_scene(scene, size or images[0].shape[0])
+    if camera and len(camera) != len(target):
+        expected = f"one for each of {len(target)} targets"
+        raise RangeError(message("recover", "--camera", expected, len(camera)))
+    cameras = [read_scene(path).camera for path in camera] if camera else [None] * len(images)
+    targets = [Target(image, taken) for image, taken in zip(images, cameras, strict=True)]
+    options = RecoveryOptions(
+        steps=steps, spp=spp, learning_rate=learning_rate, loss=loss, views=views, seed=seed,
+        path=PathOptions(max_depth=max_depth),
+    )  # fmt: skip
+    job = Recovery(described, targets, [parsed(text) for text in unknown], options)
+    if resume:
+        job.load(out)
+        note(f"resumed at step {job.step_number} of {steps}")
+    elif (out / FILE_NAME).exists():
+        got, remedy = f"{out}, which holds one", "add --resume, or choose another folder"
+        raise RangeError(message("recover", "--out", "a folder without a recovery", got, remedy))
+    with stop_on_signals() as stopping:
+        result = run_with_bar(job, out, stopping)
+    emit(write_result(job, result, out), as_json=as_json, title="recover")
+    if not result.finished:
+        note(f"stopped at step {result.step} of {steps}; continue with --resume")
+        raise typer.Exit(stopping.exit_code or 1)
+
+
+def read_target(path: Path) -> Any:
+    """(H, W, 3) linear, of an .exr.
+
+    Raises:
+        IoError: another suffix, or a damaged file.
+    """
+    if path.suffix.lower() != ".exr":
+        remedy = "photographs of 8 bits are clipped at white; 'photograd trace' writes .exr"
+        raise IoError(message("recover", "--target", "a linear .exr", path, remedy))
+    return read_exr(path)[..., :3].astype(np.float64)
+
+
+def parsed(text: str) -> Unknown:
+    """NAME, NAME=NUMBER or NAME=NUMBER,NUMBER,NUMBER.
+
+    Raises:
+        RangeError: something else.
+    """
+    name, given, value = text.partition("=")
+    if not given:
+        return Unknown(name)
+    try:
+        numbers = [float(part) for part in value.split(",")]
+    except ValueError as failure:
+        expected = "NAME, NAME=NUMBER or NAME=NUMBER,NUMBER,NUMBER"
+        raise RangeError(message("recover", "--unknown", expected, text)) from failure
+    return Unknown(name, start=numbers if len(numbers) > 1 else numbers[0])
+
+
+def run_with_bar(job: Recovery, out: Path, stopping: StopRequest) -> RecoveryResult:
+    """Run under a live progress bar on stderr."""
+    columns = [Column("loss", "{:.2e}".format)]
+    with Bar("recover", job.options.steps, columns, start=job.step_number) as bar:
+
+        def on_step(now: Progress) -> None:
+            bar.update(now.step, loss=now.loss)
+
+        return job.run(out, on_step=on_step, should_stop=stopping)
+
+
+def write_result(job: Recovery, result: RecoveryResult, out: Path) -> dict[str, Any]:
+    """Values, pictures and curves in `out`; what the last line says."""
+    from photograd_course.viz import save_figure
+
+    from photograd.transport.recovery.pictures import comparison_figure, curves_figure
+
+    found: dict[str, Any] = {}
+    for name, value in result.params.items():
+        if value.ndim == 3 and value.shape[2] == 3:
+            write_exr(out / f"{name}.exr", value.astype(np.float32))
+            found[name] = f"{name}.exr"
+        else:
+            found[name] = np.round(value, 6).tolist()
+    text = json.dumps({"step": result.step, "found": found}, indent=1)
+    atomic_write(out / "found.json", text.encode())
+    first = job.targets[0]
+    tracer = PathTracer(result.scene)
+    picture = tracer.render(
+        spp=LOOK_SPP, seed=job.options.seed, options=job.options.path, camera=first.camera
+    ).mean
+    save_figure(comparison_figure(first.image, picture), out / "comparison.png")
+    if result.step:
+        save_figure(curves_figure(result), out / "curves.png")
+    difference = float(np.sqrt(np.square(picture - first.image).mean()))
+    return {
+        "out": out, "step": result.step, "seconds": round(result.seconds, 3),
+        "rms_of_first_picture": difference,
+        **{name: value for name, value in found.items() if np.size(value) <= 3},
+    }  # fmt: skip

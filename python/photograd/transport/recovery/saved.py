@@ -1,0 +1,115 @@
+"""A recovery on disk: what it needs to go on, and what shows that it is the same one."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+from photograd_course.atomic_io import remove_leftovers
+
+from photograd.checkpoint import Checkpoint, load_checkpoint, save_checkpoint
+from photograd.errors import IoError, RangeError, message
+from photograd.transport.scene import MeshShape, Scene
+from photograd.transport.tracer import PathTracer
+
+if TYPE_CHECKING:
+    from photograd.transport.recovery.job import Recovery
+
+Array = npt.NDArray[Any]
+FILE_NAME = "recovery.npz"
+
+
+def save_state(folder: Path, job: Recovery, sampled: dict[str, Array]) -> None:
+    """Write DIR/recovery.npz; `sampled` are the values that the tracer was built with."""
+    state = {f"sampled.{name}": value for name, value in sampled.items()}
+    state |= {f"curves.{name}": np.array(rows) for name, rows in job.curves.items()}
+    meta = {"step": job.step_number, **fingerprint(job)}
+    history = np.array(job.history, np.float64).reshape(-1, 3)
+    save_checkpoint(
+        folder / FILE_NAME, Checkpoint(meta, dict(job.x), job.optimiser.state(), state, history)
+    )
+
+
+def load_state(folder: Path, job: Recovery) -> dict[str, Array]:
+    """Bring a job to where its checkpoint ends; the values that its tracer was built with.
+
+    Raises:
+        IoError: a missing or damaged checkpoint.
+        RangeError: one of another recovery.
+    """
+    path = folder / FILE_NAME
+    if not path.is_file():
+        expected = f"a recovery ({FILE_NAME})"
+        raise IoError(message("recover", "folder", expected, f"none in {folder}"))
+    saved = load_checkpoint(path)
+    _require_same(fingerprint(job), saved.meta)
+    try:
+        job.x = {name: saved.params[name].astype(np.float64) for name in job.x}
+        sampled = {name: saved.state[f"sampled.{name}"] for name in job.x}
+        job.curves = {name: list(saved.state[f"curves.{name}"]) for name in job.x}
+        job.step_number = int(saved.meta["step"])
+    except KeyError as failure:
+        expected = "a checkpoint of a recovery"
+        raise IoError(message("recover", f"{path}", expected, f"no {failure}")) from failure
+    job.optimiser.load_state(saved.optimiser)
+    job.history = [(float(a), float(b), float(c)) for a, b, c in saved.history]
+    remove_leftovers(path)
+    return sampled
+
+
+def _require_same(own: dict[str, Any], saved: dict[str, Any]) -> None:
+    """Raise RangeError that says in what a checkpoint is of another recovery."""
+    remedy = "resume with what it was started with, or choose another folder"
+    for name, value in own.items():
+        other = saved.get(name)
+        if other == value:
+            continue
+        got = f"other {name}"
+        if isinstance(other, dict):
+            differing = [key for key in value if other.get(key) != value[key]]
+            got = f"another {', '.join(differing)}"
+        expected = f"the {name} of the checkpoint"
+        raise RangeError(message("recover", name, expected, got, remedy))
+
+
+def fingerprint(job: Recovery) -> dict[str, Any]:
+    """The options, and short texts that change with the scene, the pictures and the unknowns."""
+    pictures = hashlib.sha256()
+    for target in job.targets:
+        camera = target.camera
+        assert camera is not None
+        pictures.update(target.image.tobytes())
+        pictures.update(b"" if target.weight is None else target.weight.tobytes())
+        pictures.update(repr((camera.fx, camera.fy, camera.cx, camera.cy)).encode())
+        pictures.update(camera.world_from_camera.tobytes())
+    unknowns = hashlib.sha256()
+    for each in job.unknowns.values():
+        start = "" if each.start is None else np.asarray(each.start, np.float64).tobytes().hex()
+        told = (each.name, start, each.bounds, each.activation, each.rate)
+        unknowns.update(repr(told).encode())
+    found = {"scene": scene_digest(job.scene), "targets": pictures, "unknowns": unknowns}
+    texts = {name: digest.hexdigest()[:16] for name, digest in found.items()}
+    return {**texts, "options": asdict(job.options)}
+
+
+def scene_digest(scene: Scene) -> Any:
+    """A hash of the shapes and of everything that is a number."""
+    found = hashlib.sha256(repr(sorted(scene.materials)).encode())
+    for name, value in PathTracer(scene).params.items():
+        found.update(name.encode() + value.tobytes())
+    for shape in scene.shapes:
+        found.update(f"{shape.name} {shape.material}".encode())
+        if isinstance(shape, MeshShape):
+            for array in (shape.vertices, shape.faces, *shape.places):
+                found.update(np.ascontiguousarray(array).tobytes())
+        else:
+            found.update(np.array([*shape.center, shape.radius]).tobytes())
+    for light in scene.lights:
+        for name, value in sorted(vars(light).items()):
+            if not name.startswith("_"):
+                found.update(name.encode() + np.asarray(value, np.float64).tobytes())
+    return found
