@@ -8,13 +8,15 @@ from typing import Any
 import numpy as np
 import pytest
 from photograd.core import _core
-from photograd.errors import RangeError, ShapeError
+from photograd.errors import RangeError, SceneError, ShapeError
 from photograd.transport import (
     Accumulation,
     PathOptions,
     PathTracer,
     Scene,
+    TextureUse,
     add_derivative_samples,
+    builtin_scene,
     derivative_image,
     direction_of,
 )
@@ -24,10 +26,12 @@ from photograd.transport.scene import MODELS
 from tests.transport import test_textures as textures
 from tests.transport.light_scenes import LIGHTS, TILT, environment_map, lit_by
 from tests.transport.scenes import any_material, bent_floor, stage
+from tests.transport.test_alpha import checker, grey, shade
+from tests.transport.test_glow import room
 
 OPTIONS = PathOptions(max_depth=5, roulette_from=2)
 SPP = 3
-TOLERANCE = 1e-10  # of the sum of what is multiplied; 2e-15 at most was found
+TOLERANCE = 1e-10  # of the sum of what is multiplied; 1.1e-15 at most was found
 
 
 def gaps(scene: Scene, options: PathOptions = OPTIONS) -> dict[str, tuple[float, float]]:
@@ -75,6 +79,23 @@ def test_every_strategy(strategy: str) -> None:
 def test_textures_and_bent_normals() -> None:
     check(textures.stage(), without=("materials.black.albedo",))
     check(bent_floor(6))
+
+
+@pytest.mark.parametrize("alpha", [0.2, 0.6, 1.0])
+def test_veils(alpha: float) -> None:
+    check(shade(grey(alpha)))
+    card = grey(0.7, textures={"alpha": TextureUse("holes")})
+    check(shade(card, size=8, textures={"holes": checker()}))
+
+
+def test_painted_lamps() -> None:
+    check(room(), without=("materials.black.albedo",))
+
+
+def test_media_are_refused() -> None:
+    tracer = PathTracer(builtin_scene("wax"))
+    with pytest.raises(SceneError, match=r"derivative_image: scene.media: .*without media"):
+        derivative_image(tracer, "media.wax.albedo[0]", spp=1, seed=1)
 
 
 def test_differences_on_held_paths() -> None:

@@ -27,6 +27,7 @@ from photograd.transport.shapes import rectangle
 from support.glass_ball import flux_below_ball
 from support.light_proofs import polygon_irradiance
 from tests.transport.scenes import BLACK, FLOOR, GREY, LAMP, any_material, bent_floor, stage, view
+from tests.transport.test_glow import room
 from tests.transport.test_strategies import assert_same_mean
 
 GLASS = Material("glass", {"eta": 1.5, "tint": [0.9, 1.0, 0.95]})
@@ -69,6 +70,7 @@ COVERED = {
     "glass": GLASS,
     "thin glass": Material("thin_glass", {"eta": 1.5, "tint": [0.9, 1.0, 0.95]}),
     "rough glass": Material("rough_dielectric", {"eta": 1.5, "roughness": 0.5}),
+    "veil": Material("lambert", {"albedo": [0.6, 0.3, 0.1], "alpha": 0.4}),
 }
 PARTICLES = 1 << 17
 
@@ -83,10 +85,18 @@ def test_both_ends_agree_through_a_boundary(cover: str) -> None:
     assert_same_mean(seen, landed, 5, 0.1)
 
 
+def test_both_ends_agree_under_a_painted_lamp() -> None:
+    tracer = PathTracer(room(triangles=True), dtype=np.float64)
+    seen = seen_irradiance(tracer, below(0.8, 4), 0.5, 1024)
+    landed = trace_light(tracer, patch(4), PARTICLES, seed=4, options=AS_SEEN)
+    assert seen.mean.min() > 0.1
+    assert_same_mean(seen, landed, 5, 0.1)
+
+
 def test_both_ends_agree_in_a_room() -> None:
     scene = cornell_box(8)
-    room = tuple(s for s in scene.shapes if s.name not in ("tall", "short"))
-    tracer = PathTracer(Scene("room", room, scene.materials, scene.camera), dtype=np.float64)
+    empty = tuple(s for s in scene.shapes if s.name not in ("tall", "short"))
+    tracer = PathTracer(Scene("room", empty, scene.materials, scene.camera), dtype=np.float64)
     seen = seen_irradiance(tracer, below(1.9, 4, 1.0), [0.725, 0.71, 0.68], 256)
     landed = trace_light(tracer, patch(4, 1.0), PARTICLES, seed=4, options=AS_SEEN)
     assert_same_mean(seen, landed, 5, 0.1)

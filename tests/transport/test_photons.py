@@ -85,9 +85,17 @@ def test_pictures_agree_with_path_tracing_but_for_the_blur() -> None:
     assert errors[1] < 0.15
 
 
-def test_lamps_and_skies_are_seen_through_smooth_surfaces() -> None:
+@pytest.mark.parametrize(
+    "ball",
+    [
+        Material("glass", {"eta": 1.5, "tint": [0.9, 1.0, 0.8]}),
+        Material("lambert", {"albedo": [0.0, 0.0, 0.0], "alpha": 0.4}),
+    ],
+    ids=["glass", "veil"],
+)
+def test_lamps_and_skies_are_seen_through_surfaces(ball: Material) -> None:
     # On black surfaces there is no density to estimate: the picture is the path tracer's.
-    scene = stage(Material("glass", {"eta": 1.5, "tint": [0.9, 1.0, 0.8]}), sky=0.6, floor=BLACK)
+    scene = stage(ball, sky=0.6, floor=BLACK)
     tracer = PathTracer(scene)
     options = PathOptions(sampler="independent", roulette_from=None, max_depth=8)
     photons = PhotonMap(tracer, 1000, radius=0.1, seed=1)

@@ -1,5 +1,5 @@
 // Photon mapping: particles from the lights are kept where they land, and a surface is as bright as they lie close
-// there [Jensen2001Photons].
+// there [Jensen2001a].
 //
 //   L(x, b) = 1 / (pi r^2) sum over photons within r of x of f(b, a_p) flux_p |a_p n| / |a_p m|
 //
