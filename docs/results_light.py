@@ -15,6 +15,7 @@ from types import ModuleType
 
 import numpy as np
 import recover_environment
+import recover_materials
 import recover_measured
 import recover_walls
 from matplotlib.figure import Figure
@@ -28,6 +29,7 @@ LARGEST = 150_000  # bytes of a picture
 
 SECTIONS: dict[str, tuple[str, ModuleType]] = {
     "walls": ("Wall colours from one picture", recover_walls),
+    "materials": ("Textures, roughness and metalness", recover_materials),
     "environment": ("The light around a ball", recover_environment),
     "measured": ("Measured reflectance, by four models", recover_measured),
 }
