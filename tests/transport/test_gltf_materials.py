@@ -169,10 +169,6 @@ def test_which_model_a_material_becomes(
             "dispersive_dielectric has no colour",
         ),
         (
-            core(metallicFactor=0) | clear(volume=VOLUME | {"attenuationDistance": 2}),
-            "attenuationDistance: not supported, left out",
-        ),
-        (
             core(metallicFactor=0) | clear(0.5, volume=VOLUME, ior={"ior": 1.0}),
             "gltf_refraction.eta: 1.0 is taken as 1.2",
         ),

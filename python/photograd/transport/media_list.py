@@ -29,7 +29,7 @@ taken for thin sheets: on both sides is what is around."""
 def check_media(scene: Scene) -> None:
     """Raise SceneError for names that do not exist, and interiors that no light could enter."""
     sheer = [name for name, material in scene.materials.items() if material.sheer]
-    if scene.media and sheer:
+    if has_media(scene) and sheer:
         remedy = "leave out alpha, or the media: paths through both are not known yet"
         raise SceneError(message("Scene", "media", "materials without alpha", sheer, remedy))
     for name in (BOUNDARY, VACUUM):
@@ -45,6 +45,11 @@ def check_media(scene: Scene) -> None:
             raise SceneError(message("Scene", f"{shape.name}.emission", expected, shape.emission))
         if shape.interior is not None:
             _check_interior(scene, shape)
+
+
+def has_media(scene: Scene) -> bool:
+    """Whether there is anything between or beside surfaces: media, or boundaries of some."""
+    return bool(scene.media) or any(shape.material == BOUNDARY for shape in scene.shapes)
 
 
 def _check_interior(scene: Scene, shape: Shape) -> None:

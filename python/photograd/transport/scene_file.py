@@ -51,10 +51,15 @@ from photograd.transport.light_nodes import light_of
 from photograd.transport.media_nodes import filled, media_in
 from photograd.transport.medium import BOUNDARY
 from photograd.transport.scene import Environment, Material, MeshShape, Scene, Shape, SphereShape
-from photograd.transport.scene_meshes import mesh_shapes, pictures_of, texture_use, textures_in
+from photograd.transport.scene_meshes import (
+    Brought,
+    mesh_shapes,
+    pictures_of,
+    texture_use,
+    textures_in,
+)
 from photograd.transport.scene_node import Node
 from photograd.transport.shapes import box, rectangle
-from photograd.transport.texture import Texture
 from photograd.transport.toml_lines import key_lines
 
 
@@ -89,9 +94,8 @@ def _scene(root: Node, name: str) -> Scene:
     if root.has("materials"):
         tables = root.table("materials")
         materials = {key: _material(tables.table(key)) for key in tables.data}
-    textures = textures_in(root)
     media, world = media_in(root)
-    brought = (dict(materials), textures)
+    brought = Brought(dict(materials), textures_in(root), dict(media))
     shapes = [
         shape
         for i, node in enumerate(root.tables("shapes"))
@@ -99,8 +103,8 @@ def _scene(root: Node, name: str) -> Scene:
     ]
     lights = tuple(map(light_of, root.tables("lights"))) if root.has("lights") else ()
     return Scene(
-        name, tuple(shapes), brought[0], camera, environment, lights, textures=textures, lens=lens,
-        media=media, world=world,
+        name, tuple(shapes), brought.materials, camera, environment, lights,
+        textures=brought.textures, lens=lens, media=brought.media, world=world,
     )  # fmt: skip
 
 
@@ -143,20 +147,18 @@ def _material(node: Node) -> Material:
 
 
 def _shapes(
-    node: Node, index: int, materials: dict[str, Material],
-    brought: tuple[dict[str, Material], dict[str, Texture]],
-) -> list[Shape]:  # fmt: skip
-    """What a table describes; materials and textures of a mesh file are added to `brought`."""
+    node: Node, index: int, materials: dict[str, Material], brought: Brought
+) -> list[Shape]:
+    """What a table describes; materials, textures and media of its file are added to `brought`."""
     node.has("interior")  # read by `filled`
     if node.choice("kind", (*KINDS, "mesh")) != "mesh":
         return [_shape(node, index, materials)]
     name = node.text("name", f"mesh {index}")
     material = node.choice("material", (*materials, BOUNDARY)) if node.has("material") else None
     emission = node.color("emission") if node.has("emission") else None
-    shapes, own_materials, own_textures = mesh_shapes(node, name, material, emission)
+    shapes, own = mesh_shapes(node, name, material, emission)
     node.refuse_other_keys()
-    brought[0].update(own_materials)
-    brought[1].update(own_textures)
+    brought.update(own)
     return [*shapes]
 
 

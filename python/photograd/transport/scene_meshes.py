@@ -27,12 +27,13 @@ places = [{ translate = [1, 0, 0] }, { scale = 2 }]   # optional: an instance at
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
 from photograd.data.images import read_image
+from photograd.transport.medium import Medium
 from photograd.transport.mesh_files import ModelFile, read_model
 from photograd.transport.mesh_files.model_file import moved
 from photograd.transport.scene import Array, Material, MeshShape
@@ -84,9 +85,24 @@ def texture_use(node: Node, key: str) -> TextureUse:
     return TextureUse(name, channel)
 
 
+@dataclass
+class Brought:
+    """What mesh files bring along: materials, textures and media, by names of their own."""
+
+    materials: dict[str, Material] = field(default_factory=dict)
+    textures: dict[str, Texture] = field(default_factory=dict)
+    media: dict[str, Medium] = field(default_factory=dict)
+
+    def update(self, other: Brought) -> None:
+        """Add what another file brings."""
+        self.materials.update(other.materials)
+        self.textures.update(other.textures)
+        self.media.update(other.media)
+
+
 def mesh_shapes(
     node: Node, name: str, material: str | None, emission: Any
-) -> tuple[list[MeshShape], dict[str, Material], dict[str, Texture]]:
+) -> tuple[list[MeshShape], Brought]:
     """The shapes of a table of kind "mesh", and what they bring along.
 
     Names of the file get the shape's name and a slash in front. Emission is the file's where the
@@ -100,11 +116,12 @@ def mesh_shapes(
     shapes = node.built(
         lambda: [_placed(mesh, name, material, emission, inner, places) for mesh in meshes]
     )
-    materials, textures = _renamed(model, name)
+    brought = _renamed(model, name)
     if material is None:
-        return shapes, materials, textures
+        return shapes, brought
     lit = {shape.glow.texture for shape in shapes if shape.glow is not None}
-    return shapes, {}, {key: texture for key, texture in textures.items() if key in lit}
+    textures = {key: texture for key, texture in brought.textures.items() if key in lit}
+    return shapes, Brought(textures=textures)
 
 
 def _placed(
@@ -126,10 +143,11 @@ def _placed(
         shape, name=f"{name}/{shape.name}", vertices=vertices, faces=faces, normals=normals, uv=uv,
         material=material or f"{name}/{shape.material}", emission=shining,
         places=tuple(both) if own or places else (), glow=glow,
+        interior=f"{name}/{shape.interior}" if material is None and shape.interior else None,
     )  # fmt: skip
 
 
-def _renamed(model: ModelFile, name: str) -> tuple[dict[str, Material], dict[str, Texture]]:
+def _renamed(model: ModelFile, name: str) -> Brought:
     materials = {
         f"{name}/{own}": replace(
             material,
@@ -140,7 +158,9 @@ def _renamed(model: ModelFile, name: str) -> tuple[dict[str, Material], dict[str
         )
         for own, material in model.materials.items()
     }
-    return materials, {f"{name}/{own}": texture for own, texture in model.textures.items()}
+    textures = {f"{name}/{own}": texture for own, texture in model.textures.items()}
+    media = {f"{name}/{own}": medium for own, medium in model.media.items()}
+    return Brought(materials, textures, media)
 
 
 def _matrix(node: Node) -> Array:

@@ -24,7 +24,7 @@ from photograd.transport.core_arrays import (
     textures_of,
 )
 from photograd.transport.light_list import light_shapes, listed_lights
-from photograd.transport.media_list import ListedMedia
+from photograd.transport.media_list import ListedMedia, has_media
 from photograd.transport.sample_counts import sample_counts
 from photograd.transport.scene import Array, MeshShape, Scene, Shape, SphereShape
 
@@ -344,11 +344,10 @@ class PathTracer:
         Raises:
             SceneError: a scene with media; names `function`.
         """
-        if self.scene.media:
+        if has_media(self.scene):
             expected, remedy = "a scene without media", "trace it with PathTracer.render"
-            raise SceneError(
-                message(function, "scene.media", expected, list(self.scene.media), remedy)
-            )
+            got = sorted(self.scene.media) or "boundaries"
+            raise SceneError(message(function, "scene.media", expected, got, remedy))
         given = self.params if params is None else params
         arguments = self._wide(given, self.scene.camera if camera is None else camera)
         del arguments["media"]

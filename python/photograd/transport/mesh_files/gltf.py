@@ -14,6 +14,7 @@ from photograd.data.json_node import JsonNode
 from photograd.errors import IoError, SceneError, message
 from photograd.transport.mesh_files.accessor import read_floats, read_indices
 from photograd.transport.mesh_files.container import NAME, Container, open_container, whole
+from photograd.transport.mesh_files.gltf_interior import filled_shapes
 from photograd.transport.mesh_files.gltf_materials import FileMaterial, read_material
 from photograd.transport.mesh_files.model_file import ModelFile, Names, placed_shapes
 from photograd.transport.mesh_files.nodes import mesh_places
@@ -74,7 +75,8 @@ def read_gltf(path: Path, note: Callable[[str], None]) -> ModelFile:
     asked = {use.texture for material in used.values() for use in material.textures.values()}
     asked |= {made.glow.texture for made in materials.values() if made.glow is not None}
     textures = {name: pictures.textures[name] for name in pictures.textures if name in asked}
-    return ModelFile(tuple(shapes), used, textures)
+    filled, media = filled_shapes(shapes, materials, note)
+    return ModelFile(filled, used, textures, media)
 
 
 def _glowing(shape: Shape, made: FileMaterial, note: Callable[[str], None]) -> Shape:

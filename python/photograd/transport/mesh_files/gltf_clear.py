@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import numpy as np
+
+from photograd.data.json_node import JsonNode
+from photograd.transport.medium import Medium
 from photograd.transport.mesh_files.container import real
 from photograd.transport.mesh_files.gltf_draft import Draft, finished, metallic_roughness
 from photograd.transport.scene import Material
 
 _LEAST_ROUGHNESS = 0.1
 """Below this a clear surface is drawn as perfectly smooth."""
+_DARKEST = 1e-4
+"""In place of a colour of 0, which no finite coefficient leaves."""
 
 
 def transmission(draft: Draft) -> Material | None:
@@ -29,7 +35,8 @@ def transmission(draft: Draft) -> Material | None:
     if volume is not None:
         draft.take("volume")
     if thick and volume is not None:
-        draft.unread(volume, "attenuationDistance", "thicknessTexture")
+        draft.unread(volume, "thicknessTexture")
+        draft.interior = _attenuation(draft, volume)
     else:
         draft.take("dispersion")  # what bends no light spreads no colours
     whole = factor == 1 and "transmissionTexture" not in node
@@ -40,6 +47,21 @@ def transmission(draft: Draft) -> Material | None:
     draft.textured("transmission", node, "transmissionTexture", "linear", 0)
     values = metallic_roughness(draft) | {"transmission": factor, "eta": draft.ior}
     return finished("gltf_refraction" if thick else "gltf_transmission", values, draft)
+
+
+def _attenuation(draft: Draft, volume: JsonNode) -> Medium | None:
+    """Beer and Lambert's law by the colour that white light has after a distance, metres.
+
+    color = exp(-sigma_t distance); without a distance nothing is swallowed.
+    """
+    if "attenuationDistance" not in volume or "attenuationColor" not in volume:
+        return None
+    distance = real(volume, "attenuationDistance", 1.0)
+    if not distance > 0:
+        draft.note(f"{volume.place}: attenuationDistance: {distance}, left out")
+        return None
+    color = np.clip(volume["attenuationColor"].numbers((3,)), _DARKEST, 1.0)
+    return None if (color == 1).all() else Medium(-np.log(color) / distance)
 
 
 def _clear(draft: Draft, thick: bool) -> Material | None:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from photograd.data.json_node import JsonNode
+from photograd.transport.medium import Medium
 from photograd.transport.mesh_files.container import real
 from photograd.transport.scene import MODELS, Material
 
@@ -27,6 +28,7 @@ class Draft:
         note: takes what could not be followed.
         read: extensions that a rule has read.
         wanted: {parameter: (textureInfo, encoding, channel)}.
+        interior: what the volume of a body swallows, or None.
     """
 
     node: JsonNode
@@ -34,6 +36,7 @@ class Draft:
     note: Callable[[str], None]
     read: set[str] = field(default_factory=lambda: set(FOLLOWED))
     wanted: dict[str, tuple[JsonNode, str, int]] = field(default_factory=dict)
+    interior: Medium | None = None
 
     def extension(self, name: str) -> JsonNode | None:
         """An extension of the material, if it has it."""

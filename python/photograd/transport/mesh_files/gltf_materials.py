@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from photograd.data.json_node import JsonNode
+from photograd.transport.medium import Medium
 from photograd.transport.mesh_files.container import real
 from photograd.transport.mesh_files.gltf_clear import transmission
 from photograd.transport.mesh_files.gltf_draft import (
@@ -31,13 +32,14 @@ from photograd.transport.texture import NormalMap, TextureUse
 class FileMaterial:
     """A material, the light of surfaces that have it, and the coordinates of its textures.
 
-    `glow` is the texture that scales the emission, or None.
+    `glow` is the texture that scales the emission, or None; `interior` what fills bodies of it.
     """
 
     material: Material
     emission: Any
     coordinates: Coordinates
     glow: TextureUse | None = None
+    interior: Medium | None = None
 
 
 def _clearcoat(draft: Draft) -> Material | None:
@@ -209,7 +211,7 @@ def _with_pictures(draft: Draft, material: Material, pictures: Pictures) -> File
             if place != first:
                 draft.note(f"{info.place}: other coordinates than the first texture's")
     whole = Material(material.model, values, uses, bent, cutoff)
-    return FileMaterial(whole, emission, first or Coordinates(), glow)
+    return FileMaterial(whole, emission, first or Coordinates(), glow, draft.interior)
 
 
 def _radiance(draft: Draft) -> Any:

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from photograd.errors import SceneError
+from photograd.transport.medium import Medium
 from photograd.transport.scene import Material, MeshShape, Shape
 from photograd.transport.texture import Texture
 
@@ -27,11 +28,13 @@ class ModelFile:
         shapes: at least one.
         materials: those that the shapes name.
         textures: those that the materials name.
+        media: those that fill shapes.
     """
 
     shapes: tuple[Shape, ...]
     materials: Mapping[str, Material]
     textures: Mapping[str, Texture] = field(default_factory=dict)
+    media: Mapping[str, Medium] = field(default_factory=dict)
 
     @property
     def box(self) -> Array:

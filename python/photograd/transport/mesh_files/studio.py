@@ -24,7 +24,7 @@ def model_scene(model: ModelFile, name: str, size: int = 256) -> Scene:
     sky = Environment(np.full(3, 0.9), np.full(3, 0.6), np.full(3, 0.25))
     materials = {**model.materials, _LAMP: Material("lambert", {"albedo": [0.0, 0.0, 0.0]})}
     shapes = (*model.shapes, _lamp(centre, radius))
-    return Scene(name, shapes, materials, camera, sky, textures=model.textures)
+    return Scene(name, shapes, materials, camera, sky, textures=model.textures, media=model.media)
 
 
 def _lamp(centre: Array, radius: float) -> MeshShape:
