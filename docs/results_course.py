@@ -33,14 +33,20 @@ def examined(quick: bool) -> dict[str, Any]:
     return found
 
 
-def section(found: dict[str, Any]) -> str:
-    """The tables; raises SystemExit for findings, which are no result."""
+def section(found: dict[str, Any], before: str) -> str:
+    """The tables; raises SystemExit for findings, which are no result.
+
+    Without attacks in `found`, what `before` says of them stays: they know nothing of assignments.
+    """
     if found["findings"]:
         raise SystemExit("\n".join(["not written, the doctor has findings:", *found["findings"]]))
     lines = [HEAD, "|" + "---|" * (HEAD.count("|") - 1)]
     lines += [_row(each) for each in found["assignments"]]
     attacks = found["attacks"]
-    if "modes" in attacks:
+    if "modes" not in attacks:
+        _, mark, rest = before.strip("\n").partition("Attacks on the grader")
+        lines += ["", mark + rest] if mark else []
+    else:
         lines += [
             "",
             f"Attacks on the grader: {attacks['attacks']}, of which "
@@ -75,7 +81,7 @@ def _row(each: dict[str, Any]) -> str:
 def main() -> None:
     """Measure, and rewrite what stands between the two markers."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--quick", action="store_true", help="without the attacks")
+    parser.add_argument("--quick", action="store_true", help="without the attacks, whose rows stay")
     parser.add_argument("--found", type=Path, help="JSON of an earlier run, instead of a new one")
     given = parser.parse_args()
     if given.found:
@@ -83,8 +89,9 @@ def main() -> None:
     else:
         found = examined(given.quick)
     head, rest = RESULTS.read_text(encoding="utf-8").split(BEGIN)
-    tail = rest.split(END)[1]
-    RESULTS.write_text(f"{head}{BEGIN}\n{section(found)}\n{END}{tail}", encoding="utf-8")
+    before, tail = rest.split(END)
+    text = section(found, before)
+    RESULTS.write_text(f"{head}{BEGIN}\n{text}\n{END}{tail}", encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -67,6 +67,9 @@ class Wrong:
             u2 = u2 * [0.98, 1.0]
         return self.right.sample(rows, wo, u2)
 
+    def index_inside(self, rows: np.ndarray) -> np.ndarray:
+        return self.right.index_inside(rows)
+
     def pdf(self, rows: np.ndarray, wo: np.ndarray, wi: np.ndarray) -> np.ndarray:
         uniform = np.full(len(wi), 0.5 / np.pi) * (wi[:, 2] > 0)
         return uniform if self.fault == "uniform pdf" else self.right.pdf(rows, wo, wi)

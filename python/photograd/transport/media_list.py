@@ -90,8 +90,8 @@ def is_closed(shape: Any) -> bool:
     back = edges[:, 1] * len(places) + edges[:, 0]
     if not np.array_equal(np.sort(forth), np.sort(back)):
         return False
-    a, b, c = (places[faces[:, k]].astype(np.float64) - places[0] for k in range(3))
-    return float(np.einsum("ij,ij->", a, np.cross(b, c))) > 0
+    corners = places[faces].astype(np.float64) - places[0]
+    return float(np.linalg.det(corners).sum()) > 0
 
 
 class ListedMedia:
