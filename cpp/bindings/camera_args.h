@@ -1,5 +1,5 @@
 // Cameras as Python hands them over: (width, height, fx, fy, cx, cy, rows of world_from_camera), and for a lens its
-// radius and the distance of the plane in focus behind them.
+// radius and the distance of the plane in focus behind them; while it moves, also by how far and how it turns.
 #pragma once
 
 #include <pybind11/stl.h>
@@ -30,7 +30,12 @@ inline ThinLens thin_lens(const py::tuple& numbers) {
     if (!(radius >= 0) || !(focus > 0))
         fail(ErrorKind::range, "camera", "lens", "a radius of at least 0 and a focus above 0 m",
              std::to_string(radius) + " and " + std::to_string(focus));
-    return {pinhole(numbers), radius, focus};
+    ThinLens camera{pinhole(numbers), radius, focus, {}};
+    if (numbers.size() < 11) return camera;
+    const auto shift = numbers[9].cast<std::array<double, 3>>();
+    const auto turn = numbers[10].cast<std::array<double, 3>>();
+    camera.motion = {{shift[0], shift[1], shift[2]}, {turn[0], turn[1], turn[2]}, true};
+    return camera;
 }
 
 }  // namespace photograd

@@ -11,12 +11,14 @@
 // of the centre [Cook1984]. With radius 0 it is the pinhole.
 #pragma once
 
+#include "photograd/camera/camera_motion.h"
 #include "photograd/camera/pinhole.h"
 
 namespace photograd {
 
 struct ThinLens : Pinhole {
     double radius = 0, focus = 1;  // metres
+    CameraMotion motion;           // while the shutter is open
 
     using Pinhole::ray;
     /// The ray through the point (x, y) of the image and the point `lens` of the unit disc.
@@ -33,6 +35,12 @@ struct ThinLens : Pinhole {
             out.direction[i] = dot(axis, local);
         }
         return out;
+    }
+    /// Where the camera is at a time from 0 to 1.
+    [[nodiscard]] ThinLens at(double time) const {
+        ThinLens now = *this;
+        motion.apply(time, now.world_from_camera);
+        return now;
     }
 };
 

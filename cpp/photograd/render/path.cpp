@@ -39,7 +39,8 @@ template <Real R>
 Path<R> trace_path(const PathScene<R>& scene, const ThinLens& camera, const PathOptions& options,
                    std::uint32_t pixel, std::uint32_t sample) {
     const RandomKey key = key_of(options, pixel, sample);
-    const Ray<R> ray = camera_ray<R>(camera, key, SampleNumbers(options.sampler)(key, 0));
+    SampleNumbers numbers(options.sampler);
+    const Ray<R> ray = sample_ray<R>(camera, key, numbers);
     PathWalk<R> walk(scene, options, false);
     walk.trace(&ray, &key, 1);
     return walk.path(0);

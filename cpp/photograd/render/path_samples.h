@@ -14,6 +14,16 @@ inline RandomKey key_of(const PathOptions& options, std::int64_t pixel, std::uin
     return {options.seed, 0, static_cast<std::uint32_t>(pixel), sample};
 }
 
+/// The ray of one sample, at its moment while the shutter is open: by the first number of a block that no vertex has.
+template <class R>
+Ray<R> sample_ray(const ThinLens& camera, const RandomKey& key, SampleNumbers& numbers) {
+    constexpr std::uint32_t shutter_block = 1u << 16;
+    const Philox4 words = numbers(key, 0);
+    if (!camera.motion.moves) return camera_ray<R>(camera, key, words);
+    const double time = uniform_from<double>(numbers(key, shutter_block)[0]);
+    return camera_ray<R>(camera.at(time), key, words);
+}
+
 /// Walks every sample of the pixels [begin, end), pixel by pixel; lanes hold successive samples. visit(pixel, k) finds
 /// the path in lane k of the walk.
 template <class R, class Walk, class Visit>
@@ -35,7 +45,7 @@ void walk_samples(Walk& walk, const ThinLens& camera, const PathOptions& options
         const std::uint32_t count = counts.within(samples, pixel);
         for (std::uint32_t i = 0; i < count; ++i) {
             keys[filled] = key_of(options, pixel, samples.first + i);
-            rays[filled] = camera_ray<R>(camera, keys[filled], numbers(keys[filled], 0));
+            rays[filled] = sample_ray<R>(camera, keys[filled], numbers);
             pixels[filled++] = pixel;
             if (filled == width) trace();
         }

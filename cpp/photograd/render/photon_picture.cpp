@@ -40,7 +40,7 @@ public:
                     arrive(views[k], depth, found.instance[k], found.primitive[k], found.t[k]);
         }
     }
-    [[nodiscard]] Philox4 camera_words(const RandomKey& key) { return numbers_(key, 0); }
+    [[nodiscard]] SampleNumbers& numbers() { return numbers_; }
 
 private:
     void arrive(View& view, int depth, std::int32_t instance, std::int32_t primitive, float t) {
@@ -137,7 +137,7 @@ void trace_photons(const PathScene<double>& scene, const PhotonMap& map, const T
                 view.key =
                     key_of(options, pixel_of(k),
                            samples.first + static_cast<std::uint32_t>((first + k) % samples.count));
-                view.ray = camera_ray<double>(camera, view.key, picture.camera_words(view.key));
+                view.ray = sample_ray<double>(camera, view.key, picture.numbers());
                 view.beta = Vec3<double>(1);
                 view.L = Vec3<double>(0);
                 view.alive = true;

@@ -32,6 +32,9 @@ def check_media(scene: Scene) -> None:
     if has_media(scene) and sheer:
         remedy = "leave out alpha, or the media: paths through both are not known yet"
         raise SceneError(message("Scene", "media", "materials without alpha", sheer, remedy))
+    if has_media(scene) and scene.shutter is not None:
+        expected, remedy = "a camera that stands still", "leave out the shutter, or the media"
+        raise SceneError(message("Scene", "shutter", expected, "one that moves", remedy))
     for name in (BOUNDARY, VACUUM):
         if name in scene.materials or name in scene.media:
             expected = "another name, this one has a meaning of its own"

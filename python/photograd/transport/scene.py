@@ -5,7 +5,6 @@ World as everywhere: right-handed, +Y up, metres; radiance and reflectances are 
 
 from __future__ import annotations
 
-import warnings
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -19,10 +18,16 @@ from photograd import bsdf, delta_bsdf
 from photograd.data.camera import Camera
 from photograd.errors import DtypeError, RangeError, SceneError, ShapeError, message
 from photograd.lights import Light
-from photograd.mesh import drop_degenerate
 from photograd.transport.lens import PINHOLE, Lens
 from photograd.transport.media_list import check_media
 from photograd.transport.medium import BOUNDARY, Medium
+from photograd.transport.shape_checks import (
+    checked_color,
+    checked_place,
+    float_rows,
+    usable_triangles,
+)
+from photograd.transport.shutter import Shutter
 from photograd.transport.texture import NormalMap, Texture, TextureUse, checked_uses
 
 Array = npt.NDArray[Any]
@@ -132,7 +137,7 @@ class MeshShape:
     interior: str | None = None
 
     def __post_init__(self) -> None:
-        vertices = _float_rows(self.name, "vertices", self.vertices)
+        vertices = float_rows(self.name, "vertices", self.vertices)
         faces = np.asarray(self.faces)
         if faces.dtype.kind not in "iu":
             raise DtypeError(message("MeshShape", f"{self.name}.faces", "integers", faces.dtype))
@@ -143,8 +148,8 @@ class MeshShape:
             expected = f"vertex numbers 0 to {len(vertices) - 1}"
             got = f"{int(faces.min())} to {int(faces.max())}"
             raise RangeError(message("MeshShape", f"{self.name}.faces", expected, got))
-        emission = _color(self.name, "emission", self.emission)
-        vertices, faces = _usable(self.name, vertices, faces)
+        emission = checked_color(self.name, "emission", self.emission)
+        vertices, faces = usable_triangles(self.name, vertices, faces)
         if not len(faces):
             shines = bool(emission.any())
             expected = "a light with an area" if shines else "a triangle with an area"
@@ -153,7 +158,7 @@ class MeshShape:
         object.__setattr__(self, "faces", np.ascontiguousarray(faces, np.uint32))
         object.__setattr__(self, "emission", emission)
         if self.normals is not None:
-            normals = _float_rows(self.name, "normals", self.normals)
+            normals = float_rows(self.name, "normals", self.normals)
             if normals.shape != vertices.shape or not np.isfinite(normals).all():
                 expected = f"finite numbers, shape {vertices.shape}"
                 wrong = f"shape {normals.shape}"
@@ -166,7 +171,7 @@ class MeshShape:
                 got = f"{uv.dtype}, shape {uv.shape}"
                 raise ShapeError(message("MeshShape", f"{self.name}.uv", expected, got))
             object.__setattr__(self, "uv", np.ascontiguousarray(uv, np.float32))
-        object.__setattr__(self, "places", tuple(_place(self.name, m) for m in self.places))
+        object.__setattr__(self, "places", tuple(checked_place(self.name, m) for m in self.places))
 
     @property
     def box(self) -> Array:
@@ -207,7 +212,7 @@ class SphereShape:
         if center.shape != (3,) or not np.isfinite(center).all():
             expected = "three finite numbers"
             raise ShapeError(message("SphereShape", f"{self.name}.center", expected, self.center))
-        emission = _color(self.name, "emission", self.emission)
+        emission = checked_color(self.name, "emission", self.emission)
         if not (np.isfinite(self.radius) and np.float32(self.radius) > 0):
             expected = "above 0 m (a light needs an area)" if emission.any() else "above 0 m"
             raise RangeError(message("SphereShape", f"{self.name}.radius", expected, self.radius))
@@ -240,7 +245,7 @@ class Environment:
 
     def __post_init__(self) -> None:
         for name in ("zenith", "horizon", "ground"):
-            object.__setattr__(self, name, _color("environment", name, getattr(self, name)))
+            object.__setattr__(self, name, checked_color("environment", name, getattr(self, name)))
 
     @classmethod
     def constant(cls, radiance: Any) -> Environment:
@@ -268,6 +273,8 @@ class Scene:
         world: name of the medium around everything, or None. It has no end: what lies behind
             everything, lights at infinity included, is not seen through it. Fog under a sky is
             the interior of a large box.
+        shutter: the camera moves while it is open; None is a moment. Other cameras, that pictures
+            may be taken from, stand still.
 
     Raises:
         SceneError: no shape, two of one name, a material, texture or medium that does not exist, or
@@ -286,8 +293,11 @@ class Scene:
     lens: Lens = PINHOLE
     media: Mapping[str, Medium] = field(default_factory=dict)
     world: str | None = None
+    shutter: Shutter | None = None
 
     def __post_init__(self) -> None:
+        if self.shutter is not None:
+            self.shutter.motion(self.camera)
         for i, light in enumerate(self.lights):
             if not isinstance(light, Light):
                 expected, got = "a light of photograd.lights", type(light).__name__
@@ -346,50 +356,3 @@ def _check_glow(shape: Shape, material: Material, textures: Mapping[str, Texture
         raise SceneError(message("Scene", argument, f"at least {use.channel + 3} channels", got))
     if shape.uv is None:
         raise SceneError(message("Scene", f"{shape.name}.uv", "texture coordinates", "none"))
-
-
-def _place(name: str, matrix: Any) -> Array:
-    place = np.array(matrix, np.float64)
-    if place.shape != (4, 4) or not np.isfinite(place).all():
-        expected = "finite matrices (4, 4)"
-        raise ShapeError(message("MeshShape", f"{name}.places", expected, np.shape(matrix)))
-    volume = float(np.linalg.det(place[:3, :3]))
-    if not volume > 0:
-        expected = "a positive determinant"
-        raise RangeError(message("MeshShape", f"{name}.places", expected, volume))
-    return place
-
-
-def _usable(name: str, vertices: Array, faces: Array) -> tuple[Array, Array]:
-    """Vertices that are all finite, and the triangles that can be hit; warns of what is dropped."""
-    finite = np.asarray(np.isfinite(vertices).all(axis=1))
-    sound = faces[finite[faces].all(axis=1)] if len(faces) else faces
-    vertices = np.where(finite[:, None], vertices, np.float32(0))
-    kept = drop_degenerate(vertices, sound) if len(sound) else sound
-    if len(kept) < len(faces):
-        broken, flat = len(faces) - len(sound), len(sound) - len(kept)
-        parts = [f"{broken} with corners that are not finite"] * (broken > 0)
-        parts += [f"{flat} without area"] * (flat > 0)
-        text = f"{name}: dropped {' and '.join(parts)} of {len(faces)} triangles"
-        warnings.warn(text, UserWarning, stacklevel=4)
-    return np.ascontiguousarray(vertices), kept
-
-
-def _float_rows(name: str, argument: str, value: Array) -> Array:
-    array = np.asarray(value)
-    if array.dtype.kind != "f":
-        raise DtypeError(
-            message("MeshShape", f"{name}.{argument}", "floating point numbers", array.dtype)
-        )
-    if array.ndim != 2 or array.shape[1] != 3:
-        raise ShapeError(message("MeshShape", f"{name}.{argument}", "shape (V, 3)", array.shape))
-    with np.errstate(over="ignore"):
-        return np.array(array, np.float32)
-
-
-def _color(name: str, argument: str, value: Any) -> Array:
-    color = np.array(value, np.float64)
-    if color.shape != (3,) or not np.isfinite(color).all() or bool((color < 0).any()):
-        expected = "three finite numbers of at least 0"
-        raise RangeError(message("Scene", f"{name}.{argument}", expected, np.asarray(value)))
-    return color

@@ -7,6 +7,7 @@ field_of_view = 19.5          # degrees, vertical
 size = [256, 256]             # width, height in pixels
 aperture = 0.05               # optional: radius of the lens, metres
 focus = 6.8                   # of what is sharp; the point looked at, if absent
+closing = { position = [0.1, 1, 6.8], look_at = [0, 1, 0] }   # optional: where it has moved to
 
 [environment]                 # optional; or zenith, horizon and ground
 radiance = 0.2
@@ -60,6 +61,7 @@ from photograd.transport.scene_meshes import (
 )
 from photograd.transport.scene_node import Node
 from photograd.transport.shapes import box, rectangle
+from photograd.transport.shutter import Shutter
 from photograd.transport.toml_lines import key_lines
 
 
@@ -88,7 +90,7 @@ def read_scene(path: Path) -> Scene:
 
 
 def _scene(root: Node, name: str) -> Scene:
-    camera, lens = _camera(root.table("camera"))
+    camera, lens, shutter = _camera(root.table("camera"))
     environment = _environment(root.table("environment")) if root.has("environment") else None
     materials: dict[str, Material] = {}
     if root.has("materials"):
@@ -104,27 +106,40 @@ def _scene(root: Node, name: str) -> Scene:
     lights = tuple(map(light_of, root.tables("lights"))) if root.has("lights") else ()
     return Scene(
         name, tuple(shapes), brought.materials, camera, environment, lights,
-        textures=brought.textures, lens=lens, media=brought.media, world=world,
+        textures=brought.textures, lens=lens, shutter=shutter, media=brought.media, world=world,
     )  # fmt: skip
 
 
-def _camera(node: Node) -> tuple[Camera, Lens]:
+def _camera(node: Node) -> tuple[Camera, Lens, Shutter | None]:
     width, height = node.numbers("size", 2)
-    position, target = node.numbers("position", 3), node.numbers("look_at", 3)
+    position, target = _view(node)
     field_of_view = node.number("field_of_view")
     if not 0 < field_of_view < 180:
         raise node.wrong("field_of_view", "degrees between 0 and 180", field_of_view)
     if width != int(width) or height != int(height) or min(width, height) < 1:
         raise node.wrong("size", "width and height in pixels", [width, height])
-    way = np.subtract(target, position)
-    if np.linalg.norm(way[[0, 2]]) < 1e-6 * np.linalg.norm(way) or not way.any():
-        raise node.wrong("look_at", "a point that is not straight above, below or here", target)
     radius = node.number("aperture", 0.0)
-    focus = node.number("focus", float(np.linalg.norm(way)))
+    focus = node.number("focus", float(np.linalg.norm(np.subtract(target, position))))
+    closing = node.table("closing") if node.has("closing") else None
     node.refuse_other_keys()
     lens = node.built(lambda: Lens(radius, focus))
     pixels = int(width), int(height)
-    return node.built(lambda: camera_at(position, target, field_of_view, *pixels)), lens
+    camera = node.built(lambda: camera_at(position, target, field_of_view, *pixels))
+    if closing is None:
+        return camera, lens, None
+    end = _view(closing)
+    closing.refuse_other_keys()
+    moved = closing.built(lambda: camera_at(*end, field_of_view, *pixels))
+    return camera, lens, Shutter(moved.world_from_camera)
+
+
+def _view(node: Node) -> tuple[list[float], list[float]]:
+    """Where a camera is, and the point it looks at."""
+    position, target = node.numbers("position", 3), node.numbers("look_at", 3)
+    way = np.subtract(target, position)
+    if np.linalg.norm(way[[0, 2]]) < 1e-6 * np.linalg.norm(way) or not way.any():
+        raise node.wrong("look_at", "a point that is not straight above, below or here", target)
+    return position, target
 
 
 def _environment(node: Node) -> Environment:

@@ -365,6 +365,10 @@ class PathTracer:
     def _arguments(self, camera: Camera, params: dict[str, Array] | None = None) -> dict[str, Any]:
         given = self.params if params is None else params
         black = np.zeros(3, self.dtype)
+        lens = self.scene.lens.radius, self.scene.lens.focus
+        shutter, motion = self.scene.shutter, ()
+        if shutter is not None and camera is self.scene.camera:
+            motion = tuple(part.tolist() for part in shutter.motion(camera))
         emission = [given.get(name, black) for name in self._emissions]
         shining = np.array(emission, self.dtype)
         return {
@@ -375,7 +379,7 @@ class PathTracer:
             "lights": [light.row(given, self.dtype) for light in self._lights],
             "textures": self._texels(given),
             "media": self._media.rows(given, self.dtype),
-            "camera": (*_numbers(camera), self.scene.lens.radius, self.scene.lens.focus),
+            "camera": (*_numbers(camera), *lens, *motion),
         }
 
 

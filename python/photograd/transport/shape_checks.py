@@ -1,0 +1,78 @@
+"""What shapes are made of, checked: places, triangles, rows of numbers, colours."""
+
+from __future__ import annotations
+
+import warnings
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from photograd.errors import DtypeError, RangeError, ShapeError, message
+from photograd.mesh import drop_degenerate
+
+Array = npt.NDArray[Any]
+
+
+def checked_place(name: str, matrix: Any) -> Array:
+    """World_from_object (4, 4) float64 of an instance of the shape `name`.
+
+    Raises:
+        ShapeError: another shape, or numbers that are not finite.
+        RangeError: a determinant that is not positive.
+    """
+    place = np.array(matrix, np.float64)
+    if place.shape != (4, 4) or not np.isfinite(place).all():
+        expected = "finite matrices (4, 4)"
+        raise ShapeError(message("MeshShape", f"{name}.places", expected, np.shape(matrix)))
+    volume = float(np.linalg.det(place[:3, :3]))
+    if not volume > 0:
+        expected = "a positive determinant"
+        raise RangeError(message("MeshShape", f"{name}.places", expected, volume))
+    return place
+
+
+def usable_triangles(name: str, vertices: Array, faces: Array) -> tuple[Array, Array]:
+    """Vertices that are all finite, and the triangles that can be hit; warns of what is dropped."""
+    finite = np.asarray(np.isfinite(vertices).all(axis=1))
+    sound = faces[finite[faces].all(axis=1)] if len(faces) else faces
+    vertices = np.where(finite[:, None], vertices, np.float32(0))
+    kept = drop_degenerate(vertices, sound) if len(sound) else sound
+    if len(kept) < len(faces):
+        broken, flat = len(faces) - len(sound), len(sound) - len(kept)
+        parts = [f"{broken} with corners that are not finite"] * (broken > 0)
+        parts += [f"{flat} without area"] * (flat > 0)
+        text = f"{name}: dropped {' and '.join(parts)} of {len(faces)} triangles"
+        warnings.warn(text, UserWarning, stacklevel=4)
+    return np.ascontiguousarray(vertices), kept
+
+
+def float_rows(name: str, argument: str, value: Array) -> Array:
+    """(V, 3) float32 of the shape `name`.
+
+    Raises:
+        DtypeError: no floating point numbers.
+        ShapeError: another shape.
+    """
+    array = np.asarray(value)
+    if array.dtype.kind != "f":
+        raise DtypeError(
+            message("MeshShape", f"{name}.{argument}", "floating point numbers", array.dtype)
+        )
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise ShapeError(message("MeshShape", f"{name}.{argument}", "shape (V, 3)", array.shape))
+    with np.errstate(over="ignore"):
+        return np.array(array, np.float32)
+
+
+def checked_color(name: str, argument: str, value: Any) -> Array:
+    """(3,) float64.
+
+    Raises:
+        RangeError: others than three finite numbers of at least 0.
+    """
+    color = np.array(value, np.float64)
+    if color.shape != (3,) or not np.isfinite(color).all() or bool((color < 0).any()):
+        expected = "three finite numbers of at least 0"
+        raise RangeError(message("Scene", f"{name}.{argument}", expected, np.asarray(value)))
+    return color
