@@ -26,7 +26,11 @@ def first_background(mean: Array) -> Array:
 
     `mean` (4,) is the mean pixel: linear premultiplied colour, and alpha.
     """
-    color = np.clip(mean[:3] / max(mean[3], 1e-6), 0.02, 0.98)
+    return raw_background(np.clip(mean[:3] / max(mean[3], 1e-6), 0.02, 0.98))
+
+
+def raw_background(color: Array) -> Array:
+    """Raw parameter (3,) float32 whose `learned_background` is this linear colour in (0, 1)."""
     raw: Array = np.log(color / (1 - color)).astype(np.float32)
     return raw
 

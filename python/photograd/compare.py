@@ -23,7 +23,10 @@ from photograd.core import _core
 from photograd.data.capture import Capture
 from photograd.errors import RangeError, message
 from photograd.evaluate import Evaluation, display_image, evaluate
+from photograd.fields.dense_grid import DenseGrid
+from photograd.fields.fitted import HARMONIC_GRIDS
 from photograd.fields.gaussians import GaussianScene
+from photograd.fields.octree_sh import OctreeSh
 from photograd.fit import Fit
 from photograd.fit_checks import require_startable
 from photograd.fit_options import DEFAULTS_OF, FitOptions
@@ -80,8 +83,8 @@ class Score:
 def parse_contenders(text: str) -> list[Contender]:
     """The contenders of "dense_grid:64,sparse_sh:128".
 
-    Raises RangeError for another form, a resolution below 8, one that is given twice, or a
-    representation that a capture cannot start.
+    Raises RangeError for another form, a resolution below 8, one that is given twice, a
+    representation that a capture cannot start, or an octree without a grid to be cut from.
     """
     contenders = []
     for word in text.split(","):
@@ -95,16 +98,38 @@ def parse_contenders(text: str) -> list[Contender]:
         contenders.append(Contender(name, int(size)))
     if len(set(contenders)) < len(contenders):
         raise RangeError(message("compare", "contenders", "each only once", text))
+    for contender in contenders:
+        source_of(contender, contenders)
     return contenders
 
 
+def source_of(contender: Contender, contenders: Sequence[Contender]) -> Contender | None:
+    """The contender whose model an octree is cut from; None for what starts by itself.
+
+    It is the nearest before it of the same resolution. Raises RangeError if there is none.
+    """
+    if contender.representation != OctreeSh.name:
+        return None
+    before = contenders[: contenders.index(contender)]
+    grids = (DenseGrid.name, *HARMONIC_GRIDS)
+    for other in reversed(before):
+        if other.representation in grids and other.resolution == contender.resolution:
+            return other
+    raise RangeError(
+        message("compare", "contenders", f"a grid of {contender.resolution} before the octree that "
+                "is cut from it", contender.label, f"put sparse_sh:{contender.resolution} first")
+    )  # fmt: skip
+
+
 def compare_one(
-    name: str, capture: Capture, contender: Contender, folder: Path, options: FitOptions, run: Run
-) -> tuple[Score, Evaluation] | None:
+    name: str, capture: Capture, contender: Contender, folder: Path, options: FitOptions, run: Run,
+    *, source: Path | None = None,
+) -> tuple[Score, Evaluation] | None:  # fmt: skip
     """Fit `contender` to `capture` in `folder`, or continue there, and score it.
 
-    `name` is what the table calls the capture; `options` holds what all contenders share. Returns
-    None if `run` ended before the fit did: the same call continues it, and its seconds add up.
+    `name` is what the table calls the capture; `options` holds what all contenders share; `source`
+    is the folder of the model that the fit starts from, whose seconds count, too. Returns None if
+    `run` ended before the fit did: the same call continues it, and its seconds add up.
     """
     if (folder / FILE_NAME).exists():
         job = Fit.resume(capture, folder)
@@ -115,7 +140,8 @@ def compare_one(
                         "choose another folder, or give the options that it was made with")
             )  # fmt: skip
     else:
-        job = Fit.start(capture, options)
+        first = None if source is None else load_model(source)
+        job = Fit.start(capture, options, start_from=first)
     spent = _spent(folder)
     if job.step_number < options.steps:
         result = run(job, folder)
@@ -125,6 +151,8 @@ def compare_one(
             return None
     model = load_model(folder)
     evaluation = evaluate(model, capture.test)
+    if source is not None:
+        spent += _spent(source)
     score = Score(
         name, contender.label, evaluation.psnr, evaluation.ssim, stored_bytes(model), spent,
         1000 * frame_seconds(model, capture), max(1, _core.thread_count()), evaluation.protocol,

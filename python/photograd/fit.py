@@ -26,7 +26,7 @@ from photograd_course.optim import Adam
 from photograd_course.random import uniform
 from photograd_course.schedules import exponential
 
-from photograd.backgrounds import background_kind, first_background
+from photograd.backgrounds import background_kind, first_background, raw_background
 from photograd.checkpoint import (
     FILE_NAME,
     Checkpoint,
@@ -40,14 +40,15 @@ from photograd.data.capture import Capture
 from photograd.data.visibility import require_views_of
 from photograd.fields.dense_grid import DenseGrid
 from photograd.fields.dense_sh import DenseSh
-from photograd.fields.fitted import FittedField, start_field
+from photograd.fields.fitted import FittedField, frozen_field, start_field
 from photograd.fields.gaussians import GaussianScene
+from photograd.fields.octree_sh import OctreeSh
 from photograd.fields.sparse_sh import SparseSh
 from photograd.fit_checks import (
     require_background_of,
     require_finite,
     require_finite_loss,
-    require_gaussians,
+    require_first_model,
     require_pixels_of,
     require_room_to_refine,
     require_split_of,
@@ -102,7 +103,10 @@ class Fit:
         allow_blind: bool = False,
         start_from: Model | None = None,
     ) -> Fit:
-        """Begin from nearly empty space, or with Gaussians on what `start_from` shows.
+        """Begin from nearly empty space, or with what `start_from` shows.
+
+        Gaussians may begin on the surfaces of another model; the leaves of an octree have to be cut
+        from one.
 
         Raises RangeError for an unknown or unfit representation, SceneError naming the training
         cameras that do not see the scene's box (with `allow_blind` only if none does).
@@ -112,14 +116,20 @@ class Fit:
         if not allow_blind:
             require_views_of(capture.train, bounds.box)
         require_background_of(capture, options)
-        points = None
-        if start_from is not None:
-            require_gaussians(options.representation)
-            points = partial(surface_points, start_from, capture, seed=options.seed)
-        model, rule = start_field(capture, bounds, options, points)
+        require_first_model(options.representation, given=start_from is not None)
+        model: FittedField
+        if start_from is not None and options.representation == OctreeSh.name:
+            model, rule = frozen_field(start_from.field, options)
+        else:
+            points = None
+            if start_from is not None:
+                points = partial(surface_points, start_from, capture, seed=options.seed)
+            model, rule = start_field(capture, bounds, options, points)
         fit = cls(capture, options, model, None)
         if fit.background_kind == "learned":
             fit.background = first_background(fit.pixels.mean_color())
+            if isinstance(model, OctreeSh) and start_from and start_from.background is not None:
+                fit.background = raw_background(start_from.background)
         fit.start_rule = rule
         return fit
 
@@ -279,6 +289,8 @@ class Fit:
 
         The optimiser's moments go along.
         """
+        if isinstance(self.model, OctreeSh):
+            return
         if isinstance(self.model, GaussianScene):
             self._refine_gaussians(self.model)
             return
@@ -321,7 +333,7 @@ class Fit:
     def _add_prior(self, gradients: dict[str, Array]) -> None:
         """Total variation on a random part of the grid, which stands for the whole."""
         weight = self.options.total_variation
-        if weight == 0 or isinstance(self.model, GaussianScene):
+        if weight == 0 or isinstance(self.model, GaussianScene | OctreeSh):
             return
         u = uniform(self.options.seed, step=self.step_number, pixel=0, sample=2, dimension=0)
         self.model.add_prior(gradients, weight, float(u))

@@ -13,6 +13,7 @@ from photograd.data.capture import Capture
 from photograd.errors import Error, IoError, RangeError, message
 from photograd.fields.fitted import FITTED
 from photograd.fields.gaussians import GaussianScene
+from photograd.fields.octree_sh import OctreeSh
 from photograd.fit_options import FitOptions
 from photograd.memory import available_memory
 from photograd.representation import Array, representation
@@ -67,13 +68,18 @@ def require_room_to_refine(grid: Any, resolution: int) -> None:
         )  # fmt: skip
 
 
-def require_gaussians(name: str) -> None:
-    """Raise RangeError unless what starts from another model is Gaussians."""
-    if name != GaussianScene.name:
-        expected = f"none, or {GaussianScene.name!r} to fit"
+def require_first_model(name: str, *, given: bool) -> None:
+    """Raise RangeError for a model to start from where none is wanted, or none where one is."""
+    if given and name not in (GaussianScene.name, OctreeSh.name):
+        expected = f"none, or {GaussianScene.name!r} or {OctreeSh.name!r} to fit"
         raise RangeError(
             message("Fit.start", "start_from", expected, repr(name), "grids start empty")
         )
+    if name == OctreeSh.name and not given:
+        raise RangeError(
+            message("Fit.start", "start_from", f"the model that {name!r} is cut from", "none",
+                    "fit a dense_grid or a sparse_sh first, and start from that (--start-from)")
+        )  # fmt: skip
 
 
 def require_split_of(saved: Checkpoint, capture: Capture) -> None:

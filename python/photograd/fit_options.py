@@ -16,7 +16,10 @@ DENSITY_CONTROLS = ("mcmc", "default", "none")
 """Of Gaussians: a fixed number that wanders, clone-split-prune, or none."""
 
 MOST_DEGREE = 3
-USERS_OF = {"degree": ("sparse_sh", "dense_sh", "gaussians"), "prune": ("sparse_sh",)}
+USERS_OF = {
+    "degree": ("sparse_sh", "dense_sh", "octree_sh", "gaussians"),
+    "prune": ("sparse_sh",),
+}
 """Options that mean nothing to other representations than these."""
 
 
@@ -111,6 +114,7 @@ class FitOptions:
 
 DEFAULTS_OF: dict[str, dict[str, Any]] = {
     "gaussians": {"steps": 4000, "degree": 3},
+    "octree_sh": {"steps": 1000},
     "sparse_sh": {"resolution": 256},  # what held-out training views prefer: docs/results.md
 }
 """What representations do otherwise than `FitOptions` itself."""

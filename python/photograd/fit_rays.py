@@ -11,6 +11,7 @@ from photograd.backgrounds import (
     random_background,
 )
 from photograd.fields.fitted import FittedGrid
+from photograd.fields.octree_sh import OctreeSh
 from photograd.fit_options import FitOptions
 from photograd.imaging import image_loss, image_loss_backward
 from photograd.pixels import TrainingPixels
@@ -18,7 +19,7 @@ from photograd.representation import Array, RenderOptions
 
 
 def ray_slope(
-    field: FittedGrid,
+    field: FittedGrid | OctreeSh,
     pixels: TrainingPixels,
     chosen: Array,
     raw_background: Array | None,

@@ -266,6 +266,45 @@ class Octree(_SpatialTree):
     core_class: ClassVar[Any] = _core.Octree
 
 
+def tree_of_leaves(
+    lower: npt.NDArray[np.integer[Any]],
+    side: npt.NDArray[np.integer[Any]],
+    bounds: npt.ArrayLike,
+    shape: tuple[int, int, int],
+) -> Octree:
+    """The octree with just these leaves; its values (L, 1) are their numbers.
+
+    Args:
+        lower: (L, 3) lower corners in cells, as of `Octree.leaf_boxes`.
+        side: (L,) sides in cells.
+        bounds: (2, 3) outer faces of the array of cells in metres.
+        shape: cells along each axis; the root's cube may exceed them.
+
+    Raises:
+        ShapeError: arrays of other shapes.
+        RangeError: cubes that do not fill the root's.
+    """
+    if side.ndim != 1 or lower.shape != (len(side), 3):
+        expected = f"({len(np.atleast_1d(side))}, 3), a row a leaf"
+        raise ShapeError(message("tree_of_leaves", "lower", expected, lower.shape))
+    rows = np.column_stack([lower, side]).astype(np.int64).tolist()
+    number = {(*corner, size): leaf for leaf, (*corner, size) in enumerate(rows)}
+    edge = int((lower + side[:, None]).max(initial=1))
+    depth = max(edge - 1, 0).bit_length()
+
+    def classify(at: tuple[int, ...], size: int) -> list[float] | None:
+        found = number.get((*at, size))
+        return None if found is None else [float(found)]
+
+    whole = Octree.from_function(classify, depth)
+    if len(whole.values) != len(side):
+        expected = f"{len(side)} cubes that fill one of {1 << depth} cells a side, once"
+        raise RangeError(
+            message("tree_of_leaves", "side", expected, f"{len(whole.values)} of them")
+        )
+    return Octree(whole._core, whole.values, _box("tree_of_leaves", bounds, shape), shape)
+
+
 class Quadtree(_SpatialTree):
     """The same in the plane: values (X, Y, C)."""
 

@@ -134,7 +134,9 @@ def test_gaussians_begin_on_what_a_model_shows() -> None:
         capture, OPTIONS, start_from=Model(fit.model, None, OPTIONS, {}, np.zeros((0, 3)))
     )
     assert len(again.model.params["means"]) > 100  # a scene of Gaussians shows surfaces, too
-    with pytest.raises(RangeError, match="start_from: expected none, or 'gaussians' to fit"):
+    with pytest.raises(
+        RangeError, match="start_from: expected none, or 'gaussians' or 'octree_sh'"
+    ):
         Fit.start(capture, grid.options, start_from=seen)
     empty = Fit.start(capture, FitOptions(resolution=16, sigma_t=1e-6)).model
     with pytest.raises(SceneError, match="empty pictures"):

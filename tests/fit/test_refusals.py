@@ -30,12 +30,12 @@ from tests.fit import scene
         (
             "toy_blobs",
             "it lives on a 2D canvas; a capture can start "
-            "'dense_grid' or 'sparse_sh' or 'dense_sh' or 'gaussians'",
+            "'dense_grid' or 'sparse_sh' or 'dense_sh' or 'octree_sh' or 'gaussians'",
         ),
         (
             "tiny_network",
             "one that a capture can start: "
-            "'dense_grid' or 'sparse_sh' or 'dense_sh' or 'gaussians', got 'tiny_network'",
+            "'dense_grid' or 'sparse_sh' or 'dense_sh' or 'octree_sh' or 'gaussians', got 'tiny_network'",
         ),
     ],
 )

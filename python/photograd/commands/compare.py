@@ -21,6 +21,7 @@ from photograd.compare import (
     compare_one,
     markdown,
     parse_contenders,
+    source_of,
     worst_view,
 )
 from photograd.data.capture import Capture
@@ -79,6 +80,8 @@ def compare(
     held-out view), and each model in OUT/CAPTURE/. Stopped by Ctrl-C, the same command line goes
     on where it was.
 
+    An octree_sh:N is cut from the grid of N that stands before it, and refined.
+
     Example: photograd compare foliage fur --contenders dense_grid:128,sparse_sh:128
     """
     use_threads(threads)
@@ -120,12 +123,14 @@ def contest(
             message("compare", "CAPTURE", "held-out views", f"none in {capture.source}")
         )
     found = []
+    folder = {candidate: out / candidate.label.replace(":", "_") for candidate in candidates}
     for candidate in candidates:
         note(f"{name}: {candidate.label}")
+        source = source_of(candidate, candidates)
         result = compare_one(
-            name, capture, candidate, out / candidate.label.replace(":", "_"),
-            candidate.options(shared),
+            name, capture, candidate, folder[candidate], candidate.options(shared),
             lambda job, folder: run_with_bar(job, folder, stopping),
+            source=None if source is None else folder[source],
         )  # fmt: skip
         if result is None:
             note("stopped; the same command goes on from here")

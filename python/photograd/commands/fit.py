@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import fields
 from pathlib import Path
 from typing import Annotated
@@ -39,7 +40,6 @@ from photograd.commands.fit_arguments import (
 from photograd.commands.shared import (
     CaptureArgument,
     DownscaleOption,
-    StopRequest,
     stop_on_signals,
     use_threads,
 )
@@ -187,7 +187,7 @@ def refuse_other_options(context: typer.Context, stored: FitOptions) -> None:
 
 
 def run_with_bar(
-    job: Fit, out: Path, stopping: StopRequest, checkpoint_seconds: float = 30.0
+    job: Fit, out: Path, stopping: Callable[[], bool], checkpoint_seconds: float = 30.0
 ) -> FitResult:
     """Run a fit under a live progress bar on stderr."""
     columns = SPLAT_COLUMNS if isinstance(job.model, GaussianScene) else COLUMNS

@@ -77,7 +77,11 @@ DensityControlOption: TypeAlias = Annotated[
 ]
 StartFromOption: TypeAlias = Annotated[
     Path | None,
-    typer.Option("--start-from", help="Model on whose surfaces Gaussians begin.", metavar="MODEL"),
+    typer.Option(
+        "--start-from",
+        help="Model on whose surfaces Gaussians begin, or from whose voxels an octree is cut.",
+        metavar="MODEL",
+    ),
 ]
 BackgroundOption: TypeAlias = Annotated[
     str, typer.Option("--background", help=f"auto, {', '.join(BACKGROUNDS)}.")

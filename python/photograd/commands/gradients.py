@@ -33,6 +33,7 @@ from photograd.errors import RangeError, message
 from photograd.fields.dense_grid import DenseGrid
 from photograd.fields.fitted import FittedField
 from photograd.fields.gaussians import GaussianScene
+from photograd.fields.octree_sh import OctreeSh
 from photograd.model import Model, load_model
 from photograd.pixels import TrainingPixels
 from photograd.representation import Array
@@ -172,6 +173,7 @@ def dense_grid(field: FittedField) -> DenseGrid:
 def curves_of(model: Model) -> viz.FitCurves:
     """The history of a fit as curves, with its refinements marked."""
     steps, loss, psnr = np.asarray(model.history).T
-    levels = {} if isinstance(model.field, GaussianScene) else model.options.levels()
+    still = isinstance(model.field, GaussianScene | OctreeSh)
+    levels = {} if still else model.options.levels()
     events = {s: f"{r}³" for s, r in levels.items() if 0 < s <= steps[-1]}
     return viz.FitCurves(steps=steps.astype(int), loss=loss, psnr=psnr, events=events)

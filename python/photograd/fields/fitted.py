@@ -7,11 +7,14 @@ from typing import Any, TypeAlias
 
 from photograd.data.bounds import Bounds
 from photograd.data.capture import Capture
+from photograd.errors import RangeError, message
 from photograd.fields.active_voxels import ActiveVoxels
 from photograd.fields.dense_grid import DenseGrid
 from photograd.fields.dense_sh import DenseSh
+from photograd.fields.frozen_leaves import TreePolicy
 from photograd.fields.gaussians import GaussianScene
 from photograd.fields.march import MarchPolicy
+from photograd.fields.octree_sh import OctreeSh
 from photograd.fields.sparse_sh import SparseSh
 from photograd.fit_options import FitOptions
 from photograd.representation import Array
@@ -19,9 +22,9 @@ from photograd.splat import SplatOptions
 from photograd.splats.first_scene import first_scene, scene_control
 
 FittedGrid: TypeAlias = DenseGrid | SparseSh
-FittedField: TypeAlias = FittedGrid | GaussianScene
+FittedField: TypeAlias = FittedGrid | OctreeSh | GaussianScene
 HARMONIC_GRIDS: dict[str, type[SparseSh]] = {SparseSh.name: SparseSh, DenseSh.name: DenseSh}
-FITTED = (DenseGrid.name, *HARMONIC_GRIDS, GaussianScene.name)
+FITTED = (DenseGrid.name, *HARMONIC_GRIDS, OctreeSh.name, GaussianScene.name)
 
 
 def start_field(
@@ -30,7 +33,7 @@ def start_field(
     options: FitOptions,
     points: Callable[[int], tuple[Array, Array]] | None = None,
 ) -> tuple[FittedField, str]:
-    """What a fit begins with, and a sentence on where it comes from.
+    """What a fit of photographs alone begins with, and a sentence on where it comes from.
 
     Grids: nearly empty space in the box, at the coarsest level of the options. Gaussians: a part of
     the budget, at what `points(count)` returns, at the capture's points or at random.
@@ -52,6 +55,22 @@ def start_field(
     return dense, f"box: {bounds.rule}"
 
 
+def frozen_field(field: FittedField, options: FitOptions) -> tuple[OctreeSh, str]:
+    """The leaves of a field that was fitted before, and a sentence on them.
+
+    Raises RangeError for a field that has no voxels.
+    """
+    if isinstance(field, DenseGrid):
+        tree = OctreeSh.from_dense_grid(field, degree=options.degree)
+    elif isinstance(field, SparseSh):
+        tree = OctreeSh.from_sparse_sh(field, degree=options.degree)
+    else:
+        expected = f"a model of {' or '.join((DenseGrid.name, *HARMONIC_GRIDS))}"
+        raise RangeError(message("Fit.start", "start_from", expected, repr(field.name)))
+    leaves, side = len(tree.tree.values), tree.resolution
+    return tree, f"{tree.shape[0]:,} of {leaves:,} leaves hold matter, in a tree of {side}³ cells"
+
+
 def saved_field(
     params: Mapping[str, Array],
     state: Mapping[str, Array],
@@ -63,6 +82,10 @@ def saved_field(
         return GaussianScene.of_state(
             params, state, policy=SplatOptions(**policy), control=scene_control(options)
         )
+    if options.representation == OctreeSh.name:
+        box = (tuple(policy["box"][0]), tuple(policy["box"][1]))
+        tree_policy = TreePolicy(box, tuple(policy["cells"]), policy["density_scale"])
+        return OctreeSh.of_state(params, state, tree_policy)
     march = MarchPolicy(**{**policy, "box": tuple(tuple(corner) for corner in policy["box"])})
     if options.representation in HARMONIC_GRIDS:
         rest = {key: value for key, value in state.items() if key != "background_density"}

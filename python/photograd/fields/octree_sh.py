@@ -33,8 +33,10 @@ from photograd_course.random import uniform
 from photograd import sh
 from photograd.errors import RangeError, ShapeError, message
 from photograd.fields.dense_grid import DenseGrid
+from photograd.fields.frozen_leaves import Leaves, TreePolicy, leaves_of_grid, leaves_of_voxels
 from photograd.fields.leaf_segments import Borders, Segments, border_gradients, segments_of
-from photograd.octree import Octree
+from photograd.fields.sparse_sh import SparseSh
+from photograd.octree import Octree, tree_of_leaves
 from photograd.representation import (
     Array,
     Outputs,
@@ -119,24 +121,49 @@ class OctreeSh(Representation):
             opacity: voxels that are less opaque than this, along their edge, become empty.
             tolerance: in linear colour, and in opacity, that voxels of one leaf may differ by.
         """
-        cell = (field.box[1, 0] - field.box[0, 0]) / field.density.shape[0]
-        scale = field.policy.density_scale
-        sigma_t = scale * np.logaddexp(0.0, field.density.astype(np.float64))
-        shown = 1.0 - np.exp(-sigma_t * cell)
-        full = shown > opacity
-        rgb = 1.0 / (1.0 + np.exp(-field.color.astype(np.float64)))
-        known = np.concatenate([shown[..., None], rgb], axis=-1) * full[..., None]
-        tree = Octree.from_dense(known.astype(np.float32), field.box, tolerance=tolerance)
-        held = tree.values.astype(np.float64)
-        occupied = held[:, 0] > 0.5 * opacity
-        row = np.where(occupied, np.cumsum(occupied) - 1, -1).astype(np.int32)
-        mean = -np.log1p(-np.minimum(held[occupied, 0], 1.0 - 1e-6)) / cell
-        color = np.clip(held[occupied, 1:], 1e-4, 1.0 - 1e-4)
-        coefficients = np.zeros((int(occupied.sum()), sh.count(degree), 3))
-        coefficients[:, 0] = np.log(color / (1.0 - color)) / sh.Y_0
-        density = np.log(np.expm1(np.minimum(mean / scale, 500.0)))
-        kind = field.params["values"].dtype
-        return cls(tree, row, density.astype(kind), coefficients.astype(kind), density_scale=scale)
+        leaves = leaves_of_grid(field, degree=degree, opacity=opacity, tolerance=tolerance)
+        return cls._of_leaves(leaves, field.params["values"].dtype, field.policy.density_scale)
+
+    @classmethod
+    def from_sparse_sh(
+        cls, field: SparseSh, *, degree: int | None = None, opacity: float = 0.01
+    ) -> OctreeSh:
+        """Tabulate a sparse grid: a leaf for each voxel that is seen, large ones between them.
+
+        Args:
+            field: read at the centres of its voxels.
+            degree: of the harmonics, by default the field's; higher ones start as 0.
+            opacity: voxels that are less opaque than this, along their edge, become empty.
+
+        Raises:
+            RangeError: the field's activations are not softplus and sigmoid.
+        """
+        leaves = leaves_of_voxels(field, degree=degree, opacity=opacity)
+        return cls._of_leaves(leaves, field.params["sh"].dtype, field.policy.density_scale)
+
+    @classmethod
+    def _of_leaves(cls, leaves: Leaves, kind: np.dtype[Any], density_scale: float) -> OctreeSh:
+        return cls(
+            leaves.tree, leaves.row, leaves.density.astype(kind), leaves.sh.astype(kind),
+            density_scale=density_scale,
+        )  # fmt: skip
+
+    @classmethod
+    def of_state(
+        cls, params: Mapping[str, Array], state: Mapping[str, Array], policy: TreePolicy
+    ) -> OctreeSh:
+        """What a checkpoint holds: `params`, `state()` and `policy`.
+
+        Raises KeyError for what is lacking, ShapeError or RangeError for leaves that fill no cube.
+        """
+        tree = tree_of_leaves(state["lower"], state["side"], policy.box, policy.cells)
+        row = state["row"]
+        if row.shape == (len(tree.values),):  # else refused below
+            row = row[tree.values[:, 0].astype(np.int64)]
+        return cls(
+            tree, row, params["density"], params["sh"],
+            density_scale=policy.density_scale,
+        )  # fmt: skip
 
     @classmethod
     def example(cls, *, seed: int, dtype: type[np.floating[Any]] = np.float64) -> OctreeSh:
@@ -160,6 +187,28 @@ class OctreeSh(Representation):
     def example_batch(self, *, seed: int) -> RayBatch:
         """24 rays from a sphere of radius 3 m towards points inside of the box."""
         return DenseGrid.example(seed=seed).example_batch(seed=seed)
+
+    @property
+    def policy(self) -> TreePolicy:
+        """Where the tree stands, and the unit of its densities."""
+        low, high = self.tree.bounds.tolist()
+        x, y, z = self.tree.shape
+        return TreePolicy((tuple(low), tuple(high)), (x, y, z), self.density_scale)
+
+    @property
+    def box(self) -> Array:
+        """(2, 3) corners of the box in world metres."""
+        return self.tree.bounds
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Leaves that are not empty, and the numbers of each."""
+        return len(self.params["density"]), 1 + self.params["sh"][0].size
+
+    @property
+    def resolution(self) -> int:
+        """Cells along the longest edge."""
+        return max(self.tree.shape)
 
     def param_groups(self) -> Mapping[str, ParamSpec]:
         """Two groups with a row a leaf."""
