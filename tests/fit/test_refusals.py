@@ -35,7 +35,8 @@ from tests.fit import scene
         (
             "tiny_network",
             "one that a capture can start: "
-            "'dense_grid' or 'sparse_sh' or 'dense_sh' or 'octree_sh' or 'gaussians', got 'tiny_network'",
+            "'dense_grid' or 'sparse_sh' or 'dense_sh' or 'octree_sh' or 'gaussians', "
+            "got 'tiny_network'",
         ),
     ],
 )
