@@ -114,7 +114,6 @@ class FitOptions:
 
 DEFAULTS_OF: dict[str, dict[str, Any]] = {
     "gaussians": {"steps": 4000, "degree": 3},
-    "octree_sh": {"steps": 1000},
     "sparse_sh": {"resolution": 256},  # what held-out training views prefer: docs/results.md
 }
 """What representations do otherwise than `FitOptions` itself."""
