@@ -74,6 +74,20 @@ def bound_text(ours: Runs) -> str | None:
     return f"Bound: {'; '.join(said)}." if said else None
 
 
+def unit_text(ours: Runs) -> str | None:
+    """Nanoseconds for each of what the work is made of, and what the machine allows."""
+    row = ours.rows[0]
+    if "unit" not in row:
+        return None
+    said = []
+    for key, what in (("seconds_fwd", "forward"), ("seconds_fwdbwd", "forward and backward")):
+        seconds, limit = ours.seconds(key), row["bound"].get(key)
+        if seconds and limit:
+            each, least = (1e9 * t / row["unit"]["count"] for t in (seconds, limit))
+            said.append(f"{each:.1f} ns {what} (bound {least:.2f})")
+    return f"A {row['unit']['name']}: {', '.join(said)}."
+
+
 def breakdown_table(ours: Runs) -> str | None:
     """Seconds by stage, from the last row that has them."""
     stages = next((r["breakdown"] for r in reversed(ours.rows) if "breakdown" in r), None)
@@ -98,6 +112,7 @@ def section(workload: str, programs: Sequence[Runs]) -> str | None:
         markdown_table(head, [program_row(runs, line) for runs, line in pairs]),
         part_table(lines),
         bound_text(ours),
+        unit_text(ours),
         breakdown_table(ours),
         *notes,
     ]

@@ -100,9 +100,11 @@ def main() -> None:
     }
     size = {"gaussians": args.gaussians, "res": args.res, "sh_degree": 3}
     # Counted once: 14.4 million pixels of a Gaussian with alpha >= 1/255 at the default size.
-    bound = _bounds.splat_bound(int(144 * args.gaussians * (args.res / 512) ** 2))
+    contributions = int(144 * args.gaussians * (args.res / 512) ** 2)
     more: dict[str, Any] = {
-        "bound": bound, "inputs": work.inputs, "pairs": context.prepared.pairs, "grad_norms": norms
+        "bound": _bounds.splat_bound(contributions),
+        "unit": {"name": "Gaussian-pixel pair", "count": contributions},
+        "inputs": work.inputs, "pairs": context.prepared.pairs, "grad_norms": norms
     }  # fmt: skip
     if args.breakdown:
         more["breakdown"] = breakdown(work, args.reps)
