@@ -1,4 +1,4 @@
-"""`photograd convert`: Gaussians from one file format to another, and what that has changed."""
+"""`photograd convert`: Gaussians or meshes from one file format to another, and what changed."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ from typing import Annotated, Any
 import typer
 from photograd_course.cli import DebugOption, JsonOption, emit
 
+from photograd.commands.convert_model import READABLE, convert_model
+from photograd.commands.convert_model import WRITABLE as GLTF
 from photograd.data.gaussian_coding import differences
 from photograd.data.gaussian_files import (
     SUFFIXES,
@@ -28,10 +30,16 @@ def register(app: typer.Typer) -> None:
 
 def convert(
     source: Annotated[
-        Path, typer.Argument(help=f"File of Gaussians: {', '.join(SUFFIXES)}.", metavar="IN")
+        Path,
+        typer.Argument(
+            help=f"File of Gaussians: {', '.join(SUFFIXES)}; or, to make glTF of it, a scene or "
+            f"meshes: {', '.join(READABLE)}.",
+            metavar="IN",
+        ),
     ],
     target: Annotated[
-        Path, typer.Argument(help=f"File to write: {', '.join(WRITABLE)}.", metavar="OUT")
+        Path,
+        typer.Argument(help=f"File to write: {', '.join((*WRITABLE, *GLTF))}.", metavar="OUT"),
     ],
     spz_version: Annotated[
         int | None,
@@ -42,11 +50,18 @@ def convert(
 ) -> None:
     """Convert a file of Gaussians, and say by how much each attribute was rounded.
 
+    Where OUT is .glb or .gltf, IN is a scene or a mesh file; what the file cannot hold, or is read
+    back changed, is named.
+
     Example: photograd convert scene.ply scene.spz
     """
     if spz_version is not None and target.suffix.lower() != ".spz":
         expected = "a file .spz to write with --spz-version"
         raise RangeError(message("convert", "OUT", expected, target.name, "leave the option out"))
+    if target.suffix.lower() in GLTF:
+        _check_other(source, target)
+        emit(convert_model(source, target), as_json=as_json, title="convert")
+        return
     version = SPZ_VERSION if spz_version is None else spz_version
     emit(convert_file(source, target, version), as_json=as_json, title="convert")
 
@@ -57,9 +72,7 @@ def convert_file(source: Path, target: Path, spz_version: int) -> dict[str, Any]
     Raises:
         IoError: a bad file, or the same for both.
     """
-    if target.exists() and source.exists() and target.samefile(source):
-        expected = "another file than IN"
-        raise IoError(message("convert", "OUT", expected, f"{target}", "choose another name"))
+    _check_other(source, target)
     before = read_gaussians(source)
     write_gaussians(target, before.gaussians, spz_version=spz_version)
     after = read_gaussians(target)
@@ -89,3 +102,9 @@ def convert_file(source: Path, target: Path, spz_version: int) -> dict[str, Any]
         "changes": changes,
         "notes": notes,
     }
+
+
+def _check_other(source: Path, target: Path) -> None:
+    if target.exists() and source.exists() and target.samefile(source):
+        expected = "another file than IN"
+        raise IoError(message("convert", "OUT", expected, f"{target}", "choose another name"))

@@ -16,7 +16,7 @@ from photograd.transport.derivative import (
 )
 from photograd.transport.lens import Lens
 from photograd.transport.medium import BOUNDARY, VACUUM, DensityGrid, Medium
-from photograd.transport.mesh_files import ModelFile, model_scene, read_model
+from photograd.transport.mesh_files import ModelFile, model_scene, read_model, save_gltf
 from photograd.transport.particles import (
     Emitted,
     ParticleOptions,
@@ -79,6 +79,7 @@ __all__ = [
     "read_scene",
     "read_texture",
     "recover",
+    "save_gltf",
     "scene_with",
     "trace_light",
 ]

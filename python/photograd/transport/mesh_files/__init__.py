@@ -1,12 +1,14 @@
 """Scenes from mesh files: .glb and .gltf with their materials, .obj, .ply and .stl.
 
-`read_model` reads one; `model_scene` puts it under a light and before a camera.
+`read_model` reads one; `model_scene` puts it under a light and before a camera; `save_gltf` writes
+a scene's shapes and materials.
 """
 
 from __future__ import annotations
 
+from photograd.transport.mesh_files.gltf_save import save_gltf
 from photograd.transport.mesh_files.model_file import ModelFile
 from photograd.transport.mesh_files.read import SUFFIXES, read_model
 from photograd.transport.mesh_files.studio import model_scene
 
-__all__ = ["SUFFIXES", "ModelFile", "model_scene", "read_model"]
+__all__ = ["SUFFIXES", "ModelFile", "model_scene", "read_model", "save_gltf"]

@@ -93,6 +93,15 @@ class Draft:
         return PLAIN_IOR if node is None else real(node, "ior", PLAIN_IOR)
 
 
+def reflectance_of(strength: float, ior: float) -> float:
+    """Of the model `standard`, for a part of the reflection at an index: f0 = 0.16 reflectance^2.
+
+    An index of 0 mirrors everything.
+    """
+    f0 = strength * ((ior - 1) / (ior + 1)) ** 2 if ior > 0 else strength
+    return float(np.sqrt(max(f0, 0) / 0.16))
+
+
 def metallic_roughness(draft: Draft) -> dict[str, Any]:
     """The parameters of the core model, and their textures."""
     draft.textured("base_color", draft.core, "baseColorTexture", "srgb")

@@ -22,6 +22,7 @@ from photograd.transport.mesh_files.gltf_draft import (
     Draft,
     finished,
     metallic_roughness,
+    reflectance_of,
 )
 from photograd.transport.mesh_files.pictures import Coordinates, Pictures
 from photograd.transport.scene import Material
@@ -113,7 +114,7 @@ def _iridescence(draft: Draft) -> Material | None:
 
 
 def _specular(draft: Draft) -> Material | None:
-    """Dielectrics of another index, or a weaker reflection: f0 = 0.16 reflectance^2."""
+    """Dielectrics of another index, or a weaker reflection."""
     node, ior = draft.extension("specular"), draft.ior
     strength = 1.0 if node is None else real(node, "specularFactor", 1.0)
     if strength == 1 and ior == PLAIN_IOR:
@@ -124,8 +125,7 @@ def _specular(draft: Draft) -> Material | None:
     if node is not None:
         draft.unread(node, "specularTexture", "specularColorTexture", "specularColorFactor")
     draft.take("specular", "ior")
-    f0 = strength * ((ior - 1) / (ior + 1)) ** 2 if ior > 0 else strength
-    values = metallic_roughness(draft) | {"reflectance": float(np.sqrt(max(f0, 0) / 0.16))}
+    values = metallic_roughness(draft) | {"reflectance": reflectance_of(strength, ior)}
     return finished("standard", values, draft)
 
 

@@ -1,0 +1,164 @@
+"""Textures and normal maps as images of a glTF file, eight bits a channel."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from photograd_course.color import srgb_encode
+
+from photograd.errors import SceneError, message
+from photograd.transport.mesh_files.gltf_bytes import GltfBytes
+from photograd.transport.mesh_files.gltf_words import Words
+from photograd.transport.scene import Material
+from photograd.transport.texture import NormalMap, Texture, TextureUse
+
+Array = npt.NDArray[Any]
+Wrap = tuple[str, str]
+_WRAPS = {"repeat": 10497, "mirror": 33648, "clamp": 33071}
+_LABEL = re.compile(r" \((srgb|linear|alpha), \d+\)$")
+"""What reading adds to the name of an image."""
+_COLOR = ("", "baseColorTexture", "srgb", 0)
+SLOTS = {
+    "base_color": _COLOR,
+    "tint": _COLOR,
+    "f0": _COLOR,
+    "albedo": _COLOR,
+    "alpha": ("", "baseColorTexture", "alpha", 3),
+    "metalness": ("", "metallicRoughnessTexture", "linear", 2),
+    "roughness": ("", "metallicRoughnessTexture", "linear", 1),
+    "coat": ("clearcoat", "clearcoatTexture", "linear", 0),
+    "coat_roughness": ("clearcoat", "clearcoatRoughnessTexture", "linear", 1),
+    "sheen_color_factor": ("sheen", "sheenColorTexture", "srgb", 0),
+    "iridescence_factor": ("iridescence", "iridescenceTexture", "linear", 0),
+    "iridescence_thickness": ("iridescence", "iridescenceThicknessTexture", "linear", 1),
+    "transmission": ("transmission", "transmissionTexture", "linear", 0),
+}
+"""{parameter: (extension, or none; member; encoding; channel of the image)}."""
+
+
+@dataclass
+class Painted:
+    """The images of a file, each written once.
+
+    Attributes:
+        file: takes them.
+        textures: of the scene.
+    """
+
+    file: GltfBytes
+    textures: Mapping[str, Texture]
+    _numbers: dict[object, int] = field(default_factory=dict)
+
+    def material(self, words: Words, material: Material) -> None:
+        """Put the textures of a material into its words.
+
+        Raises:
+            SceneError: textures of one image that differ in size or in what is beyond their edges.
+        """
+        members: dict[tuple[str, str], list[tuple[str, int, TextureUse]]] = {}
+        for parameter, use in material.textures.items():
+            extension, key, encoding, channel = SLOTS[parameter]
+            members.setdefault((extension, key), []).append((encoding, channel, use))
+        for (extension, key), uses in members.items():
+            node = words.extensions[extension] if extension else words.core
+            node[key] = {"index": self._shared(key, uses)}
+
+    def color(self, use: TextureUse) -> int:
+        """The number of a texture of colours."""
+        return self._shared("emissiveTexture", [("srgb", 0, use)])
+
+    def normal_map(self, bent: NormalMap) -> dict[str, Any]:
+        """A normalTexture."""
+        pixels, scale = normals_as_bytes(bent.values)
+        key = (pixels.tobytes(), pixels.shape, bent.wrap)
+        if key not in self._numbers:
+            self._numbers[key] = self._texture("normals", pixels, bent.wrap)
+        return {"index": self._numbers[key], "scale": scale}
+
+    def _shared(self, member: str, uses: list[tuple[str, int, TextureUse]]) -> int:
+        key = tuple(uses)
+        if key not in self._numbers:
+            found = [self.textures[use.texture] for _, _, use in uses]
+            kinds = {(texture.values.shape[:2], texture.wrap) for texture in found}
+            if len(kinds) > 1:
+                names = ", ".join(use.texture for _, _, use in uses)
+                expected = f"one size and wrap for {member}, which is one image"
+                raise SceneError(message("save_gltf", f"textures {names}", expected, sorted(kinds)))
+            pixels = _pixels(uses, found)
+            name = _LABEL.sub("", uses[0][2].texture)
+            self._numbers[key] = self._texture(name, pixels, found[0].wrap)
+        return self._numbers[key]
+
+    def _texture(self, name: str, pixels: Array, wrap: Wrap) -> int:
+        entry = {"source": self.file.image(name, pixels)}
+        if wrap != ("repeat", "repeat"):
+            if wrap not in self._numbers:
+                sampler = {"wrapS": _WRAPS[wrap[0]], "wrapT": _WRAPS[wrap[1]]}
+                self._numbers[wrap] = self.file.entry("samplers", sampler)
+            entry["sampler"] = self._numbers[wrap]
+        return self.file.entry("textures", entry)
+
+
+def _pixels(uses: list[tuple[str, int, TextureUse]], textures: list[Texture]) -> Array:
+    """(H, W, 3 or 4) bytes; channels that nobody wants are those of a texture, or white."""
+    height, width = textures[0].values.shape[:2]
+    image = np.full((height, width, 4), 255, np.uint8)
+    for (encoding, channel, use), texture in zip(uses, textures, strict=True):
+        values = np.clip(texture.values.astype(np.float64), 0, 1)
+        read, written, wide = use.channel, channel, 3 if encoding == "srgb" else 1
+        if encoding == "linear" and read == written and values.shape[2] == 3:
+            read, written, wide = 0, 0, 3
+        part = values[..., read : read + wide]
+        shown = srgb_encode(part) if encoding == "srgb" else part
+        image[..., written : written + wide] = np.rint(255 * np.asarray(shown))
+    return image if any(encoding == "alpha" for encoding, _, _ in uses) else image[..., :3].copy()
+
+
+def normals_as_bytes(values: Array) -> tuple[Array, float]:
+    """(H, W, 3) bytes and the scale of the tilt that come back as a normal map's values.
+
+    Read from a file, tilts are odd multiples of scale / 255: the scale is guessed from the smallest
+    of them, made exact by the largest, and proved on all. Other maps get the least scale that holds
+    all tilts, and are rounded.
+    """
+    tilt = np.abs(values[..., :2]).astype(np.float64)
+    few = values.reshape(1, -1, 3)[:, :64]
+    for scale in _scales(float(tilt.min()), float(tilt.max())):
+        if _comes_back(few, scale) and _comes_back(values, scale):
+            return _as_bytes(values, scale), float(scale)
+    scale = np.float32(max(1.0, float(tilt.max())))
+    return _as_bytes(values, scale), float(scale)
+
+
+def _scales(least: float, most: float) -> Iterator[np.float32]:
+    """Scales for which both tilts are odd multiples of scale / 255, about."""
+    for odd in range(1, 256, 2) if least > 0 else ():
+        multiple = 2 * round((most * odd / least - 1) / 2) + 1
+        if multiple > 255:
+            return
+        for byte in (255 - multiple) // 2, (255 + multiple) // 2:
+            # Divided by what the byte is in float, which cancellation has rounded.
+            tilt = np.abs(np.float32(2) * (np.float32(byte) / np.float32(255)) - np.float32(1))
+            middle = np.float32(most / float(tilt))
+            up = np.nextafter(middle, np.float32(np.inf))
+            down = np.nextafter(middle, np.float32(0))
+            yield from (middle, up, down)
+
+
+def _comes_back(values: Array, scale: np.float32) -> bool:
+    return np.array_equal(_as_values(_as_bytes(values, scale), scale), values)
+
+
+def _as_bytes(values: Array, scale: np.float32) -> Array:
+    units = values.astype(np.float64) / [scale, scale, 1.0]
+    return np.asarray(np.rint(np.clip(0.5 * (units + 1), 0, 1) * 255), np.uint8)
+
+
+def _as_values(pixels: Array, scale: np.float32) -> Array:
+    image = pixels.astype(np.float32) / np.float32(255)
+    return NormalMap.from_image(image, float(scale)).values

@@ -1,0 +1,157 @@
+"""Scenes as glTF files: meshes, instances, materials with their extensions, textures, interiors."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from photograd_course.atomic_io import atomic_write
+
+from photograd.errors import IoError, SceneError, message
+from photograd.transport.medium import BOUNDARY, VACUUM
+from photograd.transport.mesh_files.gltf_bytes import GltfBytes
+from photograd.transport.mesh_files.gltf_painted import SLOTS, Painted
+from photograd.transport.mesh_files.gltf_words import BODIES, WRITTEN, attenuation, words_of
+from photograd.transport.mesh_files.model_changes import changes
+from photograd.transport.mesh_files.model_file import ModelFile
+from photograd.transport.mesh_files.read import read_model
+from photograd.transport.scene import MeshShape, Scene
+
+WRITABLE = (".glb", ".gltf")
+_SURROUNDINGS = ("camera", "shutter", "environment", "lights", "world")
+_REASONS = 8
+
+
+def save_gltf(model: Scene | ModelFile, path: Path) -> None:
+    """Write the meshes of a scene as .glb, or as .gltf with everything in one file.
+
+    The file is read back. A UserWarning says what is not written (camera, lights and what else
+    surrounds the shapes), and every number, model or texture that comes back changed: textures have
+    eight bits a channel, and some models are another one's special case.
+
+    Args:
+        model: the scene, or what `read_model` returned.
+        path: ends in .glb or .gltf.
+
+    Raises:
+        IoError: another ending, or a file that cannot be written.
+        SceneError: shapes, materials or interiors that glTF has no words for; names them all.
+    """
+    suffix = path.suffix.lower()
+    if suffix not in WRITABLE:
+        expected = "a name that ends in .glb or .gltf"
+        raise IoError(message("save_gltf", "path", expected, path.name))
+    whole = ModelFile(model.shapes, model.materials, model.textures, model.media)
+    reasons = list(_without_words(whole))
+    if reasons:
+        got = "; ".join(reasons[:_REASONS])
+        got += f"; and {len(reasons) - _REASONS} more" if len(reasons) > _REASONS else ""
+        raise SceneError(message("save_gltf", "model", "what glTF has words for", got))
+    file = _file(whole)
+    atomic_write(path, file.glb() if suffix == ".glb" else file.gltf())
+    for text in (*_not_written(model), *_come_back(whole, path)):
+        warnings.warn(f"{path.name}: {text}", UserWarning, stacklevel=2)
+
+
+def _without_words(model: ModelFile) -> Iterator[str]:
+    """What glTF cannot say, with its name."""
+    for shape in model.shapes:
+        if not isinstance(shape, MeshShape):
+            yield f"shape '{shape.name}' is no mesh"
+        if shape.material == BOUNDARY:
+            yield f"shape '{shape.name}' is a boundary of media"
+            continue
+        medium = model.media.get(shape.interior or "")
+        if medium is not None and (medium.albedo is not None or medium.density is not None):
+            yield f"medium '{shape.interior}' does more than absorb"
+        model_of = model.materials[shape.material].model
+        if medium is not None and model_of not in BODIES:
+            yield f"shape '{shape.name}' of '{model_of}' has an interior"
+    for name in sorted({shape.material for shape in model.shapes} - {BOUNDARY}):
+        material = model.materials[name]
+        if material.model not in WRITTEN:
+            yield f"material '{name}' of the model '{material.model}'"
+            continue
+        for parameter in material.textures:
+            if parameter not in SLOTS:
+                yield f"material '{name}' with a texture of {parameter}"
+
+
+def _file(model: ModelFile) -> GltfBytes:
+    file = GltfBytes()
+    painted = Painted(file, model.textures)
+    nodes: list[dict[str, Any]] = []
+    numbers: dict[object, int] = {}
+    for shape in model.shapes:
+        assert isinstance(shape, MeshShape)
+        key = shape.material, tuple(shape.emission), shape.glow, shape.interior
+        if key not in numbers:
+            numbers[key] = file.entry("materials", _material(model, shape, painted))
+        attributes = {"POSITION": file.attribute(shape.vertices, bounds=True)}
+        if shape.normals is not None:
+            attributes["NORMAL"] = file.attribute(shape.normals)
+        if shape.uv is not None:
+            attributes["TEXCOORD_0"] = file.attribute(shape.uv)
+        part = {
+            "attributes": attributes,
+            "indices": file.indices(shape.faces),
+            "material": numbers[key],
+        }
+        mesh = file.entry("meshes", {"name": shape.name, "primitives": [part]})
+        nodes += [{"mesh": mesh, "matrix": place.T.ravel().tolist()} for place in shape.places]
+        nodes += [] if shape.places else [{"mesh": mesh}]
+    file.root |= {"nodes": nodes, "scenes": [{"nodes": list(range(len(nodes)))}], "scene": 0}
+    used = {name for entry in file.root["materials"] for name in entry.get("extensions", ())}
+    if used:
+        file.root["extensionsUsed"] = sorted(used)
+    return file
+
+
+def _material(model: ModelFile, shape: MeshShape, painted: Painted) -> dict[str, Any]:
+    """An entry of the table of materials."""
+    material = model.materials[shape.material]
+    words = words_of(material)
+    painted.material(words, material)
+    entry: dict[str, Any] = {"name": shape.material, "pbrMetallicRoughness": words.core}
+    if material.sheer:
+        words.core["baseColorFactor"][3] = float(material.values["alpha"])
+        entry["alphaMode"] = "BLEND" if material.alpha_cutoff is None else "MASK"
+        if material.alpha_cutoff is not None:
+            entry["alphaCutoff"] = float(material.alpha_cutoff)
+    if material.normal_map is not None:
+        entry["normalTexture"] = painted.normal_map(material.normal_map)
+    if shape.emission.any():
+        # A power of two, so that the product is exact.
+        strength = max(1.0, 2.0 ** np.ceil(np.log2(shape.emission.max())))
+        entry["emissiveFactor"] = (shape.emission / strength).tolist()
+        if strength > 1:
+            words.extensions["emissive_strength"] = {"emissiveStrength": strength}
+        if shape.glow is not None:
+            entry["emissiveTexture"] = {"index": painted.color(shape.glow)}
+    if shape.interior not in (None, VACUUM):
+        words.extensions["volume"] |= attenuation(model.media[str(shape.interior)])
+    if words.extensions:
+        named = {f"KHR_materials_{name}": node for name, node in words.extensions.items()}
+        entry["extensions"] = named
+    return entry
+
+
+def _not_written(model: Scene | ModelFile) -> list[str]:
+    """One line about what surrounds the shapes, if there is any."""
+    if not isinstance(model, Scene):
+        return []
+    found = [name for name in _SURROUNDINGS if getattr(model, name) not in (None, ())]
+    if model.lens.radius > 0:
+        found.append("lens")
+    return [f"not written: {', '.join(found)}"] if found else []
+
+
+def _come_back(model: ModelFile, path: Path) -> list[str]:
+    """What reading the file says, and what has changed."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        found = read_model(path)
+    return [f"read back: {warning.message}" for warning in caught] + changes(model, found)

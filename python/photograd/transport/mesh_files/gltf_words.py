@@ -1,0 +1,180 @@
+"""Reflectance models in the words of glTF: what `gltf_materials` reads, written.
+
+Each function is the inverse of a rule there. A model that has no such words is refused by name.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from photograd.transport.medium import Medium
+from photograd.transport.mesh_files.gltf_draft import PLAIN_IOR, reflectance_of
+from photograd.transport.scene import Material
+
+Values = dict[str, Any]
+_LARGEST_DEPTH = 4.0
+"""Optical depth, in the thickest channel, at the distance for which a colour is written."""
+
+
+@dataclass
+class Words:
+    """A material of a file.
+
+    Attributes:
+        core: its pbrMetallicRoughness.
+        extensions: by their names without KHR_materials_.
+    """
+
+    core: dict[str, Any]
+    extensions: dict[str, dict[str, Any]] = field(default_factory=dict)
+
+
+def words_of(material: Material) -> Words:
+    """The numbers of a material of a model in `WRITTEN`; textures and alpha are added elsewhere."""
+    return WRITTEN[material.model]({
+        name: [float(x) for x in value] if np.ndim(value) else float(value)
+        for name, value in material.values.items()
+    })  # fmt: skip
+
+
+def _core(color: Any, metalness: float, roughness: float) -> dict[str, Any]:
+    return {
+        "baseColorFactor": [*color, 1.0],
+        "metallicFactor": metalness,
+        "roughnessFactor": roughness,
+    }
+
+
+def _gltf(v: Values) -> Words:
+    return Words(_core(v["base_color"], v["metalness"], v["roughness"]))
+
+
+def _lambert(v: Values) -> Words:
+    """A dielectric that mirrors nothing."""
+    return Words(_core(v["albedo"], 0.0, 1.0), {"specular": {"specularFactor": 0.0}})
+
+
+def _metal(v: Values) -> Words:
+    return Words(_core(v["f0"], 1.0, v["roughness"]))
+
+
+def _anisotropic(v: Values) -> Words:
+    turned = {"anisotropyStrength": v["anisotropy"], "anisotropyRotation": v["rotation"]}
+    return Words(_metal(v).core, {"anisotropy": turned})
+
+
+def _clearcoat(v: Values) -> Words:
+    coat = {"clearcoatFactor": v["coat"], "clearcoatRoughnessFactor": v["coat_roughness"]}
+    return Words(_gltf(v).core, {"clearcoat": coat})
+
+
+def _sheen(v: Values) -> Words:
+    cloth = {
+        "sheenColorFactor": v["sheen_color_factor"],
+        "sheenRoughnessFactor": v["sheen_roughness_factor"],
+    }
+    return Words(_gltf(v).core, {"sheen": cloth})
+
+
+def _iridescence(v: Values) -> Words:
+    film = {
+        "iridescenceFactor": v["iridescence_factor"],
+        "iridescenceIor": v["iridescence_ior"],
+        "iridescenceThicknessMinimum": 0.0,
+        "iridescenceThicknessMaximum": v["iridescence_thickness"],
+    }
+    return Words(_gltf(v).core, {"iridescence": film})
+
+
+def _standard(v: Values) -> Words:
+    """Up to 0.5 by the strength of the reflection, above by the index.
+
+    An index of exactly 1.5 at full strength would be the core model without extensions.
+    """
+    wanted, size = v["reflectance"], 0.4 * v["reflectance"]
+    if wanted < 0.5:
+        strength = _closest(4 * wanted**2, lambda s: reflectance_of(s, PLAIN_IOR) - wanted)
+        extensions = {"specular": {"specularFactor": strength}}
+    else:
+        index = (1 + size) / (1 - size)
+        ior = _closest(
+            index, lambda i: np.inf if i == PLAIN_IOR else reflectance_of(1.0, i) - wanted
+        )
+        extensions = {"ior": {"ior": ior}}
+    return Words(_gltf(v).core, extensions)
+
+
+def _closest(start: float, error: Callable[[float], float]) -> float:
+    """Of the numbers next to `start` the one with the least error."""
+    near = [start]
+    for towards in (0.0, np.inf):
+        x = start
+        for _ in range(8):
+            x = float(np.nextafter(x, towards))
+            near.append(x)
+    return min(near, key=lambda x: abs(error(x)))
+
+
+def _clear(v: Values) -> Words:
+    """Smooth if there is no roughness, white if there is no colour."""
+    core = _core(v.get("tint", [1.0] * 3), 0.0, v.get("roughness", 0.0))
+    passing = {"transmission": {"transmissionFactor": 1.0}, "ior": {"ior": v["eta"]}}
+    if "dispersion" in v:
+        passing["dispersion"] = {"dispersion": v["dispersion"]}
+    return Words(core, passing)
+
+
+def _thick(v: Values) -> Words:
+    words = _clear(v)
+    words.extensions["volume"] = {"thicknessFactor": 1.0}  # any but 0 means: a body
+    return words
+
+
+def _transmission(v: Values) -> Words:
+    extensions = {
+        "transmission": {"transmissionFactor": v["transmission"]},
+        "ior": {"ior": v["eta"]},
+    }
+    return Words(_gltf(v).core, extensions)
+
+
+def _refraction(v: Values) -> Words:
+    words = _transmission(v)
+    words.extensions["volume"] = {"thicknessFactor": 1.0}
+    return words
+
+
+WRITTEN: dict[str, Callable[[Values], Words]] = {
+    "gltf": _gltf,
+    "standard": _standard,
+    "clearcoat": _clearcoat,
+    "ggx_anisotropic": _anisotropic,
+    "gltf_sheen": _sheen,
+    "gltf_iridescence": _iridescence,
+    "thin_glass": _clear,
+    "glass": _thick,
+    "dispersive_glass": _thick,
+    "rough_dielectric": _thick,
+    "dispersive_dielectric": _thick,
+    "gltf_transmission": _transmission,
+    "gltf_refraction": _refraction,
+    "lambert": _lambert,
+    "ggx_metal": _metal,
+}
+"""Models that glTF has words for."""
+BODIES = {name for name, words in WRITTEN.items() if words in (_thick, _refraction)}
+"""Those with a volume, which may swallow light."""
+
+
+def attenuation(medium: Medium) -> dict[str, Any]:
+    """What KHR_materials_volume says of a medium that only absorbs: the inverse of Beer's law."""
+    most = float(medium.sigma_t.max())
+    if most == 0:
+        return {}
+    distance = _LARGEST_DEPTH / most
+    color = np.exp(-medium.sigma_t * distance)
+    return {"attenuationDistance": distance, "attenuationColor": color.tolist()}

@@ -1,0 +1,135 @@
+"""What differs between two models of the same shapes, in words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from photograd.transport.medium import Medium
+from photograd.transport.mesh_files.model_file import ModelFile
+from photograd.transport.scene import Material, MeshShape
+from photograd.transport.texture import NormalMap, Texture, TextureUse
+
+Array = npt.NDArray[Any]
+ROUNDING, TEXEL_ROUNDING = 1e-12, 1e-6
+"""Relative: what logarithms and roots leave behind in double, decoding in float, is no change."""
+
+
+def changes(before: ModelFile, after: ModelFile) -> list[str]:
+    """One line for each thing that is not the same; names of textures and media do not count.
+
+    Numbers that differ by less than `ROUNDING` are the same, texels by less than `TEXEL_ROUNDING`;
+    positions, normals and coordinates have to be equal.
+    """
+    found = list(_of_shapes(before, after))
+    for name, material in before.materials.items():
+        if name not in after.materials:
+            found.append(f"material '{name}': no shape has it, left out")
+            continue
+        other = after.materials[name]
+        found += [f"material '{name}': {text}" for text in _of_material(material, other)]
+        sizes = {p.name: p.size for p in (*material.parameters, *other.parameters)}
+        found += [
+            f"material '{name}': {parameter}: {text}"
+            for parameter in sorted(material.textures.keys() | other.textures.keys())
+            for text in _of_use(
+                material.textures.get(parameter), other.textures.get(parameter),
+                before.textures, after.textures, sizes[parameter],
+            )
+        ]  # fmt: skip
+    return found
+
+
+def _of_shapes(before: ModelFile, after: ModelFile) -> Iterator[str]:
+    others = {shape.name: shape for shape in after.shapes}
+    for shape in before.shapes:
+        other = others.get(shape.name)
+        if not isinstance(shape, MeshShape) or not isinstance(other, MeshShape):
+            yield f"shape '{shape.name}': missing"
+            continue
+        for name in ("vertices", "faces", "normals", "uv", "places", "emission", "material"):
+            if not _same(getattr(shape, name), getattr(other, name), 0.0):
+                yield f"shape '{shape.name}': {name} changed"
+        for text in _of_use(shape.glow, other.glow, before.textures, after.textures, 3):
+            yield f"shape '{shape.name}': glow: {text}"
+        mine, its = (
+            media.get(name or "")
+            for media, name in ((before.media, shape.interior), (after.media, other.interior))
+        )
+        if not _same_medium(mine, its):
+            yield f"shape '{shape.name}': interior changed"
+
+
+def _same(a: Any, b: Any, rounding: float) -> bool:
+    if a is None or b is None or isinstance(a, str):
+        return a is b or bool(a == b)
+    if isinstance(a, tuple):
+        return len(a) == len(b) and all(_same(x, y, rounding) for x, y in zip(a, b, strict=True))
+    one, other = np.asarray(a), np.asarray(b)
+    if one.shape != other.shape:
+        return False
+    size = float(np.abs(one).max(initial=0)) * rounding
+    return bool((np.abs(one.astype(np.float64) - other) <= size).all())
+
+
+def _same_medium(a: Medium | None, b: Medium | None) -> bool:
+    """Whether both swallow the same: a medium of nothing is none."""
+    mine, its = (np.zeros(3) if medium is None else medium.sigma_t for medium in (a, b))
+    return _same(mine, its, ROUNDING)
+
+
+def _of_material(before: Material, after: Material) -> Iterator[str]:
+    if before.model != after.model:
+        yield f"'{before.model}' is read back as '{after.model}'"
+        return
+    for name in sorted(before.values.keys() | after.values.keys()):
+        mine, its = before.values.get(name), after.values.get(name)
+        if not _same(mine, its, ROUNDING):
+            yield f"{name}: {_said(mine)} is read back as {_said(its)}"
+    if before.alpha_cutoff != after.alpha_cutoff:
+        yield f"alpha_cutoff: {before.alpha_cutoff} is read back as {after.alpha_cutoff}"
+    yield from _of_normals(before.normal_map, after.normal_map)
+
+
+def _of_normals(before: NormalMap | None, after: NormalMap | None) -> Iterator[str]:
+    if before is None or after is None:
+        if before is not after:
+            yield "normal map: lost" if after is None else "normal map: new"
+        return
+    if not _same(before.values, after.values, TEXEL_ROUNDING):
+        yield f"normal map: {_rounded(before.values, after.values)}"
+    if before.wrap != after.wrap:
+        yield f"normal map: wrap {before.wrap} is read back as {after.wrap}"
+
+
+def _of_use(
+    before: TextureUse | None, after: TextureUse | None, mine: Mapping[str, Texture],
+    its: Mapping[str, Texture], size: int,
+) -> Iterator[str]:  # fmt: skip
+    """The `size` channels that scale something are compared; white ones scale nothing."""
+    pair = []
+    for use, textures in ((before, mine), (after, its)):
+        texture = Texture(np.ones((1, 1, 3), np.float32)) if use is None else textures[use.texture]
+        first = 0 if use is None else use.channel
+        pair.append((texture.values[..., first : first + size], texture.wrap))
+    (a, wrap), (b, other) = pair
+    if before is None or after is None:
+        if bool((a != 1).any() or (b != 1).any()):
+            yield "texture lost" if after is None else "texture new"
+    elif wrap != other:
+        yield f"texture: wrap {wrap} is read back as {other}"
+    elif not _same(a, b, TEXEL_ROUNDING):
+        yield f"texture: {_rounded(a, b)}"
+
+
+def _rounded(a: Array, b: Array) -> str:
+    if a.shape != b.shape:
+        return f"shape {a.shape} is read back as {b.shape}"
+    return f"rounded to eight bits, by at most {float(np.abs(a - b).max()):.3g}"
+
+
+def _said(value: Any) -> str:
+    return "none" if value is None else str(np.asarray(value).tolist())
