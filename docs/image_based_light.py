@@ -216,9 +216,9 @@ def figure_of(shown: list[tuple[str, Comparison]]) -> Figure:
             figure,
             "A ball under a studio: by path tracing, by tables of the light that were averaged "
             f"beforehand, and how much brighter (red) or darker (blue) these are, up to {limit:.0%}"
-            " of the ball's mean. Matt surfaces agree. Glossy ones do where they are seen from "
-            "above; towards the rim the true lobe is long and thin, and the table's is round. The "
-            "roughest lobe leans from the mirrored view towards the normal, the table's does not.",
+            " of the ball's mean. Matt surfaces agree, and a smooth one nearly does. The true lobe "
+            "of rougher ones is long and thin towards the rim, where the table's is round; the "
+            "roughest leans from the mirrored view towards the normal, and the table's does not.",
             left=left, right=0.15,
         )  # fmt: skip
     return figure
