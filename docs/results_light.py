@@ -1,8 +1,8 @@
 """Recovers materials and light through the path tracer: `python docs/results_light.py DATA`.
 
-DATA is a folder with meshes/spot, textures, envmaps and materials. Rewrites what stands between two
-markers of docs/results.md, and docs/images/recover_*.png. `--only NAME` measures one section anew
-and leaves the others.
+Image-based light is compared with it. DATA is a folder with meshes/spot, textures, envmaps and
+materials. Rewrites what stands between two markers of docs/results.md, and pictures in docs/images.
+`--only NAME` measures one section anew and leaves the others.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ import time
 from pathlib import Path
 from types import ModuleType
 
+import image_based_light
 import numpy as np
 import recover_environment
 import recover_materials
@@ -32,6 +33,7 @@ SECTIONS: dict[str, tuple[str, ModuleType]] = {
     "materials": ("Textures, roughness and metalness", recover_materials),
     "environment": ("The light around a ball", recover_environment),
     "measured": ("Measured reflectance, by four models", recover_measured),
+    "image": ("Image-based light, by three tables", image_based_light),
 }
 """Name: (title, module with `measure(data) -> (lines, figure)` and the name of its `IMAGE`)."""
 

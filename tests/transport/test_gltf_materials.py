@@ -274,3 +274,12 @@ def test_coordinates_are_moved_and_chosen(tmp_path: Path) -> None:
     found = model.shapes[0].uv
     np.testing.assert_allclose(found[1], [0.25 + 0.5, 0.5 - 1.0], atol=1e-6)
     np.testing.assert_allclose(found[3], [0.25, 0.5], atol=1e-6)
+
+
+def test_lamps_of_a_file_are_named(tmp_path: Path) -> None:
+    glb = square()
+    lamp = {"type": "directional", "intensity": 2.0}
+    glb.json["extensions"] = {"KHR_lights_punctual": {"lights": [lamp]}}
+    glb.json["extensionsRequired"] = ["KHR_lights_punctual"]
+    _, told = read(tmp_path, glb.bytes())
+    assert told == ["m.glb: extensions: KHR_lights_punctual: not supported, left out"]

@@ -46,6 +46,9 @@ def read_gltf(path: Path, note: Callable[[str], None]) -> ModelFile:
     for key, instead in _LEFT_OUT.items():
         if key in container.root:
             note(f"{path.name}: {key}: not supported; {instead}")
+    if "extensions" in container.root:
+        for name, _ in container.root["extensions"].members():  # lamps, variants of materials
+            note(f"{path.name}: extensions: {name[:60]}: not supported, left out")
     pictures = Pictures(container, note)
     materials: dict[str, FileMaterial] = {}
     numbered: dict[int, str] = {}

@@ -1,0 +1,180 @@
+"""Image-based light in real time: maps that are averaged beforehand, and the split sum.
+
+Light that a surface sends back is an integral over all directions [Debevec1998]. Three tables make
+a product of lookups of it [Karis2013]:
+
+    irradiance E(n) = integral of L(wi) <n,wi>+ dwi, W/m^2: the cosine is in it, 1 / pi is not
+    specular   S(r) = mean of L(wi) with the weight D(h) <n,wi>+, for n = wo = r
+    dfg        A, B = the lobe's albedo for an even sky (dfg.py), the cosine in it
+
+    L(wo) = (1 - metalness) base_color E(n) / pi + S(reflect(wo, n)) (f0 A + B)
+    f0 = (1 - metalness) 0.16 reflectance^2 + metalness base_color       the model `standard`
+
+E is exact. The rest is not: the lobe is taken for that of a view from above, round, however
+obliquely it is seen, and the mean of a product for the product of means. Both are right for an even
+sky. Nothing here knows of shadows or of light from one surface to another.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from photograd.errors import RangeError, ShapeError, message
+from photograd.lights.base import Array, Light
+from photograd.lights.dfg import DfgTable, dfg_table
+from photograd.lights.direction_map import DirectionMap
+from photograd.lights.zonal import Kernel, OnRow, zonal_mean
+
+ROUGHNESSES = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0)
+LEAST_ROUGHNESS = 0.045
+"""Of the models in `photograd.bsdf`."""
+
+
+def irradiance_map(light: Light, rows: int = 64, on_row: OnRow | None = None) -> DirectionMap:
+    """Irradiance E (rows, 2 rows, 3), W/m^2, of surfaces that face each direction.
+
+    Args:
+        light: from all around (`zonal.AROUND`), such as an `EnvironmentMap`.
+        rows: of the result; E is smooth, and 64 are enough for a thousandth between cells.
+        on_row: progress.
+
+    Raises:
+        RangeError: as for `zonal_mean`.
+    """
+    mean = zonal_mean(light, lambda drop: np.maximum(1 - drop, 0), np.pi / 128, rows, on_row)
+    return DirectionMap(np.pi * mean.values, mean.world_from_map)
+
+
+def specular_kernel(roughness: float) -> Kernel:
+    """D(h) <n,wi>+ without its constant, for n = wo: <n,h>^2 = (1 + <n,wi>) / 2."""
+    a2 = roughness**4
+
+    def weight(drop: Array) -> Array:
+        # <n,h>^2 (a^2 - 1) + 1, without the difference of two numbers that are almost 1
+        denominator = 0.5 * drop + a2 * (1 - 0.5 * drop)
+        return np.asarray(np.maximum(1 - drop, 0) * (a2 / denominator) ** 2)
+
+    return weight
+
+
+@dataclass(frozen=True, eq=False)
+class SpecularMap:
+    """Radiance S, averaged for some roughnesses, W/(m^2 sr).
+
+    Attributes:
+        roughnesses: ascending.
+        levels: one map for each.
+    """
+
+    roughnesses: tuple[float, ...]
+    levels: tuple[DirectionMap, ...]
+
+    def at(self, w: Array, roughness: ArrayLike) -> Array:
+        """S (..., 3) in directions w (..., 3), linear between the two nearest roughnesses.
+
+        Beyond the first and the last, those.
+        """
+        place = np.interp(np.asarray(roughness), self.roughnesses, np.arange(len(self.levels)))
+        place = np.broadcast_to(place, np.shape(w)[:-1])
+        found = np.zeros((*place.shape, 3))
+        for number, level in enumerate(self.levels):
+            share = np.maximum(1 - np.abs(place - number), 0)
+            used = share > 0
+            found[used] += share[used][:, None] * level.at(np.asarray(w)[used])
+        return found
+
+
+def specular_map(
+    light: Light, roughnesses: Sequence[float] = ROUGHNESSES, most_rows: int = 256,
+    on_row: OnRow | None = None,
+) -> SpecularMap:  # fmt: skip
+    """The radiance that lobes of these roughnesses see around each direction.
+
+    Args:
+        light: from all around (`zonal.AROUND`), such as an `EnvironmentMap`.
+        roughnesses: ascending, from 0.045 to 1. Smooth ones take long: their cells are small.
+        most_rows: of a level, (rows, 2 rows, 3). Rows double from 64 on until cells are no wider
+            than roughness^2 radians; what needs more than this is blurred by the cells.
+        on_row: progress, over all levels.
+
+    Raises:
+        RangeError: roughnesses that are none or not ascending, or as for `zonal_mean`.
+    """
+    wanted = tuple(float(r) for r in roughnesses)
+    ascending = all(a < b for a, b in pairwise(wanted))
+    if not wanted or not ascending or not LEAST_ROUGHNESS <= wanted[0] <= wanted[-1] <= 1:
+        expected = f"ascending numbers from {LEAST_ROUGHNESS} to 1"
+        raise RangeError(message("specular_map", "roughnesses", expected, roughnesses))
+    sizes = [_rows_of(r, most_rows) for r in wanted]
+    levels: list[DirectionMap] = []
+    for r, rows in zip(wanted, sizes, strict=True):
+
+        def report(done: int, _: int, before: int = sum(sizes[: len(levels)])) -> None:
+            if on_row is not None:
+                on_row(before + done, sum(sizes))
+
+        levels.append(zonal_mean(light, specular_kernel(r), r * r, rows, report))
+    return SpecularMap(wanted, tuple(levels))
+
+
+def _rows_of(roughness: float, most: int) -> int:
+    rows = 64
+    while rows < most and np.pi / rows > roughness**2:
+        rows *= 2
+    return min(rows, most)
+
+
+@dataclass(frozen=True, eq=False)
+class PrefilteredLight:
+    """The three tables of a light.
+
+    Attributes:
+        irradiance: of `irradiance_map`.
+        specular: of `specular_map`.
+        dfg: of `dfg_table`.
+    """
+
+    irradiance: DirectionMap
+    specular: SpecularMap
+    dfg: DfgTable
+
+    @classmethod
+    def of(cls, light: Light, on_row: OnRow | None = None) -> PrefilteredLight:
+        """Of a light from all around, with default sizes; progress is of the specular map."""
+        return cls(irradiance_map(light), specular_map(light, on_row=on_row), dfg_table())
+
+
+def shade(
+    light: PrefilteredLight, normals: Array, wo: Array, *, base_color: ArrayLike,
+    metalness: ArrayLike, roughness: ArrayLike, reflectance: ArrayLike = 0.5,
+) -> Array:  # fmt: skip
+    """Radiance (..., 3) that surfaces of the model `standard` send towards wo, by the split sum.
+
+    Args:
+        light: its tables.
+        normals, wo: (..., 3) unit vectors in the world; wo points to the viewer, on the outside.
+        base_color: (..., 3) or (3,).
+        metalness, roughness, reflectance: (...) or numbers, 0 to 1.
+
+    Raises:
+        ShapeError: normals and wo of different shapes.
+    """
+    n, v = np.asarray(normals, np.float64), np.asarray(wo, np.float64)
+    if n.shape != v.shape or n.shape[-1:] != (3,):
+        raise ShapeError(
+            message("shade", "normals, wo", "shape (..., 3), both", (n.shape, v.shape))
+        )
+    color = np.asarray(base_color, np.float64)
+    metal, gloss = np.asarray(metalness)[..., None], np.asarray(reflectance)[..., None]
+    cosine = (n * v).sum(axis=-1)
+    mirrored = 2 * cosine[..., None] * n - v
+    table = light.dfg.at(roughness, np.clip(cosine, 0, 1))
+    f0 = (1 - metal) * 0.16 * gloss**2 + metal * color
+    diffuse = (1 - metal) * color * light.irradiance.at(n) / np.pi
+    specular = light.specular.at(mirrored, roughness) * (f0 * table[..., :1] + table[..., 1:])
+    return np.asarray(diffuse + specular)
