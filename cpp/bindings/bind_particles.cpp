@@ -1,8 +1,9 @@
-// Particles from lights: emission, irradiance of a rectangle, photon maps.
+// Particles from lights: emission, irradiance of a rectangle, photon maps. And textures that are baked.
 #include "bind_particles.h"
 
 #include <memory>
 
+#include "bake_calls.h"
 #include "camera_args.h"
 #include "path_args.h"
 #include "photograd/render/photon_map.h"
@@ -125,6 +126,7 @@ void picture(const PhotonMap& map, const PathGeometry& geometry, const Models& m
 }  // namespace
 
 void bind_particles(py::module_& m) {
+    bind_bake(m);
     const auto scene = [](auto&& define) {
         define(py::arg("geometry"), py::arg("models"), py::arg("parameters"), py::arg("emission"),
                py::arg("lights"), py::arg("textures"));

@@ -69,6 +69,7 @@ __all__: list[str] = [
     "build_mips_backward",
     "cap_to_square",
     "cosine_hemisphere_to_square",
+    "cover_texels",
     "delta_bsdf_dispersive_glass",
     "delta_bsdf_glass",
     "delta_bsdf_mirror",
@@ -98,6 +99,7 @@ __all__: list[str] = [
     "phases",
     "philox4x32",
     "place_samples",
+    "point_occlusion",
     "prepare_splat_rays",
     "prepare_splats",
     "principled_values",
@@ -3912,6 +3914,17 @@ def cosine_hemisphere_to_square(w: numpy.ndarray) -> numpy.ndarray:
     The inverse of square_to_cosine_hemisphere.
     """
 
+def cover_texels(
+    uv: numpy.ndarray,
+    faces: numpy.ndarray,
+    height: typing.SupportsInt | typing.SupportsIndex,
+    width: typing.SupportsInt | typing.SupportsIndex,
+) -> tuple[typing.Any, ...]:
+    """
+    (face (H, W) int32 or -1, weights (H, W, 2) of its second and third corner, number of texels
+    inside of more than one face) of a mesh with coordinates (V, 2) float32 and faces (F, 3) uint32.
+    """
+
 def disk_to_square(p: numpy.ndarray) -> numpy.ndarray:
     """
     The inverse of square_to_disk.
@@ -4083,6 +4096,20 @@ def place_samples(
 ) -> tuple[typing.Any, ...]:
     """
     Per ray: t0 (R,) and the number of samples (R,) int32.
+    """
+
+def point_occlusion(
+    geometry: PathGeometry,
+    points: numpy.ndarray,
+    normals: numpy.ndarray,
+    radius: typing.SupportsFloat | typing.SupportsIndex,
+    seed: typing.SupportsInt | typing.SupportsIndex,
+    first: typing.SupportsInt | typing.SupportsIndex,
+    count: typing.SupportsInt | typing.SupportsIndex,
+    sums: numpy.ndarray,
+) -> None:
+    """
+    Adds to sums (N,) how many samples are free at points (N, 3) with unit normals (N, 3), float64.
     """
 
 def prepare_splat_rays(

@@ -173,6 +173,7 @@ def test_which_model_a_material_becomes(
             "gltf_refraction.eta: 1.0 is taken as 1.2",
         ),
         (extension("ior", ior=8.0), "standard.reflectance: 1.94"),
+        ({"occlusionTexture": {"index": 0, "strength": 0.5}}, "paths find what is occluded"),
         ({"alphaMode": "HASHED"}, "alphaMode HASHED: unknown, drawn opaque"),
         (
             core(baseColorFactor=[1, 1, 1, 0.5])

@@ -4,6 +4,7 @@
 
 #include "photograd/core/parallel.h"
 #include "photograd/render/ray_lanes.h"
+#include "photograd/sampling/even_points.h"
 #include "photograd/sampling/warp.h"
 
 namespace photograd {
@@ -49,6 +50,36 @@ int free_samples(const PathGeometry& scene, const Pinhole& camera, double radius
     return open;
 }
 
+constexpr std::int64_t chunk_points = 64;  // of one task
+
+Vec3<double> row(const double* rows, std::int64_t i) {
+    return {rows[3 * i], rows[3 * i + 1], rows[3 * i + 2]};
+}
+
+int free_directions(const PathGeometry& scene, const Vec3<double>& position,
+                    const Vec3<double>& normal, float radius, const RandomKey& key,
+                    const SampleRange& samples) {
+    const auto frame = Frame<double>::from_normal(normal);
+    const Vec3<double> start = position + normal * scene.offset;
+    const EvenPoints numbers(key, 0);
+    int open = 0;
+    for (std::uint32_t first = 0; first < samples.count; first += width) {
+        RayPacket packet{};
+        const int count = static_cast<int>(std::min<std::uint32_t>(width, samples.count - first));
+        for (int k = 0; k < count; ++k) {
+            const Philox4 words =
+                numbers.words(samples.first + first + static_cast<std::uint32_t>(k));
+            const Vec3<double> w = frame.to_world(square_to_cosine_hemisphere(
+                Vec2<double>(uniform_from<double>(words[0]), uniform_from<double>(words[1]))));
+            set_lane(packet, k, start, w, radius);
+        }
+        bool blocked[width];
+        scene.bvh.occluded(packet, false, blocked);
+        for (int k = 0; k < count; ++k) open += blocked[k] ? 0 : 1;
+    }
+    return open;
+}
+
 }  // namespace
 
 template <Real R>
@@ -66,6 +97,17 @@ void trace_ambient_occlusion(const PathGeometry& scene, const Pinhole& camera, d
                     static_cast<std::uint32_t>(width), samples.count - first));
                 sums[pixel] += free_samples<R>(scene, camera, radius, key, count);
             }
+    });
+}
+
+void add_point_occlusion(const PathGeometry& scene, const SurfacePoints& points, double radius,
+                         std::uint64_t seed, const SampleRange& samples, double* sums) {
+    parallel_for((points.count + chunk_points - 1) / chunk_points, [&](std::int64_t chunk) {
+        const std::int64_t end = std::min(points.count, (chunk + 1) * chunk_points);
+        for (std::int64_t i = chunk * chunk_points; i < end; ++i)
+            sums[i] += free_directions(scene, row(points.positions, i), row(points.normals, i),
+                                       static_cast<float>(radius),
+                                       {seed, 0, static_cast<std::uint32_t>(i), 0}, samples);
     });
 }
 

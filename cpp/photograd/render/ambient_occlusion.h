@@ -4,6 +4,9 @@
 //
 // where V is 0 if something stands within `radius` along w. Directions are drawn in proportion to the cosine, so
 // each sample is V itself. Rays of the camera that meet nothing count as free.
+//
+// Where a camera asks once a view, a texture is asked once: it holds the free part over each of its texels, seen from
+// the front of the surface (geometry/texel_cover.h says which point a texel shows).
 #pragma once
 
 #include "photograd/render/path.h"
@@ -14,5 +17,16 @@ namespace photograd {
 template <Real R>
 void trace_ambient_occlusion(const PathGeometry& scene, const Pinhole& camera, double radius,
                              std::uint64_t seed, const SampleRange& samples, double* sums);
+
+/// Points of surfaces (N, 3) and the geometric normals of their fronts (N, 3), of unit length.
+struct SurfacePoints {
+    const double *positions, *normals;
+    std::int64_t count;
+};
+
+/// Adds to sums (N,) how many of the samples over each point are free. Directions are spread evenly
+/// (sampling/even_points.h); point i has the random numbers of pixel i.
+void add_point_occlusion(const PathGeometry& scene, const SurfacePoints& points, double radius,
+                         std::uint64_t seed, const SampleRange& samples, double* sums);
 
 }  // namespace photograd

@@ -8,6 +8,7 @@ from __future__ import annotations
 import typer
 
 from photograd.commands import (
+    bake_ao,
     capture,
     compare,
     convert,
@@ -29,6 +30,7 @@ def register(app: typer.Typer) -> None:
         fit,
         render,
         trace,
+        bake_ao,
         recover,
         convert,
         evaluate,

@@ -17,6 +17,7 @@ from photograd.transport.derivative import (
 from photograd.transport.lens import Lens
 from photograd.transport.medium import BOUNDARY, VACUUM, DensityGrid, Medium
 from photograd.transport.mesh_files import ModelFile, model_scene, read_model, save_gltf
+from photograd.transport.occlusion_map import bake_ambient_occlusion
 from photograd.transport.particles import (
     Emitted,
     ParticleOptions,
@@ -70,6 +71,7 @@ __all__ = [
     "TextureUse",
     "Unknown",
     "add_derivative_samples",
+    "bake_ambient_occlusion",
     "builtin_scene",
     "derivative_image",
     "direction_of",

@@ -151,6 +151,9 @@ def read_material(node: JsonNode, pictures: Pictures, note: Callable[[str], None
         for name, extension in node["extensions"].members():
             if name not in draft.read:
                 note(f"{extension.place}: not supported by the model '{material.model}', left out")
+    if "occlusionTexture" in node:
+        # It stands for shadows of a light that has none; light that is traced has its own.
+        note(f"{node.place}: occlusionTexture: left out: paths find what is occluded")
     material = _covering(draft, material)
     return _with_pictures(draft, material, pictures)
 
