@@ -15,6 +15,7 @@ namespace {
 using ParticleNumbers = std::tuple<int, int, std::uint64_t>;
 using Models = std::vector<std::string>;
 using Textures = std::vector<py::array>;
+using Media = std::vector<MediumTuple>;
 
 ParticleOptions particles_of(const ArrayArgs& args, const PathGeometry& geometry,
                              const ParticleNumbers& given) {
@@ -28,17 +29,19 @@ ParticleOptions particles_of(const ArrayArgs& args, const PathGeometry& geometry
 
 SceneNumbers<double> scene_of(ArrayArgs& args, const PathGeometry& geometry, const Models& models,
                               const py::array& parameters, const py::array& emission,
-                              const LightTuples& lights, const Textures& textures) {
-    return {args,     geometry, models,   parameters,  std::nullopt,
-            emission, lights,   textures, std::nullopt};
+                              const LightTuples& lights, const Textures& textures,
+                              const Media& media = {}) {
+    return {args,     geometry, models,   parameters,   std::nullopt,
+            emission, lights,   textures, std::nullopt, media};
 }
 
 /// origins, directions and flux (N, 3), entries of the table of lights (N,).
 py::tuple emit_rows(const PathGeometry& geometry, const Models& models, const py::array& parameters,
                     const py::array& emission, const LightTuples& lights, const Textures& textures,
-                    std::uint64_t seed, std::uint64_t first, std::uint64_t count) {
+                    const Media& media, std::uint64_t seed, std::uint64_t first,
+                    std::uint64_t count) {
     ArrayArgs args("emit_particles");
-    const auto at = scene_of(args, geometry, models, parameters, emission, lights, textures);
+    const auto at = scene_of(args, geometry, models, parameters, emission, lights, textures, media);
     particles_of(args, geometry, {1, 0, seed});
     const auto rows = static_cast<std::int64_t>(count);
     py::array_t<double> origins({rows, std::int64_t(3)}), directions({rows, std::int64_t(3)}),
@@ -61,10 +64,11 @@ py::tuple emit_rows(const PathGeometry& geometry, const Models& models, const py
 
 void land(const PathGeometry& geometry, const Models& models, const py::array& parameters,
           const py::array& emission, const LightTuples& lights, const Textures& textures,
-          const ParticleNumbers& given, std::uint64_t first, std::uint64_t count,
-          const py::array& rectangle, py::array irradiance, py::array squares) {
+          const Media& media, const ParticleNumbers& given, std::uint64_t first,
+          std::uint64_t count, const py::array& rectangle, py::array irradiance,
+          py::array squares) {
     ArrayArgs args("trace_light");
-    const auto at = scene_of(args, geometry, models, parameters, emission, lights, textures);
+    const auto at = scene_of(args, geometry, models, parameters, emission, lights, textures, media);
     const ParticleOptions options = particles_of(args, geometry, given);
     const double* r = args.in<double>("rectangle", rectangle, "3 3");
     const PathSums sums{args.out<double>("irradiance", irradiance, "H W 3"),
@@ -114,10 +118,7 @@ void picture(const PhotonMap& map, const PathGeometry& geometry, const Models& m
     ArrayArgs args("trace_photons");
     const auto at = scene_of(args, geometry, models, parameters, emission, lights, textures);
     const ThinLens camera = thin_lens(camera_numbers);
-    const std::string axes =
-        std::to_string(camera.height) + " " + std::to_string(camera.width) + " 3";
-    const PathSums sums{args.out<double>("radiance", radiance, axes),
-                        args.out<double>("squares", squares, axes)};
+    const PathSums sums = path_sums(args, camera, radiance, squares);
     const PathOptions options = options_of(args, given);
     const py::gil_scoped_release release;
     trace_photons(at.scene, map, camera, options, {first, count}, sums);
@@ -132,12 +133,12 @@ void bind_particles(py::module_& m) {
                py::arg("lights"), py::arg("textures"));
     };
     scene([&](auto... of) {
-        m.def("emit_particles", &emit_rows, of..., py::arg("seed"), py::arg("first"),
-              py::arg("count"),
+        m.def("emit_particles", &emit_rows, of..., py::arg("media"), py::arg("seed"),
+              py::arg("first"), py::arg("count"),
               "(origins (N, 3), directions (N, 3), flux (N, 3) W, entries (N,) of the table of "
               "lights) of particles\nas they leave their lights.");
-        m.def("trace_light", &land, of..., py::arg("options"), py::arg("first"), py::arg("count"),
-              py::arg("rectangle"), py::arg("irradiance"), py::arg("squares"),
+        m.def("trace_light", &land, of..., py::arg("media"), py::arg("options"), py::arg("first"),
+              py::arg("count"), py::arg("rectangle"), py::arg("irradiance"), py::arg("squares"),
               "Adds what particles bring to a rectangle (corner, edge_x, edge_y) (3, 3) to "
               "irradiance (H, W, 3),\nand its squares, float64. options: (max_depth, "
               "roulette_from, seed).");

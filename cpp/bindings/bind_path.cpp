@@ -82,10 +82,7 @@ void trace(const PathGeometry& geometry, const std::vector<std::string>& models,
                                       emission, lights, textures, sampling_textures, media,
                                       sampling_media);
         const ThinLens camera = thin_lens(camera_numbers);
-        const std::string axes =
-            std::to_string(camera.height) + " " + std::to_string(camera.width) + " 3";
-        const PathSums sums{args.out<double>("radiance", radiance, axes),
-                            args.out<double>("squares", squares, axes)};
+        const PathSums sums = path_sums(args, camera, radiance, squares);
         const PathOptions options = options_of(args, given);
         const py::gil_scoped_release release;
         trace_paths(numbers.scene, camera, options, {first, count}, sums);
@@ -167,6 +164,9 @@ py::dict vertex_row(const PathVertex<double>& v) {
     row["value"] = colors(v.value);
     row["lobe"] = v.lobe;
     row["passed"] = v.passed;
+    row["coverage"] = v.coverage;
+    row["coverage_slope"] = v.coverage_slope;
+    row["light_through"] = v.light.through;
     row["weight"] = v.weight;
     row["survival"] = v.survival;
     return row;

@@ -5,6 +5,8 @@
 
 #include "listed_lights.h"
 #include "media_args.h"
+#include "photograd/camera/pinhole.h"
+#include "photograd/render/path.h"
 #include "photograd/render/path_options.h"
 #include "photograd/scene/path_scene.h"
 
@@ -107,6 +109,15 @@ inline PathOptions options_of(const ArrayArgs& args, const Options& given) {
             roulette_from,
             seed,
             static_cast<Sampler>(sampler)};
+}
+
+/// Where samples of a camera's pixels are added, "radiance" and "squares": (H, W, 3) each, float64.
+inline PathSums path_sums(ArrayArgs& args, const Pinhole& camera, py::array& radiance,
+                          py::array& squares, const std::string& prefix = "") {
+    const std::string axes =
+        std::to_string(camera.height) + " " + std::to_string(camera.width) + " 3";
+    return {args.out<double>((prefix + "radiance").c_str(), radiance, axes),
+            args.out<double>((prefix + "squares").c_str(), squares, axes)};
 }
 
 }  // namespace photograd

@@ -3937,6 +3937,9 @@ def emit_particles(
     emission: numpy.ndarray,
     lights: collections.abc.Sequence[tuple[typing.Any, ...]],
     textures: collections.abc.Sequence[numpy.ndarray],
+    media: collections.abc.Sequence[
+        tuple[str, numpy.ndarray, numpy.ndarray | None, typing.SupportsFloat | typing.SupportsIndex]
+    ],
     seed: typing.SupportsInt | typing.SupportsIndex,
     first: typing.SupportsInt | typing.SupportsIndex,
     count: typing.SupportsInt | typing.SupportsIndex,
@@ -4388,6 +4391,9 @@ def trace_light(
     emission: numpy.ndarray,
     lights: collections.abc.Sequence[tuple[typing.Any, ...]],
     textures: collections.abc.Sequence[numpy.ndarray],
+    media: collections.abc.Sequence[
+        tuple[str, numpy.ndarray, numpy.ndarray | None, typing.SupportsFloat | typing.SupportsIndex]
+    ],
     options: tuple[
         typing.SupportsInt | typing.SupportsIndex,
         typing.SupportsInt | typing.SupportsIndex,
@@ -4505,10 +4511,16 @@ def trace_paths_tangent(
     emission: numpy.ndarray,
     lights: collections.abc.Sequence[tuple[typing.Any, ...]],
     textures: collections.abc.Sequence[numpy.ndarray],
+    media: collections.abc.Sequence[
+        tuple[str, numpy.ndarray, numpy.ndarray | None, typing.SupportsFloat | typing.SupportsIndex]
+    ],
     v_parameters: numpy.ndarray,
     v_emission: numpy.ndarray,
     v_lights: collections.abc.Sequence[tuple[typing.Any, ...]],
     v_textures: collections.abc.Sequence[numpy.ndarray],
+    v_media: collections.abc.Sequence[
+        tuple[str, numpy.ndarray, numpy.ndarray | None, typing.SupportsFloat | typing.SupportsIndex]
+    ],
     camera: tuple[typing.Any, ...],
     options: tuple[
         typing.SupportsInt | typing.SupportsIndex,

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from photograd.core import _core
-from photograd.errors import RangeError, SceneError, ShapeError
+from photograd.errors import RangeError, ShapeError
 from photograd.transport import (
     Accumulation,
     PathOptions,
@@ -16,7 +16,6 @@ from photograd.transport import (
     Scene,
     TextureUse,
     add_derivative_samples,
-    builtin_scene,
     derivative_image,
     direction_of,
 )
@@ -90,12 +89,6 @@ def test_veils(alpha: float) -> None:
 
 def test_painted_lamps() -> None:
     check(room(), without=("materials.black.albedo",))
-
-
-def test_media_are_refused() -> None:
-    tracer = PathTracer(builtin_scene("wax"))
-    with pytest.raises(SceneError, match=r"derivative_image: scene.media: .*without media"):
-        derivative_image(tracer, "media.wax.albedo[0]", spp=1, seed=1)
 
 
 def test_differences_on_held_paths() -> None:

@@ -60,38 +60,42 @@ struct ShadowRay {
     LightVertex<R>* light = nullptr;
 };
 
-/// Steps behind what a ray has met, unless nothing passes there.
+/// Whether light passes what a shadow ray has met; then the light has one more veil.
 template <Real R>
-void pass_veil(const PathScene<R>& scene, bool stop_when_black, std::int32_t instance,
-               std::int32_t primitive, float t, ShadowRay<R>& shadow) {
-    const PathGeometry& geometry = *scene.geometry;
-    const SurfaceHit<R> hit = surface_hit(geometry, shadow.ray, instance, primitive, t);
-    const std::int32_t m = geometry.material[static_cast<std::size_t>(hit.shape)];
+bool leaves_light(const PathScene<R>& scene, bool stop_when_black, const SurfaceHit<R>& hit,
+                  LightVertex<R>& light) {
+    const std::int32_t m = scene.geometry->material[static_cast<std::size_t>(hit.shape)];
     const auto number = static_cast<std::size_t>(m);
-    shadow.blocked = true;
-    if (!scene.materials[number].sheer) return;
-    const SurfaceTextures& textures = geometry.textures;
+    if (!scene.materials[number].sheer) return false;
+    const SurfaceTextures& textures = scene.geometry->textures;
     const auto alpha_of = [&](std::span<const Material<R>> from, std::span<const R* const> texels) {
         const std::span<const TextureUse> uses = textures.of(number);
         return uses.empty() ? from[number].alpha
                             : textured(from[number], uses, textures, texels, hit.uv).alpha;
     };
     const double cutoff = textures.cutoff(number);
-    if (cutoff >= 0) {
-        if (alpha_of(scene.sampling, scene.sampling_texels) >= R(cutoff)) return;
-    } else {
-        const R left = R(1) - alpha_of(scene.materials, scene.texels);
-        if (stop_when_black && left == R(0)) return;
-        shadow.light->veils.push_back({m, hit.uv, left});
-        shadow.light->through *= left;
-    }
+    if (cutoff >= 0) return !(alpha_of(scene.sampling, scene.sampling_texels) >= R(cutoff));
+    const R left = R(1) - alpha_of(scene.materials, scene.texels);
+    if (stop_when_black && left == R(0)) return false;
+    light.veils.push_back({m, hit.uv, left});
+    light.through *= left;
+    return true;
+}
+
+/// Steps behind what a ray has met, unless nothing passes there.
+template <Real R>
+void pass_veil(const PathScene<R>& scene, bool stop_when_black, std::int32_t instance,
+               std::int32_t primitive, float t, ShadowRay<R>& shadow) {
+    const PathGeometry& geometry = *scene.geometry;
+    const SurfaceHit<R> hit = surface_hit(geometry, shadow.ray, instance, primitive, t);
+    shadow.blocked = !leaves_light(scene, stop_when_black, hit, *shadow.light);
+    if (shadow.blocked) return;
     const Vec3<R>& way = shadow.ray.direction;
     // Along the ray, not along the normal as a path goes on: beside its way it might end behind the light.
     const R step = R(geometry.offset) / std::max(std::abs(dot(hit.outside, way)), R(0.05));
     const Vec3<R> start = hit.position + way * step;
     shadow.end -= dot(start - shadow.ray.origin, way);
     shadow.ray.origin = start;
-    shadow.blocked = false;
     shadow.open = shadow.end > R(0);
 }
 

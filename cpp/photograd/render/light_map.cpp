@@ -1,6 +1,7 @@
 #include "photograd/render/light_map.h"
 
 #include "photograd/core/parallel.h"
+#include "photograd/render/volume_particles.h"
 
 namespace photograd {
 namespace {
@@ -13,19 +14,50 @@ struct Landing {
     Vec3<double> flux;
 };
 
+/// walk(follow) calls follow(first, count) for all sixteens of particles of a task.
+template <class Walk>
+void land(const PathScene<double>& scene, const ParticleOptions& options, const Receiver& receiver,
+          double hair, Walk&& walk, std::vector<Landing>& out) {
+    ParticleWalk particles(scene, options);
+    walk([&](std::uint64_t first, int count) {
+        particles.follow(first, count, [&](const Flight& flight) {
+            double at;
+            const std::int64_t cell = receiver.cell_of(flight.ray, flight.length, hair, at);
+            if (cell >= 0) out.push_back({cell, flight.flux});
+        });
+    });
+}
+template <class Walk>
+void land_through_media(const PathScene<double>& scene, const ParticleOptions& options,
+                        const Receiver& receiver, double hair, Walk&& walk,
+                        std::vector<Landing>& out) {
+    VolumeParticleWalk particles(scene, options);
+    std::int64_t cell = -1;
+    const auto gate = [&](const Ray<double>& ray, double length) {
+        double at = -1;
+        cell = receiver.cell_of(ray, length, hair, at);
+        return cell >= 0 ? at : -1.0;
+    };
+    walk([&](std::uint64_t first, int count) {
+        particles.follow(first, count, gate,
+                         [&](const Vec3<double>& flux) { out.push_back({cell, flux}); });
+    });
+}
+
 }  // namespace
 
 double Receiver::cell_area() const {
     return length(cross(edge_x, edge_y)) / static_cast<double>(height * width);
 }
 
-std::int64_t Receiver::cell_of(const Flight& flight, double hair) const {
+std::int64_t Receiver::cell_of(const Ray<double>& ray, double length, double hair,
+                               double& at) const {
     const Vec3<double> normal = normalize(cross(edge_x, edge_y));
-    const double above = dot(flight.ray.origin - corner, normal),
-                 falling = -dot(flight.ray.direction, normal);
+    const double above = dot(ray.origin - corner, normal), falling = -dot(ray.direction, normal);
     if (!(above > 0) || !(falling > 0)) return -1;
-    if (!(above - falling * flight.length <= hair)) return -1;
-    const Vec3<double> p = flight.ray.at(std::min(above / falling, flight.length)) - corner;
+    if (!(above - falling * length <= hair)) return -1;
+    at = std::min(above / falling, length);
+    const Vec3<double> p = ray.at(at) - corner;
     const double x = dot(p, edge_x) / dot(edge_x, edge_x), y = dot(p, edge_y) / dot(edge_y, edge_y);
     if (!(x >= 0 && x < 1 && y >= 0 && y < 1)) return -1;
     const auto column = static_cast<std::int64_t>(x * static_cast<double>(width)),
@@ -45,16 +77,17 @@ void trace_light(const PathScene<double>& scene, const ParticleOptions& options,
         parallel_for(count, [&](std::int64_t i) {
             std::vector<Landing>& own = landings[static_cast<std::size_t>(i)];
             own.clear();
-            ParticleWalk walk(scene, options);
             const auto begin = static_cast<std::uint64_t>(start + i) * chunk_particles,
                        end = std::min(begin + chunk_particles, particles.count);
-            for (std::uint64_t n = begin; n < end; n += walk_width)
-                walk.follow(particles.first + n,
-                            static_cast<int>(std::min<std::uint64_t>(walk_width, end - n)),
-                            [&](const Flight& flight) {
-                                const std::int64_t cell = receiver.cell_of(flight, hair);
-                                if (cell >= 0) own.push_back({cell, flight.flux});
-                            });
+            const auto walk = [&](auto&& follow) {
+                for (std::uint64_t n = begin; n < end; n += walk_width)
+                    follow(particles.first + n,
+                           static_cast<int>(std::min<std::uint64_t>(walk_width, end - n)));
+            };
+            if (scene.geometry->media.any())
+                land_through_media(scene, options, receiver, hair, walk, own);
+            else
+                land(scene, options, receiver, hair, walk, own);
         });
         // Chunk by chunk, in their order, by one thread: adding is little work beside tracing.
         for (std::int64_t i = 0; i < count; ++i)

@@ -17,8 +17,10 @@ struct Receiver {
     Vec3<double> corner, edge_x, edge_y;  // perpendicular edges, m
     std::int64_t height, width;
 
-    /// The cell that a flight passes, or -1. What ends less than `hair` above the rectangle has reached it.
-    [[nodiscard]] std::int64_t cell_of(const Flight& flight, double hair) const;
+    /// The cell that a straight way passes, and at which distance, or -1. What ends less than `hair` above the rectangle
+    /// has reached it.
+    [[nodiscard]] std::int64_t cell_of(const Ray<double>& ray, double length, double hair,
+                                       double& at) const;
     [[nodiscard]] double cell_area() const;  // m^2
 };
 

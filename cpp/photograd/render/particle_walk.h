@@ -15,7 +15,8 @@
 //
 //   weight = sqrt(W W') |a n| |b m| / (|a m| |b n|)
 //
-// which holds whatever the lobe, as long as it is its own way back. What lies between surfaces is not looked at.
+// which holds whatever the lobe, as long as it is its own way back. What lies between surfaces is the part of
+// volume_particles.h.
 //
 // Numbers are a function of seed, particle and vertex: block 0 chooses the light and the place, 1 the way, 2 + k what
 // vertex k does, 2^20 + k whether it is passed (coverage.h). The step of the key is 1, so that they are not those of a picture of the same seed.
@@ -85,9 +86,10 @@ public:
             }
     }
 
-private:
+protected:  // what a walk through media shares
     struct Lane {
         bool alive = false, smooth = true, textured = false;
+        bool far = false;  // its light is at infinity
         RandomKey key;
         Ray<double> ray;
         Vec3<double> flux, beta;  // as it left the light; what surfaces have left of it
@@ -104,6 +106,7 @@ private:
         lane.flux = particle.flux;
         lane.beta = Vec3<double>(1);
         lane.smooth = true;
+        lane.far = particle.far;
         lane.alive = !is_black(lane.flux);
     }
 
@@ -157,16 +160,20 @@ private:
             draw(material, *lane.hit, side, u2, uniform_from<double>(words[2]), out);
         if (!(next.pdf > 0)) return;
         lane.beta *= weight(material, *lane.hit, side, back, out, next);
-        if (is_black(lane.beta)) return;
-        if (depth >= options_.roulette_from) {
-            const double survival =
-                std::clamp(std::max({lane.beta.x, lane.beta.y, lane.beta.z}), 0.05, 0.95);
-            if (uniform_from<double>(words[3]) >= survival) return;
-            lane.beta *= 1 / survival;
-        }
+        if (!survives(lane, depth, uniform_from<double>(words[3]))) return;
         lane.smooth = lane.smooth && next.lobe >= 0;
         lane.ray = {side.start(lane.hit->position, out, scene_.geometry->offset), out};
         lane.alive = true;
+    }
+    /// False where a way ends, black or by roulette.
+    bool survives(Lane& lane, int depth, double u) const {
+        if (is_black(lane.beta)) return false;
+        if (depth < options_.roulette_from) return true;
+        const double survival =
+            std::clamp(std::max({lane.beta.x, lane.beta.y, lane.beta.z}), 0.05, 0.95);
+        if (u >= survival) return false;
+        lane.beta *= 1 / survival;
+        return true;
     }
     /// Whether the particle goes straight on behind a surface that covers only in part.
     bool passes(Lane& lane, const Material<double>& material, const SurfaceSide<double>& side,

@@ -14,14 +14,18 @@ inline RandomKey key_of(const PathOptions& options, std::int64_t pixel, std::uin
     return {options.seed, 0, static_cast<std::uint32_t>(pixel), sample};
 }
 
-/// The ray of one sample, at its moment while the shutter is open: by the first number of a block that no vertex has.
+/// The moment of a sample while the shutter is open, 0 to 1: by the first number of a block that no vertex has.
+inline double sample_time(const RandomKey& key, SampleNumbers& numbers) {
+    constexpr std::uint32_t shutter_block = 1u << 16;
+    return uniform_from<double>(numbers(key, shutter_block)[0]);
+}
+
+/// The ray of one sample, at its moment.
 template <class R>
 Ray<R> sample_ray(const ThinLens& camera, const RandomKey& key, SampleNumbers& numbers) {
-    constexpr std::uint32_t shutter_block = 1u << 16;
     const Philox4 words = numbers(key, 0);
     if (!camera.motion.moves) return camera_ray<R>(camera, key, words);
-    const double time = uniform_from<double>(numbers(key, shutter_block)[0]);
-    return camera_ray<R>(camera.at(time), key, words);
+    return camera_ray<R>(camera.at(sample_time(key, numbers)), key, words);
 }
 
 /// Walks every sample of the pixels [begin, end), pixel by pixel; lanes hold successive samples. visit(pixel, k) finds

@@ -3,6 +3,7 @@
 #include "photograd/core/parallel.h"
 #include "photograd/light/any_light_tangent.h"
 #include "photograd/render/path_samples.h"
+#include "photograd/render/volume_path.h"
 #include "photograd/scene/material_tangent.h"
 
 namespace photograd {
@@ -68,56 +69,63 @@ Vec3<double> PathTangent::sent(const LightVertex<double>& light) const {
     return delta_tangent(scene_.lights[k], along_.lights[k], light.point);
 }
 
+PathTangent::Pair PathTangent::from_light(const LightVertex<double>& light) const {
+    if (!(light.weight > 0)) return {Vec3<double>(0), Vec3<double>(0)};
+    return {light.sent, sent(light)};
+}
+
 /// t of what all veils leave, a product.
 double PathTangent::through(const LightVertex<double>& light) const {
     double t = 0;
     for (std::size_t i = 0; i < light.veils.size(); ++i) {
         const auto m = static_cast<std::size_t>(light.veils[i].material);
-        if (!moving_[m]) continue;
-        double part = -at(m, light.veils[i].uv).change.alpha;
-        for (std::size_t j = 0; j < light.veils.size(); ++j)
-            if (j != i) part *= light.veils[j].left;
-        t += part;
+        if (moving_[m]) t += at(m, light.veils[i].uv).change.alpha * veil_slope(light, i);
     }
     return t;
 }
 
 /// What f and f^l add to t(U), where the material changes.
 Vec3<double> PathTangent::reflected(const PathVertex<double>& v, const Here& here,
-                                    const Vec3<double>& ahead) const {
+                                    const Vec3<double>& ahead, const Vec3<double>& lit) const {
     Vec3<double> t(0);
     if (v.weight > 0 && !v.passed)
         t += value_tangent(here.value, here.change, v.wo, v.wi, v.lobe) * ahead * v.weight;
     if (v.light.weight > 0)
-        t += value_tangent(here.value, here.change, v.wo, v.light.wi, -1) * v.light.sent *
+        t += value_tangent(here.value, here.change, v.wo, v.light.wi, -1) * lit *
              (v.light.weight * v.light.through);
     return t;
 }
 
+PathTangent::Pair PathTangent::leaving(const PathVertex<double>& v, std::int32_t medium,
+                                       const Pair& ahead, const Pair& lit,
+                                       const Vec3<double>& U) const {
+    Vec3<double> t = ahead.tangent * (v.value * v.weight);
+    double d_coverage = 0;
+    if (v.shape >= 0) {
+        const auto m =
+            static_cast<std::size_t>(scene_.geometry->material[static_cast<std::size_t>(v.shape)]);
+        if (moving_[m]) {
+            const Here here = at(m, v.uv);
+            t += reflected(v, here, ahead.value, lit.value);
+            d_coverage = v.coverage_slope * here.change.alpha;
+        }
+    } else if (medium >= 0) {
+        t += scattered(v, medium, ahead.value, lit.value);
+    }
+    if (v.light.weight > 0)
+        t += v.light.f * (lit.tangent * v.light.through + lit.value * through(v.light)) *
+             v.light.weight;
+    if (v.emission_weight > 0) t += emitted(v.shape, v.uv, v.direction) * v.emission_weight;
+    return {U * v.coverage, t * v.coverage + U * d_coverage};
+}
+
 PathTangent::Pair PathTangent::gather(const Path<double>& path) const {
-    Vec3<double> L(0), t(0);
+    Pair L{Vec3<double>(0), Vec3<double>(0)};
     for (std::size_t k = path.size(); k-- > 0;) {
         const PathVertex<double>& v = path[k];
-        const Vec3<double> U = uncovered(v, L);
-        t *= v.value * v.weight;
-        double d_coverage = 0;
-        if (v.shape >= 0) {
-            const auto m = static_cast<std::size_t>(
-                scene_.geometry->material[static_cast<std::size_t>(v.shape)]);
-            if (moving_[m]) {
-                const Here here = at(m, v.uv);
-                t += reflected(v, here, L);
-                d_coverage = v.coverage_slope * here.change.alpha;
-            }
-        }
-        if (v.light.weight > 0)
-            t += v.light.f * (sent(v.light) * v.light.through + v.light.sent * through(v.light)) *
-                 v.light.weight;
-        if (v.emission_weight > 0) t += emitted(v.shape, v.uv, v.direction) * v.emission_weight;
-        t = t * v.coverage + U * d_coverage;
-        L = U * v.coverage;
+        L = leaving(v, MediaGeometry::vacuum, L, from_light(v.light), uncovered(v, L.value));
     }
-    return {L, t};
+    return L;
 }
 
 void trace_paths_tangent(const PathScene<double>& scene, const PathScene<double>& along,
@@ -129,12 +137,21 @@ void trace_paths_tangent(const PathScene<double>& scene, const PathScene<double>
     parallel_for((pixels + chunk_pixels - 1) / chunk_pixels, [&](std::int64_t chunk) {
         const std::int64_t begin = chunk * chunk_pixels,
                            end = std::min(begin + chunk_pixels, pixels);
-        for_each_path(scene, camera, options, samples, {}, false, begin, end,
-                      [&](std::int64_t pixel, const Path<double>& path) {
-                          const PathTangent::Pair found = both.gather(path);
-                          add(found.value, pixel, picture);
-                          add(found.tangent, pixel, tangent);
-                      });
+        const auto add_both = [&](std::int64_t pixel, const PathTangent::Pair& found) {
+            add(found.value, pixel, picture);
+            add(found.tangent, pixel, tangent);
+        };
+        if (scene.geometry->media.any())
+            for_each_volume_path<double>(
+                scene, camera, options, samples, {}, false, begin, end,
+                [&](std::int64_t pixel, const Path<double>& path, const MediaTrail<double>& trail) {
+                    add_both(pixel, both.gather_through(path, trail));
+                });
+        else
+            for_each_path(scene, camera, options, samples, {}, false, begin, end,
+                          [&](std::int64_t pixel, const Path<double>& path) {
+                              add_both(pixel, both.gather(path));
+                          });
     });
 }
 

@@ -134,15 +134,22 @@ void sent_backward(const PathScene<R>& scene, const LightVertex<R>& light, const
     delta_backward(scene.lights[k], light.point, d_L, d_scene.lights[k]);
 }
 
+/// dthrough/dalpha_i: -product of what the other veils leave.
+template <class R>
+R veil_slope(const LightVertex<R>& light, std::size_t i) {
+    R slope = R(-1);
+    for (std::size_t j = 0; j < light.veils.size(); ++j)
+        if (j != i) slope *= light.veils[j].left;
+    return slope;
+}
+
 /// Adds the derivatives of `through` by the alphas of the veils.
 template <Real R>
 void veils_backward(const PathScene<R>& scene, const LightVertex<R>& light, R d_through,
                     PathGradient<R>& d_scene) {
     for (std::size_t i = 0; i < light.veils.size(); ++i) {
         const Veil<R>& veil = light.veils[i];
-        R d_alpha = -d_through;
-        for (std::size_t j = 0; j < light.veils.size(); ++j)
-            if (j != i) d_alpha *= light.veils[j].left;
+        const R d_alpha = d_through * veil_slope(light, i);
         const auto m = static_cast<std::size_t>(veil.material);
         const SurfaceTextures& textures = scene.geometry->textures;
         if (textures.of(m).empty()) {

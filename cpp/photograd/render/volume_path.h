@@ -13,7 +13,7 @@ using VisitVolumePath =
     std::function<void(std::int64_t pixel, const Path<R>& path, const MediaTrail<R>& trail)>;
 
 /// visit(pixel, path, trail) for every sample of the pixels [begin, end), as for_each_path does. The lens of the camera lies
-/// in one medium: in that of its centre.
+/// in one medium at a time: in that of its centre.
 template <Real R>
 void for_each_volume_path(const PathScene<R>& scene, const ThinLens& camera,
                           const PathOptions& options, const SampleRange& samples,
@@ -31,8 +31,5 @@ template <Real R>
 VolumePath<R> trace_volume_path(const PathScene<R>& scene, const ThinLens& camera,
                                 const PathOptions& options, std::uint32_t pixel,
                                 std::uint32_t sample);
-
-/// The shapes with an interior around a point: those that a ray to the outside leaves once more than it enters them.
-Surroundings surroundings_of(const PathGeometry& geometry, const Vec3<double>& point);
 
 }  // namespace photograd

@@ -13,6 +13,7 @@
 //
 //   L_k = w_k Le_k + w^l_k f^l_k P^l_k L^l_k + s_k f_k s'_{k+1} P_{k+1} L_{k+1},        L = s'_0 P_0 L_0
 //
+// and, as there, a surface that covers only in part gives L_k a factor c_k, and veils before a light give L^l_k one.
 // s' is 1 / pdf of where the segment ended (free_flight.h), detached as all weights are. The derivatives, for d = dL/d(product):
 //
 //   dL/dstep_i = d (product of the other steps), from both ends, without a division: a step may be 0
@@ -131,16 +132,23 @@ void product_backward(const PathScene<R>& scene, const MediaTrail<R>& trail,
     }
 }
 
+/// What a vertex has but for c_k, as in path_vertex.h. `ahead` is s'_{k+1} P_{k+1} L_{k+1}.
+template <Real R>
+Vec3<R> uncovered(const PathVertex<R>& v, const MediumVertex<R>& m, const Vec3<R>& ahead) {
+    Vec3<R> L = ahead * (v.value * v.weight);
+    if (v.light.weight > R(0))
+        L += v.light.f * v.light.sent * m.shadow.value * (v.light.weight * v.light.through);
+    if (v.emission_weight > R(0)) L += v.emitted * v.emission_weight;
+    return L;
+}
+
 /// L. Fills leaving[k] with L_k, which the derivative needs, unless it is null.
 template <Real R>
 Vec3<R> gather_through(const Path<R>& path, const MediaTrail<R>& trail, Vec3<R>* leaving) {
     Vec3<R> L(R(0));
     for (std::size_t k = path.size(); k-- > 0;) {
-        const PathVertex<R>& v = path[k];
         const MediumVertex<R>& m = trail.vertices[k];
-        L *= v.value * v.weight;
-        if (v.light.weight > R(0)) L += v.light.f * v.light.sent * m.shadow.value * v.light.weight;
-        if (v.emission_weight > R(0)) L += v.emitted * v.emission_weight;
+        L = uncovered(path[k], m, L) * path[k].coverage;
         if (leaving) leaving[k] = L;
         L *= m.arrival.value * m.weight;
     }
@@ -170,24 +178,32 @@ void gather_through_backward(const PathScene<R>& scene, const Path<R>& path,
         const MediumVertex<R>& m = trail.vertices[k];
         product_backward(scene, trail, m.arrival, d_L * leaving[k] * m.weight, d_scene);
         d_L *= m.arrival.value * m.weight;
+        const bool goes_on = v.weight > R(0) && k + 1 < path.size();
+        Vec3<R> ahead(R(0));
+        if (goes_on) {
+            const MediumVertex<R>& next = trail.vertices[k + 1];
+            ahead = leaving[k + 1] * next.arrival.value * next.weight;
+        }
+        const R d_coverage =
+            v.coverage_slope == R(0) ? R(0) : dot(d_L, uncovered(v, m, ahead)) * v.coverage_slope;
+        d_L *= v.coverage;
         if (v.emission_weight > R(0))
             emitted_backward(scene, v.shape, v.uv, v.direction, d_L * v.emission_weight, d_scene);
         if (v.shape == SceneLights::background) return;
-        Vec3<R> d_light = d_L * v.light.weight;
+        Vec3<R> d_light = d_L * (v.light.weight * v.light.through);
         if (v.light.weight > R(0)) {
+            if (!v.light.veils.empty())
+                veils_backward(scene, v.light,
+                               dot(d_L, v.light.f * v.light.sent * m.shadow.value) * v.light.weight,
+                               d_scene);
             product_backward(scene, trail, m.shadow, d_light * v.light.f * v.light.sent, d_scene);
             d_light *= m.shadow.value;
             sent_backward(scene, v.light, d_light * v.light.f, d_scene);
             d_light *= v.light.sent;
         }
-        const bool goes_on = v.weight > R(0) && k + 1 < path.size();
-        Vec3<R> d_onward(R(0));
-        if (goes_on) {
-            const MediumVertex<R>& next = trail.vertices[k + 1];
-            d_onward = d_L * v.weight * leaving[k + 1] * next.arrival.value * next.weight;
-        }
+        const Vec3<R> d_onward = d_L * v.weight * ahead;
         if (v.shape >= 0)
-            surface_backward(scene, v, d_light, d_onward, R(0), d_scene);
+            surface_backward(scene, v, d_light, d_onward, d_coverage, d_scene);
         else
             collision_backward(scene, v, m.medium, d_light, d_onward, d_scene);
         if (!goes_on) return;

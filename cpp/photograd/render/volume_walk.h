@@ -2,7 +2,8 @@
 //
 // A ray ends at the first of three: a collision in the medium it is in, which is a vertex; a surface, which is one too; or
 // a boundary between media, which is none: the ray goes on behind it, in another medium. So paths reach their vertices
-// at different rounds; each counts its own. Vertex k owns the random numbers that it has without media, block
+// at different rounds; each counts its own. What covers only in part (coverage.h) is a vertex also where light passes it:
+// whoever goes through the hole of a shape's surface is in its interior. Vertex k owns the random numbers that it has without media, block
 // `flights` + k of four for the first distance on its segment, and two streams for what a segment and a shadow ray may need
 // beyond, however many. Block `flights` - 1 holds the path's channel.
 //
@@ -10,6 +11,8 @@
 // through the same media, and any weights that add up to 1 are right.
 #pragma once
 
+#include "photograd/render/camera_surroundings.h"
+#include "photograd/render/crossing.h"
 #include "photograd/render/free_flight.h"
 #include "photograd/render/path_walk.h"
 
@@ -26,7 +29,7 @@ public:
 
     /// `around`: the shapes in which the camera stands.
     VolumeWalk(const PathScene<R>& scene, const PathOptions& options, bool stop_when_black,
-               const Surroundings& around)
+               const CameraSurroundings& around)
         : Base(scene, options, stop_when_black), flight_(scene), around_(around) {}
 
     /// Samples the paths of `count` <= 16 camera rays; they are then in path(k), media(k).
@@ -35,7 +38,7 @@ public:
         for (int k = 0; k < count; ++k) {
             Extra& extra = extras_[k];
             extra.trail.clear();
-            extra.around = around_;
+            extra.around = around_.of(keys[k]);
             extra.from = rays[k].origin;
             extra.shares = Vec3<R>(R(1));
             const Philox4 words = Base::numbers_(keys[k], flights - 1);
@@ -125,7 +128,7 @@ private:
             collide(lane, extra.from + lane.ray.direction * t);
             return end_segment(lane, extra, medium);
         }
-        if (met && is_boundary(lane.hit.shape)) return pass_boundary(lane, extra);
+        if (met && is_boundary(geometry(), lane.hit.shape)) return pass_boundary(lane, extra);
         Base::arrive(lane, met);
         end_segment(lane, extra, MediaGeometry::vacuum);
     }
@@ -150,21 +153,9 @@ private:
         if (stop_when_black_ && Base::is_black(lane.beta)) lane.alive = false;
     }
     void pass_boundary(Lane& lane, Extra& extra) const {
-        beyond(lane.hit, lane.ray.direction, extra.around, extra.from, lane.ray.origin);
+        cross_straight(geometry(), lane.hit, lane.ray.direction, extra.around, extra.from,
+                       lane.ray.origin);
         if (++extra.boundaries > most_boundaries) lane.alive = false;
-    }
-    /// To the other side of a surface, and on: along the ray where it passes steeply, so that it stays on its line.
-    void beyond(const SurfaceHit<R>& hit, const Vec3<R>& direction, Surroundings& around,
-                Vec3<R>& from, Vec3<R>& origin) const {
-        const R side = dot(hit.outside, direction), offset = R(geometry().offset);
-        around.cross(geometry().media, hit.shape, side < R(0));
-        from = hit.position;
-        origin = hit.position + (std::abs(side) > R(0.05)
-                                     ? direction * (offset / std::abs(side))
-                                     : hit.outside * (side > R(0) ? offset : -offset));
-    }
-    bool is_boundary(std::int32_t shape) const {
-        return geometry().media.boundary[static_cast<std::size_t>(shape)];
     }
 
     void ask_lights() {
@@ -182,7 +173,8 @@ private:
     bool find_light(Lane& lane, const Extra& extra) {
         const int depth = vertex_of(lane);
         if (lane.hit.shape >= 0)
-            return !Base::sampling_of(lane).is_delta() && Base::choose_light(lane, depth);
+            return !lane.path.back().passed && !Base::sampling_of(lane).is_delta() &&
+                   Base::choose_light(lane, depth);
         Base::find_light(lane, depth);
         PathVertex<R>& v = lane.path.back();
         LightVertex<R>& light = v.light;
@@ -201,14 +193,15 @@ private:
         shadow.from = shadow.origin = lane.hit.position;
         if (lane.hit.shape >= 0) {
             shadow.origin = lane.side.start(lane.hit.position, direction, geometry().offset);
-            go_through(lane, direction, shadow.around);
+            cross_if_through(geometry(), lane.hit, lane.path.back().direction, direction,
+                             shadow.around);
         }
         const auto vertex = static_cast<std::uint32_t>(vertex_of(lane));
         shadow.flight.numbers = FlightNumbers(lane.key, 2 + 2 * vertex);
         shadow.flight.first_u = R(-1);
         shadow.flight.product = extra.trail.start();
     }
-    /// One stretch of each shadow ray; returns whether any goes on behind a boundary.
+    /// One stretch of each shadow ray; returns whether any goes on behind a boundary, or behind what covers in part.
     bool follow_shadows(Shadow* shadows) {
         RayPacket packet{};
         for (int k = 0; k < width; ++k) {
@@ -242,7 +235,8 @@ private:
             const Ray<R> ray{shadow.origin, light.direction};
             hit = surface_hit(geometry(), ray, found.instance[k], found.primitive[k],
                               found.t[k] * scale_of(lane, shadow));
-            if (!is_boundary(hit.shape)) {
+            if (!is_boundary(geometry(), hit.shape) &&
+                !leaves_light(scene_, stop_when_black_, hit, light)) {
                 light.weight = R(0);
                 return false;
             }
@@ -258,7 +252,9 @@ private:
                            extra.trail);
         extra.trail.vertices.back().shadow = shadow.flight.product;
         if (!met) return false;
-        beyond(hit, light.direction, shadow.around, shadow.from, shadow.origin);
+        cross_straight(geometry(), hit, light.direction, shadow.around, shadow.from, shadow.origin);
+        if (!lane.light_far && !(dot(lane.light_end - shadow.origin, light.direction) > R(0)))
+            return false;
         if (++shadow.boundaries <= most_boundaries) return true;
         light.weight = R(0);
         return false;
@@ -269,21 +265,18 @@ private:
     }
 
     void go_on(Lane& lane, Extra& extra) {
-        if (lane.hit.shape >= 0) {
+        if (lane.path.back().passed)
+            Base::pass_on(lane);
+        else if (lane.hit.shape >= 0)
             Base::go_on(lane, vertex_of(lane));
-            if (lane.alive) go_through(lane, lane.ray.direction, extra.around);
-        } else {
+        else
             scatter(lane, extra);
-        }
         if (!lane.alive) return;
+        if (lane.hit.shape >= 0)
+            cross_if_through(geometry(), lane.hit, lane.path.back().direction, lane.ray.direction,
+                             extra.around);
         extra.from = lane.hit.position;
         begin_segment(lane, extra);
-    }
-    /// The surroundings behind a surface, if `direction` leads through it.
-    void go_through(const Lane& lane, const Vec3<R>& direction, Surroundings& around) const {
-        const R out = dot(lane.hit.outside, direction);
-        if (out * dot(lane.hit.outside, lane.path.back().direction) > R(0))
-            around.cross(geometry().media, lane.hit.shape, out < R(0));
     }
     void scatter(Lane& lane, const Extra& extra) {
         lane.alive = false;
@@ -306,7 +299,7 @@ private:
 
     using Base::lanes_, Base::options_, Base::scene_, Base::stop_when_black_;
     FreeFlight<R> flight_;
-    Surroundings around_;
+    CameraSurroundings around_;
     Extra extras_[width];
 };
 

@@ -29,6 +29,7 @@ Particle from_far(const BoundingSphere& around, const Vec3<double>& towards, con
         around.center + around.radius * (p.x * frame.tangent + p.y * frame.bitangent + towards);
     out.direction = -towards;
     out.flux = E * (pi * around.radius * around.radius);
+    out.far = true;
     return out;
 }
 

@@ -23,6 +23,7 @@ struct Particle {
     Vec3<double> flux{0.0};                    // W; 0: nothing leaves here
     std::int64_t entry = -1;                   // which light, in the table of scene_lights.h
     Vec3<double> normal{0.0};                  // of the surface that it leaves; 0 if none
+    bool far = false;                          // it comes from infinity
 };
 
 /// One particle: `u` chooses the light, `place` and `way` the rest. There must be a light.

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from photograd.transport.accumulation import Accumulation
 from photograd.transport.builtin import BUILTIN, builtin_scene
+from photograd.transport.density_files import read_density
 from photograd.transport.derivative import (
     add_derivative_samples,
     derivative_image,
@@ -77,6 +78,7 @@ __all__ = [
     "direction_of",
     "emit_particles",
     "model_scene",
+    "read_density",
     "read_model",
     "read_scene",
     "read_texture",

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 from photograd_course.atomic_io import atomic_write
 
-from photograd.errors import Error, IoError, RangeError, message
+from photograd.errors import Error, IoError, RangeError, ShapeError, message
 
 Array = npt.NDArray[Any]
 VERSION = 1
@@ -70,6 +70,22 @@ class Accumulation:
         """The standard error's root mean square as a part of the mean of |mean|; 0 if black."""
         level = float(np.abs(self.mean).mean())
         return float(np.sqrt(np.square(self.standard_error).mean())) / level if level > 0 else 0.0
+
+    def check_call(
+        self, function: str, shape: tuple[int, int], count: int, *, name: str = "sums",
+        many: str = "spp",
+    ) -> None:  # fmt: skip
+        """Check a call that adds samples to these sums; its arguments are called so.
+
+        Raises:
+            RangeError: a count below 1.
+            ShapeError: sums of another shape than (H, W).
+        """
+        if count < 1:
+            raise RangeError(message(function, many, "at least 1", count))
+        if self.radiance.shape != (*shape, 3):
+            expected = f"shape {(*shape, 3)}"
+            raise ShapeError(message(function, name, expected, self.radiance.shape))
 
     def check_finite(self, function: str) -> None:
         """Raise Error that names the first pixel with a sum that is not finite."""

@@ -76,7 +76,6 @@ def derivative_image(
     Raises:
         RangeError: spp below 1, no such parameter, or a change that is not finite.
         ShapeError: a change of another shape than its parameter.
-        SceneError: a scene with media.
         Error: radiance that is not finite; names the pixel.
     """
     view = tracer.scene.camera if camera is None else camera
@@ -99,21 +98,16 @@ def add_derivative_samples(
         As `derivative_image`; ShapeError: sums of another size; RangeError: of other counts.
     """
     view = tracer.scene.camera if camera is None else camera
-    shape = (view.height, view.width, 3)
     for name, sums in (("picture", picture), ("derivative", derivative)):
-        if sums.radiance.shape != shape:
-            got = sums.radiance.shape
-            raise ShapeError(message("derivative_image", name, f"shape {shape}", got))
+        sums.check_call("derivative_image", (view.height, view.width), spp, name=name)
     if picture.count != derivative.count:
         expected = f"{picture.count} samples, as of the picture"
         raise RangeError(message("derivative_image", "derivative", expected, derivative.count))
-    if spp < 1:
-        raise RangeError(message("derivative_image", "spp", "at least 1", spp))
     step = direction_of(tracer.params, along) if isinstance(along, str) else along
-    moved = tracer.wide_arguments("derivative_image", _whole_direction(tracer.params, step), view)
+    changes = tracer.wide_changes(_whole_direction(tracer.params, step))
     _core.trace_paths_tangent(
-        **tracer.wide_arguments("derivative_image", camera=view),
-        **{f"v_{name}": moved[name] for name in ("parameters", "emission", "lights", "textures")},
+        **tracer.wide_arguments(camera=view),
+        **{f"v_{name}": change for name, change in changes.items()},
         options=options.numbers(seed), first=picture.count, count=spp,
         radiance=picture.radiance, squares=picture.squares,
         d_radiance=derivative.radiance, d_squares=derivative.squares,

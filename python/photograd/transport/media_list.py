@@ -28,13 +28,6 @@ taken for thin sheets: on both sides is what is around."""
 
 def check_media(scene: Scene) -> None:
     """Raise SceneError for names that do not exist, and interiors that no light could enter."""
-    sheer = [name for name, material in scene.materials.items() if material.sheer]
-    if has_media(scene) and sheer:
-        remedy = "leave out alpha, or the media: paths through both are not known yet"
-        raise SceneError(message("Scene", "media", "materials without alpha", sheer, remedy))
-    if has_media(scene) and scene.shutter is not None:
-        expected, remedy = "a camera that stands still", "leave out the shutter, or the media"
-        raise SceneError(message("Scene", "shutter", expected, "one that moves", remedy))
     for name in (BOUNDARY, VACUUM):
         if name in scene.materials or name in scene.media:
             expected = "another name, this one has a meaning of its own"
@@ -65,9 +58,12 @@ def _check_interior(scene: Scene, shape: Shape) -> None:
         expected = "a closed mesh, counter-clockwise seen from outside"
         remedy = "give it back and sides, or turn its faces around"
         raise SceneError(message("Scene", argument, expected, f"'{shape.name}' is not", remedy))
-    if shape.material != BOUNDARY and not transmits(scene.materials[shape.material].model):
+    if shape.material == BOUNDARY:
+        return
+    material = scene.materials[shape.material]
+    if not (transmits(material.model) or material.sheer):
         expected = f"a surface that lets light in, or {BOUNDARY}"
-        got = f"'{scene.materials[shape.material].model}'"
+        got = f"'{material.model}'"
         raise SceneError(message("Scene", argument, expected, got))
 
 
@@ -141,6 +137,18 @@ class ListedMedia:
             shape.material in known and known[shape.material].model in SOLID
         )
         return NOTHING if solid and is_closed(shape) else UNCHANGED
+
+    def changes(self, step: Mapping[str, Array]) -> list[tuple[Any, ...]]:
+        """Rows as those of `rows`, float64, of how params change: any numbers of their shapes."""
+        found = []
+        for name, medium in self.media.items():
+            parts = {key: step[f"media.{name}.{key}"] for key in medium.start}
+            density = parts.pop("density", None)
+            if density is not None:
+                density = np.ascontiguousarray(density, np.float64)
+            row = np.concatenate([np.reshape(part, -1) for part in parts.values()])
+            found.append((medium.phase_name, row.astype(np.float64), density, 0.0))
+        return found
 
     def rows(self, params: Mapping[str, Array], dtype: npt.DTypeLike) -> list[tuple[Any, ...]]:
         """For the core: (phase function, parameters (P,), densities (X, Y, Z) or None, sigma_maj).

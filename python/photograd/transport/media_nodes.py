@@ -15,6 +15,15 @@ density = "smoke.npy"         # beside the scene file: numbers (X, Y, Z), which 
 corner = [-1, 0, -1]          # of the box that they fill, metres
 size = [2, 2, 2]
 
+[media.cloud]
+sigma_t = 40
+albedo = 0.999
+density = "cloud.vdb"         # or .vol, .vtk, .nii: on its own lattice, where the file says
+grid = "density"              # optional, of a .vdb: the first grid of scalars, if absent
+corner = [-1, 0, -1]          # optional, with size: where to move and stretch it to
+size = [2, 2, 2]
+majorant = 3                  # optional: no density is ever larger, also when they are fitted
+
 [[shapes]]
 kind = "sphere"               # or any closed shape
 material = "glass"            # or "boundary", which is not seen
@@ -28,8 +37,8 @@ from typing import Any
 
 import numpy as np
 
-from photograd.errors import IoError, message
 from photograd.phase import registry
+from photograd.transport.density_files import is_placed, read_density
 from photograd.transport.medium import VACUUM, DensityGrid, Medium
 from photograd.transport.scene import Shape
 from photograd.transport.scene_node import Node
@@ -82,17 +91,13 @@ def _density(node: Node) -> DensityGrid | None:
     if not node.has("density"):
         return None
     path = node.path.parent / node.text("density")
-    box = np.eye(4)
-    box[:3, 3] = node.numbers("corner", 3)
-    box[[0, 1, 2], [0, 1, 2]] = node.numbers("size", 3)
+    has_grid = path.suffix.lower() == ".vdb" and node.has("grid")
+    grid = node.text("grid") if has_grid else None
+    moved = not is_placed(path) or node.has("corner") or node.has("size")
+    corner = node.numbers("corner", 3) if moved else None
+    size = node.numbers("size", 3) if moved else None
     majorant = node.number("majorant") if node.has("majorant") else None
-
-    def read() -> DensityGrid:
-        try:
-            values = np.load(path, allow_pickle=False)
-        except (OSError, ValueError, EOFError) as failure:
-            expected = "a file of numbers (.npy)"
-            raise IoError(message("read_scene", f"{path}", expected, failure)) from failure
-        return DensityGrid(values, box, majorant)
-
-    return node.built(read)
+    return node.built(
+        lambda: read_density(path, grid=grid, corner=corner, size=size, majorant=majorant),
+        "density",
+    )

@@ -1,7 +1,7 @@
 """Light tracing: particles from the lights, and the irradiance of what they land on.
 
 The mathematics is in cpp/photograd/scene/emit.h (how they leave), render/particle_walk.h (what
-surfaces do to them) and render/light_map.h (where they land).
+surfaces do to them), volume_particles.h (what media do) and light_map.h (where they land).
 """
 
 from __future__ import annotations
@@ -12,10 +12,19 @@ from typing import Any
 import numpy as np
 
 from photograd.core import _core
-from photograd.errors import RangeError, ShapeError, message
+from photograd.errors import RangeError, SceneError, ShapeError, message
+from photograd.lights import (
+    ConstantLight,
+    DirectionalLight,
+    EnvironmentMap,
+    SkyLight,
+    SunLight,
+)
 from photograd.transport.accumulation import Accumulation
 from photograd.transport.scene import Array
 from photograd.transport.tracer import NEVER, PathTracer
+
+FAR = (ConstantLight, DirectionalLight, EnvironmentMap, SkyLight, SunLight)
 
 
 @dataclass(frozen=True)
@@ -121,12 +130,11 @@ def trace_light(
     Raises:
         RangeError: particles below 1, or a scene without lights.
         ShapeError: sums of another shape than the receiver.
+        SceneError: lights at infinity in a scene whose world's medium has a grid.
     """
-    shape = (receiver.height, receiver.width, 3)
-    total = Accumulation.empty(*shape[:2]) if sums is None else sums
-    if total.radiance.shape != shape:
-        raise ShapeError(message("trace_light", "sums", f"shape {shape}", total.radiance.shape))
-    _check_count("trace_light", particles)
+    shape = (receiver.height, receiver.width)
+    total = Accumulation.empty(*shape) if sums is None else sums
+    total.check_call("trace_light", shape, particles, many="particles")
     _core.trace_light(
         **scene_arguments("trace_light", tracer), options=options.numbers(seed), first=total.count,
         count=particles, rectangle=receiver.rows, irradiance=total.radiance,
@@ -171,8 +179,19 @@ def emit_particles(tracer: PathTracer, count: int, *, seed: int, first: int = 0)
 
 
 def scene_arguments(function: str, tracer: PathTracer) -> dict[str, Any]:
-    """The scene as the core's functions take it that have no camera; refuses media."""
-    arguments = tracer.wide_arguments(function)
+    """The scene as the core's functions take it that have no camera.
+
+    Raises:
+        SceneError: light from infinity, and around everything a medium with a grid: particles start
+            from a disc before the shapes, and the grid may reach beyond.
+    """
+    scene = tracer.scene
+    far = scene.environment is not None or any(isinstance(x, FAR) for x in scene.lights)
+    if scene.world is not None and scene.media[scene.world].density is not None and far:
+        expected = "no grid of densities around everything beside lights at infinity"
+        remedy = "make it the interior of a box"
+        raise SceneError(message(function, "scene.world", expected, f"'{scene.world}'", remedy))
+    arguments = tracer.wide_arguments()
     del arguments["camera"]
     return arguments
 

@@ -5,11 +5,14 @@ The mathematics is in cpp/photograd/render/photon_map.h.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from photograd.core import _core
-from photograd.errors import RangeError, ShapeError, message
+from photograd.errors import RangeError, SceneError, ShapeError, message
 from photograd.transport.accumulation import Accumulation
+from photograd.transport.media_list import has_media
 from photograd.transport.particles import PARTICLES, ParticleOptions, scene_arguments
 from photograd.transport.scene import Array
 from photograd.transport.tracer import DEFAULTS, PathOptions, PathTracer
@@ -43,14 +46,20 @@ class PhotonMap:
         Raises:
             RangeError: particles below 1, a radius that is not above 0 and finite, or a scene
                 without lights.
+            SceneError: a scene with media, in which light also comes from between the surfaces.
         """
         if particles < 1:
             raise RangeError(message("PhotonMap", "particles", "at least 1", particles))
+        if has_media(tracer.scene):
+            expected = "a scene without media: photons are kept on surfaces alone"
+            remedy = "trace_light goes through media, and so does PathTracer.render"
+            got = sorted(tracer.scene.media) or "boundaries"
+            raise SceneError(message("PhotonMap", "scene.media", expected, got, remedy))
         self.tracer = tracer
         self.radius = radius
         self._map = _core.PhotonMap(
-            **scene_arguments("PhotonMap", tracer), options=options.numbers(seed), count=particles,
-            radius=radius, direct=direct,
+            **_without_media(scene_arguments("PhotonMap", tracer)),
+            options=options.numbers(seed), count=particles, radius=radius, direct=direct,
         )  # fmt: skip
 
     def __len__(self) -> int:
@@ -84,15 +93,10 @@ class PhotonMap:
             ShapeError: sums of another size than the picture.
             Error: radiance that is not finite; names the pixel.
         """
-        if spp < 1:
-            raise RangeError(message("PhotonMap.add_samples", "spp", "at least 1", spp))
         view = self.tracer.scene.camera
-        shape = (view.height, view.width, 3)
-        if sums.radiance.shape != shape:
-            got = sums.radiance.shape
-            raise ShapeError(message("PhotonMap.add_samples", "sums", f"shape {shape}", got))
+        sums.check_call("PhotonMap.add_samples", (view.height, view.width), spp)
         self._map.trace(
-            **self.tracer.wide_arguments("PhotonMap"), options=options.numbers(seed),
+            **_without_media(self.tracer.wide_arguments()), options=options.numbers(seed),
             first=sums.count, count=spp, radiance=sums.radiance, squares=sums.squares,
         )  # fmt: skip
         sums.count += spp
@@ -104,3 +108,7 @@ class PhotonMap:
         sums = Accumulation.empty(view.height, view.width)
         self.add_samples(sums, spp, seed=seed, options=options)
         return sums
+
+
+def _without_media(arguments: dict[str, Any]) -> dict[str, Any]:
+    return {name: value for name, value in arguments.items() if name != "media"}

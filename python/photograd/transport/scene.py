@@ -279,8 +279,7 @@ class Scene:
     Raises:
         SceneError: no shape, two of one name, a material, texture or medium that does not exist, or
             a textured shape without texture coordinates, a light that is none, a shape that shines
-            and covers only in part, an interior of a shape that is open or lets no light in, or
-            media beside surfaces that cover only in part.
+            and covers only in part, or an interior of a shape that is open or lets no light in.
     """
 
     name: str

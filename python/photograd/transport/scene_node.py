@@ -44,16 +44,17 @@ class Node:
         where = f"line {self.line(key)}: {name}"
         return SceneError(message(f"read_scene: {self.path}", where, expected, got, remedy))
 
-    def built(self, make: Callable[[], Built]) -> Built:
-        """What `make` returns; its errors get the line of this table, unless they name one."""
+    def built(self, make: Callable[[], Built], key: str | None = None) -> Built:
+        """What `make` returns; its errors get the line of the table or key, if they have none."""
         try:
             return make()
         except Error as failure:
             text = str(failure)
             if text.startswith(f"read_scene: {self.path}"):
                 raise
-            name = ".".join(str(part) for part in self.place) or "scene"
-            where = f"line {self.line()}: {name}"
+            place = self.place if key is None else (*self.place, key)
+            name = ".".join(str(part) for part in place) or "scene"
+            where = f"line {self.line(key)}: {name}"
             raise SceneError(f"read_scene: {self.path}: {where}: {text}") from failure
 
     def has(self, key: str) -> bool:

@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from photograd.core import _core
 from photograd.data.camera import Camera
-from photograd.errors import DtypeError, RangeError, SceneError, ShapeError, message
+from photograd.errors import DtypeError, RangeError, ShapeError, message
 from photograd.transport.accumulation import Accumulation
 from photograd.transport.core_arrays import (
     cutoffs_of,
@@ -24,7 +24,7 @@ from photograd.transport.core_arrays import (
     textures_of,
 )
 from photograd.transport.light_list import light_shapes, listed_lights
-from photograd.transport.media_list import ListedMedia, has_media
+from photograd.transport.media_list import ListedMedia
 from photograd.transport.sample_counts import sample_counts
 from photograd.transport.scene import Array, MeshShape, Scene, Shape, SphereShape
 
@@ -202,7 +202,7 @@ class PathTracer:
             As `render`; ShapeError: sums of another size.
         """
         view = self.scene.camera if camera is None else camera
-        self._check_sums("add_samples", sums, spp, view)
+        sums.check_call("add_samples", (view.height, view.width), spp)
         other = None if sampling_params is None else self._material_row(sampling_params)
         texels = None if sampling_params is None else self._texels(sampling_params)
         media = None if sampling_params is None else self._media.rows(sampling_params, self.dtype)
@@ -290,7 +290,7 @@ class PathTracer:
             ShapeError: sums of another size.
         """
         view = self.scene.camera
-        self._check_sums("add_occlusion", sums, spp, view)
+        sums.check_call("add_occlusion", (view.height, view.width), spp)
         free = np.zeros((view.height, view.width))
         _core.ambient_occlusion(self._geometry, _numbers(view), radius, seed, sums.count, spp, free)
         sums.radiance += free[..., None]
@@ -304,19 +304,11 @@ class PathTracer:
 
         `pixel` is row * width + column. In float64, whatever the tracer's dtype.
         """
-        arguments = self._wide(self.params, self.scene.camera)
+        arguments = self.wide_arguments()
         found: list[dict[str, Any]] = _core.trace_path(
             **arguments, options=options.numbers(seed), pixel=pixel, sample=sample
         )
         return found
-
-    @staticmethod
-    def _check_sums(function: str, sums: Accumulation, spp: int, view: Camera) -> None:
-        if spp < 1:
-            raise RangeError(message(function, "spp", "at least 1", spp))
-        shape = (view.height, view.width, 3)
-        if sums.radiance.shape != shape:
-            raise ShapeError(message(function, "sums", f"shape {shape}", sums.radiance.shape))
 
     def _material_row(self, params: dict[str, Array]) -> Array:
         """All parameters of all materials, one after another, (P,); then those of lights."""
@@ -335,49 +327,47 @@ class PathTracer:
         ]
 
     def wide_arguments(
-        self, function: str, params: dict[str, Array] | None = None, camera: Camera | None = None
+        self, params: dict[str, Array] | None = None, camera: Camera | None = None
     ) -> dict[str, Any]:
-        """The scene as functions of the core take it that calculate in double, without media.
+        """The scene as functions of the core take it that calculate in double.
 
         `params` is what to say instead of the tracer's own; `camera` None takes the scene's.
-
-        Raises:
-            SceneError: a scene with media; names `function`.
         """
-        if has_media(self.scene):
-            expected, remedy = "a scene without media", "trace it with PathTracer.render"
-            got = sorted(self.scene.media) or "boundaries"
-            raise SceneError(message(function, "scene.media", expected, got, remedy))
         given = self.params if params is None else params
-        arguments = self._wide(given, self.scene.camera if camera is None else camera)
-        del arguments["media"]
-        return arguments
+        arguments = self._arguments(self.scene.camera if camera is None else camera, given)
+        return {**arguments, **self._wide(given), "media": self._media.rows(given, np.float64)}
 
-    def _wide(self, params: dict[str, Array], camera: Camera) -> dict[str, Any]:
-        arguments = self._arguments(camera, params)
+    def wide_changes(self, step: dict[str, Array]) -> dict[str, Any]:
+        """What of `wide_arguments` is numbers, of how all parameters change."""
+        return {**self._wide(step), "media": self._media.changes(step)}
+
+    def _wide(self, params: dict[str, Array]) -> dict[str, Any]:
+        numbers = self._surfaces(params)
         for name in ("parameters", "emission"):
-            arguments[name] = arguments[name].astype(np.float64)
-        arguments["textures"] = [texels.astype(np.float64) for texels in arguments["textures"]]
-        arguments["lights"] = [light.row(params, np.float64) for light in self._lights]
-        arguments["media"] = self._media.rows(params, np.float64)
-        return arguments
+            numbers[name] = numbers[name].astype(np.float64)
+        numbers["textures"] = [texels.astype(np.float64) for texels in numbers["textures"]]
+        return {**numbers, "lights": [light.row(params, np.float64) for light in self._lights]}
+
+    def _surfaces(self, params: dict[str, Array]) -> dict[str, Any]:
+        black = np.zeros(3, self.dtype)
+        shining = np.array([params.get(name, black) for name in self._emissions], self.dtype)
+        return {
+            "parameters": self._material_row(params),
+            "emission": shining[self._owner],
+            "textures": self._texels(params),
+        }
 
     def _arguments(self, camera: Camera, params: dict[str, Array] | None = None) -> dict[str, Any]:
         given = self.params if params is None else params
-        black = np.zeros(3, self.dtype)
         lens = self.scene.lens.radius, self.scene.lens.focus
         shutter, motion = self.scene.shutter, ()
         if shutter is not None and camera is self.scene.camera:
             motion = tuple(part.tolist() for part in shutter.motion(camera))
-        emission = [given.get(name, black) for name in self._emissions]
-        shining = np.array(emission, self.dtype)
         return {
             "geometry": self._geometry,
             "models": self._models,
-            "parameters": self._material_row(given),
-            "emission": shining[self._owner],
+            **self._surfaces(given),
             "lights": [light.row(given, self.dtype) for light in self._lights],
-            "textures": self._texels(given),
             "media": self._media.rows(given, self.dtype),
             "camera": (*_numbers(camera), *lens, *motion),
         }

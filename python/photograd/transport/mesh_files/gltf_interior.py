@@ -16,13 +16,8 @@ def filled_shapes(
 ) -> tuple[tuple[Shape, ...], dict[str, Medium]]:
     """Shapes with their interiors, and the media by the names of their materials.
 
-    An open mesh has no inside, and paths through media know no surfaces that cover only in part:
-    both are left as they are, with a note.
+    An open mesh has no inside: it is left as it is, with a note.
     """
-    swallowing = {name for name, made in materials.items() if made.interior is not None}
-    if swallowing and any(made.material.sheer for made in materials.values()):
-        note(f"attenuation of {sorted(swallowing)} beside alphaMode: left out")
-        return tuple(shapes), {}
     filled: list[Shape] = []
     media: dict[str, Medium] = {}
     for shape in shapes:

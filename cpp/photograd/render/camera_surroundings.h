@@ -1,0 +1,29 @@
+// In which shapes the rays of a camera start: in those around the centre of its lens.
+#pragma once
+
+#include "photograd/camera/thin_lens.h"
+#include "photograd/core/random.h"
+#include "photograd/render/sample_numbers.h"
+#include "photograd/scene/path_scene.h"
+
+namespace photograd {
+
+/// The shapes with an interior around a point: those that a ray to the outside leaves once more than it enters them.
+Surroundings surroundings_of(const PathGeometry& geometry, const Vec3<double>& point);
+
+/// Of every sample. A camera that moves past a surface while its shutter is open is asked anew for each moment.
+class CameraSurroundings {
+public:
+    CameraSurroundings(const PathGeometry& geometry, const ThinLens& camera, Sampler sampler);
+
+    Surroundings of(const RandomKey& key);
+
+private:
+    const PathGeometry& geometry_;
+    const ThinLens& camera_;
+    SampleNumbers numbers_;
+    bool passes_surfaces_;
+    Surroundings opening_;
+};
+
+}  // namespace photograd
