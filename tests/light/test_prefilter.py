@@ -189,15 +189,17 @@ def test_irradiance_is_that_of_brute_force() -> None:
 
 
 def test_how_far_the_split_sum_is_from_brute_force(spot: PrefilteredLight) -> None:
-    # Measured: metal 0.025, 0.103, 0.259, varnish 0.031, 0.077, 0.256: the rougher, the farther is
-    # the true lobe from the round one around the mirrored view.
+    # Errors of lobes around the mirrored view, and of those that lean: measured 0.025 and 0.025,
+    # 0.103 and 0.072, 0.259 and 0.108 for metal; 0.031, 0.032, 0.077, 0.088, 0.256, 0.153 else.
     for values, bounds in (
-        (image.SILVER, {0.15: 0.035, 0.5: 0.12, 1.0: 0.29}),
-        (image.VARNISH, {0.15: 0.045, 0.5: 0.095, 1.0: 0.29}),
+        (image.SILVER, {0.15: (0.035, 0.035), 0.5: (0.12, 0.085), 1.0: (0.29, 0.125)}),
+        (image.VARNISH, {0.15: (0.045, 0.045), 0.5: (0.095, 0.105), 1.0: (0.29, 0.175)}),
     ):
-        for r, bound in bounds.items():
+        for r, (plain, leaning) in bounds.items():
             found = image.compare(SPOT, spot, values, r, 16, 1024)
-            assert found.rms < bound, (r, found.rms)
+            assert found.plain < plain, (r, found.plain)
+            assert found.rms < leaning, (r, found.rms)
+            assert r < 1 or found.rms < 0.65 * found.plain
             assert abs(found.bias) < 0.07
             # The level of another roughness is worse.
             levels = (spot.specular.levels[1], spot.specular.levels[0], spot.specular.levels[0])
@@ -206,19 +208,6 @@ def test_how_far_the_split_sum_is_from_brute_force(spot: PrefilteredLight) -> No
             inside = image.on_ball(image.ball_camera(16))[1]
             error = image.size_of(wrong[inside]) / image.size_of(found.brute[inside])
             assert error > 1.05 * found.rms, (r, error)
-
-
-def test_the_roughest_lobe_leans_towards_the_normal(spot: PrefilteredLight) -> None:
-    # Looked up there the table of radiance is nearer to the truth, and for smooth lobes far off.
-    n, inside = image.on_ball(image.ball_camera(16))
-    wo = image.ball_camera(16).position - n
-    cosine = (n * wo).sum(axis=-1) / np.linalg.norm(wo, axis=-1)
-    for r, (least, most) in {0.15: (30, 50), 1.0: (0, 0.5)}.items():  # 39 and 0.42
-        found = image.compare(SPOT, spot, image.SILVER, r, 16, 1024)
-        A, B = np.moveaxis(spot.dfg.at(r, cosine)[..., None], -2, 0)
-        other = (spot.specular.at(n, r) * (image.SILVER["base_color"] * A + B)).mean(axis=0)
-        gaps = [image.size_of((x - found.brute)[inside]) for x in (other, found.split)]
-        assert least < gaps[0] / gaps[1] < most
 
 
 def test_bad_input_is_named() -> None:

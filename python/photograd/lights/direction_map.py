@@ -37,7 +37,7 @@ class DirectionMap:
         object.__setattr__(self, "world_from_map", checked_rotation(self.world_from_map))
 
     def at(self, w: Array) -> Array:
-        """Values (..., C) for unit directions w (..., 3) of the world, bilinear between cells."""
+        """Values (..., C) in directions w (..., 3) of the world, of any length; bilinear."""
         height, width = self.values.shape[:2]
         x, y, z = np.moveaxis(np.asarray(w, np.float64) @ self.world_from_map, -1, 0)
         column = (0.5 + np.arctan2(-x, z) / (2 * np.pi)) * width - 0.5

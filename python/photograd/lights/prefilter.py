@@ -7,12 +7,17 @@ a product of lookups of it [Karis2013]:
     specular   S(r) = mean of L(wi) with the weight D(h) <n,wi>+, for n = wo = r
     dfg        A, B = the lobe's albedo for an even sky (dfg.py), the cosine in it
 
-    L(wo) = (1 - metalness) base_color E(n) / pi + S(reflect(wo, n)) (f0 A + B)
+    L(wo) = (1 - metalness) base_color E(n) / pi + S(r) (f0 A + B)
     f0 = (1 - metalness) 0.16 reflectance^2 + metalness base_color       the model `standard`
 
 E is exact. The rest is not: the lobe is taken for that of a view from above, round, however
 obliquely it is seen, and the mean of a product for the product of means. Both are right for an even
 sky. Nothing here knows of shadows or of light from one surface to another.
+
+As published, r is the mirrored view. Rough lobes lean from there towards the normal, until for
+roughness 1 they hardly know of the view. A weight of alpha^2 = roughness^4 for the normal is near
+the best for metals; for dielectrics, which mirror most at the rim, it may lean too far (errors with
+and without are in docs/results.md).
 """
 
 from __future__ import annotations
@@ -151,7 +156,7 @@ class PrefilteredLight:
 
 def shade(
     light: PrefilteredLight, normals: Array, wo: Array, *, base_color: ArrayLike,
-    metalness: ArrayLike, roughness: ArrayLike, reflectance: ArrayLike = 0.5,
+    metalness: ArrayLike, roughness: ArrayLike, reflectance: ArrayLike = 0.5, leaning: bool = True,
 ) -> Array:  # fmt: skip
     """Radiance (..., 3) that surfaces of the model `standard` send towards wo, by the split sum.
 
@@ -160,6 +165,7 @@ def shade(
         normals, wo: (..., 3) unit vectors in the world; wo points to the viewer, on the outside.
         base_color: (..., 3) or (3,).
         metalness, roughness, reflectance: (...) or numbers, 0 to 1.
+        leaning: whether rough lobes lean towards the normal; False is the sum as published.
 
     Raises:
         ShapeError: normals and wo of different shapes.
@@ -173,6 +179,8 @@ def shade(
     metal, gloss = np.asarray(metalness)[..., None], np.asarray(reflectance)[..., None]
     cosine = (n * v).sum(axis=-1)
     mirrored = 2 * cosine[..., None] * n - v
+    if leaning:  # of any length: only the direction is looked at
+        mirrored = mirrored + (n - mirrored) * np.asarray(roughness, np.float64)[..., None] ** 4
     table = light.dfg.at(roughness, np.clip(cosine, 0, 1))
     f0 = (1 - metal) * 0.16 * gloss**2 + metal * color
     diffuse = (1 - metal) * color * light.irradiance.at(n) / np.pi
