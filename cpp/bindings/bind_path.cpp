@@ -260,7 +260,7 @@ void bind_path(py::module_& m) {
         .def(
             "set_textures", &set_textures, py::arg("layouts"), py::arg("uses"),
             py::arg("normal_maps"), py::arg("directed"), py::arg("cutoffs"), py::arg("emission"),
-            "Layouts (H, W, C, wrap_u, wrap_v) of textures; for each material uses (texture, "
+            "Layouts (H, W, C, wrap_u, wrap_v, mips) of textures; for each material uses (texture, "
             "channel, first,\ncount, lo, hi), and a normal map (values (H, W, 3) float32, wrap_u, "
             "wrap_v) or None;\ndirected (M,), whether its frame follows u; cutoffs (M,), of masks, "
             "others below 0; emission,\nfor each shape (texture or -1, first of its three "

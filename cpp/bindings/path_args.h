@@ -25,6 +25,7 @@ template <class R>
 struct SceneNumbers {
     std::vector<Material<R>> drawn, sampling;
     std::vector<const R*> texels, sampling_texels;
+    std::vector<std::vector<R>> mips;  // all levels of textures that have them
     std::vector<AnyLight<R>> lights;
     std::vector<Medium<R>> media, sampling_media;
     PathScene<R> scene;
@@ -66,16 +67,19 @@ struct SceneNumbers {
     }
 
 private:
-    static std::vector<const R*> texels_of(ArrayArgs& args, const PathGeometry& geometry,
-                                           const char* name,
-                                           const std::vector<py::array>& textures) {
+    std::vector<const R*> texels_of(ArrayArgs& args, const PathGeometry& geometry, const char* name,
+                                    const std::vector<py::array>& textures) {
         std::vector<const R*> out;
         const auto& layouts = geometry.textures.layouts;
         if (textures.size() != layouts.size())
             args.range(name, std::to_string(layouts.size()) + " textures",
                        std::to_string(textures.size()));
-        for (std::size_t t = 0; t < layouts.size(); ++t)
+        for (std::size_t t = 0; t < layouts.size(); ++t) {
             out.push_back(args.in<R>(name, textures[t], axes_of(layouts[t])));
+            if (layouts[t].mips.empty()) continue;
+            mips.push_back(packed_levels(layouts[t].mips, out.back(), layouts[t].channels));
+            out.back() = mips.back().data();
+        }
         return out;
     }
     static void read(ArrayArgs& args, const std::vector<std::string>& models, const char* name,

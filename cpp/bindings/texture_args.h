@@ -9,17 +9,20 @@
 
 namespace photograd {
 
-/// (H, W, C, wrap_u, wrap_v); (texture, channel, first, count, lo, hi); (values, wrap_u, wrap_v).
-using Layout = std::tuple<int, int, int, int, int>;
+/// (H, W, C, wrap_u, wrap_v, whether it has mip maps); (texture, channel, first, count, lo, hi);
+/// (values, wrap_u, wrap_v).
+using Layout = std::tuple<int, int, int, int, int, bool>;
 using Use = std::tuple<int, int, int, int, double, double>;
 using BentNormals = std::tuple<py::array, int, int>;
 
 inline TextureLayout layout_of(const ArrayArgs& args, const Layout& given) {
-    const auto [height, width, channels, u, v] = given;
+    const auto [height, width, channels, u, v, mips] = given;
     if (height < 1 || width < 1 || channels < 1 || channels > max_channels)
         args.range("layouts", "textures (H, W, 1 to 4)", "others");
     if (u < 0 || u > 2 || v < 0 || v > 2) args.range("wrap", "0 to 2", "others");
-    return {{height, width}, channels, static_cast<Wrap>(u), static_cast<Wrap>(v)};
+    const TextureShape shape{height, width};
+    return {shape, channels, static_cast<Wrap>(u), static_cast<Wrap>(v),
+            mips ? PackedMips::of(shape) : PackedMips{}};
 }
 
 inline void set_textures(PathGeometry& geometry, const std::vector<Layout>& layouts,
@@ -55,7 +58,7 @@ inline void set_textures(PathGeometry& geometry, const std::vector<Layout>& layo
             ArrayArgs own("PathTracer");
             const float* n = own.in<float>("normal_maps", values, "H W 3");
             const auto H = static_cast<int>(own.size("H")), W = static_cast<int>(own.size("W"));
-            map.layout = layout_of(own, {H, W, 3, u, v});
+            map.layout = layout_of(own, {H, W, 3, u, v, false});
             map.values.assign(n, n + 3 * map.layout.shape.texels());
         }
         out.normal_maps.push_back(std::move(map));

@@ -3300,6 +3300,7 @@ class PathGeometry:
                 typing.SupportsInt | typing.SupportsIndex,
                 typing.SupportsInt | typing.SupportsIndex,
                 typing.SupportsInt | typing.SupportsIndex,
+                bool,
             ]
         ],
         uses: collections.abc.Sequence[
@@ -3331,7 +3332,7 @@ class PathGeometry:
         ],
     ) -> None:
         """
-        Layouts (H, W, C, wrap_u, wrap_v) of textures; for each material uses (texture, channel, first,
+        Layouts (H, W, C, wrap_u, wrap_v, mips) of textures; for each material uses (texture, channel, first,
         count, lo, hi), and a normal map (values (H, W, 3) float32, wrap_u, wrap_v) or None;
         directed (M,), whether its frame follows u; cutoffs (M,), of masks, others below 0; emission,
         for each shape (texture or -1, first of its three channels).

@@ -42,6 +42,7 @@ Path<R> trace_path(const PathScene<R>& scene, const ThinLens& camera, const Path
     SampleNumbers numbers(options.sampler);
     const Ray<R> ray = sample_ray<R>(camera, key, numbers);
     PathWalk<R> walk(scene, options, false);
+    walk.open_cones(camera);
     walk.trace(&ray, &key, 1);
     return walk.path(0);
 }

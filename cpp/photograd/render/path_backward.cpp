@@ -114,13 +114,12 @@ void scatter_lookups(const PathScene<R>& scene, const std::vector<Seen<R>>& chun
                      std::span<R* const> d_textures) {
     for (std::size_t t = 0; t < d_textures.size(); ++t) {
         TexelAdjoint<R> all;
-        for (const Seen<R>& of_chunk : chunks) {
-            const TexelAdjoint<R>& own = of_chunk.lookups[t];
-            all.uv.insert(all.uv.end(), own.uv.begin(), own.uv.end());
-            all.d_color.insert(all.d_color.end(), own.d_color.begin(), own.d_color.end());
-        }
+        for (const Seen<R>& of_chunk : chunks) all.append(of_chunk.lookups[t]);
         const TextureLayout& layout = scene.geometry->textures.layouts[t];
-        if (!all.uv.empty())
+        if (!all.level.empty())
+            packed_levels_backward<R>(layout.mips, scene.texels[t], layout.channels, all.uv,
+                                      all.level, all.d_color, d_textures[t]);
+        else if (!all.uv.empty())
             sample_backward<R>({scene.texels[t], layout.shape, layout.channels}, all.uv.data(),
                                static_cast<std::int64_t>(all.uv.size() / 2), all.d_color.data(),
                                d_textures[t], nullptr);

@@ -63,6 +63,7 @@ void for_each_path(const PathScene<R>& scene, const ThinLens& camera, const Path
                    const SampleRange& samples, const SampleCounts& counts, bool stop_when_black,
                    std::int64_t begin, std::int64_t end, Visit&& visit) {
     PathWalk<R> walk(scene, options, stop_when_black);
+    walk.open_cones(camera);
     walk_samples<R>(walk, camera, options, samples, counts, begin, end,
                     [&](std::int64_t pixel, int k) { visit(pixel, walk.path(k)); });
 }

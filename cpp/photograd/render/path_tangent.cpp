@@ -38,13 +38,14 @@ PathTangent::PathTangent(const PathScene<double>& scene, const PathScene<double>
     }
 }
 
-PathTangent::Here PathTangent::at(std::size_t material, const Vec2<double>& uv) const {
+PathTangent::Here PathTangent::at(std::size_t material, const Vec2<double>& uv,
+                                  const Footprint<double>& seen) const {
     const SurfaceTextures& textures = scene_.geometry->textures;
     const std::span<const TextureUse> uses = textures.of(material);
     const Material<double>&base = scene_.materials[material], &along = along_.materials[material];
     if (uses.empty()) return {base, along};
-    return {textured(base, uses, textures, scene_.texels, uv),
-            textured_tangent(base, along, uses, textures, scene_.texels, along_.texels, uv)};
+    return {textured(base, uses, textures, scene_.texels, uv, seen),
+            textured_tangent(base, along, uses, textures, scene_.texels, along_.texels, uv, seen)};
 }
 
 Vec3<double> PathTangent::emitted(std::int32_t shape, const Vec2<double>& uv,
@@ -79,7 +80,7 @@ double PathTangent::through(const LightVertex<double>& light) const {
     double t = 0;
     for (std::size_t i = 0; i < light.veils.size(); ++i) {
         const auto m = static_cast<std::size_t>(light.veils[i].material);
-        if (moving_[m]) t += at(m, light.veils[i].uv).change.alpha * veil_slope(light, i);
+        if (moving_[m]) t += at(m, light.veils[i].uv, {}).change.alpha * veil_slope(light, i);
     }
     return t;
 }
@@ -105,7 +106,7 @@ PathTangent::Pair PathTangent::leaving(const PathVertex<double>& v, std::int32_t
         const auto m =
             static_cast<std::size_t>(scene_.geometry->material[static_cast<std::size_t>(v.shape)]);
         if (moving_[m]) {
-            const Here here = at(m, v.uv);
+            const Here here = at(m, v.uv, v.seen);
             t += reflected(v, here, ahead.value, lit.value);
             d_coverage = v.coverage_slope * here.change.alpha;
         }

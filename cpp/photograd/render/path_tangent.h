@@ -40,7 +40,8 @@ private:
     struct Here {
         Material<double> value, change;
     };
-    [[nodiscard]] Here at(std::size_t material, const Vec2<double>& uv) const;
+    [[nodiscard]] Here at(std::size_t material, const Vec2<double>& uv,
+                          const Footprint<double>& seen) const;
     [[nodiscard]] Vec3<double> emitted(std::int32_t shape, const Vec2<double>& uv,
                                        const Vec3<double>& direction) const;
     [[nodiscard]] double through(const LightVertex<double>& light) const;

@@ -53,6 +53,7 @@ template <class R>
 struct PathVertex {
     std::int32_t shape = SceneLights::background;
     Vec2<R> uv{R(0)};         // where the material has textures
+    Footprint<R> seen{};      // around it, where any has mip maps
     Vec3<R> direction{R(0)};  // world, of the ray that arrived here
     Vec3<R> emitted{R(0)};    // what is met there sends to where the ray came from
     R emission_weight = R(0);
@@ -101,12 +102,9 @@ void glow_backward(const PathScene<R>& scene, std::int32_t shape, const Emission
     const Vec2<R> at = layout.inside(uv);
     const Vec3<R> d_color = d_L * scene.emitted(shape);
     d_scene.emission[static_cast<std::size_t>(shape)] += d_L * scene.glow(use, uv);
-    TexelAdjoint<R>& record = d_scene.texels[t];
-    record.uv.insert(record.uv.end(), {at.x, at.y});
-    const std::size_t first = record.d_color.size();
-    record.d_color.resize(first + static_cast<std::size_t>(layout.channels), R(0));
-    for (int c = 0; c < 3; ++c)
-        record.d_color[first + static_cast<std::size_t>(use.channel + c)] = d_color[c];
+    d_scene.texels[t].start(layout, at, R(0));
+    R* d_texel = d_scene.texels[t].last(layout) + use.channel;
+    for (int c = 0; c < 3; ++c) d_texel[c] += d_color[c];
 }
 
 /// Adds the derivative of <d_L, radiance of a shape, or of what lies behind everything>.
@@ -158,7 +156,7 @@ void veils_backward(const PathScene<R>& scene, const LightVertex<R>& light, R d_
         }
         Material<R> d_own = scene.materials[m].zero();
         d_own.alpha = d_alpha;
-        textured_backward(scene.materials[m], textures.of(m), textures, scene.texels, veil.uv,
+        textured_backward(scene.materials[m], textures.of(m), textures, scene.texels, veil.uv, {},
                           d_own, d_scene.materials[m], d_scene.texels);
     }
 }
@@ -196,7 +194,7 @@ void surface_backward(const PathScene<R>& scene, const PathVertex<R>& v, const V
     // With textures the material at this point, and its derivative, are copies that textured_backward takes apart.
     Material<R> own, d_own;
     if (!uses.empty()) {
-        own = textured(scene.materials[m], uses, textures, scene.texels, v.uv);
+        own = textured(scene.materials[m], uses, textures, scene.texels, v.uv, v.seen);
         d_own = own.zero();
     }
     const Material<R>& material = uses.empty() ? scene.materials[m] : own;
@@ -206,7 +204,7 @@ void surface_backward(const PathScene<R>& scene, const PathVertex<R>& v, const V
     if (v.weight > R(0) && !v.passed)
         material.value_backward(v.wo, v.wi, v.lobe, d_onward, d_material);
     if (!uses.empty())
-        textured_backward(scene.materials[m], uses, textures, scene.texels, v.uv, d_own,
+        textured_backward(scene.materials[m], uses, textures, scene.texels, v.uv, v.seen, d_own,
                           d_scene.materials[m], d_scene.texels);
 }
 

@@ -12,6 +12,7 @@
 #include "photograd/render/coverage.h"
 #include "photograd/render/path_options.h"
 #include "photograd/render/path_vertex.h"
+#include "photograd/render/ray_cone.h"
 #include "photograd/render/ray_lanes.h"
 
 namespace photograd {
@@ -27,6 +28,7 @@ public:
           options_(options),
           stop_when_black_(stop_when_black),
           sheer_(any_sheer(scene)),
+          mips_(scene.geometry->textures.any_mips()),
           numbers_(options.sampler) {}
 
     /// Samples the paths of `count` <= 16 camera rays; they are then in path(0), path(1), ...
@@ -40,6 +42,10 @@ public:
         }
     }
     [[nodiscard]] const Path<R>& path(int k) const { return lanes_[k].path; }
+    /// How wide what they see becomes per metre, for mip maps; 0 sees points.
+    void open_cones(const Pinhole& camera) {
+        pixel_spread_ = R(1 / std::max(camera.fx, camera.fy));
+    }
 
 protected:  // what a walk through media (volume_walk.h) shares
     struct Lane {
@@ -47,8 +53,9 @@ protected:  // what a walk through media (volume_walk.h) shares
         Ray<R> ray;
         Vec3<R> previous;  // the vertex that the ray comes from; the ray starts beside it
         RandomKey key;
-        Vec3<R> beta;  // what the path would multiply by ahead, as `sampling` has it
-        R pdf = R(0);  // of the ray's direction; 0 from the camera and from smooth surfaces
+        Vec3<R> beta;     // what the path would multiply by ahead, as `sampling` has it
+        R pdf = R(0);     // of the ray's direction; 0 from the camera and from smooth surfaces
+        RayCone<R> cone;  // from `previous`, where there are mip maps
         SurfaceHit<R> hit;
         SurfaceSide<R> side;
         bool textured = false;  // the hit has a material of its own, not one of the scene's
@@ -69,6 +76,7 @@ protected:  // what a walk through media (volume_walk.h) shares
             lane.key = keys[k];
             lane.beta = Vec3<R>(R(1));
             lane.pdf = R(0);
+            lane.cone = {R(0), pixel_spread_};
         }
     }
 
@@ -161,10 +169,14 @@ protected:  // what a walk through media (volume_walk.h) shares
         lane.textured = !uses.empty();
         if (!lane.textured) return;
         const Vec2<R> uv = lane.path.back().uv = lane.hit.uv;
-        lane.own_drawn = textured(scene_.materials[m], uses, textures, scene_.texels, uv);
+        Footprint<R>& seen = lane.path.back().seen;
+        if (mips_)
+            seen = lane.cone.footprint(scene_.geometry->bvh, lane.hit, lane.ray.direction,
+                                       length(lane.hit.position - lane.previous));
+        lane.own_drawn = textured(scene_.materials[m], uses, textures, scene_.texels, uv, seen);
         lane.own_sampling = scene_.drawn_as_sampled() ? lane.own_drawn
                                                       : textured(scene_.sampling[m], uses, textures,
-                                                                 scene_.sampling_texels, uv);
+                                                                 scene_.sampling_texels, uv, seen);
     }
     R emission_weight(const PathVertex<R>& v) const {
         if (v.pdf == R(0) || v.light_pdf == R(0) || options_.strategy == Strategy::bsdf)
@@ -306,6 +318,9 @@ protected:  // what a walk through media (volume_walk.h) shares
         const R weight = (next.lobe < 0 ? std::abs(next.wi.z) : R(1)) / next.pdf;
         if (!survives(lane, depth, next.value, weight, uniform_from<R>(words[3]))) return;
         lane.pdf = next.lobe < 0 ? next.pdf : R(0);
+        if (mips_)
+            lane.cone = lane.cone.onward(*scene_.geometry, lane.hit, v.direction, direction,
+                                         length(lane.hit.position - lane.previous), lane.pdf);
         lane.previous = lane.hit.position;
         lane.ray = {lane.side.start(lane.hit.position, direction, scene_.geometry->offset),
                     direction};
@@ -343,6 +358,8 @@ protected:  // what a walk through media (volume_walk.h) shares
     PathOptions options_;
     bool stop_when_black_;
     bool sheer_;  // whether any surface covers only in part
+    bool mips_;   // whether any texture has levels
+    R pixel_spread_ = R(0);
     SampleNumbers numbers_;
     Lane lanes_[width];
 };

@@ -12,6 +12,7 @@ void for_each_volume_path(const PathScene<R>& scene, const ThinLens& camera,
                           std::int64_t end, const VisitVolumePath<R>& visit) {
     VolumeWalk<R> walk(scene, options, stop_when_black,
                        CameraSurroundings(*scene.geometry, camera, options.sampler));
+    walk.open_cones(camera);
     walk_samples<R>(walk, camera, options, samples, counts, begin, end,
                     [&](std::int64_t pixel, int k) { visit(pixel, walk.path(k), walk.media(k)); });
 }
@@ -25,6 +26,7 @@ VolumePath<R> trace_volume_path(const PathScene<R>& scene, const ThinLens& camer
     const Ray<R> ray = sample_ray<R>(camera, key, numbers);
     VolumeWalk<R> walk(scene, options, false,
                        CameraSurroundings(*scene.geometry, camera, options.sampler));
+    walk.open_cones(camera);
     walk.trace(&ray, &key, 1);
     return {walk.path(0), walk.media(0)};
 }

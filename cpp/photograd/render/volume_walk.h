@@ -25,7 +25,7 @@ class VolumeWalk : PathWalk<R> {
     using Flight = typename FreeFlight<R>::State;
 
 public:
-    using Base::path, Base::width;
+    using Base::path, Base::width, Base::open_cones;
 
     /// `around`: the shapes in which the camera stands.
     VolumeWalk(const PathScene<R>& scene, const PathOptions& options, bool stop_when_black,
@@ -292,6 +292,7 @@ private:
                             uniform_from<R>(words[3])))
             return;
         lane.pdf = pdf;
+        lane.cone = lane.cone.scattered(length(lane.hit.position - lane.previous), pdf);
         lane.previous = lane.hit.position;
         lane.ray = {lane.hit.position, v.wi};
         lane.alive = true;

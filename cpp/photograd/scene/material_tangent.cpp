@@ -35,7 +35,7 @@ Material<double> textured_tangent(const Material<double>& base, const Material<d
                                   std::span<const TextureUse> uses, const SurfaceTextures& textures,
                                   std::span<const double* const> texels,
                                   std::span<const double* const> along_texels,
-                                  const Vec2<double>& uv) {
+                                  const Vec2<double>& uv, const Footprint<double>& seen) {
     double value[max_parameters], change[max_parameters];
     base.get(value);
     along.get(change);
@@ -43,8 +43,9 @@ Material<double> textured_tangent(const Material<double>& base, const Material<d
         const auto t = static_cast<std::size_t>(use.texture);
         const TextureLayout& layout = textures.layouts[t];
         double color[max_channels], d_color[max_channels];
-        layout.look_up(texels[t], layout.inside(uv), color);
-        layout.look_up(along_texels[t], layout.inside(uv), d_color);
+        const double level = layout.level_of(seen);
+        layout.look_up(texels[t], layout.inside(uv), level, color);
+        layout.look_up(along_texels[t], layout.inside(uv), level, d_color);
         for (int i = 0; i < use.count; ++i) {
             const int k = use.first + i, c = use.channel + i;
             const double p = value[k] * color[c];

@@ -20,6 +20,6 @@ Material<double> textured_tangent(const Material<double>& base, const Material<d
                                   std::span<const TextureUse> uses, const SurfaceTextures& textures,
                                   std::span<const double* const> texels,
                                   std::span<const double* const> along_texels,
-                                  const Vec2<double>& uv);
+                                  const Vec2<double>& uv, const Footprint<double>& seen);
 
 }  // namespace photograd

@@ -1,13 +1,14 @@
 // Materials whose parameters vary over a surface: each is its value times a texture, brought into its range.
 //
-//   p = clamp(value t(u, v), lo, hi)          t bilinear (ops/bilinear.h), at coordinates brought back into 0..1
+//   p = clamp(value t(u, v), lo, hi)          t bilinear (ops/bilinear.h), at coordinates brought back into 0..1,
+//                                             or between the levels of a mip map (texture/mip_sample.h)
 //
 //   dp/dvalue = t,  dp/dt = value             0 where p is cut off
 //
 // The derivative by t goes to texels. A path tracer meets them in no order, so it writes down (u, v) and dL/dt, and
 // adds them up afterwards, texel by texel (texture/sample.h). A coordinate is wrapped before the lookup: texels on
-// both sides of a seam are not mixed. Normal maps bend the shading normal; they are part of the geometry, without a
-// derivative.
+// both sides of a seam are not mixed. The level is that of the place where a path looks (render/ray_cone.h), and has no
+// derivative. Normal maps bend the shading normal; they are part of the geometry, without a derivative.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +17,8 @@
 #include <vector>
 
 #include "photograd/scene/material.h"
-#include "photograd/texture/image.h"
+#include "photograd/texture/mip_lookup.h"
+#include "photograd/texture/packed_mips.h"
 
 namespace photograd {
 
@@ -30,10 +32,17 @@ R wrapped(Wrap wrap, R x) {
     return two > R(1) ? R(2) - two : two;
 }
 
+/// What a path sees at once of a surface, in (u, v): a parallelogram of these sides; a point if they are 0.
+template <class R>
+struct Footprint {
+    Vec2<R> along{R(0)}, across{R(0)};
+};
+
 struct TextureLayout {
     TextureShape shape{1, 1};
     int channels = 1;
     Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
+    PackedMips mips{};  // none: always bilinear
 
     template <class R>
     [[nodiscard]] Vec2<R> inside(const Vec2<R>& uv) const {
@@ -46,6 +55,39 @@ struct TextureLayout {
             bilinear<R, decltype(fixed)::value>(texels, shape, texel_axis(uv.x, shape.width),
                                                 texel_axis(uv.y, shape.height), out);
         });
+    }
+    /// Level of a footprint; 0 without mip maps. rho is the longer diameter of the ellipse in it, in texels: with the sides
+    /// as columns of M, the largest singular value,
+    ///   2 rho^2 = |a|^2 + |c|^2 + sqrt((|a|^2 - |c|^2)^2 + 4 (a.c)^2)
+    template <class R>
+    [[nodiscard]] R level_of(const Footprint<R>& seen) const {
+        if (mips.empty()) return R(0);
+        const double W = shape.width, H = shape.height;
+        const double au = W * static_cast<double>(seen.along.x),
+                     av = H * static_cast<double>(seen.along.y),
+                     cu = W * static_cast<double>(seen.across.x),
+                     cv = H * static_cast<double>(seen.across.y);
+        const double a = au * au + av * av, c = cu * cu + cv * cv, both = au * cu + av * cv;
+        return static_cast<R>(
+            level_of_squared(0.5 * (a + c + std::sqrt((a - c) * (a - c) + 4 * both * both))));
+    }
+    /// The same at a level; `texels` are all levels.
+    template <class R>
+    void look_up(const R* texels, const Vec2<R>& uv, R level, R out[max_channels]) const {
+        if (!(level > R(0))) return look_up(texels, uv, out);
+        const LevelPair<R> pair = LevelPair<R>::of(level, mips.count());
+        R fine[max_channels], coarse[max_channels];
+        const auto at = [&](int k, R* color) {
+            const ImageView<const R> view = mips.level(texels, k, channels);
+            with_channels(channels, [&](auto fixed) {
+                bilinear<R, decltype(fixed)::value>(view.texels, view.shape,
+                                                    texel_axis(uv.x, view.shape.width),
+                                                    texel_axis(uv.y, view.shape.height), color);
+            });
+        };
+        at(pair.first, fine);
+        at(pair.second, coarse);
+        for (int c = 0; c < channels; ++c) out[c] = (R(1) - pair.t) * fine[c] + pair.t * coarse[c];
     }
 };
 
@@ -86,6 +128,10 @@ struct SurfaceTextures {
         return material < uses.size() ? std::span<const TextureUse>(uses[material])
                                       : std::span<const TextureUse>();
     }
+    [[nodiscard]] bool any_mips() const {
+        return std::any_of(layouts.begin(), layouts.end(),
+                           [](const TextureLayout& layout) { return !layout.mips.empty(); });
+    }
     [[nodiscard]] bool is_directed(std::size_t material) const {
         return material < directed.size() && directed[material];
     }
@@ -97,23 +143,39 @@ struct SurfaceTextures {
     }
 };
 
-/// Lookups of one texture and their derivatives: uv (N, 2), d_color (N, C).
+/// Lookups of one texture and their derivatives: uv (N, 2), d_color (N, C); level (N,), where it has mip maps.
 template <class R>
 struct TexelAdjoint {
-    std::vector<R> uv, d_color;
+    std::vector<R> uv, d_color, level;
+
+    void start(const TextureLayout& layout, const Vec2<R>& at, R at_level) {
+        uv.insert(uv.end(), {at.x, at.y});
+        d_color.resize(d_color.size() + static_cast<std::size_t>(layout.channels), R(0));
+        if (!layout.mips.empty()) level.push_back(at_level);
+    }
+    /// dL/dt of the last lookup.
+    R* last(const TextureLayout& layout) {
+        return &d_color[d_color.size() - static_cast<std::size_t>(layout.channels)];
+    }
+    void append(const TexelAdjoint& other) {
+        uv.insert(uv.end(), other.uv.begin(), other.uv.end());
+        d_color.insert(d_color.end(), other.d_color.begin(), other.d_color.end());
+        level.insert(level.end(), other.level.begin(), other.level.end());
+    }
 };
 
-/// The material as it is at one point.
+/// The material as it is at one point, or over the footprint around it.
 template <Real R>
 Material<R> textured(const Material<R>& base, std::span<const TextureUse> uses,
                      const SurfaceTextures& textures, std::span<const R* const> texels,
-                     const Vec2<R>& uv) {
+                     const Vec2<R>& uv, const Footprint<R>& seen = {}) {
     R row[max_parameters];
     base.get(row);
     for (const TextureUse& use : uses) {
         const auto t = static_cast<std::size_t>(use.texture);
+        const TextureLayout& layout = textures.layouts[t];
         R color[max_channels];
-        textures.layouts[t].look_up(texels[t], textures.layouts[t].inside(uv), color);
+        layout.look_up(texels[t], layout.inside(uv), layout.level_of(seen), color);
         for (int i = 0; i < use.count; ++i)
             row[use.first + i] =
                 std::clamp(row[use.first + i] * color[use.channel + i], R(use.lo), R(use.hi));
@@ -127,8 +189,8 @@ Material<R> textured(const Material<R>& base, std::span<const TextureUse> uses,
 template <Real R>
 void textured_backward(const Material<R>& base, std::span<const TextureUse> uses,
                        const SurfaceTextures& textures, std::span<const R* const> texels,
-                       const Vec2<R>& uv, const Material<R>& d_own, Material<R>& d_base,
-                       std::vector<TexelAdjoint<R>>& d_texels) {
+                       const Vec2<R>& uv, const Footprint<R>& seen, const Material<R>& d_own,
+                       Material<R>& d_base, std::vector<TexelAdjoint<R>>& d_texels) {
     R value[max_parameters], d_row[max_parameters], sum[max_parameters];
     base.get(value);
     d_own.get(d_row);
@@ -137,17 +199,12 @@ void textured_backward(const Material<R>& base, std::span<const TextureUse> uses
         const auto t = static_cast<std::size_t>(use.texture);
         const TextureLayout& layout = textures.layouts[t];
         const Vec2<R> at = layout.inside(uv);
+        const R level = layout.level_of(seen);
         R color[max_channels];
-        layout.look_up(texels[t], at, color);
-        TexelAdjoint<R>& record = d_texels[t];
-        if (use.texture != last) {
-            record.uv.insert(record.uv.end(), {at.x, at.y});
-            record.d_color.resize(record.d_color.size() + static_cast<std::size_t>(layout.channels),
-                                  R(0));
-        }
+        layout.look_up(texels[t], at, level, color);
+        if (use.texture != last) d_texels[t].start(layout, at, level);
         last = use.texture;
-        R* d_color =
-            &record.d_color[record.d_color.size() - static_cast<std::size_t>(layout.channels)];
+        R* d_color = d_texels[t].last(layout);
         for (int i = 0; i < use.count; ++i) {
             const int k = use.first + i, c = use.channel + i;
             const R p = value[k] * color[c];

@@ -1,42 +1,10 @@
 #include "photograd/texture/mip_sample.h"
 
-#include <cmath>
-#include <limits>
-#include <numbers>
-
+#include "photograd/texture/mip_lookup.h"
 #include "photograd/texture/scatter_texels.h"
 
 namespace photograd {
 namespace {
-
-/// log2 x for x >= 1, by our own logarithm: a library's may differ between processors in the last bit.
-double log2_above_one(double x) {
-    int exponent = 0;
-    const double mantissa =
-        std::frexp(smaller(x, std::numeric_limits<double>::max()), &exponent);  // in [1/2, 1)
-    return exponent - 1 + log1p_unit(2 * mantissa - 1) / std::numbers::ln2;
-}
-
-/// Two neighbouring levels, `first` and `second`, the same one where there is but one.
-template <class R>
-struct LevelPair {
-    int first, second;
-    R t;
-    bool clamped;
-
-    static LevelPair of(R level, int levels) {
-        const R last = R(levels - 1);
-        const R inside = smaller(last, larger(R(0), level));
-        const int first = larger(smaller(to_int(inside), levels - 2), 0);
-        return {first, smaller(first + 1, levels - 1), inside - R(first),
-                !(level >= R(0) && level < last)};
-    }
-    /// Weight of level k in the value.
-    [[nodiscard]] R weight(int k) const {
-        return (k == first ? R(1) - t : R(0)) + (k == second ? t : R(0));
-    }
-    [[nodiscard]] bool holds(int k) const { return k == first || k == second; }
-};
 
 template <Real R, int C>
 void look_up(const ImageView<const R>& texture, const R* uv, R* color) {
@@ -76,9 +44,8 @@ void mip_level(const TextureShape& shape, const R* footprint, std::int64_t count
     for_point_chunks(count, [&](std::int64_t begin, std::int64_t end) {
         for (std::int64_t i = begin; i < end; ++i) {
             const R* d = footprint + 4 * i;
-            const double longest = larger(squared_length(d), squared_length(d + 2));
-            // Of a footprint of at most a texel, a point for example, level 0 is wanted.
-            level[i] = longest > 1 ? static_cast<R>(0.5 * log2_above_one(longest)) : R(0);
+            level[i] =
+                static_cast<R>(level_of_squared(larger(squared_length(d), squared_length(d + 2))));
         }
     });
 }
@@ -116,6 +83,7 @@ void sample_mips_backward(MipView<const R> mips, const R* uv, const R* level, st
                 tiles, bins, uv, d_color, [&](std::int64_t i) { return pair(i).weight(k); },
                 d_level_k.texels);
         }
+        if (!d_uv) return;
         for_point_chunks(count, [&](std::int64_t begin, std::int64_t end) {
             for (std::int64_t i = begin; i < end; ++i)
                 point_backward<R, C>(mips, uv + 2 * i, level[i], d_color + C * i, d_uv + 2 * i,

@@ -35,7 +35,7 @@ void mip_level(const TextureShape& shape, const R* footprint, std::int64_t count
 template <Real R>
 void sample_mips(MipView<const R> mips, const R* uv, const R* level, std::int64_t count, R* color);
 
-/// The levels of d_mips, d_uv (N, 2) and d_level (N,) are added to.
+/// The levels of d_mips, d_uv (N, 2) and d_level (N,) are added to; the latter two may both be null.
 template <Real R>
 void sample_mips_backward(MipView<const R> mips, const R* uv, const R* level, std::int64_t count,
                           const R* d_color, MipView<R> d_mips, R* d_uv, R* d_level);

@@ -10,7 +10,7 @@ import numpy as np
 from photograd.transport.scene import Array, Material, MeshShape, Scene, Shape
 from photograd.transport.texture import WRAPS
 
-Layout = tuple[int, int, int, int, int]
+Layout = tuple[int, int, int, int, int, bool]
 Use = tuple[int, int, int, int, float, float]
 BentNormals = tuple[Array, int, int]
 
@@ -33,7 +33,10 @@ def textures_of(
     brushed: the first axis of its frame then runs along growing u.
     """
     order = {name: number for number, name in enumerate(scene.textures)}
-    layouts = [(*texture.values.shape, *_wrap(texture.wrap)) for texture in scene.textures.values()]
+    layouts = [
+        (*texture.values.shape, *_wrap(texture.wrap), texture.filter == "mip")
+        for texture in scene.textures.values()
+    ]
     uses = [_uses(material, order) for material in scene.materials.values()]
     maps = [_bent(material) for material in scene.materials.values()]
     directed = [

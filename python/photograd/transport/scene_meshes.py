@@ -4,6 +4,7 @@
 file = "wood.png"             # beside the scene file
 encoding = "srgb"             # or "linear": numbers that are not colours; "alpha": the opacity
 wrap = "repeat"               # or mirror, clamp
+filter = "bilinear"           # or "mip": the mean over what a pixel sees (texture.py)
 
 [materials.floor]
 model = "gltf"
@@ -40,6 +41,7 @@ from photograd.transport.scene import Array, Material, MeshShape
 from photograd.transport.scene_node import Node
 from photograd.transport.texture import (
     ENCODINGS,
+    FILTERS,
     WRAPS,
     NormalMap,
     Texture,
@@ -59,9 +61,10 @@ def textures_in(root: Node) -> dict[str, Texture]:
 def _texture(node: Node) -> Texture:
     encoding = node.choice("encoding", ENCODINGS) if node.has("encoding") else "srgb"
     wrap = node.choice("wrap", WRAPS) if node.has("wrap") else "repeat"
+    looked_up = node.choice("filter", FILTERS) if node.has("filter") else "bilinear"
     path = node.path.parent / node.text("file")
     node.refuse_other_keys()
-    return node.built(lambda: read_texture(path, encoding, (wrap, wrap)))
+    return node.built(lambda: read_texture(path, encoding, (wrap, wrap), looked_up))
 
 
 def pictures_of(node: Node) -> tuple[dict[str, TextureUse], NormalMap | None]:

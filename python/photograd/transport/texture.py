@@ -1,8 +1,13 @@
 """Pictures on surfaces: a material's parameter times a texture, and bent normals.
 
 A texture is linear and (H, W, C), T[row, column], v downwards; `from_image` decodes sRGB. Lookups
-are bilinear: a path tracer averages over a pixel by its many samples, and needs no mip map. A
-coordinate beyond 0..1 is brought back first, so texels at a seam are not mixed across it.
+are bilinear: a path tracer averages over a pixel by its many samples, and needs no mip map. With
+few samples one helps: `filter` "mip" looks up the mean over what a pixel sees at once, by ray cones
+(cpp/photograd/render/ray_cone.h). It is less noisy and biased: what is averaged is the texture, not
+the light, over a square as wide as the longer side of that area, and no number of samples sharpens
+it again. Pictures of the textured surface itself, seen far away or through many bounces, gain most.
+Normal maps, what shines, shadows of what covers in part, and photons see single points always.
+A coordinate beyond 0..1 is brought back first, so texels at a seam are not mixed across it.
 """
 
 from __future__ import annotations
@@ -21,6 +26,7 @@ from photograd.errors import DtypeError, RangeError, ShapeError, message
 
 Array = npt.NDArray[Any]
 WRAPS = ("repeat", "mirror", "clamp")
+FILTERS = ("bilinear", "mip")
 ENCODINGS = ("srgb", "linear", "alpha")
 
 
@@ -31,19 +37,23 @@ class Texture:
     Attributes:
         values: (H, W, C) floating point, linear, C from 1 to 4; kept as float32.
         wrap: what happens to coordinates outside 0..1 along u and v, of `WRAPS`.
+        filter: "bilinear" looks at single points, "mip" at the mean over what a ray sees.
 
     Raises:
         DtypeError, ShapeError: not floating point, or not (H, W, C).
-        RangeError: not finite, or an unknown wrap.
+        RangeError: not finite, or an unknown wrap or filter.
     """
 
     values: Array
     wrap: tuple[str, str] = ("repeat", "repeat")
+    filter: str = "bilinear"
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "values", _picture("Texture", self.values, (1, 2, 3, 4)))
         if len(self.wrap) != 2 or any(kind not in WRAPS for kind in self.wrap):
             raise RangeError(message("Texture", "wrap", f"two of {WRAPS}", self.wrap))
+        if self.filter not in FILTERS:
+            raise RangeError(message("Texture", "filter", f"one of {FILTERS}", self.filter))
 
     @property
     def channels(self) -> int:
@@ -94,8 +104,9 @@ class NormalMap:
 
 
 def read_texture(
-    path: Path, encoding: str = "srgb", wrap: tuple[str, str] = ("repeat", "repeat")
-) -> Texture:
+    path: Path, encoding: str = "srgb", wrap: tuple[str, str] = ("repeat", "repeat"),
+    filter: str = "bilinear",
+) -> Texture:  # fmt: skip
     """The colours of an image file, without its alpha; or its alpha alone.
 
     Args:
@@ -103,20 +114,20 @@ def read_texture(
         encoding: "srgb" for colours of 8 or 16 bits, which are decoded; "linear" for numbers that
             are not colours (roughness), taken as they are; "alpha" for the opacity, (H, W, 1). EXR
             is always linear.
-        wrap: as of `Texture`.
+        wrap, filter: as of `Texture`.
 
     Raises:
         IoError: no such image.
-        RangeError: an unknown encoding or wrap.
+        RangeError: an unknown encoding, wrap or filter.
     """
     if encoding not in ENCODINGS:
         raise RangeError(message("read_texture", "encoding", ENCODINGS, encoding))
     color = read_image(path)
     if encoding == "alpha":
-        return Texture(color[..., 3:], wrap)
+        return Texture(color[..., 3:], wrap, filter)
     color = color[..., :3]
     decoded = encoding == "srgb" and path.suffix.lower() != ".exr"
-    return Texture(decode(color) if decoded else color, wrap)
+    return Texture(decode(color) if decoded else color, wrap, filter)
 
 
 def decode(color: Array) -> Array:
