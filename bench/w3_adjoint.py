@@ -20,6 +20,7 @@ import _estimates
 import numpy as np
 from numpy.typing import NDArray
 from photograd.transport import PathOptions, PathTracer
+from photograd.transport.recovery import loss_and_gradients
 from photograd.transport.sample_counts import SPREADS
 
 Array = NDArray[Any]
@@ -30,16 +31,14 @@ def gradient(
     tracer: PathTracer, options: PathOptions, spp: int, seed: int, spread: str
 ) -> tuple[float, Array, float]:
     """The loss, its derivative by the texels (64, 64, 3), and by the block's alpha."""
-    image = tracer.render(spp=spp, seed=2 * seed, options=options).mean
-    error = image - GOAL
-    loss = float(np.square(error).mean())
-    found = tracer.render_backward(
-        error * (2 / error.size), spp=spp, seed=2 * seed + 1,
+    shape = (tracer.scene.camera.height, tracer.scene.camera.width, 3)
+    loss, found = loss_and_gradients(
+        tracer, np.full(shape, GOAL), np.ones(shape), spp=spp, seeds=(2 * seed, 2 * seed + 1),
         options=replace(options, roulette_from=None), spread=spread,
     )  # fmt: skip
     roughness = float(tracer.params["materials.block.roughness"])
     by_alpha = float(found["materials.block.roughness"]) / (2 * roughness)
-    return loss, found["textures.picture"].astype(np.float64), by_alpha
+    return loss, found["textures.picture"], by_alpha
 
 
 def main() -> None:
