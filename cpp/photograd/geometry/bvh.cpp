@@ -8,7 +8,6 @@
 #endif
 
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <string>
 
@@ -33,15 +32,6 @@ void intersect(const int* valid, RTCScene scene, bool side_by_side, RTCRayHit16*
     RTCIntersectContext context = query(side_by_side);
     rtcIntersect16(valid, scene, &context, rays);
 }
-void intersect_one(RTCScene scene, RTCRayHit* ray) {
-    RTCIntersectContext context = query(false);
-    rtcIntersect1(scene, &context, ray);
-}
-void any_hit_one(RTCScene scene, RTCRay* ray) {
-    RTCIntersectContext context = query(false);
-    rtcOccluded1(scene, &context, ray);
-}
-const int XP = std::getenv("XP_SINGLE") ? std::atoi(std::getenv("XP_SINGLE")) : 0;
 void any_hit(const int* valid, RTCScene scene, bool side_by_side, RTCRay16* rays) {
     RTCIntersectContext context = query(side_by_side);
     rtcOccluded16(valid, scene, &context, rays);
@@ -221,39 +211,6 @@ Bvh::~Bvh() = default;
 Bvh::Bvh(Bvh&&) noexcept = default;
 
 void Bvh::trace(const RayPacket& rays, bool side_by_side, PacketHits& hits) const {
-    if (!side_by_side && (XP & 1)) {
-        for (int i = 0; i < width; ++i) {
-            hits.t[i] = std::numeric_limits<float>::infinity();
-            hits.u[i] = hits.v[i] = 0;
-            hits.primitive[i] = hits.instance[i] = -1;
-            if (!rays.active[i]) continue;
-            RTCRayHit one;
-            one.ray = {rays.origin[0][i],
-                       rays.origin[1][i],
-                       rays.origin[2][i],
-                       rays.t_min[i],
-                       rays.direction[0][i],
-                       rays.direction[1][i],
-                       rays.direction[2][i],
-                       0,
-                       rays.t_max[i],
-                       0xffffffffu,
-                       0,
-                       0};
-            one.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-            one.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-            intersect_one(tree_->scene, &one);
-            if (one.hit.geomID == RTC_INVALID_GEOMETRY_ID) continue;
-            const bool placed = one.hit.instID[0] != RTC_INVALID_GEOMETRY_ID;
-            hits.t[i] = one.ray.tfar;
-            hits.u[i] = one.hit.u;
-            hits.v[i] = one.hit.v;
-            hits.primitive[i] = static_cast<std::int32_t>(one.hit.primID);
-            hits.instance[i] =
-                static_cast<std::int32_t>(placed ? one.hit.instID[0] : one.hit.geomID);
-        }
-        return;
-    }
     RTCRayHit16 packet;
     alignas(64) int valid[width];
     load(rays, packet.ray, valid);
@@ -276,27 +233,6 @@ void Bvh::trace(const RayPacket& rays, bool side_by_side, PacketHits& hits) cons
 }
 
 void Bvh::occluded(const RayPacket& rays, bool side_by_side, bool* blocked) const {
-    if (!side_by_side && (XP & 2)) {
-        for (int i = 0; i < width; ++i) {
-            blocked[i] = false;
-            if (!rays.active[i]) continue;
-            RTCRay one = {rays.origin[0][i],
-                          rays.origin[1][i],
-                          rays.origin[2][i],
-                          rays.t_min[i],
-                          rays.direction[0][i],
-                          rays.direction[1][i],
-                          rays.direction[2][i],
-                          0,
-                          rays.t_max[i],
-                          0xffffffffu,
-                          0,
-                          0};
-            any_hit_one(tree_->scene, &one);
-            blocked[i] = one.tfar < 0;
-        }
-        return;
-    }
     RTCRay16 packet;
     alignas(64) int valid[width];
     load(rays, packet, valid);

@@ -31,13 +31,13 @@ from photograd.core import _core
 from photograd.data.camera import Camera
 from photograd.errors import RangeError, ShapeError, message
 from photograd.transport.accumulation import Accumulation
-from photograd.transport.sample_counts import sample_counts
+from photograd.transport.sample_counts import pair_counts
 from photograd.transport.tracer import DEFAULTS, PathOptions, PathTracer
 
 Array = npt.NDArray[Any]
-PILOT = 8
+PILOT = 16
 """One sample in so many finds out where the others are needed."""
-PILOT_SEED = 0x5DEECE66D
+PILOT_SEED = 0x5DEECE66D  # makes another seed of one
 
 
 def cross_loss(a: Array, b: Array, target: Array, weight: Array) -> float:
@@ -68,8 +68,8 @@ def loss_and_gradients(
             biased.
         camera, options: as for `PathTracer.render`.
         names: of the parameters wanted; None for all.
-        spread: "even" gives each pixel as many samples; "cotangent" more to those that are far from
-            the target (sample_counts.py), as one sample in `PILOT` finds out beforehand.
+        spread: "even" gives each pixel as many samples; "cotangent" more to those that are noisy
+            and far from the target (sample_counts.py), as one sample in `PILOT` finds out first.
 
     Returns:
         The loss, and {name: dL/dparameter}, float64: the derivative of that very loss, the choice
@@ -89,11 +89,12 @@ def loss_and_gradients(
         raise RangeError(message("loss_and_gradients", "spp", "at least 1", spp))
     counts = None
     if spread != "even":
-        pilot = max(1, 2 * spp // PILOT)
-        seed = seeds[0] ^ PILOT_SEED
-        first = tracer.render(spp=pilot, seed=seed, options=options, camera=camera).mean
-        spp = max(1, spp - pilot // 2)
-        counts = sample_counts(weight * (first - target), spp, spread)
+        pilot = tracer.render(
+            spp=max(2, 2 * spp // PILOT), seed=seeds[0] ^ PILOT_SEED, options=options,
+            camera=camera,
+        )  # fmt: skip
+        spp = max(1, spp - pilot.count // 2)
+        counts = pair_counts(pilot, weight * (pilot.mean - target), spp, spread)
     halves = np.zeros((2, *shape))
     found = tracer.add_up(
         _core.trace_pairs_backward, view, options=options.numbers(seeds[0]), other_seed=seeds[1],
@@ -104,4 +105,4 @@ def loss_and_gradients(
     Accumulation(halves.sum(axis=0), halves.sum(axis=0), 2).check_finite("loss_and_gradients")
     wanted = found if names is None else names
     gradients = {name: found[name].astype(np.float64) for name in wanted}
-    return cross_loss(*halves, target, weight), gradients
+    return cross_loss(halves[0], halves[1], target, weight), gradients
