@@ -1,9 +1,9 @@
 """W3: the gradient of W2's picture by the wall's texels and the block's roughness.
 
-The loss is the mean over pixels and channels of (I - 0.2)^2. The picture and its adjoint have paths
-of their own, so that the gradient is right on average; both have `--spp`. The adjoint goes without
-roulette: few bright pixels carry much of the gradient, and roulette looks at the path alone. For
-the same reason its paths are dealt out by the pixels' cotangents (`--spread`).
+The loss is the mean over pixels and channels of (I - 0.2)^2. Two pictures with paths of their own,
+`--spp` each, tell each other what it asks for, so that the gradient is right on average. A few of
+the paths find out where the others are needed (`--spread`). Roulette begins later than for a
+picture: few bright pixels carry much of the gradient, and roulette looks at the path alone.
 `--reference` names files
 NAME_texture.npy (64, 64, 3) and NAME_alpha.npy (value, standard error), the latter by alpha, the
 square of our roughness.
@@ -20,26 +20,26 @@ import _estimates
 import numpy as np
 from numpy.typing import NDArray
 from photograd.transport import PathOptions, PathTracer
+from photograd.transport.recovery import loss_and_gradients
 from photograd.transport.sample_counts import SPREADS
 
 Array = NDArray[Any]
 GOAL = 0.2
+ROULETTE = 4
 
 
 def gradient(
     tracer: PathTracer, options: PathOptions, spp: int, seed: int, spread: str
 ) -> tuple[float, Array, float]:
     """The loss, its derivative by the texels (64, 64, 3), and by the block's alpha."""
-    image = tracer.render(spp=spp, seed=2 * seed, options=options).mean
-    error = image - GOAL
-    loss = float(np.square(error).mean())
-    found = tracer.render_backward(
-        error * (2 / error.size), spp=spp, seed=2 * seed + 1,
-        options=replace(options, roulette_from=None), spread=spread,
+    shape = (tracer.scene.camera.height, tracer.scene.camera.width, 3)
+    loss, found = loss_and_gradients(
+        tracer, np.full(shape, GOAL), np.ones(shape), spp=spp, seeds=(2 * seed, 2 * seed + 1),
+        options=replace(options, roulette_from=ROULETTE), spread=spread,
     )  # fmt: skip
     roughness = float(tracer.params["materials.block.roughness"])
     by_alpha = float(found["materials.block.roughness"]) / (2 * roughness)
-    return loss, found["textures.picture"].astype(np.float64), by_alpha
+    return loss, found["textures.picture"], by_alpha
 
 
 def main() -> None:

@@ -2,10 +2,12 @@
 #include <optional>
 
 #include "camera_args.h"
+#include "derivative_arrays.h"
 #include "module.h"
 #include "path_args.h"
 #include "photograd/render/ambient_occlusion.h"
 #include "photograd/render/path.h"
+#include "photograd/render/path_pairs.h"
 #include "photograd/render/volume_path.h"
 #include "texture_args.h"
 
@@ -104,35 +106,42 @@ void trace_backward(const PathGeometry& geometry, const std::vector<std::string>
         const SceneNumbers<R> numbers(args, geometry, models, parameters, std::nullopt, emission,
                                       lights, textures, std::nullopt, media, std::nullopt);
         const ThinLens camera = thin_lens(camera_numbers);
-        const double* d = args.in<double>(
-            "d_image", d_image,
-            std::to_string(camera.height) + " " + std::to_string(camera.width) + " 3");
-        R* to_parameters = args.out<R>("d_parameters", d_parameters, "P");
-        R* to_emission =
-            args.out<R>("d_emission", d_emission, std::to_string(geometry.shape_count()) + " 3");
-        const std::vector<R*> to_lights = light_derivatives<R>(lights, d_lights);
-        const auto& layouts = geometry.textures.layouts;
-        std::vector<R*> to_textures;
-        if (d_textures.size() != layouts.size())
-            args.range("d_textures", std::to_string(layouts.size()) + " textures",
-                       std::to_string(d_textures.size()));
-        for (std::size_t t = 0; t < layouts.size(); ++t)
-            to_textures.push_back(args.out<R>("d_textures", d_textures[t], axes_of(layouts[t])));
-        const MediaOutputs<R> to_media(geometry, numbers.media, d_media, d_densities);
+        const double* d = args.in<double>("d_image", d_image, picture_axes(camera) + " 3");
+        const DerivativeArrays<R> out(args, geometry, numbers, lights, d_parameters, d_emission,
+                                      d_lights, d_textures, d_media, d_densities);
         const PathOptions options = options_of(args, given);
-        if (spp < 1) args.range("spp", "at least 1 sample", "0");
-        const std::uint32_t* own = nullptr;
-        if (counts) {
-            own = args.in<std::uint32_t>(
-                "counts", *counts,
-                std::to_string(camera.height) + " " + std::to_string(camera.width));
-            if (*std::min_element(own, own + std::int64_t{camera.height} * camera.width) < 1)
-                args.range("counts", "at least 1 sample of each pixel", "0");
-        }
+        const std::uint32_t* own = sample_counts(args, spp, counts, camera);
         const py::gil_scoped_release release;
-        trace_paths_backward(numbers.scene, camera, options, spp, own, d,
-                             PathDerivatives<R>{to_parameters, to_emission, to_lights, to_textures,
-                                                to_media.rows, to_media.densities});
+        trace_paths_backward(numbers.scene, camera, options, spp, own, d, out.spans());
+    });
+}
+
+void trace_pairs(const PathGeometry& geometry, const std::vector<std::string>& models,
+                 const py::array& parameters, const py::array& emission, const LightTuples& lights,
+                 const std::vector<py::array>& textures, const std::vector<MediumTuple>& media,
+                 const py::tuple& camera_numbers, const Options& given, std::uint64_t other_seed,
+                 std::uint32_t spp, const std::optional<py::array>& counts, const py::array& target,
+                 const py::array& weight, py::array pictures, py::array d_parameters,
+                 py::array d_emission, std::vector<py::array> d_lights,
+                 std::vector<py::array> d_textures, std::vector<py::array> d_media,
+                 std::vector<std::optional<py::array>> d_densities) {
+    dispatch_real("trace_pairs_backward", "parameters", parameters, [&](auto real) {
+        using R = decltype(real);
+        ArrayArgs args("trace_pairs_backward");
+        const SceneNumbers<R> numbers(args, geometry, models, parameters, std::nullopt, emission,
+                                      lights, textures, std::nullopt, media, std::nullopt);
+        const ThinLens camera = thin_lens(camera_numbers);
+        const std::string axes = picture_axes(camera) + " 3";
+        const SquaredError loss{args.in<double>("target", target, axes),
+                                args.in<double>("weight", weight, axes)};
+        double* both = args.out<double>("pictures", pictures, "2 " + axes);
+        const DerivativeArrays<R> out(args, geometry, numbers, lights, d_parameters, d_emission,
+                                      d_lights, d_textures, d_media, d_densities);
+        const PathOptions options = options_of(args, given);
+        const std::uint32_t* own = sample_counts(args, spp, counts, camera);
+        const py::gil_scoped_release release;
+        trace_pairs_backward(numbers.scene, camera, options, {options.seed, other_seed}, spp, own,
+                             loss, out.spans(), both);
     });
 }
 
@@ -286,6 +295,15 @@ void bind_path(py::module_& m) {
           "Adds to d_parameters (P,), d_emission (S, 3), d_lights, an array like the first of each "
           "light, d_textures, d_media (rows) and d_densities (grids or None) for dL/d(mean "
           "radiance). counts (H, W) uint32, or None: spp samples of each pixel.");
+    m.def("trace_pairs_backward", &trace_pairs, py::arg("geometry"), py::arg("models"),
+          py::arg("parameters"), py::arg("emission"), py::arg("lights"), py::arg("textures"),
+          py::arg("media"), py::arg("camera"), py::arg("options"), py::arg("other_seed"),
+          py::arg("spp"), py::arg("counts"), py::arg("target"), py::arg("weight"),
+          py::arg("pictures"), py::arg("d_parameters"), py::arg("d_emission"), py::arg("d_lights"),
+          py::arg("d_textures"), py::arg("d_media"), py::arg("d_densities"),
+          "As trace_paths_backward, for the loss sum weight (mean radiance - target)^2, both "
+          "(H, W, 3) float64, by two\npictures with paths of their own, of the seed in options and "
+          "of other_seed, written to pictures\n(2, H, W, 3) float64.");
     m.def("trace_path", &path, py::arg("geometry"), py::arg("models"), py::arg("parameters"),
           py::arg("emission"), py::arg("lights"), py::arg("textures"), py::arg("media"),
           py::arg("camera"), py::arg("options"), py::arg("pixel"), py::arg("sample"),

@@ -137,6 +137,7 @@ __all__: list[str] = [
     "thread_count",
     "tiny_network_parameters",
     "trace_light",
+    "trace_pairs_backward",
     "trace_path",
     "trace_paths",
     "trace_paths_backward",
@@ -4409,6 +4410,44 @@ def trace_light(
     """
     Adds what particles bring to a rectangle (corner, edge_x, edge_y) (3, 3) to irradiance (H, W, 3),
     and its squares, float64. options: (max_depth, roulette_from, seed).
+    """
+
+def trace_pairs_backward(
+    geometry: PathGeometry,
+    models: collections.abc.Sequence[str],
+    parameters: numpy.ndarray,
+    emission: numpy.ndarray,
+    lights: collections.abc.Sequence[tuple[typing.Any, ...]],
+    textures: collections.abc.Sequence[numpy.ndarray],
+    media: collections.abc.Sequence[
+        tuple[str, numpy.ndarray, numpy.ndarray | None, typing.SupportsFloat | typing.SupportsIndex]
+    ],
+    camera: tuple[typing.Any, ...],
+    options: tuple[
+        typing.SupportsInt | typing.SupportsIndex,
+        typing.SupportsInt | typing.SupportsIndex,
+        typing.SupportsInt | typing.SupportsIndex,
+        typing.SupportsInt | typing.SupportsIndex,
+        typing.SupportsInt | typing.SupportsIndex,
+        typing.SupportsInt | typing.SupportsIndex,
+    ],
+    other_seed: typing.SupportsInt | typing.SupportsIndex,
+    spp: typing.SupportsInt | typing.SupportsIndex,
+    counts: numpy.ndarray | None,
+    target: numpy.ndarray,
+    weight: numpy.ndarray,
+    pictures: numpy.ndarray,
+    d_parameters: numpy.ndarray,
+    d_emission: numpy.ndarray,
+    d_lights: collections.abc.Sequence[numpy.ndarray],
+    d_textures: collections.abc.Sequence[numpy.ndarray],
+    d_media: collections.abc.Sequence[numpy.ndarray],
+    d_densities: collections.abc.Sequence[numpy.ndarray | None],
+) -> None:
+    """
+    As trace_paths_backward, for the loss sum weight (mean radiance - target)^2, both (H, W, 3) float64, by two
+    pictures with paths of their own, of the seed in options and of other_seed, written to pictures
+    (2, H, W, 3) float64.
     """
 
 def trace_path(

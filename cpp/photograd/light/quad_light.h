@@ -39,9 +39,14 @@ struct QuadLight {
     }
 
     LightSample<R> sample(const Vec3<R>& point, const Vec2<R>& u2) const {
+        return sample(point, u2, axes());
+    }
+    /// The same for who has kept `axes()`, which no point changes.
+    LightSample<R> sample(const Vec3<R>& point, const Vec2<R>& u2,
+                          const RectangleAxes& known) const {
         const Vec3<R> normal = cross(edge_x, edge_y), from = corner - point;
         if (!(dot(from, normal) < R(0))) return {};
-        const SphericalRectangle seen = seen_from(point);
+        const SphericalRectangle seen = seen_from(point, known);
         if (seen.solid_angle < smallest)
             return glow_sample(from + u2.x * edge_x + u2.y * edge_y, normalize(normal),
                                R(1) / length(normal), radiance);
@@ -56,11 +61,18 @@ struct QuadLight {
     }
     /// The same for a tracer that knows the distance and the cosine at the front that it has hit.
     [[nodiscard]] R hit_pdf(const Vec3<R>& point, R distance, R cosine) const {
-        const double solid_angle = seen_from(point).solid_angle;
+        return hit_pdf(point, distance, cosine, axes());
+    }
+    [[nodiscard]] R hit_pdf(const Vec3<R>& point, R distance, R cosine,
+                            const RectangleAxes& known) const {
+        const double solid_angle = seen_from(point, known).solid_angle;
         if (solid_angle >= smallest) return R(1 / solid_angle);
         return solid_angle_density(R(1) / length(cross(edge_x, edge_y)), distance * distance,
                                    cosine);
     }
+
+    [[nodiscard]] RectangleAxes axes() const { return {wide(edge_x), wide(edge_y)}; }
+    [[nodiscard]] Vec3<R> front() const { return normalize(cross(edge_x, edge_y)); }
 
 private:
     static constexpr double smallest = 1e-6;  // sr
@@ -78,12 +90,31 @@ private:
         const bool hit = x >= R(0) && x <= R(1) && y >= R(0) && y <= R(1);
         return {t, hit ? cosine : R(0)};
     }
-    [[nodiscard]] SphericalRectangle seen_from(const Vec3<R>& point) const {
-        const auto wide = [](const Vec3<R>& v) { return Vec3<double>(v.x, v.y, v.z); };
-        return {wide(corner) - wide(point), wide(edge_x), wide(edge_y)};
+    static Vec3<double> wide(const Vec3<R>& v) { return Vec3<double>(v.x, v.y, v.z); }
+    [[nodiscard]] SphericalRectangle seen_from(const Vec3<R>& point,
+                                               const RectangleAxes& known) const {
+        return {wide(corner) - wide(point), known};
     }
 };
 
 static_assert(AreaLight<QuadLight>);
+
+/// A rectangle that stays where it is, for who asks it often.
+template <class R>
+struct PlacedQuad {
+    QuadLight<R> light;
+    RectangleAxes axes;
+    Vec3<R> front;
+
+    explicit PlacedQuad(const QuadLight<R>& quad)
+        : light(quad), axes(quad.axes()), front(quad.front()) {}
+
+    LightSample<R> sample(const Vec3<R>& point, const Vec2<R>& u2) const {
+        return light.sample(point, u2, axes);
+    }
+    [[nodiscard]] R hit_pdf(const Vec3<R>& point, R distance, R cosine) const {
+        return light.hit_pdf(point, distance, cosine, axes);
+    }
+};
 
 }  // namespace photograd

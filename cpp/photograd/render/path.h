@@ -28,6 +28,10 @@ struct SampleCounts {
     std::uint32_t same = 0;
 
     [[nodiscard]] std::uint32_t of(std::int64_t pixel) const { return own ? own[pixel] : same; }
+    /// The most of any pixel in [begin, end).
+    [[nodiscard]] std::uint32_t most_of(std::int64_t begin, std::int64_t end) const {
+        return own ? *std::max_element(own + begin, own + end) : same;
+    }
     /// Of the samples in `range`, those that the pixel has.
     [[nodiscard]] std::uint32_t within(const SampleRange& range, std::int64_t pixel) const {
         if (!own) return range.count;

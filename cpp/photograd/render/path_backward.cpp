@@ -3,6 +3,7 @@
 #include "photograd/core/scatter.h"
 #include "photograd/light/environment_gradient.h"
 #include "photograd/medium/density_gradient.h"
+#include "photograd/render/path_chunks.h"
 #include "photograd/render/path_samples.h"
 #include "photograd/render/volume_path.h"
 #include "photograd/texture/sample.h"
@@ -144,32 +145,11 @@ void scatter_densities(const PathScene<R>& scene, const std::vector<Seen<R>>& ch
 
 /// Adds one chunk's derivatives to `row` and returns what goes to texels.
 template <class R>
-Seen<R> chunk_backward(const PathScene<R>& scene, const ThinLens& camera,
-                       const PathOptions& options, const SampleRange& samples,
-                       const SampleCounts& counts, const double* d_image, std::int64_t begin,
-                       std::int64_t end, double* row) {
+Seen<R> chunk_backward(const PathScene<R>& scene, const ChunkWork<R>& work,
+                       const SampleRange& samples, std::int64_t begin, std::int64_t end,
+                       double* row) {
     PathGradient<R> gradient(scene);
-    std::vector<Vec3<R>> ahead(static_cast<std::size_t>(options.max_depth));
-    const auto d_radiance = [&](std::int64_t pixel) {
-        const double* d = d_image + 3 * pixel;
-        const double share = 1.0 / counts.of(pixel);
-        return Vec3<R>(R(d[0] * share), R(d[1] * share), R(d[2] * share));
-    };
-    if (scene.geometry->media.any())
-        for_each_volume_path<R>(
-            scene, camera, options, samples, counts, false, begin, end,
-            [&](std::int64_t pixel, const Path<R>& path, const MediaTrail<R>& trail) {
-                gather_through<R>(path, trail, ahead.data());
-                gather_through_backward<R>(scene, path, trail, ahead.data(), d_radiance(pixel),
-                                           gradient);
-            });
-    else
-        for_each_path(scene, camera, options, samples, counts, false, begin, end,
-                      [&](std::int64_t pixel, const Path<R>& path) {
-                          gather<R>(path, ahead.data());
-                          gather_backward<R>(scene, path, ahead.data(), d_radiance(pixel),
-                                             gradient);
-                      });
+    work(samples, begin, end, gradient);
     DerivativeRow<R>::put(gradient, row);
     Seen<R> seen{std::vector<SeenDirections<R>>(scene.lights.size()), std::move(gradient.texels),
                  std::move(gradient.densities)};
@@ -182,14 +162,8 @@ Seen<R> chunk_backward(const PathScene<R>& scene, const ThinLens& camera,
 }  // namespace
 
 template <Real R>
-void trace_paths_backward(const PathScene<R>& scene, const ThinLens& camera,
-                          const PathOptions& options, std::uint32_t spp,
-                          const std::uint32_t* own_counts, const double* d_image,
-                          const PathDerivatives<R>& out) {
-    const std::int64_t pixels = static_cast<std::int64_t>(camera.width) * camera.height;
-    const SampleCounts counts{own_counts, spp};
-    const std::uint32_t most =
-        own_counts ? *std::max_element(own_counts, own_counts + pixels) : spp;
+void add_chunks(const PathScene<R>& scene, std::int64_t pixels, std::uint32_t most, bool whole,
+                const ChunkWork<R>& work, const PathDerivatives<R>& out) {
     const std::int64_t chunks = (pixels + chunk_pixels - 1) / chunk_pixels;
     DerivativeRow<R> row(scene);
     std::vector<std::vector<double>> texels(scene.lights.size());
@@ -209,7 +183,7 @@ void trace_paths_backward(const PathScene<R>& scene, const ThinLens& camera,
             maps = grids = true;
         }
     const std::uint32_t at_once = grids ? samples_in_grids : samples_at_once;
-    const std::uint32_t batch = maps ? std::min(at_once, most) : most;
+    const std::uint32_t batch = maps && !whole ? std::min(at_once, most) : most;
     const std::int64_t paths = grids ? slab_paths_in_grids : slab_paths;
     const std::int64_t slab =
         maps ? std::clamp(paths / (chunk_pixels * batch), fewest_chunks, most_chunks) : most_chunks;
@@ -221,8 +195,8 @@ void trace_paths_backward(const PathScene<R>& scene, const ThinLens& camera,
             sum_partials<double>(count, row.sums(), [&](std::int64_t i, std::span<double> partial) {
                 const std::int64_t begin = (first + i) * chunk_pixels;
                 seen[static_cast<std::size_t>(i)] =
-                    chunk_backward(scene, camera, options, now, counts, d_image, begin,
-                                   std::min(begin + chunk_pixels, pixels), partial.data());
+                    chunk_backward(scene, work, now, begin, std::min(begin + chunk_pixels, pixels),
+                                   partial.data());
             });
             for (std::size_t k = 0; k < texels.size(); ++k)
                 if (const auto* map = std::get_if<Environment<R>>(&scene.lights[k].model))
@@ -240,6 +214,44 @@ void trace_paths_backward(const PathScene<R>& scene, const ThinLens& camera,
             out.densities[m][k] += static_cast<R>(densities[m][k]);
 }
 
+template <Real R>
+void trace_paths_backward(const PathScene<R>& scene, const ThinLens& camera,
+                          const PathOptions& options, std::uint32_t spp,
+                          const std::uint32_t* own_counts, const double* d_image,
+                          const PathDerivatives<R>& out) {
+    const std::int64_t pixels = static_cast<std::int64_t>(camera.width) * camera.height;
+    const SampleCounts counts{own_counts, spp};
+    const auto d_radiance = [&](std::int64_t pixel) {
+        const double* d = d_image + 3 * pixel;
+        const double share = 1.0 / counts.of(pixel);
+        return Vec3<R>(R(d[0] * share), R(d[1] * share), R(d[2] * share));
+    };
+    const auto work = [&](const SampleRange& samples, std::int64_t begin, std::int64_t end,
+                          PathGradient<R>& gradient) {
+        std::vector<Vec3<R>> ahead(static_cast<std::size_t>(options.max_depth));
+        if (scene.geometry->media.any())
+            for_each_volume_path<R>(
+                scene, camera, options, samples, counts, false, begin, end,
+                [&](std::int64_t pixel, const Path<R>& path, const MediaTrail<R>& trail) {
+                    gather_through<R>(path, trail, ahead.data());
+                    gather_through_backward<R>(scene, path, trail, ahead.data(), d_radiance(pixel),
+                                               gradient);
+                });
+        else
+            for_each_path(scene, camera, options, samples, counts, false, begin, end,
+                          [&](std::int64_t pixel, const Path<R>& path) {
+                              gather<R>(path, ahead.data());
+                              gather_backward<R>(scene, path, ahead.data(), d_radiance(pixel),
+                                                 gradient);
+                          });
+    };
+    add_chunks<R>(scene, pixels, counts.most_of(0, pixels), false, work, out);
+}
+
+template void add_chunks(const PathScene<float>&, std::int64_t, std::uint32_t, bool,
+                         const ChunkWork<float>&, const PathDerivatives<float>&);
+template void add_chunks(const PathScene<double>&, std::int64_t, std::uint32_t, bool,
+                         const ChunkWork<double>&, const PathDerivatives<double>&);
 template void trace_paths_backward(const PathScene<float>&, const ThinLens&, const PathOptions&,
                                    std::uint32_t, const std::uint32_t*, const double*,
                                    const PathDerivatives<float>&);

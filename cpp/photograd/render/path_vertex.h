@@ -191,21 +191,21 @@ void surface_backward(const PathScene<R>& scene, const PathVertex<R>& v, const V
         static_cast<std::size_t>(scene.geometry->material[static_cast<std::size_t>(v.shape)]);
     const SurfaceTextures& textures = scene.geometry->textures;
     const std::span<const TextureUse> uses = textures.of(m);
+    const auto add = [&](const Material<R>& material, Material<R>& d_material) {
+        d_material.alpha += d_alpha;
+        if (v.light.weight > R(0))
+            material.value_backward(v.wo, v.light.wi, -1, d_light, d_material);
+        if (v.weight > R(0) && !v.passed)
+            material.value_backward(v.wo, v.wi, v.lobe, d_onward, d_material);
+    };
+    if (uses.empty()) return add(scene.materials[m], d_scene.materials[m]);
     // With textures the material at this point, and its derivative, are copies that textured_backward takes apart.
-    Material<R> own, d_own;
-    if (!uses.empty()) {
-        own = textured(scene.materials[m], uses, textures, scene.texels, v.uv, v.seen);
-        d_own = own.zero();
-    }
-    const Material<R>& material = uses.empty() ? scene.materials[m] : own;
-    Material<R>& d_material = uses.empty() ? d_scene.materials[m] : d_own;
-    d_material.alpha += d_alpha;
-    if (v.light.weight > R(0)) material.value_backward(v.wo, v.light.wi, -1, d_light, d_material);
-    if (v.weight > R(0) && !v.passed)
-        material.value_backward(v.wo, v.wi, v.lobe, d_onward, d_material);
-    if (!uses.empty())
-        textured_backward(scene.materials[m], uses, textures, scene.texels, v.uv, v.seen, d_own,
-                          d_scene.materials[m], d_scene.texels);
+    const Material<R> own =
+        textured(scene.materials[m], uses, textures, scene.texels, v.uv, v.seen);
+    Material<R> d_own = own.zero();
+    add(own, d_own);
+    textured_backward(scene.materials[m], uses, textures, scene.texels, v.uv, v.seen, d_own,
+                      d_scene.materials[m], d_scene.texels);
 }
 
 /// Adds the derivatives of <d_L, L_0> to d_scene.

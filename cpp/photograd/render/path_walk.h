@@ -29,6 +29,7 @@ public:
           stop_when_black_(stop_when_black),
           sheer_(any_sheer(scene)),
           mips_(scene.geometry->textures.any_mips()),
+          drawn_as_sampled_(scene.drawn_as_sampled()),
           numbers_(options.sampler) {}
 
     /// Samples the paths of `count` <= 16 camera rays; they are then in path(0), path(1), ...
@@ -173,10 +174,10 @@ protected:  // what a walk through media (volume_walk.h) shares
         if (mips_)
             seen = lane.cone.footprint(scene_.geometry->bvh, lane.hit, lane.ray.direction,
                                        length(lane.hit.position - lane.previous));
-        lane.own_drawn = textured(scene_.materials[m], uses, textures, scene_.texels, uv, seen);
-        lane.own_sampling = scene_.drawn_as_sampled() ? lane.own_drawn
-                                                      : textured(scene_.sampling[m], uses, textures,
-                                                                 scene_.sampling_texels, uv, seen);
+        lane.own_sampling =
+            textured(scene_.sampling[m], uses, textures, scene_.sampling_texels, uv, seen);
+        if (!drawn_as_sampled_)
+            lane.own_drawn = textured(scene_.materials[m], uses, textures, scene_.texels, uv, seen);
     }
     R emission_weight(const PathVertex<R>& v) const {
         if (v.pdf == R(0) || v.light_pdf == R(0) || options_.strategy == Strategy::bsdf)
@@ -288,9 +289,10 @@ protected:  // what a walk through media (volume_walk.h) shares
         if (!lane.side.agrees(light.direction, light.wi) || !(light.pdf > R(0))) return false;
         const Vec3<R>& wo = lane.path.back().wo;
         if (!(wo.z * light.wi.z > R(0)) && !sampling_of(lane).transmits()) return false;
-        light.f = drawn_as(lane).f(wo, light.wi);
+        const ScatterValue<R> sampled = sampling_of(lane).f_and_pdf(wo, light.wi);
+        light.f = drawn_as_sampled_ ? sampled.f : drawn_as(lane).f(wo, light.wi);
         if (stop_when_black_ && is_black(light.f)) return false;
-        light.scatter_pdf = sampling_of(lane).pdf(wo, light.wi);
+        light.scatter_pdf = sampled.pdf;
         light.weight = light_share(light) * std::abs(light.wi.z) / light.pdf;
         return true;
     }
@@ -314,7 +316,7 @@ protected:  // what a walk through media (volume_walk.h) shares
         if (!lane.side.agrees(direction, next.wi)) return;
         v.wi = next.wi;
         v.lobe = next.lobe;
-        v.value = scene_.drawn_as_sampled() ? next.value : drawn_as(lane).value(v.wo, v.wi, v.lobe);
+        v.value = drawn_as_sampled_ ? next.value : drawn_as(lane).value(v.wo, v.wi, v.lobe);
         const R weight = (next.lobe < 0 ? std::abs(next.wi.z) : R(1)) / next.pdf;
         if (!survives(lane, depth, next.value, weight, uniform_from<R>(words[3]))) return;
         lane.pdf = next.lobe < 0 ? next.pdf : R(0);
@@ -351,14 +353,16 @@ protected:  // what a walk through media (volume_walk.h) shares
         return lane.textured ? lane.own_sampling : scene_.sampling[material_of(lane)];
     }
     const Material<R>& drawn_as(const Lane& lane) const {
+        if (drawn_as_sampled_) return sampling_of(lane);
         return lane.textured ? lane.own_drawn : scene_.materials[material_of(lane)];
     }
 
     const PathScene<R>& scene_;
     PathOptions options_;
     bool stop_when_black_;
-    bool sheer_;  // whether any surface covers only in part
-    bool mips_;   // whether any texture has levels
+    bool sheer_;             // whether any surface covers only in part
+    bool mips_;              // whether any texture has levels
+    bool drawn_as_sampled_;  // whether one material decides both where paths go and what they find
     R pixel_spread_ = R(0);
     SampleNumbers numbers_;
     Lane lanes_[width];

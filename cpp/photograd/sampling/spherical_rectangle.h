@@ -3,10 +3,12 @@
 // The viewer sits at the origin, the rectangle at depth z < 0 with x in [x0, x1] and y in [y0, y1]. Projected onto the
 // sphere, its sides are arcs of great circles, and a polygon of four arcs has the area of its angles minus 2 pi:
 //
-//   solid angle = g00 + g01 + g10 + g11 - 2 pi,      g at the corner (x, y) = atan2(-z r, +-x y),  r = |(x, y, z)|
+//   solid angle = g00 + g01 + g10 + g11 - 2 pi,      g at the corner (x, y) = angle of the point (+-x y, -z r)
 //
-// with + for the corners (x1, y0) and (x0, y1) and - for the other two. Written so, no angle near 0 comes from a cosine
-// near 1.
+// with r = |(x, y, z)|, + for the corners (x1, y0) and (x0, y1) and - for the other two. Written so, no angle near 0 comes
+// from a cosine near 1. Angles add up where complex numbers multiply, so the four need one arc tangent, not four:
+//
+//   e^(i g) = (+-x y - i z r) / (|(x, z)| |(y, z)|)            since (x y)^2 + (z r)^2 = (x^2 + z^2) (y^2 + z^2)
 #pragma once
 
 #include "photograd/core/atan.h"
@@ -16,23 +18,54 @@
 
 namespace photograd {
 
-struct SphericalRectangle {
-    /// Perpendicular edges; `corner` as seen from the viewer. Solid angles are differences of angles near pi / 2, which
-    /// leaves an error of 1e-15: numbers below 1e-6 lose digits that matter.
-    SphericalRectangle(const Vec3<double>& corner, const Vec3<double>& edge_x,
-                       const Vec3<double>& edge_y) {
-        const double width = length(edge_x), height = length(edge_y);
+/// A point of the unit circle, for its angle.
+struct Turn {
+    double cos, sin;
+
+    /// Their angles add up.
+    friend Turn operator*(const Turn& a, const Turn& b) {
+        return {a.cos * b.cos - a.sin * b.sin, a.cos * b.sin + a.sin * b.cos};
+    }
+    /// Whether the angle, in [0, 2 pi), is above 3 pi / 2.
+    [[nodiscard]] bool nearly_full() const { return cos > 0 && sin < 0; }
+};
+
+/// Perpendicular edges: their directions and lengths, and the normal.
+struct RectangleAxes {
+    Vec3<double> x, y, z;
+    double width, height;
+
+    RectangleAxes(const Vec3<double>& edge_x, const Vec3<double>& edge_y)
+        : width(length(edge_x)), height(length(edge_y)) {
         x = edge_x * (1 / width);
         y = edge_y * (1 / height);
         z = cross(x, y);
+    }
+};
+
+struct SphericalRectangle {
+    /// `corner` as seen from the viewer. Solid angles are what four angles have beyond 2 pi, which
+    /// leaves an error of 1e-15: numbers below 1e-6 lose digits that matter.
+    SphericalRectangle(const Vec3<double>& corner, const RectangleAxes& axes)
+        : x(axes.x), y(axes.y), z(axes.z) {
         if (dot(corner, z) > 0) z = -z;  // the rectangle lies on the side of -z
         x0 = dot(corner, x);
         y0 = dot(corner, y);
         depth = dot(corner, z);
-        x1 = x0 + width;
-        y1 = y0 + height;
-        far_side = angle(x0, y1, 1) + angle(x0, y0, -1);
-        solid_angle = (angle(x1, y0, 1) + angle(x1, y1, -1) + far_side) - 2 * pi;
+        x1 = x0 + axes.width;
+        y1 = y0 + axes.height;
+        const double to_x0 = over_depth(x0), to_x1 = over_depth(x1);
+        to_y0 = over_depth(y0);
+        to_y1 = over_depth(y1);
+        far_side = corner_turn(x0, y1, 1, to_x0 * to_y1) * corner_turn(x0, y0, -1, to_x0 * to_y0);
+        const Turn near_side =
+            corner_turn(x1, y0, 1, to_x1 * to_y0) * corner_turn(x1, y1, -1, to_x1 * to_y1);
+        // Solid angles above pi come out negative, and so may those near 0, by rounding. The latter look like those above
+        // 3/2 pi; only there, both sides have angles above 3/2 pi.
+        const Turn all = far_side * near_side;
+        solid_angle = polar_angle(all.sin, all.cos);
+        const bool full = far_side.nearly_full() && near_side.nearly_full();
+        if (solid_angle < 0 && (all.cos < 0 || full)) solid_angle += 2 * pi;
     }
 
     /// A point of the rectangle, uniform as seen from the origin.
@@ -42,11 +75,11 @@ struct SphericalRectangle {
     ///   c f = sqrt(1 - b0^2 c^2),   f = (b0 cos(sum) - b1) / sin(sum),   so   c = sign(f) / sqrt(f^2 + b0^2).
     /// Up the line at x, the solid angle of its points below y grows as y / sqrt(d^2 + y^2), d^2 = x^2 + z^2.
     [[nodiscard]] Vec3<double> sample(const Vec2<double>& u2) const {
-        const double b0 = -y0 / sqrt(y0 * y0 + depth * depth),
-                     b1 = y1 / sqrt(y1 * y1 + depth * depth);
-        // sum lies in [0, 2 pi]; sin and cos change sign with pi.
-        const SinCos<double> turn = sin_cos(u2.x * solid_angle + (pi - far_side));
-        const double f = (b0 * -turn.cos - b1) / -turn.sin;
+        const double b0 = -y0 * to_y0, b1 = y1 * to_y1;
+        // -sum = far_side - part, where part = u solid_angle in [0, 2 pi]; sin and cos change sign with pi.
+        const SinCos<double> part = sin_cos(u2.x * solid_angle - pi);
+        const Turn back = far_side * Turn{-part.cos, part.sin};
+        const double f = (b0 * back.cos - b1) / -back.sin;
         const double c = (f > 0 ? 1 : -1) / sqrt(f * f + b0 * b0);
         const double rest = 1 - c * c;
         double at_x = rest > 0 ? -c * depth / sqrt(rest) : c * 1e300;
@@ -61,12 +94,15 @@ struct SphericalRectangle {
 
     Vec3<double> x, y, z;
     double x0, x1, y0, y1, depth;
-    double far_side;  // angles at the two corners of x0
+    double to_y0, to_y1;  // 1 / |(y, z)|
+    Turn far_side;        // both angles at x0
     double solid_angle;
 
 private:
-    [[nodiscard]] double angle(double cx, double cy, double sign) const {
-        return polar_angle(-depth * sqrt(cx * cx + cy * cy + depth * depth), sign * cx * cy);
+    [[nodiscard]] double over_depth(double a) const { return 1 / sqrt(a * a + depth * depth); }
+    [[nodiscard]] Turn corner_turn(double cx, double cy, double sign, double scale) const {
+        const double r = sqrt(cx * cx + cy * cy + depth * depth);
+        return {sign * cx * cy * scale, -depth * r * scale};
     }
 };
 

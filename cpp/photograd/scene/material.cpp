@@ -144,6 +144,18 @@ R Material<R>::pdf(const Vec3<R>& wo, const Vec3<R>& wi) const {
 }
 
 template <Real R>
+ScatterValue<R> Material<R>::f_and_pdf(const Vec3<R>& wo, const Vec3<R>& wi) const {
+    return std::visit(
+        [&]<class M>(const M& m) -> ScatterValue<R> {
+            if constexpr (Smooth<M>)
+                return {};
+            else
+                return {m.f(wo, wi), m.pdf(wo, wi)};
+        },
+        model);
+}
+
+template <Real R>
 ScatterSample<R> Material<R>::sample(const Vec3<R>& wo, const Vec2<R>& u2, R u,
                                      const Vec3<R>& carried) const {
     return std::visit(

@@ -34,6 +34,13 @@ struct ScatterSample {
     int lobe = -1;
 };
 
+/// f(wo, wi) and the density with which `sample` draws wi.
+template <class R>
+struct ScatterValue {
+    Vec3<R> f{R(0)};
+    R pdf = R(0);
+};
+
 inline constexpr int max_parameters = 64;  // numbers of one model
 
 template <Real R>
@@ -62,6 +69,8 @@ struct Material {
     /// f(wo, wi); 0 for smooth surfaces, which nobody meets by chance.
     [[nodiscard]] Vec3<R> f(const Vec3<R>& wo, const Vec3<R>& wi) const;
     [[nodiscard]] R pdf(const Vec3<R>& wo, const Vec3<R>& wi) const;
+    /// Both at once, which have much in common.
+    [[nodiscard]] ScatterValue<R> f_and_pdf(const Vec3<R>& wo, const Vec3<R>& wi) const;
     /// `carried` is the weight of the path so far: of surfaces that send each colour another way, one that the path still
     /// has is followed.
     [[nodiscard]] ScatterSample<R> sample(const Vec3<R>& wo, const Vec2<R>& u2, R u,

@@ -37,8 +37,8 @@ Vec3<R> front_of(const SphereLight<R>& ball, const Vec3<R>& position) {
     return normalize(position - ball.center);
 }
 template <class R>
-Vec3<R> front_of(const QuadLight<R>& quad, const Vec3<R>&) {
-    return normalize(cross(quad.edge_x, quad.edge_y));
+Vec3<R> front_of(const PlacedQuad<R>& quad, const Vec3<R>&) {
+    return quad.front;
 }
 template <class R>
 Vec3<R> front_of(const TriangleLight<R>& triangle, const Vec3<R>&) {
@@ -49,10 +49,10 @@ PiecePoint even_point(const SphereLight<double>& ball, const Vec2<double>& u2) {
     const Vec3<double> out = square_to_cap(u2, 2.0);
     return {ball.center + ball.radius * out, out, 4 * pi * ball.radius * ball.radius};
 }
-PiecePoint even_point(const QuadLight<double>& quad, const Vec2<double>& u2) {
-    const Vec3<double> across = cross(quad.edge_x, quad.edge_y);
-    return {quad.corner + u2.x * quad.edge_x + u2.y * quad.edge_y, normalize(across),
-            length(across)};
+PiecePoint even_point(const PlacedQuad<double>& placed, const Vec2<double>& u2) {
+    const QuadLight<double>& quad = placed.light;
+    return {quad.corner + u2.x * quad.edge_x + u2.y * quad.edge_y, placed.front,
+            length(cross(quad.edge_x, quad.edge_y))};
 }
 PiecePoint even_point(const TriangleLight<double>& triangle, const Vec2<double>& u2) {
     const Vec2<double> q = square_to_triangle(u2);
@@ -87,6 +87,13 @@ SceneLights::SceneLights(const Bvh& bvh, std::span<const double> emission,
     if (!of_deltas.empty()) delta_choice_ = Distribution1D(of_deltas);
 }
 
+template <class R>
+void SceneLights::add_rectangle(const QuadLight<double>& quad) {
+    std::get<std::vector<PlacedQuad<R>>>(rectangles_)
+        .emplace_back(QuadLight<R>{Vec3<R>(1), Vec3<R>(quad.corner), Vec3<R>(quad.edge_x),
+                                   Vec3<R>(quad.edge_y)});
+}
+
 void SceneLights::add_shape(const Bvh& bvh, std::int32_t shape, double L,
                             std::vector<double>& power) {
     first_[static_cast<std::size_t>(shape)] = static_cast<std::int32_t>(pieces_.size());
@@ -103,8 +110,10 @@ void SceneLights::add_shape(const Bvh& bvh, std::int32_t shape, double L,
         bvh.corners(shape, 0, p);
         bvh.corners(shape, 1, other);
         if (const auto rectangle = rectangle_of(p, other)) {
-            pieces_.push_back({shape, 0, static_cast<std::int32_t>(rectangles_.size())});
-            rectangles_.push_back(*rectangle);
+            const auto known = std::get<1>(rectangles_).size();
+            pieces_.push_back({shape, 0, static_cast<std::int32_t>(known)});
+            add_rectangle<float>(*rectangle);
+            add_rectangle<double>(*rectangle);
             const double area = length(cross(rectangle->edge_x, rectangle->edge_y));
             power.push_back(surface_power(area, L, shape, 0));
             return;
@@ -127,11 +136,9 @@ Choice SceneLights::choose_delta(double u) const {
 /// use(the piece as a light of its kind).
 template <class R, class Use>
 auto SceneLights::as_light(const Bvh& bvh, const LightPiece& piece, Use&& use) const {
-    if (piece.rectangle >= 0) {
-        const QuadLight<double>& q = rectangles_[static_cast<std::size_t>(piece.rectangle)];
-        return use(
-            QuadLight<R>{Vec3<R>(1), Vec3<R>(q.corner), Vec3<R>(q.edge_x), Vec3<R>(q.edge_y)});
-    }
+    if (piece.rectangle >= 0)
+        return use(std::get<std::vector<PlacedQuad<R>>>(
+            rectangles_)[static_cast<std::size_t>(piece.rectangle)]);
     if (piece.shape >= bvh.sphere_instance()) {
         const Sphere& ball = bvh.spheres()[static_cast<std::size_t>(piece.primitive)];
         return use(SphereLight<R>{Vec3<R>(1), ball.center<R>(), R(ball.radius)});

@@ -17,6 +17,7 @@
 
 #include <cstdint>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include "photograd/geometry/bvh.h"
@@ -85,13 +86,15 @@ public:
                             const Vec3<R>& point, R distance, R cosine) const;
 
 private:
+    template <class R>
+    void add_rectangle(const QuadLight<double>& quad);
     void add_shape(const Bvh& bvh, std::int32_t shape, double L, std::vector<double>& power);
     template <class R, class Use>
     auto as_light(const Bvh& bvh, const LightPiece& piece, Use&& use) const;
 
     std::int64_t listed_ = 0;
     std::vector<LightPiece> pieces_;
-    std::vector<QuadLight<double>> rectangles_;
+    std::tuple<std::vector<PlacedQuad<float>>, std::vector<PlacedQuad<double>>> rectangles_;
     std::vector<std::int32_t> first_;  // piece of each shape, or -1
     std::vector<std::int32_t> at_infinity_, deltas_;
     Distribution1D choice_, delta_choice_;

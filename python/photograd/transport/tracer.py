@@ -245,6 +245,14 @@ class PathTracer:
             raise ShapeError(message("render_backward", "d_image", f"shape {wanted}", got))
         if spp < 1:
             raise RangeError(message("PathTracer", "spp", "at least 1", spp))
+        return self.add_up(
+            _core.trace_paths_backward, view, options=options.numbers(seed), spp=spp,
+            counts=sample_counts(d_image, spp, spread),
+            d_image=np.ascontiguousarray(d_image, np.float64),
+        )  # fmt: skip
+
+    def add_up(self, backward: Any, view: Camera, **given: Any) -> dict[str, Array]:
+        """What an adjoint of the core adds to zeros, by the names of `params`."""
         arguments = self._arguments(view)
         d_rows = np.zeros_like(arguments["parameters"])
         d_emission = np.zeros_like(arguments["emission"])
@@ -253,12 +261,9 @@ class PathTracer:
         d_media = [np.zeros_like(row) for _, row, _, _ in arguments["media"]]
         grids = [grid for _, _, grid, _ in arguments["media"]]
         d_densities = [None if grid is None else np.zeros_like(grid) for grid in grids]
-        _core.trace_paths_backward(
-            **arguments, options=options.numbers(seed), spp=spp,
-            counts=sample_counts(d_image, spp, spread),
-            d_image=np.ascontiguousarray(d_image, np.float64),
-            d_parameters=d_rows, d_emission=d_emission, d_lights=d_lights, d_textures=d_textures,
-            d_media=d_media, d_densities=d_densities,
+        backward(
+            **arguments, **given, d_parameters=d_rows, d_emission=d_emission, d_lights=d_lights,
+            d_textures=d_textures, d_media=d_media, d_densities=d_densities,
         )  # fmt: skip
         d_shapes = np.zeros((len(self._shapes), 3), self.dtype)
         np.add.at(d_shapes, self._owner, d_emission)

@@ -16,6 +16,7 @@ that contains the same noise.
     dL/da = w (b - t) / N        dL/db = w (a - t) / N        N = numbers in the picture
 
 Each half's paths carry the derivative that the other half's picture asks for. Held constant: t, w.
+Others call it a dual buffer [Deng2022]; cpp/photograd/render/path_pairs.h traces both at once.
 """
 
 from __future__ import annotations
@@ -26,10 +27,17 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from photograd.core import _core
 from photograd.data.camera import Camera
+from photograd.errors import RangeError, ShapeError, message
+from photograd.transport.accumulation import Accumulation
+from photograd.transport.sample_counts import pair_counts
 from photograd.transport.tracer import DEFAULTS, PathOptions, PathTracer
 
 Array = npt.NDArray[Any]
+PILOT = 16
+"""One sample in so many finds out where the others are needed."""
+PILOT_SEED = 0x5DEECE66D  # makes another seed of one
 
 
 def cross_loss(a: Array, b: Array, target: Array, weight: Array) -> float:
@@ -48,7 +56,7 @@ def cross_loss_backward(
 def loss_and_gradients(
     tracer: PathTracer, target: Array, weight: Array, *, spp: int, seeds: tuple[int, int],
     camera: Camera | None = None, options: PathOptions = DEFAULTS,
-    names: Iterable[str] | None = None,
+    names: Iterable[str] | None = None, spread: str = "even",
 ) -> tuple[float, dict[str, Array]]:  # fmt: skip
     """The loss of two half pictures, and its derivative by the tracer's parameters.
 
@@ -60,6 +68,8 @@ def loss_and_gradients(
             biased.
         camera, options: as for `PathTracer.render`.
         names: of the parameters wanted; None for all.
+        spread: "even" gives each pixel as many samples; "cotangent" more to those that are noisy
+            and far from the target (sample_counts.py), as one sample in `PILOT` finds out first.
 
     Returns:
         The loss, and {name: dL/dparameter}, float64: the derivative of that very loss, the choice
@@ -68,14 +78,31 @@ def loss_and_gradients(
     Raises:
         As `PathTracer.render` and `render_backward`.
     """
-    a, b = (
-        tracer.render(spp=spp, seed=each, options=options, camera=camera).mean for each in seeds
-    )
-    loss = cross_loss(a, b, target, weight)
-    found: dict[str, Array] = {}
-    # Each half's paths carry what the other half's picture asks for.
-    for seed, d_half in zip(seeds, cross_loss_backward(a, b, target, weight), strict=True):
-        part = tracer.render_backward(d_half, spp=spp, seed=seed, options=options, camera=camera)
-        for name in part if names is None else names:
-            found[name] = found.get(name, 0.0) + part[name].astype(np.float64)
-    return loss, found
+    view = tracer.scene.camera if camera is None else camera
+    shape = (view.height, view.width, 3)
+    given = {"target": target, "weight": weight}
+    for name, values in given.items():
+        if np.shape(values) != shape:
+            got = np.shape(values)
+            raise ShapeError(message("loss_and_gradients", name, f"shape {shape}", got))
+    if spp < 1:
+        raise RangeError(message("loss_and_gradients", "spp", "at least 1", spp))
+    counts = None
+    if spread != "even":
+        pilot = tracer.render(
+            spp=max(2, 2 * spp // PILOT), seed=seeds[0] ^ PILOT_SEED, options=options,
+            camera=camera,
+        )  # fmt: skip
+        spp = max(1, spp - pilot.count // 2)
+        counts = pair_counts(pilot, weight * (pilot.mean - target), spp, spread)
+    halves = np.zeros((2, *shape))
+    found = tracer.add_up(
+        _core.trace_pairs_backward, view, options=options.numbers(seeds[0]), other_seed=seeds[1],
+        spp=spp, counts=counts, pictures=halves,
+        target=np.ascontiguousarray(target, np.float64),
+        weight=np.ascontiguousarray(weight, np.float64) / np.size(weight),
+    )  # fmt: skip
+    Accumulation(halves.sum(axis=0), halves.sum(axis=0), 2).check_finite("loss_and_gradients")
+    wanted = found if names is None else names
+    gradients = {name: found[name].astype(np.float64) for name in wanted}
+    return cross_loss(halves[0], halves[1], target, weight), gradients
