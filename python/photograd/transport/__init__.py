@@ -36,6 +36,7 @@ from photograd.transport.recovery import (
 )
 from photograd.transport.scene import Environment, Material, MeshShape, Scene, SphereShape
 from photograd.transport.scene_file import read_scene
+from photograd.transport.sdf_shape import SdfShape
 from photograd.transport.shutter import Shutter
 from photograd.transport.texture import NormalMap, Texture, TextureUse, read_texture
 from photograd.transport.tracer import PathOptions, PathTracer
@@ -63,6 +64,7 @@ __all__ = [
     "RecoveryOptions",
     "RecoveryResult",
     "Scene",
+    "SdfShape",
     "Shutter",
     "SphereShape",
     "Target",
