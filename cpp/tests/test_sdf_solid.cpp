@@ -120,7 +120,7 @@ TEST_CASE("a ray marches to the surface from either side, and its hit is polishe
         CHECK(length(p.position - ray.at(t)) < 1e-3);
         CHECK(std::abs(length(p.normal) - 1) < 1e-14);
     }
-    CHECK(hits > 1500);
+    CHECK(hits > 1000);
 }
 
 TEST_CASE("bodies without an end or without an inside are refused") {

@@ -144,7 +144,7 @@ def test_turns_are_about_x_then_y_then_z() -> None:
         ('body = "dish"', 'body = "dish"\nemission = 2', 55, "let a mesh or a sphere shine"),
         ('material = "clay"', 'material = "loam"', 55, "shapes.0.material"),
         ('kind = "sphere"\nradius = 0.5', 'kind = "plane"\nnormal = [0, 1]', 20, "3 finite"),
-        ('of = ["soft", "rod"]', 'of = ["soft", "soft"]\nrod = 1', 51, "sdfs.both.rod"),
+        ('of = ["soft", "rod"]', 'of = ["soft", "soft"]\nrod = 1', 50, "sdfs.both.rod"),
     ],
 )  # fmt: skip
 def test_a_mistake_is_named_with_line_and_key(

@@ -107,7 +107,7 @@ void march_packet(const Arguments& a, RTCRayN* rays, Met&& met) {
              RTCRayN_dir_z(rays, a.N, i)}};
         const float near = RTCRayN_tnear(rays, a.N, i), far = RTCRayN_tfar(rays, a.N, i);
         const double t = solid.march(ray, double(near), double(far));
-        if (t <= double(far)) met(i, std::max(near, static_cast<float>(t)));
+        if (std::isfinite(t)) met(i, std::max(near, static_cast<float>(t)));
     }
 }
 void intersect_solid(const RTCIntersectFunctionNArguments* a) {

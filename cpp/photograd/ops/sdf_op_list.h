@@ -102,14 +102,11 @@ struct SdfBoxOp {
     }
 };
 
-/// A point beyond the lower end; or one beside the rod.
-template <bool Beside>
+/// A point beyond the lower end: beside the rod, its length has no derivative.
 struct SdfCapsuleOp {
-    static constexpr const char* name = Beside ? "sdf_capsule_beside" : "sdf_capsule";
+    static constexpr const char* name = "sdf_capsule";
     static constexpr std::array<InputGroup, 3> inputs{
-        {{"p", 3, Beside ? 0.1 : 1.1, Beside ? 0.5 : 2.0},
-         {"half", 1, 0.6, 1.0},
-         {"radius", 1, 0.2, 0.8}}};
+        {{"p", 3, 1.1, 2.0}, {"half", 1, 0.6, 1.0}, {"radius", 1, 0.2, 0.8}}};
     static constexpr int outputs = 1;
 
     template <class R>

@@ -63,7 +63,7 @@ def carved(size: int = 256) -> Scene:
         "clay": Material("lambert", {"albedo": [0.62, 0.34, 0.24]}),
         "glass": Material("glass", {"eta": 1.5, "tint": [1.0, 1.0, 1.0]}),
     }
-    camera = camera_at([0.0, 1.25, 4.6], [0.0, 0.5, 0.0], 38.0, size, size)
-    lamp = QuadLight([-2.2, 3.0, 0.6], [2.4, 0.0, 0.0], [0.0, 0.8, -1.0], [9.0, 8.4, 7.6])
-    sky = Environment(np.array([0.35, 0.45, 0.6]), np.full(3, 0.35), np.full(3, 0.1))
+    camera = camera_at([0.0, 1.3, 4.6], [0.0, 0.48, 0.0], 33.0, size, size)
+    lamp = QuadLight([-2.6, 3.2, 1.4], [1.6, 0.0, 0.0], [0.0, -0.8, 1.0], [20.0, 18.5, 16.5])
+    sky = Environment(np.array([0.3, 0.42, 0.6]), np.full(3, 0.25), np.full(3, 0.1))
     return Scene("carved", shapes, materials, camera, sky, (lamp,))
