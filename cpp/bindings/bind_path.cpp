@@ -9,6 +9,7 @@
 #include "photograd/render/path.h"
 #include "photograd/render/path_pairs.h"
 #include "photograd/render/volume_path.h"
+#include "sdf_args.h"
 #include "texture_args.h"
 
 namespace photograd {
@@ -21,7 +22,8 @@ using MeshArrays =
 std::shared_ptr<PathGeometry> build(const std::vector<MeshArrays>& meshes, const py::array& placed,
                                     const py::array& matrices, const py::array& spheres,
                                     const py::array& material, const py::array& emission,
-                                    const LightTuples& lights) {
+                                    const LightTuples& lights,
+                                    const std::vector<std::tuple<Sdf, py::array>>& sdfs) {
     std::vector<Mesh> built;
     std::vector<Instance> instances;
     std::vector<std::vector<float>> normals;
@@ -54,16 +56,19 @@ std::shared_ptr<PathGeometry> build(const std::vector<MeshArrays>& meshes, const
     const double* e = args.in<double>("emission", emission, "S 3");
     const auto K = static_cast<std::size_t>(args.size("K")),
                S = static_cast<std::size_t>(args.size("S"));
-    if (S != instances.size() + K)
-        args.range("material", std::to_string(instances.size() + K) + ", one a shape",
-                   std::to_string(S));
+    const std::size_t shapes = instances.size() + K + sdfs.size();
+    if (S != shapes)
+        args.range("material", std::to_string(shapes) + ", one a shape", std::to_string(S));
     std::vector<Sphere> balls;
     for (std::size_t i = 0; i < K; ++i)
         balls.push_back({s[4 * i], s[4 * i + 1], s[4 * i + 2], s[4 * i + 3]});
+    std::vector<SdfSolid> solids;
+    for (const auto& [body, numbers] : sdfs)
+        solids.emplace_back(body, checked_numbers(args, body, numbers));
     const std::vector<AnyLight<double>> listed = listed_lights<double>(lights);
     const py::gil_scoped_release release;
     return std::make_shared<PathGeometry>(
-        Bvh(std::move(built), std::move(instances), std::move(balls)),
+        Bvh(std::move(built), std::move(instances), std::move(balls), std::move(solids)),
         std::vector<std::int32_t>(m, m + S), std::move(normals), std::span<const double>(e, 3 * S),
         listed);
 }
@@ -254,13 +259,17 @@ void ambient_occlusion(const PathGeometry& geometry, const py::tuple& camera_num
 
 void bind_path(py::module_& m) {
     py::class_<PathGeometry, std::shared_ptr<PathGeometry>>(
-        m, "PathGeometry", "Shapes of a scene: instances of meshes first, then spheres.")
+        m, "PathGeometry",
+        "Shapes of a scene: instances of meshes first, then spheres, then bodies of signed "
+        "distances.")
         .def(py::init(&build), py::arg("meshes"), py::arg("instances"), py::arg("matrices"),
              py::arg("spheres"), py::arg("material"), py::arg("emission"), py::arg("lights"),
+             py::arg("sdfs") = py::list(),
              "Meshes as (vertices (V, 3) float32, faces (F, 3) uint32, normals (V, 3) float32 or "
              "None,\nuv (V, 2) float32 or None); instances (I,) int32, mesh numbers, and matrices "
              "(I, 3, 4) float64;\nspheres (K, 4) float32; material (S,) int32 and emission (S, 3) "
-             "float64 of each shape,\nwhich are the instances, then the spheres. Lights of the "
+             "float64 of each shape,\nwhich are the instances, then the spheres, then sdfs, (body, "
+             "numbers (P,)). Lights of the "
              "list: (name, parameters, "
              "constants) or\n(\"environment\", texels, world_from_map, sampler), float64.")
         .def("choose_lights", &choose_lights, py::arg("u"),

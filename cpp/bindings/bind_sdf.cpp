@@ -3,6 +3,8 @@
 #include "bind_reference.h"
 #include "photograd/core/parallel.h"
 #include "photograd/geometry/reference/sphere_trace.h"
+#include "photograd/geometry/sdf_solid.h"
+#include "sdf_args.h"
 
 namespace photograd {
 namespace {
@@ -17,12 +19,6 @@ Sdf build(const py::array& nodes) {
     for (std::int64_t i = 0; i < args.size("N"); ++i, rows += 4)
         list.push_back({static_cast<SdfKind>(rows[0]), rows[1], rows[2], rows[3]});
     return Sdf(std::move(list));
-}
-
-const double* checked_numbers(ArrayArgs& args, const Sdf& body, const py::array& numbers) {
-    const double* x = args.in<double>("numbers", numbers, std::to_string(body.number_count()));
-    if (const char* expected = body.fault(x)) args.range("numbers", expected, "others");
-    return x;
 }
 
 py::array_t<double> distance(const Sdf& body, const py::array& numbers, const py::array& points) {
@@ -57,6 +53,18 @@ void distance_backward(const Sdf& body, const py::array& numbers, const py::arra
         body.backward(x, {p[3 * i], p[3 * i + 1], p[3 * i + 2]}, d[i], d_here, d_x);
         for (int k = 0; k < 3; ++k) d_p[3 * i + k] += d_here[k];
     }
+}
+
+/// (2, 3): lower and upper corner of a box around the body.
+py::array_t<double> bounds(const Sdf& body, const py::array& numbers) {
+    ArrayArgs args("bounds");
+    const SdfSolid solid(body, checked_numbers(args, body, numbers));
+    py::array_t<double> out({2, 3});
+    for (int k = 0; k < 3; ++k) {
+        out.mutable_at(0, k) = double(solid.bounds().lo[k]);
+        out.mutable_at(1, k) = double(solid.bounds().hi[k]);
+    }
+    return out;
 }
 
 /// t_min, t_max, tolerance, max_steps.
@@ -112,6 +120,8 @@ void bind_sdf(py::module_& m) {
         .def(py::init(&build), py::arg("nodes"),
              "Nodes (N, 4) int32: kind, two children or -1, where its numbers begin.")
         .def_property_readonly("number_count", &Sdf::number_count)
+        .def("bounds", &bounds, py::arg("numbers"),
+             "A box (2, 3) around the body; SceneError if it is empty or has no end.")
         .def("distance", &distance, py::arg("numbers"), py::arg("points"),
              "f (N,) of points (N, 3).")
         .def("distance_backward", &distance_backward, py::arg("numbers"), py::arg("points"),

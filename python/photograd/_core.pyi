@@ -80,6 +80,7 @@ __all__: list[str] = [
     "even_words",
     "exp",
     "expm1",
+    "first_hits",
     "instruction_set",
     "light_constant",
     "light_sky",
@@ -328,6 +329,10 @@ class Sdf:
     def __init__(self, nodes: numpy.ndarray) -> None:
         """
         Nodes (N, 4) int32: kind, two children or -1, where its numbers begin.
+        """
+    def bounds(self, numbers: numpy.ndarray) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        A box (2, 3) around the body; SceneError if it is empty or has no end.
         """
     def distance(
         self, numbers: numpy.ndarray, points: numpy.ndarray
@@ -3247,7 +3252,7 @@ class phase_cornette_shanks:
 
 class PathGeometry:
     """
-    Shapes of a scene: instances of meshes first, then spheres.
+    Shapes of a scene: instances of meshes first, then spheres, then bodies of signed distances.
     """
     def __init__(
         self,
@@ -3260,12 +3265,13 @@ class PathGeometry:
         material: numpy.ndarray,
         emission: numpy.ndarray,
         lights: collections.abc.Sequence[tuple[typing.Any, ...]],
+        sdfs: collections.abc.Sequence[tuple[Sdf, numpy.ndarray]] = [],
     ) -> None:
         """
         Meshes as (vertices (V, 3) float32, faces (F, 3) uint32, normals (V, 3) float32 or None,
         uv (V, 2) float32 or None); instances (I,) int32, mesh numbers, and matrices (I, 3, 4) float64;
         spheres (K, 4) float32; material (S,) int32 and emission (S, 3) float64 of each shape,
-        which are the instances, then the spheres. Lights of the list: (name, parameters, constants) or
+        which are the instances, then the spheres, then sdfs, (body, numbers (P,)). Lights of the list: (name, parameters, constants) or
         ("environment", texels, world_from_map, sampler), float64.
         """
     def choose_lights(self, u: numpy.ndarray) -> tuple[typing.Any, ...]:
@@ -3971,6 +3977,13 @@ def exp(x: numpy.ndarray) -> numpy.ndarray:
 def expm1(x: numpy.ndarray) -> numpy.ndarray:
     """
     The portable exp(x) - 1 on a flat array.
+    """
+
+def first_hits(
+    geometry: PathGeometry, origins: numpy.ndarray, directions: numpy.ndarray
+) -> tuple[typing.Any, ...]:
+    """
+    Number of the shape (R,) int32 or -1, t (R,) in metres, position and normal (R, 3) of what rays (R, 3) meet first; the normal is that of the surface, out of it.
     """
 
 def instruction_set() -> str:

@@ -13,10 +13,13 @@ from photograd.geometry.sdf_shapes import (
     KINDS,
     Shape,
     box,
+    capsule,
     difference,
     intersection,
     placed,
     plane,
+    rounded,
+    rounded_box,
     scaled,
     smooth_union,
     sphere,
@@ -35,12 +38,14 @@ SHAPES: dict[str, Shape] = {
     "box": box([0.6, 0.3, 0.4]),
     "torus": torus(0.6, 0.25),
     "plane": plane([1.0, 2.0, -0.5], 0.2),
+    "capsule": capsule(0.4, 0.3),
     "union": union(sphere(0.5), box([0.9, 0.2, 0.3]), torus(0.7, 0.1)),
     "intersection": intersection(sphere(0.8), box([0.6, 0.6, 0.6])),
     "difference": difference(box([0.6, 0.6, 0.6]), sphere(0.7)),
     "smooth_union": smooth_union(sphere(0.5), box([0.9, 0.2, 0.3]), 0.3),
     "placed": placed(box([0.6, 0.3, 0.4]), [0.2, -0.1, 0.3], TURN),
     "scaled": scaled(torus(0.6, 0.25), 1.7),
+    "rounded": rounded(box([0.4, 0.2, 0.3]), 0.2),
 }
 
 
@@ -51,7 +56,8 @@ def all_together() -> Shape:
         box([0.5, 0.4, 0.3]), placed(torus(0.28, 0.16), [0.3, 0.3, 0.2], [0.5, 0.6, -0.3, 0.2])
     )
     base = intersection(sphere(1.4), plane([0.1, 1.0, 0.2], -0.35))
-    return union(smooth_union(ring, cut, 0.2), base)
+    rod = placed(rounded(capsule(0.3, 0.05), 0.08), [-0.9, 0.4, 0.6], TURN)
+    return union(smooth_union(ring, cut, 0.2), union(base, rod))
 
 
 def points(count: int, seed: int, reach: float = 1.5) -> Array:
@@ -74,6 +80,19 @@ def test_distances_known_otherwise() -> None:
     np.testing.assert_allclose(
         Body(SHAPES["sphere"]).distance(p), np.linalg.norm(p, axis=1) - 0.7, atol=1e-15
     )
+    nearest = p * [0, 1, 0]
+    nearest[:, 1] = nearest[:, 1].clip(-0.4, 0.4)
+    np.testing.assert_allclose(
+        Body(SHAPES["capsule"]).distance(p), np.linalg.norm(p - nearest, axis=1) - 0.3, atol=1e-15
+    )
+    np.testing.assert_allclose(
+        Body(SHAPES["rounded"]).distance(p),
+        Body(box([0.4, 0.2, 0.3])).distance(p) - 0.2,
+        atol=1e-15,
+    )
+    small = Body(rounded_box([0.6, 0.3, 0.4], 0.1)).distance(p)  # within the box, touching it
+    assert (small >= Body(SHAPES["box"]).distance(p) - 1e-12).all()
+    assert Body(rounded_box([0.6, 0.3, 0.4], 0.1)).distance([[0.6, 0.1, 0.2]]) == pytest.approx(0)
     normal = np.array([1.0, 2.0, -0.5]) / np.sqrt(5.25)
     np.testing.assert_allclose(Body(SHAPES["plane"]).distance(p), p @ normal - 0.2, atol=1e-15)
 
@@ -169,7 +188,8 @@ def test_the_tree_is_laid_out_by_name() -> None:
     body = Body(all_together())
     assert len(body.names) == len(body.numbers) == sum(
         len(KINDS[kind]) for kind in
-        ("torus", "scaled", "placed", "box", "torus", "placed", "smooth_union", "sphere", "plane")
+        ("torus", "scaled", "placed", "box", "torus", "placed", "smooth_union", "sphere", "plane",
+         "capsule", "rounded", "placed")
     )  # fmt: skip
     assert body.names[:3] == ("torus 0: ring", "torus 0: tube", "scaled 1: factor")
     assert body.numbers[:3].tolist() == [0.5, 0.15, 1.2]
@@ -190,6 +210,7 @@ def test_bad_arguments_are_named() -> None:
         (RangeError, "radius", lambda: sphere(np.nan)),
         (DtypeError, "radius", lambda: sphere("1")),  # type: ignore[arg-type]
         (ShapeError, "half_sizes", lambda: box(1.0)),
+        (RangeError, "the least of which is 0.2", lambda: rounded_box([0.3, 0.2, 0.4], 0.2)),
         (RangeError, "some length", lambda: plane([0, 0, 0], 1.0)),
         (RangeError, "quat", lambda: placed(sphere(1), quat=[0, 0, 0, 0])),
         (RangeError, "at least one", union),
@@ -215,8 +236,8 @@ def test_bad_arguments_are_named() -> None:
     [
         ([], "at least one node"),
         ([[99, -1, -1, 0]], "a known kind, got 99 in node 0"),
-        ([[9, 0, -1, 0]], "earlier nodes without a parent, got 0 in node 0"),
-        ([[0, -1, -1, 0], [4, 0, 0, 1]], "earlier nodes without a parent"),
+        ([[10, 0, -1, 0]], "earlier nodes without a parent, got 0 in node 0"),
+        ([[0, -1, -1, 0], [5, 0, 0, 1]], "earlier nodes without a parent"),
         ([[0, -1, -1, 0], [0, -1, -1, 1]], "one root, got 2 of them"),
         ([[0, -1, -1, 3]], "numbers one after another, got 3"),
     ],

@@ -7,6 +7,7 @@
 #include <embree4/rtcore.h>
 #endif
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -90,6 +91,43 @@ void check_spheres(const std::vector<Sphere>& spheres) {
     }
 }
 
+void bounds_of_solid(const RTCBoundsFunctionArguments* a) {
+    const Box& box = static_cast<const SdfSolid*>(a->geometryUserPtr)[a->primID].bounds();
+    *a->bounds_o = {box.lo.x, box.lo.y, box.lo.z, 0, box.hi.x, box.hi.y, box.hi.z, 0};
+}
+/// met(i, t) for every ray of Embree's packet that meets solid `primID` before anything else it has met.
+template <class Arguments, class Met>
+void march_packet(const Arguments& a, RTCRayN* rays, Met&& met) {
+    const SdfSolid& solid = static_cast<const SdfSolid*>(a.geometryUserPtr)[a.primID];
+    for (unsigned i = 0; i < a.N; ++i) {
+        if (a.valid[i] == 0) continue;
+        const Ray<double> ray{
+            {RTCRayN_org_x(rays, a.N, i), RTCRayN_org_y(rays, a.N, i), RTCRayN_org_z(rays, a.N, i)},
+            {RTCRayN_dir_x(rays, a.N, i), RTCRayN_dir_y(rays, a.N, i),
+             RTCRayN_dir_z(rays, a.N, i)}};
+        const float near = RTCRayN_tnear(rays, a.N, i), far = RTCRayN_tfar(rays, a.N, i);
+        const double t = solid.march(ray, double(near), double(far));
+        if (std::isfinite(t)) met(i, std::max(near, static_cast<float>(t)));
+    }
+}
+void intersect_solid(const RTCIntersectFunctionNArguments* a) {
+    RTCRayN* rays = RTCRayHitN_RayN(a->rayhit, a->N);
+    RTCHitN* hits = RTCRayHitN_HitN(a->rayhit, a->N);
+    march_packet(*a, rays, [&](unsigned i, float t) {
+        RTCRayN_tfar(rays, a->N, i) = t;
+        RTCHitN_Ng_x(hits, a->N, i) = RTCHitN_Ng_y(hits, a->N, i) = RTCHitN_Ng_z(hits, a->N, i) = 0;
+        RTCHitN_u(hits, a->N, i) = RTCHitN_v(hits, a->N, i) = 0;
+        RTCHitN_primID(hits, a->N, i) = a->primID;
+        RTCHitN_geomID(hits, a->N, i) = a->geomID;
+        RTCHitN_instID(hits, a->N, i, 0) = RTC_INVALID_GEOMETRY_ID;  // solids are never instanced
+    });
+}
+void occlude_by_solid(const RTCOccludedFunctionNArguments* a) {
+    march_packet(*a, a->ray, [&](unsigned i, float) {
+        RTCRayN_tfar(a->ray, a->N, i) = -std::numeric_limits<float>::infinity();
+    });
+}
+
 }  // namespace
 
 struct Bvh::Tree {
@@ -150,6 +188,20 @@ struct Bvh::Tree {
         rtcReleaseGeometry(g);
         check("spheres");
     }
+    /// All solids as one geometry of ours, in the scene under the number `id`.
+    void add_solids(const std::vector<SdfSolid>& solids, unsigned id) {
+        const RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+        rtcSetGeometryUserPrimitiveCount(g, static_cast<unsigned>(solids.size()));
+        // Embree only hands the pointer back, as one to non-const.
+        rtcSetGeometryUserData(g, const_cast<SdfSolid*>(solids.data()));
+        rtcSetGeometryBoundsFunction(g, &bounds_of_solid, nullptr);
+        rtcSetGeometryIntersectFunction(g, &intersect_solid);
+        rtcSetGeometryOccludedFunction(g, &occlude_by_solid);
+        rtcCommitGeometry(g);
+        rtcAttachGeometryByID(scene, g, id);
+        rtcReleaseGeometry(g);
+        check("solids");
+    }
     /// Puts mesh `it.mesh` into the scene under the number `id`; without a transformation directly,
     /// which saves a level of the hierarchy.
     void add_instance(const Instance& it, unsigned id) {
@@ -176,13 +228,14 @@ struct Bvh::Tree {
     }
 };
 
-Bvh::Bvh(std::vector<Mesh> meshes, std::vector<Instance> instances, std::vector<Sphere> spheres)
+Bvh::Bvh(std::vector<Mesh> meshes, std::vector<Instance> instances, std::vector<Sphere> spheres,
+         std::vector<SdfSolid> solids)
     : meshes_(std::move(meshes)),
       instances_(std::move(instances)),
       spheres_(std::move(spheres)),
+      solids_(std::move(solids)),
       tree_(std::make_unique<Tree>()) {
-    if (instances_.empty() && spheres_.empty())
-        fail(ErrorKind::scene, "bvh", "instances", "at least one", "none");
+    if (shape_count() == 0) fail(ErrorKind::scene, "bvh", "instances", "at least one", "none");
     check_spheres(spheres_);
     for (const Mesh& mesh : meshes_) tree_->add_mesh(mesh);
     tree_->mesh_scenes.resize(meshes_.size(), nullptr);
@@ -200,6 +253,7 @@ Bvh::Bvh(std::vector<Mesh> meshes, std::vector<Instance> instances, std::vector<
         tree_->add_instance(it, static_cast<unsigned>(i));
     }
     if (!spheres_.empty()) tree_->add_spheres(spheres_, static_cast<unsigned>(instances_.size()));
+    if (!solids_.empty()) tree_->add_solids(solids_, static_cast<unsigned>(solid_instance()));
     rtcCommitScene(tree_->scene);
     tree_->check("instances");
     RTCBounds b;

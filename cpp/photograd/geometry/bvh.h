@@ -12,6 +12,7 @@
 #include "photograd/geometry/affine.h"
 #include "photograd/geometry/mesh.h"
 #include "photograd/geometry/ray_order.h"
+#include "photograd/geometry/sdf_solid.h"
 #include "photograd/geometry/sphere.h"
 #include "photograd/geometry/triangle.h"
 
@@ -61,9 +62,10 @@ struct SurfaceSpan {
 class Bvh {
 public:
     /// Spheres have no instances: all of them answer under one number, `sphere_instance()`, and the
-    /// primitive is the number of the sphere. Functions that speak of triangles do not take theirs.
-    Bvh(std::vector<Mesh> meshes, std::vector<Instance> instances,
-        std::vector<Sphere> spheres = {});
+    /// primitive is the number of the sphere; so do bodies of signed distances under `solid_instance()`.
+    /// Functions that speak of triangles do not take theirs.
+    Bvh(std::vector<Mesh> meshes, std::vector<Instance> instances, std::vector<Sphere> spheres = {},
+        std::vector<SdfSolid> solids = {});
     ~Bvh();
     Bvh(Bvh&&) noexcept;
 
@@ -129,6 +131,15 @@ public:
     [[nodiscard]] std::int32_t sphere_instance() const {
         return static_cast<std::int32_t>(instances_.size());
     }
+    [[nodiscard]] std::span<const SdfSolid> solids() const { return solids_; }
+    [[nodiscard]] std::int32_t solid_instance() const { return sphere_instance() + 1; }
+    /// Instances, spheres and solids are numbered one after another.
+    [[nodiscard]] std::size_t shape_count() const {
+        return instances_.size() + spheres_.size() + solids_.size();
+    }
+    [[nodiscard]] std::int32_t first_solid() const {
+        return static_cast<std::int32_t>(instances_.size() + spheres_.size());
+    }
     [[nodiscard]] const Box& bounds() const { return bounds_; }
 
 private:
@@ -136,6 +147,7 @@ private:
     std::vector<Mesh> meshes_;
     std::vector<Instance> instances_;
     std::vector<Sphere> spheres_;
+    std::vector<SdfSolid> solids_;
     std::unique_ptr<Tree> tree_;
     Box bounds_;
 };

@@ -236,7 +236,7 @@ using Ops =
              CovarianceOp, ProjectionOp<false>, ProjectionOp<true>, ConicOp, SplatColorOp,
              SplatBlendOp, RayGaussianOp, RayColorOp, RayBlendOp, ErfOp, SchlickOp, IndexOp,
              DielectricOp<false>, DielectricOp<true>, ConductorOp, GgxOp, BeckmannOp, CharlieOp,
-             SdfSphereOp, SdfPlaneOp, SdfTorusOp, SdfBoxOp<false>, SdfBoxOp<true>, SmoothUnionOp,
-             ToShapeOp>;
+             SdfSphereOp, SdfPlaneOp, SdfTorusOp, SdfBoxOp<false>, SdfBoxOp<true>, SdfCapsuleOp,
+             SmoothUnionOp, ToShapeOp>;
 
 }  // namespace photograd

@@ -102,6 +102,25 @@ struct SdfBoxOp {
     }
 };
 
+/// A point beyond the lower end: beside the rod, its length has no derivative.
+struct SdfCapsuleOp {
+    static constexpr const char* name = "sdf_capsule";
+    static constexpr std::array<InputGroup, 3> inputs{
+        {{"p", 3, 1.1, 2.0}, {"half", 1, 0.6, 1.0}, {"radius", 1, 0.2, 0.8}}};
+    static constexpr int outputs = 1;
+
+    template <class R>
+    static void forward(const R* in, R* out) {
+        out[0] = sdf_capsule(Vec3<R>(in[0], -in[1], in[2]), in[3], in[4]);
+    }
+    template <class R>
+    static void backward(const R* in, const R* d_out, R* d_in) {
+        Vec3<R> d_p(R(0));
+        sdf_capsule_backward(Vec3<R>(in[0], -in[1], in[2]), in[3], d_out[0], d_p, d_in[3], d_in[4]);
+        add_vec(Vec3<R>(d_p.x, -d_p.y, d_p.z), d_in);
+    }
+};
+
 /// Both orders of two distances that feel each other, a < b.
 struct SmoothUnionOp {
     static constexpr const char* name = "smooth_union";

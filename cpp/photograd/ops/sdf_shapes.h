@@ -10,6 +10,8 @@
 //   box      q_i = |p_i| - h_i
 //            outside  f = |max(q, 0)|                      df/dq = max(q, 0) / f
 //            inside   f = max_i q_i                        df/dq = 1 for the largest  df/dh = -df/dq
+//   capsule  q = p - (0, clamp(y, -h, h), 0),  f = |q| - r df/dp = q / |q|    df/dh = -|q_y| / |q|    df/dr = -1
+//            (p - q is the nearest point of the middle line: moving it along the line changes nothing)
 #pragma once
 
 #include "photograd/core/vec.h"
@@ -97,6 +99,28 @@ inline void sdf_box_backward(const Vec3<R>& p, const Vec3<R>& half, R d_f, Vec3<
     sdf_box_slope(p, half, slope);
     for (int k = 0; k < 3; ++k) d_p[k] += d_f * (p[k] < R(0) ? -slope[k] : slope[k]);
     d_half -= d_f * slope;
+}
+
+/// From p to the middle line of a capsule: all points within `half` of the origin on the Y axis.
+template <class R>
+inline Vec3<R> beside_capsule(const Vec3<R>& p, R half) {
+    const R beyond = (p.y < R(0) ? -p.y : p.y) - half;
+    const R y = beyond > R(0) ? beyond : R(0);
+    return {p.x, p.y < R(0) ? -y : y, p.z};
+}
+
+/// A rod along the Y axis with round ends: everything within `radius` of its middle line.
+template <class R>
+inline R sdf_capsule(const Vec3<R>& p, R half, R radius) {
+    return length(beside_capsule(p, half)) - radius;
+}
+template <class R>
+inline void sdf_capsule_backward(const Vec3<R>& p, R half, R d_f, Vec3<R>& d_p, R& d_half,
+                                 R& d_radius) {
+    const Vec3<R> q = unit_or_zero(beside_capsule(p, half));
+    d_p += d_f * q;
+    d_half -= d_f * (q.y < R(0) ? -q.y : q.y);
+    d_radius -= d_f;
 }
 
 }  // namespace PHOTOGRAD_ISA

@@ -1,7 +1,7 @@
 // What a path tracer walks through: shapes with a material each, shapes that emit, and what lies behind them.
 //
-// A shape is a mesh or a sphere; meshes come first, and a mesh's shape number is that of its instance. Geometry is
-// built once; materials, emission and what lights send are numbers that may change between renderings.
+// A shape is a mesh, a sphere or a body of signed distances, numbered in that order; a mesh's shape number is that of its
+// instance. Geometry is built once; materials, emission and what lights send are numbers that may change between renderings.
 #pragma once
 
 #include <algorithm>
@@ -91,7 +91,7 @@ struct PathScene {
     }
 };
 
-/// Where a ray met a shape. `outside` is the unit normal of the triangle's winding, or out of the sphere; `shading` is
+/// Where a ray met a shape. `outside` is the unit normal of the triangle's winding, or out of the body; `shading` is
 /// the interpolated one, on the same side.
 template <class R>
 struct SurfaceHit {
@@ -161,6 +161,14 @@ SurfaceHit<R> surface_hit(const PathGeometry& scene, const Ray<R>& ray, std::int
         const Sphere& sphere = scene.bvh.spheres()[static_cast<std::size_t>(primitive)];
         const SpherePoint<R> p = sphere_point(ray, sphere, R(found_t));
         return {instance + primitive, primitive, p.position, p.normal, p.normal};
+    }
+    if (instance == scene.bvh.solid_instance()) {
+        const SdfSolid& solid = scene.bvh.solids()[static_cast<std::size_t>(primitive)];
+        const SdfPoint p =
+            solid.point({Vec3<double>(ray.origin), Vec3<double>(ray.direction)}, double(found_t));
+        const Vec3<R> normal(p.normal);
+        return {scene.bvh.first_solid() + primitive, primitive, Vec3<R>(p.position), normal,
+                normal};
     }
     const TrianglePoint<R> p = scene.bvh.surface_point(ray, instance, primitive);
     SurfaceHit<R> hit{instance, primitive, p.position,

@@ -70,7 +70,7 @@ SceneLights::SceneLights(const Bvh& bvh, std::span<const double> emission,
         (is_delta(listed[i]) ? deltas_ : at_infinity_).push_back(static_cast<std::int32_t>(i));
         power.push_back(light_power(listed[i], bvh.bounds()));
     }
-    const std::size_t shapes = bvh.instances().size() + bvh.spheres().size();
+    const std::size_t shapes = bvh.shape_count();
     first_.assign(shapes, -1);
     for (std::size_t shape = 0; shape < shapes; ++shape) {
         const double L = emitted_luminance(emission, shape);
@@ -96,6 +96,9 @@ void SceneLights::add_rectangle(const QuadLight<double>& quad) {
 
 void SceneLights::add_shape(const Bvh& bvh, std::int32_t shape, double L,
                             std::vector<double>& power) {
+    if (shape >= bvh.first_solid())
+        fail(ErrorKind::scene, "scene", "emission", "light from meshes and spheres alone",
+             "a body of signed distances that shines, shape " + std::to_string(shape));
     first_[static_cast<std::size_t>(shape)] = static_cast<std::int32_t>(pieces_.size());
     if (shape >= bvh.sphere_instance()) {
         const std::int32_t ball = shape - bvh.sphere_instance();

@@ -72,6 +72,24 @@ class Body:
         self.numbers: Array = np.array(values, np.float64)
         self.names = tuple(names)
 
+    @property
+    def parts(self) -> tuple[_core.Sdf, Array]:
+        """The tree and a copy of the numbers (P,), as other parts of the core take them."""
+        return self._core, self._numbers().copy()
+
+    @property
+    def box(self) -> Array:
+        """(2, 3) lower and upper corner of a box around the body, metres.
+
+        It is the tightest for shapes on their own; what a difference takes away, and where an
+        intersection's parts do not reach their boxes, it does not see.
+
+        Raises:
+            SceneError: a body that is empty, or has no end.
+        """
+        found: Array = self._core.bounds(self._numbers())
+        return found
+
     def distance(self, points: Any) -> Array:
         """Distances f (N,) in metres, negative inside; the surface is never nearer than |f|.
 

@@ -1,6 +1,7 @@
 """A picture of a body of signed distances: what the camera's rays meet, lit by a sun and a sky.
 
-A renderer of its own, for these bodies alone; the path tracer knows meshes and spheres.
+A renderer of its own, for these bodies alone; scenes for the path tracer take them as
+`photograd.transport.SdfShape`.
 """
 
 from __future__ import annotations

@@ -23,12 +23,14 @@ KINDS: dict[str, tuple[str, ...]] = {
     "plane": ("normal x", "normal y", "normal z", "height"),
     "torus": ("ring", "tube"),
     "box": ("half x", "half y", "half z"),
+    "capsule": ("half length", "radius"),
     "union": (),
     "intersection": (),
     "difference": (),
     "smooth_union": ("width",),
     "placed": (*QUATERNION, *SHIFT),
     "scaled": ("factor",),
+    "rounded": ("radius",),
 }
 
 
@@ -56,6 +58,28 @@ def box(half_sizes: Any) -> Shape:
     """A box that reaches half_sizes (3,) metres to each side."""
     half = _three("box", "half_sizes", half_sizes)
     return Shape("box", tuple(_length("box", "half_sizes", x) for x in half))
+
+
+def rounded_box(half_sizes: Any, radius: float) -> Shape:
+    """A box as large as `box` makes it, its edges rounded to `radius` metres.
+
+    Raises:
+        RangeError: a radius that is not below all half sizes.
+    """
+    half = np.asarray(_three("rounded_box", "half_sizes", half_sizes))
+    _length("rounded_box", "radius", radius)
+    if not radius < half.min():
+        expected = f"less than the half sizes, the least of which is {half.min()} m"
+        raise RangeError(message("rounded_box", "radius", expected, radius))
+    return rounded(box(half - radius), radius)
+
+
+def capsule(half_length: float, radius: float) -> Shape:
+    """A rod along the Y axis with round ends: all within `radius` m of a line of 2 half_length."""
+    return Shape(
+        "capsule",
+        (_length("capsule", "half_length", half_length), _length("capsule", "radius", radius)),
+    )
 
 
 def torus(ring: float, tube: float) -> Shape:
@@ -107,6 +131,11 @@ def placed(shape: Shape, shift: Any = (0, 0, 0), quat: Any = (1, 0, 0, 0)) -> Sh
 def scaled(shape: Shape, factor: float) -> Shape:
     """A shape made larger by a factor, as seen from its origin."""
     return Shape("scaled", (_length("scaled", "factor", factor),), (shape,))
+
+
+def rounded(shape: Shape, radius: float) -> Shape:
+    """A shape swollen by `radius` metres, which rounds its edges."""
+    return Shape("rounded", (_length("rounded", "radius", radius),), (shape,))
 
 
 def _length(function: str, argument: str, value: float) -> float:

@@ -38,6 +38,7 @@ from photograd.transport.recovery import (
 )
 from photograd.transport.scene import Environment, Material, MeshShape, Scene, SphereShape
 from photograd.transport.scene_file import read_scene
+from photograd.transport.sdf_shape import SdfShape
 from photograd.transport.shutter import Shutter
 from photograd.transport.texture import NormalMap, Texture, TextureUse, read_texture
 from photograd.transport.tracer import PathOptions, PathTracer
@@ -65,6 +66,7 @@ __all__ = [
     "RecoveryOptions",
     "RecoveryResult",
     "Scene",
+    "SdfShape",
     "Shutter",
     "SphereShape",
     "Target",

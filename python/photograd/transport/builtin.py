@@ -1,4 +1,6 @@
-"""Scenes by name: a Cornell box, a furnace, balls under an evening sky, balls of wax and smoke."""
+"""Scenes by name: a Cornell box, a furnace, balls under an evening sky, balls of wax and smoke,
+bodies of signed distances.
+"""
 
 from __future__ import annotations
 
@@ -10,6 +12,7 @@ from photograd_course.suggest import choose_from
 from photograd.errors import RangeError, SceneError, message
 from photograd.lights import EnvironmentMap
 from photograd.transport.builtin_media import wax
+from photograd.transport.builtin_sdf import carved
 from photograd.transport.camera_place import camera_at
 from photograd.transport.evening import evening_map
 from photograd.transport.scene import Environment, Material, MeshShape, Scene, Shape, SphereShape
@@ -86,6 +89,7 @@ BUILTIN: dict[str, Callable[[int], Scene]] = {
     "white-ball": white_ball,
     "evening": evening,
     "wax": wax,
+    "carved": carved,
 }
 """Scenes by name, made for pictures of a given size."""
 

@@ -21,6 +21,7 @@ from photograd.lights import Light
 from photograd.transport.lens import PINHOLE, Lens
 from photograd.transport.media_list import check_media
 from photograd.transport.medium import BOUNDARY, Medium
+from photograd.transport.sdf_shape import SdfShape
 from photograd.transport.shape_checks import (
     checked_color,
     checked_place,
@@ -225,7 +226,7 @@ class SphereShape:
         return np.array([self.center - self.radius, self.center + self.radius])
 
 
-Shape = MeshShape | SphereShape
+Shape = MeshShape | SphereShape | SdfShape
 
 
 @dataclass(frozen=True, eq=False)
@@ -260,7 +261,7 @@ class Scene:
 
     Attributes:
         name: for titles and messages.
-        shapes: what there is; meshes and spheres in any order.
+        shapes: what there is; meshes, spheres and bodies of signed distances in any order.
         materials: by the names that shapes use.
         camera: where the picture is taken from.
         environment: what lies behind everything; None is black.

@@ -17,7 +17,7 @@ model = "lambert"             # and the parameters of that model
 albedo = [0.7, 0.7, 0.7]
 
 [[shapes]]
-kind = "rectangle"            # or box, sphere, triangles, mesh
+kind = "rectangle"            # or box, sphere, triangles, mesh, sdf
 corner = [-1, 0, 1]
 edge_u = [2, 0, 0]
 edge_v = [0, 0, -2]
@@ -31,7 +31,7 @@ direction = [0.3, 1, 0.2]     # towards the light
 irradiance = 2
 
 Textures, and meshes from files, are described in `scene_meshes`; fog, milk and coloured glass in
-`media_nodes`.
+`media_nodes`; bodies of signed distances in `sdf_nodes`.
 """
 
 from __future__ import annotations
@@ -46,6 +46,7 @@ import numpy as np
 
 from photograd.data.camera import Camera
 from photograd.errors import IoError, SceneError, message
+from photograd.geometry.sdf_shapes import Shape as SdfNode
 from photograd.transport.builtin import camera_at
 from photograd.transport.lens import Lens
 from photograd.transport.light_nodes import light_of
@@ -60,6 +61,8 @@ from photograd.transport.scene_meshes import (
     textures_in,
 )
 from photograd.transport.scene_node import Node
+from photograd.transport.sdf_nodes import bodies_in, body_of
+from photograd.transport.sdf_shape import SdfShape
 from photograd.transport.shapes import box, rectangle
 from photograd.transport.shutter import Shutter
 from photograd.transport.toml_lines import key_lines
@@ -97,11 +100,12 @@ def _scene(root: Node, name: str) -> Scene:
         tables = root.table("materials")
         materials = {key: _material(tables.table(key)) for key in tables.data}
     media, world = media_in(root)
+    bodies = bodies_in(root)
     brought = Brought(dict(materials), textures_in(root), dict(media))
     shapes = [
         shape
         for i, node in enumerate(root.tables("shapes"))
-        for shape in filled(node, media, _shapes(node, i, materials, brought))
+        for shape in filled(node, media, _shapes(node, i, materials, brought, bodies))
     ]
     lights = tuple(map(light_of, root.tables("lights"))) if root.has("lights") else ()
     return Scene(
@@ -162,11 +166,15 @@ def _material(node: Node) -> Material:
 
 
 def _shapes(
-    node: Node, index: int, materials: dict[str, Material], brought: Brought
-) -> list[Shape]:
+    node: Node, index: int, materials: dict[str, Material], brought: Brought,
+    bodies: dict[str, SdfNode],
+) -> list[Shape]:  # fmt: skip
     """What a table describes; materials, textures and media of its file are added to `brought`."""
     node.has("interior")  # read by `filled`
-    if node.choice("kind", (*KINDS, "mesh")) != "mesh":
+    kind = node.choice("kind", (*KINDS, "mesh", "sdf"))
+    if kind == "sdf":
+        return [_sdf(node, index, materials, bodies)]
+    if kind != "mesh":
         return [_shape(node, index, materials)]
     name = node.text("name", f"mesh {index}")
     material = node.choice("material", (*materials, BOUNDARY)) if node.has("material") else None
@@ -187,6 +195,15 @@ def _shape(node: Node, index: int, materials: dict[str, Material]) -> Shape:
         shape = replace(shape, glow=texture_use(node, "glow"))
     node.refuse_other_keys()
     return shape
+
+
+def _sdf(
+    node: Node, index: int, materials: dict[str, Material], bodies: dict[str, SdfNode]
+) -> SdfShape:
+    name = node.text("name", f"sdf {index}")
+    material, body = node.choice("material", (*materials, BOUNDARY)), body_of(node, bodies)
+    node.refuse_other_keys()
+    return node.built(lambda: SdfShape(name, body, material))
 
 
 def _rectangle(node: Node, name: str, material: str, emission: Any) -> MeshShape:

@@ -27,11 +27,13 @@ from photograd.transport.light_list import light_shapes, listed_lights
 from photograd.transport.media_list import ListedMedia
 from photograd.transport.sample_counts import sample_counts
 from photograd.transport.scene import Array, MeshShape, Scene, Shape, SphereShape
+from photograd.transport.sdf_shape import SdfShape
 
 STRATEGIES = ("light", "bsdf", "mis")
 HEURISTICS = ("balance", "power")
 SAMPLERS = ("independent", "even")
 NEVER = 1 << 20  # a vertex that no path reaches
+ORDER = (MeshShape, SphereShape, SdfShape)  # in which the core numbers shapes
 
 
 @dataclass(frozen=True)
@@ -121,11 +123,12 @@ class PathTracer:
             *((f"emission.{s.name}", s, names.get(s.material, len(names))) for s in scene.shapes),
             *((name, s, len(names)) for name, s in light_shapes(scene).items()),
         ]
-        placed.sort(key=lambda entry: isinstance(entry[1], SphereShape))  # meshes come first
+        placed.sort(key=lambda entry: ORDER.index(type(entry[1])))
         self._shapes: list[Shape] = [shape for _, shape, _ in placed]
         self._emissions = [name for name, _, _ in placed]
         meshes = [shape for shape in self._shapes if isinstance(shape, MeshShape)]
         spheres = [shape for shape in self._shapes if isinstance(shape, SphereShape)]
+        sdfs = [shape.ready.parts for shape in self._shapes if isinstance(shape, SdfShape)]
         numbers, matrices = instances_of(meshes)
         # What the core counts as a shape is an instance; `_owner` says of which of ours.
         self._owner = np.concatenate([numbers, np.arange(len(meshes), len(self._shapes))])
@@ -138,6 +141,7 @@ class PathTracer:
             instances=numbers,
             matrices=matrices,
             spheres=np.array(balls, np.float32).reshape(-1, 4),
+            sdfs=sdfs,
             material=materials[self._owner],
             emission=emission[self._owner],
             lights=[light.row(light.start, np.float64) for light in self._lights],

@@ -27,8 +27,10 @@ int sdf_number_count(SdfKind kind) {
     switch (kind) {
         case SdfKind::sphere:
         case SdfKind::smooth_unite:
-        case SdfKind::scale: return 1;
-        case SdfKind::torus: return 2;
+        case SdfKind::scale:
+        case SdfKind::round: return 1;
+        case SdfKind::torus:
+        case SdfKind::capsule: return 2;
         case SdfKind::box: return 3;
         case SdfKind::plane: return 4;
         case SdfKind::place: return 7;
@@ -46,7 +48,7 @@ Sdf::Sdf(std::vector<SdfNode> nodes) : nodes_(std::move(nodes)) {
     std::vector<int> depth(nodes_.size(), 1), parents(nodes_.size(), 0);
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
         const SdfNode& node = nodes_[i];
-        if (node.kind < SdfKind::sphere || node.kind > SdfKind::scale)
+        if (node.kind < SdfKind::sphere || node.kind > SdfKind::round)
             refuse(i, "a known kind", std::to_string(static_cast<int>(node.kind)));
         const std::int32_t children[2] = {node.first, node.second};
         for (int k = 0; k < sdf_child_count(node.kind); ++k) {
@@ -96,6 +98,7 @@ double Sdf::distance(std::int32_t at, const double* numbers, const Vec3<double>&
         case SdfKind::plane: return sdf_plane(p, three(x), x[3]);
         case SdfKind::torus: return sdf_torus(p, x[0], x[1]);
         case SdfKind::box: return sdf_box(p, three(x));
+        case SdfKind::capsule: return sdf_capsule(p, x[0], x[1]);
         case SdfKind::unite: return std::min(child(node.first, p), child(node.second, p));
         case SdfKind::intersect: return std::max(child(node.first, p), child(node.second, p));
         case SdfKind::subtract: return std::max(child(node.first, p), -child(node.second, p));
@@ -103,6 +106,7 @@ double Sdf::distance(std::int32_t at, const double* numbers, const Vec3<double>&
             return smooth_union(child(node.first, p), child(node.second, p), x[0]);
         case SdfKind::place: return child(node.first, to_shape(p, x, three(x + 4)));
         case SdfKind::scale: return x[0] * child(node.first, p / x[0]);
+        case SdfKind::round: return child(node.first, p) - x[0];
     }
     return 0;  // no other kind gets past the constructor
 }
@@ -129,6 +133,7 @@ void Sdf::backward(std::int32_t at, const double* numbers, const Vec3<double>& p
             sdf_box_backward(p, three(x), d_f, d_p, d_three);
             add_three(d_three, d_x);
             break;
+        case SdfKind::capsule: sdf_capsule_backward(p, x[0], d_f, d_p, d_x[0], d_x[1]); break;
         case SdfKind::unite:
             pass(child(node.first) <= child(node.second) ? node.first : node.second, d_f, p, d_p);
             break;
@@ -162,7 +167,9 @@ void Sdf::backward(std::int32_t at, const double* numbers, const Vec3<double>& p
             pass(node.first, x[0] * d_f, q, d_local);
             d_p += d_local / x[0];
             d_x[0] += d_f * distance(node.first, numbers, q) - dot(d_local, q) / x[0];
+            break;
         }
+        case SdfKind::round: pass(node.first, d_f, p, d_p); d_x[0] -= d_f;
     }
 }
 

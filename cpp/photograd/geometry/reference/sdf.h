@@ -17,12 +17,14 @@ enum class SdfKind : std::int32_t {
     plane,         // normal (3), height
     torus,         // ring, tube
     box,           // half sizes (3)
+    capsule,       // half length, radius
     unite,         // of two children, as are the next three
     intersect,     //
     subtract,      // the first without the second
     smooth_unite,  // width of the seam
     place,         // of one child: quaternion (4), shift (3)
     scale,         // of one child: factor
+    round,         // of one child, swollen by: radius
 };
 int sdf_number_count(SdfKind kind);
 int sdf_child_count(SdfKind kind);
@@ -40,6 +42,7 @@ public:
     explicit Sdf(std::vector<SdfNode> nodes);
 
     [[nodiscard]] std::int64_t number_count() const { return number_count_; }
+    [[nodiscard]] const std::vector<SdfNode>& nodes() const { return nodes_; }
 
     /// f(p), metres; negative inside. Of a smooth union or a difference it may understate how far the
     /// surface is, never overstate it.

@@ -14,6 +14,7 @@ from photograd_course.atomic_io import remove_leftovers
 from photograd.checkpoint import Checkpoint, load_checkpoint, save_checkpoint
 from photograd.errors import IoError, RangeError, message
 from photograd.transport.scene import MeshShape, Scene
+from photograd.transport.sdf_shape import SdfShape
 from photograd.transport.tracer import PathTracer
 
 if TYPE_CHECKING:
@@ -103,7 +104,9 @@ def scene_digest(scene: Scene) -> Any:
         found.update(name.encode() + value.tobytes())
     for shape in scene.shapes:
         found.update(f"{shape.name} {shape.material}".encode())
-        if isinstance(shape, MeshShape):
+        if isinstance(shape, SdfShape):
+            found.update(repr(shape.body).encode())
+        elif isinstance(shape, MeshShape):
             for array in (shape.vertices, shape.faces, *shape.places):
                 found.update(np.ascontiguousarray(array).tobytes())
         else:
