@@ -26,15 +26,18 @@ from tests.transport.scenes import globe_light, view
 
 PATHS = PathOptions(max_depth=4, roulette_from=2)
 STEPS = {
-    "roughness": 0.06, "coat_roughness": 0.06, "slope": 0.05, "anisotropic": 0.1, "anisotropy": 0.1,
-    "rotation": 0.1, "iridescence_thickness": 15.0, "cos_outer": 0.03, "softness": 0.06, "g": 0.1,
+    "roughness": 0.06, "coat_roughness": 0.1, "slope": 0.05, "clearcoat_gloss": 0.2,
+    "anisotropic": 0.2, "anisotropy": 0.2, "rotation": 0.2, "dispersion": 0.5,
+    "iridescence_thickness": 15.0, "iridescence_ior": 0.06, "cos_outer": 0.03, "softness": 0.06,
+    "g": 0.1,
 }  # fmt: skip
-"""Where a fifth of the range, or three tenths of the value, would be too long a step."""
+"""Where a fifth of the range, or three tenths of the value, would be too long, or too short."""
 VEILED = ("lambert", "gltf_refraction", "mirror", "glass")
 """Coverage does not know what it covers: rough and smooth, with and without what lies behind."""
 MOVING = {"glass": ("eta",), "dispersive_glass": ("eta", "dispersion")}
 """Of smooth models, what turns the directions of their lobes: these are held fixed."""
-
+GRAZING = ("sheen", "sheen_tint")
+"""What is hardly seen from above."""
 OTHERS = {"map": "environment map", "mesh": "mesh light"}
 """Lights whose number of parameters is not fixed: in no registry."""
 
@@ -89,14 +92,17 @@ def models() -> Iterator[Case]:
                                   material.values[p.name], p.lo, p.hi))
             for p in MODELS[model].parameters
         }  # fmt: skip
-        still = [row for name in rows if name not in moving for row in rows[name]]
+        still = {name: rows[name] for name in rows if name not in moving}
         smooth = model in delta_bsdf.registry()
-        place = scenes.nook if smooth else scenes.glint
-        yield Case("model", model, lambda m=material, f=place: f(m), tuple(still))
+        for flat in (False, True):
+            chosen = [row for name in still if (name in GRAZING) == flat for row in still[name]]
+            place = scenes.nook if smooth or flat else scenes.glint
+            if chosen:
+                yield Case("model", model, lambda m=material, f=place: f(m), tuple(chosen))
         turned = tuple(row for name in moving for row in rows[name])
         if turned:
             inside = tuple(replace(row, thing=f"{model} from inside") for row in turned)
-            held = tuple(replace(row, thing=f"{model} ball") for row in turned)
+            held = tuple(replace(row, thing=f"{model} ball") for row in rows["eta"])
             yield Case("model", model, lambda m=material: scenes.pane(m), turned)
             yield Case("model", model, lambda m=material: scenes.pane_from_inside(m), inside)
             yield Case("held", model, lambda m=material: scenes.nook(m), held, held=True)

@@ -30,7 +30,7 @@ OF_MODELS: dict[str, dict[str, Any]] = {  # what lies on top is seen better over
         "clearcoat_gloss": 0.4,
         "sheen": 0.75,
     },
-    "clearcoat": {"base_color": 0.7 * COLOURS, "coat": 0.75},
+    "clearcoat": {"base_color": 0.25 * COLOURS, "coat": 0.75},
 }
 FRACTIONS = {"eta": 0.3, "dispersion": 0.3}  # of the range; others 0.5
 
