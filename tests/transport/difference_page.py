@@ -93,7 +93,7 @@ def tables(rows: dict[str, Row]) -> list[str]:
         "behind the glass is even.", "",
         *(text.replace("| FAILS |", "| held |") for text in table(held, rows)),
         "", "## Refused", "",
-        "What moves edges of shadows and silhouettes has no derivative here: paths that are held see",
+        "What moves edges of shadows and silhouettes has no derivative here: held paths see",
         "nothing of that. Whoever asks is told.", "",
         "| of | by | what is said |", "|---|---|---|",
         *(f"| {thing} | {name} | {said} |" for thing, name, said in refused()),
