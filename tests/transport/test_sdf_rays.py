@@ -21,7 +21,7 @@ HALF, SHIFT = np.array([0.3, 0.5, 0.2]), np.array([-0.5, 0.3, 0.4])
 
 def hits(scene: Scene, origins: Array, directions: Array) -> tuple[Array, ...]:
     """Shape, t, position and normal of what rays meet first."""
-    geometry = PathTracer(scene).wide_arguments("test")["geometry"]
+    geometry = PathTracer(scene).wide_arguments()["geometry"]
     found: tuple[Array, ...] = _core.first_hits(geometry, origins, directions)
     return found
 
