@@ -42,7 +42,11 @@ def test_each_representation_has_the_resolution_that_suits_it(photograd: Photogr
 @pytest.mark.parametrize(
     ("representation", "words", "says"),
     [
-        ("dense_grid", ("--degree", 1), "--degree: expected a fit of sparse_sh or dense_sh or gau"),
+        (
+            "dense_grid",
+            ("--degree", 1),
+            "--degree: expected a fit of sparse_sh or dense_sh or octree_sh or gau",
+        ),
         ("dense_sh", ("--prune", 0.1), "--prune: expected a fit of sparse_sh, got 'dense_sh'"),
     ],
 )
