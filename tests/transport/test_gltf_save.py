@@ -144,6 +144,9 @@ def test_rounding_is_named(tmp_path: Path) -> None:
     _, said = written(model, tmp_path / "m.glb")
     assert len(said) == 1
     assert "material 'm': base_color: texture: rounded to eight bits, by at most 0.00" in said[0]
+    eighths = {"t": Texture(np.full((2, 2, 3), 1.0), filter="mip")}
+    _, said = written(replace(model, textures=eighths), tmp_path / "m.glb")
+    assert any("wrap and filter (('repeat', 'repeat'), 'mip') are read back" in t for t in said)
     one_place = replace(cube, places=(np.diag([2.0, 2.0, 2.0, 1.0]),))
     _, said = written(ModelFile((one_place,), {"m": at_half("gltf")}), tmp_path / "m.glb")
     assert [text.split(": ", 1)[1] for text in said] == [

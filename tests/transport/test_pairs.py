@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -35,6 +36,7 @@ SCENES = {
     "room": lambda: cornell_box(7),
     "glass": lambda: stage(any_material("glass"), size=7, sky=0.4),
     "texture": lambda: wall(PAINTED, {"t": noise(3, 4)}, 7),
+    "mips": lambda: wall(PAINTED, {"t": replace(noise(24, 24), filter="mip")}, 7),
     "fog": lambda: fog_box(size=5),
     "smoke": lambda: fog_box(smoke(), size=5),
 }

@@ -41,6 +41,7 @@ from photograd_course.gradcheck import check_gradient
 
 from tests.transport.scenes import BLACK, GREY, any_material, rough_dielectric_stage, stage, view
 from tests.transport.test_adjoint import proof
+from tests.transport.test_mip_textures import in_a_ball, swing
 
 Array = Any
 WHITE = Material("lambert", {"albedo": [1.0, 1.0, 1.0]})
@@ -214,3 +215,11 @@ def test_a_recovery_tells_bodies_apart() -> None:
     }
     assert len(digests) == 2
     assert scene_digest(busy()).hexdigest() in digests
+
+
+def test_a_cone_goes_on_behind_a_mirror_that_is_a_body() -> None:
+    scene = in_a_ball(0.0)  # seen in a flat mirror
+    body = placed(box([1.0, 1.0, 0.5]), [0.0, 0.0, 0.5])
+    shapes = (scene.shapes[0], SdfShape("mirror", body, "mirror"))
+    found = swing(replace(scene, shapes=shapes), PathOptions("light", max_depth=3))
+    assert found == pytest.approx(1 - np.log2(1.5), abs=0.06)

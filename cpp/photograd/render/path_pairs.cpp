@@ -27,7 +27,9 @@ public:
           camera_(camera),
           options_(options),
           counts_(counts),
-          walk_(scene, options, false) {}
+          walk_(scene, options, false) {
+        walk_.open_cones(camera);
+    }
 
     /// Writes the pixels [begin, end) to `picture` (H, W, 3), which is 0 there.
     void keep(std::int64_t begin, std::int64_t end, double* picture) {

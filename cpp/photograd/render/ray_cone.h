@@ -28,10 +28,12 @@
 namespace photograd {
 
 /// Curvature of a mesh with shading normals, the mean over the edges of a triangle of how fast the normal turns along
-/// them; of a sphere, 1 / radius. Above 0 where it bulges to the side of `outside`.
+/// them; of a sphere, 1 / radius. Above 0 where it bulges to the side of `outside`. A body of signed distances counts as
+/// flat.
 template <class R>
 R curvature(const PathGeometry& scene, const SurfaceHit<R>& hit) {
     const Bvh& bvh = scene.bvh;
+    if (hit.shape >= bvh.first_solid()) return R(0);
     if (hit.shape >= bvh.sphere_instance())
         return R(1) / R(bvh.spheres()[static_cast<std::size_t>(hit.primitive)].radius);
     const Instance& place = bvh.instances()[static_cast<std::size_t>(hit.shape)];

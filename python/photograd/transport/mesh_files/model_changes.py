@@ -114,13 +114,14 @@ def _of_use(
     for use, textures in ((before, mine), (after, its)):
         texture = Texture(np.ones((1, 1, 3), np.float32)) if use is None else textures[use.texture]
         first = 0 if use is None else use.channel
-        pair.append((texture.values[..., first : first + size], texture.wrap))
-    (a, wrap), (b, other) = pair
+        looked_up = texture.wrap, texture.filter
+        pair.append((texture.values[..., first : first + size], looked_up))
+    (a, mine_looked), (b, its_looked) = pair
     if before is None or after is None:
         if bool((a != 1).any() or (b != 1).any()):
             yield "texture lost" if after is None else "texture new"
-    elif wrap != other:
-        yield f"texture: wrap {wrap} is read back as {other}"
+    elif mine_looked != its_looked:
+        yield f"texture: wrap and filter {mine_looked} are read back as {its_looked}"
     elif not _same(a, b, TEXEL_ROUNDING):
         yield f"texture: {_rounded(a, b)}"
 
