@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from photograd_course.viz import style
@@ -15,6 +16,7 @@ ROW = 0.145  # of a legend's line
 COLORS = (style.BLUE, style.ORANGE, style.RED, "#1b7837", "#762a83", style.GREY)
 _ROUND = [digit * 10.0**power for power in range(-3, 5) for digit in (1, 2, 5)]
 MARKERS = ("o", "s", "^", "D", "v", "P", "X")
+_AXES = ("parameter_bytes", "psnr")
 
 
 def ranking(scores: Sequence[Score]) -> Figure:
@@ -61,9 +63,10 @@ def _panel(axes: Axes, scores: Sequence[Score], looks: dict[str, tuple[str, str]
         color, mark = looks[score.contender]
         x = score.parameter_bytes / 1e6
         axes.plot([x], [score.psnr], mark, color=color)
+        left = _crowded(score, scores)
         axes.annotate(
-            f"{score.train_seconds:.0f} s", (x, score.psnr), xytext=(5, 3),
-            textcoords="offset points", fontsize=style.SMALL_SIZE,
+            f"{score.train_seconds:.0f} s", (x, score.psnr), xytext=(-5, -10) if left else (5, 3),
+            ha="right" if left else "left", textcoords="offset points", fontsize=style.SMALL_SIZE,
         )  # fmt: skip
     low, high = axes.get_xlim()
     marks = [mark for mark in _ROUND if 0.5 * low < mark < 2 * high]
@@ -73,3 +76,15 @@ def _panel(axes: Axes, scores: Sequence[Score], looks: dict[str, tuple[str, str]
     axes.grid(visible=True)
     axes.set_axisbelow(True)
     axes.margins(y=0.2)
+
+
+def _crowded(score: Score, scores: Sequence[Score]) -> bool:
+    """Whether another mark stands where the seconds of this one would."""
+    sizes, decibels = ([float(getattr(s, name)) for s in scores] for name in _AXES)
+    wide, high = np.ptp(np.log(sizes)), np.ptp(decibels)
+    return any(
+        0 <= np.log(size / score.parameter_bytes) < 0.3 * wide
+        and abs(value - score.psnr) < 0.15 * high
+        for other, size, value in zip(scores, sizes, decibels, strict=True)
+        if other is not score
+    )
