@@ -16,7 +16,6 @@ ROW = 0.145  # of a legend's line
 COLORS = (style.BLUE, style.ORANGE, style.RED, "#1b7837", "#762a83", style.GREY)
 _ROUND = [digit * 10.0**power for power in range(-3, 5) for digit in (1, 2, 5)]
 MARKERS = ("o", "s", "^", "D", "v", "P", "X")
-_AXES = ("parameter_bytes", "psnr")
 
 
 def ranking(scores: Sequence[Score]) -> Figure:
@@ -80,11 +79,11 @@ def _panel(axes: Axes, scores: Sequence[Score], looks: dict[str, tuple[str, str]
 
 def _crowded(score: Score, scores: Sequence[Score]) -> bool:
     """Whether another mark stands where the seconds of this one would."""
-    sizes, decibels = ([float(getattr(s, name)) for s in scores] for name in _AXES)
-    wide, high = np.ptp(np.log(sizes)), np.ptp(decibels)
+    wide = np.ptp([np.log(other.parameter_bytes) for other in scores])
+    high = np.ptp([other.psnr for other in scores])
     return any(
-        0 <= np.log(size / score.parameter_bytes) < 0.3 * wide
-        and abs(value - score.psnr) < 0.15 * high
-        for other, size, value in zip(scores, sizes, decibels, strict=True)
+        0 <= np.log(other.parameter_bytes / score.parameter_bytes) < 0.3 * wide
+        and abs(other.psnr - score.psnr) < 0.15 * high
+        for other in scores
         if other is not score
     )
