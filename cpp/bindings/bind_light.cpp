@@ -1,5 +1,5 @@
-// Every light at infinity of light/registry.h as a class of static functions on arrays, and {name: class} as
-// _core.lights. All lights as a tracer sees them are bound in bind_sampled_lights.cpp.
+// Every light of light/registry.h, at infinity or placed, behind the one interface of light/sample_light.h: a class of
+// static functions on arrays each, and {name: class} as _core.sampled_lights; those at infinity alone as _core.lights.
 #include "light_calls.h"
 #include "module.h"
 #include "photograd/light/registry.h"
@@ -8,106 +8,107 @@ namespace photograd {
 namespace {
 
 template <template <class> class M>
-struct BoundLight {
-    static py::array L(const py::array& parameters, const py::array& constants,
-                       const py::array& w) {
-        return dispatch_real("L", "parameters", parameters, [&](auto real) -> py::array {
+struct SampledLight {
+    template <class R>
+    static M<R> checked(ArrayArgs& args, const py::array& parameters, const py::array& constants) {
+        const M<R> light = light_of<M<R>, R>(args, parameters, constants);
+        check_light<R>(args, light);
+        return light;
+    }
+    static py::tuple sample(const py::array& parameters, const py::array& constants,
+                            const py::array& points, const py::array& u2) {
+        return dispatch_real("sample", "parameters", parameters, [&](auto real) -> py::tuple {
             using R = decltype(real);
-            ArrayArgs args("L");
-            const M<R> light = light_of<M<R>, R>(args, parameters, constants);
-            const R* in = args.in<R>("w", w, "N 3");
-            py::array_t<R> out({args.size("N"), std::int64_t(3)});
-            R* value = out.mutable_data();
-            for_each_row(args.size("N"),
-                         [&](std::int64_t n) { put_vec3(value, n, light.L(vec3_at(in, n))); });
-            return out;
+            ArrayArgs args("sample");
+            return sample_rows<R>(args, checked<R>(args, parameters, constants), points, u2);
         });
     }
-    static py::array L_backward(const py::array& parameters, const py::array& constants,
-                                const py::array& w, const py::array& d_L, py::array d_parameters) {
-        return dispatch_real("L_backward", "parameters", parameters, [&](auto real) -> py::array {
+    static py::array radiance(const py::array& parameters, const py::array& constants,
+                              const py::array& points, const py::array& w) {
+        return dispatch_real("radiance", "parameters", parameters, [&](auto real) -> py::array {
             using R = decltype(real);
-            ArrayArgs args("L_backward");
-            const M<R> light = light_of<M<R>, R>(args, parameters, constants);
-            const R *in = args.in<R>("w", w, "N 3"), *d = args.in<R>("d_L", d_L, "N 3");
-            R* out =
-                args.out<R>("d_parameters", d_parameters, std::to_string(parameter_count<M<R>>()));
-            add_parameter_rows<R, M<R>>(args.size("N"), true, out, [&](std::int64_t n) {
-                M<R> d_light = zero_model<M<R>, R>();
-                light.L_backward(vec3_at(in, n), vec3_at(d, n), d_light);
-                return d_light;
-            });
+            ArrayArgs args("radiance");
+            return radiance_rows<R>(args, checked<R>(args, parameters, constants), points, w);
+        });
+    }
+    static py::array pdf(const py::array& parameters, const py::array& constants,
+                         const py::array& points, const py::array& w) {
+        return dispatch_real("pdf", "parameters", parameters, [&](auto real) -> py::array {
+            using R = decltype(real);
+            ArrayArgs args("pdf");
+            return pdf_rows<R>(args, checked<R>(args, parameters, constants), points, w);
+        });
+    }
+    template <bool OfSample>
+    static py::array backward(const py::array& parameters, const py::array& constants,
+                              const py::array& points, const py::array& w,
+                              const py::array& d_radiance, py::array d_parameters) {
+        const char* name = OfSample ? "sample_backward" : "radiance_backward";
+        return dispatch_real(name, "parameters", parameters, [&](auto real) -> py::array {
+            using R = decltype(real);
+            ArrayArgs args(name);
+            const M<R> light = checked<R>(args, parameters, constants);
+            add_light_rows<R>(args, light, OfSample, points, w, d_radiance, d_parameters);
             return d_parameters;
         });
     }
+    /// Of the radiance of samples: L(point, w), or a delta light's irradiance.
     static py::array jvp(const py::array& parameters, const py::array& constants,
-                         const py::array& v, const py::array& w) {
+                         const py::array& v, const py::array& points, const py::array& w) {
         using D = Dual<double>;
         ArrayArgs args("jvp");
+        const M<double> at = checked<double>(args, parameters, constants);
         const double* tangent =
             args.in<double>("v", v, std::to_string(parameter_count<M<double>>()));
-        const double* in = args.in<double>("w", w, "N 3");
-        M<D> dual;
-        const double *p = args.in<double>("parameters", parameters,
-                                          std::to_string(parameter_count<M<double>>())),
-                     *c = args.in<double>("constants", constants,
-                                          std::to_string(scalars_in(M<double>::constants)));
-        for_each_scalar(M<D>::params, [&](D& x) { x = D(*p++, *tangent++); }, dual);
-        for_each_scalar(M<D>::constants, [&](D& x) { x = D(*c++); }, dual);
+        const double *x = args.in<double>("points", points, "N 3"),
+                     *in = args.in<double>("w", w, "N 3");
+        M<D> light;
+        const auto lift = [&](const auto& from, const auto& to, bool moving) {
+            std::vector<double> values;
+            for_each_scalar(from, [&](const double& s) { values.push_back(s); }, at);
+            std::size_t i = 0;
+            for_each_scalar(
+                to, [&](D& s) { s = moving ? D(values[i++], *tangent++) : D(values[i++]); }, light);
+        };
+        lift(M<double>::params, M<D>::params, true);
+        lift(M<double>::constants, M<D>::constants, false);
         py::array_t<double> out({args.size("N"), std::int64_t(3)});
         double* value = out.mutable_data();
         for_each_row(args.size("N"), [&](std::int64_t n) {
-            const Vec3<D> result = dual.L({D(in[3 * n]), D(in[3 * n + 1]), D(in[3 * n + 2])});
+            const auto vec = [n](const double* p) {
+                return Vec3<D>(D(p[3 * n]), D(p[3 * n + 1]), D(p[3 * n + 2]));
+            };
+            Vec3<D> result;
+            if constexpr (requires { light.at(vec(x)); })
+                result = light.at(vec(x)).radiance;
+            else
+                result = light_radiance(light, vec(x), vec(in));
             for (int k = 0; k < 3; ++k) value[3 * n + k] = result[k].tangent;
         });
         return out;
     }
-    static py::array sample(const py::array& parameters, const py::array& constants,
-                            const py::array& u2) {
-        return dispatch_real("sample", "parameters", parameters, [&](auto real) -> py::array {
-            using R = decltype(real);
-            ArrayArgs args("sample");
-            const M<R> light = light_of<M<R>, R>(args, parameters, constants);
-            const R* u = args.in<R>("u2", u2, "N 2");
-            py::array_t<R> out({args.size("N"), std::int64_t(3)});
-            R* w = out.mutable_data();
-            for_each_row(args.size("N"), [&](std::int64_t n) {
-                put_vec3(w, n, light.sample(Vec2<R>(u[2 * n], u[2 * n + 1])));
-            });
-            return out;
-        });
-    }
-    static py::array pdf(const py::array& parameters, const py::array& constants,
-                         const py::array& w) {
-        return dispatch_real("pdf", "parameters", parameters, [&](auto real) -> py::array {
-            using R = decltype(real);
-            ArrayArgs args("pdf");
-            const M<R> light = light_of<M<R>, R>(args, parameters, constants);
-            const R* in = args.in<R>("w", w, "N 3");
-            py::array_t<R> out(args.size("N"));
-            R* density = out.mutable_data();
-            for_each_row(args.size("N"),
-                         [&](std::int64_t n) { density[n] = light.pdf(vec3_at(in, n)); });
-            return out;
-        });
-    }
     static py::object bind(py::module_& m) {
         using T = M<double>;
-        py::class_<BoundLight> type(
-            m, (std::string("light_") + T::name).c_str(),
-            "A light at infinity. parameters (P,), constants (C,); directions "
-            "(N, 3) of unit length, towards the light, in the world.");
-        type.def_static("L", &L, py::arg("parameters"), py::arg("constants"), py::arg("w"),
-                        "Radiance from directions w, (N, 3).")
-            .def_static("L_backward", &L_backward, py::arg("parameters"), py::arg("constants"),
-                        py::arg("w"), py::arg("d_L"), py::arg("d_parameters"),
+        py::class_<SampledLight> type(
+            m, (std::string("sampled_") + T::name).c_str(),
+            "A light. parameters (P,), constants (C,); points (N, 3) in the world, directions w "
+            "(N, 3) of unit length, from the points.");
+        const auto p = py::arg("parameters");
+        const auto c = py::arg("constants");
+        type.def_static("sample", &sample, p, c, py::arg("points"), py::arg("u2"),
+                        "(direction (N, 3), distance (N,), radiance (N, 3), pdf (N,)).")
+            .def_static("radiance", &radiance, p, c, py::arg("points"), py::arg("w"),
+                        "What arrives at the points from w, (N, 3); 0 of delta lights.")
+            .def_static("pdf", &pdf, p, c, py::arg("points"), py::arg("w"),
+                        "Density of `sample` over solid angle, (N,); 0 of delta lights.")
+            .def_static("radiance_backward", &backward<false>, p, c, py::arg("points"),
+                        py::arg("w"), py::arg("d_radiance"), py::arg("d_parameters"),
                         "Adds dL/dparameters to d_parameters (P,) and returns it.")
-            .def_static("jvp", &jvp, py::arg("parameters"), py::arg("constants"), py::arg("v"),
-                        py::arg("w"), "Exact derivative of L along v (P,), (N, 3), float64.")
-            .def_static("sample", &sample, py::arg("parameters"), py::arg("constants"),
-                        py::arg("u2"), "Directions (N, 3) from uniform u2 (N, 2).")
-            .def_static("pdf", &pdf, py::arg("parameters"), py::arg("constants"), py::arg("w"),
-                        "Density of `sample` over solid angle, (N,).");
+            .def_static("sample_backward", &backward<true>, p, c, py::arg("points"), py::arg("w"),
+                        py::arg("d_radiance"), py::arg("d_parameters"),
+                        "The same for the radiance of samples whose directions are w.")
+            .def_static("jvp", &jvp, p, c, py::arg("v"), py::arg("points"), py::arg("w"),
+                        "Exact derivative of samples' radiance along v (P,), (N, 3), float64.");
         type.def_static(
             "parameters", [] { return parameter_rows(T::params); },
             "(name, scalars, lo, hi, unit) of each differentiated parameter.");
@@ -121,11 +122,15 @@ struct BoundLight {
 }  // namespace
 
 void bind_light(py::module_& m) {
-    py::dict registry;
-    Lights::for_each(
-        [&]<template <class> class M>() { registry[M<double>::name] = BoundLight<M>::bind(m); });
-    m.attr("lights") = registry;
-    bind_sampled_lights(m);
+    py::dict all;
+    const auto add = [&]<template <class> class M>() {
+        all[M<double>::name] = SampledLight<M>::bind(m);
+    };
+    Lights::for_each(add);
+    m.attr("lights") = all.attr("copy")();
+    DeltaLights::for_each(add);
+    AreaLights::for_each(add);
+    m.attr("sampled_lights") = all;
     bind_mesh_light(m);
     bind_environment(m);
 }

@@ -5,17 +5,14 @@
 
 #include "bake_calls.h"
 #include "camera_args.h"
-#include "path_args.h"
 #include "photograd/render/photon_map.h"
+#include "scene_calls.h"
 
 namespace photograd {
 namespace {
 
 /// (max_depth, roulette_from, seed)
 using ParticleNumbers = std::tuple<int, int, std::uint64_t>;
-using Models = std::vector<std::string>;
-using Textures = std::vector<py::array>;
-using Media = std::vector<MediumTuple>;
 
 ParticleOptions particles_of(const ArrayArgs& args, const PathGeometry& geometry,
                              const ParticleNumbers& given) {
@@ -27,22 +24,12 @@ ParticleOptions particles_of(const ArrayArgs& args, const PathGeometry& geometry
     return {max_depth, roulette_from, seed};
 }
 
-SceneNumbers<double> scene_of(ArrayArgs& args, const PathGeometry& geometry, const Models& models,
-                              const py::array& parameters, const py::array& emission,
-                              const LightTuples& lights, const Textures& textures,
-                              const Media& media = {}) {
-    return {args,     geometry, models,   parameters,   std::nullopt,
-            emission, lights,   textures, std::nullopt, media};
-}
-
 /// origins, directions and flux (N, 3), entries of the table of lights (N,).
-py::tuple emit_rows(const PathGeometry& geometry, const Models& models, const py::array& parameters,
-                    const py::array& emission, const LightTuples& lights, const Textures& textures,
-                    const Media& media, std::uint64_t seed, std::uint64_t first,
+py::tuple emit_rows(const SceneRows& scene, std::uint64_t seed, std::uint64_t first,
                     std::uint64_t count) {
     ArrayArgs args("emit_particles");
-    const auto at = scene_of(args, geometry, models, parameters, emission, lights, textures, media);
-    particles_of(args, geometry, {1, 0, seed});
+    const SceneNumbers<double> at(args, scene);
+    particles_of(args, scene.geometry, {1, 0, seed});
     const auto rows = static_cast<std::int64_t>(count);
     py::array_t<double> origins({rows, std::int64_t(3)}), directions({rows, std::int64_t(3)}),
         flux({rows, std::int64_t(3)});
@@ -62,14 +49,12 @@ py::tuple emit_rows(const PathGeometry& geometry, const Models& models, const py
     return py::make_tuple(origins, directions, flux, entries);
 }
 
-void land(const PathGeometry& geometry, const Models& models, const py::array& parameters,
-          const py::array& emission, const LightTuples& lights, const Textures& textures,
-          const Media& media, const ParticleNumbers& given, std::uint64_t first,
+void land(const SceneRows& scene, const ParticleNumbers& given, std::uint64_t first,
           std::uint64_t count, const py::array& rectangle, py::array irradiance,
           py::array squares) {
     ArrayArgs args("trace_light");
-    const auto at = scene_of(args, geometry, models, parameters, emission, lights, textures, media);
-    const ParticleOptions options = particles_of(args, geometry, given);
+    const SceneNumbers<double> at(args, scene);
+    const ParticleOptions options = particles_of(args, scene.geometry, given);
     const double* r = args.in<double>("rectangle", rectangle, "3 3");
     const PathSums sums{args.out<double>("irradiance", irradiance, "H W 3"),
                         args.out<double>("squares", squares, "H W 3")};
@@ -81,11 +66,12 @@ void land(const PathGeometry& geometry, const Models& models, const py::array& p
 
 std::unique_ptr<PhotonMap> gather_photons(const PathGeometry& geometry, const Models& models,
                                           const py::array& parameters, const py::array& emission,
-                                          const LightTuples& lights, const Textures& textures,
+                                          const LightTuples& lights, const Arrays& textures,
                                           const ParticleNumbers& given, std::uint64_t count,
                                           double radius, bool direct) {
     ArrayArgs args("PhotonMap");
-    const auto at = scene_of(args, geometry, models, parameters, emission, lights, textures);
+    const SceneNumbers<double> at(args,
+                                  {geometry, models, parameters, emission, lights, textures, {}});
     const ParticleOptions options = particles_of(args, geometry, given);
     if (count < 1) args.range("particles", "at least 1", "0");
     if (!(radius > 0) || !std::isfinite(radius))
@@ -113,10 +99,11 @@ py::array irradiance_rows(const PhotonMap& map, const py::array& points, const p
 
 void picture(const PhotonMap& map, const PathGeometry& geometry, const Models& models,
              const py::array& parameters, const py::array& emission, const LightTuples& lights,
-             const Textures& textures, const py::tuple& camera_numbers, const Options& given,
+             const Arrays& textures, const py::tuple& camera_numbers, const Options& given,
              std::uint32_t first, std::uint32_t count, py::array radiance, py::array squares) {
     ArrayArgs args("trace_photons");
-    const auto at = scene_of(args, geometry, models, parameters, emission, lights, textures);
+    const SceneNumbers<double> at(args,
+                                  {geometry, models, parameters, emission, lights, textures, {}});
     const ThinLens camera = thin_lens(camera_numbers);
     const PathSums sums = path_sums(args, camera, radiance, squares);
     const PathOptions options = options_of(args, given);
@@ -128,20 +115,22 @@ void picture(const PhotonMap& map, const PathGeometry& geometry, const Models& m
 
 void bind_particles(py::module_& m) {
     bind_bake(m);
+    with_scene_names([&](auto... scene) {
+        m.def("emit_particles", of_scene(&emit_rows), scene..., py::arg("seed"), py::arg("first"),
+              py::arg("count"),
+              "(origins (N, 3), directions (N, 3), flux (N, 3) W, entries (N,) of the table of "
+              "lights) of particles\nas they leave their lights.");
+        m.def("trace_light", of_scene(&land), scene..., py::arg("options"), py::arg("first"),
+              py::arg("count"), py::arg("rectangle"), py::arg("irradiance"), py::arg("squares"),
+              "Adds what particles bring to a rectangle (corner, edge_x, edge_y) (3, 3) to "
+              "irradiance (H, W, 3),\nand its squares, float64. options: (max_depth, "
+              "roulette_from, seed).");
+    });
     const auto scene = [](auto&& define) {
         define(py::arg("geometry"), py::arg("models"), py::arg("parameters"), py::arg("emission"),
                py::arg("lights"), py::arg("textures"));
     };
     scene([&](auto... of) {
-        m.def("emit_particles", &emit_rows, of..., py::arg("media"), py::arg("seed"),
-              py::arg("first"), py::arg("count"),
-              "(origins (N, 3), directions (N, 3), flux (N, 3) W, entries (N,) of the table of "
-              "lights) of particles\nas they leave their lights.");
-        m.def("trace_light", &land, of..., py::arg("media"), py::arg("options"), py::arg("first"),
-              py::arg("count"), py::arg("rectangle"), py::arg("irradiance"), py::arg("squares"),
-              "Adds what particles bring to a rectangle (corner, edge_x, edge_y) (3, 3) to "
-              "irradiance (H, W, 3),\nand its squares, float64. options: (max_depth, "
-              "roulette_from, seed).");
         py::class_<PhotonMap>(m, "PhotonMap", "Particles where they have landed.")
             .def(py::init(&gather_photons), of..., py::arg("options"), py::arg("count"),
                  py::arg("radius"), py::arg("direct"))

@@ -1,14 +1,11 @@
-// Path tracing: scenes of shapes and materials, pictures, derivatives, single paths.
+// Path tracing: scenes of shapes and materials, pictures, single paths.
 #include <optional>
 
 #include "camera_args.h"
-#include "derivative_arrays.h"
 #include "module.h"
-#include "path_args.h"
+#include "path_rows.h"
 #include "photograd/render/ambient_occlusion.h"
 #include "photograd/render/path.h"
-#include "photograd/render/path_pairs.h"
-#include "photograd/render/volume_path.h"
 #include "sdf_args.h"
 #include "texture_args.h"
 
@@ -73,159 +70,25 @@ std::shared_ptr<PathGeometry> build(const std::vector<MeshArrays>& meshes, const
         listed);
 }
 
-void trace(const PathGeometry& geometry, const std::vector<std::string>& models,
-           const py::array& parameters, const std::optional<py::array>& sampling_parameters,
-           const py::array& emission, const LightTuples& lights,
-           const std::vector<py::array>& textures,
-           const std::optional<std::vector<py::array>>& sampling_textures,
-           const std::vector<MediumTuple>& media,
-           const std::optional<std::vector<MediumTuple>>& sampling_media,
-           const py::tuple& camera_numbers, const Options& given, std::uint32_t first,
-           std::uint32_t count, py::array radiance, py::array squares) {
+void trace(const PathGeometry& geometry, const Models& models, const py::array& parameters,
+           const std::optional<py::array>& sampling_parameters, const py::array& emission,
+           const LightTuples& lights, const Arrays& textures,
+           const std::optional<Arrays>& sampling_textures, const MediumTuples& media,
+           const std::optional<MediumTuples>& sampling_media, const py::tuple& camera_numbers,
+           const Options& given, std::uint32_t first, std::uint32_t count, py::array radiance,
+           py::array squares) {
     dispatch_real("trace_paths", "parameters", parameters, [&](auto real) {
         using R = decltype(real);
         ArrayArgs args("trace_paths");
-        const SceneNumbers<R> numbers(args, geometry, models, parameters, sampling_parameters,
-                                      emission, lights, textures, sampling_textures, media,
-                                      sampling_media);
+        const SceneNumbers<R> numbers(
+            args, {geometry, models, parameters, emission, lights, textures, media},
+            {sampling_parameters, sampling_textures, sampling_media});
         const ThinLens camera = thin_lens(camera_numbers);
         const PathSums sums = path_sums(args, camera, radiance, squares);
         const PathOptions options = options_of(args, given);
         const py::gil_scoped_release release;
         trace_paths(numbers.scene, camera, options, {first, count}, sums);
     });
-}
-
-void trace_backward(const PathGeometry& geometry, const std::vector<std::string>& models,
-                    const py::array& parameters, const py::array& emission,
-                    const LightTuples& lights, const std::vector<py::array>& textures,
-                    const std::vector<MediumTuple>& media, const py::tuple& camera_numbers,
-                    const Options& given, std::uint32_t spp, const std::optional<py::array>& counts,
-                    const py::array& d_image, py::array d_parameters, py::array d_emission,
-                    std::vector<py::array> d_lights, std::vector<py::array> d_textures,
-                    std::vector<py::array> d_media,
-                    std::vector<std::optional<py::array>> d_densities) {
-    dispatch_real("trace_paths_backward", "parameters", parameters, [&](auto real) {
-        using R = decltype(real);
-        ArrayArgs args("trace_paths_backward");
-        const SceneNumbers<R> numbers(args, geometry, models, parameters, std::nullopt, emission,
-                                      lights, textures, std::nullopt, media, std::nullopt);
-        const ThinLens camera = thin_lens(camera_numbers);
-        const double* d = args.in<double>("d_image", d_image, picture_axes(camera) + " 3");
-        const DerivativeArrays<R> out(args, geometry, numbers, lights, d_parameters, d_emission,
-                                      d_lights, d_textures, d_media, d_densities);
-        const PathOptions options = options_of(args, given);
-        const std::uint32_t* own = sample_counts(args, spp, counts, camera);
-        const py::gil_scoped_release release;
-        trace_paths_backward(numbers.scene, camera, options, spp, own, d, out.spans());
-    });
-}
-
-void trace_pairs(const PathGeometry& geometry, const std::vector<std::string>& models,
-                 const py::array& parameters, const py::array& emission, const LightTuples& lights,
-                 const std::vector<py::array>& textures, const std::vector<MediumTuple>& media,
-                 const py::tuple& camera_numbers, const Options& given, std::uint64_t other_seed,
-                 std::uint32_t spp, const std::optional<py::array>& counts, const py::array& target,
-                 const py::array& weight, py::array pictures, py::array d_parameters,
-                 py::array d_emission, std::vector<py::array> d_lights,
-                 std::vector<py::array> d_textures, std::vector<py::array> d_media,
-                 std::vector<std::optional<py::array>> d_densities) {
-    dispatch_real("trace_pairs_backward", "parameters", parameters, [&](auto real) {
-        using R = decltype(real);
-        ArrayArgs args("trace_pairs_backward");
-        const SceneNumbers<R> numbers(args, geometry, models, parameters, std::nullopt, emission,
-                                      lights, textures, std::nullopt, media, std::nullopt);
-        const ThinLens camera = thin_lens(camera_numbers);
-        const std::string axes = picture_axes(camera) + " 3";
-        const SquaredError loss{args.in<double>("target", target, axes),
-                                args.in<double>("weight", weight, axes)};
-        double* both = args.out<double>("pictures", pictures, "2 " + axes);
-        const DerivativeArrays<R> out(args, geometry, numbers, lights, d_parameters, d_emission,
-                                      d_lights, d_textures, d_media, d_densities);
-        const PathOptions options = options_of(args, given);
-        const std::uint32_t* own = sample_counts(args, spp, counts, camera);
-        const py::gil_scoped_release release;
-        trace_pairs_backward(numbers.scene, camera, options, {options.seed, other_seed}, spp, own,
-                             loss, out.spans(), both);
-    });
-}
-
-py::list colors(const Vec3<double>& v) {
-    py::list out;
-    for (int c = 0; c < 3; ++c) out.append(v[c]);
-    return out;
-}
-
-py::dict vertex_row(const PathVertex<double>& v) {
-    py::dict row;
-    row["shape"] = v.shape;
-    row["direction"] = colors(v.direction);
-    row["emitted"] = colors(v.emitted);
-    row["emission_weight"] = v.emission_weight;
-    row["pdf"] = v.pdf;
-    row["light_pdf"] = v.light_pdf;
-    row["light_shape"] = v.light.shape;
-    row["light_listed"] = v.light.listed;
-    row["light_direction"] = colors(v.light.direction);
-    row["light_f"] = colors(v.light.f);
-    row["light_emitted"] = colors(v.light.weight > 0 ? v.light.sent : Vec3<double>(0));
-    row["light_weight"] = v.light.weight;
-    row["light_cosine"] = std::abs(v.light.wi.z);
-    row["light_chosen_pdf"] = v.light.pdf;
-    row["light_scatter_pdf"] = v.light.scatter_pdf;
-    row["wo"] = colors(v.wo);
-    row["wi"] = colors(v.wi);
-    row["value"] = colors(v.value);
-    row["lobe"] = v.lobe;
-    row["passed"] = v.passed;
-    row["coverage"] = v.coverage;
-    row["coverage_slope"] = v.coverage_slope;
-    row["light_through"] = v.light.through;
-    row["weight"] = v.weight;
-    row["survival"] = v.survival;
-    return row;
-}
-
-/// (medium, kind, length, position, value) of each step of a product.
-py::list step_rows(const MediaTrail<double>& trail, const StepProduct<double>& product) {
-    py::list out;
-    for (std::int32_t i = product.first; i < product.last; ++i) {
-        const MediumStep<double>& step = trail.steps[static_cast<std::size_t>(i)];
-        out.append(py::make_tuple(step.medium, static_cast<int>(step.kind), step.length,
-                                  colors(step.position), colors(step.value)));
-    }
-    return out;
-}
-
-/// One path as a list of dictionaries, double precision.
-py::list path(const PathGeometry& geometry, const std::vector<std::string>& models,
-              const py::array& parameters, const py::array& emission, const LightTuples& lights,
-              const std::vector<py::array>& textures, const std::vector<MediumTuple>& media,
-              const py::tuple& camera_numbers, const Options& given, std::uint32_t pixel,
-              std::uint32_t sample) {
-    ArrayArgs args("trace_path");
-    const SceneNumbers<double> numbers(args, geometry, models, parameters, std::nullopt, emission,
-                                       lights, textures, std::nullopt, media, std::nullopt);
-    const ThinLens camera = thin_lens(camera_numbers);
-    const PathOptions options = options_of(args, given);
-    py::list out;
-    if (!geometry.media.any()) {
-        for (const auto& v : trace_path(numbers.scene, camera, options, pixel, sample))
-            out.append(vertex_row(v));
-        return out;
-    }
-    const auto found = trace_volume_path(numbers.scene, camera, options, pixel, sample);
-    for (std::size_t k = 0; k < found.path.size(); ++k) {
-        const MediumVertex<double>& m = found.trail.vertices[k];
-        py::dict row = vertex_row(found.path[k]);
-        row["medium"] = m.medium;
-        row["chance"] = colors(m.chance);
-        row["segment_weight"] = m.weight;
-        row["steps"] = step_rows(found.trail, m.arrival);
-        row["shadow_steps"] = step_rows(found.trail, m.shadow);
-        out.append(row);
-    }
-    return out;
 }
 
 /// Entries of the table of lights, by uniform numbers: those of the list first, then pieces of shapes.
@@ -296,27 +159,10 @@ void bind_path(py::module_& m) {
           "Adds samples to radiance (H, W, 3) and squares (H, W, 3), float64. options: (strategy, "
           "heuristic, max_depth, roulette_from, sampler, seed).\nmedia: (phase function or \"\", "
           "parameters (P,), densities (X, Y, Z) or None, sigma_maj).");
-    m.def("trace_paths_backward", &trace_backward, py::arg("geometry"), py::arg("models"),
-          py::arg("parameters"), py::arg("emission"), py::arg("lights"), py::arg("textures"),
-          py::arg("media"), py::arg("camera"), py::arg("options"), py::arg("spp"),
-          py::arg("counts"), py::arg("d_image"), py::arg("d_parameters"), py::arg("d_emission"),
-          py::arg("d_lights"), py::arg("d_textures"), py::arg("d_media"), py::arg("d_densities"),
-          "Adds to d_parameters (P,), d_emission (S, 3), d_lights, an array like the first of each "
-          "light, d_textures, d_media (rows) and d_densities (grids or None) for dL/d(mean "
-          "radiance). counts (H, W) uint32, or None: spp samples of each pixel.");
-    m.def("trace_pairs_backward", &trace_pairs, py::arg("geometry"), py::arg("models"),
-          py::arg("parameters"), py::arg("emission"), py::arg("lights"), py::arg("textures"),
-          py::arg("media"), py::arg("camera"), py::arg("options"), py::arg("other_seed"),
-          py::arg("spp"), py::arg("counts"), py::arg("target"), py::arg("weight"),
-          py::arg("pictures"), py::arg("d_parameters"), py::arg("d_emission"), py::arg("d_lights"),
-          py::arg("d_textures"), py::arg("d_media"), py::arg("d_densities"),
-          "As trace_paths_backward, for the loss sum weight (mean radiance - target)^2, both "
-          "(H, W, 3) float64, by two\npictures with paths of their own, of the seed in options and "
-          "of other_seed, written to pictures\n(2, H, W, 3) float64.");
-    m.def("trace_path", &path, py::arg("geometry"), py::arg("models"), py::arg("parameters"),
-          py::arg("emission"), py::arg("lights"), py::arg("textures"), py::arg("media"),
-          py::arg("camera"), py::arg("options"), py::arg("pixel"), py::arg("sample"),
-          "One path, a dictionary a vertex.");
+    with_scene_names([&](auto... scene) {
+        m.def("trace_path", of_scene(&path_rows), scene..., py::arg("camera"), py::arg("options"),
+              py::arg("pixel"), py::arg("sample"), "One path, a dictionary a vertex.");
+    });
     m.def("ambient_occlusion", &ambient_occlusion, py::arg("geometry"), py::arg("camera"),
           py::arg("radius"), py::arg("seed"), py::arg("first"), py::arg("count"), py::arg("sums"),
           "Adds the free part of each sample to sums (H, W), float64.");

@@ -6,28 +6,33 @@
 
 namespace photograd {
 
+/// Each array is shaped like what it is the derivative by.
+struct DerivativeRows {
+    py::array& parameters;
+    py::array& emission;
+    Arrays &lights, &textures, &media;
+    std::vector<std::optional<py::array>>& densities;
+};
+
 template <class R>
 struct DerivativeArrays {
     std::vector<R*> lights, textures;
     MediaOutputs<R> media;
     R *parameters, *emission;
 
-    DerivativeArrays(ArrayArgs& args, const PathGeometry& geometry, const SceneNumbers<R>& numbers,
-                     const LightTuples& light_rows, py::array& d_parameters, py::array& d_emission,
-                     std::vector<py::array>& d_lights, std::vector<py::array>& d_textures,
-                     std::vector<py::array>& d_media,
-                     std::vector<std::optional<py::array>>& d_densities)
-        : lights(light_derivatives<R>(light_rows, d_lights)),
-          media(geometry, numbers.media, d_media, d_densities),
-          parameters(args.out<R>("d_parameters", d_parameters, "P")),
-          emission(args.out<R>("d_emission", d_emission,
-                               std::to_string(geometry.shape_count()) + " 3")) {
-        const auto& layouts = geometry.textures.layouts;
-        if (d_textures.size() != layouts.size())
+    DerivativeArrays(ArrayArgs& args, const SceneRows& of, const SceneNumbers<R>& numbers,
+                     const DerivativeRows& d)
+        : lights(light_derivatives<R>(of.lights, d.lights)),
+          media(of.geometry, numbers.media, d.media, d.densities),
+          parameters(args.out<R>("d_parameters", d.parameters, "P")),
+          emission(args.out<R>("d_emission", d.emission,
+                               std::to_string(of.geometry.shape_count()) + " 3")) {
+        const auto& layouts = of.geometry.textures.layouts;
+        if (d.textures.size() != layouts.size())
             args.range("d_textures", std::to_string(layouts.size()) + " textures",
-                       std::to_string(d_textures.size()));
+                       std::to_string(d.textures.size()));
         for (std::size_t t = 0; t < layouts.size(); ++t)
-            textures.push_back(args.out<R>("d_textures", d_textures[t], axes_of(layouts[t])));
+            textures.push_back(args.out<R>("d_textures", d.textures[t], axes_of(layouts[t])));
     }
     [[nodiscard]] PathDerivatives<R> spans() const {
         return {parameters, emission, lights, textures, media.rows, media.densities};

@@ -8,7 +8,6 @@
 
 namespace photograd {
 
-void bind_sampled_lights(py::module_& m);
 void bind_mesh_light(py::module_& m);
 void bind_environment(py::module_& m);
 

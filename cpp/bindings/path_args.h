@@ -15,6 +15,28 @@ namespace photograd {
 /// (strategy, heuristic, max_depth, roulette_from, sampler, seed)
 using Options = std::tuple<int, int, int, int, int, std::uint64_t>;
 
+using Models = std::vector<std::string>;
+using Arrays = std::vector<py::array>;
+using MediumTuples = std::vector<MediumTuple>;
+
+/// A scene as every function takes it that follows light through one.
+struct SceneRows {
+    const PathGeometry& geometry;
+    const Models& models;
+    const py::array& parameters;
+    const py::array& emission;
+    const LightTuples& lights;
+    const Arrays& textures;
+    const MediumTuples& media;
+};
+
+/// What decides where paths go, as far as that is not the scene that they find.
+struct SamplingRows {
+    std::optional<py::array> parameters;
+    std::optional<Arrays> textures;
+    std::optional<MediumTuples> media;
+};
+
 inline std::string axes_of(const TextureLayout& layout) {
     return std::to_string(layout.shape.height) + " " + std::to_string(layout.shape.width) + " " +
            std::to_string(layout.channels);
@@ -30,36 +52,31 @@ struct SceneNumbers {
     std::vector<Medium<R>> media, sampling_media;
     PathScene<R> scene;
 
-    SceneNumbers(ArrayArgs& args, const PathGeometry& geometry,
-                 const std::vector<std::string>& models, const py::array& parameters,
-                 const std::optional<py::array>& sampling_parameters, const py::array& emission,
-                 const LightTuples& light_rows, const std::vector<py::array>& textures,
-                 const std::optional<std::vector<py::array>>& sampling_textures,
-                 const std::vector<MediumTuple>& media_rows = {},
-                 const std::optional<std::vector<MediumTuple>>& sampling_media_rows = std::nullopt)
-        : lights(listed_lights<R>(light_rows)), media(media_of<R>(geometry, media_rows)) {
+    SceneNumbers(ArrayArgs& args, const SceneRows& rows, const SamplingRows& other = {})
+        : lights(listed_lights<R>(rows.lights)), media(media_of<R>(rows.geometry, rows.media)) {
+        const PathGeometry& geometry = rows.geometry;
         for (const std::int32_t m : geometry.material)
-            if (m < 0 || m >= static_cast<std::int32_t>(models.size()))
-                args.range("material", "numbers below " + std::to_string(models.size()),
+            if (m < 0 || m >= static_cast<std::int32_t>(rows.models.size()))
+                args.range("material", "numbers below " + std::to_string(rows.models.size()),
                            std::to_string(m));
-        read(args, models, "parameters", parameters, drawn);
-        if (sampling_parameters)
-            read(args, models, "sampling_parameters", *sampling_parameters, sampling);
+        read(args, rows.models, "parameters", rows.parameters, drawn);
+        if (other.parameters)
+            read(args, rows.models, "sampling_parameters", *other.parameters, sampling);
         const R* e =
-            args.in<R>("emission", emission, std::to_string(geometry.shape_count()) + " 3");
+            args.in<R>("emission", rows.emission, std::to_string(geometry.shape_count()) + " 3");
         const std::size_t count = static_cast<std::size_t>(geometry.lights.listed_count());
         if (lights.size() != count)
             args.range("lights", std::to_string(count) + ", as when the scene was built",
                        std::to_string(lights.size()));
-        scene = {&geometry, drawn, sampling_parameters ? sampling : drawn, e, lights};
-        texels = texels_of(args, geometry, "textures", textures);
-        if (sampling_textures)
-            sampling_texels = texels_of(args, geometry, "textures", *sampling_textures);
-        if (sampling_media_rows) sampling_media = media_of<R>(geometry, *sampling_media_rows);
+        scene = {&geometry, drawn, other.parameters ? sampling : drawn, e, lights};
+        texels = texels_of(args, geometry, "textures", rows.textures);
+        if (other.textures)
+            sampling_texels = texels_of(args, geometry, "textures", *other.textures);
+        if (other.media) sampling_media = media_of<R>(geometry, *other.media);
         scene.media = media;
-        scene.sampling_media = sampling_media_rows ? sampling_media : media;
+        scene.sampling_media = other.media ? sampling_media : media;
         scene.texels = texels;
-        scene.sampling_texels = sampling_textures ? sampling_texels : texels;
+        scene.sampling_texels = other.textures ? sampling_texels : texels;
         for (std::size_t m = 0; m < drawn.size(); ++m)
             for (const TextureUse& use : geometry.textures.of(m))
                 if (use.first + use.count > drawn[m].parameter_count())
@@ -68,7 +85,7 @@ struct SceneNumbers {
 
 private:
     std::vector<const R*> texels_of(ArrayArgs& args, const PathGeometry& geometry, const char* name,
-                                    const std::vector<py::array>& textures) {
+                                    const Arrays& textures) {
         std::vector<const R*> out;
         const auto& layouts = geometry.textures.layouts;
         if (textures.size() != layouts.size())
@@ -82,7 +99,7 @@ private:
         }
         return out;
     }
-    static void read(ArrayArgs& args, const std::vector<std::string>& models, const char* name,
+    static void read(ArrayArgs& args, const Models& models, const char* name,
                      const py::array& parameters, std::vector<Material<R>>& out) {
         const R* row = args.in<R>(name, parameters, "P");
         std::int64_t used = 0;

@@ -82,9 +82,6 @@ __all__: list[str] = [
     "expm1",
     "first_hits",
     "instruction_set",
-    "light_constant",
-    "light_sky",
-    "light_sun",
     "lights",
     "log1p_unit",
     "march",
@@ -2241,156 +2238,6 @@ class delta_bsdf_dispersive_glass:
     def parameters() -> list[tuple[str, int, float, float, str]]:
         """
         (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-
-class light_sun:
-    """
-    A light at infinity. parameters (P,), constants (C,); directions (N, 3) of unit length, towards the light, in the world.
-    """
-    @staticmethod
-    def L(parameters: numpy.ndarray, constants: numpy.ndarray, w: numpy.ndarray) -> numpy.ndarray:
-        """
-        Radiance from directions w, (N, 3).
-        """
-    @staticmethod
-    def L_backward(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        w: numpy.ndarray,
-        d_L: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters (P,) and returns it.
-        """
-    @staticmethod
-    def constants() -> list[tuple[str, int, float, float, str]]:
-        """
-        The same of what is not differentiated.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, constants: numpy.ndarray, v: numpy.ndarray, w: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of L along v (P,), (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each differentiated parameter.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, constants: numpy.ndarray, w: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def sample(
-        parameters: numpy.ndarray, constants: numpy.ndarray, u2: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Directions (N, 3) from uniform u2 (N, 2).
-        """
-
-class light_sky:
-    """
-    A light at infinity. parameters (P,), constants (C,); directions (N, 3) of unit length, towards the light, in the world.
-    """
-    @staticmethod
-    def L(parameters: numpy.ndarray, constants: numpy.ndarray, w: numpy.ndarray) -> numpy.ndarray:
-        """
-        Radiance from directions w, (N, 3).
-        """
-    @staticmethod
-    def L_backward(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        w: numpy.ndarray,
-        d_L: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters (P,) and returns it.
-        """
-    @staticmethod
-    def constants() -> list[tuple[str, int, float, float, str]]:
-        """
-        The same of what is not differentiated.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, constants: numpy.ndarray, v: numpy.ndarray, w: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of L along v (P,), (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each differentiated parameter.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, constants: numpy.ndarray, w: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def sample(
-        parameters: numpy.ndarray, constants: numpy.ndarray, u2: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Directions (N, 3) from uniform u2 (N, 2).
-        """
-
-class light_constant:
-    """
-    A light at infinity. parameters (P,), constants (C,); directions (N, 3) of unit length, towards the light, in the world.
-    """
-    @staticmethod
-    def L(parameters: numpy.ndarray, constants: numpy.ndarray, w: numpy.ndarray) -> numpy.ndarray:
-        """
-        Radiance from directions w, (N, 3).
-        """
-    @staticmethod
-    def L_backward(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        w: numpy.ndarray,
-        d_L: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters (P,) and returns it.
-        """
-    @staticmethod
-    def constants() -> list[tuple[str, int, float, float, str]]:
-        """
-        The same of what is not differentiated.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, constants: numpy.ndarray, v: numpy.ndarray, w: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of L along v (P,), (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each differentiated parameter.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, constants: numpy.ndarray, w: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def sample(
-        parameters: numpy.ndarray, constants: numpy.ndarray, u2: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Directions (N, 3) from uniform u2 (N, 2).
         """
 
 class sampled_sun:
@@ -4657,7 +4504,11 @@ delta_bsdfs: dict[str, typing.Any] = {
     "thin_glass": delta_bsdf_thin_glass,
     "dispersive_glass": delta_bsdf_dispersive_glass,
 }
-lights: dict[str, typing.Any] = {"sun": light_sun, "sky": light_sky, "constant": light_constant}
+lights: dict[str, typing.Any] = {
+    "sun": sampled_sun,
+    "sky": sampled_sky,
+    "constant": sampled_constant,
+}
 ops: dict[str, typing.Any]
 phases: dict[str, typing.Any] = {
     "henyey_greenstein": phase_henyey_greenstein,

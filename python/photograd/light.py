@@ -1,7 +1,7 @@
 """Lights at infinity: the radiance that arrives from a direction of the world, and its derivatives.
 
-All lights come from the core's registry (cpp/photograd/light/registry.h). Directions are (N, 3)
-unit vectors towards the light.
+All lights come from the core's registry (cpp/photograd/light/registry.h), and are asked through the
+functions that photograd.lights uses. Directions are (N, 3) unit vectors towards the light.
 """
 
 from __future__ import annotations
@@ -67,7 +67,8 @@ class LightModel:
 
     def L(self, values: Mapping[str, Any], w: Array) -> Array:
         """Radiance (N, 3) from directions w (N, 3), in the dtype of `w`."""
-        radiance: Array = self.core.L(*self.pack(values, w.dtype), np.ascontiguousarray(w))
+        w = np.ascontiguousarray(w)
+        radiance: Array = self.core.radiance(*self.pack(values, w.dtype), _anywhere(w), w)
         return radiance
 
     def L_backward(self, values: Mapping[str, Any], w: Array, d_L: Array) -> dict[str, Array]:
@@ -75,7 +76,8 @@ class LightModel:
         parameters, constants = self.pack(values, w.dtype)
         d_L = np.ascontiguousarray(d_L, w.dtype)
         d = np.zeros_like(parameters)
-        self.core.L_backward(parameters, constants, np.ascontiguousarray(w), d_L, d)
+        w = np.ascontiguousarray(w)
+        self.core.radiance_backward(parameters, constants, _anywhere(w), w, d_L, d)
         ends = np.cumsum([parameter.size for parameter in self.parameters])[:-1]
         return {
             parameter.name: part if parameter.size > 1 else part[0]
@@ -84,17 +86,24 @@ class LightModel:
 
     def sample(self, values: Mapping[str, Any], u2: Array) -> Array:
         """Directions (N, 3) from uniform u2 (N, 2), with the density `pdf`."""
-        w: Array = self.core.sample(*self.pack(values, u2.dtype), np.ascontiguousarray(u2))
+        u2 = np.ascontiguousarray(u2)
+        w: Array = self.core.sample(*self.pack(values, u2.dtype), _anywhere(u2), u2)[0]
         return w
 
     def pdf(self, values: Mapping[str, Any], w: Array) -> Array:
         """Density (N,) of `sample` over solid angle."""
-        density: Array = self.core.pdf(*self.pack(values, w.dtype), np.ascontiguousarray(w))
+        w = np.ascontiguousarray(w)
+        density: Array = self.core.pdf(*self.pack(values, w.dtype), _anywhere(w), w)
         return density
 
 
+def _anywhere(rows: Array) -> Array:
+    """Points (N, 3) from which lights at infinity are seen: they look the same from all."""
+    return np.zeros((len(rows), 3), rows.dtype)
+
+
 def registry() -> dict[str, LightModel]:
-    """All lights of the core, by name."""
+    """All lights at infinity of the core, by name."""
     return {
         name: LightModel(
             name,

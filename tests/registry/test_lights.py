@@ -1,4 +1,4 @@
-"""Every registered light: gradients, sampling, energy; and what sun and sky are."""
+"""Every light at infinity: its density, and what sun and sky are. More: test_sampled_lights.py."""
 
 from __future__ import annotations
 
@@ -8,8 +8,6 @@ import numpy as np
 import pytest
 from photograd.errors import RangeError, ShapeError
 from photograd.light import LightModel, cap_height, registry
-from photograd_course.gradcheck import check_accumulation, check_gradient, dot_product_error
-from photograd_course.mutants import check_mutants, check_overwriting_mutants
 from photograd_course.random import uniform
 
 from support.statistics import chi_square_p, sidak, sphere_cell_masses, sphere_counts
@@ -21,7 +19,6 @@ CONSTANTS: dict[str, dict[str, Any]] = {
     "sky": {},
     "constant": {},
 }
-COUNT = 24
 
 
 def values(light: LightModel) -> dict[str, Any]:
@@ -32,64 +29,8 @@ def values(light: LightModel) -> dict[str, Any]:
     return drawn
 
 
-def lit_directions(light: LightModel) -> Any:
-    """Directions (COUNT, 3) in which the light shines, and some in which it may not."""
-    u2 = uniform(4, pixel=np.arange(COUNT)[:, None], dimension=np.arange(2))
-    w = light.sample(values(light), u2)
-    w[::5] *= -1.0
-    return w
-
-
 def test_each_light_is_tested_here() -> None:
     assert set(CONSTANTS) == set(LIGHTS), "give the new light its constants above"
-
-
-@pytest.mark.parametrize("name", sorted(LIGHTS))
-def test_gradients(name: str) -> None:
-    light = LIGHTS[name]
-    given = values(light)
-    w = lit_directions(light)
-    place = {p.name: np.asarray(given[p.name]) for p in light.parameters}
-    constants = light.pack(given)[1]
-    d_L = 0.5 + uniform(5, pixel=np.arange(COUNT)[:, None], dimension=np.arange(3))
-
-    def flat(groups: dict[str, Any]) -> Any:
-        return np.concatenate([groups[p.name] for p in light.parameters])
-
-    def split(row: Any) -> dict[str, Any]:
-        return {p.name: row[3 * k : 3 * k + 3] for k, p in enumerate(light.parameters)}
-
-    def forward(groups: dict[str, Any]) -> Any:
-        return light.core.L(flat(groups), constants, w)
-
-    def accumulate(groups: dict[str, Any], d: Any, d_groups: dict[str, Any]) -> None:
-        buffer = flat(d_groups)
-        light.core.L_backward(flat(groups), constants, w, np.ascontiguousarray(d), buffer)
-        for key, part in split(buffer).items():
-            d_groups[key][...] = part
-
-    def backward(groups: dict[str, Any], d: Any) -> dict[str, Any]:
-        d_groups = {key: np.zeros_like(value) for key, value in groups.items()}
-        accumulate(groups, d, d_groups)
-        return d_groups
-
-    def jvp(groups: dict[str, Any], directions: dict[str, Any]) -> Any:
-        return light.core.jvp(flat(groups), constants, flat(directions), w)
-
-    report: Any = check_gradient(forward, backward, place, seed=1)
-    assert report, str(report)
-    report = dot_product_error(jvp, backward, place, seed=1)
-    assert report, str(report)
-    report = check_accumulation(accumulate, place, d_L)
-    assert report, str(report)
-    report = check_mutants(
-        lambda b: check_gradient(forward, b, place, seed=1), backward, place, d_L
-    )
-    assert report, str(report)
-    report = check_overwriting_mutants(
-        lambda a: check_accumulation(a, place, d_L), accumulate, place, d_L
-    )
-    assert report, str(report)
 
 
 @pytest.mark.parametrize("name", sorted(LIGHTS))

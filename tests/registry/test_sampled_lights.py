@@ -137,6 +137,10 @@ def test_lights_at_infinity_are_those_of_the_other_face(name: str) -> None:
     np.testing.assert_array_equal(samples.direction, other.sample(values, u2()))
     np.testing.assert_array_equal(samples.pdf, other.pdf(values, samples.direction))
     np.testing.assert_array_equal(samples.radiance, other.L(values, samples.direction))
+    d = light.L_backward(points(), samples.direction, d_radiance())
+    for key, found in other.L_backward(values, samples.direction, d_radiance()).items():
+        assert np.any(found != 0)
+        np.testing.assert_array_equal(found, d[key])
     assert np.isinf(samples.distance).all()
 
 

@@ -44,6 +44,19 @@ Cover<R> choose_cover(R sampled_alpha, R alpha, double cutoff, R u) {
     return {true, (R(1) - alpha) / rest, R(-1) / rest, (R(1) - sampled_alpha) / rest};
 }
 
+/// Whether a walk that has met a surface of the material `number` goes straight on behind it, where `ray` then starts.
+/// `beta` takes the weight of either choice.
+template <Real R>
+bool goes_straight_on(const PathScene<R>& scene, std::size_t number, const Material<R>& material,
+                      const SurfaceHit<R>& hit, const SurfaceSide<R>& side, R u, Ray<R>& ray,
+                      Vec3<R>& beta) {
+    const Cover<R> chosen =
+        choose_cover(material.alpha, material.alpha, scene.geometry->textures.cutoff(number), u);
+    beta *= chosen.weight;
+    if (chosen.passes) ray.origin = side.start(hit.position, ray.direction, scene.geometry->offset);
+    return chosen.passes;
+}
+
 /// Whether any material covers only in part.
 template <Real R>
 bool any_sheer(const PathScene<R>& scene) {

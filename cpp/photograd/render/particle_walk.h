@@ -181,13 +181,9 @@ protected:  // what a walk through media shares
         constexpr std::uint32_t cover_block = 1u << 20;  // behind those of all vertices
         const Philox4 words =
             random_block(lane.key, cover_block + static_cast<std::uint32_t>(depth));
-        const Cover<double> chosen = choose_cover(material.alpha, material.alpha,
-                                                  scene_.geometry->textures.cutoff(number_of(lane)),
-                                                  uniform_from<double>(words[0]));
-        lane.beta *= chosen.weight;
-        if (!chosen.passes) return false;
-        const Vec3<double>& way = lane.ray.direction;
-        lane.ray.origin = side.start(lane.hit->position, way, scene_.geometry->offset);
+        if (!goes_straight_on(scene_, number_of(lane), material, *lane.hit, side,
+                              uniform_from<double>(words[0]), lane.ray, lane.beta))
+            return false;
         lane.alive = !is_black(lane.beta);
         return true;
     }

@@ -38,12 +38,8 @@ void trace_paths(const PathScene<R>& scene, const ThinLens& camera, const PathOp
 template <Real R>
 Path<R> trace_path(const PathScene<R>& scene, const ThinLens& camera, const PathOptions& options,
                    std::uint32_t pixel, std::uint32_t sample) {
-    const RandomKey key = key_of(options, pixel, sample);
-    SampleNumbers numbers(options.sampler);
-    const Ray<R> ray = sample_ray<R>(camera, key, numbers);
-    PathWalk<R> walk(scene, options, false);
-    walk.open_cones(camera);
-    walk.trace(&ray, &key, 1);
+    PathWalk<R> walk(scene, camera, options, false);
+    walk_sample<R>(walk, camera, options, pixel, sample);
     return walk.path(0);
 }
 

@@ -27,9 +27,7 @@ public:
           camera_(camera),
           options_(options),
           counts_(counts),
-          walk_(scene, options, false) {
-        walk_.open_cones(camera);
-    }
+          walk_(scene, camera, options, false) {}
 
     /// Writes the pixels [begin, end) to `picture` (H, W, 3), which is 0 there.
     void keep(std::int64_t begin, std::int64_t end, double* picture) {

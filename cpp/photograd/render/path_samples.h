@@ -57,13 +57,22 @@ void walk_samples(Walk& walk, const ThinLens& camera, const PathOptions& options
     if (filled > 0) trace();
 }
 
+/// Walks one sample alone; its path is in lane 0.
+template <class R, class Walk>
+void walk_sample(Walk& walk, const ThinLens& camera, const PathOptions& options,
+                 std::uint32_t pixel, std::uint32_t sample) {
+    const RandomKey key = key_of(options, pixel, sample);
+    SampleNumbers numbers(options.sampler);
+    const Ray<R> ray = sample_ray<R>(camera, key, numbers);
+    walk.trace(&ray, &key, 1);
+}
+
 /// visit(pixel, path) for every sample of the pixels [begin, end).
 template <class R, class Visit>
 void for_each_path(const PathScene<R>& scene, const ThinLens& camera, const PathOptions& options,
                    const SampleRange& samples, const SampleCounts& counts, bool stop_when_black,
                    std::int64_t begin, std::int64_t end, Visit&& visit) {
-    PathWalk<R> walk(scene, options, stop_when_black);
-    walk.open_cones(camera);
+    PathWalk<R> walk(scene, camera, options, stop_when_black);
     walk_samples<R>(walk, camera, options, samples, counts, begin, end,
                     [&](std::int64_t pixel, int k) { visit(pixel, walk.path(k)); });
 }

@@ -22,14 +22,17 @@ class PathWalk {
 public:
     static constexpr int width = RayPacket::width;
 
-    /// `stop_when_black` gives up paths whose weight is 0: right for a picture, wrong for a derivative.
-    PathWalk(const PathScene<R>& scene, const PathOptions& options, bool stop_when_black)
+    /// For rays of `camera`, whose pixels say how wide the cones open that mip maps are read by. `stop_when_black` gives up
+    /// paths whose weight is 0: right for a picture, wrong for a derivative.
+    PathWalk(const PathScene<R>& scene, const Pinhole& camera, const PathOptions& options,
+             bool stop_when_black)
         : scene_(scene),
           options_(options),
           stop_when_black_(stop_when_black),
           sheer_(any_sheer(scene)),
           mips_(scene.geometry->textures.any_mips()),
           drawn_as_sampled_(scene.drawn_as_sampled()),
+          pixel_spread_(R(1 / std::max(camera.fx, camera.fy))),
           numbers_(options.sampler) {}
 
     /// Samples the paths of `count` <= 16 camera rays; they are then in path(0), path(1), ...
@@ -43,10 +46,6 @@ public:
         }
     }
     [[nodiscard]] const Path<R>& path(int k) const { return lanes_[k].path; }
-    /// How wide what they see becomes per metre, for mip maps; 0 sees points.
-    void open_cones(const Pinhole& camera) {
-        pixel_spread_ = R(1 / std::max(camera.fx, camera.fy));
-    }
 
 protected:  // what a walk through media (volume_walk.h) shares
     struct Lane {
@@ -363,7 +362,7 @@ protected:  // what a walk through media (volume_walk.h) shares
     bool sheer_;             // whether any surface covers only in part
     bool mips_;              // whether any texture has levels
     bool drawn_as_sampled_;  // whether one material decides both where paths go and what they find
-    R pixel_spread_ = R(0);
+    R pixel_spread_;         // how wide what a pixel sees becomes per metre
     SampleNumbers numbers_;
     Lane lanes_[width];
 };

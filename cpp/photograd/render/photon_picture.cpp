@@ -72,14 +72,9 @@ private:
     bool passes(View& view, int depth, std::size_t number, const Material<double>& material,
                 const SurfaceHit<double>& hit, const SurfaceSide<double>& side) {
         const Philox4 words = numbers_(view.key, 1 + static_cast<std::uint32_t>(depth));
-        const Cover<double> chosen =
-            choose_cover(material.alpha, material.alpha, scene_.geometry->textures.cutoff(number),
-                         uniform_from<double>(words[1]));
-        view.beta *= chosen.weight;
-        if (!chosen.passes) return false;
-        view.ray.origin = side.start(hit.position, view.ray.direction, scene_.geometry->offset);
-        view.alive = true;
-        return true;
+        view.alive = goes_straight_on(scene_, number, material, hit, side,
+                                      uniform_from<double>(words[1]), view.ray, view.beta);
+        return view.alive;
     }
 
     /// What the photons around a place send to the viewer.

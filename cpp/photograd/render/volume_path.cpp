@@ -10,9 +10,7 @@ void for_each_volume_path(const PathScene<R>& scene, const ThinLens& camera,
                           const PathOptions& options, const SampleRange& samples,
                           const SampleCounts& counts, bool stop_when_black, std::int64_t begin,
                           std::int64_t end, const VisitVolumePath<R>& visit) {
-    VolumeWalk<R> walk(scene, options, stop_when_black,
-                       CameraSurroundings(*scene.geometry, camera, options.sampler));
-    walk.open_cones(camera);
+    VolumeWalk<R> walk(scene, camera, options, stop_when_black);
     walk_samples<R>(walk, camera, options, samples, counts, begin, end,
                     [&](std::int64_t pixel, int k) { visit(pixel, walk.path(k), walk.media(k)); });
 }
@@ -21,13 +19,8 @@ template <Real R>
 VolumePath<R> trace_volume_path(const PathScene<R>& scene, const ThinLens& camera,
                                 const PathOptions& options, std::uint32_t pixel,
                                 std::uint32_t sample) {
-    const RandomKey key = key_of(options, pixel, sample);
-    SampleNumbers numbers(options.sampler);
-    const Ray<R> ray = sample_ray<R>(camera, key, numbers);
-    VolumeWalk<R> walk(scene, options, false,
-                       CameraSurroundings(*scene.geometry, camera, options.sampler));
-    walk.open_cones(camera);
-    walk.trace(&ray, &key, 1);
+    VolumeWalk<R> walk(scene, camera, options, false);
+    walk_sample<R>(walk, camera, options, pixel, sample);
     return {walk.path(0), walk.media(0)};
 }
 

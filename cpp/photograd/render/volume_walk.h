@@ -25,12 +25,13 @@ class VolumeWalk : PathWalk<R> {
     using Flight = typename FreeFlight<R>::State;
 
 public:
-    using Base::path, Base::width, Base::open_cones;
+    using Base::path, Base::width;
 
-    /// `around`: the shapes in which the camera stands.
-    VolumeWalk(const PathScene<R>& scene, const PathOptions& options, bool stop_when_black,
-               const CameraSurroundings& around)
-        : Base(scene, options, stop_when_black), flight_(scene), around_(around) {}
+    VolumeWalk(const PathScene<R>& scene, const ThinLens& camera, const PathOptions& options,
+               bool stop_when_black)
+        : Base(scene, camera, options, stop_when_black),
+          flight_(scene),
+          around_(*scene.geometry, camera, options.sampler) {}
 
     /// Samples the paths of `count` <= 16 camera rays; they are then in path(k), media(k).
     void trace(const Ray<R>* rays, const RandomKey* keys, int count) {
@@ -300,7 +301,7 @@ private:
 
     using Base::lanes_, Base::options_, Base::scene_, Base::stop_when_black_;
     FreeFlight<R> flight_;
-    CameraSurroundings around_;
+    CameraSurroundings around_;  // the shapes in which the camera stands
     Extra extras_[width];
 };
 

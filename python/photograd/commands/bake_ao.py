@@ -12,10 +12,15 @@ import typer
 from photograd_course.cli import DebugOption, JsonOption, Progress, SeedOption, ThreadsOption, emit
 from photograd_course.cli import note as say
 
-from photograd.commands.shared import StopRequest, stop_on_signals, use_threads
+from photograd.commands.shared import (
+    StopRequest,
+    check_picture_name,
+    stop_on_signals,
+    use_threads,
+)
 from photograd.commands.trace import SceneArgument, load_scene
 from photograd.data.image_write import write_exr, write_png
-from photograd.errors import IoError, SceneError, message
+from photograd.errors import SceneError, message
 from photograd.transport.occlusion_map import OcclusionBake
 from photograd.transport.scene import MeshShape, Scene
 
@@ -62,8 +67,7 @@ def bake_ao(
     Example: photograd bake-ao chair.glb --shape seat --texels 1024 --radius 0.5 --out seat_ao.exr
     """
     use_threads(threads)
-    if out.suffix.lower() not in (".exr", ".png"):
-        raise IoError(message("bake-ao", "--out", "a name that ends in .exr or .png", out))
+    check_picture_name("bake-ao", out)
     described, _ = load_scene(scene, 16)
     bake = OcclusionBake(
         described, shape or _only_mesh(described), texels, radius=radius, seed=seed

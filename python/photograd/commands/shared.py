@@ -1,4 +1,4 @@
-"""What the core's commands share: threads, stopping politely, and the types of their arguments."""
+"""What the core's commands share: threads, stopping politely, types and checks of arguments."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from typing import Annotated, Any
 import typer
 
 from photograd.core import _core
+from photograd.errors import IoError, message
 
 CaptureArgument = Annotated[
     Path,
@@ -31,6 +32,16 @@ DownscaleOption = Annotated[
 def use_threads(threads: int) -> None:
     """Limit the core's threads; 0 means all cores."""
     _core.set_thread_count(threads)
+
+
+def check_picture_name(command: str, out: Path) -> None:
+    """Refuse an --out of `command` that is no picture, before the work and not after it.
+
+    Raises:
+        IoError: a name that ends neither in .exr nor in .png.
+    """
+    if out.suffix.lower() not in (".exr", ".png"):
+        raise IoError(message(command, "--out", "a name that ends in .exr or .png", out))
 
 
 class StopRequest:

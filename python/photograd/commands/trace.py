@@ -24,7 +24,12 @@ from photograd_course.cli import (
 )
 from photograd_course.color import srgb_encode
 
-from photograd.commands.shared import StopRequest, stop_on_signals, use_threads
+from photograd.commands.shared import (
+    StopRequest,
+    check_picture_name,
+    stop_on_signals,
+    use_threads,
+)
 from photograd.commands.trace_estimates import (
     INTEGRATORS,
     DerivativeOption,
@@ -33,7 +38,6 @@ from photograd.commands.trace_estimates import (
     write_derivative,
 )
 from photograd.data.image_write import write_exr, write_png
-from photograd.errors import IoError, message
 from photograd.lights import EnvironmentMap
 from photograd.transport.accumulation import Accumulation, load_accumulation
 from photograd.transport.builtin import BUILTIN, builtin_scene
@@ -123,8 +127,7 @@ def trace(
     Example: photograd trace cornell-box --spp 256 --out cornell.exr
     """
     use_threads(threads)
-    if out.suffix.lower() not in (".exr", ".png"):
-        raise IoError(message("trace", "--out", "a name that ends in .exr or .png", out))
+    check_picture_name("trace", out)
     options = PathOptions(strategy, heuristic, 2 if integrator == "direct" else max_depth)
     estimate = Estimate(integrator, options, seed, radius, photons, derivative)
     described, fingerprint = load_scene(scene, size)
