@@ -20,6 +20,7 @@ normal_map = "bumps.png"
 kind = "mesh"
 file = "chair.glb"            # or .gltf, .obj, .ply, .stl
 material = "floor"            # optional; without it the file's own materials
+filter = "bilinear"           # optional: of all textures of the file, instead of its own
 scale = 2                     # then rotate (degrees about x, then y, then z), then translate
 rotate = [0, 90, 0]
 translate = [0, 1, 0]
@@ -119,7 +120,7 @@ def mesh_shapes(
     shapes = node.built(
         lambda: [_placed(mesh, name, material, emission, inner, places) for mesh in meshes]
     )
-    brought = _renamed(model, name)
+    brought = _renamed(model, name, node.choice("filter", FILTERS) if node.has("filter") else None)
     if material is None:
         return shapes, brought
     lit = {shape.glow.texture for shape in shapes if shape.glow is not None}
@@ -150,7 +151,7 @@ def _placed(
     )  # fmt: skip
 
 
-def _renamed(model: ModelFile, name: str) -> Brought:
+def _renamed(model: ModelFile, name: str, looked_up: str | None) -> Brought:
     materials = {
         f"{name}/{own}": replace(
             material,
@@ -161,7 +162,10 @@ def _renamed(model: ModelFile, name: str) -> Brought:
         )
         for own, material in model.materials.items()
     }
-    textures = {f"{name}/{own}": texture for own, texture in model.textures.items()}
+    textures = {
+        f"{name}/{own}": replace(texture, filter=looked_up or texture.filter)
+        for own, texture in model.textures.items()
+    }
     media = {f"{name}/{own}": medium for own, medium in model.media.items()}
     return Brought(materials, textures, media)
 

@@ -206,7 +206,7 @@ def _with_pictures(draft: Draft, material: Material, pictures: Pictures) -> File
     emission, glow = _radiance(draft), None
     if "emissiveTexture" in node and emission.any():
         info = node["emissiveTexture"]
-        name = pictures.texture(info, "srgb")
+        name = pictures.glow(info)
         if name is not None:
             glow = TextureUse(name)
             place = pictures.coordinates(info)
