@@ -277,10 +277,13 @@ def test_coordinates_are_moved_and_chosen(tmp_path: Path) -> None:
     np.testing.assert_allclose(found[3], [0.25, 0.5], atol=1e-6)
 
 
-def test_lamps_of_a_file_are_named(tmp_path: Path) -> None:
+def test_extensions_of_a_file_are_named(tmp_path: Path) -> None:
     glb = square()
     lamp = {"type": "directional", "intensity": 2.0}
-    glb.json["extensions"] = {"KHR_lights_punctual": {"lights": [lamp]}}
+    glb.json["extensions"] = {
+        "KHR_lights_punctual": {"lights": [lamp]}, "KHR_materials_variants": {"variants": []},
+    }  # fmt: skip
     glb.json["extensionsRequired"] = ["KHR_lights_punctual"]
-    _, told = read(tmp_path, glb.bytes())
-    assert told == ["m.glb: extensions: KHR_lights_punctual: not supported, left out"]
+    model, told = read(tmp_path, glb.bytes())
+    assert told == ["m.glb: extensions: KHR_materials_variants: not supported, left out"]
+    assert model.lights == ()  # no node has it

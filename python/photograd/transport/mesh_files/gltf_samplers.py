@@ -64,7 +64,7 @@ def sampler_words(wrap: Wrap, looked_up: str) -> dict[str, int]:
     A bilinear texture asks for no filter: viewers that take one sample a pixel should not be kept
     from the mip maps they need.
     """
-    words = {}
+    words: dict[str, int] = {}
     if wrap != ("repeat", "repeat"):
         words |= {"wrapS": WRAPS[wrap[0]], "wrapT": WRAPS[wrap[1]]}
     if looked_up == "mip":
