@@ -200,9 +200,10 @@ def test_lights_without_words_are_named(tmp_path: Path) -> None:
     lights = (
         SkyLight([1] * 3, [1] * 3, [1] * 3), PointLight([0, 0, 1], [1] * 3),
         SpotLight([0, 0, 1], [0, 0, -1], [1] * 3, -0.1, 0.5), SunLight([0, 1, 0], [1] * 3, 0.01),
+        PointLight([0, 0, 1], [1e30, 1, 1]),
     )  # fmt: skip
     found, said = written(ModelFile((wall,), {"m": paint}, lights=lights), tmp_path / "m.glb")
     assert said == ["m.glb: not written: lights[0] (SkyLight), lights[2] (SpotLight), "
-                    "lights[3] (SunLight)"]  # fmt: skip
+                    "lights[3] (SunLight), lights[4] (PointLight)"]  # fmt: skip
     assert [type(light).__name__ for light in found.lights] == ["PointLight"]
     assert json_of(tmp_path / "m.glb")["extensionsUsed"] == [LIGHTS]

@@ -69,7 +69,7 @@ CameraOption = Annotated[
     str | None,
     typer.Option(
         "--camera",
-        help=f"Of a mesh file: its camera of this name, or '{STUDIO}'.  [default: its first]",
+        help=f"Of a mesh file: its camera of this name, by default its first, or '{STUDIO}'.",
     ),
 ]
 IntegratorOption = Annotated[

@@ -38,7 +38,7 @@ NARROWEST = 1e-3
 """Radians: cosines of smaller angles are 1 in single precision."""
 _OUTER = np.pi / 4  # where a file gives none
 _ROUNDED = 1e-6  # a right angle in single precision is a little larger than one
-_HARDEST = 1e-6
+_HARDEST = 1e-6  # the least softness: angles that differ by less have the same cosine
 
 
 def read_lights(
@@ -129,12 +129,15 @@ def _height(angle: float) -> float:
 
 def light_words(light: Light) -> tuple[dict[str, Any], list[float]] | None:
     """An entry of the table of lights, and the matrix of its node; None without such words."""
+    if not isinstance(light, DirectionalLight | PointLight | SpotLight):
+        return None
+    strength = light.irradiance if isinstance(light, DirectionalLight) else light.intensity
+    if np.max(strength) > BRIGHTEST / 2:  # the power of two above it would not be read
+        return None
     if isinstance(light, DirectionalLight):
         return _entry("directional", light.irradiance), _matrix(light.direction, np.zeros(3))
     if isinstance(light, PointLight):
         return _entry("point", light.intensity), _matrix([0.0, 0.0, 1.0], light.position)
-    if not isinstance(light, SpotLight):
-        return None
     whole_cone = 1 - light.cos_outer
     outer, inner = _angle(whole_cone), _angle((1 - light.softness) * whole_cone)
     if not NARROWEST <= outer <= np.pi / 2 + _ROUNDED:
