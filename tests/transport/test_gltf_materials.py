@@ -68,6 +68,13 @@ def made(folder: Path, **material: Any) -> tuple[Material, list[str]]:
         ),
         # f0 = 0.04 is reflectance 0.5; a quarter of it, 0.25. An index of 1.25: (1/9)^2 = 0.16 r^2.
         (extension("specular", specularFactor=0.25), "standard", {"reflectance": 0.25}),
+        (
+            core(baseColorFactor=[0.5, 0.25, 1, 1], metallicFactor=0)
+            | extension("specular", specularFactor=0),
+            "lambert",
+            {"albedo": [0.5, 0.25, 1]},
+        ),
+        (extension("specular", specularFactor=0), "standard", {"reflectance": 0}),
         (extension("ior", ior=1.25), "standard", {"reflectance": 1 / 3.6}),
         (
             core(roughnessFactor=0, metallicFactor=0) | clear(),
