@@ -15,6 +15,10 @@ position = [0, 1, 5]
 look_at = [0, 0, 0]
 field_of_view = 30
 size = [8, 8]
+[[lights]]
+kind = "point"
+position = [1, 3, 2]
+intensity = [9, 8, 7]
 [materials.paint]
 model = "clearcoat"
 base_color = [0.5, 0.25, 0.125]
@@ -38,8 +42,11 @@ def test_a_scene_becomes_gltf(photograd: Photograd, tmp_path: Path) -> None:
     result = done.result()
     assert (result["shapes"], result["triangles"], result["materials"]) == (1, 12, 1)
     assert result["bytes_out"] == (tmp_path / "s.glb").stat().st_size
-    assert [row["note"] for row in result["notes"]] == ["s.glb: not written: camera"]
-    material = read_model(tmp_path / "s.glb").materials["paint"]
+    assert result["notes"] == []
+    model = read_model(tmp_path / "s.glb")
+    assert [type(light).__name__ for light in model.lights] == ["PointLight"]
+    np.testing.assert_allclose(np.degrees(model.cameras[0].field_of_view), 30)
+    material = model.materials["paint"]
     assert material.model == "clearcoat"
     np.testing.assert_array_equal(material.values["base_color"], [0.5, 0.25, 0.125])
     again = photograd("convert", tmp_path / "s.glb", tmp_path / "s.gltf", "--json")

@@ -5,7 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import pytest
+from photograd.commands.trace import load_scene
 from photograd.data.exr import read_exr
+from photograd.errors import SceneError
 
 from tests.commands.conftest import Photograd
 from tests.transport.gltf_samples import core, extension, square
@@ -37,3 +40,20 @@ def test_what_cannot_be_read_is_named(photograd: Photograd, tmp_path: Path) -> N
         done = photograd("trace", path, "--out", tmp_path / "o.exr")
         assert done.code == 1
         assert words in " ".join(done.err.split())
+
+
+def test_which_camera_is_taken(tmp_path: Path) -> None:
+    glb, path = square(), tmp_path / "s.glb"
+    lens = {"yfov": 0.8, "aspectRatio": 1.5, "znear": 0.1}
+    glb.seen({"type": "perspective", "name": "near", "perspective": lens}, translation=[0, 0, 3])
+    path.write_bytes(glb.bytes())
+    own, fingerprint = load_scene(str(path), 24)
+    assert (own.camera.width, own.camera.height) == (24, 16)
+    np.testing.assert_array_equal(own.camera.position, [0, 0, 3])
+    studio, other = load_scene(str(path), 24, "studio")
+    assert studio.camera.height == 24
+    assert fingerprint != other  # samples of one are not added to those of the other
+    with pytest.raises(SceneError, match="camera: expected a camera of the file, got neer"):
+        load_scene(str(path), 24, "neer")
+    with pytest.raises(SceneError, match=r"SCENE: expected a mesh file .* with --camera"):
+        load_scene("cornell-box", 24, "near")

@@ -45,6 +45,11 @@ def sample() -> Glb:
     parent = glb.node(glb.mesh(material=material), rotation=[0, 0, 0, 1], scale=[1, 2, 1])
     glb.json["nodes"].append({"mesh": 0, "translation": [1, 2, 3]})
     parent["children"] = [1]
+    lens = {"yfov": 0.7, "aspectRatio": 1.5, "znear": 0.01}
+    glb.seen({"type": "perspective", "perspective": lens}, translation=[0, 0, 5])
+    glb.lit({"type": "point", "intensity": 3, "color": [1, 0.5, 0], "range": 9}, scale=[1, 2, 3])
+    cone = {"innerConeAngle": 0.2, "outerConeAngle": 0.4}
+    glb.lit({"type": "spot", "spot": cone}, rotation=[0, 0, 0, 1])
     return glb
 
 
@@ -125,6 +130,11 @@ def test_damaged_meshes(tmp_path: Path, case: str) -> None:
                     model = read_model(path)
                 assert isinstance(model, ModelFile)
                 assert all(np.isfinite(shape.box).all() for shape in model.shapes)
+                assert all(
+                    np.isfinite(light.core_call(float)[1][0]).all() for light in model.lights
+                )
+                for camera in model.cameras:
+                    assert np.isfinite(camera.world_from_camera).all()
                 answers.add("taken")
             except (IoError, RangeError, SceneError) as refusal:
                 answers.add("refused" if "read_model" in str(refusal) else f"{refusal}")

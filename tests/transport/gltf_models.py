@@ -12,7 +12,7 @@ from photograd.transport import Material, Medium, ModelFile, NormalMap, Texture,
 from photograd.transport.mesh_files.gltf_painted import SLOTS
 from photograd.transport.scene import MODELS
 from photograd.transport.shapes import box
-from photograd.transport.texture import decode
+from photograd.transport.texture import FILTERS, decode
 
 LOGS = 1e-12
 """Relative: reflectance is a root, sigma_t a logarithm, a rotation an angle of a complex number."""
@@ -104,6 +104,7 @@ def models(draw: st.DrawFn, model: str) -> ModelFile:
     material = draw(materials(model))
     height, width = draw(st.integers(1, 3)), draw(st.integers(1, 3))
     wrap = draw(st.sampled_from([("repeat", "repeat"), ("clamp", "mirror")]))
+    looked_up = draw(st.sampled_from(FILTERS))
     slots: dict[Any, str] = {}
     textures, uses = {}, {}
     for p in material.parameters:
@@ -116,7 +117,9 @@ def models(draw: st.DrawFn, model: str) -> ModelFile:
             texels = bytes_of(draw, height, width, 1 if encoding == "alpha" else 3)
             if encoding == "alpha":  # 1 everywhere is none
                 texels = np.minimum(texels, np.float32(128) / np.float32(255))
-            textures[name] = Texture(decode(texels) if encoding == "srgb" else texels, wrap)
+            textures[name] = Texture(
+                decode(texels) if encoding == "srgb" else texels, wrap, looked_up
+            )
     # One image holds both of these; what has only one of them comes back with the other.
     both = {"metalness", "roughness"} & {p.name for p in material.parameters}
     if both & uses.keys():

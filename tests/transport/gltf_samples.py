@@ -14,6 +14,7 @@ CORNERS = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], np.float32)
 FACES = np.array([[0, 1, 2], [0, 2, 3]], np.uint16)
 UV = np.array([[0, 1], [1, 1], [1, 0], [0, 0]], np.float32)
 _COMPONENTS = {"<i1": 5120, "<u1": 5121, "<i2": 5122, "<u2": 5123, "<u4": 5125, "<f4": 5126}
+LIGHTS = "KHR_lights_punctual"
 _TYPES = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4"}
 
 
@@ -78,9 +79,23 @@ class Glb:
         return len(self.json["meshes"]) - 1
 
     def node(self, mesh: int, **place: Any) -> dict[str, Any]:
-        self.json["nodes"].append({"mesh": mesh, **place})
+        return self._node({"mesh": mesh, **place})
+
+    def seen(self, camera: Any, **place: Any) -> dict[str, Any]:
+        """A node with a camera of its own."""
+        self.json.setdefault("cameras", []).append(camera)
+        return self._node(place | {"camera": len(self.json["cameras"]) - 1})
+
+    def lit(self, light: Any, **place: Any) -> dict[str, Any]:
+        """A node with a light of its own."""
+        lamps = self.json.setdefault("extensions", {}).setdefault(LIGHTS, {"lights": []})["lights"]
+        lamps.append(light)
+        return self._node(place | {"extensions": {LIGHTS: {"light": len(lamps) - 1}}})
+
+    def _node(self, node: dict[str, Any]) -> dict[str, Any]:
+        self.json["nodes"].append(node)
         self.json["scenes"][0]["nodes"].append(len(self.json["nodes"]) - 1)
-        return self.json["nodes"][-1]
+        return node
 
     def bytes(self) -> bytes:
         self.json["buffers"] = [{"byteLength": len(self.data)}]

@@ -68,6 +68,13 @@ def made(folder: Path, **material: Any) -> tuple[Material, list[str]]:
         ),
         # f0 = 0.04 is reflectance 0.5; a quarter of it, 0.25. An index of 1.25: (1/9)^2 = 0.16 r^2.
         (extension("specular", specularFactor=0.25), "standard", {"reflectance": 0.25}),
+        (
+            core(baseColorFactor=[0.5, 0.25, 1, 1], metallicFactor=0)
+            | extension("specular", specularFactor=0),
+            "lambert",
+            {"albedo": [0.5, 0.25, 1]},
+        ),
+        (extension("specular", specularFactor=0), "standard", {"reflectance": 0}),
         (extension("ior", ior=1.25), "standard", {"reflectance": 1 / 3.6}),
         (
             core(roughnessFactor=0, metallicFactor=0) | clear(),
@@ -277,10 +284,13 @@ def test_coordinates_are_moved_and_chosen(tmp_path: Path) -> None:
     np.testing.assert_allclose(found[3], [0.25, 0.5], atol=1e-6)
 
 
-def test_lamps_of_a_file_are_named(tmp_path: Path) -> None:
+def test_extensions_of_a_file_are_named(tmp_path: Path) -> None:
     glb = square()
     lamp = {"type": "directional", "intensity": 2.0}
-    glb.json["extensions"] = {"KHR_lights_punctual": {"lights": [lamp]}}
+    glb.json["extensions"] = {
+        "KHR_lights_punctual": {"lights": [lamp]}, "KHR_materials_variants": {"variants": []},
+    }  # fmt: skip
     glb.json["extensionsRequired"] = ["KHR_lights_punctual"]
-    _, told = read(tmp_path, glb.bytes())
-    assert told == ["m.glb: extensions: KHR_lights_punctual: not supported, left out"]
+    model, told = read(tmp_path, glb.bytes())
+    assert told == ["m.glb: extensions: KHR_materials_variants: not supported, left out"]
+    assert model.lights == ()  # no node has it

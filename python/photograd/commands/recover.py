@@ -109,7 +109,7 @@ def recover(
     """
     use_threads(threads)
     images = [read_target(path) for path in target]
-    described, _ = load_scene(scene, size or images[0].shape[0])
+    described, _ = load_scene(scene, size or max(images[0].shape[:2]))
     if camera and len(camera) != len(target):
         expected = f"one for each of {len(target)} targets"
         raise RangeError(message("recover", "--camera", expected, len(camera)))

@@ -38,10 +38,11 @@ from photograd.commands.trace_estimates import (
     write_derivative,
 )
 from photograd.data.image_write import write_exr, write_png
+from photograd.errors import SceneError, message
 from photograd.lights import EnvironmentMap
 from photograd.transport.accumulation import Accumulation, load_accumulation
 from photograd.transport.builtin import BUILTIN, builtin_scene
-from photograd.transport.mesh_files import SUFFIXES, model_scene, read_model
+from photograd.transport.mesh_files import STUDIO, SUFFIXES, model_scene, read_model
 from photograd.transport.scene import MeshShape, Scene
 from photograd.transport.scene_file import read_scene
 from photograd.transport.tracer import HEURISTICS, STRATEGIES, PathOptions, PathTracer
@@ -66,7 +67,14 @@ SizeOption = Annotated[
     typer.Option(
         "--size",
         min=1,
-        help="Pixels along an edge of a built-in scene or of a mesh file's picture.",
+        help="Pixels along an edge of a built-in scene, along the longer one for a mesh file.",
+    ),
+]
+CameraOption = Annotated[
+    str | None,
+    typer.Option(
+        "--camera",
+        help=f"Of a mesh file: its camera of this name, by default its first, or '{STUDIO}'.",
     ),
 ]
 IntegratorOption = Annotated[
@@ -100,6 +108,7 @@ def trace(
     out: OutOption = Path("image.exr"),
     spp: SppOption = 64,
     size: SizeOption = 256,
+    camera: CameraOption = None,
     integrator: IntegratorOption = "path",
     strategy: StrategyOption = "mis",
     heuristic: HeuristicOption = "power",
@@ -115,8 +124,9 @@ def trace(
 ) -> None:
     """Path trace a scene.
 
-    A mesh file is seen from in front and above, with its own materials, under a pale sky and one
-    lamp. What it has and cannot be drawn is named.
+    A mesh file is seen by its own camera and lit by its own lights; without them, or with --camera
+    studio, from in front and above, under a pale sky and one lamp. What it has and cannot be drawn
+    is named.
 
     Writes the picture as linear EXR, a PNG preview beside it every ten seconds, and OUT.sums.npz,
     from which --resume goes on: after Ctrl-C, or for more samples.
@@ -130,7 +140,7 @@ def trace(
     check_picture_name("trace", out)
     options = PathOptions(strategy, heuristic, 2 if integrator == "direct" else max_depth)
     estimate = Estimate(integrator, options, seed, radius, photons, derivative)
-    described, fingerprint = load_scene(scene, size)
+    described, fingerprint = load_scene(scene, size, camera)
     key = {
         "scene": fingerprint, "seed": seed, "integrator": integrator, "radius": repr(radius),
         **asdict(options), **estimate.key,
@@ -197,8 +207,15 @@ def scene_size(scene: Scene) -> tuple[int, int]:
     return sum(len(shape.faces) for shape in meshes), texels
 
 
-def load_scene(name: str, size: int) -> tuple[Scene, str]:
-    """The scene of an argument SCENE, and a text that changes with it; warnings become notes."""
+def load_scene(name: str, size: int, camera: str | None = None) -> tuple[Scene, str]:
+    """The scene of an argument SCENE, and a text that changes with it; warnings become notes.
+
+    Raises:
+        SceneError, IoError, RangeError: no such scene or camera.
+    """
+    if camera is not None and not name.lower().endswith(SUFFIXES):
+        expected = f"a mesh file ({', '.join(SUFFIXES)}) with --camera"
+        raise SceneError(message("trace", "SCENE", expected, name, "leave the option out"))
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         if name in BUILTIN:
@@ -208,13 +225,17 @@ def load_scene(name: str, size: int) -> tuple[Scene, str]:
         else:
             path = Path(name)
             meshes = path.suffix.lower() in SUFFIXES
-            scene = model_scene(read_model(path), path.stem, size) if meshes else read_scene(path)
+            scene = (
+                model_scene(read_model(path), path.stem, size, camera=camera)
+                if meshes
+                else read_scene(path)
+            )
             # Of the meshes and textures that it names, only the sizes are looked at.
             found = hashlib.sha256(path.read_bytes() + repr(scene_size(scene)).encode())
             for light in scene.lights:
                 if isinstance(light, EnvironmentMap):  # from a file of its own
                     found.update(light.texels.tobytes())
-            loaded = scene, f"{found.hexdigest()} {size if meshes else ''}"
+            loaded = scene, f"{found.hexdigest()} {f'{size} {camera}' if meshes else ''}"
     for warning in caught:
         note(f"{warning.message}")
     return loaded

@@ -17,7 +17,13 @@ from photograd.transport.derivative import (
 )
 from photograd.transport.lens import Lens
 from photograd.transport.medium import BOUNDARY, VACUUM, DensityGrid, Medium
-from photograd.transport.mesh_files import ModelFile, model_scene, read_model, save_gltf
+from photograd.transport.mesh_files import (
+    ModelCamera,
+    ModelFile,
+    model_scene,
+    read_model,
+    save_gltf,
+)
 from photograd.transport.occlusion_map import bake_ambient_occlusion
 from photograd.transport.particles import (
     Emitted,
@@ -55,6 +61,7 @@ __all__ = [
     "Material",
     "Medium",
     "MeshShape",
+    "ModelCamera",
     "ModelFile",
     "NormalMap",
     "ParticleOptions",

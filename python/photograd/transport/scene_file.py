@@ -9,6 +9,11 @@ aperture = 0.05               # optional: radius of the lens, metres
 focus = 6.8                   # of what is sharp; the point looked at, if absent
 closing = { position = [0.1, 1, 6.8], look_at = [0, 1, 0] }   # optional: where it has moved to
 
+[camera]                      # or one of a mesh file, in that file's world
+file = "room.glb"
+name = "above"                # optional: the first, if absent
+size = [256, 256]
+
 [environment]                 # optional; or zenith, horizon and ground
 radiance = 0.2
 
@@ -48,7 +53,8 @@ from photograd.data.camera import Camera
 from photograd.errors import IoError, SceneError, message
 from photograd.geometry.sdf_shapes import Shape as SdfNode
 from photograd.transport.builtin import camera_at
-from photograd.transport.lens import Lens
+from photograd.transport.file_views import camera_of_file
+from photograd.transport.lens import PINHOLE, Lens
 from photograd.transport.light_nodes import light_of
 from photograd.transport.media_nodes import filled, media_in
 from photograd.transport.medium import BOUNDARY
@@ -108,6 +114,7 @@ def _scene(root: Node, name: str) -> Scene:
         for shape in filled(node, media, _shapes(node, i, materials, brought, bodies))
     ]
     lights = tuple(map(light_of, root.tables("lights"))) if root.has("lights") else ()
+    lights += tuple(brought.lights)
     return Scene(
         name, tuple(shapes), brought.materials, camera, environment, lights,
         textures=brought.textures, lens=lens, shutter=shutter, media=brought.media, world=world,
@@ -115,6 +122,8 @@ def _scene(root: Node, name: str) -> Scene:
 
 
 def _camera(node: Node) -> tuple[Camera, Lens, Shutter | None]:
+    if node.has("file"):
+        return camera_of_file(node), PINHOLE, None
     width, height = node.numbers("size", 2)
     position, target = _view(node)
     field_of_view = node.number("field_of_view")

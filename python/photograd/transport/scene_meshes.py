@@ -20,6 +20,8 @@ normal_map = "bumps.png"
 kind = "mesh"
 file = "chair.glb"            # or .gltf, .obj, .ply, .stl
 material = "floor"            # optional; without it the file's own materials
+lights = true                 # optional: the lights of a .glb or .gltf shine, too
+filter = "bilinear"           # optional: of all textures of the file, instead of its own
 scale = 2                     # then rotate (degrees about x, then y, then z), then translate
 rotate = [0, 90, 0]
 translate = [0, 1, 0]
@@ -34,6 +36,8 @@ from typing import Any
 import numpy as np
 
 from photograd.data.images import read_image
+from photograd.lights import Light
+from photograd.transport.file_views import lights_of
 from photograd.transport.medium import Medium
 from photograd.transport.mesh_files import ModelFile, read_model
 from photograd.transport.mesh_files.model_file import moved
@@ -90,17 +94,19 @@ def texture_use(node: Node, key: str) -> TextureUse:
 
 @dataclass
 class Brought:
-    """What mesh files bring along: materials, textures and media, by names of their own."""
+    """What mesh files bring along: lights; materials, textures and media by names of their own."""
 
     materials: dict[str, Material] = field(default_factory=dict)
     textures: dict[str, Texture] = field(default_factory=dict)
     media: dict[str, Medium] = field(default_factory=dict)
+    lights: list[Light] = field(default_factory=list)
 
     def update(self, other: Brought) -> None:
         """Add what another file brings."""
         self.materials.update(other.materials)
         self.textures.update(other.textures)
         self.media.update(other.media)
+        self.lights.extend(other.lights)
 
 
 def mesh_shapes(
@@ -119,12 +125,14 @@ def mesh_shapes(
     shapes = node.built(
         lambda: [_placed(mesh, name, material, emission, inner, places) for mesh in meshes]
     )
-    brought = _renamed(model, name)
+    lights = lights_of(node, model, [far @ inner for far in places or [np.eye(4)]])
+    brought = _renamed(model, name, node.choice("filter", FILTERS) if node.has("filter") else None)
+    brought.lights.extend(lights)
     if material is None:
         return shapes, brought
     lit = {shape.glow.texture for shape in shapes if shape.glow is not None}
     textures = {key: texture for key, texture in brought.textures.items() if key in lit}
-    return shapes, Brought(textures=textures)
+    return shapes, Brought(textures=textures, lights=lights)
 
 
 def _placed(
@@ -150,7 +158,7 @@ def _placed(
     )  # fmt: skip
 
 
-def _renamed(model: ModelFile, name: str) -> Brought:
+def _renamed(model: ModelFile, name: str, looked_up: str | None) -> Brought:
     materials = {
         f"{name}/{own}": replace(
             material,
@@ -161,7 +169,10 @@ def _renamed(model: ModelFile, name: str) -> Brought:
         )
         for own, material in model.materials.items()
     }
-    textures = {f"{name}/{own}": texture for own, texture in model.textures.items()}
+    textures = {
+        f"{name}/{own}": replace(texture, filter=looked_up or texture.filter)
+        for own, texture in model.textures.items()
+    }
     media = {f"{name}/{own}": medium for own, medium in model.media.items()}
     return Brought(materials, textures, media)
 

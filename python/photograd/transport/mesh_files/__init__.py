@@ -1,14 +1,17 @@
 """Scenes from mesh files: .glb and .gltf with their materials, .obj, .ply and .stl.
 
-`read_model` reads one; `model_scene` puts it under a light and before a camera; `save_gltf` writes
-a scene's shapes and materials.
+`read_model` reads one; `model_scene` puts it under a light and before a camera, its own if the file
+has them; `save_gltf` writes a scene's shapes and materials, its camera and its lights.
 """
 
 from __future__ import annotations
 
 from photograd.transport.mesh_files.gltf_save import save_gltf
+from photograd.transport.mesh_files.model_camera import ModelCamera
 from photograd.transport.mesh_files.model_file import ModelFile
 from photograd.transport.mesh_files.read import SUFFIXES, read_model
-from photograd.transport.mesh_files.studio import model_scene
+from photograd.transport.mesh_files.studio import STUDIO, model_scene
 
-__all__ = ["SUFFIXES", "ModelFile", "model_scene", "read_model", "save_gltf"]
+__all__ = [
+    "STUDIO", "SUFFIXES", "ModelCamera", "ModelFile", "model_scene", "read_model", "save_gltf",
+]  # fmt: skip

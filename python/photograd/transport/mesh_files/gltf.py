@@ -1,4 +1,4 @@
-"""glTF 2.0 files as shapes, materials and textures [Khronos2021]."""
+"""glTF 2.0 files as shapes, materials, textures, cameras and lights [Khronos2021]."""
 
 from __future__ import annotations
 
@@ -14,21 +14,22 @@ from photograd.data.json_node import JsonNode
 from photograd.errors import IoError, SceneError, message
 from photograd.transport.mesh_files.accessor import read_floats, read_indices
 from photograd.transport.mesh_files.container import NAME, Container, open_container, whole
+from photograd.transport.mesh_files.gltf_cameras import read_cameras
 from photograd.transport.mesh_files.gltf_interior import filled_shapes
+from photograd.transport.mesh_files.gltf_lights import LIGHTS, read_lights
 from photograd.transport.mesh_files.gltf_materials import FileMaterial, read_material
 from photograd.transport.mesh_files.model_file import ModelFile, Names, placed_shapes
-from photograd.transport.mesh_files.nodes import mesh_places
+from photograd.transport.mesh_files.nodes import mesh_places, placed_nodes
 from photograd.transport.mesh_files.pictures import TRANSFORM, Pictures
 from photograd.transport.scene import MeshShape, Shape
 
 Array = npt.NDArray[Any]
 DRACO = "KHR_draco_mesh_compression"
-READABLE = (TRANSFORM, "KHR_mesh_quantization", "KHR_lights_punctual")
+READABLE = (TRANSFORM, "KHR_mesh_quantization", LIGHTS)
 """Extensions that a file may require, besides those of materials, which are noted one by one."""
 _LEFT_OUT = {
     "animations": "the rest position is drawn",
     "skins": "the rest position is drawn",
-    "cameras": "the view is chosen from outside",
 }
 _TRIANGLES, _STRIP, _FAN = 4, 5, 6
 
@@ -47,14 +48,17 @@ def read_gltf(path: Path, note: Callable[[str], None]) -> ModelFile:
         if key in container.root:
             note(f"{path.name}: {key}: not supported; {instead}")
     if "extensions" in container.root:
-        for name, _ in container.root["extensions"].members():  # lamps, variants of materials
-            note(f"{path.name}: extensions: {name[:60]}: not supported, left out")
+        for name, _ in container.root["extensions"].members():  # variants of materials
+            if name != LIGHTS:
+                note(f"{path.name}: extensions: {name[:60]}: not supported, left out")
     pictures = Pictures(container, note)
     materials: dict[str, FileMaterial] = {}
     numbered: dict[int, str] = {}
     names, titles = Names(), Names()
     shapes: list[Shape] = []
-    for number, places in mesh_places(container).items():
+    nodes = placed_nodes(container)
+    cameras, lights = read_cameras(container, nodes, note), read_lights(container, nodes, note)
+    for number, places in mesh_places(nodes).items():
         meshes = container.entries("meshes")
         if number >= len(meshes):
             raise IoError(message(NAME, "meshes", f"a mesh {number}", f"{len(meshes)} meshes"))
@@ -79,7 +83,7 @@ def read_gltf(path: Path, note: Callable[[str], None]) -> ModelFile:
     asked |= {made.glow.texture for made in materials.values() if made.glow is not None}
     textures = {name: pictures.textures[name] for name in pictures.textures if name in asked}
     filled, media = filled_shapes(shapes, materials, note)
-    return ModelFile(filled, used, textures, media)
+    return ModelFile(filled, used, textures, media, cameras, lights)
 
 
 def _glowing(shape: Shape, made: FileMaterial, note: Callable[[str], None]) -> Shape:

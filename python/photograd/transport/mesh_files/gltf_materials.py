@@ -114,7 +114,10 @@ def _iridescence(draft: Draft) -> Material | None:
 
 
 def _specular(draft: Draft) -> Material | None:
-    """Dielectrics of another index, or a weaker reflection."""
+    """Dielectrics of another index, or a weaker reflection; without any, what is left is matt.
+
+    The strength scales the reflection at all angles [Khronos2022]: at 0 light meets the base alone.
+    """
     node, ior = draft.extension("specular"), draft.ior
     strength = 1.0 if node is None else real(node, "specularFactor", 1.0)
     if strength == 1 and ior == PLAIN_IOR:
@@ -122,6 +125,10 @@ def _specular(draft: Draft) -> Material | None:
             draft.take("specular")
         draft.take("ior")
         return None
+    if strength == 0 and draft.metalness == 0:
+        draft.take("specular", "ior")
+        draft.textured("albedo", draft.core, "baseColorTexture", "srgb")
+        return finished("lambert", {"albedo": draft.base_color}, draft)
     if node is not None:
         draft.unread(node, "specularTexture", "specularColorTexture", "specularColorFactor")
     draft.take("specular", "ior")
@@ -206,7 +213,7 @@ def _with_pictures(draft: Draft, material: Material, pictures: Pictures) -> File
     emission, glow = _radiance(draft), None
     if "emissiveTexture" in node and emission.any():
         info = node["emissiveTexture"]
-        name = pictures.texture(info, "srgb")
+        name = pictures.glow(info)
         if name is not None:
             glow = TextureUse(name)
             place = pictures.coordinates(info)

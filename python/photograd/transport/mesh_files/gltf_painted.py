@@ -13,13 +13,12 @@ from photograd_course.color import srgb_encode
 
 from photograd.errors import SceneError, message
 from photograd.transport.mesh_files.gltf_bytes import GltfBytes
+from photograd.transport.mesh_files.gltf_samplers import Wrap, sampler_words
 from photograd.transport.mesh_files.gltf_words import Words
 from photograd.transport.scene import Material
 from photograd.transport.texture import NormalMap, Texture, TextureUse
 
 Array = npt.NDArray[Any]
-Wrap = tuple[str, str]
-_WRAPS = {"repeat": 10497, "mirror": 33648, "clamp": 33071}
 _LABEL = re.compile(r" \((srgb|linear|alpha), \d+\)$")
 """What reading adds to the name of an image."""
 _COLOR = ("", "baseColorTexture", "srgb", 0)
@@ -58,7 +57,7 @@ class Painted:
         """Put the textures of a material into its words.
 
         Raises:
-            SceneError: textures of one image that differ in size or in what is beyond their edges.
+            SceneError: textures of one image that differ in size, wrap or filter.
         """
         members: dict[tuple[str, str], list[tuple[str, int, TextureUse]]] = {}
         for parameter, use in material.textures.items():
@@ -77,30 +76,31 @@ class Painted:
         pixels, scale = normals_as_bytes(bent.values)
         key = (pixels.tobytes(), pixels.shape, bent.wrap)
         if key not in self._numbers:
-            self._numbers[key] = self._texture("normals", pixels, bent.wrap)
+            self._numbers[key] = self._texture("normals", pixels, bent.wrap, "bilinear")
         return {"index": self._numbers[key], "scale": scale}
 
     def _shared(self, member: str, uses: list[tuple[str, int, TextureUse]]) -> int:
         key = tuple(uses)
         if key not in self._numbers:
             found = [self.textures[use.texture] for _, _, use in uses]
-            kinds = {(texture.values.shape[:2], texture.wrap) for texture in found}
+            kinds = {(t.values.shape[:2], t.wrap, t.filter) for t in found}
             if len(kinds) > 1:
                 names = ", ".join(use.texture for _, _, use in uses)
-                expected = f"one size and wrap for {member}, which is one image"
+                expected = f"one size, wrap and filter for {member}, which is one image"
                 raise SceneError(message("save_gltf", f"textures {names}", expected, sorted(kinds)))
             pixels = _pixels(uses, found)
             name = _LABEL.sub("", uses[0][2].texture)
-            self._numbers[key] = self._texture(name, pixels, found[0].wrap)
+            self._numbers[key] = self._texture(name, pixels, found[0].wrap, found[0].filter)
         return self._numbers[key]
 
-    def _texture(self, name: str, pixels: Array, wrap: Wrap) -> int:
+    def _texture(self, name: str, pixels: Array, wrap: Wrap, looked_up: str) -> int:
         entry = {"source": self.file.image(name, pixels)}
-        if wrap != ("repeat", "repeat"):
-            if wrap not in self._numbers:
-                sampler = {"wrapS": _WRAPS[wrap[0]], "wrapT": _WRAPS[wrap[1]]}
-                self._numbers[wrap] = self.file.entry("samplers", sampler)
-            entry["sampler"] = self._numbers[wrap]
+        sampler = sampler_words(wrap, looked_up)
+        if sampler:
+            key = ("sampler", wrap, looked_up)
+            if key not in self._numbers:
+                self._numbers[key] = self.file.entry("samplers", sampler)
+            entry["sampler"] = self._numbers[key]
         return self.file.entry("textures", entry)
 
 

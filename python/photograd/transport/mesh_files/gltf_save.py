@@ -1,4 +1,6 @@
-"""Scenes as glTF files: meshes, instances, materials with their extensions, textures, interiors."""
+"""Scenes as glTF files: meshes, instances, materials with their extensions, textures, interiors;
+cameras, and lights without surfaces.
+"""
 
 from __future__ import annotations
 
@@ -13,24 +15,29 @@ from photograd_course.atomic_io import atomic_write
 from photograd.errors import IoError, SceneError, message
 from photograd.transport.medium import BOUNDARY, VACUUM
 from photograd.transport.mesh_files.gltf_bytes import GltfBytes
+from photograd.transport.mesh_files.gltf_cameras import camera_words
+from photograd.transport.mesh_files.gltf_lights import LIGHTS, light_words
 from photograd.transport.mesh_files.gltf_painted import SLOTS, Painted
 from photograd.transport.mesh_files.gltf_words import BODIES, WRITTEN, attenuation, words_of
+from photograd.transport.mesh_files.model_camera import ModelCamera, camera_changes
 from photograd.transport.mesh_files.model_changes import changes
 from photograd.transport.mesh_files.model_file import ModelFile
 from photograd.transport.mesh_files.read import read_model
 from photograd.transport.scene import MeshShape, Scene
 
 WRITABLE = (".glb", ".gltf")
-_SURROUNDINGS = ("camera", "shutter", "environment", "lights", "world")
+_SURROUNDINGS = ("shutter", "environment", "world")
 _REASONS = 8
 
 
 def save_gltf(model: Scene | ModelFile, path: Path) -> None:
     """Write the meshes of a scene as .glb, or as .gltf with everything in one file.
 
-    The file is read back. A UserWarning says what is not written (camera, lights and what else
-    surrounds the shapes), and every number, model or texture that comes back changed: textures have
-    eight bits a channel, and some models are another one's special case.
+    Cameras are written without the number of their pixels, of lights those that glTF knows: point,
+    spot up to 90 degrees, and directional. The file is read back. A UserWarning says what is not
+    written (other lights and what else surrounds the shapes), and every number, model or texture
+    that comes back changed: textures have eight bits a channel, and some models are another one's
+    special case.
 
     Args:
         model: the scene, or what `read_model` returned.
@@ -44,7 +51,7 @@ def save_gltf(model: Scene | ModelFile, path: Path) -> None:
     if suffix not in WRITABLE:
         expected = "a name that ends in .glb or .gltf"
         raise IoError(message("save_gltf", "path", expected, path.name))
-    whole = ModelFile(model.shapes, model.materials, model.textures, model.media)
+    whole = _as_file(model)
     reasons = list(_without_words(whole))
     if reasons:
         got = "; ".join(reasons[:_REASONS])
@@ -54,6 +61,13 @@ def save_gltf(model: Scene | ModelFile, path: Path) -> None:
     atomic_write(path, file.glb() if suffix == ".glb" else file.gltf())
     for text in (*_not_written(model), *_come_back(whole, path)):
         warnings.warn(f"{path.name}: {text}", UserWarning, stacklevel=2)
+
+
+def _as_file(model: Scene | ModelFile) -> ModelFile:
+    """What is written, if all shapes and materials can be."""
+    cameras = (ModelCamera.of(model.camera),) if isinstance(model, Scene) else model.cameras
+    lights = tuple(light for light in model.lights if light_words(light) is not None)
+    return ModelFile(model.shapes, model.materials, model.textures, model.media, cameras, lights)
 
 
 def _without_words(model: ModelFile) -> Iterator[str]:
@@ -103,11 +117,29 @@ def _file(model: ModelFile) -> GltfBytes:
         mesh = file.entry("meshes", {"name": shape.name, "primitives": [part]})
         nodes += [{"mesh": mesh, "matrix": place.T.ravel().tolist()} for place in shape.places]
         nodes += [] if shape.places else [{"mesh": mesh}]
+    nodes += _seen_and_lit(file, model)
     file.root |= {"nodes": nodes, "scenes": [{"nodes": list(range(len(nodes)))}], "scene": 0}
     used = {name for entry in file.root["materials"] for name in entry.get("extensions", ())}
+    used |= set(file.root.get("extensions", ()))
     if used:
         file.root["extensionsUsed"] = sorted(used)
     return file
+
+
+def _seen_and_lit(file: GltfBytes, model: ModelFile) -> list[dict[str, Any]]:
+    """Nodes of cameras and lights."""
+    nodes: list[dict[str, Any]] = []
+    for camera in model.cameras:
+        entry, matrix = camera_words(camera)
+        nodes.append({"camera": file.entry("cameras", entry), "matrix": matrix})
+    lights = [words for light in model.lights if (words := light_words(light)) is not None]
+    if lights:
+        file.root["extensions"] = {LIGHTS: {"lights": [entry for entry, _ in lights]}}
+    nodes += [
+        {"extensions": {LIGHTS: {"light": number}}, "matrix": matrix}
+        for number, (_, matrix) in enumerate(lights)
+    ]
+    return nodes
 
 
 def _material(model: ModelFile, shape: MeshShape, painted: Painted) -> dict[str, Any]:
@@ -140,13 +172,17 @@ def _material(model: ModelFile, shape: MeshShape, painted: Painted) -> dict[str,
 
 
 def _not_written(model: Scene | ModelFile) -> list[str]:
-    """One line about what surrounds the shapes, if there is any."""
-    if not isinstance(model, Scene):
-        return []
-    found = [name for name in _SURROUNDINGS if getattr(model, name) not in (None, ())]
-    if model.lens.radius > 0:
-        found.append("lens")
-    return [f"not written: {', '.join(found)}"] if found else []
+    """One line about what surrounds the shapes, and those of a camera beside its axis."""
+    found = [
+        f"lights[{i}] ({type(light).__name__})"
+        for i, light in enumerate(model.lights)
+        if light_words(light) is None
+    ]
+    if isinstance(model, Scene):
+        found = [name for name in _SURROUNDINGS if getattr(model, name) is not None] + found
+        found += ["lens"] if model.lens.radius > 0 else []
+    told = [f"not written: {', '.join(found)}"] if found else []
+    return told + (camera_changes(model.camera) if isinstance(model, Scene) else [])
 
 
 def _come_back(model: ModelFile, path: Path) -> list[str]:

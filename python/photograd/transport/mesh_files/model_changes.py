@@ -24,7 +24,7 @@ def changes(before: ModelFile, after: ModelFile) -> list[str]:
     Numbers that differ by less than `ROUNDING` are the same, texels by less than `TEXEL_ROUNDING`;
     positions, normals and coordinates have to be equal.
     """
-    found = list(_of_shapes(before, after))
+    found = [*_of_shapes(before, after), *_of_cameras(before, after), *_of_lights(before, after)]
     for name, material in before.materials.items():
         if name not in after.materials:
             found.append(f"material '{name}': no shape has it, left out")
@@ -61,6 +61,33 @@ def _of_shapes(before: ModelFile, after: ModelFile) -> Iterator[str]:
         )
         if not _same_medium(mine, its):
             yield f"shape '{shape.name}': interior changed"
+
+
+def _of_cameras(before: ModelFile, after: ModelFile) -> Iterator[str]:
+    others = {camera.name: camera for camera in after.cameras}
+    for camera in before.cameras:
+        other = others.get(camera.name)
+        if other is None:
+            yield f"camera '{camera.name}': missing"
+            continue
+        for name in ("field_of_view", "aspect", "world_from_camera"):
+            if not _same(getattr(camera, name), getattr(other, name), ROUNDING):
+                yield f"camera '{camera.name}': {name} changed"
+
+
+def _of_lights(before: ModelFile, after: ModelFile) -> Iterator[str]:
+    if len(before.lights) != len(after.lights):
+        yield f"{len(before.lights)} lights are read back as {len(after.lights)}"
+        return
+    for i, (mine, its) in enumerate(zip(before.lights, after.lights, strict=True)):
+        if type(mine) is not type(its):
+            yield f"lights[{i}]: {type(mine).__name__} is read back as {type(its).__name__}"
+            continue
+        for name, value in vars(mine).items():
+            other = getattr(its, name)
+            # Directions and cosines are of the size of 1, however small they are.
+            if not np.allclose(value, other, rtol=ROUNDING, atol=ROUNDING):
+                yield f"lights[{i}]: {name}: {_said(value)} is read back as {_said(other)}"
 
 
 def _same(a: Any, b: Any, rounding: float) -> bool:

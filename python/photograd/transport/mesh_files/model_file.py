@@ -1,4 +1,4 @@
-"""What every mesh file becomes: shapes, the materials that they name, and textures."""
+"""What every mesh file becomes: shapes, materials and textures, and cameras and lights if any."""
 
 from __future__ import annotations
 
@@ -10,7 +10,9 @@ import numpy as np
 import numpy.typing as npt
 
 from photograd.errors import SceneError
+from photograd.lights import Light
 from photograd.transport.medium import Medium
+from photograd.transport.mesh_files.model_camera import ModelCamera
 from photograd.transport.scene import Material, MeshShape, Shape
 from photograd.transport.texture import Texture
 
@@ -29,12 +31,16 @@ class ModelFile:
         materials: those that the shapes name.
         textures: those that the materials name.
         media: those that fill shapes.
+        cameras: places from which the file would be seen, of names of their own.
+        lights: without surfaces; surfaces that shine are shapes.
     """
 
     shapes: tuple[Shape, ...]
     materials: Mapping[str, Material]
     textures: Mapping[str, Texture] = field(default_factory=dict)
     media: Mapping[str, Medium] = field(default_factory=dict)
+    cameras: tuple[ModelCamera, ...] = ()
+    lights: tuple[Light, ...] = ()
 
     @property
     def box(self) -> Array:

@@ -1,7 +1,8 @@
-"""Where the meshes of a glTF file stand: its tree of nodes [Khronos2021, Sec. 3.5]."""
+"""Where everything in a glTF file stands: its tree of nodes [Khronos2021, Sec. 3.5]."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -14,17 +15,21 @@ from photograd.transport.mesh_files.container import NAME, Container, whole
 Array = npt.NDArray[Any]
 
 
-def mesh_places(container: Container) -> dict[int, list[Array]]:
-    """{mesh number: world_from_object (4, 4) of each node that shows it}, in the order of the tree.
+PlacedNode = tuple[JsonNode, Array]
+"""A node and world_from_node (4, 4)."""
+
+
+def placed_nodes(container: Container) -> list[PlacedNode]:
+    """All nodes of the scene that the file shows first, in the order of the tree.
 
     Raises:
         IoError: nodes that are no tree, or matrices that are none.
     """
     root = container.root
     if "nodes" not in root:
-        return {}
+        return []
     nodes = root["nodes"].items()
-    found: dict[int, list[Array]] = {}
+    found: list[PlacedNode] = []
     seen: set[int] = set()
     waiting = [(number, np.eye(4)) for number in reversed(_roots(container, nodes))]
     while waiting:
@@ -35,10 +40,22 @@ def mesh_places(container: Container) -> dict[int, list[Array]]:
             raise IoError(message(NAME, node.place, "a tree of nodes", got))
         seen.add(number)
         world = parent @ _local(node)
-        if "mesh" in node:
-            found.setdefault(whole(node, 0, 1 << 31, "mesh"), []).append(world)
+        found.append((node, world))
         children = _references(node, "children", len(nodes)) if "children" in node else []
         waiting += [(child, world) for child in reversed(children)]
+    return found
+
+
+def mesh_places(nodes: Sequence[PlacedNode]) -> dict[int, list[Array]]:
+    """{mesh number: world_from_object (4, 4) of each node that shows it}, in the order of nodes.
+
+    Raises:
+        IoError: what is no number of a mesh.
+    """
+    found: dict[int, list[Array]] = {}
+    for node, world in nodes:
+        if "mesh" in node:
+            found.setdefault(whole(node, 0, 1 << 31, "mesh"), []).append(world)
     return found
 
 

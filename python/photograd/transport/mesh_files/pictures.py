@@ -15,11 +15,11 @@ from PIL import Image
 from photograd.data.json_node import JsonNode
 from photograd.errors import Error, IoError, message
 from photograd.transport.mesh_files.container import NAME, Container, real, whole
+from photograd.transport.mesh_files.gltf_samplers import Wrap, read_sampler
 from photograd.transport.texture import Texture, decode
 
 Array = npt.NDArray[Any]
 TRANSFORM = "KHR_texture_transform"
-_WRAPS = {10497: "repeat", 33648: "mirror", 33071: "clamp"}
 
 
 @dataclass(frozen=True)
@@ -72,7 +72,7 @@ class Pictures:
         found = self._pixels(info)
         if found is None:
             return None
-        image, wrap, label = found
+        image, (wrap, looked_up), label = found
         name = f"{label} ({encoding}, {number})"
         if encoding == "alpha" and bool((image[..., 3] == 1).all()):
             return None
@@ -80,21 +80,35 @@ class Pictures:
             parts = {"srgb": slice(0, 3), "linear": slice(0, 3), "alpha": slice(3, 4)}
             color = image[..., parts[encoding]]
             color = decode(color) if encoding == "srgb" else color
-            self.textures[name] = Texture(np.asarray(color, np.float32), wrap)
+            self.textures[name] = Texture(np.asarray(color, np.float32), wrap, looked_up)
         return name
 
-    def normal_map(self, info: JsonNode) -> tuple[Array, tuple[str, str]] | None:
+    def glow(self, info: JsonNode) -> str | None:
+        """As `texture`, of what shines, which paths see point by point."""
+        name = self.texture(info, "srgb")
+        if name is not None and self.textures[name].filter == "mip":
+            self._sees_points(info)
+        return name
+
+    def normal_map(self, info: JsonNode) -> tuple[Array, Wrap] | None:
         """Pixels (H, W, 4) and wrap of a texture that holds normals."""
         found = self._pixels(info)
-        return None if found is None else found[:2]
+        if found is None:
+            return None
+        image, (wrap, looked_up), _ = found
+        if looked_up == "mip":
+            self._sees_points(info)
+        return image, wrap
 
-    def _pixels(self, info: JsonNode) -> tuple[Array, tuple[str, str], str] | None:
+    def _sees_points(self, info: JsonNode) -> None:
+        self.note(f"{info.place}: mip maps of its sampler: not supported, seen point by point")
+
+    def _pixels(self, info: JsonNode) -> tuple[Array, tuple[Wrap, str], str] | None:
         texture = self.container.entry("textures", info["index"])
-        wrap = ("repeat", "repeat")
+        looks: tuple[Wrap, str] = (("repeat", "repeat"), "bilinear")
         if "sampler" in texture:
             sampler = self.container.entry("samplers", texture["sampler"])
-            kinds = [whole(sampler, 0, 1 << 16, key, 10497) for key in ("wrapS", "wrapT")]
-            wrap = (_WRAPS.get(kinds[0], "repeat"), _WRAPS.get(kinds[1], "repeat"))
+            looks = read_sampler(sampler, self.note)
         if "source" not in texture:
             self.note(f"{texture.place}: no image in a format that is read; left out")
             return None
@@ -109,7 +123,7 @@ class Pictures:
                 self._images[number] = None
         pixels = self._images[number]
         name = image["name"].text() if "name" in image else ""
-        return None if pixels is None else (pixels, wrap, PurePath(name).name or f"image {number}")
+        return None if pixels is None else (pixels, looks, PurePath(name).name or f"image {number}")
 
     def _decoded(self, image: JsonNode) -> Array:
         """(H, W, 4) float32 in 0..1, as stored; alpha is 1 where the file has none."""

@@ -31,7 +31,7 @@ NOTES = 40
 
 
 def read_model(path: Path) -> ModelFile:
-    """The shapes, materials and textures of a mesh file.
+    """The shapes, materials and textures of a mesh file; of .glb and .gltf cameras and lights, too.
 
     Positions are metres, +Y up, as glTF has it; files that say nothing of units or axes are taken
     as they are. Normals and texture coordinates are read where there are any. Triangles without

@@ -1,30 +1,77 @@
-"""A model as a scene: seen from in front and above, under a pale sky and one large lamp."""
+"""A model as a scene: as its file has it, or in a studio, under a pale sky and one large lamp."""
 
 from __future__ import annotations
 
 import numpy as np
+from photograd_course.suggest import choose_from
 
+from photograd.data.camera import Camera
+from photograd.errors import SceneError, message
 from photograd.orbit import orbit_cameras
+from photograd.transport.mesh_files.model_camera import ModelCamera
 from photograd.transport.mesh_files.model_file import ModelFile
 from photograd.transport.scene import Array, Environment, Material, MeshShape, Scene
 from photograd.transport.shapes import rectangle
 
 _TURNS, _SEEN_FROM = 12, 1  # 30 degrees from the front, +Z
 _LAMP = "studio lamp"
+STUDIO = "studio"
+"""In place of a camera's name."""
 
 
-def model_scene(model: ModelFile, name: str, size: int = 256) -> Scene:
-    """The model alone in a square picture of `size` pixels.
+def model_scene(
+    model: ModelFile, name: str, size: int = 256, *, camera: str | None = None
+) -> Scene:
+    """A picture of the model, with `size` pixels along its longer edge.
 
-    The lamp is as wide as the model's sphere and three radii away, to the left of the camera.
+    What the file says comes first: its camera, and its lights. Without a camera the model is seen
+    from in front and above, in a square. Without lights it gets a pale sky and a lamp, as wide as
+    the model's sphere and three radii away to the left of that view; but not if the file has a
+    camera and something that shines: then it is a scene of its own.
+
+    Args:
+        model: what `read_model` returned.
+        name: of the scene.
+        size: pixels.
+        camera: name of one of the file's cameras; by default the first. `STUDIO` looks from in
+            front and above, with sky and lamp alone, whatever the file has.
+
+    Raises:
+        SceneError: no camera of that name.
+        RangeError: a camera that sees too little or too much.
     """
+    lights = () if camera == STUDIO else model.lights
+    seen = _chosen(model, camera)
+    shines = any(shape.emission.any() for shape in model.shapes)
+    view = _from_in_front(model, size) if seen is None else seen.fitted(size)
+    if lights or (seen is not None and shines):
+        return Scene(
+            name, model.shapes, model.materials, view, lights=lights, textures=model.textures,
+            media=model.media,
+        )  # fmt: skip
     box = model.box
     centre, radius = box.mean(axis=0), 0.5 * float(np.linalg.norm(box[1] - box[0]))
-    camera = orbit_cameras(box, _TURNS, size=size, elevation=20.0)[_SEEN_FROM]
     sky = Environment(np.full(3, 0.9), np.full(3, 0.6), np.full(3, 0.25))
     materials = {**model.materials, _LAMP: Material("lambert", {"albedo": [0.0, 0.0, 0.0]})}
     shapes = (*model.shapes, _lamp(centre, radius))
-    return Scene(name, shapes, materials, camera, sky, textures=model.textures, media=model.media)
+    return Scene(name, shapes, materials, view, sky, textures=model.textures, media=model.media)
+
+
+def _chosen(model: ModelFile, name: str | None) -> ModelCamera | None:
+    """The camera of this name; None for the studio's."""
+    if name == STUDIO or (name is None and not model.cameras):
+        return None
+    by_name = {camera.name: camera for camera in model.cameras}
+    if name is None:
+        return model.cameras[0]
+    if name not in by_name:
+        known = choose_from(name, (*by_name, STUDIO))
+        raise SceneError(message("model_scene", "camera", "a camera of the file", name, known))
+    return by_name[name]
+
+
+def _from_in_front(model: ModelFile, size: int) -> Camera:
+    return orbit_cameras(model.box, _TURNS, size=size, elevation=20.0)[_SEEN_FROM]
 
 
 def _lamp(centre: Array, radius: float) -> MeshShape:

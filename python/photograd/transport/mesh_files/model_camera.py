@@ -1,0 +1,72 @@
+"""Cameras of files, which say what is seen but not with how many pixels."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from photograd.data.camera import Camera
+from photograd.errors import RangeError, message
+
+Array = npt.NDArray[Any]
+
+
+@dataclass(frozen=True, eq=False)
+class ModelCamera:
+    """A pinhole whose axis goes through the middle of the picture; nothing near or far is cut off.
+
+    Attributes:
+        name: unique in its file.
+        field_of_view: vertical, radians, between 0 and pi.
+        world_from_camera: (4, 4) rigid; camera axes +X right, +Y down, +Z forward.
+        aspect: width of the picture over its height, or None if the file leaves that open.
+
+    Raises:
+        RangeError: another field of view, or an aspect that is not positive.
+    """
+
+    name: str
+    field_of_view: float
+    world_from_camera: Array
+    aspect: float | None = None
+
+    def __post_init__(self) -> None:
+        if not 0 < self.field_of_view < np.pi:
+            expected = "radians between 0 and pi"
+            raise RangeError(message("ModelCamera", "field_of_view", expected, self.field_of_view))
+        if self.aspect is not None and not 0 < self.aspect < np.inf:
+            raise RangeError(message("ModelCamera", "aspect", "a number above 0", self.aspect))
+
+    @classmethod
+    def of(cls, camera: Camera, name: str = "camera") -> ModelCamera:
+        """What a file can say of a camera: `camera_changes` names what it cannot."""
+        angle = 2 * float(np.arctan(0.5 * camera.height / camera.fy))
+        return cls(name, angle, camera.world_from_camera, camera.width / camera.height)
+
+    def camera(self, width: int, height: int) -> Camera:
+        """With square pixels; the vertical field of view holds, whatever the width.
+
+        Raises what `Camera` raises.
+        """
+        focal = 0.5 * height / float(np.tan(0.5 * self.field_of_view))
+        return Camera(width, height, focal, focal, width / 2, height / 2, self.world_from_camera)
+
+    def fitted(self, size: int) -> Camera:
+        """With `size` pixels along the longer edge; square if the aspect is left open."""
+        aspect = self.aspect or 1.0
+        width, height = size * min(aspect, 1.0), size / max(aspect, 1.0)
+        return self.camera(max(round(width), 1), max(round(height), 1))
+
+
+def camera_changes(camera: Camera) -> list[str]:
+    """What a `ModelCamera` cannot say of a camera, a line each: square pixels around the axis."""
+    told = ModelCamera.of(camera).camera(camera.width, camera.height)
+    pairs = ((name, getattr(camera, name), getattr(told, name)) for name in ("fx", "cx", "cy"))
+    return [
+        f"camera: {name}: {mine} is read back as {its}"
+        for name, mine, its in pairs
+        if abs(mine - its) > 1e-9 * abs(its)
+    ]

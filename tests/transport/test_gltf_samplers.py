@@ -1,0 +1,162 @@
+"""Filters of glTF samplers: which lookup each becomes, what is named, and what comes back."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from photograd.errors import SceneError
+from photograd.lights import DirectionalLight
+from photograd.transport import (
+    Material,
+    ModelFile,
+    PathOptions,
+    PathTracer,
+    Scene,
+    Texture,
+    TextureUse,
+    read_scene,
+    save_gltf,
+)
+from photograd.transport.builtin import camera_at
+from photograd.transport.shapes import rectangle
+
+from tests.transport.gltf_samples import Glb, core, square
+from tests.transport.test_gltf_save import json_of, written
+from tests.transport.test_mesh_files import read
+
+pytestmark = pytest.mark.usefixtures("core")
+GREY = np.full((4, 4, 3), 128, np.uint8)
+SEEN = "mip maps of its sampler: not supported, seen point by point"
+
+
+def sampled(**sampler: Any) -> Glb:
+    """A square painted through a sampler."""
+    glb = square(**core(baseColorTexture={"index": 0}, metallicFactor=0))
+    glb.image(GREY)
+    glb.json["samplers"] = [sampler]
+    glb.json["textures"][0]["sampler"] = 0
+    return glb
+
+
+@pytest.mark.parametrize(
+    ("sampler", "filter", "words"),
+    [
+        ({}, "bilinear", None),
+        ({"minFilter": 9729, "magFilter": 9729}, "bilinear", None),
+        ({"minFilter": 9987, "magFilter": 9729}, "mip", None),
+        ({"minFilter": 9728}, "bilinear", "minFilter: NEAREST, read as LINEAR"),
+        ({"magFilter": 9728}, "bilinear", "magFilter: NEAREST, read as LINEAR"),
+        (
+            {"minFilter": 9984},
+            "mip",
+            "minFilter: NEAREST_MIPMAP_NEAREST, read as LINEAR_MIPMAP_LINEAR",
+        ),
+        (
+            {"minFilter": 9985},
+            "mip",
+            "minFilter: LINEAR_MIPMAP_NEAREST, read as LINEAR_MIPMAP_LINEAR",
+        ),
+        (
+            {"minFilter": 9986},
+            "mip",
+            "minFilter: NEAREST_MIPMAP_LINEAR, read as LINEAR_MIPMAP_LINEAR",
+        ),
+        ({"minFilter": 9988}, "bilinear", "minFilter: 9988: unknown, read as LINEAR"),
+        ({"magFilter": 9987}, "bilinear", "magFilter: 9987: unknown, read as LINEAR"),
+        ({"wrapS": 5}, "bilinear", "wrapS: 5: unknown, read as REPEAT"),
+    ],
+)
+def test_a_filter_is_followed_or_named(
+    tmp_path: Path, sampler: Any, filter: str, words: str | None
+) -> None:
+    model, told = read(tmp_path, sampled(**sampler).bytes())
+    (texture,) = model.textures.values()
+    assert texture.filter == filter
+    assert texture.wrap == ("repeat", "repeat")
+    assert told == ([] if words is None else [f"m.glb: samplers[0]: {words}"])
+
+
+@pytest.mark.parametrize("value", [-1, 9729.5, "LINEAR", 1 << 20])
+def test_what_is_no_filter_is_refused(tmp_path: Path, value: Any) -> None:
+    with pytest.raises(OSError, match=r"m\.glb: samplers\[0\]: minFilter: expected a"):
+        read(tmp_path, sampled(minFilter=value).bytes())
+
+
+def test_what_is_seen_point_by_point_is_named(tmp_path: Path) -> None:
+    glb = sampled(minFilter=9987)
+    glb.json["materials"][0] |= {
+        "normalTexture": {"index": 0}, "emissiveTexture": {"index": 0}, "emissiveFactor": [1, 1, 1],
+    }  # fmt: skip
+    _, told = read(tmp_path, glb.bytes())
+    place = "m.glb: materials[0]"
+    assert told == [f"{place}: normalTexture: {SEEN}", f"{place}: emissiveTexture: {SEEN}"]
+
+
+def painted(filter: str, other: str | None = None) -> ModelFile:
+    """A fine checkerboard; `other` is the filter of its roughness."""
+    squares = np.indices((64, 64)).sum(axis=0) % 2
+    board = Texture(np.repeat(squares[..., None], 3, axis=2).astype(float), filter=filter)
+    textures, uses = {"t": board}, {"base_color": TextureUse("t")}
+    if other is not None:
+        textures |= {"r": board, "m": replace(board, filter=other)}
+        uses |= {"roughness": TextureUse("r"), "metalness": TextureUse("m")}
+    values = {"base_color": [1.0] * 3, "metalness": 0.0, "roughness": 1.0}
+    wall = rectangle("wall", [-1, -1, 0], [2, 0, 0], [0, 2, 0], "m")
+    return ModelFile((wall,), {"m": Material("gltf", values, uses)}, textures)
+
+
+def test_a_filter_comes_back_and_filters(tmp_path: Path) -> None:
+    noise = {}
+    for filter in ("bilinear", "mip"):
+        before = painted(filter)
+        after, said = written(before, tmp_path / "m.glb")
+        assert said == []
+        samplers = json_of(tmp_path / "m.glb").get("samplers", [])
+        mip = {"magFilter": 9729, "minFilter": 9987}
+        assert samplers == ([mip] if filter == "mip" else [])
+        camera = camera_at([0.0, 0.0, 20.0], [0.0, 0.0, 0.0], 5.7, 16, 16)
+        sun = DirectionalLight([0.0, 0.0, 1.0], [1.0] * 3)
+        pictures = [
+            PathTracer(
+                Scene("s", m.shapes, m.materials, camera, lights=(sun,), textures=m.textures)
+            ).render(spp=1, seed=1, options=PathOptions("light", max_depth=2)).mean
+            for m in (before, after)
+        ]  # fmt: skip
+        np.testing.assert_array_equal(*pictures)
+        noise[filter] = float(pictures[0].std() / pictures[0].mean())
+    # A pixel holds 4 x 4 squares: those of one level are all the same.
+    assert noise["bilinear"] > 0.2  # measured: 0.32
+    assert noise["mip"] < 0.01  # measured: 5e-6
+
+
+def test_one_image_has_one_filter(tmp_path: Path) -> None:
+    with pytest.raises(SceneError, match="one size, wrap and filter for metallicRoughnessTexture"):
+        save_gltf(painted("bilinear", "mip"), tmp_path / "m.glb")
+    assert not (tmp_path / "m.glb").exists()
+
+
+def test_a_scene_file_may_choose_another_filter(tmp_path: Path) -> None:
+    (tmp_path / "m.glb").write_bytes(sampled(minFilter=9987).bytes())
+    text = """
+[camera]
+position = [0, 1, 4]
+look_at = [0, 0, 0]
+size = [2, 2]
+field_of_view = 40
+[[shapes]]
+kind = "mesh"
+name = "wall"
+file = "m.glb"
+"""
+    file = tmp_path / "s.toml"
+    for line, expected in (("", "mip"), ('filter = "bilinear"', "bilinear")):
+        file.write_text(text + line, encoding="utf-8")
+        (texture,) = read_scene(file).textures.values()
+        assert texture.filter == expected
+    file.write_text(text + 'filter = "cubic"', encoding="utf-8")
+    with pytest.raises(SceneError, match=r"line 11: shapes\.0\.filter: expected one of bilinear"):
+        read_scene(file)
