@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-from matplotlib import colormaps
 from photograd_course.color import srgb_decode
 
 from photograd.errors import RangeError, message
@@ -119,4 +118,6 @@ def _colors(share: Array, ramp: str) -> Array:
     """Linear colours (X, Y, Z, 3) of values in 0..1."""
     if ramp == "white":
         return np.full((*share.shape, 3), GREY)
+    from matplotlib import colormaps
+
     return np.asarray(srgb_decode(colormaps[ramp](share.astype(np.float64))[..., :3]))

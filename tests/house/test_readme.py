@@ -7,6 +7,9 @@ whose command and options must exist; `<!-- check: text -->` anything else.
 
 from __future__ import annotations
 
+import contextlib
+import functools
+import io
 import re
 import shlex
 import subprocess
@@ -15,6 +18,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from photograd_course.cli import run
 
 from support.tree import ROOT
 
@@ -45,6 +49,18 @@ def command_lines() -> list[str]:
     return [line for line in lines if line.strip() and not line.startswith("#")]
 
 
+@functools.cache
+def help_of(command: str) -> str | None:
+    """What `photograd COMMAND --help` prints, or None where there is no such command.
+
+    In this process: `tests/course_cli/test_process.py` proves that the installed command runs it.
+    """
+    printed = io.StringIO()
+    with contextlib.redirect_stdout(printed), contextlib.redirect_stderr(io.StringIO()):
+        code = run([*command.split(), "--help"])
+    return printed.getvalue() if code == 0 else None
+
+
 def faults(line: str) -> list[str]:
     """What is wrong with a line of shell: a command, option or path that does not exist."""
     words = shlex.split(line, comments=True)
@@ -58,11 +74,10 @@ def faults(line: str) -> list[str]:
         return [f"./run knows no {word}" for word in wrong if not word.isdigit()]
     if words[0] == "photograd":
         name = " ".join(words[1 : 3 if words[1] == "course" else 2])
-        command = [sys.executable, "-m", "photograd_course", *name.split(), "--help"]
-        page = subprocess.run(command, capture_output=True, text=True, check=False)
-        if page.returncode != 0:
+        page = help_of(name)
+        if page is None:
             return [f"photograd has no command {name}"]
-        return [f"{name} has no {w}" for w in words if w.startswith("--") and w not in page.stdout]
+        return [f"{name} has no {w}" for w in words if w.startswith("--") and w not in page]
     if words[0] in {"pip", "cmake", "ctest", "git"}:
         return [f"no {word}" for word in words if "/" in word and not (ROOT / word).exists()]
     return (

@@ -1,8 +1,9 @@
 """Adding a reflectance model is one header and its name in the registry; six things follow.
 
 A copy of the core gets a made-up model. Only the bindings of reflectance models are compiled, into
-a small module; then the model's binding, stub, gradient proof, physics proofs, benchmark row and
-picture are asserted, none of which the copy mentions.
+a small module and in one piece, since pybind11's headers take longer than what follows them; then
+the model's binding, stub, gradient proof, physics proofs, benchmark row and picture are asserted,
+none of which the copy mentions.
 """
 
 from __future__ import annotations
@@ -73,7 +74,7 @@ PYBIND11_MODULE(_with_dusty, m) {
 """
 SOURCES = (
     "bindings/bind_bsdf.cpp", "bindings/array_args.cpp", "bindings/errors.cpp",
-    "photograd/core/parallel.cpp", "module_with_dusty.cpp",
+    "photograd/core/parallel.cpp",
 )  # fmt: skip
 
 
@@ -102,7 +103,8 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     cpp = build / "cpp"
     shutil.copytree(ROOT / "cpp", cpp)
     add_model(cpp)
-    (cpp / "module_with_dusty.cpp").write_text(MODULE)
+    whole = cpp / "module_with_dusty.cpp"
+    whole.write_text("".join(f'#include "{source}"\n' for source in SOURCES) + MODULE)
     python = sysconfig.get_paths()["include"]
     target = build / f"_with_dusty{sysconfig.get_config_var('EXT_SUFFIX')}"
     # std::thread instead of TBB: nothing else is to be found and linked.
@@ -111,8 +113,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
         "-pthread", "-DPHOTOGRAD_STD_THREADS", f"-I{cpp}", f"-I{cpp / 'bindings'}",
         f"-I{pybind11.get_include()}", f"-I{python}",
     ]  # fmt: skip
-    sources = [str(cpp / source) for source in SOURCES]
-    command = [compiler, *flags, *sources, "-o", str(target)]
+    command = [compiler, *flags, str(whole), "-o", str(target)]
     run = subprocess.run(command, capture_output=True, text=True, check=False)
     assert run.returncode == 0, run.stderr
     return build

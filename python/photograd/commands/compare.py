@@ -10,7 +10,6 @@ import typer
 from photograd_course.atomic_io import atomic_write
 from photograd_course.cli import DebugOption, JsonOption, SeedOption, ThreadsOption, emit, note
 from photograd_course.suggest import choose_from
-from photograd_course.viz import comparison_strips, save_figure
 
 from photograd.commands.capture import make_capture
 from photograd.commands.fit import run_with_bar
@@ -29,7 +28,6 @@ from photograd.data.load import load_capture
 from photograd.errors import RangeError, SceneError, message
 from photograd.evaluate import Evaluation
 from photograd.fit_options import FitOptions
-from photograd.ranking import ranking
 from photograd.scenes.registry import scenes
 
 DEFAULTS = FitOptions()
@@ -99,7 +97,7 @@ def compare(
             scores += [score for score, _ in found]
             pictures.append(out / f"{name}.png")
             draw([evaluation for _, evaluation in found], candidates, name, pictures[-1])
-    pictures.append(save_figure(ranking(scores), out / "ranking.png"))
+    pictures.append(draw_ranking(scores, out / "ranking.png"))
     table = out / "table.md"
     atomic_write(table, markdown(scores).encode())
     rows = [asdict(score) for score in scores]
@@ -108,6 +106,15 @@ def compare(
         {"scores": rows, "protocols": protocols, "table": table, "pictures": pictures},
         as_json=as_json, title="compare",
     )  # fmt: skip
+
+
+def draw_ranking(scores: list[Score], path: Path) -> Path:
+    """All scores beside each other."""
+    from photograd_course.viz import save_figure
+
+    from photograd.ranking import ranking
+
+    return save_figure(ranking(scores), path)
 
 
 def contest(
@@ -162,6 +169,8 @@ def photographs_of(given: str, out: Path, *, views: int, size: int, spp: int, se
 
 def draw(evaluations: list[Evaluation], candidates: list[Contender], name: str, path: Path) -> None:
     """Truth, rendering and error of every contender at the view that all find hardest."""
+    from photograd_course.viz import comparison_strips, save_figure
+
     truth, renders, psnr = worst_view(evaluations)
     figure = comparison_strips(
         [truth] * len(renders), renders, names=[c.label for c in candidates], psnr=psnr, title=name,

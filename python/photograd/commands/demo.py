@@ -9,7 +9,6 @@ from typing import Annotated
 
 import typer
 from photograd_course.cli import DebugOption, JsonOption, SeedOption, ThreadsOption, emit, note
-from photograd_course.viz import write_gif
 
 from photograd.commands.capture import DEFAULT_SCENE, make_capture
 from photograd.commands.evaluate import draw_strips
@@ -53,6 +52,8 @@ def demo(
 
     Example: photograd demo --out out/demo
     """
+    from photograd_course.viz import write_gif
+
     began = time.perf_counter()
     use_threads(threads)
     pictures = out / "figures"

@@ -17,7 +17,6 @@ from photograd_course.cli import (
     emit,
     note,
 )
-from photograd_course.viz import comparison_strips, save_figure
 
 from photograd.commands.shared import CaptureArgument, DownscaleOption, ModelArgument, use_threads
 from photograd.data.load import load_capture
@@ -72,6 +71,8 @@ def picked_views(psnr: Sequence[float]) -> list[int]:
 
 def draw_strips(result: Evaluation, path: Path) -> None:
     """Truth, rendering and error of a few views, the worst among them."""
+    from photograd_course.viz import comparison_strips, save_figure
+
     picked = [result.views[i] for i in picked_views([view.psnr for view in result.views])]
     which = "Worst, middle and best of " if len(result.views) > len(picked) else ""
     figure = comparison_strips(

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 import typer
-from photograd_course import viz
 from photograd_course.cli import (
     Column,
     DebugOption,
@@ -37,12 +36,13 @@ from photograd.fields.octree_sh import OctreeSh
 from photograd.model import Model, load_model
 from photograd.pixels import TrainingPixels
 from photograd.representation import Array
-from photograd.sign_claim import sign_claim
 from photograd.snapshots import load_snapshots
 from photograd.splats.clone_split_prune import CloneSplitPrune
-from photograd.splats.drawings import draw_gaussian_gradients
 from photograd.splats.view_gradients import pressure_picture, view_gradients
 from photograd.training_views import TrainingViews
+
+if TYPE_CHECKING:
+    from photograd_course import viz
 
 EXPLAIN = "Blue: more density lowers the loss. Red: less density does. White: no effect."
 
@@ -80,6 +80,10 @@ def draw_gradients(
     model: Model, folder: Path, capture: Capture, out: Path, rays: int, seed: int
 ) -> dict[str, Any]:
     """All pictures of one fit; returns the files and, where alpha tells, the sign shares."""
+    from photograd_course import viz
+
+    from photograd.sign_claim import sign_claim
+
     make_folder(out)
     if isinstance(model.field, GaussianScene):
         return draw_gaussians(model, folder, capture, out)
@@ -120,6 +124,10 @@ def draw_gradients(
 
 def draw_gaussians(model: Model, folder: Path, capture: Capture, out: Path) -> dict[str, Any]:
     """The picture of a fit of Gaussians at three of its steps, and its curves."""
+    from photograd_course import viz
+
+    from photograd.splats.drawings import draw_gaussian_gradients
+
     views = TrainingViews(capture.train)
     found: dict[int, Any] = load_snapshots(folder) or {int(model.meta["step"]): model.field}
     steps = sorted(found)
@@ -172,6 +180,8 @@ def dense_grid(field: FittedField) -> DenseGrid:
 
 def curves_of(model: Model) -> viz.FitCurves:
     """The history of a fit as curves, with its refinements marked."""
+    from photograd_course import viz
+
     steps, loss, psnr = np.asarray(model.history).T
     still = isinstance(model.field, GaussianScene | OctreeSh)
     levels = {} if still else model.options.levels()

@@ -17,7 +17,6 @@ from photograd_course.cli import (
     emit,
     note,
 )
-from photograd_course.viz import write_frames, write_gif
 
 from photograd.commands.shared import use_threads
 from photograd.data.gaussian_files import holds_gaussians, read_gaussians
@@ -108,6 +107,8 @@ def _drawn(views: Iterable[Array], count: int) -> list[Array]:
 
 def _save(frames: list[Array], out: Path, *, as_json: bool) -> None:
     """Write the frames to a .gif or a folder, and say so."""
+    from photograd_course.viz import write_frames, write_gif
+
     if out.suffix.lower() == ".gif":
         write_gif(frames, out)
     else:

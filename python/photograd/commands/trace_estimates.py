@@ -9,7 +9,6 @@ from typing import Annotated
 
 import numpy as np
 import typer
-from photograd_course.viz import style
 
 from photograd.data.image_write import write_exr, write_png
 from photograd.errors import RangeError, message
@@ -99,6 +98,8 @@ class Estimate:
 
 def write_derivative(sums: Accumulation, out: Path) -> None:
     """The mean as EXR, if that is what `out` is, and the channels' sum in signed colours as PNG."""
+    from photograd_course.viz import style
+
     mean = sums.mean
     if out.suffix.lower() == ".exr":
         write_exr(out, mean.astype(np.float32))
