@@ -50,6 +50,8 @@ def sample() -> Glb:
     glb.lit({"type": "point", "intensity": 3, "color": [1, 0.5, 0], "range": 9}, scale=[1, 2, 3])
     cone = {"innerConeAngle": 0.2, "outerConeAngle": 0.4}
     glb.lit({"type": "spot", "spot": cone}, rotation=[0, 0, 0, 1])
+    glb.json["samplers"] = [{"minFilter": 9987, "magFilter": 9729, "wrapS": 33071}]
+    glb.json["textures"][0]["sampler"] = 0
     return glb
 
 
@@ -65,12 +67,15 @@ def damaged_bytes(draw: st.DrawFn, whole: bytes) -> bytes:
 
 
 @st.composite
-def damaged_json(draw: st.DrawFn) -> bytes:
-    """A .glb with values of its JSON replaced, removed or doubled; the rest is in order."""
+def damaged_json(draw: st.DrawFn, tables: tuple[str, ...] = ()) -> bytes:
+    """A .glb with values of its JSON replaced, removed or doubled; the rest is in order.
+
+    With `tables`, only in those of the file.
+    """
     glb = sample()
     glb.bytes()
     for _ in range(draw(st.integers(1, 3))):
-        node: Any = glb.json
+        node: Any = glb.json[draw(st.sampled_from(tables))] if tables else glb.json
         while True:
             keys = list(node) if isinstance(node, dict) else list(range(len(node)))
             if not keys:
@@ -96,6 +101,7 @@ def damaged_json(draw: st.DrawFn) -> bytes:
 CASES: dict[str, tuple[str, Callable[[], st.SearchStrategy[bytes]]]] = {
     "glb": ("m.glb", lambda: damaged_bytes(sample().bytes())),
     "json": ("m.glb", damaged_json),
+    "views": ("m.glb", lambda: damaged_json(("cameras", "extensions", "nodes", "samplers"))),
     "obj": ("m.obj", lambda: damaged_bytes(("mtllib m.mtl\nusemtl a\n" + obj()).encode())),
     "ply": ("m.ply", lambda: damaged_bytes(ply().encode())),
     "stl": ("m.stl", lambda: damaged_bytes(stl())),

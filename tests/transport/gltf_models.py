@@ -117,9 +117,11 @@ def models(draw: st.DrawFn, model: str) -> ModelFile:
             texels = bytes_of(draw, height, width, 1 if encoding == "alpha" else 3)
             if encoding == "alpha":  # 1 everywhere is none
                 texels = np.minimum(texels, np.float32(128) / np.float32(255))
+            masks = encoding == "alpha" and material.alpha_cutoff is not None
             textures[name] = Texture(
-                decode(texels) if encoding == "srgb" else texels, wrap, looked_up
-            )
+                decode(texels) if encoding == "srgb" else texels, wrap,
+                "bilinear" if masks else looked_up,
+            )  # fmt: skip
     # One image holds both of these; what has only one of them comes back with the other.
     both = {"metalness", "roughness"} & {p.name for p in material.parameters}
     if both & uses.keys():

@@ -11,6 +11,7 @@ import pytest
 from photograd.errors import SceneError
 from photograd.lights import DirectionalLight
 from photograd.transport import (
+    Environment,
     Material,
     ModelFile,
     PathOptions,
@@ -23,12 +24,15 @@ from photograd.transport import (
 )
 from photograd.transport.builtin import camera_at
 from photograd.transport.shapes import rectangle
+from photograd.transport.texture import FILTERS
 
+from tests.transport.gltf_models import same
 from tests.transport.gltf_samples import Glb, core, square
 from tests.transport.test_gltf_save import json_of, written
 from tests.transport.test_mesh_files import read
 
 pytestmark = pytest.mark.usefixtures("core")
+BLACK = {"albedo": [0.0] * 3, "alpha": 1.0}
 GREY = np.full((4, 4, 3), 128, np.uint8)
 SEEN = "mip maps of its sampler: not supported, seen point by point"
 
@@ -94,6 +98,48 @@ def test_what_is_seen_point_by_point_is_named(tmp_path: Path) -> None:
     _, told = read(tmp_path, glb.bytes())
     place = "m.glb: materials[0]"
     assert told == [f"{place}: normalTexture: {SEEN}", f"{place}: emissiveTexture: {SEEN}"]
+
+
+def net(mode: str) -> Glb:
+    """A quarter of it is there: 16 x 16 wires of one texel in four."""
+    wires = np.zeros((32, 32, 4), np.uint8)
+    wires[::2, ::2] = 255
+    glb = Glb()
+    paint = core(baseColorTexture={"index": glb.image(wires)}, metallicFactor=0)
+    glb.json["samplers"] = [{"minFilter": 9987}]
+    glb.json["textures"][0]["sampler"] = 0
+    glb.node(glb.mesh(material=glb.material(name="m", alphaMode=mode, alphaCutoff=0.5, **paint)))
+    return glb
+
+
+def test_a_mask_far_away_is_still_a_net(tmp_path: Path) -> None:
+    shown = {}
+    for mode in ("MASK", "BLEND"):
+        model, told = read(tmp_path, net(mode).bytes())
+        place = "m.glb: materials[0]: pbrMetallicRoughness: baseColorTexture"
+        assert told == ([f"{place}: {SEEN}"] if mode == "MASK" else [])
+        uses = model.materials["m"].textures
+        assert model.textures[uses["base_color"].texture].filter == "mip"
+        alpha = model.textures[uses["alpha"].texture]
+        assert alpha.filter == ("bilinear" if mode == "MASK" else "mip")
+        again, said = written(model, tmp_path / "again.glb")
+        assert said == ([f"again.glb: read back: again.glb{place[5:]}: {SEEN}"] if told else [])
+        same(model, again)
+        # Black before an even sky of 1, in a picture of 8 x 8: what is there is missing from it.
+        black = {"m": replace(model.materials["m"], model="lambert", values=BLACK, textures={
+            "alpha": uses["alpha"]})}  # fmt: skip
+        camera = camera_at([0.5, 0.5, 10.0], [0.5, 0.5, 0.0], 5.0, 8, 8)
+        for filter in FILTERS:
+            seen = {uses["alpha"].texture: replace(alpha, filter=filter)}
+            scene = Scene(
+                "n", model.shapes, black, camera, Environment.constant(1.0), textures=seen
+            )
+            shown[mode, filter] = 1 - PathTracer(scene).render(spp=64, seed=1).mean.mean()
+    # Between texels alpha is (1 - |x|) (1 - |y|), of which (1 - ln 2) / 2 lies above the cutoff.
+    assert shown["BLEND", "mip"] == pytest.approx(0.25, abs=0.01)
+    assert shown["BLEND", "bilinear"] == pytest.approx(0.25, abs=0.01)
+    assert shown["MASK", "bilinear"] == pytest.approx(0.1534, abs=0.015)  # measured: 0.161
+    assert shown["MASK", "mip"] == 0  # why it is not followed there
 
 
 def painted(filter: str, other: str | None = None) -> ModelFile:

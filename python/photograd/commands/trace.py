@@ -30,6 +30,7 @@ from photograd.commands.shared import (
     stop_on_signals,
     use_threads,
 )
+from photograd.commands.trace_camera import CameraOption, check_has_cameras
 from photograd.commands.trace_estimates import (
     INTEGRATORS,
     DerivativeOption,
@@ -38,11 +39,10 @@ from photograd.commands.trace_estimates import (
     write_derivative,
 )
 from photograd.data.image_write import write_exr, write_png
-from photograd.errors import SceneError, message
 from photograd.lights import EnvironmentMap
 from photograd.transport.accumulation import Accumulation, load_accumulation
 from photograd.transport.builtin import BUILTIN, builtin_scene
-from photograd.transport.mesh_files import STUDIO, SUFFIXES, model_scene, read_model
+from photograd.transport.mesh_files import SUFFIXES, model_scene, read_model
 from photograd.transport.scene import MeshShape, Scene
 from photograd.transport.scene_file import read_scene
 from photograd.transport.tracer import HEURISTICS, STRATEGIES, PathOptions, PathTracer
@@ -68,13 +68,6 @@ SizeOption = Annotated[
         "--size",
         min=1,
         help="Pixels along an edge of a built-in scene, along the longer one for a mesh file.",
-    ),
-]
-CameraOption = Annotated[
-    str | None,
-    typer.Option(
-        "--camera",
-        help=f"Of a mesh file: its camera of this name, by default its first, or '{STUDIO}'.",
     ),
 ]
 IntegratorOption = Annotated[
@@ -213,9 +206,7 @@ def load_scene(name: str, size: int, camera: str | None = None) -> tuple[Scene, 
     Raises:
         SceneError, IoError, RangeError: no such scene or camera.
     """
-    if camera is not None and not name.lower().endswith(SUFFIXES):
-        expected = f"a mesh file ({', '.join(SUFFIXES)}) with --camera"
-        raise SceneError(message("trace", "SCENE", expected, name, "leave the option out"))
+    check_has_cameras(name, camera)
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         if name in BUILTIN:

@@ -6,7 +6,9 @@ few samples one helps: `filter` "mip" looks up the mean over what a pixel sees a
 (cpp/photograd/render/ray_cone.h). It is less noisy and biased: what is averaged is the texture, not
 the light, over a square as wide as the longer side of that area, and no number of samples sharpens
 it again. Pictures of the textured surface itself, seen far away or through many bounces, gain most.
-Normal maps, what shines, shadows of what covers in part, and photons see single points always.
+Normal maps, what shines, shadows of what covers in part, and photons see single points always. A
+mask is compared with its cutoff after the mean is taken, so that a net far away is all or nothing:
+its alpha is better bilinear, as it is when read from glTF.
 A coordinate beyond 0..1 is brought back first, so texels at a seam are not mixed across it.
 """
 

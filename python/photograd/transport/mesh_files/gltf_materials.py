@@ -177,7 +177,8 @@ def _covering(draft: Draft, material: Material) -> Material:
     if _radiance(draft).any():
         draft.note(f"{node.place}: alphaMode {mode}: what shines is drawn opaque")
         return material
-    draft.textured("alpha", draft.core, "baseColorTexture", "alpha")
+    encoding = "mask" if mode == "MASK" else "alpha"
+    draft.textured("alpha", draft.core, "baseColorTexture", encoding)
     cutoff = max(real(node, "alphaCutoff", 0.5), 0.0) if mode == "MASK" else None
     values = {**material.values, "alpha": draft.alpha}
     return Material(material.model, values, alpha_cutoff=cutoff)

@@ -19,7 +19,7 @@ from photograd.transport.scene import Material
 from photograd.transport.texture import NormalMap, Texture, TextureUse
 
 Array = npt.NDArray[Any]
-_LABEL = re.compile(r" \((srgb|linear|alpha), \d+\)$")
+_LABEL = re.compile(r" \((srgb|linear|alpha|mask), \d+\)$")
 """What reading adds to the name of an image."""
 _COLOR = ("", "baseColorTexture", "srgb", 0)
 SLOTS = {
@@ -62,6 +62,8 @@ class Painted:
         members: dict[tuple[str, str], list[tuple[str, int, TextureUse]]] = {}
         for parameter, use in material.textures.items():
             extension, key, encoding, channel = SLOTS[parameter]
+            if encoding == "alpha" and material.alpha_cutoff is not None:
+                encoding = "mask"
             members.setdefault((extension, key), []).append((encoding, channel, use))
         for (extension, key), uses in members.items():
             node = words.extensions[extension] if extension else words.core
@@ -83,14 +85,21 @@ class Painted:
         key = tuple(uses)
         if key not in self._numbers:
             found = [self.textures[use.texture] for _, _, use in uses]
-            kinds = {(t.values.shape[:2], t.wrap, t.filter) for t in found}
-            if len(kinds) > 1:
+            # Masks are read point by point, whatever the sampler of their image says.
+            filters = {
+                t.filter
+                for t, (encoding, _, _) in zip(found, uses, strict=True)
+                if encoding != "mask"
+            }
+            looked_up = max(filters, default="bilinear")
+            if len({(t.values.shape[:2], t.wrap) for t in found}) > 1 or len(filters) > 1:
                 names = ", ".join(use.texture for _, _, use in uses)
                 expected = f"one size, wrap and filter for {member}, which is one image"
-                raise SceneError(message("save_gltf", f"textures {names}", expected, sorted(kinds)))
+                got = sorted((t.values.shape[:2], t.wrap, t.filter) for t in found)
+                raise SceneError(message("save_gltf", f"textures {names}", expected, got))
             pixels = _pixels(uses, found)
             name = _LABEL.sub("", uses[0][2].texture)
-            self._numbers[key] = self._texture(name, pixels, found[0].wrap, found[0].filter)
+            self._numbers[key] = self._texture(name, pixels, found[0].wrap, looked_up)
         return self._numbers[key]
 
     def _texture(self, name: str, pixels: Array, wrap: Wrap, looked_up: str) -> int:
@@ -116,7 +125,8 @@ def _pixels(uses: list[tuple[str, int, TextureUse]], textures: list[Texture]) ->
         part = values[..., read : read + wide]
         shown = srgb_encode(part) if encoding == "srgb" else part
         image[..., written : written + wide] = np.rint(255 * np.asarray(shown))
-    return image if any(encoding == "alpha" for encoding, _, _ in uses) else image[..., :3].copy()
+    covers = any(encoding in ("alpha", "mask") for encoding, _, _ in uses)
+    return image if covers else image[..., :3].copy()
 
 
 def normals_as_bytes(values: Array) -> tuple[Array, float]:

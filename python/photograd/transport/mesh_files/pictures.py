@@ -66,7 +66,8 @@ class Pictures:
     def texture(self, info: JsonNode, encoding: str) -> str | None:
         """The name of the texture that a textureInfo object points at; None, with a note, if the
         image is missing or damaged. Of the encoding "alpha" it is its opacity, (H, W, 1), and
-        None without a note if that is 1 everywhere.
+        None without a note if that is 1 everywhere. "mask" is opacity that is compared with a
+        cutoff, point by point: the mean over a net of wires is above or below it as a whole.
         """
         number = whole(info, 0, 1 << 31, "index")
         found = self._pixels(info)
@@ -74,11 +75,14 @@ class Pictures:
             return None
         image, (wrap, looked_up), label = found
         name = f"{label} ({encoding}, {number})"
-        if encoding == "alpha" and bool((image[..., 3] == 1).all()):
+        if encoding in ("alpha", "mask") and bool((image[..., 3] == 1).all()):
             return None
+        if encoding == "mask" and looked_up == "mip":
+            self._sees_points(info)
+            looked_up = "bilinear"
         if name not in self.textures:
-            parts = {"srgb": slice(0, 3), "linear": slice(0, 3), "alpha": slice(3, 4)}
-            color = image[..., parts[encoding]]
+            parts = {"srgb": slice(0, 3), "linear": slice(0, 3)}
+            color = image[..., parts.get(encoding, slice(3, 4))]
             color = decode(color) if encoding == "srgb" else color
             self.textures[name] = Texture(np.asarray(color, np.float32), wrap, looked_up)
         return name
