@@ -28,6 +28,7 @@ from photograd.errors import DtypeError, RangeError, ShapeError, message
 Array = npt.NDArray[Any]
 Parameters = Mapping[str, Any]
 """{name: value}; a value is a number or (3,), or one for each of N rows: (N,) or (N, 3)."""
+SMOOTH = "surfaces without roughness are models of their own: mirror, glass, thin_glass"
 
 
 @dataclass(frozen=True)
@@ -66,7 +67,8 @@ class BsdfModel:
         """Parameters as rows (1, P) or (N, P) of scalars in the core's order.
 
         Raises:
-            RangeError: a name that is missing or unknown, or values that are not finite.
+            RangeError: a name that is missing or unknown, values that are not finite, or one of 0
+                or less where the model has none: a roughness of 0 is that of `delta_bsdf`.
             ShapeError: a value of another shape, or different numbers of rows.
         """
         return pack_rows(self.name, self.parameters, parameters, dtype)
@@ -159,6 +161,10 @@ def _column(model: str, parameter: Parameter, value: Any) -> Array:
         raise ShapeError(message(model, parameter.name, expected, column.shape))
     if not np.isfinite(column).all():
         raise RangeError(message(model, parameter.name, "finite numbers", "NaN or infinity"))
+    if parameter.lo > 0 and not (column > 0).all():
+        # A lobe without width has no value, and an index of 0 none, either.
+        got, remedy = column.min(), SMOOTH if "roughness" in parameter.name else None
+        raise RangeError(message(model, parameter.name, "above 0", got, remedy))
     rows: Array = column.reshape(-1, parameter.size)
     return rows
 

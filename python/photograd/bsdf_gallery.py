@@ -8,43 +8,83 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from photograd_course.color import srgb_encode
 from photograd_course.random import uniform
 
 from photograd.bsdf import BsdfModel
+from photograd.bsdf_response import derivatives, furnace_curve
 
 Array = npt.NDArray[Any]
 _FRACTIONS = (0.1, 0.4, 0.7, 1.0)
+_COSINES = np.linspace(0.04, 1.0, 9)
 _LIGHT = np.array([-0.5, 0.6, 0.62]) / np.linalg.norm([-0.5, 0.6, 0.62])
 
 
 def gallery_picture(model: BsdfModel, path: Path) -> None:
-    """Write a PNG: four lit spheres over the range of the parameters, and the lobe below each.
+    """Write a PNG: what a model looks like, what it returns, and what its parameters do.
 
-    The spheres are seen from +Z without perspective, under one distant light of irradiance pi; the
-    lobes show f cos for light that arrives at 45 degrees.
+    Above, four lit spheres over the range of the parameters, and the lobe below each. The spheres
+    are seen from +Z without perspective, under one distant light of irradiance pi; the lobes show
+    f cos for light that arrives at 45 degrees. Below, the part of the light that leaves, by the
+    cosine of the view, for the same parameters; and the derivative of the second sphere by each
+    parameter, red where more of it brightens and blue where it darkens.
     """
-    figure = Figure(figsize=(9.0, 4.8))
-    # Room for a line of each parameter above the balls; a computed layout would double the time.
-    figure.subplots_adjust(left=0.04, right=0.96, bottom=0.04, top=0.82, wspace=0.35, hspace=0.15)
+    figure = Figure(figsize=(9.0, 6.6))
     FigureCanvasAgg(figure)
+    # Room for a line of each parameter above the balls; a computed layout would double the time.
+    balls = {"left": 0.04, "right": 0.96, "bottom": 0.31, "top": 0.87, "wspace": 0.35}
+    grid = figure.add_gridspec(2, 4, hspace=0.15, **balls)
+    curve = figure.add_axes((0.06, 0.07, 0.2, 0.17))
     for column, fraction in enumerate(_FRACTIONS):
         parameters = model.at(fraction)
-        sphere = figure.add_subplot(2, 4, 1 + column)
+        sphere = figure.add_subplot(grid[0, column])
         sphere.imshow(srgb_encode(np.clip(sphere_picture(model, parameters), 0.0, 1.0)))
         sphere.axis("off")
         sphere.set_title(_caption(parameters), fontsize=7 if len(parameters) < 6 else 5)
-        lobe = figure.add_subplot(2, 4, 5 + column, projection="polar")
+        lobe = figure.add_subplot(grid[1, column], projection="polar")
         angle, value = _lobe(model, parameters)
-        lobe.plot(np.pi / 2 - angle, value, lw=1.5)
+        lobe.plot(np.pi / 2 - angle, value, lw=1.5, color=f"C{column}")
         if not model.transmits:
             lobe.set_xlim(0.0, np.pi)
         lobe.tick_params(labelsize=6)
         lobe.set_yticks(lobe.get_yticks()[2::3])
+        curve.plot(_COSINES, furnace_curve(model, parameters, _COSINES).mean(axis=1), lw=1.2)
+    _finish_curve(curve, model)
+    _draw_derivatives(figure, model, model.at(_FRACTIONS[1]))
     figure.suptitle(model.name)
     figure.savefig(path, dpi=110, metadata={"Software": None})
+
+
+def _finish_curve(axes: Axes, model: BsdfModel) -> None:
+    kind, most = model.energy
+    axes.axhline(1.0, color="0.6", lw=0.8)
+    axes.set(xlim=(0.0, 1.0), ylim=(0.0, None))
+    axes.tick_params(labelsize=6)
+    axes.set_title("light returned, by the cosine of the view", fontsize=7)
+    claim = f"{kind}, at most {most:g}" if kind == "gains" else kind
+    axes.set_xlabel(f"claim: {claim}", fontsize=7, labelpad=1)
+
+
+def _draw_derivatives(figure: Figure, model: BsdfModel, parameters: dict[str, Any]) -> None:
+    """A ball of d(radiance, mean of channels) for each parameter, each to a scale of its own."""
+    inside, wo, wi = sphere_directions(64)
+    slopes = derivatives(model, parameters, wo, wi)
+    across = max(4, len(slopes) if len(slopes) < 7 else -(-len(slopes) // 2))
+    size = min(0.66 / across, 0.14)
+    for number, (name, slope) in enumerate(slopes.items()):
+        down, column = divmod(number, across)
+        rows = -(-len(slopes) // across)
+        place = 0.3 + column * 0.68 / across, 0.03 + (rows - 1 - down) * 0.125
+        axes = figure.add_axes((*place, size, 0.18 / rows))
+        picture = np.zeros(inside.shape)
+        picture[inside] = slope * np.pi * np.clip(wi[:, 2], 0.0, None)
+        limit = float(np.quantile(np.abs(picture[inside]), 0.97)) or 1.0
+        axes.imshow(picture, cmap="RdBu_r", vmin=-limit, vmax=limit)
+        axes.set_title(f"d / d {name}\n\u00b1{limit:.2g}", fontsize=6 if rows == 1 else 5, pad=2)
+        axes.axis("off")
 
 
 def _caption(parameters: dict[str, Array]) -> str:

@@ -129,7 +129,7 @@ def test_special_cases_of_other_models_are_named(tmp_path: Path) -> None:
             "'gltf_sheen' is read back as 'gltf'",
         ),
         (Material("gltf", {**at_half("gltf").values, "alpha": 1.0}), "alpha: 1.0 is read back as"),
-        (Material("gltf", {**at_half("gltf").values, "roughness": 3.0}), "is read back as 1.0"),
+        (Material("glass", {"eta": 3.0, "tint": [1, 1, 1]}), "is read back as 2.5"),
     ):
         _, said = written(square(material), tmp_path / "m.glb")
         text = "\n".join(said)

@@ -35,13 +35,15 @@ def use_threads(threads: int) -> None:
 
 
 def check_picture_name(command: str, out: Path) -> None:
-    """Refuse an --out of `command` that is no picture, before the work and not after it.
+    """Refuse an --out of `command` that cannot be written, before the work and not after it.
 
     Raises:
-        IoError: a name that ends neither in .exr nor in .png.
+        IoError: a name that ends neither in .exr nor in .png, or a folder that is not there.
     """
     if out.suffix.lower() not in (".exr", ".png"):
         raise IoError(message(command, "--out", "a name that ends in .exr or .png", out))
+    if not out.parent.is_dir():
+        raise IoError(message(command, "--out", "a file in a folder that exists", out))
 
 
 class StopRequest:

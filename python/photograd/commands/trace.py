@@ -6,11 +6,13 @@ import hashlib
 import math
 import time
 import warnings
+from collections.abc import Iterator
 from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated, Any
 
 import numpy as np
+import numpy.typing as npt
 import typer
 from photograd_course.cli import (
     Column,
@@ -38,6 +40,7 @@ from photograd.commands.trace_estimates import (
     PhotonsOption,
     write_derivative,
 )
+from photograd.data.exr import LARGEST_SIDE
 from photograd.data.image_write import write_exr, write_png
 from photograd.lights import EnvironmentMap
 from photograd.transport.accumulation import Accumulation, load_accumulation
@@ -50,8 +53,9 @@ from photograd.transport.tracer import HEURISTICS, STRATEGIES, PathOptions, Path
 PASS_SPP = 8
 """Samples between two looks at the clock; a resumed picture is cut at the same places."""
 SAVE_SECONDS = 10.0
+DARK = "all is black: does something shine there, and is the camera inside of a closed shape?"
 
-
+Array = npt.NDArray[Any]
 SceneArgument = Annotated[
     str,
     typer.Argument(
@@ -67,6 +71,7 @@ SizeOption = Annotated[
     typer.Option(
         "--size",
         min=1,
+        max=LARGEST_SIDE,
         help="Pixels along an edge of a built-in scene, along the longer one for a mesh file.",
     ),
 ]
@@ -153,6 +158,8 @@ def trace(
     with stop_on_signals() as stopping:
         seconds = _run(add, save, sums, spp, stopping)
     _report(sums, out, spp, seconds, as_json=as_json)
+    if sums.count and not derivative and not sums.radiance.any():
+        note(DARK)
     if sums.count < spp:
         raise typer.Exit(stopping.exit_code or 1)
 
@@ -193,11 +200,21 @@ def _run(add: Any, save: Any, sums: Accumulation, spp: int, stopping: StopReques
     return seconds
 
 
-def scene_size(scene: Scene) -> tuple[int, int]:
-    """Triangles, and numbers in textures."""
-    meshes = [shape for shape in scene.shapes if isinstance(shape, MeshShape)]
-    texels = sum(texture.values.size for texture in scene.textures.values())
-    return sum(len(shape.faces) for shape in meshes), texels
+def contents(scene: Scene) -> Iterator[Array]:
+    """Everything that a scene may have from files of their own."""
+    for shape in scene.shapes:
+        if isinstance(shape, MeshShape):
+            parts = (shape.vertices, shape.faces, shape.normals, shape.uv, *shape.places)
+            yield from (part for part in parts if part is not None)
+    yield from (texture.values for texture in scene.textures.values())
+    for material in scene.materials.values():
+        if material.normal_map is not None:
+            yield material.normal_map.values
+        yield material.row()
+    yield from (light.texels for light in scene.lights if isinstance(light, EnvironmentMap))
+    for medium in scene.media.values():
+        if medium.density is not None:
+            yield from (medium.density.values, medium.density.world_from_box)
 
 
 def load_scene(name: str, size: int, camera: str | None = None) -> tuple[Scene, str]:
@@ -221,11 +238,9 @@ def load_scene(name: str, size: int, camera: str | None = None) -> tuple[Scene, 
                 if meshes
                 else read_scene(path)
             )
-            # Of the meshes and textures that it names, only the sizes are looked at.
-            found = hashlib.sha256(path.read_bytes() + repr(scene_size(scene)).encode())
-            for light in scene.lights:
-                if isinstance(light, EnvironmentMap):  # from a file of its own
-                    found.update(light.texels.tobytes())
+            found = hashlib.sha256(path.read_bytes())
+            for part in contents(scene):
+                found.update(np.ascontiguousarray(part).data)
             loaded = scene, f"{found.hexdigest()} {f'{size} {camera}' if meshes else ''}"
     for warning in caught:
         note(f"{warning.message}")

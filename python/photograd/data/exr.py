@@ -23,8 +23,11 @@ def read_exr_header(path: Path) -> tuple[int, int, bool]:
     """Width, height and whether there is an alpha channel.
 
     Raises:
-        IoError: not an EXR file, empty or absurd window, or neither R, G, B nor Y channels.
+        IoError: no such file, not an EXR file, empty or absurd window, or neither R, G, B nor Y
+            channels.
     """
+    if not path.is_file():  # the library would call it damaged, and write to stderr
+        raise IoError(message("read_exr_header", str(path), "an EXR image", "no such file"))
     try:
         with OpenEXR.File(str(path), separate_channels=True, header_only=True) as opened:
             header = opened.header()
@@ -66,8 +69,9 @@ def read_exr(path: Path) -> npt.NDArray[np.float32]:
             raise _unreadable("read_exr", path, f"channel {name} has shape {plane.shape}")
         result[..., index] = plane
     if not bool(np.isfinite(result).all()):
-        bad = int((~np.isfinite(result)).any(axis=2).sum())
-        raise IoError(message("read_exr", str(path), "finite values", f"{bad} bad pixels"))
+        bad = np.argwhere(~np.isfinite(result).all(axis=2))
+        got = f"{len(bad)} bad pixels, the first in row {bad[0][0]}, column {bad[0][1]}"
+        raise IoError(message("read_exr", str(path), "finite values", got))
     return result
 
 

@@ -34,8 +34,16 @@ class Accumulation:
 
     @classmethod
     def empty(cls, height: int, width: int) -> Accumulation:
-        """No samples yet."""
-        return cls(np.zeros((height, width, 3)), np.zeros((height, width, 3)))
+        """No samples yet.
+
+        Raises:
+            RangeError: more pixels than there is memory for.
+        """
+        try:
+            return cls(np.zeros((height, width, 3)), np.zeros((height, width, 3)))
+        except MemoryError as failure:
+            expected, got = "a picture that fits into memory", f"{width} x {height} pixels"
+            raise RangeError(message("Accumulation", "size", expected, got)) from failure
 
     @property
     def mean(self) -> Array:

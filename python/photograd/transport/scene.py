@@ -23,6 +23,7 @@ from photograd.transport.media_list import check_media
 from photograd.transport.medium import BOUNDARY, Medium
 from photograd.transport.sdf_shape import SdfShape
 from photograd.transport.shape_checks import (
+    check_range,
     checked_color,
     checked_place,
     float_rows,
@@ -57,7 +58,8 @@ class Material:
 
     Raises:
         SceneError: no such model, or a cutoff without alpha.
-        RangeError, ShapeError: parameters missing, unknown, not finite or of another shape.
+        RangeError, ShapeError: parameters missing, unknown, not finite, outside of their range or
+            of another shape.
     """
 
     model: str
@@ -71,6 +73,8 @@ class Material:
             known = choose_from(self.model, MODELS)
             raise SceneError(message("Material", "model", "a reflectance model", self.model, known))
         self.row()
+        for parameter in self.parameters:
+            check_range(self.model, parameter, self.values[parameter.name])
         if self.alpha_cutoff is not None and not (self.sheer and self.alpha_cutoff >= 0):
             expected, got = "at least 0, and a value of alpha", self.alpha_cutoff
             raise SceneError(message("Material", "alpha_cutoff", expected, got))

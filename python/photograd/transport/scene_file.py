@@ -50,6 +50,7 @@ from typing import Any
 import numpy as np
 
 from photograd.data.camera import Camera
+from photograd.data.exr import LARGEST_SIDE
 from photograd.errors import IoError, SceneError, message
 from photograd.geometry.sdf_shapes import Shape as SdfNode
 from photograd.transport.builtin import camera_at
@@ -129,8 +130,10 @@ def _camera(node: Node) -> tuple[Camera, Lens, Shutter | None]:
     field_of_view = node.number("field_of_view")
     if not 0 < field_of_view < 180:
         raise node.wrong("field_of_view", "degrees between 0 and 180", field_of_view)
-    if width != int(width) or height != int(height) or min(width, height) < 1:
-        raise node.wrong("size", "width and height in pixels", [width, height])
+    whole = width == int(width) and height == int(height)
+    if not whole or not 1 <= min(width, height) <= max(width, height) <= LARGEST_SIDE:
+        expected = f"width and height in pixels, 1 to {LARGEST_SIDE}"
+        raise node.wrong("size", expected, [width, height])
     radius = node.number("aperture", 0.0)
     focus = node.number("focus", float(np.linalg.norm(np.subtract(target, position))))
     closing = node.table("closing") if node.has("closing") else None

@@ -1,4 +1,4 @@
-"""What shapes are made of, checked: places, triangles, rows of numbers, colours."""
+"""What scenes are made of, checked: places, triangles, rows of numbers, colours, materials."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from photograd.bsdf import SMOOTH, Parameter
 from photograd.errors import DtypeError, RangeError, ShapeError, message
 from photograd.mesh import drop_degenerate
 
@@ -76,3 +77,22 @@ def checked_color(name: str, argument: str, value: Any) -> Array:
         expected = "three finite numbers of at least 0"
         raise RangeError(message("Scene", f"{name}.{argument}", expected, np.asarray(value)))
     return color
+
+
+def check_range(model: str, parameter: Parameter, value: Any) -> None:
+    """Whether a material may have this value: what is a share or a roughness has two ends.
+
+    Derivatives and searches may step beyond; what somebody writes down there is a mistake, and
+    draws negative or growing light. Other ranges, as of indices and exponents, say what is usual.
+
+    Raises:
+        RangeError: outside of the range.
+    """
+    least = parameter.lo if parameter.hi == 1.0 else min(parameter.lo, 0.0)
+    most = parameter.hi if parameter.hi == 1.0 else np.inf
+    if parameter.lo < 0 or ((np.asarray(value) >= least) & (np.asarray(value) <= most)).all():
+        return
+    expected = f"{least:g} to {most:g}" if most < np.inf else f"at least {least:g}"
+    smooth = "roughness" in parameter.name and float(np.min(value)) < least
+    remedy = SMOOTH if smooth else None
+    raise RangeError(message("Material", f"{model}.{parameter.name}", expected, value, remedy))
