@@ -35,7 +35,6 @@ from photograd.transport import (
     TextureUse,
 )
 from photograd.transport.builtin import camera_at
-from photograd.transport.recovery.saved import scene_digest
 from photograd.transport.shapes import box as box_mesh
 from photograd_course.gradcheck import check_gradient
 
@@ -203,18 +202,6 @@ def test_other_views_of_a_scene_see_bodies() -> None:
     error = np.sqrt(a.standard_error**2 + b.standard_error**2)
     assert 0.6 < a.mean.mean() < 0.98
     assert (np.abs(a.mean - b.mean) <= 5 * error + 1e-12).all()
-
-
-def test_a_recovery_tells_bodies_apart() -> None:
-    # What a saved recovery belongs to is told by a digest of the scene.
-    scene = busy()
-    other = replace(scene.shapes[0], body=placed(sphere(0.3), [-0.5, 0.3, 0.3]))
-    digests = {
-        scene_digest(replace(scene, shapes=(first, *scene.shapes[1:]))).hexdigest()
-        for first in (scene.shapes[0], other)
-    }
-    assert len(digests) == 2
-    assert scene_digest(busy()).hexdigest() in digests
 
 
 def test_a_cone_goes_on_behind_a_mirror_that_is_a_body() -> None:

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import hashlib
 import math
 import time
 import warnings
-from collections.abc import Iterator
 from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated, Any
@@ -42,11 +40,11 @@ from photograd.commands.trace_estimates import (
 )
 from photograd.data.exr import LARGEST_SIDE
 from photograd.data.image_write import write_exr, write_png
-from photograd.lights import EnvironmentMap
 from photograd.transport.accumulation import Accumulation, load_accumulation
 from photograd.transport.builtin import BUILTIN, builtin_scene
 from photograd.transport.mesh_files import SUFFIXES, model_scene, read_model
-from photograd.transport.scene import MeshShape, Scene
+from photograd.transport.scene import Scene
+from photograd.transport.scene_digest import scene_digest
 from photograd.transport.scene_file import read_scene
 from photograd.transport.tracer import HEURISTICS, STRATEGIES, PathOptions, PathTracer
 
@@ -200,23 +198,6 @@ def _run(add: Any, save: Any, sums: Accumulation, spp: int, stopping: StopReques
     return seconds
 
 
-def contents(scene: Scene) -> Iterator[Array]:
-    """Everything that a scene may have from files of their own."""
-    for shape in scene.shapes:
-        if isinstance(shape, MeshShape):
-            parts = (shape.vertices, shape.faces, shape.normals, shape.uv, *shape.places)
-            yield from (part for part in parts if part is not None)
-    yield from (texture.values for texture in scene.textures.values())
-    for material in scene.materials.values():
-        if material.normal_map is not None:
-            yield material.normal_map.values
-        yield material.row()
-    yield from (light.texels for light in scene.lights if isinstance(light, EnvironmentMap))
-    for medium in scene.media.values():
-        if medium.density is not None:
-            yield from (medium.density.values, medium.density.world_from_box)
-
-
 def load_scene(name: str, size: int, camera: str | None = None) -> tuple[Scene, str]:
     """The scene of an argument SCENE, and a text that changes with it; warnings become notes.
 
@@ -238,10 +219,7 @@ def load_scene(name: str, size: int, camera: str | None = None) -> tuple[Scene, 
                 if meshes
                 else read_scene(path)
             )
-            found = hashlib.sha256(path.read_bytes())
-            for part in contents(scene):
-                found.update(np.ascontiguousarray(part).data)
-            loaded = scene, f"{found.hexdigest()} {f'{size} {camera}' if meshes else ''}"
+            loaded = scene, scene_digest(scene)
     for warning in caught:
         note(f"{warning.message}")
     return loaded

@@ -13,9 +13,7 @@ from photograd_course.atomic_io import remove_leftovers
 
 from photograd.checkpoint import Checkpoint, load_checkpoint, save_checkpoint
 from photograd.errors import IoError, RangeError, message
-from photograd.transport.scene import MeshShape, Scene
-from photograd.transport.sdf_shape import SdfShape
-from photograd.transport.tracer import PathTracer
+from photograd.transport.scene_digest import scene_digest
 
 if TYPE_CHECKING:
     from photograd.transport.recovery.job import Recovery
@@ -92,27 +90,9 @@ def fingerprint(job: Recovery) -> dict[str, Any]:
         start = "" if each.start is None else np.asarray(each.start, np.float64).tobytes().hex()
         told = (each.name, start, each.bounds, each.activation, each.rate)
         unknowns.update(repr(told).encode())
-    found = {"scene": scene_digest(job.scene), "targets": pictures, "unknowns": unknowns}
-    texts = {name: digest.hexdigest()[:16] for name, digest in found.items()}
-    return {**texts, "options": asdict(job.options)}
-
-
-def scene_digest(scene: Scene) -> Any:
-    """A hash of the shapes and of everything that is a number."""
-    found = hashlib.sha256(repr(sorted(scene.materials)).encode())
-    for name, value in PathTracer(scene).params.items():
-        found.update(name.encode() + value.tobytes())
-    for shape in scene.shapes:
-        found.update(f"{shape.name} {shape.material}".encode())
-        if isinstance(shape, SdfShape):
-            found.update(repr(shape.body).encode())
-        elif isinstance(shape, MeshShape):
-            for array in (shape.vertices, shape.faces, *shape.places):
-                found.update(np.ascontiguousarray(array).tobytes())
-        else:
-            found.update(np.array([*shape.center, shape.radius]).tobytes())
-    for light in scene.lights:
-        for name, value in sorted(vars(light).items()):
-            if not name.startswith("_"):
-                found.update(name.encode() + np.asarray(value, np.float64).tobytes())
-    return found
+    texts = {
+        "scene": scene_digest(job.scene, without=("name", "camera")),  # targets have their own
+        "targets": pictures.hexdigest(),
+        "unknowns": unknowns.hexdigest(),
+    }
+    return {**{name: text[:16] for name, text in texts.items()}, "options": asdict(job.options)}
