@@ -24,9 +24,7 @@ def camera_of_file(node: Node) -> Camera:
         SceneError: no such file, or no such camera in it.
     """
     path = node.path.parent / node.text("file")
-    width, height = node.numbers("size", 2)
-    if width != int(width) or height != int(height) or min(width, height) < 1:
-        raise node.wrong("size", "width and height in pixels", [width, height])
+    width, height = node.picture_size()
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of its shapes, which are not looked at
         model = node.built(lambda: read_model(path))
@@ -38,7 +36,7 @@ def camera_of_file(node: Node) -> Camera:
         expected = f"a camera of {path.name}: {', '.join(by_name)}"
         raise node.wrong("name", expected, name, choose_from(name, by_name))
     node.refuse_other_keys()
-    return node.built(lambda: by_name[name].camera(int(width), int(height)))
+    return node.built(lambda: by_name[name].camera(width, height))
 
 
 def lights_of(node: Node, model: ModelFile, places: Sequence[Array]) -> list[Light]:

@@ -50,7 +50,6 @@ from typing import Any
 import numpy as np
 
 from photograd.data.camera import Camera
-from photograd.data.exr import LARGEST_SIDE
 from photograd.errors import IoError, SceneError, message
 from photograd.geometry.sdf_shapes import Shape as SdfNode
 from photograd.transport.builtin import camera_at
@@ -125,21 +124,16 @@ def _scene(root: Node, name: str) -> Scene:
 def _camera(node: Node) -> tuple[Camera, Lens, Shutter | None]:
     if node.has("file"):
         return camera_of_file(node), PINHOLE, None
-    width, height = node.numbers("size", 2)
+    pixels = node.picture_size()
     position, target = _view(node)
     field_of_view = node.number("field_of_view")
     if not 0 < field_of_view < 180:
         raise node.wrong("field_of_view", "degrees between 0 and 180", field_of_view)
-    whole = width == int(width) and height == int(height)
-    if not whole or not 1 <= min(width, height) <= max(width, height) <= LARGEST_SIDE:
-        expected = f"width and height in pixels, 1 to {LARGEST_SIDE}"
-        raise node.wrong("size", expected, [width, height])
     radius = node.number("aperture", 0.0)
     focus = node.number("focus", float(np.linalg.norm(np.subtract(target, position))))
     closing = node.table("closing") if node.has("closing") else None
     node.refuse_other_keys()
     lens = node.built(lambda: Lens(radius, focus))
-    pixels = int(width), int(height)
     camera = node.built(lambda: camera_at(position, target, field_of_view, *pixels))
     if closing is None:
         return camera, lens, None

@@ -9,6 +9,7 @@ from typing import Any, TypeVar
 import numpy as np
 from photograd_course.suggest import choose_from
 
+from photograd.data.exr import LARGEST_SIDE
 from photograd.errors import Error, SceneError, message
 from photograd.transport.toml_lines import KeyPath
 
@@ -124,6 +125,15 @@ class Node:
         if not isinstance(found, list) or len(found) != count or not all(map(_is_number, found)):
             raise self.wrong(key, f"{count} finite numbers", found)
         return [float(entry) for entry in found]
+
+    def picture_size(self) -> tuple[int, int]:
+        """Width and height of `size`."""
+        width, height = self.numbers("size", 2)
+        whole = width == int(width) and height == int(height)
+        if not whole or not 1 <= min(width, height) <= max(width, height) <= LARGEST_SIDE:
+            expected = f"width and height in pixels, 1 to {LARGEST_SIDE}"
+            raise self.wrong("size", expected, [width, height])
+        return int(width), int(height)
 
     def color(self, key: str, default: list[float] | None = None) -> list[float]:
         """Three numbers, or one for all three, none negative."""
