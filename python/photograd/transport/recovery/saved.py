@@ -13,6 +13,7 @@ from photograd_course.atomic_io import remove_leftovers
 
 from photograd.checkpoint import Checkpoint, load_checkpoint, save_checkpoint
 from photograd.errors import IoError, RangeError, message
+from photograd.transport.motion import moves
 from photograd.transport.scene import MeshShape, Scene
 from photograd.transport.sdf_shape import SdfShape
 from photograd.transport.tracer import PathTracer
@@ -111,6 +112,9 @@ def scene_digest(scene: Scene) -> Any:
                 found.update(np.ascontiguousarray(array).tobytes())
         else:
             found.update(np.array([*shape.center, shape.radius]).tobytes())
+        if moves(shape) and not isinstance(shape, SdfShape):
+            closing = shape.closing_places if isinstance(shape, MeshShape) else shape.closing
+            found.update(b"closing" + np.array(closing).tobytes())
     for light in scene.lights:
         for name, value in sorted(vars(light).items()):
             if not name.startswith("_"):
