@@ -3266,6 +3266,8 @@ class PathGeometry:
         emission: numpy.ndarray,
         lights: collections.abc.Sequence[tuple[typing.Any, ...]],
         sdfs: collections.abc.Sequence[tuple[Sdf, numpy.ndarray]] = [],
+        closing_matrices: numpy.ndarray | None = None,
+        closing_spheres: numpy.ndarray | None = None,
     ) -> None:
         """
         Meshes as (vertices (V, 3) float32, faces (F, 3) uint32, normals (V, 3) float32 or None,

@@ -126,7 +126,7 @@ def test_a_moving_edge() -> None:
     edge = -0.7 + 1.25 * (np.arange(5000) + 0.5) / 5000
     left = -1 + np.arange(16) / 8
     expected = 1 - np.clip(8 * (edge[:, None] - left), 0, 1).mean(axis=0)
-    assert ((expected > 0.05) & (expected < 0.95)).sum() == 10
+    assert ((expected > 0.05) & (expected < 0.95)).sum() == 9
     assert np.abs(found.mean(axis=0) - expected).max() < 0.01  # of the brightest
     assert np.abs(found - expected).max() < 0.05
 
@@ -150,7 +150,7 @@ def shadowed(shape: Any, materials: dict[str, Material], **more: Any) -> Array:
     )  # fmt: skip
     options = PathOptions(max_depth=2)
     found = PathTracer(scene, dtype=np.float64).render(spp=4096, seed=2, options=options).mean
-    full = 2.0 * GREY.values["albedo"] / np.pi
+    full = 2.0 * 0.5 / np.pi
     return found[0, 0] / full
 
 
@@ -201,7 +201,7 @@ def test_a_camera_and_what_it_is_in_fly_together() -> None:
 
 def test_grids_of_densities_stay() -> None:
     # A window moves over smoke that does not: where it is, the smoke of that place is seen.
-    grid = smoke(np.linspace(0.2, 1.0, 4).reshape(4, 1, 1))
+    grid = smoke(np.linspace(0.2, 1.0, 4)[:, None, None] * np.ones((4, 2, 2)))
     ink = replace(grid, albedo=None)
     window = with_interior(box("window", [-0.6, 0.7, 0], [0.4, 1, 1], BOUNDARY), "ink")
     camera = pencil((0, 0.7, 3), (0, 0.7, 0))

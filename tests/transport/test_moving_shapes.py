@@ -68,8 +68,7 @@ def moving(size: int = 8, *, alpha: bool = False) -> Scene:
     still = SphereShape("still", np.array([0.8, 0.2, 0.8]), 0.2, "floor")
     shapes = (mesh, ball, still, *(s for s in scene.shapes if s.name != "ball"))
     materials = {**scene.materials, "gloss": gloss, "veil": veil}
-    if not alpha:
-        del materials["veil"]
+    del materials["ball" if alpha else "veil"]
     return replace(scene, shapes=shapes, materials=materials, textures={"paint": paint})
 
 

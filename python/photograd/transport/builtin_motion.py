@@ -12,7 +12,7 @@ from photograd.transport.shapes import box, rectangle
 
 
 def thrown(size: int = 256) -> Scene:
-    """Three things that move while the shutter is open, and a copper ball that lies on the table."""
+    """Three things that move while the shutter is open, and a copper ball that lies there."""
     die = box("die", [-0.95, 0.3, 0.5], [0.6, 0.6, 0.6], "ivory", turn=20.0)
     shapes: tuple[Shape, ...] = (
         rectangle("table", [-4, 0, 3], [8, 0, 0], [0, 0, -7], "table"),

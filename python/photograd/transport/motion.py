@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from photograd.transport.scene import MeshShape, Scene, Shape, SphereShape
 
 Array = npt.NDArray[Any]
+FLAT = 1e-9
+"""A mesh whose volume has shrunk to less than this part is flat, as far as rounding can tell."""
 
 
 def checked_closing_places(
@@ -38,7 +40,7 @@ def checked_closing_places(
         raise ShapeError(message("MeshShape", f"{name}.closing_places", expected, len(ends)))
     for start, end in zip(starts, ends, strict=False):
         least = _least_volume(start[:3, :3], end[:3, :3])
-        if not least > 0:
+        if not least > FLAT:
             expected = "a positive determinant at every moment"
             remedy = "turn by less, points move straight on"
             raise RangeError(
@@ -48,25 +50,26 @@ def checked_closing_places(
 
 
 def _least_volume(a: Array, b: Array) -> float:
-    """The least determinant of (1 - s) a + s b for s in [0, 1]; it is a cubic in s."""
+    """The least determinant of (1 - s) a + s b, s in [0, 1], as a part of the largest; a cubic."""
     s = np.array([0.0, 1 / 3, 2 / 3, 1.0])
-    volume = np.polynomial.Polynomial.fit(
-        s, [np.linalg.det((1 - x) * a + x * b) for x in s], 3, domain=[0, 1], window=[0, 1]
-    )
-    turning = volume.deriv().roots()
-    real = turning[np.abs(turning.imag) < 1e-9].real
-    inside = real[(real > 0) & (real < 1)]
-    return float(min(volume(np.array([0.0, 1.0, *inside]))))
+    volume = [np.linalg.det((1 - x) * a + x * b) for x in s]
+    cubic = np.linalg.solve(np.vander(s, increasing=True), volume)
+    # Both roots of the derivative, also where it is of lower degree; or the end nearby.
+    c0, c1, c2 = cubic[1:] * [1, 2, 3]
+    q = -0.5 * (c1 + np.copysign(np.sqrt(max(c1 * c1 - 4 * c0 * c2, 0.0)), c1))
+    turning = [x / y for x, y in ((q, c2), (c0, q)) if abs(y) > 0]
+    found = np.polyval(cubic[::-1], np.clip([0.0, 1.0, *turning], 0, 1))
+    return float(found.min() / np.abs(found).max())
 
 
 def moves(shape: Shape) -> bool:
     """Whether a shape is elsewhere when the shutter closes."""
-    if hasattr(shape, "closing_places"):
-        starts = shape.places or (np.eye(4),)
-        both = zip(starts, shape.closing_places, strict=False)
+    it: Any = shape
+    if hasattr(it, "closing_places"):
+        both = zip(it.places or (np.eye(4),), it.closing_places, strict=False)
         return any(not np.array_equal(*ends) for ends in both)
-    closing = getattr(shape, "closing", None)
-    return closing is not None and not np.array_equal(closing, shape.center)
+    closing = getattr(it, "closing", None)
+    return closing is not None and not np.array_equal(closing, it.center)
 
 
 def check_motion(scene: Scene) -> None:

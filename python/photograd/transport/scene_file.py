@@ -41,6 +41,7 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -199,7 +200,7 @@ def _moving(node: Node, shapes: list[Shape]) -> list[Shape]:
     table = node.table("closing")
     way = matrix_of(table)
     table.refuse_other_keys()
-    return [table.built(lambda shape=shape: moved_on(shape, way)) for shape in shapes]
+    return [table.built(partial(moved_on, shape, way)) for shape in shapes]
 
 
 def _shape(node: Node, index: int, materials: dict[str, Material]) -> Shape:
