@@ -286,7 +286,9 @@ void bind_path(py::module_& m) {
              "float64 of each shape,\nwhich are the instances, then the spheres, then sdfs, (body, "
              "numbers (P,)). Lights of the "
              "list: (name, parameters, "
-             "constants) or\n(\"environment\", texels, world_from_map, sampler), float64.")
+             "constants) or\n(\"environment\", texels, world_from_map, sampler), float64. "
+             "closing_matrices and\nclosing_spheres are those when the shutter closes, None where "
+             "nothing moves.")
         .def("choose_lights", &choose_lights, py::arg("u"),
              "(entries (N,) int64, their probabilities (N,)) by uniform u (N,): first lights of "
              "the list, then what emits of the shapes.")
