@@ -13,19 +13,19 @@ from photograd.transport.shapes import box, rectangle
 
 def thrown(size: int = 256) -> Scene:
     """Three things that move while the shutter is open, and a copper ball that lies there."""
-    die = box("die", [-0.95, 0.3, 0.5], [0.6, 0.6, 0.6], "ivory", turn=20.0)
+    die = box("die", [-0.6, 0.25, 0.4], [0.5, 0.5, 0.5], "ivory", turn=20.0)
     shapes: tuple[Shape, ...] = (
         rectangle("table", [-4, 0, 3], [8, 0, 0], [0, 0, -7], "table"),
         SphereShape(
             "thrown", np.array([-0.9, 1.35, -0.5]), 0.25, "clay", closing=np.array([0.0, 1.6, -0.4])
         ),
-        moved_on(die, _turned(25.0, [-0.95, 0.0, 0.5], [0.12, 0.0, 0.0])),
+        moved_on(die, _turned(25.0, [-0.6, 0.0, 0.4], [0.06, 0.0, 0.0])),
         SphereShape(
             "rolling",
             np.array([0.55, 0.32, 0.7]),
             0.32,
             "glass",
-            closing=np.array([0.8, 0.32, 0.6]),
+            closing=np.array([0.67, 0.32, 0.65]),
         ),
         SphereShape("still", np.array([0.75, 0.5, -0.7]), 0.5, "copper"),
     )
