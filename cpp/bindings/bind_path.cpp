@@ -20,7 +20,9 @@ std::shared_ptr<PathGeometry> build(const std::vector<MeshArrays>& meshes, const
                                     const py::array& matrices, const py::array& spheres,
                                     const py::array& material, const py::array& emission,
                                     const LightTuples& lights,
-                                    const std::vector<std::tuple<Sdf, py::array>>& sdfs) {
+                                    const std::vector<std::tuple<Sdf, py::array>>& sdfs,
+                                    const std::optional<py::array>& closing_matrices,
+                                    const std::optional<py::array>& closing_spheres) {
     std::vector<Mesh> built;
     std::vector<Instance> instances;
     std::vector<std::vector<float>> normals;
@@ -44,9 +46,16 @@ std::shared_ptr<PathGeometry> build(const std::vector<MeshArrays>& meshes, const
     ArrayArgs args("PathTracer");
     const std::int32_t* which = args.in<std::int32_t>("instances", placed, "I");
     const double* rows = args.in<double>("matrices", matrices, "I 3 4");
+    const double* later = closing_matrices
+                              ? args.in<double>("closing_matrices", *closing_matrices, "I 3 4")
+                              : nullptr;
     for (std::int64_t i = 0; i < args.size("I"); ++i) {
         instances.push_back({which[i], Affine{}});
-        std::copy_n(rows + 12 * i, 12, instances.back().world_from_object.m.begin());
+        Instance& it = instances.back();
+        std::copy_n(rows + 12 * i, 12, it.world_from_object.m.begin());
+        if (!later) continue;
+        std::copy_n(later + 12 * i, 12, it.closing.m.begin());
+        it.moves = it.closing.m != it.world_from_object.m;
     }
     const float* s = args.in<float>("spheres", spheres, "K 4");
     const std::int32_t* m = args.in<std::int32_t>("material", material, "S");
@@ -59,13 +68,18 @@ std::shared_ptr<PathGeometry> build(const std::vector<MeshArrays>& meshes, const
     std::vector<Sphere> balls;
     for (std::size_t i = 0; i < K; ++i)
         balls.push_back({s[4 * i], s[4 * i + 1], s[4 * i + 2], s[4 * i + 3]});
+    std::vector<Sphere> closing;
+    if (closing_spheres) s = args.in<float>("closing_spheres", *closing_spheres, "K 4");
+    for (std::size_t i = 0; closing_spheres && i < K; ++i)
+        closing.push_back({s[4 * i], s[4 * i + 1], s[4 * i + 2], s[4 * i + 3]});
     std::vector<SdfSolid> solids;
     for (const auto& [body, numbers] : sdfs)
         solids.emplace_back(body, checked_numbers(args, body, numbers));
     const std::vector<AnyLight<double>> listed = listed_lights<double>(lights);
     const py::gil_scoped_release release;
     return std::make_shared<PathGeometry>(
-        Bvh(std::move(built), std::move(instances), std::move(balls), std::move(solids)),
+        Bvh(std::move(built), std::move(instances), std::move(balls), std::move(solids),
+            std::move(closing)),
         std::vector<std::int32_t>(m, m + S), std::move(normals), std::span<const double>(e, 3 * S),
         listed);
 }
@@ -127,14 +141,17 @@ void bind_path(py::module_& m) {
         "distances.")
         .def(py::init(&build), py::arg("meshes"), py::arg("instances"), py::arg("matrices"),
              py::arg("spheres"), py::arg("material"), py::arg("emission"), py::arg("lights"),
-             py::arg("sdfs") = py::list(),
+             py::arg("sdfs") = py::list(), py::arg("closing_matrices") = py::none(),
+             py::arg("closing_spheres") = py::none(),
              "Meshes as (vertices (V, 3) float32, faces (F, 3) uint32, normals (V, 3) float32 or "
              "None,\nuv (V, 2) float32 or None); instances (I,) int32, mesh numbers, and matrices "
              "(I, 3, 4) float64;\nspheres (K, 4) float32; material (S,) int32 and emission (S, 3) "
              "float64 of each shape,\nwhich are the instances, then the spheres, then sdfs, (body, "
              "numbers (P,)). Lights of the "
              "list: (name, parameters, "
-             "constants) or\n(\"environment\", texels, world_from_map, sampler), float64.")
+             "constants) or\n(\"environment\", texels, world_from_map, sampler), float64. "
+             "closing_matrices and\nclosing_spheres are those when the shutter closes, None where "
+             "nothing moves.")
         .def("choose_lights", &choose_lights, py::arg("u"),
              "(entries (N,) int64, their probabilities (N,)) by uniform u (N,): first lights of "
              "the list, then what emits of the shapes.")

@@ -3113,13 +3113,16 @@ class PathGeometry:
         emission: numpy.ndarray,
         lights: collections.abc.Sequence[tuple[typing.Any, ...]],
         sdfs: collections.abc.Sequence[tuple[Sdf, numpy.ndarray]] = [],
+        closing_matrices: numpy.ndarray | None = None,
+        closing_spheres: numpy.ndarray | None = None,
     ) -> None:
         """
         Meshes as (vertices (V, 3) float32, faces (F, 3) uint32, normals (V, 3) float32 or None,
         uv (V, 2) float32 or None); instances (I,) int32, mesh numbers, and matrices (I, 3, 4) float64;
         spheres (K, 4) float32; material (S,) int32 and emission (S, 3) float64 of each shape,
         which are the instances, then the spheres, then sdfs, (body, numbers (P,)). Lights of the list: (name, parameters, constants) or
-        ("environment", texels, world_from_map, sampler), float64.
+        ("environment", texels, world_from_map, sampler), float64. closing_matrices and
+        closing_spheres are those when the shutter closes, None where nothing moves.
         """
     def choose_lights(self, u: numpy.ndarray) -> tuple[typing.Any, ...]:
         """

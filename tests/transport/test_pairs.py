@@ -24,6 +24,7 @@ from photograd.transport.sample_counts import PAIR_EVEN_SHARE, pair_counts
 
 from tests.transport.media_scenes import fog_box, smoke
 from tests.transport.scenes import any_material, stage
+from tests.transport.test_moving_shapes import moving
 from tests.transport.test_textures import noise, wall
 
 pytestmark = pytest.mark.usefixtures("core")
@@ -39,6 +40,7 @@ SCENES = {
     "mips": lambda: wall(PAINTED, {"t": replace(noise(24, 24), filter="mip")}, 7),
     "fog": lambda: fog_box(size=5),
     "smoke": lambda: fog_box(smoke(), size=5),
+    "moving": lambda: moving(7, alpha=True),
 }
 
 

@@ -25,6 +25,12 @@ struct Affine {
                m[2] * (m[4] * m[9] - m[5] * m[8]);
     }
     [[nodiscard]] bool is_identity() const { return m == Affine{}.m; }
+    /// Each point on its straight way from here to there, at a time from 0 to 1.
+    [[nodiscard]] Affine towards(const Affine& there, double time) const {
+        Affine out;
+        for (std::size_t i = 0; i < m.size(); ++i) out.m[i] = (1 - time) * m[i] + time * there.m[i];
+        return out;
+    }
 };
 
 }  // namespace photograd

@@ -69,7 +69,7 @@ void load(const RayPacket& rays, RTCRay16& out, int* valid) {
         out.dir_z[i] = on ? rays.direction[2][i] : 1;
         out.tnear[i] = on ? rays.t_min[i] : 1;
         out.tfar[i] = on ? rays.t_max[i] : 0;
-        out.time[i] = 0;
+        out.time[i] = on ? rays.time[i] : 0;
         out.mask[i] = 0xffffffffu;
         out.id[i] = static_cast<unsigned>(i);
         out.flags[i] = 0;
@@ -179,10 +179,15 @@ struct Bvh::Tree {
         check("meshes");
     }
     /// All spheres as one geometry, in the scene under the number `id`.
-    void add_spheres(const std::vector<Sphere>& spheres, unsigned id) {
+    void add_spheres(const std::vector<Sphere>& spheres, const std::vector<Sphere>& closing,
+                     unsigned id) {
         const RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_SPHERE_POINT);
+        rtcSetGeometryTimeStepCount(g, closing.empty() ? 1 : 2);
         rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, spheres.data(),
                                    0, sizeof(Sphere), spheres.size());
+        if (!closing.empty())
+            rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 1, RTC_FORMAT_FLOAT4,
+                                       closing.data(), 0, sizeof(Sphere), closing.size());
         rtcCommitGeometry(g);
         rtcAttachGeometryByID(scene, g, id);
         rtcReleaseGeometry(g);
@@ -206,7 +211,7 @@ struct Bvh::Tree {
     /// which saves a level of the hierarchy.
     void add_instance(const Instance& it, unsigned id) {
         const auto m = static_cast<std::size_t>(it.mesh);
-        if (it.world_from_object.is_identity()) {
+        if (it.world_from_object.is_identity() && !it.moves) {
             rtcAttachGeometryByID(scene, geometries[m], id);
             return;
         }
@@ -218,10 +223,13 @@ struct Bvh::Tree {
         }
         const RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
         rtcSetGeometryInstancedScene(g, mesh_scenes[m]);
-        float rows[12];
-        for (std::size_t i = 0; i < 12; ++i)
-            rows[i] = static_cast<float>(it.world_from_object.m[i]);
-        rtcSetGeometryTransform(g, 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, rows);
+        rtcSetGeometryTimeStepCount(g, it.moves ? 2 : 1);
+        for (unsigned step = 0; step < (it.moves ? 2u : 1u); ++step) {
+            const Affine& place = step == 0 ? it.world_from_object : it.closing;
+            float rows[12];
+            for (std::size_t i = 0; i < 12; ++i) rows[i] = static_cast<float>(place.m[i]);
+            rtcSetGeometryTransform(g, step, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, rows);
+        }
         rtcCommitGeometry(g);
         rtcAttachGeometryByID(scene, g, id);
         rtcReleaseGeometry(g);
@@ -229,14 +237,20 @@ struct Bvh::Tree {
 };
 
 Bvh::Bvh(std::vector<Mesh> meshes, std::vector<Instance> instances, std::vector<Sphere> spheres,
-         std::vector<SdfSolid> solids)
+         std::vector<SdfSolid> solids, std::vector<Sphere> closing_spheres)
     : meshes_(std::move(meshes)),
       instances_(std::move(instances)),
       spheres_(std::move(spheres)),
+      closing_spheres_(std::move(closing_spheres)),
       solids_(std::move(solids)),
       tree_(std::make_unique<Tree>()) {
     if (shape_count() == 0) fail(ErrorKind::scene, "bvh", "instances", "at least one", "none");
     check_spheres(spheres_);
+    check_spheres(closing_spheres_);
+    moves_ = !closing_spheres_.empty();
+    if (moves_ && closing_spheres_.size() != spheres_.size())
+        fail(ErrorKind::scene, "bvh", "closing_spheres", "one for each sphere, or none",
+             std::to_string(closing_spheres_.size()));
     for (const Mesh& mesh : meshes_) tree_->add_mesh(mesh);
     tree_->mesh_scenes.resize(meshes_.size(), nullptr);
     for (std::size_t i = 0; i < instances_.size(); ++i) {
@@ -250,9 +264,11 @@ Bvh::Bvh(std::vector<Mesh> meshes, std::vector<Instance> instances, std::vector<
         if (!(std::abs(volume) > 0 && std::abs(volume) < std::numeric_limits<double>::infinity()))
             fail(ErrorKind::scene, "bvh", "world_from_object", "finite, invertible matrices",
                  "determinant " + std::to_string(volume) + " in " + name);
+        moves_ = moves_ || it.moves;
         tree_->add_instance(it, static_cast<unsigned>(i));
     }
-    if (!spheres_.empty()) tree_->add_spheres(spheres_, static_cast<unsigned>(instances_.size()));
+    if (!spheres_.empty())
+        tree_->add_spheres(spheres_, closing_spheres_, static_cast<unsigned>(instances_.size()));
     if (!solids_.empty()) tree_->add_solids(solids_, static_cast<unsigned>(solid_instance()));
     rtcCommitScene(tree_->scene);
     tree_->check("instances");
@@ -263,6 +279,15 @@ Bvh::Bvh(std::vector<Mesh> meshes, std::vector<Instance> instances, std::vector<
 
 Bvh::~Bvh() = default;
 Bvh::Bvh(Bvh&&) noexcept = default;
+
+bool Bvh::moves(std::int32_t shape) const {
+    const auto number = static_cast<std::size_t>(shape);
+    if (number < instances_.size()) return instances_[number].moves;
+    if (closing_spheres_.empty() || shape >= first_solid()) return false;
+    const Sphere &a = spheres_[number - instances_.size()],
+                 &b = closing_spheres_[number - instances_.size()];
+    return a.x != b.x || a.y != b.y || a.z != b.z || a.radius != b.radius;
+}
 
 void Bvh::trace(const RayPacket& rays, bool side_by_side, PacketHits& hits) const {
     RTCRayHit16 packet;

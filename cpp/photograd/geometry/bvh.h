@@ -18,9 +18,17 @@
 
 namespace photograd {
 
+/// `closing` is world_from_object when the shutter closes, of an instance that moves while it is open: straight on, point
+/// by point, at one speed.
 struct Instance {
     int mesh;
     Affine world_from_object;
+    bool moves = false;
+    Affine closing = {};
+
+    [[nodiscard]] Affine at(double time) const {
+        return moves ? world_from_object.towards(closing, time) : world_from_object;
+    }
 };
 
 /// Up to 16 rays side by side, the unit in which renderers trace. Directions need not have unit length:
@@ -28,6 +36,7 @@ struct Instance {
 struct alignas(64) RayPacket {
     static constexpr int width = 16;
     float origin[3][width], direction[3][width], t_min[width], t_max[width];
+    float time[width];  // from 0, when the shutter opens, to 1
     bool active[width];
 };
 
@@ -63,9 +72,10 @@ class Bvh {
 public:
     /// Spheres have no instances: all of them answer under one number, `sphere_instance()`, and the
     /// primitive is the number of the sphere; so do bodies of signed distances under `solid_instance()`.
-    /// Functions that speak of triangles do not take theirs.
+    /// Functions that speak of triangles do not take theirs. `closing_spheres` are the same ones when the
+    /// shutter closes, or none if all stand still.
     Bvh(std::vector<Mesh> meshes, std::vector<Instance> instances, std::vector<Sphere> spheres = {},
-        std::vector<SdfSolid> solids = {});
+        std::vector<SdfSolid> solids = {}, std::vector<Sphere> closing_spheres = {});
     ~Bvh();
     Bvh(Bvh&&) noexcept;
 
@@ -86,20 +96,25 @@ public:
 
     /// The world-space corners of a hit triangle.
     template <class R>
-    void corners(std::int32_t instance, std::int32_t primitive, Vec3<R> out[3]) const {
+    void corners(std::int32_t instance, std::int32_t primitive, Vec3<R> out[3],
+                 double time = 0) const {
         const Instance& it = instances_[static_cast<std::size_t>(instance)];
         const Mesh& mesh = meshes_[static_cast<std::size_t>(it.mesh)];
         const std::uint32_t* c = mesh.corners(static_cast<std::uint32_t>(primitive));
         for (int k = 0; k < 3; ++k) {
             out[k] = mesh.vertex<R>(c[k]);
+            if (it.moves) {
+                out[k] = it.at(time).point(out[k]);
+                continue;
+            }
             if (!it.world_from_object.is_identity()) out[k] = it.world_from_object.point(out[k]);
         }
     }
     template <class R>
     [[nodiscard]] TrianglePoint<R> surface_point(const Ray<R>& ray, std::int32_t instance,
-                                                 std::int32_t primitive) const {
+                                                 std::int32_t primitive, double time = 0) const {
         Vec3<R> p[3];
-        corners(instance, primitive, p);
+        corners(instance, primitive, p, time);
         return triangle_point(ray, p[0], p[1], p[2]);
     }
 
@@ -131,6 +146,18 @@ public:
     [[nodiscard]] std::int32_t sphere_instance() const {
         return static_cast<std::int32_t>(instances_.size());
     }
+    /// A sphere at a time from 0 to 1.
+    [[nodiscard]] Sphere sphere(std::int32_t number, float time) const {
+        const Sphere& a = spheres_[static_cast<std::size_t>(number)];
+        if (closing_spheres_.empty()) return a;
+        const Sphere& b = closing_spheres_[static_cast<std::size_t>(number)];
+        const auto between = [time](float x, float y) { return (1 - time) * x + time * y; };
+        return {between(a.x, b.x), between(a.y, b.y), between(a.z, b.z),
+                between(a.radius, b.radius)};
+    }
+    /// Whether anything moves while the shutter is open; whether this shape does.
+    [[nodiscard]] bool moves() const { return moves_; }
+    [[nodiscard]] bool moves(std::int32_t shape) const;
     [[nodiscard]] std::span<const SdfSolid> solids() const { return solids_; }
     [[nodiscard]] std::int32_t solid_instance() const { return sphere_instance() + 1; }
     /// Instances, spheres and solids are numbered one after another.
@@ -146,8 +173,9 @@ private:
     struct Tree;  // Embree's handles
     std::vector<Mesh> meshes_;
     std::vector<Instance> instances_;
-    std::vector<Sphere> spheres_;
+    std::vector<Sphere> spheres_, closing_spheres_;
     std::vector<SdfSolid> solids_;
+    bool moves_ = false;
     std::unique_ptr<Tree> tree_;
     Box bounds_;
 };

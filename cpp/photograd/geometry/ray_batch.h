@@ -27,6 +27,7 @@ bool load_lane(const RaySpan<R>& rays, const RayInterval<R>& interval, std::int6
         finite += (p - p) + (e - e);  // 0, or NaN if any of them is NaN or infinite
         squared += e * e;
     }
+    packet.time[k] = 0;
     packet.t_min[k] = float(interval.t_min[row * interval.t_min_step]);
     packet.t_max[k] = float(interval.t_max[row * interval.t_max_step]);
     packet.active[k] = finite == 0 && squared > 0;

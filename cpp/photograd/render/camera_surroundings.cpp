@@ -25,7 +25,7 @@ bool meets_surfaces(const PathGeometry& geometry, const ThinLens& camera) {
 
 }  // namespace
 
-Surroundings surroundings_of(const PathGeometry& geometry, const Vec3<double>& point) {
+Surroundings surroundings_of(const PathGeometry& geometry, const Vec3<double>& point, float time) {
     constexpr int most_surfaces = 100000;
     const Vec3<double> direction = normalize(Vec3<double>(0.1234, 0.9432, 0.2718));
     std::vector<int> entered(geometry.shape_count(), 0);
@@ -33,12 +33,12 @@ Surroundings surroundings_of(const PathGeometry& geometry, const Vec3<double>& p
     Vec3<double> origin = point;
     for (int i = 0; i < most_surfaces; ++i) {
         RayPacket packet{};
-        set_lane(packet, 0, origin, direction, std::numeric_limits<float>::infinity());
+        set_lane(packet, 0, origin, direction, std::numeric_limits<float>::infinity(), time);
         PacketHits found;
         geometry.bvh.trace(packet, false, found);
         if (found.primitive[0] < 0) break;
         const auto hit = surface_hit(geometry, Ray<double>{origin, direction}, found.instance[0],
-                                     found.primitive[0], found.t[0]);
+                                     found.primitive[0], found.t[0], time);
         const bool leaves = dot(hit.outside, direction) > 0;
         int& count = entered[static_cast<std::size_t>(hit.shape)];
         if (leaves && count == 0)
@@ -58,12 +58,14 @@ CameraSurroundings::CameraSurroundings(const PathGeometry& geometry, const ThinL
     : geometry_(geometry),
       camera_(camera),
       numbers_(sampler),
-      passes_surfaces_(meets_surfaces(geometry, camera)),
+      changes_(geometry.bvh.moves() || meets_surfaces(geometry, camera)),
       opening_(surroundings_of(geometry, position_of(camera))) {}
 
 Surroundings CameraSurroundings::of(const RandomKey& key) {
-    if (!passes_surfaces_) return opening_;
-    return surroundings_of(geometry_, position_of(camera_.at(sample_time(key, numbers_))));
+    if (!changes_) return opening_;
+    const double time = sample_time(key, numbers_);
+    const Vec3<double> point = position_of(camera_.motion.moves ? camera_.at(time) : camera_);
+    return surroundings_of(geometry_, point, static_cast<float>(time));
 }
 
 }  // namespace photograd

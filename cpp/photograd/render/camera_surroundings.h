@@ -8,10 +8,13 @@
 
 namespace photograd {
 
-/// The shapes with an interior around a point: those that a ray to the outside leaves once more than it enters them.
-Surroundings surroundings_of(const PathGeometry& geometry, const Vec3<double>& point);
+/// The shapes with an interior around a point, at a time from 0 to 1: those that a ray to the outside leaves once more
+/// than it enters them.
+Surroundings surroundings_of(const PathGeometry& geometry, const Vec3<double>& point,
+                             float time = 0);
 
-/// Of every sample. A camera that moves past a surface while its shutter is open is asked anew for each moment.
+/// Of every sample. Where a camera moves past a surface while its shutter is open, or a surface may move past the
+/// camera, each moment is asked anew.
 class CameraSurroundings {
 public:
     CameraSurroundings(const PathGeometry& geometry, const ThinLens& camera, Sampler sampler);
@@ -22,7 +25,7 @@ private:
     const PathGeometry& geometry_;
     const ThinLens& camera_;
     SampleNumbers numbers_;
-    bool passes_surfaces_;
+    bool changes_;
     Surroundings opening_;
 };
 

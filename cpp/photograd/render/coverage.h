@@ -71,6 +71,7 @@ struct ShadowRay {
     Ray<R> ray;  // of unit direction
     R end = R(0);
     LightVertex<R>* light = nullptr;
+    float time = 0;  // while the shutter is open
 };
 
 /// Whether light passes what a shadow ray has met; then the light has one more veil.
@@ -100,7 +101,8 @@ template <Real R>
 void pass_veil(const PathScene<R>& scene, bool stop_when_black, std::int32_t instance,
                std::int32_t primitive, float t, ShadowRay<R>& shadow) {
     const PathGeometry& geometry = *scene.geometry;
-    const SurfaceHit<R> hit = surface_hit(geometry, shadow.ray, instance, primitive, t);
+    const SurfaceHit<R> hit =
+        surface_hit(geometry, shadow.ray, instance, primitive, t, shadow.time);
     shadow.blocked = !leaves_light(scene, stop_when_black, hit, *shadow.light);
     if (shadow.blocked) return;
     const Vec3<R>& way = shadow.ray.direction;
@@ -124,7 +126,7 @@ void look_through(const PathScene<R>& scene, bool stop_when_black, ShadowRay<R>*
             if (!shadows[k].open) continue;
             any = true;
             set_lane(packet, k, shadows[k].ray.origin, shadows[k].ray.direction,
-                     static_cast<float>(shadows[k].end));
+                     static_cast<float>(shadows[k].end), shadows[k].time);
         }
         if (!any) return;
         PacketHits found;

@@ -5,6 +5,7 @@
 
 #include "photograd/render/path.h"
 #include "photograd/render/path_walk.h"
+#include "photograd/render/shutter_time.h"
 
 namespace photograd {
 
@@ -12,12 +13,6 @@ inline constexpr std::int64_t chunk_pixels = 64;  // of one task
 
 inline RandomKey key_of(const PathOptions& options, std::int64_t pixel, std::uint32_t sample) {
     return {options.seed, 0, static_cast<std::uint32_t>(pixel), sample};
-}
-
-/// The moment of a sample while the shutter is open, 0 to 1: by the first number of a block that no vertex has.
-inline double sample_time(const RandomKey& key, SampleNumbers& numbers) {
-    constexpr std::uint32_t shutter_block = 1u << 16;
-    return uniform_from<double>(numbers(key, shutter_block)[0]);
 }
 
 /// The ray of one sample, at its moment.

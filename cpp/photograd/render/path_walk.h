@@ -14,6 +14,7 @@
 #include "photograd/render/path_vertex.h"
 #include "photograd/render/ray_cone.h"
 #include "photograd/render/ray_lanes.h"
+#include "photograd/render/shutter_time.h"
 
 namespace photograd {
 
@@ -63,6 +64,7 @@ protected:  // what a walk through media (volume_walk.h) shares
         Path<R> path;
         Vec3<R> light_end;  // of the shadow ray, unless the light is at infinity
         bool light_far = false;
+        float time = 0;  // at which the path sees what moves
     };
 
     void begin(const Ray<R>* rays, const RandomKey* keys, int count) {
@@ -77,6 +79,8 @@ protected:  // what a walk through media (volume_walk.h) shares
             lane.beta = Vec3<R>(R(1));
             lane.pdf = R(0);
             lane.cone = {R(0), pixel_spread_};
+            if (scene_.geometry->bvh.moves())
+                lane.time = static_cast<float>(sample_time(lane.key, numbers_));
         }
     }
 
@@ -94,7 +98,7 @@ protected:  // what a walk through media (volume_walk.h) shares
             packet.active[k] = false;
             if (lane.alive)
                 set_lane(packet, k, lane.ray.origin, lane.ray.direction,
-                         std::numeric_limits<float>::infinity());
+                         std::numeric_limits<float>::infinity(), lane.time);
         }
         PacketHits found;
         scene_.geometry->bvh.trace(packet, depth == 0, found);
@@ -105,7 +109,7 @@ protected:  // what a walk through media (volume_walk.h) shares
             const bool met = found.primitive[k] >= 0;
             if (met)
                 lane.hit = surface_hit(*scene_.geometry, lane.ray, found.instance[k],
-                                       found.primitive[k], found.t[k]);
+                                       found.primitive[k], found.t[k], lane.time);
             arrive(lane, met);
             any = any || lanes_[k].alive;
         }
@@ -172,7 +176,7 @@ protected:  // what a walk through media (volume_walk.h) shares
         Footprint<R>& seen = lane.path.back().seen;
         if (mips_)
             seen = lane.cone.footprint(scene_.geometry->bvh, lane.hit, lane.ray.direction,
-                                       length(lane.hit.position - lane.previous));
+                                       length(lane.hit.position - lane.previous), lane.time);
         lane.own_sampling =
             textured(scene_.sampling[m], uses, textures, scene_.sampling_texels, uv, seen);
         if (!drawn_as_sampled_)
@@ -197,9 +201,9 @@ protected:  // what a walk through media (volume_walk.h) shares
                 lane.hit.position, lane.path.back().light.direction, scene_.geometry->offset);
             if (lane.light_far)
                 set_lane(packet, k, start, lane.path.back().light.direction,
-                         std::numeric_limits<float>::infinity());
+                         std::numeric_limits<float>::infinity(), lane.time);
             else
-                set_lane(packet, k, start, lane.light_end - start, 1.0f);
+                set_lane(packet, k, start, lane.light_end - start, 1.0f, lane.time);
         }
         bool blocked[width];
         scene_.geometry->bvh.occluded(packet, false, blocked);
@@ -220,7 +224,7 @@ protected:  // what a walk through media (volume_walk.h) shares
                 lane.side.start(lane.hit.position, light.direction, scene_.geometry->offset);
             const Vec3<R> way = lane.light_far ? light.direction : lane.light_end - start;
             const R end = lane.light_far ? std::numeric_limits<R>::infinity() : length(way);
-            shadows[k] = {true, false, {start, normalize(way)}, end, &light};
+            shadows[k] = {true, false, {start, normalize(way)}, end, &light, lane.time};
         }
         look_through(scene_, stop_when_black_, shadows);
         for (int k = 0; k < width; ++k)
@@ -320,8 +324,9 @@ protected:  // what a walk through media (volume_walk.h) shares
         if (!survives(lane, depth, next.value, weight, uniform_from<R>(words[3]))) return;
         lane.pdf = next.lobe < 0 ? next.pdf : R(0);
         if (mips_)
-            lane.cone = lane.cone.onward(*scene_.geometry, lane.hit, v.direction, direction,
-                                         length(lane.hit.position - lane.previous), lane.pdf);
+            lane.cone =
+                lane.cone.onward(*scene_.geometry, lane.hit, v.direction, direction,
+                                 length(lane.hit.position - lane.previous), lane.pdf, lane.time);
         lane.previous = lane.hit.position;
         lane.ray = {lane.side.start(lane.hit.position, direction, scene_.geometry->offset),
                     direction};

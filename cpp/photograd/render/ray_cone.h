@@ -31,7 +31,7 @@ namespace photograd {
 /// them; of a sphere, 1 / radius. Above 0 where it bulges to the side of `outside`. A body of signed distances counts as
 /// flat.
 template <class R>
-R curvature(const PathGeometry& scene, const SurfaceHit<R>& hit) {
+R curvature(const PathGeometry& scene, const SurfaceHit<R>& hit, double time = 0) {
     const Bvh& bvh = scene.bvh;
     if (hit.shape >= bvh.first_solid()) return R(0);
     if (hit.shape >= bvh.sphere_instance())
@@ -42,12 +42,12 @@ R curvature(const PathGeometry& scene, const SurfaceHit<R>& hit) {
     const std::uint32_t* corner =
         bvh.mesh_of(hit.shape).corners(static_cast<std::uint32_t>(hit.primitive));
     Vec3<R> p[3], n[3];
-    bvh.corners(hit.shape, hit.primitive, p);
+    bvh.corners(hit.shape, hit.primitive, p, time);
+    const Affine world_from_object = place.at(time);
     for (int k = 0; k < 3; ++k) {
         const float* row = normals.data() + 3 * static_cast<std::size_t>(corner[k]);
         n[k] = Vec3<R>(R(row[0]), R(row[1]), R(row[2]));
-        if (!place.world_from_object.is_identity())
-            n[k] = world_normal(place.world_from_object, n[k]);
+        if (!world_from_object.is_identity()) n[k] = world_normal(world_from_object, n[k]);
         const R size = length(n[k]);
         if (!(size > R(0))) return R(0);
         n[k] *= (dot(n[k], hit.outside) < R(0) ? R(-1) : R(1)) / size;
@@ -66,11 +66,11 @@ struct RayCone {
 
     [[nodiscard]] R width_at(R t) const { return std::abs(width + spread * t); }
 
-    /// What it sees of a mesh with texture coordinates after `t` metres along `direction`.
+    /// What it sees of a mesh with texture coordinates after `t` metres along `direction`, at a time from 0 to 1.
     [[nodiscard]] Footprint<R> footprint(const Bvh& bvh, const SurfaceHit<R>& hit,
-                                         const Vec3<R>& direction, R t) const {
+                                         const Vec3<R>& direction, R t, double time = 0) const {
         Vec3<R> p[3];
-        bvh.corners(hit.shape, hit.primitive, p);
+        bvh.corners(hit.shape, hit.primitive, p, time);
         const Vec3<R> e1 = p[1] - p[0], e2 = p[2] - p[0], n = cross(e1, e2);
         const Vec2<R> a = bvh.texture_point(hit.shape, hit.primitive, R(0), R(0)),
                       b = bvh.texture_point(hit.shape, hit.primitive, R(1), R(0)) - a,
@@ -87,10 +87,10 @@ struct RayCone {
 
     /// The cone that goes on from there along `onward`; `pdf` is its density over solid angle, 0 if it had no choice.
     [[nodiscard]] RayCone onward(const PathGeometry& scene, const SurfaceHit<R>& hit,
-                                 const Vec3<R>& direction, const Vec3<R>& onward, R t,
-                                 R pdf) const {
+                                 const Vec3<R>& direction, const Vec3<R>& onward, R t, R pdf,
+                                 double time = 0) const {
         const R cosine = dot(hit.outside, direction), now = width + spread * t;
-        const R turn = curvature(scene, hit) * std::abs(now) / slant(cosine);
+        const R turn = curvature(scene, hit, time) * std::abs(now) / slant(cosine);
         const bool reflected = cosine * dot(hit.outside, onward) < R(0);
         const R gain = reflected ? (cosine < R(0) ? R(2) : R(-2)) : R(-0.5);
         // Behind a focus the cone is counted from its other side.

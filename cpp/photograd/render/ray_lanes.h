@@ -10,13 +10,14 @@ namespace photograd {
 
 template <class R>
 void set_lane(RayPacket& packet, int k, const Vec3<R>& origin, const Vec3<R>& direction,
-              float t_max) {
+              float t_max, float time = 0) {
     for (int axis = 0; axis < 3; ++axis) {
         packet.origin[axis][k] = static_cast<float>(origin[axis]);
         packet.direction[axis][k] = static_cast<float>(direction[axis]);
     }
     packet.t_min[k] = 0;
     packet.t_max[k] = t_max;
+    packet.time[k] = time;
     packet.active[k] = true;
 }
 

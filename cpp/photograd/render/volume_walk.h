@@ -99,7 +99,7 @@ private:
             if (!lane.alive) continue;
             any = true;
             set_lane(packet, k, lane.ray.origin, lane.ray.direction,
-                     std::numeric_limits<float>::infinity());
+                     std::numeric_limits<float>::infinity(), lane.time);
         }
         if (!any) return false;
         PacketHits found;
@@ -110,7 +110,7 @@ private:
             const bool met = found.primitive[k] >= 0;
             if (met)
                 lane.hit = surface_hit(geometry(), lane.ray, found.instance[k], found.primitive[k],
-                                       found.t[k]);
+                                       found.t[k], lane.time);
             advance(lane, extras_[k], met);
         }
         return true;
@@ -211,9 +211,10 @@ private:
             if (!lane.shadow) continue;
             if (lane.light_far)
                 set_lane(packet, k, shadows[k].origin, lane.path.back().light.direction,
-                         std::numeric_limits<float>::infinity());
+                         std::numeric_limits<float>::infinity(), lane.time);
             else
-                set_lane(packet, k, shadows[k].origin, lane.light_end - shadows[k].origin, 1.0f);
+                set_lane(packet, k, shadows[k].origin, lane.light_end - shadows[k].origin, 1.0f,
+                         lane.time);
         }
         PacketHits found;
         geometry().bvh.trace(packet, false, found);
@@ -235,7 +236,7 @@ private:
         if (met) {
             const Ray<R> ray{shadow.origin, light.direction};
             hit = surface_hit(geometry(), ray, found.instance[k], found.primitive[k],
-                              found.t[k] * scale_of(lane, shadow));
+                              found.t[k] * scale_of(lane, shadow), lane.time);
             if (!is_boundary(geometry(), hit.shape) &&
                 !leaves_light(scene_, stop_when_black_, hit, light)) {
                 light.weight = R(0);

@@ -37,9 +37,10 @@ template <class R>
 struct TextureAxes {
     Vec3<R> u, v;
 
-    static TextureAxes of(const Bvh& bvh, std::int32_t instance, std::int32_t primitive) {
+    static TextureAxes of(const Bvh& bvh, std::int32_t instance, std::int32_t primitive,
+                          double time = 0) {
         Vec3<R> p[3];
-        bvh.corners(instance, primitive, p);
+        bvh.corners(instance, primitive, p, time);
         const Vec2<R> a = bvh.texture_point(instance, primitive, R(0), R(0)),
                       b = bvh.texture_point(instance, primitive, R(1), R(0)) - a,
                       c = bvh.texture_point(instance, primitive, R(0), R(1)) - a;
@@ -52,9 +53,9 @@ struct TextureAxes {
 /// Bends `normal`, which lies on the side of `outside`; a map that would turn it away from there does nothing.
 template <class R>
 void bend_normal(const Bvh& bvh, const NormalMap& map, std::int32_t instance,
-                 std::int32_t primitive, const Vec2<R>& uv, const Vec3<R>& outside,
-                 Vec3<R>& normal) {
-    const auto axes = TextureAxes<R>::of(bvh, instance, primitive);
+                 std::int32_t primitive, const Vec2<R>& uv, const Vec3<R>& outside, Vec3<R>& normal,
+                 double time = 0) {
+    const auto axes = TextureAxes<R>::of(bvh, instance, primitive, time);
     Vec3<R> x = axes.u;
     x -= normal * dot(normal, x);
     const R size = length(x);

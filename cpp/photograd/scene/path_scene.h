@@ -116,7 +116,7 @@ Vec3<R> world_normal(const Affine& world_from_object, const Vec3<R>& n) {
 /// The interpolated normal of a mesh that has normals, on the side of the geometric one.
 template <class R>
 void shade(const PathGeometry& scene, std::int32_t instance, std::int32_t primitive,
-           const TrianglePoint<R>& p, SurfaceHit<R>& hit) {
+           const TrianglePoint<R>& p, double time, SurfaceHit<R>& hit) {
     const Instance& place = scene.bvh.instances()[static_cast<std::size_t>(instance)];
     const std::vector<float>& normals = scene.normals[static_cast<std::size_t>(place.mesh)];
     if (normals.empty()) return;
@@ -129,7 +129,10 @@ void shade(const PathGeometry& scene, std::int32_t instance, std::int32_t primit
         sum += weight[k] * Vec3<R>(R(n[0]), R(n[1]), R(n[2]));
     }
     if (!(length(sum) > R(1e-3))) return;  // normals that cancel say nothing
-    if (!place.world_from_object.is_identity()) sum = world_normal(place.world_from_object, sum);
+    if (place.moves)
+        sum = world_normal(place.at(time), sum);
+    else if (!place.world_from_object.is_identity())
+        sum = world_normal(place.world_from_object, sum);
     const R size = length(sum);
     if (!(size > R(0))) return;
     hit.shading = sum * ((dot(sum, p.normal) < R(0) ? R(-1) : R(1)) / size);
@@ -154,11 +157,12 @@ Vec2<R> piece_uv(const Bvh& bvh, const LightPiece& piece, const Vec3<R>& positio
     return bvh.texture_point(piece.shape, face, u, v);
 }
 
+/// `time`: at which the ray sees what moves, from 0 to 1.
 template <class R>
 SurfaceHit<R> surface_hit(const PathGeometry& scene, const Ray<R>& ray, std::int32_t instance,
-                          std::int32_t primitive, float found_t) {
+                          std::int32_t primitive, float found_t, float time = 0) {
     if (instance == scene.bvh.sphere_instance()) {
-        const Sphere& sphere = scene.bvh.spheres()[static_cast<std::size_t>(primitive)];
+        const Sphere sphere = scene.bvh.sphere(primitive, time);
         const SpherePoint<R> p = sphere_point(ray, sphere, R(found_t));
         return {instance + primitive, primitive, p.position, p.normal, p.normal};
     }
@@ -170,16 +174,17 @@ SurfaceHit<R> surface_hit(const PathGeometry& scene, const Ray<R>& ray, std::int
         return {scene.bvh.first_solid() + primitive, primitive, Vec3<R>(p.position), normal,
                 normal};
     }
-    const TrianglePoint<R> p = scene.bvh.surface_point(ray, instance, primitive);
+    const TrianglePoint<R> p = scene.bvh.surface_point(ray, instance, primitive, double(time));
     SurfaceHit<R> hit{instance, primitive, p.position,
                       p.normal, p.normal,  scene.bvh.texture_point(instance, primitive, p.u, p.v)};
-    shade(scene, instance, primitive, p, hit);
+    shade(scene, instance, primitive, p, double(time), hit);
     const auto material =
         static_cast<std::size_t>(scene.material[static_cast<std::size_t>(instance)]);
     if (const NormalMap* map = scene.textures.bends(material))
-        bend_normal(scene.bvh, *map, instance, primitive, hit.uv, hit.outside, hit.shading);
+        bend_normal(scene.bvh, *map, instance, primitive, hit.uv, hit.outside, hit.shading,
+                    double(time));
     if (scene.textures.is_directed(material) && scene.bvh.mesh_of(instance).has_uv())
-        hit.along = TextureAxes<R>::of(scene.bvh, instance, primitive).u;
+        hit.along = TextureAxes<R>::of(scene.bvh, instance, primitive, double(time)).u;
     return hit;
 }
 

@@ -96,6 +96,9 @@ void SceneLights::add_rectangle(const QuadLight<double>& quad) {
 
 void SceneLights::add_shape(const Bvh& bvh, std::int32_t shape, double L,
                             std::vector<double>& power) {
+    if (bvh.moves(shape))
+        fail(ErrorKind::scene, "scene", "emission", "lights that stand still",
+             "one that moves, shape " + std::to_string(shape));
     if (shape >= bvh.first_solid())
         fail(ErrorKind::scene, "scene", "emission", "light from meshes and spheres alone",
              "a body of signed distances that shines, shape " + std::to_string(shape));

@@ -1,5 +1,5 @@
 """Scenes by name: a Cornell box, a furnace, balls under an evening sky, balls of wax and smoke,
-bodies of signed distances.
+bodies of signed distances, things in motion.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from photograd_course.suggest import choose_from
 from photograd.errors import RangeError, SceneError, message
 from photograd.lights import EnvironmentMap
 from photograd.transport.builtin_media import wax
+from photograd.transport.builtin_motion import thrown
 from photograd.transport.builtin_sdf import carved
 from photograd.transport.camera_place import camera_at
 from photograd.transport.evening import evening_map
@@ -90,6 +91,7 @@ BUILTIN: dict[str, Callable[[int], Scene]] = {
     "evening": evening,
     "wax": wax,
     "carved": carved,
+    "thrown": thrown,
 }
 """Scenes by name, made for pictures of a given size."""
 

@@ -17,6 +17,7 @@ from photograd_course.suggest import choose_from
 
 from photograd.core import _core
 from photograd.errors import RangeError, SceneError, message
+from photograd.transport.motion import refuse_motion
 from photograd.transport.scene import Array, MeshShape, Scene
 from photograd.transport.texture import Texture
 from photograd.transport.tracer import PathTracer
@@ -63,6 +64,7 @@ class OcclusionBake:
         if not radius > 0:
             raise _wrong("radius", "above 0 m", radius)
         self.points = texel_points(_mesh_named(scene, shape), height, width)
+        refuse_motion(_NAME, scene)
         self._geometry = PathTracer(scene)._geometry  # media dim no sight of the sky
         self._radius, self._seed = radius, seed
         self._free = np.zeros(len(self.points.points))
@@ -115,7 +117,7 @@ def bake_ambient_occlusion(
 
     Raises:
         SceneError: no such mesh, or one of several instances, without coordinates, with coordinates
-            beyond 0..1, or too small in its texture for any texel.
+            beyond 0..1, or too small in its texture for any texel; or shapes that move.
         RangeError: no texels or samples, or a radius that is not above 0.
     """
     bake = OcclusionBake(scene, shape, resolution, radius=radius, seed=seed)

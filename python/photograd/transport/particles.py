@@ -21,6 +21,7 @@ from photograd.lights import (
     SunLight,
 )
 from photograd.transport.accumulation import Accumulation
+from photograd.transport.motion import refuse_motion
 from photograd.transport.scene import Array
 from photograd.transport.tracer import NEVER, PathTracer
 
@@ -130,7 +131,8 @@ def trace_light(
     Raises:
         RangeError: particles below 1, or a scene without lights.
         ShapeError: sums of another shape than the receiver.
-        SceneError: lights at infinity in a scene whose world's medium has a grid.
+        SceneError: shapes that move, or lights at infinity in a scene whose world's medium has a
+            grid.
     """
     shape = (receiver.height, receiver.width)
     total = Accumulation.empty(*shape) if sums is None else sums
@@ -169,6 +171,7 @@ def emit_particles(tracer: PathTracer, count: int, *, seed: int, first: int = 0)
 
     Raises:
         RangeError: count below 1, or a scene without lights.
+        SceneError: as `trace_light`.
     """
     _check_count("emit_particles", count)
     return Emitted(
@@ -182,10 +185,11 @@ def scene_arguments(function: str, tracer: PathTracer) -> dict[str, Any]:
     """The scene as the core's functions take it that have no camera.
 
     Raises:
-        SceneError: light from infinity, and around everything a medium with a grid: particles start
-            from a disc before the shapes, and the grid may reach beyond.
+        SceneError: shapes that move; or light from infinity, and around everything a medium with a
+            grid: particles start from a disc before the shapes, and the grid may reach beyond.
     """
     scene = tracer.scene
+    refuse_motion(function, scene)
     far = scene.environment is not None or any(isinstance(x, FAR) for x in scene.lights)
     if scene.world is not None and scene.media[scene.world].density is not None and far:
         expected = "no grid of densities around everything beside lights at infinity"

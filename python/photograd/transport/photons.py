@@ -46,7 +46,8 @@ class PhotonMap:
         Raises:
             RangeError: particles below 1, a radius that is not above 0 and finite, or a scene
                 without lights.
-            SceneError: a scene with media, in which light also comes from between the surfaces.
+            SceneError: a scene with media, in which light also comes from between the surfaces, or
+                with shapes that move.
         """
         if particles < 1:
             raise RangeError(message("PhotonMap", "particles", "at least 1", particles))

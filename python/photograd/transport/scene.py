@@ -21,6 +21,7 @@ from photograd.lights import Light
 from photograd.transport.lens import PINHOLE, Lens
 from photograd.transport.media_list import check_media
 from photograd.transport.medium import BOUNDARY, Medium
+from photograd.transport.motion import check_motion, checked_closing_places
 from photograd.transport.sdf_shape import SdfShape
 from photograd.transport.shape_checks import (
     check_range,
@@ -122,6 +123,9 @@ class MeshShape:
         glow: the texture that scales `emission`, three channels of it, or None.
         interior: name of the medium that fills the mesh, which has to be closed, or
             `medium.VACUUM`. None: nothing in glass, and whatever is around in other surfaces.
+        closing_places: world_from_object of each of `places` (of the mesh itself, where there are
+            none) when the shutter closes: in between, each point moves straight on. None of them:
+            it stands still.
 
     Raises:
         DtypeError, ShapeError: arrays of other types or shapes.
@@ -140,6 +144,7 @@ class MeshShape:
     places: tuple[Array, ...] = ()
     glow: TextureUse | None = None
     interior: str | None = None
+    closing_places: tuple[Array, ...] = ()
 
     def __post_init__(self) -> None:
         vertices = float_rows(self.name, "vertices", self.vertices)
@@ -177,16 +182,19 @@ class MeshShape:
                 raise ShapeError(message("MeshShape", f"{self.name}.uv", expected, got))
             object.__setattr__(self, "uv", np.ascontiguousarray(uv, np.float32))
         object.__setattr__(self, "places", tuple(checked_place(self.name, m) for m in self.places))
+        closing = checked_closing_places(self.name, self.places, self.closing_places)
+        object.__setattr__(self, "closing_places", closing)
 
     @property
     def box(self) -> Array:
-        """(2, 3) lower and upper corner of all instances, metres."""
+        """(2, 3) lower and upper corner of all instances at all times, metres."""
         corners = self.vertices[self.faces.reshape(-1)].astype(np.float64)
-        if not self.places:
+        if not self.places and not self.closing_places:
             return np.array([corners.min(axis=0), corners.max(axis=0)])
         ends = np.array([corners.min(axis=0), corners.max(axis=0)])
+        matrices = (*(self.places or (np.eye(4),)), *self.closing_places)
         eight = np.array([[ends[i, 0], ends[j, 1], ends[k, 2]] for i, j, k in np.ndindex(2, 2, 2)])
-        world = np.concatenate([eight @ m[:3, :3].T + m[:3, 3] for m in self.places])
+        world = np.concatenate([eight @ m[:3, :3].T + m[:3, 3] for m in matrices])
         return np.array([world.min(axis=0), world.max(axis=0)])
 
 
@@ -200,6 +208,8 @@ class SphereShape:
         radius: metres, above 0.
         material, interior: as for `MeshShape`.
         emission: (3,) radiance.
+        closing: (3,) the centre when the shutter closes, metres: it moves there straight on. None
+            stands still.
 
     Raises:
         RangeError, ShapeError: numbers that are not finite, a radius of 0, negative emission.
@@ -211,23 +221,29 @@ class SphereShape:
     material: str
     emission: Array = field(default_factory=lambda: np.zeros(3))
     interior: str | None = None
+    closing: Array | None = None
 
     def __post_init__(self) -> None:
-        center = np.asarray(self.center, np.float64)
-        if center.shape != (3,) or not np.isfinite(center).all():
-            expected = "three finite numbers"
-            raise ShapeError(message("SphereShape", f"{self.name}.center", expected, self.center))
+        for key in ("center", "closing"):
+            given = getattr(self, key)
+            if key == "closing" and given is None:
+                continue
+            point = np.asarray(given, np.float64)
+            if point.shape != (3,) or not np.isfinite(point).all():
+                expected = "three finite numbers"
+                raise ShapeError(message("SphereShape", f"{self.name}.{key}", expected, given))
+            object.__setattr__(self, key, point)
         emission = checked_color(self.name, "emission", self.emission)
         if not (np.isfinite(self.radius) and np.float32(self.radius) > 0):
             expected = "above 0 m (a light needs an area)" if emission.any() else "above 0 m"
             raise RangeError(message("SphereShape", f"{self.name}.radius", expected, self.radius))
-        object.__setattr__(self, "center", center)
         object.__setattr__(self, "emission", emission)
 
     @property
     def box(self) -> Array:
-        """(2, 3) lower and upper corner, metres."""
-        return np.array([self.center - self.radius, self.center + self.radius])
+        """(2, 3) lower and upper corner at all times, metres."""
+        ends = np.array([self.center, self.center if self.closing is None else self.closing])
+        return np.array([ends.min(axis=0) - self.radius, ends.max(axis=0) + self.radius])
 
 
 Shape = MeshShape | SphereShape | SdfShape
@@ -278,13 +294,14 @@ class Scene:
         world: name of the medium around everything, or None. It has no end: what lies behind
             everything, lights at infinity included, is not seen through it. Fog under a sky is
             the interior of a large box.
-        shutter: the camera moves while it is open; None is a moment. Other cameras, that pictures
-            may be taken from, stand still.
+        shutter: the camera moves while it is open; None stands still, as other cameras do that
+            pictures may be taken from.
 
     Raises:
         SceneError: no shape, two of one name, a material, texture or medium that does not exist, or
             a textured shape without texture coordinates, a light that is none, a shape that shines
-            and covers only in part, or an interior of a shape that is open or lets no light in.
+            and covers only in part, or moves, or an interior of a shape that is open or lets no
+            light in.
     """
 
     name: str
@@ -327,6 +344,7 @@ class Scene:
                 expected = f"texture coordinates, which '{shape.material}' needs"
                 raise SceneError(message("Scene", f"{shape.name}.uv", expected, "none"))
         check_media(self)
+        check_motion(self)
 
 
 def _check_textures(name: str, material: Material, textures: Mapping[str, Texture]) -> None:

@@ -28,6 +28,8 @@ edge_u = [2, 0, 0]
 edge_v = [0, 0, -2]
 material = "white"
 emission = [0, 0, 0]          # optional, of the front
+closing = { translate = [0.1, 0, 0] }   # optional: how it moves while the shutter is open; keys as
+                              # of `places` in `scene_meshes`, each point goes straight on
 glow = "sign"                 # optional: the texture that scales it, where there are coordinates
 
 [[lights]]                    # optional; kinds and keys: light_nodes.py
@@ -44,6 +46,7 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -58,9 +61,11 @@ from photograd.transport.lens import PINHOLE, Lens
 from photograd.transport.light_nodes import light_of
 from photograd.transport.media_nodes import filled, media_in
 from photograd.transport.medium import BOUNDARY
+from photograd.transport.motion import moved_on
 from photograd.transport.scene import Environment, Material, MeshShape, Scene, Shape, SphereShape
 from photograd.transport.scene_meshes import (
     Brought,
+    matrix_of,
     mesh_shapes,
     pictures_of,
     texture_use,
@@ -111,7 +116,9 @@ def _scene(root: Node, name: str) -> Scene:
     shapes = [
         shape
         for i, node in enumerate(root.tables("shapes"))
-        for shape in filled(node, media, _shapes(node, i, materials, brought, bodies))
+        for shape in filled(
+            node, media, _moving(node, _shapes(node, i, materials, brought, bodies))
+        )
     ]
     lights = tuple(map(light_of, root.tables("lights"))) if root.has("lights") else ()
     lights += tuple(brought.lights)
@@ -177,6 +184,7 @@ def _shapes(
 ) -> list[Shape]:  # fmt: skip
     """What a table describes; materials, textures and media of its file are added to `brought`."""
     node.has("interior")  # read by `filled`
+    node.has("closing")  # read by `_moving`
     kind = node.choice("kind", (*KINDS, "mesh", "sdf"))
     if kind == "sdf":
         return [_sdf(node, index, materials, bodies)]
@@ -189,6 +197,16 @@ def _shapes(
     node.refuse_other_keys()
     brought.update(own)
     return [*shapes]
+
+
+def _moving(node: Node, shapes: list[Shape]) -> list[Shape]:
+    """The shapes, as they move while the shutter is open."""
+    if not node.has("closing"):
+        return shapes
+    table = node.table("closing")
+    way = matrix_of(table)
+    table.refuse_other_keys()
+    return [table.built(partial(moved_on, shape, way)) for shape in shapes]
 
 
 def _shape(node: Node, index: int, materials: dict[str, Material]) -> Shape:

@@ -118,8 +118,8 @@ def mesh_shapes(
     table has none.
     """
     path = node.path.parent / node.text("file")
-    inner = _matrix(node)
-    places = [_matrix(place) for place in node.tables("places")] if node.has("places") else []
+    inner = matrix_of(node)
+    places = [matrix_of(place) for place in node.tables("places")] if node.has("places") else []
     model = node.built(lambda: read_model(path))
     meshes = [shape for shape in model.shapes if isinstance(shape, MeshShape)]
     shapes = node.built(
@@ -177,7 +177,7 @@ def _renamed(model: ModelFile, name: str, looked_up: str | None) -> Brought:
     return Brought(materials, textures, media)
 
 
-def _matrix(node: Node) -> Array:
+def matrix_of(node: Node) -> Array:
     """(4, 4): scale, then rotate about x, y and z, then translate."""
     matrix = np.eye(4)
     if node.has("scale"):

@@ -25,6 +25,7 @@ from photograd.transport.core_arrays import (
 )
 from photograd.transport.light_list import light_shapes, listed_lights
 from photograd.transport.media_list import ListedMedia
+from photograd.transport.motion import closing_arrays, refuse_motion
 from photograd.transport.sample_counts import sample_counts
 from photograd.transport.scene import Array, MeshShape, Scene, Shape, SphereShape
 from photograd.transport.sdf_shape import SdfShape
@@ -142,6 +143,7 @@ class PathTracer:
             matrices=matrices,
             spheres=np.array(balls, np.float32).reshape(-1, 4),
             sdfs=sdfs,
+            **closing_arrays(meshes, spheres),
             material=materials[self._owner],
             emission=emission[self._owner],
             lights=[light.row(light.start, np.float64) for light in self._lights],
@@ -296,8 +298,10 @@ class PathTracer:
 
         Raises:
             RangeError: spp below 1, or a radius that is not positive.
+            SceneError: shapes that move.
             ShapeError: sums of another size.
         """
+        refuse_motion("add_occlusion", self.scene)
         view = self.scene.camera
         sums.check_call("add_occlusion", (view.height, view.width), spp)
         free = np.zeros((view.height, view.width))

@@ -23,6 +23,7 @@ from photograd.transport.mesh_files.model_camera import ModelCamera, camera_chan
 from photograd.transport.mesh_files.model_changes import changes
 from photograd.transport.mesh_files.model_file import ModelFile
 from photograd.transport.mesh_files.read import read_model
+from photograd.transport.motion import moves
 from photograd.transport.scene import MeshShape, Scene
 
 WRITABLE = (".glb", ".gltf")
@@ -45,7 +46,8 @@ def save_gltf(model: Scene | ModelFile, path: Path) -> None:
 
     Raises:
         IoError: another ending, or a file that cannot be written.
-        SceneError: shapes, materials or interiors that glTF has no words for; names them all.
+        SceneError: shapes, materials or interiors that glTF has no words for, or shapes that move;
+            names them all.
     """
     suffix = path.suffix.lower()
     if suffix not in WRITABLE:
@@ -75,6 +77,8 @@ def _without_words(model: ModelFile) -> Iterator[str]:
     for shape in model.shapes:
         if not isinstance(shape, MeshShape):
             yield f"shape '{shape.name}' is no mesh"
+        if moves(shape):
+            yield f"shape '{shape.name}' moves while the shutter is open"
         if shape.material == BOUNDARY:
             yield f"shape '{shape.name}' is a boundary of media"
             continue
