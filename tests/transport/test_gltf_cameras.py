@@ -249,8 +249,10 @@ def test_a_scene_file_takes_camera_and_lights(tmp_path: Path) -> None:
         ('"m.glb"', '"gone.glb"', "gone.glb"),
         ("size", "aperture = 1\nsize", "line 3: camera.aperture: expected a key that is known"),
         ("lights = true", "lights = 1", "line 8: shapes.0.lights: expected true or false"),
+        ("lights = true", "lights = true\nclosing = { translate = [1, 0, 0] }",
+         "line 9: shapes.0.closing: expected no motion of a file whose lights are wanted"),
     ],
-)
+)  # fmt: skip
 def test_a_mistake_is_named_with_line_and_key(
     tmp_path: Path, old: str, new: str, words: str
 ) -> None:

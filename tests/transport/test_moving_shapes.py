@@ -36,7 +36,6 @@ from photograd.transport import (
 from photograd.transport.builtin import camera_at
 from photograd.transport.mesh_files import save_gltf
 from photograd.transport.motion import moved_on
-from photograd.transport.recovery.saved import scene_digest
 from photograd_course.gradcheck import check_gradient
 
 from tests.transport.scenes import BLACK, GREY, any_material, stage, view
@@ -210,26 +209,6 @@ def test_who_wants_shapes_that_stand_still_says_so(tmp_path: Path) -> None:
 
 def test_derivative_pictures_see_the_same_moments() -> None:
     check(moving(6, alpha=True), without=("materials.black.albedo",))
-
-
-def test_what_moves_is_another_scene() -> None:
-    # A recovery is not resumed with a scene that moves otherwise.
-    scene = moving()
-    dome_shape, flying = scene.shapes[:2]
-    assert isinstance(dome_shape, MeshShape)
-    others = (
-        replace(dome_shape, closing_places=()),
-        replace(dome_shape, closing_places=(START @ END,)),
-        replace(dome_shape, places=(START, END), closing_places=()),
-        replace(flying, closing=None),
-        replace(flying, closing=BALL_END + 0.1),
-    )
-    found = {scene_digest(scene).hexdigest()}
-    for shape in others:
-        shapes = [shape if s.name == shape.name else s for s in scene.shapes]
-        found.add(scene_digest(replace(scene, shapes=tuple(shapes))).hexdigest())
-    assert len(found) == 6
-    assert scene_digest(moving()).hexdigest() in found
 
 
 TEXT = """

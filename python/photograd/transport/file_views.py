@@ -40,12 +40,19 @@ def camera_of_file(node: Node) -> Camera:
 
 
 def lights_of(node: Node, model: ModelFile, places: Sequence[Array]) -> list[Light]:
-    """The lights of a model at each place (4, 4), if a table of kind "mesh" wants them."""
+    """The lights of a model at each place (4, 4), if a table of kind "mesh" wants them.
+
+    Raises:
+        SceneError: a model that moves.
+    """
     if not node.flag("lights"):
         if model.lights:
             told = f"{node.text('file')}: its lights are left out; lights = true brings them"
             warnings.warn(told, UserWarning, stacklevel=2)
         return []
+    if model.lights and node.has("closing"):
+        expected, got = "no motion of a file whose lights are wanted", "one"
+        raise node.wrong("closing", expected, got, "leave out its lights, or its motion")
     return [placed_light(light, place) for place in places for light in model.lights]
 
 
