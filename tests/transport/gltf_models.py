@@ -98,6 +98,14 @@ def bytes_of(draw: st.DrawFn, height: int, width: int, channels: int) -> Any:
     return pixels / np.float32(255)  # as a file is read
 
 
+def texels_of(draw: st.DrawFn, encoding: str, height: int, width: int) -> Any:
+    """What is read of an image drawn at random; alpha of 1 everywhere is none."""
+    texels = bytes_of(draw, height, width, 1 if encoding == "alpha" else 3)
+    if encoding == "alpha":
+        return np.minimum(texels, np.float32(128) / np.float32(255))
+    return decode(texels) if encoding == "srgb" else texels
+
+
 @st.composite
 def models(draw: st.DrawFn, model: str) -> ModelFile:
     """A cube, bent and in several places, of a material with all textures that it may have."""
@@ -114,14 +122,9 @@ def models(draw: st.DrawFn, model: str) -> ModelFile:
         name = slots.setdefault((extension, key, encoding), f"t {p.name}")
         uses[p.name] = TextureUse(name, 0 if encoding == "alpha" else channel)
         if name not in textures:
-            texels = bytes_of(draw, height, width, 1 if encoding == "alpha" else 3)
-            if encoding == "alpha":  # 1 everywhere is none
-                texels = np.minimum(texels, np.float32(128) / np.float32(255))
+            texels = texels_of(draw, encoding, height, width)
             masks = encoding == "alpha" and material.alpha_cutoff is not None
-            textures[name] = Texture(
-                decode(texels) if encoding == "srgb" else texels, wrap,
-                "bilinear" if masks else looked_up,
-            )  # fmt: skip
+            textures[name] = Texture(texels, wrap, "bilinear" if masks else looked_up)
     # One image holds both of these; what has only one of them comes back with the other.
     both = {"metalness", "roughness"} & {p.name for p in material.parameters}
     if both & uses.keys():
