@@ -58,10 +58,22 @@ def test_the_shorter_masking_of_ggx_loses_a_fifth_at_grazing_angles() -> None:
 
 
 def test_cook_and_torrance_with_the_right_constants_and_with_the_printed_ones() -> None:
-    found = of("cook_torrance", 0.9, f0=WHITE, slope=0.2)
+    slope, cosine = 0.2, 0.9
+    found = of("cook_torrance", cosine, f0=WHITE, slope=slope)
     assert found == pytest.approx(0.999, abs=6e-4)
-    # D without its pi and the denominator pi instead of 4 give 4 times as much.
-    assert found * np.pi * 4.0 / np.pi > 3.99
+    # As the paper prints it: D = exp(-(tan / m)^2) / (m^2 cos^4), and F D G / (pi o_z i_z).
+    grid, area = upper_grid()
+    wo = towards(cosine, len(grid))
+    wh = wo + grid
+    wh /= np.linalg.norm(wh, axis=1, keepdims=True)
+    c, o, i, d = wh[:, 2], wo[:, 2], grid[:, 2], (wo * wh).sum(axis=1)
+    D = np.exp(-(1 / c**2 - 1) / slope**2) / (slope**2 * c**4)
+    G = np.minimum(1.0, np.minimum(2 * c * o / d, 2 * c * i / d))
+    printed = float((D * G / (np.pi * o * i) * i * area[:, 0]).sum())
+    assert printed == pytest.approx(4 * 0.999, abs=3e-3)
+    # And the same sum with the right ones is the core's model, point by point.
+    model = MODELS["cook_torrance"].f({"f0": WHITE, "slope": slope}, wo, grid)[:, 0]
+    np.testing.assert_allclose(model, D / np.pi * G / (4 * o * i), rtol=1e-9, atol=1e-12)
 
 
 def test_blended_metalness_lies_between_its_ends_and_premixed_f0_does_not() -> None:

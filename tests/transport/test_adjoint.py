@@ -10,7 +10,7 @@ import pytest
 from photograd.core import _core
 from photograd.errors import DtypeError, RangeError, ShapeError
 from photograd.transport import Accumulation, Material, PathOptions, PathTracer, Scene
-from photograd.transport.builtin import cornell_box, furnace_box
+from photograd.transport.builtin import cornell_box, cornell_spheres, furnace_box
 from photograd.transport.scene import MODELS
 from photograd_course.gradcheck import check_gradient
 from photograd_course.mutants import check_mutants
@@ -136,18 +136,19 @@ def test_twice_is_twice_and_any_number_of_threads() -> None:
         np.testing.assert_allclose(double[name], 2 * value, rtol=1e-6)
 
 
-def test_float_agrees_with_double() -> None:
+@pytest.mark.parametrize("scene", [cornell_box, cornell_spheres])
+def test_float_agrees_with_double(scene: Any) -> None:
     # Single paths fall the other way at edges, where float rounds; the rest agrees to rounding.
-    scene = cornell_box(12)
-    d = np.random.default_rng(8).uniform(-1, 1, (12, 12, 3))
-    narrow, wide = (PathTracer(scene, dtype=t) for t in (np.float32, np.float64))
-    a, b = (t.render(spp=8, seed=1).mean for t in (narrow, wide))
-    same = np.isclose(a, b, rtol=1e-3, atol=1e-5)
+    tracers = [PathTracer(scene(12), dtype=t) for t in (np.float32, np.float64)]
+    a, b = (t.render(spp=8, seed=1).mean for t in tracers)
+    same = np.isclose(a, b, rtol=1e-4, atol=1e-6).all(axis=2, keepdims=True)
     assert same.mean() > 0.97
-    assert a[same] == pytest.approx(b[same], rel=1e-3, abs=1e-5)
-    g, h = (t.render_backward(d, spp=8, seed=1) for t in (narrow, wide))
+    d = np.where(same, np.random.default_rng(8).uniform(-1, 1, (12, 12, 3)), 0.0)
+    g, h = (t.render_backward(d, spp=8, seed=1) for t in tracers)
     for name in g:
-        assert np.linalg.norm(g[name] - h[name]) <= 0.05 * np.linalg.norm(h[name]) + 1e-6
+        assert np.linalg.norm(h[name]) > 0
+        # Measured: 6e-5 of the lamp's albedo, 4e-5 of the index of glass, 4e-6 of all others.
+        assert np.linalg.norm(g[name] - h[name]) <= 1e-4 * np.linalg.norm(h[name]), name
 
 
 def test_bad_arguments_are_named() -> None:

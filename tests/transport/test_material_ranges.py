@@ -11,7 +11,9 @@ from photograd.errors import RangeError, SceneError
 from photograd.transport import Environment, Material, PathTracer, Scene, SphereShape, read_scene
 from photograd.transport.scene import MODELS
 
+from tests.transport.gltf_samples import extension, square
 from tests.transport.scenes import any_material, view
+from tests.transport.test_gltf_materials import read
 from tests.transport.test_scene_files import TEXT, write
 
 
@@ -92,3 +94,16 @@ def test_the_smoothest_metal_is_a_mirror_in_a_picture() -> None:
     assert smooth.min() > 0.04
     # Seen straight on, Schlick adds nothing. Measured: 4e-3.
     np.testing.assert_allclose(glossy, smooth, rtol=0.02)
+
+
+def test_negative_light_of_a_file_is_named(tmp_path: Path) -> None:
+    for change, emission, words in (
+        ({"emissiveFactor": [-1, 0.5, 3]}, [0, 0.5, 1],
+         "materials[0]: emissiveFactor: [-1.   0.5  3. ] is taken as [0.  0.5 1. ]"),
+        ({"emissiveFactor": [1, 1, 1]} | extension("emissive_strength", emissiveStrength=-2),
+         [0, 0, 0], "emissiveStrength: -2.0 is taken as 0"),
+    ):  # fmt: skip
+        model, told = read(tmp_path, square(**change).bytes())
+        np.testing.assert_array_equal(model.shapes[0].emission, emission)
+        assert len(told) == 1
+        assert words in told[0]

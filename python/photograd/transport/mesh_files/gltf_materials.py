@@ -230,8 +230,13 @@ def _radiance(draft: Draft) -> Any:
     node = draft.node
     if "emissiveFactor" not in node:
         return np.zeros(3)
-    emission = np.clip(node["emissiveFactor"].numbers((3,)), 0, 1)
-    strength = draft.extension("emissive_strength")
+    given = node["emissiveFactor"].numbers((3,))
+    emission, strength = np.clip(given, 0, 1), draft.extension("emissive_strength")
+    if not np.array_equal(emission, given):
+        draft.note(f"{node.place}: emissiveFactor: {given} is taken as {emission}")
     if strength is not None:
-        emission = emission * max(real(strength, "emissiveStrength", 1.0), 0.0)
+        factor = real(strength, "emissiveStrength", 1.0)
+        if factor < 0:
+            draft.note(f"{strength.place}: emissiveStrength: {factor} is taken as 0")
+        emission = emission * max(factor, 0.0)
     return emission
