@@ -66,16 +66,20 @@ def made(folder: Path, **material: Any) -> tuple[Material, list[str]]:
             "gltf_iridescence",
             {"iridescence_factor": 0.5, "iridescence_ior": 1.3, "iridescence_thickness": 550},
         ),
-        # f0 = 0.04 is reflectance 0.5; a quarter of it, 0.25. An index of 1.25: (1/9)^2 = 0.16 r^2.
-        (extension("specular", specularFactor=0.25), "standard", {"reflectance": 0.25}),
+        (
+            extension("specular", specularFactor=0.25, specularColorFactor=[1, 0.5, 0]),
+            "gltf_specular",
+            {"specular_factor": 0.25, "specular_color_factor": [1, 0.5, 0], "eta": 1.5},
+        ),
+        (extension("specular"), "gltf", {"metalness": 1}),
         (
             core(baseColorFactor=[0.5, 0.25, 1, 1], metallicFactor=0)
             | extension("specular", specularFactor=0),
             "lambert",
             {"albedo": [0.5, 0.25, 1]},
         ),
-        (extension("specular", specularFactor=0), "standard", {"reflectance": 0}),
-        (extension("ior", ior=1.25), "standard", {"reflectance": 1 / 3.6}),
+        (extension("specular", specularFactor=0), "gltf_specular", {"specular_factor": 0}),
+        (extension("ior", ior=1.25), "gltf_specular", {"eta": 1.25, "specular_factor": 1}),
         (
             core(roughnessFactor=0, metallicFactor=0) | clear(),
             "thin_glass",
@@ -161,7 +165,7 @@ def test_which_model_a_material_becomes(
             "KHR_materials_sheen: not supported by the model 'clearcoat'",
         ),
         (extension("unlit"), "KHR_materials_unlit: not supported"),
-        (extension("specular", specularColorFactor=[1, 0, 0]), "KHR_materials_specular: not supp"),
+        (extension("specular", specularColorFactor=[9, 0, 0]), "is taken as [2. 0. 0.]"),
         (
             core(metallicFactor=0) | extension("anisotropy", anisotropyStrength=1),
             "KHR_materials_anisotropy: not supported by the model 'gltf'",
@@ -179,7 +183,8 @@ def test_which_model_a_material_becomes(
             core(metallicFactor=0) | clear(0.5, volume=VOLUME, ior={"ior": 1.0}),
             "gltf_refraction.eta: 1.0 is taken as 1.2",
         ),
-        (extension("ior", ior=8.0), "standard.reflectance: 1.94"),
+        (extension("ior", ior=8.0), "gltf_specular.eta: 8.0 is taken as 2.5"),
+        (extension("ior", ior=0.0), "ior 0, which mirrors everything: taken as 2.5"),
         ({"occlusionTexture": {"index": 0, "strength": 0.5}}, "paths find what is occluded"),
         ({"alphaMode": "HASHED"}, "alphaMode HASHED: unknown, drawn opaque"),
         (

@@ -115,8 +115,11 @@ def test_a_file_says_what_it_uses(tmp_path: Path) -> None:
 def test_special_cases_of_other_models_are_named(tmp_path: Path) -> None:
     for material, words in (
         (
-            Material("standard", {**at_half("standard").values, "reflectance": 0, "metalness": 0}),
-            "'standard' is read back as 'lambert'",
+            Material(
+                "gltf_specular",
+                {**at_half("gltf_specular").values, "specular_factor": 0, "metalness": 0},
+            ),
+            "'gltf_specular' is read back as 'lambert'",
         ),
         (at_half("ggx_metal"), "'ggx_metal' is read back as 'gltf'"),
         (Material("glass", {"eta": 1.5, "tint": [1, 1, 1]}), None),
@@ -190,9 +193,9 @@ def test_what_gltf_cannot_say_is_refused_by_name(tmp_path: Path) -> None:
     ):  # fmt: skip
         with pytest.raises(SceneError, match=f"save_gltf: model: .*{words}"):
             save_gltf(ModelFile(shapes, materials_, {}, media), tmp_path / "m.glb")  # type: ignore[arg-type]
-    textured = replace(at_half("standard"), textures={"reflectance": TextureUse("t")})
+    textured = replace(at_half("gltf_specular"), textures={"eta": TextureUse("t")})
     texture = {"t": Texture(np.ones((1, 1, 3)))}
-    with pytest.raises(SceneError, match="material 'm' with a texture of reflectance"):
+    with pytest.raises(SceneError, match="material 'm' with a texture of eta"):
         save_gltf(ModelFile((cube,), {"m": textured}, texture), tmp_path / "m.glb")
     two = {"a": Texture(np.ones((1, 1, 3))), "b": Texture(np.ones((2, 1, 3)))}
     uses = {"metalness": TextureUse("a"), "roughness": TextureUse("b")}

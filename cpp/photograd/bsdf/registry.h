@@ -16,6 +16,7 @@
 #include "photograd/bsdf/gltf_iridescence.h"
 #include "photograd/bsdf/gltf_refraction.h"
 #include "photograd/bsdf/gltf_sheen.h"
+#include "photograd/bsdf/gltf_specular.h"
 #include "photograd/bsdf/gltf_transmission.h"
 #include "photograd/bsdf/lambert.h"
 #include "photograd/bsdf/oren_nayar.h"
@@ -33,7 +34,7 @@ using Bsdfs =
     ModelList<Lambert, Phong, PhongReciprocal, BlinnPhong, BlinnPhongFitted, OrenNayarQualitative,
               OrenNayarFull, OrenNayarEnergyPreserving, BurleyDiffuse, CookTorrance, GgxMetal,
               GgxMetalCompensated, GgxConductor, BeckmannConductor, GgxAnisotropic, Standard, Gltf,
-              GltfIridescence, GltfSheen, Clearcoat, Sheen, Disney, RoughDielectric,
+              GltfIridescence, GltfSheen, GltfSpecular, Clearcoat, Sheen, Disney, RoughDielectric,
               DispersiveDielectric, GltfTransmission, GltfRefraction, Principled>;
 
 }  // namespace photograd

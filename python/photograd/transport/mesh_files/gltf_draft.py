@@ -16,6 +16,7 @@ from photograd.transport.scene import MODELS, Material
 FOLLOWED = ("KHR_materials_emissive_strength",)
 """Extensions that no rule has to read."""
 PLAIN_IOR = 1.5
+LARGEST_IOR = 2.5  # of the models: diamond has 2.42
 
 
 @dataclass
@@ -91,15 +92,6 @@ class Draft:
         """Refractive index."""
         node = self.extension("ior")
         return PLAIN_IOR if node is None else real(node, "ior", PLAIN_IOR)
-
-
-def reflectance_of(strength: float, ior: float) -> float:
-    """Of the model `standard`, for a part of the reflection at an index: f0 = 0.16 reflectance^2.
-
-    An index of 0 mirrors everything.
-    """
-    f0 = strength * ((ior - 1) / (ior + 1)) ** 2 if ior > 0 else strength
-    return float(np.sqrt(max(f0, 0) / 0.16))
 
 
 def metallic_roughness(draft: Draft) -> dict[str, Any]:

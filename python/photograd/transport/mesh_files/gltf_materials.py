@@ -18,11 +18,11 @@ from photograd.transport.medium import Medium
 from photograd.transport.mesh_files.container import real
 from photograd.transport.mesh_files.gltf_clear import transmission
 from photograd.transport.mesh_files.gltf_draft import (
+    LARGEST_IOR,
     PLAIN_IOR,
     Draft,
     finished,
     metallic_roughness,
-    reflectance_of,
 )
 from photograd.transport.mesh_files.pictures import Coordinates, Pictures
 from photograd.transport.scene import Material
@@ -114,26 +114,35 @@ def _iridescence(draft: Draft) -> Material | None:
 
 
 def _specular(draft: Draft) -> Material | None:
-    """Dielectrics of another index, or a weaker reflection; without any, what is left is matt.
+    """Dielectrics of another index, or a weaker or coloured reflection; without any, matt ones.
 
     The strength scales the reflection at all angles [Khronos2022]: at 0 light meets the base alone.
     """
     node, ior = draft.extension("specular"), draft.ior
-    strength = 1.0 if node is None else real(node, "specularFactor", 1.0)
-    if strength == 1 and ior == PLAIN_IOR:
-        if node is not None and "specularColorFactor" not in node:
-            draft.take("specular")
-        draft.take("ior")
-        return None
+    draft.take("specular", "ior")
+    strength, color, painted = 1.0, np.ones(3), False
+    if node is not None:
+        strength = real(node, "specularFactor", 1.0)
+        if "specularColorFactor" in node:
+            color = node["specularColorFactor"].numbers((3,))
+        painted = "specularTexture" in node or "specularColorTexture" in node
     if strength == 0 and draft.metalness == 0:
-        draft.take("specular", "ior")
         draft.textured("albedo", draft.core, "baseColorTexture", "srgb")
         return finished("lambert", {"albedo": draft.base_color}, draft)
+    if ior == PLAIN_IOR and strength == 1 and (color == 1).all() and not painted:
+        return None
     if node is not None:
-        draft.unread(node, "specularTexture", "specularColorTexture", "specularColorFactor")
-    draft.take("specular", "ior")
-    values = metallic_roughness(draft) | {"reflectance": reflectance_of(strength, ior)}
-    return finished("standard", values, draft)
+        draft.textured("specular_factor", node, "specularTexture", "alpha")
+        draft.textured("specular_color_factor", node, "specularColorTexture", "srgb")
+    values = metallic_roughness(draft) | {
+        "eta": ior,
+        "specular_factor": strength,
+        "specular_color_factor": color,
+    }
+    if ior == 0:
+        draft.note(f"{draft.node.place}: ior 0, which mirrors everything: taken as {LARGEST_IOR}")
+        values["eta"] = LARGEST_IOR
+    return finished("gltf_specular", values, draft)
 
 
 def _plain(draft: Draft) -> Material:

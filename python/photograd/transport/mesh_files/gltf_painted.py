@@ -35,6 +35,8 @@ SLOTS = {
     "sheen_color_factor": ("sheen", "sheenColorTexture", "srgb", 0),
     "iridescence_factor": ("iridescence", "iridescenceTexture", "linear", 0),
     "iridescence_thickness": ("iridescence", "iridescenceThicknessTexture", "linear", 1),
+    "specular_factor": ("specular", "specularTexture", "alpha", 3),
+    "specular_color_factor": ("specular", "specularColorTexture", "srgb", 0),
     "transmission": ("transmission", "transmissionTexture", "linear", 0),
 }
 """{parameter: (extension, or none; member; encoding; channel of the image)}."""

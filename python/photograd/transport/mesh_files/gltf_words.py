@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 
 from photograd.transport.medium import Medium
-from photograd.transport.mesh_files.gltf_draft import PLAIN_IOR, reflectance_of
 from photograd.transport.scene import Material
 
 Values = dict[str, Any]
@@ -90,33 +89,12 @@ def _iridescence(v: Values) -> Words:
     return Words(_gltf(v).core, {"iridescence": film})
 
 
-def _standard(v: Values) -> Words:
-    """Up to 0.5 by the strength of the reflection, above by the index.
-
-    An index of exactly 1.5 at full strength would be the core model without extensions.
-    """
-    wanted, size = v["reflectance"], 0.4 * v["reflectance"]
-    if wanted < 0.5:
-        strength = _closest(4 * wanted**2, lambda s: reflectance_of(s, PLAIN_IOR) - wanted)
-        extensions = {"specular": {"specularFactor": strength}}
-    else:
-        index = (1 + size) / (1 - size)
-        ior = _closest(
-            index, lambda i: np.inf if i == PLAIN_IOR else reflectance_of(1.0, i) - wanted
-        )
-        extensions = {"ior": {"ior": ior}}
-    return Words(_gltf(v).core, extensions)
-
-
-def _closest(start: float, error: Callable[[float], float]) -> float:
-    """Of the numbers next to `start` the one with the least error."""
-    near = [start]
-    for towards in (0.0, np.inf):
-        x = start
-        for _ in range(8):
-            x = float(np.nextafter(x, towards))
-            near.append(x)
-    return min(near, key=lambda x: abs(error(x)))
+def _specular(v: Values) -> Words:
+    varnish = {
+        "specularFactor": v["specular_factor"],
+        "specularColorFactor": v["specular_color_factor"],
+    }
+    return Words(_gltf(v).core, {"specular": varnish, "ior": {"ior": v["eta"]}})
 
 
 def _clear(v: Values) -> Words:
@@ -150,7 +128,7 @@ def _refraction(v: Values) -> Words:
 
 WRITTEN: dict[str, Callable[[Values], Words]] = {
     "gltf": _gltf,
-    "standard": _standard,
+    "gltf_specular": _specular,
     "clearcoat": _clearcoat,
     "ggx_anisotropic": _anisotropic,
     "gltf_sheen": _sheen,
