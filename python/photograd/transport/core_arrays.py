@@ -13,8 +13,8 @@ from photograd.transport.texture import WRAPS
 Layout = tuple[int, int, int, int, int, bool]
 Use = tuple[int, int, int, int, float, float]
 BentNormals = tuple[Array, int, int]
-BRUSHED = frozenset({"anisotropy", "anisotropic"})
-"""Parameters of reflectance models that have a direction along the surface."""
+BRUSHES = ("anisotropy", "anisotropic")
+"""Parameters by which a model looks different when its frame is turned."""
 
 
 def instances_of(meshes: Sequence[MeshShape]) -> tuple[Array, Array]:
@@ -42,7 +42,7 @@ def textures_of(
     uses = [_uses(material, order) for material in scene.materials.values()]
     maps = [_bent(material) for material in scene.materials.values()]
     directed = [
-        any(parameter.name in BRUSHED for parameter in material.parameters)
+        any(parameter.name in BRUSHES for parameter in material.parameters)
         for material in scene.materials.values()
     ]
     return layouts, uses, maps, directed
