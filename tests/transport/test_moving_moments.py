@@ -22,9 +22,11 @@ from photograd.transport import (
 from photograd.transport.builtin import camera_at
 from photograd.transport.motion import moved_on
 from photograd.transport.shapes import box, rectangle
+from photograd_course.gradcheck import check_gradient
 
 from tests.transport.media_scenes import FOG, INK, pencil, smoke, with_interior
 from tests.transport.scenes import BLACK, FLOOR, GREY, any_material, view
+from tests.transport.test_adjoint import proof
 from tests.transport.test_moving_shapes import at, moving
 
 pytestmark = pytest.mark.usefixtures("core")
@@ -214,6 +216,16 @@ def test_grids_of_densities_stay() -> None:
     assert (still < 0.6).all()
     # Estimates of transmittance by chance: the errors found are a tenth of this.
     np.testing.assert_allclose(blurred, 1 - 0.4 / WAY * (1 - still), atol=0.01)
+
+
+def test_derivatives_by_media_that_move() -> None:
+    scene = replace(filled(smoke()), camera=view(4))
+    function, backward, start = proof(scene, OPTIONS)
+    black = ("materials.black.albedo",)
+    report = check_gradient(
+        function, backward, start, seed=2, coordinates=1, directions=1, may_be_zero=black
+    )
+    assert report, str(report)
 
 
 def test_same_bits_through_media() -> None:
