@@ -40,21 +40,30 @@ def test_the_roughest_mirror_seen_straight_on_returns_one_minus_ln_two() -> None
     assert found == pytest.approx(1.0 - np.log(2.0), abs=1e-6)
 
 
-def test_the_shorter_masking_of_ggx_loses_a_fifth_at_grazing_angles() -> None:
-    # V = 1 / (2 lerp(2 o_z i_z, o_z + i_z, alpha)), the fast form, in place of the exact one.
-    alpha, cosine = 0.1, 0.1
+# What the same mirrors return under the masking without roots.
+FAST = {
+    0.1: (0.0, 0.0, 0.0, 0.0),
+    0.25: (0.0, 0.0, 0.0, 0.0),
+    0.5: (0.0, 0.0, 0.0, 0.0),
+    0.75: (0.0, 0.0, 0.0, 0.0),
+    1.0: GGX[1.0],
+}
+
+
+@pytest.mark.parametrize("alpha", sorted(FAST))
+def test_the_shorter_masking_of_ggx_loses_a_fifth_at_grazing_angles(alpha: float) -> None:
+    # V = 1 / (2 lerp(2 o_z i_z, o_z + i_z, alpha)), summed here without the core.
     grid, area = upper_grid()
-    wo = towards(cosine, len(grid))
-    value = MODELS["ggx_metal"].f({"f0": WHITE, "roughness": np.sqrt(alpha)}, wo, grid)[:, 0]
-    o, i = wo[:, 2], grid[:, 2]
-    length_o, length_i = (np.sqrt(alpha**2 + (1 - alpha**2) * z * z) for z in (o, i))
-    exact = 0.5 / (length_o * i + length_i * o)
-    fast = 0.5 / (2 * o * i * (1 - alpha) + (o + i) * alpha)
-    shorter = float((value * fast / exact * i * area[:, 0]).sum())
-    assert shorter == pytest.approx(0.69, abs=5e-3)
-    assert of("ggx_metal", cosine, f0=WHITE, roughness=np.sqrt(alpha)) == pytest.approx(
-        0.883, abs=6e-4
-    )
+    for cosine, exact, loss in zip(COSINES, GGX[alpha], FAST[alpha], strict=True):
+        wo = towards(cosine, len(grid))
+        found = of("ggx_metal_fast", cosine, f0=WHITE, roughness=np.sqrt(alpha))
+        assert found == pytest.approx(loss, abs=6e-4)
+        assert found < exact + 6e-4
+        wh = (wo + grid) / np.linalg.norm(wo + grid, axis=1, keepdims=True)
+        o, i, h = wo[:, 2], grid[:, 2], wh[:, 2]
+        D = alpha**2 / (np.pi * ((alpha**2 - 1) * h * h + 1) ** 2)
+        V = 0.5 / (2 * o * i * (1 - alpha) + (o + i) * alpha)
+        assert float((D * V * i * area[:, 0]).sum()) == pytest.approx(found, rel=1e-9)
 
 
 def test_cook_and_torrance_with_the_right_constants_and_with_the_printed_ones() -> None:

@@ -12,6 +12,7 @@
 #include "photograd/bsdf/ggx_anisotropic.h"
 #include "photograd/bsdf/ggx_metal.h"
 #include "photograd/bsdf/ggx_metal_compensated.h"
+#include "photograd/bsdf/ggx_metal_fast.h"
 #include "photograd/bsdf/gltf.h"
 #include "photograd/bsdf/gltf_iridescence.h"
 #include "photograd/bsdf/gltf_refraction.h"
@@ -33,8 +34,8 @@ namespace photograd {
 using Bsdfs =
     ModelList<Lambert, Phong, PhongReciprocal, BlinnPhong, BlinnPhongFitted, OrenNayarQualitative,
               OrenNayarFull, OrenNayarEnergyPreserving, BurleyDiffuse, CookTorrance, GgxMetal,
-              GgxMetalCompensated, GgxConductor, BeckmannConductor, GgxAnisotropic, Standard, Gltf,
-              GltfIridescence, GltfSheen, GltfSpecular, Clearcoat, Sheen, Disney, RoughDielectric,
-              DispersiveDielectric, GltfTransmission, GltfRefraction, Principled>;
+              GgxMetalCompensated, GgxMetalFast, GgxConductor, BeckmannConductor, GgxAnisotropic,
+              Standard, Gltf, GltfIridescence, GltfSheen, GltfSpecular, Clearcoat, Sheen, Disney,
+              RoughDielectric, DispersiveDielectric, GltfTransmission, GltfRefraction, Principled>;
 
 }  // namespace photograd

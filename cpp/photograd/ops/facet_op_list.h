@@ -11,6 +11,7 @@
 #include "photograd/ops/fresnel_dielectric.h"
 #include "photograd/ops/fresnel_schlick.h"
 #include "photograd/ops/ggx.h"
+#include "photograd/ops/ggx_fast.h"
 #include "photograd/ops/input_group.h"
 #include "photograd/ops/refract.h"
 
@@ -163,6 +164,22 @@ struct GgxOp {
             d_in[3 + k] += d_wo[k];
             d_in[6 + k] += d_wi[k];
         }
+    }
+};
+
+struct GgxFastOp {
+    static constexpr const char* name = "ggx_fast";
+    static constexpr std::array<InputGroup, 3> inputs{
+        {{"o_z", 1, 0.1, 0.9}, {"i_z", 1, 0.1, 0.9}, {"alpha", 1, 0.1, 0.9}}};
+    static constexpr int outputs = 1;
+
+    template <class R>
+    static void forward(const R* in, R* out) {
+        out[0] = ggx_V_fast(in[0], in[1], in[2]);
+    }
+    template <class R>
+    static void backward(const R* in, const R* d_out, R* d_in) {
+        ggx_V_fast_backward(in[0], in[1], in[2], d_out[0], d_in[0], d_in[1], d_in[2]);
     }
 };
 

@@ -235,8 +235,8 @@ using Ops =
              ShColorOp, CompositeOp<Quadrature::alpha>, CompositeOp<Quadrature::riemann>,
              CovarianceOp, ProjectionOp<false>, ProjectionOp<true>, ConicOp, SplatColorOp,
              SplatBlendOp, RayGaussianOp, RayColorOp, RayBlendOp, ErfOp, SchlickOp, IndexOp,
-             DielectricOp<false>, DielectricOp<true>, ConductorOp, GgxOp, BeckmannOp, CharlieOp,
-             SdfSphereOp, SdfPlaneOp, SdfTorusOp, SdfBoxOp<false>, SdfBoxOp<true>, SdfCapsuleOp,
-             SmoothUnionOp, ToShapeOp>;
+             DielectricOp<false>, DielectricOp<true>, ConductorOp, GgxOp, GgxFastOp, BeckmannOp,
+             CharlieOp, SdfSphereOp, SdfPlaneOp, SdfTorusOp, SdfBoxOp<false>, SdfBoxOp<true>,
+             SdfCapsuleOp, SmoothUnionOp, ToShapeOp>;
 
 }  // namespace photograd
