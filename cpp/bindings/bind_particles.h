@@ -5,7 +5,6 @@
 
 namespace photograd {
 
-void bind_path_backward(pybind11::module_& m);
 void bind_path_tangent(pybind11::module_& m);
 void bind_particles(pybind11::module_& m);
 

@@ -1,6 +1,7 @@
-// Path tracing: scenes of shapes and materials, pictures, single paths.
+// Path tracing: scenes of shapes and materials, pictures, derivatives, single paths.
 #include <optional>
 
+#include "adjoint_calls.h"
 #include "camera_args.h"
 #include "module.h"
 #include "path_rows.h"
@@ -176,6 +177,7 @@ void bind_path(py::module_& m) {
           "Adds samples to radiance (H, W, 3) and squares (H, W, 3), float64. options: (strategy, "
           "heuristic, max_depth, roulette_from, sampler, seed).\nmedia: (phase function or \"\", "
           "parameters (P,), densities (X, Y, Z) or None, sigma_maj).");
+    bind_adjoints(m);
     with_scene_names([&](auto... scene) {
         m.def("trace_path", of_scene(&path_rows), scene..., py::arg("camera"), py::arg("options"),
               py::arg("pixel"), py::arg("sample"), "One path, a dictionary a vertex.");

@@ -21,7 +21,6 @@ PYBIND11_MODULE(_core, m) {
     photograd::bind_direct(m);
     photograd::bind_path(m);
     photograd::bind_first_hits(m);
-    photograd::bind_path_backward(m);
     photograd::bind_path_tangent(m);
     photograd::bind_particles(m);
     photograd::bind_sampling(m);

@@ -1,7 +1,8 @@
 """Lights at infinity: the radiance that arrives from a direction of the world, and its derivatives.
 
 All lights come from the core's registry (cpp/photograd/light/registry.h), and are asked through the
-functions that photograd.lights uses. Directions are (N, 3) unit vectors towards the light.
+functions that photograd.lights uses; a RangeError refuses the same numbers, such as a negative
+radiance. Directions are (N, 3) unit vectors towards the light.
 """
 
 from __future__ import annotations

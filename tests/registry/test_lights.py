@@ -81,3 +81,5 @@ def test_bad_arguments_are_named() -> None:
     given = {"radiance": [1, 1, 1], "direction": [0, 1, 0], "height": [0.1]}
     with pytest.raises(ShapeError, match="height"):
         LIGHTS["sun"].L(given, np.zeros((1, 3)))
+    with pytest.raises(RangeError, match="not negative"):
+        LIGHTS["constant"].L({"radiance": [1, -1, 1]}, np.zeros((1, 3)))

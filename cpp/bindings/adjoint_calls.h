@@ -1,13 +1,13 @@
 // Derivatives of path traced pictures: for what a loss says of one (render/path.h), and for a loss of squares by two
 // with paths of their own (render/path_pairs.h).
-#include "bind_particles.h"
+#pragma once
+
 #include "camera_args.h"
 #include "derivative_arrays.h"
 #include "photograd/render/path_pairs.h"
 #include "scene_calls.h"
 
 namespace photograd {
-namespace {
 
 using OptionalArrays = std::vector<std::optional<py::array>>;
 
@@ -30,11 +30,11 @@ struct Adjoint {
           counts(sample_counts(args, spp, own_counts, camera)) {}
 };
 
-void trace_backward(const SceneRows& rows, const py::tuple& camera, const Options& given,
-                    std::uint32_t spp, const std::optional<py::array>& counts,
-                    const py::array& d_image, py::array d_parameters, py::array d_emission,
-                    Arrays d_lights, Arrays d_textures, Arrays d_media,
-                    OptionalArrays d_densities) {
+inline void trace_backward(const SceneRows& rows, const py::tuple& camera, const Options& given,
+                           std::uint32_t spp, const std::optional<py::array>& counts,
+                           const py::array& d_image, py::array d_parameters, py::array d_emission,
+                           Arrays d_lights, Arrays d_textures, Arrays d_media,
+                           OptionalArrays d_densities) {
     dispatch_real("trace_paths_backward", "parameters", rows.parameters, [&](auto real) {
         using R = decltype(real);
         ArrayArgs args("trace_paths_backward");
@@ -47,12 +47,12 @@ void trace_backward(const SceneRows& rows, const py::tuple& camera, const Option
     });
 }
 
-void trace_pairs(const SceneRows& rows, const py::tuple& camera, const Options& given,
-                 std::uint64_t other_seed, std::uint32_t spp,
-                 const std::optional<py::array>& counts, const py::array& target,
-                 const py::array& weight, py::array pictures, py::array d_parameters,
-                 py::array d_emission, Arrays d_lights, Arrays d_textures, Arrays d_media,
-                 OptionalArrays d_densities) {
+inline void trace_pairs(const SceneRows& rows, const py::tuple& camera, const Options& given,
+                        std::uint64_t other_seed, std::uint32_t spp,
+                        const std::optional<py::array>& counts, const py::array& target,
+                        const py::array& weight, py::array pictures, py::array d_parameters,
+                        py::array d_emission, Arrays d_lights, Arrays d_textures, Arrays d_media,
+                        OptionalArrays d_densities) {
     dispatch_real("trace_pairs_backward", "parameters", rows.parameters, [&](auto real) {
         using R = decltype(real);
         ArrayArgs args("trace_pairs_backward");
@@ -74,9 +74,7 @@ void with_derivative_names(Define&& define) {
            py::arg("d_textures"), py::arg("d_media"), py::arg("d_densities"));
 }
 
-}  // namespace
-
-void bind_path_backward(py::module_& m) {
+inline void bind_adjoints(py::module_& m) {
     with_scene_names([&](auto... scene) {
         with_derivative_names([&](auto... d) {
             m.def("trace_paths_backward", of_scene(&trace_backward), scene..., py::arg("camera"),
