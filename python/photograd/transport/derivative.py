@@ -20,6 +20,8 @@ from photograd.transport.scene import Array
 from photograd.transport.tracer import DEFAULTS, PathOptions, PathTracer
 
 SPELLING = re.compile(r"(?P<name>[^\[\]]+)(\[(?P<index>\d+(\s*,\s*\d+)*)\])?")
+STILL = ("shapes", "camera", "lens", "shutter", "sdfs")
+NO_EDGES = "where things are has no derivative here: edges and shadows would move, too"
 
 
 def direction_of(params: Mapping[str, Array], parameter: str) -> dict[str, Array]:
@@ -37,8 +39,9 @@ def direction_of(params: Mapping[str, Array], parameter: str) -> dict[str, Array
     found = SPELLING.fullmatch(parameter.strip())
     name = found["name"] if found else parameter
     if found is None or name not in params:
-        known = choose_from(name, params)
-        raise RangeError(message("direction_of", "parameter", "one of the scene's", name, known))
+        still = name.partition(".")[0] in STILL
+        remedy = NO_EDGES if still else choose_from(name, params)
+        raise RangeError(message("direction_of", "parameter", "one of the scene's", name, remedy))
     shape = params[name].shape
     if found["index"] is None:
         return {name: np.ones(shape)}

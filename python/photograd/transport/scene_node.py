@@ -14,6 +14,7 @@ from photograd.errors import Error, SceneError, message
 from photograd.transport.toml_lines import KeyPath
 
 Built = TypeVar("Built")
+BEYOND = 1e30
 LARGEST = 2**53  # whole numbers up to here are exact in a float
 
 
@@ -116,14 +117,14 @@ class Node:
         """A finite number."""
         found = self.value(key, default)
         if not _is_number(found):
-            raise self.wrong(key, "a finite number", found)
+            raise self.wrong(key, "a finite number", found, _too_large(found))
         return float(found)
 
     def numbers(self, key: str, count: int, default: list[float] | None = None) -> list[float]:
         """A list of finite numbers."""
         found = self.value(key, default)
         if not isinstance(found, list) or len(found) != count or not all(map(_is_number, found)):
-            raise self.wrong(key, f"{count} finite numbers", found)
+            raise self.wrong(key, f"{count} finite numbers", found, _too_large(found))
         return [float(entry) for entry in found]
 
     def picture_size(self) -> tuple[int, int]:
@@ -144,7 +145,8 @@ class Node:
             or len(entries) != 3
             or not all(_is_number(entry) and entry >= 0 for entry in entries)
         ):
-            raise self.wrong(key, "a radiance: one or three numbers of at least 0", found)
+            expected = "a radiance: one or three numbers of at least 0"
+            raise self.wrong(key, expected, found, _too_large(found))
         return [float(entry) for entry in entries]
 
     def rows(self, key: str, kind: type[int] | type[float]) -> Any:
@@ -175,4 +177,12 @@ class Node:
 
 def _is_number(value: object) -> bool:
     """Finite and within reason: TOML's integers have no end, and NaN is in no interval."""
-    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < 1e30
+    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < BEYOND
+
+
+def _too_large(found: object) -> str | None:
+    """A remedy where a number is one, but too large for the arithmetic of float32."""
+    for entry in found if isinstance(found, list) else [found]:
+        if isinstance(entry, int | float) and BEYOND <= abs(entry) < float("inf"):
+            return f"numbers below {BEYOND:g}"
+    return None
