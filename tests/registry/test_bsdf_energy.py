@@ -42,10 +42,10 @@ def test_the_roughest_mirror_seen_straight_on_returns_one_minus_ln_two() -> None
 
 # What the same mirrors return under the masking without roots.
 FAST = {
-    0.1: (0.0, 0.0, 0.0, 0.0),
-    0.25: (0.0, 0.0, 0.0, 0.0),
-    0.5: (0.0, 0.0, 0.0, 0.0),
-    0.75: (0.0, 0.0, 0.0, 0.0),
+    0.1: (0.690, 0.805, 0.920, 0.984),
+    0.25: (0.748, 0.703, 0.788, 0.895),
+    0.5: (0.792, 0.661, 0.627, 0.661),
+    0.75: (0.785, 0.615, 0.508, 0.452),
     1.0: GGX[1.0],
 }
 
