@@ -49,10 +49,12 @@ __all__: list[str] = [
     "bsdf_ggx_conductor",
     "bsdf_ggx_metal",
     "bsdf_ggx_metal_compensated",
+    "bsdf_ggx_metal_fast",
     "bsdf_gltf",
     "bsdf_gltf_iridescence",
     "bsdf_gltf_refraction",
     "bsdf_gltf_sheen",
+    "bsdf_gltf_specular",
     "bsdf_gltf_transmission",
     "bsdf_lambert",
     "bsdf_oren_nayar_energy_preserving",
@@ -1143,6 +1145,69 @@ class bsdf_ggx_metal_compensated:
         Whether light may pass the surface.
         """
 
+class bsdf_ggx_metal_fast:
+    """
+    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
+    """
+    @staticmethod
+    def energy() -> tuple[str, float]:
+        """
+        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
+        """
+    @staticmethod
+    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Value without the cosine, (N, 3).
+        """
+    @staticmethod
+    def f_backward(
+        parameters: numpy.ndarray,
+        wo: numpy.ndarray,
+        wi: numpy.ndarray,
+        d_f: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
+        """
+    @staticmethod
+    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
+        """
+        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
+        """
+    @staticmethod
+    def jvp(
+        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        Exact derivative of f along v, (N, 3), float64.
+        """
+    @staticmethod
+    def parameters() -> list[tuple[str, int, float, float, str]]:
+        """
+        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
+        """
+    @staticmethod
+    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Density of `sample` over solid angle, (N,).
+        """
+    @staticmethod
+    def reciprocal() -> bool:
+        """
+        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
+        """
+    @staticmethod
+    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
+        """
+        wi (N, 3) from uniform u2 (N, 2).
+        """
+    @staticmethod
+    def transmits() -> bool:
+        """
+        Whether light may pass the surface.
+        """
+
 class bsdf_ggx_conductor:
     """
     A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
@@ -1522,6 +1587,69 @@ class bsdf_gltf_iridescence:
         """
 
 class bsdf_gltf_sheen:
+    """
+    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
+    """
+    @staticmethod
+    def energy() -> tuple[str, float]:
+        """
+        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
+        """
+    @staticmethod
+    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Value without the cosine, (N, 3).
+        """
+    @staticmethod
+    def f_backward(
+        parameters: numpy.ndarray,
+        wo: numpy.ndarray,
+        wi: numpy.ndarray,
+        d_f: numpy.ndarray,
+        d_parameters: numpy.ndarray,
+    ) -> numpy.ndarray:
+        """
+        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
+        """
+    @staticmethod
+    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
+        """
+        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
+        """
+    @staticmethod
+    def jvp(
+        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
+    ) -> numpy.ndarray:
+        """
+        Exact derivative of f along v, (N, 3), float64.
+        """
+    @staticmethod
+    def parameters() -> list[tuple[str, int, float, float, str]]:
+        """
+        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
+        """
+    @staticmethod
+    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+        """
+        Density of `sample` over solid angle, (N,).
+        """
+    @staticmethod
+    def reciprocal() -> bool:
+        """
+        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
+        """
+    @staticmethod
+    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
+        """
+        wi (N, 3) from uniform u2 (N, 2).
+        """
+    @staticmethod
+    def transmits() -> bool:
+        """
+        Whether light may pass the surface.
+        """
+
+class bsdf_gltf_specular:
     """
     A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
     """
@@ -4485,6 +4613,7 @@ bsdfs: dict[str, typing.Any] = {
     "cook_torrance": bsdf_cook_torrance,
     "ggx_metal": bsdf_ggx_metal,
     "ggx_metal_compensated": bsdf_ggx_metal_compensated,
+    "ggx_metal_fast": bsdf_ggx_metal_fast,
     "ggx_conductor": bsdf_ggx_conductor,
     "beckmann_conductor": bsdf_beckmann_conductor,
     "ggx_anisotropic": bsdf_ggx_anisotropic,
@@ -4492,6 +4621,7 @@ bsdfs: dict[str, typing.Any] = {
     "gltf": bsdf_gltf,
     "gltf_iridescence": bsdf_gltf_iridescence,
     "gltf_sheen": bsdf_gltf_sheen,
+    "gltf_specular": bsdf_gltf_specular,
     "clearcoat": bsdf_clearcoat,
     "sheen": bsdf_sheen,
     "disney": bsdf_disney,

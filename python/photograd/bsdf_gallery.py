@@ -74,6 +74,7 @@ def _draw_derivatives(figure: Figure, model: BsdfModel, parameters: dict[str, An
     slopes = derivatives(model, parameters, wo, wi)
     across = max(4, len(slopes) if len(slopes) < 7 else -(-len(slopes) // 2))
     size = min(0.66 / across, 0.14)
+    long = max(map(len, slopes)) > 14  # names
     for number, (name, slope) in enumerate(slopes.items()):
         down, column = divmod(number, across)
         rows = -(-len(slopes) // across)
@@ -83,7 +84,9 @@ def _draw_derivatives(figure: Figure, model: BsdfModel, parameters: dict[str, An
         picture[inside] = slope * np.pi * np.clip(wi[:, 2], 0.0, None)
         limit = float(np.quantile(np.abs(picture[inside]), 0.97)) or 1.0
         axes.imshow(picture, cmap="RdBu_r", vmin=-limit, vmax=limit)
-        axes.set_title(f"d / d {name}\n\u00b1{limit:.2g}", fontsize=6 if rows == 1 else 5, pad=2)
+        axes.set_title(
+            f"d / d {name}\n\u00b1{limit:.2g}", fontsize=5 if long or rows > 1 else 6, pad=2
+        )
         axes.axis("off")
 
 

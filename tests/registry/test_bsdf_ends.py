@@ -76,11 +76,11 @@ METALS = [
 
 def metal(name: str, roughness: float, color: float = BASE) -> dict[str, Any]:
     """All metal, no layers: what is neither metal nor rough is at the low end of its range."""
-    values: dict[str, Any] = {p.name: p.lo for p in MODELS[name].parameters}
+    values: dict[str, Any] = {
+        p.name: np.full(3, p.lo) if p.size > 1 else p.lo for p in MODELS[name].parameters
+    }
     values |= {key: METAL[key] for key in METAL if key in values}
-    return {**values, "roughness": roughness, "base_color": np.full(3, color)} | (
-        {"sheen_color_factor": np.zeros(3)} if "sheen_color_factor" in values else {}
-    )
+    return {**values, "roughness": roughness, "base_color": np.full(3, color)}
 
 
 @pytest.mark.parametrize("name", METALS)
