@@ -71,7 +71,6 @@ def made(folder: Path, **material: Any) -> tuple[Material, list[str]]:
             "gltf_specular",
             {"specular_factor": 0.25, "specular_color_factor": [1, 0.5, 0], "eta": 1.5},
         ),
-        (extension("specular"), "gltf", {"metalness": 1}),
         (
             core(baseColorFactor=[0.5, 0.25, 1, 1], metallicFactor=0)
             | extension("specular", specularFactor=0),
@@ -79,7 +78,7 @@ def made(folder: Path, **material: Any) -> tuple[Material, list[str]]:
             {"albedo": [0.5, 0.25, 1]},
         ),
         (extension("specular", specularFactor=0), "gltf_specular", {"specular_factor": 0}),
-        (extension("ior", ior=1.25), "gltf_specular", {"eta": 1.25, "specular_factor": 1}),
+        (extension("ior", ior=1.25), "gltf_specular", {"eta": 1.25}),
         (
             core(roughnessFactor=0, metallicFactor=0) | clear(),
             "thin_glass",
