@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import numpy as np
-import numpy.typing as npt
 import typer
 from photograd_course.cli import (
     Column,
@@ -53,7 +52,6 @@ PASS_SPP = 8
 SAVE_SECONDS = 10.0
 DARK = "all is black: does something shine there, and is the camera inside of a closed shape?"
 
-Array = npt.NDArray[Any]
 SceneArgument = Annotated[
     str,
     typer.Argument(
