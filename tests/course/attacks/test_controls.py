@@ -25,7 +25,8 @@ def control(request: pytest.FixtureRequest) -> Iterator[Callable[[Attack], Contr
 
     Each has a cage to itself, and its time is always used up: it is waited for, not measured.
     """
-    items: list[Any] = [item for item in request.session.items if "control" in item.fixturenames]
+    here: list[Any] = [item for item in request.session.items if item.parent is request.node]
+    items = [item for item in here if "control" in item.fixturenames]
     asked: list[Attack] = [item.callspec.params["attack"] for item in items]
 
     with ThreadPoolExecutor(AT_ONCE) as pool:
