@@ -103,7 +103,7 @@ def central_differences_are_exact_for_quadratics(t):
     points=4,
     calls=("numeric_derivative",),
     kills=("forward_difference", "missing_half", "five_point"),
-    sole="the order is what the handout is about; who fails here fails 01.1.cubic too, later",
+    sole="the order is what the handout is about; a wrong order fails a hidden check, too",
     hint="Halve eps: the error should fall to a quarter, Eq. (4).",
 )
 def the_error_falls_with_the_square_of_the_step(t):

@@ -15,13 +15,6 @@ std::vector<std::string> split(std::string_view axes) {
     return names;
 }
 
-std::string shape_text(const py::array& array) {
-    std::string text = "(";
-    for (py::ssize_t i = 0; i < array.ndim(); ++i)
-        text += (i ? ", " : "") + std::to_string(array.shape(i));
-    return text + (array.ndim() == 1 ? ",)" : ")");
-}
-
 std::string wanted_shape(const std::vector<std::string>& names) {
     std::string text = "shape (";
     for (std::size_t i = 0; i < names.size(); ++i) text += (i ? ", " : "") + names[i];
@@ -29,6 +22,13 @@ std::string wanted_shape(const std::vector<std::string>& names) {
 }
 
 }  // namespace
+
+std::string shape_text(const py::array& array) {
+    std::string text = "(";
+    for (py::ssize_t i = 0; i < array.ndim(); ++i)
+        text += (i ? ", " : "") + std::to_string(array.shape(i));
+    return text + (array.ndim() == 1 ? ",)" : ")");
+}
 
 void ArrayArgs::check(const char* name, const py::array& array, std::string_view axes,
                       const py::dtype& type) {

@@ -21,6 +21,9 @@ namespace photograd {
 
 namespace py = pybind11;
 
+/// Sizes of all axes, as NumPy prints them.
+std::string shape_text(const py::array& array);
+
 class ArrayArgs {
 public:
     explicit ArrayArgs(std::string function) : function_(std::move(function)) {}

@@ -45,28 +45,27 @@ py::tuple place(const MarchSettings& settings, const py::array& origins,
     });
 }
 
-/// Calls use(field, parameter axes) with the field that `name` stands for, made from `parameters`.
+py::tuple field_names() {
+    py::list names;
+    Fields<float>::for_each([&]<class F>(std::type_identity<F>) { names.append(F::name); });
+    return py::tuple(names);
+}
+
+/// Calls use(field, parameter axes) with the field of the registry that `name` stands for, over `parameters`.
 template <class R, class Use>
 void with_field(ArrayArgs& args, const std::string& name, const py::array& parameters,
                 const MarchSettings& settings, Use&& use) {
-    if (name == DenseGrid<R>::name) {
-        const R* values = args.in<R>("parameters", parameters, "X Y Z 4");
-        const std::array<int, 3> shape{static_cast<int>(args.size("X")),
-                                       static_cast<int>(args.size("Y")),
-                                       static_cast<int>(args.size("Z"))};
-        if (*std::min_element(shape.begin(), shape.end()) < 2)
-            args.range("parameters", "at least two voxels along every axis", "fewer");
-        use(DenseGrid<R>::make(values, shape, settings.field()), "X Y Z 4");
-    } else if (name == TinyNetwork<R>::name) {
-        TinyNetwork<R> field;
-        field.parameters = args.in<R>("parameters", parameters, "P");
-        if (args.size("P") != TinyNetwork<R>::parameter_count)
-            args.range("parameters", std::to_string(TinyNetwork<R>::parameter_count) + " numbers",
-                       std::to_string(args.size("P")));
-        use(field, "P");
-    } else {
-        args.range("field", "dense_grid or tiny_network", name);
-    }
+    bool found = false;
+    Fields<R>::for_each([&]<class F>(std::type_identity<F>) {
+        if (name != F::name) return;
+        found = true;
+        const R* values = args.in<R>("parameters", parameters, F::axes);
+        const std::vector<std::int64_t> shape(parameters.shape(),
+                                              parameters.shape() + parameters.ndim());
+        if (!F::fits(shape.data())) args.range("parameters", F::expected(), shape_text(parameters));
+        use(F::over(values, shape.data(), settings.field()), F::axes);
+    });
+    if (!found) args.range("field", "one of " + std::string(py::str(field_names())), name);
 }
 
 py::tuple march_any(const std::string& name, const py::array& parameters,
@@ -157,6 +156,7 @@ void bind_march(py::module_& m) {
              py::arg("box"), py::arg("dt"), py::arg("stop"), py::arg("lattice"),
              py::arg("quadrature"), py::arg("border"), py::arg("density_activation"),
              py::arg("color_activation"), py::arg("density_scale"));
+    m.attr("fields") = field_names();
     m.attr("tiny_network_parameters") = TinyNetwork<float>::parameter_count;
     m.def("place_samples", &place, py::arg("settings"), py::arg("origins"), py::arg("directions"),
           py::arg("jitter") = py::none(), "Per ray: t0 (R,) and the number of samples (R,) int32.");

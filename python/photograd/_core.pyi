@@ -82,6 +82,7 @@ __all__: list[str] = [
     "even_words",
     "exp",
     "expm1",
+    "fields",
     "first_hits",
     "instruction_set",
     "lights",
@@ -4637,6 +4638,7 @@ delta_bsdfs: dict[str, typing.Any] = {
     "thin_glass": delta_bsdf_thin_glass,
     "dispersive_glass": delta_bsdf_dispersive_glass,
 }
+fields: tuple[typing.Any, ...] = ("dense_grid", "tiny_network")
 lights: dict[str, typing.Any] = {
     "sun": sampled_sun,
     "sky": sampled_sky,

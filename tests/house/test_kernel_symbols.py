@@ -16,6 +16,7 @@ from pathlib import Path
 
 import pytest
 
+from support.missing import missing
 from support.tree import ROOT
 
 SETS = ["v3", "v4"]
@@ -45,7 +46,7 @@ def weak_symbols(listing: str) -> list[str]:
 def test_weak_symbols_carry_the_instruction_set(instruction_set: str) -> None:
     files = objects(instruction_set)
     if not files or shutil.which("nm") is None:
-        pytest.skip("no compiled kernels in build/, or no nm")
+        missing("compiled kernels in build/, and nm, are not here")
     own = own_symbol(instruction_set)
     found = []
     for file in files:

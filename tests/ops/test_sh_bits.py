@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import hashlib
-import os
-import subprocess
-import sys
 from typing import Any
 
 import numpy as np
 import pytest
 from photograd import sh
 from photograd.core import _core
+
+from support.instruction_sets import assert_same_bits
 
 pytestmark = pytest.mark.usefixtures("core")
 
@@ -102,21 +101,4 @@ def test_thread_count_changes_nothing() -> None:
 
 @pytest.mark.slow
 def test_every_instruction_set_gives_the_same_bits() -> None:
-    program = (
-        "from photograd.core import _core; from tests.ops.test_sh_bits import digests\n"
-        "print(_core.instruction_set(), *digests())"
-    )
-    seen = {}
-    for name in ("baseline", "v3", "v4"):
-        done = subprocess.run(
-            [sys.executable, "-c", program],
-            env={**os.environ, "PHOTOGRAD_ISA": name}, capture_output=True, text=True, check=False,
-        )  # fmt: skip
-        if done.returncode == 0:
-            kernel, *found = done.stdout.split()
-            assert kernel == name
-            seen[name] = tuple(found)
-        else:
-            assert "PHOTOGRAD_ISA" in done.stderr, done.stderr
-    assert len(seen["baseline"]) == 3 * len(DEGREES)
-    assert len(set(seen.values())) == 1
+    assert_same_bits("from tests.ops.test_sh_bits import digests; print(*digests())")

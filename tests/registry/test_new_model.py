@@ -23,6 +23,7 @@ from photograd.bsdf import BsdfModel, registry
 from photograd.bsdf_gallery import benchmark_row, gallery_picture
 
 from support.bsdf_proofs import PROOFS
+from support.missing import missing
 from support.tree import ROOT
 
 HEADER = """#pragma once
@@ -98,7 +99,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Where the module with the new model has been built."""
     compiler = shutil.which("c++") or shutil.which("g++")
     if compiler is None:
-        pytest.skip("no C++ compiler here")
+        missing("a C++ compiler is not here")
     build = tmp_path_factory.mktemp("new_model")
     cpp = build / "cpp"
     shutil.copytree(ROOT / "cpp", cpp)

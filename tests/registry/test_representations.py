@@ -77,8 +77,8 @@ class Proof:
         return {name: gradients[name] for name in camera}
 
 
-def test_all_four_are_registered_under_their_names() -> None:
-    assert {"dense_grid", "texture_2d", "tiny_network", "toy_blobs"} <= set(NAMES)
+def test_all_are_registered_under_their_names() -> None:
+    assert {"texture_2d", "toy_blobs", *_core.fields} <= set(NAMES)
     assert all(REPRESENTATIONS[name].name == name for name in NAMES)
 
 

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
-import sys
 from dataclasses import replace
 from typing import Any
 
@@ -13,6 +10,7 @@ import pytest
 from photograd.core import _core
 from photograd.splat_rays import RayOptions, render, render_backward
 
+from support.instruction_sets import assert_same_bits
 from tests.splat import oracle, ray_oracle
 
 OPTIONS = {
@@ -73,26 +71,11 @@ def test_several_slabs_add_up_to_one_picture() -> None:
 
 
 def test_every_instruction_set_gives_the_same_bits() -> None:
-    program = (
-        "import hashlib; from photograd.core import _core; from tests.splat.test_rays_bits "
-        "import run, OPTIONS; h = hashlib.sha256()\n"
-        "for v in OPTIONS:\n    [h.update(a.tobytes()) for a in run(v)]\n"
-        "print(_core.instruction_set(), h.hexdigest())"
+    assert_same_bits(
+        "import hashlib; from tests.splat.test_rays_bits import run, OPTIONS\n"
+        "for v in OPTIONS:\n"
+        "    print(*(hashlib.sha256(a.tobytes()).hexdigest() for a in run(v)))"
     )
-    seen = {}
-    for name in ("baseline", "v3", "v4"):
-        done = subprocess.run(
-            [sys.executable, "-c", program],
-            env={**os.environ, "PHOTOGRAD_ISA": name}, capture_output=True, text=True, check=False,
-        )  # fmt: skip
-        if done.returncode == 0:
-            kernel, digest = done.stdout.split()
-            assert kernel == name
-            seen[name] = digest
-        else:
-            assert "PHOTOGRAD_ISA" in done.stderr, done.stderr
-    assert "baseline" in seen
-    assert len(set(seen.values())) == 1, seen
 
 
 @pytest.mark.parametrize("name", OPTIONS)

@@ -8,6 +8,7 @@
 // corners gets its trilinear weight times d_raw, through the brick owners of grid/brick.h.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <numeric>
 
@@ -22,6 +23,7 @@ template <Real R>
 struct DenseGrid {
     using Scalar = R;
     static constexpr const char* name = "dense_grid";
+    static constexpr const char* axes = "X Y Z 4";
     static constexpr int channels = 4;
 
     const R* values = nullptr;  // (X, Y, Z, 4)
@@ -29,16 +31,22 @@ struct DenseGrid {
     R lo[3]{}, scale[3]{}, density_scale{};
     FieldOptions options;
 
-    static DenseGrid make(const R* values, std::array<int, 3> shape, const FieldOptions& options) {
+    static const char* expected() { return "at least two voxels along every axis"; }
+    static bool fits(const std::int64_t* shape) {
+        return std::min({shape[0], shape[1], shape[2]}) >= 2;
+    }
+
+    static DenseGrid over(const R* values, const std::int64_t* shape, const FieldOptions& options) {
         DenseGrid grid;
         grid.values = values;
-        grid.shape = {shape[0], shape[1], shape[2]};
+        grid.shape = {static_cast<int>(shape[0]), static_cast<int>(shape[1]),
+                      static_cast<int>(shape[2])};
         grid.options = options;
         grid.density_scale = static_cast<R>(options.density_scale);
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const double extent = options.box[1][axis] - options.box[0][axis];
             grid.lo[axis] = static_cast<R>(options.box[0][axis]);
-            grid.scale[axis] = static_cast<R>(shape[axis] / extent);
+            grid.scale[axis] = static_cast<R>(static_cast<double>(shape[axis]) / extent);
         }
         return grid;
     }

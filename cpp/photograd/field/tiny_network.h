@@ -12,6 +12,7 @@
 #pragma once
 
 #include <array>
+#include <string>
 
 #include "photograd/core/scatter.h"
 #include "photograd/field/samples.h"
@@ -22,12 +23,22 @@ template <Real R>
 struct TinyNetwork {
     using Scalar = R;
     static constexpr const char* name = "tiny_network";
+    static constexpr const char* axes = "P";
     static constexpr int hidden = 16;
     // Parameters in one flat array: W1 (16, 3), b1 (16), W2 (4, 16), b2 (4).
     static constexpr int at_b1 = 3 * hidden, at_w2 = at_b1 + hidden, at_b2 = at_w2 + 4 * hidden;
     static constexpr int parameter_count = at_b2 + 4;
 
     const R* parameters = nullptr;
+
+    static std::string expected() { return std::to_string(parameter_count) + " numbers"; }
+    static bool fits(const std::int64_t* shape) { return shape[0] == parameter_count; }
+    static TinyNetwork over(const R* parameters, const std::int64_t* /*shape*/,
+                            const FieldOptions& /*options*/) {
+        TinyNetwork network;
+        network.parameters = parameters;
+        return network;
+    }
 
     struct Cache {
         std::vector<std::array<Lanes<R>, hidden>> before;  // a = W1 p + b1

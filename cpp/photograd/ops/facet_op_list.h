@@ -12,8 +12,11 @@
 #include "photograd/ops/fresnel_schlick.h"
 #include "photograd/ops/ggx.h"
 #include "photograd/ops/ggx_fast.h"
+#include "photograd/ops/gtr1.h"
 #include "photograd/ops/input_group.h"
+#include "photograd/ops/principled.h"
 #include "photograd/ops/refract.h"
+#include "photograd/ops/thin_film.h"
 
 namespace photograd {
 
@@ -219,6 +222,65 @@ struct CharlieOp {
     static void backward(const R* in, const R* d_out, R* d_in) {
         charlie_D_backward(R(0.9), in[0], d_out[0], d_in[0]);
         charlie_V_backward(R(0.3), R(0.8), in[0], d_out[1], d_in[0]);
+    }
+};
+
+struct Gtr1Op {
+    static constexpr const char* name = "gtr1";
+    static constexpr std::array<InputGroup, 1> inputs{{{"alpha", 1, 0.05, 0.95}}};
+    static constexpr int outputs = 1;
+
+    template <class R>
+    static void forward(const R* in, R* out) {
+        out[0] = gtr1_D(Vec3<R>(R(0.168), R(0.224), R(0.96)), in[0]);
+    }
+    template <class R>
+    static void backward(const R* in, const R* d_out, R* d_in) {
+        gtr1_D_backward(Vec3<R>(R(0.168), R(0.224), R(0.96)), in[0], d_out[0], d_in[0]);
+    }
+};
+
+/// A film over a base that is denser than it in every channel, where the phase of the lower boundary does not jump.
+struct ThinFilmOp {
+    static constexpr const char* name = "thin_film";
+    static constexpr std::array<InputGroup, 3> inputs{
+        {{"f0", 3, 0.2, 0.9}, {"index", 1, 1.2, 1.8}, {"thickness", 1, 150.0, 600.0}}};
+    static constexpr int outputs = 3;
+
+    template <class R>
+    static void forward(const R* in, R* out) {
+        const Vec3<R> F = thin_film(Vec3<R>(in[0], in[1], in[2]), in[3], in[4], R(0.7));
+        for (int c = 0; c < 3; ++c) out[c] = F[c];
+    }
+    template <class R>
+    static void backward(const R* in, const R* d_out, R* d_in) {
+        Vec3<R> d_f0(R(0));
+        thin_film_backward(Vec3<R>(in[0], in[1], in[2]), in[3], in[4], R(0.7),
+                           Vec3<R>(d_out[0], d_out[1], d_out[2]), d_f0, d_in[3], d_in[4]);
+        for (int c = 0; c < 3; ++c) d_in[c] += d_f0[c];
+    }
+};
+
+/// P and Q of principled.h for directions off the plane of incidence.
+struct PrincipledOp {
+    static constexpr const char* name = "principled";
+    static constexpr std::array<InputGroup, 2> inputs{
+        {{"metalness", 1, 0.05, 0.95}, {"roughness", 1, 0.1, 0.95}}};
+    static constexpr int outputs = 2;
+
+    template <class R>
+    static PrincipledAngles<R> angles() {
+        return PrincipledAngles<R>::of(R(0.48), R(0.64), R(0.6), R(-0.6), R(0.0), R(0.8));
+    }
+    template <class R>
+    static void forward(const R* in, R* out) {
+        const PrincipledTerms<R> terms = principled(angles<R>(), in[0], in[1]);
+        out[0] = terms.P;
+        out[1] = terms.Q;
+    }
+    template <class R>
+    static void backward(const R* in, const R* d_out, R* d_in) {
+        principled_backward(angles<R>(), in[0], in[1], d_out[0], d_out[1], d_in[0], d_in[1]);
     }
 };
 

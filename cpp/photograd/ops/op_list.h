@@ -17,6 +17,7 @@
 #include "photograd/ops/ray_op_list.h"
 #include "photograd/ops/sdf_op_list.h"
 #include "photograd/ops/sh.h"
+#include "photograd/ops/sh_batch.h"
 #include "photograd/ops/splat_op_list.h"
 #include "photograd/ops/trilinear.h"
 
@@ -132,6 +133,26 @@ struct ShColorOp {
     }
 };
 
+/// Colours of two points, each with coefficients and a direction of its own.
+struct ShColorsOp {
+    static constexpr const char* name = "sh_colors";
+    static constexpr int degree = 2, channels = 3, points = 2;
+    static constexpr int coefficients = points * sh_count(degree) * channels;
+    static constexpr std::array<InputGroup, 2> inputs{
+        {{"coefficients", coefficients, -1, 1}, {"directions", 3 * points, 0.2, 0.9}}};
+    static constexpr int outputs = points * channels;
+
+    template <class R>
+    static void forward(const R* in, R* out) {
+        sh_colors<degree, channels>(ShRows<R>{points, in + coefficients, in}, out);
+    }
+    template <class R>
+    static void backward(const R* in, const R* d_out, R* d_in) {
+        sh_colors_backward<degree, channels>(ShRows<R>{points, in + coefficients, in}, d_out,
+                                             d_in + coefficients, d_in);
+    }
+};
+
 /// Texels with 2 channels and a point in texture coordinates. Inside: a texture of 3 rows and 4 columns, the
 /// point within one cell. At the left border: 12 rows and 3 columns, the point left of the first centres,
 /// where u is clamped and v is not.
@@ -232,11 +253,12 @@ using Ops =
     TypeList<ActivationOp<Activation::relu>, ActivationOp<Activation::softplus>,
              ActivationOp<Activation::exp>, ActivationOp<Activation::sigmoid>, BilinearOp<false>,
              BilinearOp<true>, TrilinearOp<Border::clamp>, TrilinearOp<Border::zero>, CellBlendOp,
-             ShColorOp, CompositeOp<Quadrature::alpha>, CompositeOp<Quadrature::riemann>,
-             CovarianceOp, ProjectionOp<false>, ProjectionOp<true>, ConicOp, SplatColorOp,
-             SplatBlendOp, RayGaussianOp, RayColorOp, RayBlendOp, ErfOp, SchlickOp, IndexOp,
-             DielectricOp<false>, DielectricOp<true>, ConductorOp, GgxOp, GgxFastOp, BeckmannOp,
-             CharlieOp, SdfSphereOp, SdfPlaneOp, SdfTorusOp, SdfBoxOp<false>, SdfBoxOp<true>,
+             ShColorOp, ShColorsOp, CompositeOp<Quadrature::alpha>,
+             CompositeOp<Quadrature::riemann>, CovarianceOp, ProjectionOp<false>,
+             ProjectionOp<true>, ConicOp, SplatColorOp, SplatBlendOp, RayGaussianOp, RayColorOp,
+             RayBlendOp, ErfOp, SchlickOp, IndexOp, DielectricOp<false>, DielectricOp<true>,
+             ConductorOp, GgxOp, GgxFastOp, BeckmannOp, CharlieOp, Gtr1Op, RefractOp, ThinFilmOp,
+             PrincipledOp, SdfSphereOp, SdfPlaneOp, SdfTorusOp, SdfBoxOp<false>, SdfBoxOp<true>,
              SdfCapsuleOp, SmoothUnionOp, ToShapeOp>;
 
 }  // namespace photograd

@@ -128,6 +128,14 @@ def test_leaked_names(broken: Broken, path: str, old: str, new: str) -> None:
     assert broken.says("leaked names") == []
 
 
+def test_a_hidden_check_that_is_named_in_the_kit(broken: Broken) -> None:
+    assert broken.says("leaked names") == []
+    broken.change("handout.md", "Write", "(17.1.random) Write")
+    assert broken.says("leaked names") == [
+        "the hidden check '17.1.random' is named in kit/README.md"
+    ]
+
+
 def test_leaked_names_in_the_wheel(broken: Broken) -> None:
     broken.change("light.py", "return 2.0 * x", "require_cheap = 2.0 * x\n    return require_cheap")
     said = broken.says("leaked names")

@@ -2,16 +2,19 @@
 
 Seen are the kit, the public checks and both wheels, whole texts there: code, comments, handout.
 Names that may be seen stand in the manifest's `vocabulary`; names of one or two characters are
-free.
+free. Nor is a hidden check named in the kit.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 
 from ..dossier import Dossier
 from ..leak_words import bound_names, words_of
 from ..regions import find_regions
+
+_CHECK = re.compile(r'@check\(\s*"([^"]+)"')
 
 
 def look(dossier: Dossier) -> Iterator[str]:
@@ -24,6 +27,16 @@ def look(dossier: Dossier) -> Iterator[str]:
     for name, found in sorted(places.items()):
         more = f" and {len(found) - 1} more" if len(found) > 1 else ""
         yield f"'{name}' belongs to the solution and occurs in {sorted(found)[0]}{more}"
+    for check in hidden_checks(dossier):
+        for path, text in sorted(own_texts(dossier).items()):
+            if check in text:
+                yield f"the hidden check '{check}' is named in {path}"
+
+
+def hidden_checks(dossier: Dossier) -> list[str]:
+    """Ids of the checks that the public checks.py lacks."""
+    public = set(_CHECK.findall(own_texts(dossier)["checks/checks.py"]))
+    return sorted({check.id for check in dossier.checks} - public)
 
 
 def secret_names(dossier: Dossier) -> set[str]:
@@ -36,9 +49,13 @@ def secret_names(dossier: Dossier) -> set[str]:
 
 def seen_texts(dossier: Dossier) -> dict[str, str]:
     """All texts that students can see, by place."""
-    own = {
+    return {**dossier.haystacks, **own_texts(dossier)}
+
+
+def own_texts(dossier: Dossier) -> dict[str, str]:
+    """The texts of the kit, by place."""
+    return {
         path: data.decode("utf-8")
         for path, data in dossier.visible.items()
         if not path.endswith((".png", ".npy", ".npz"))
     }
-    return {**dossier.haystacks, **own}
