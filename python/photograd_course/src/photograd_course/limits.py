@@ -51,5 +51,10 @@ class Limit:
 
 
 TOML_BYTES = Limit("PHOTOGRAD_MAX_TOML_BYTES", 4 << 20, "bytes of TOML")
-PIXELS = Limit("PHOTOGRAD_MAX_PIXELS", 100_000_000, "pixels in an image")
-ARRAY_BYTES = Limit("PHOTOGRAD_MAX_ARRAY_BYTES", 8 << 30, "bytes of arrays from one file")
+PIXELS = Limit("PHOTOGRAD_MAX_PIXELS", 1 << 27, "pixels in an image")
+MODEL_ELEMENTS = Limit(
+    "PHOTOGRAD_MAX_ELEMENTS", 1 << 28, "vertices, triangles and texels in a mesh file"
+)
+EXPANSION = Limit("PHOTOGRAD_MAX_EXPANSION", 1 << 28, "bytes more than the file is long")
+"""Memory for arrays that a file declares but does not hold: zeros of a sparse accessor, what an
+archive unpacks to. What a file holds byte by byte needs no limit."""
