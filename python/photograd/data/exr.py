@@ -11,6 +11,7 @@ import numpy.typing as npt
 import OpenEXR
 from photograd_course.errors import IoError, RangeError, message
 
+from .file_bytes import require_file
 from .pixel_limit import require_pixels
 
 _CHANNELS = ("R", "G", "B", "A")
@@ -28,8 +29,7 @@ def read_exr_header(path: Path) -> tuple[int, int, bool]:
         IoError: no such file, not an EXR file, empty or absurd window, or neither R, G, B nor Y
             channels.
     """
-    if not path.is_file():  # the library would call it damaged, and write to stderr
-        raise IoError(message("read_exr_header", str(path), "an EXR image", "no such file"))
+    require_file("read_exr_header", path)  # the library would call it damaged, and write to stderr
     try:
         with OpenEXR.File(str(path), separate_channels=True, header_only=True) as opened:
             header = opened.header()

@@ -19,6 +19,7 @@ from photograd_course.errors import IoError, RangeError, message
 from PIL import Image
 
 from . import exr
+from .file_bytes import require_file
 from .pixel_limit import allow_pixels, require_pixels, too_many_pixels
 
 ColorSpace: TypeAlias = Literal["display", "linear"]
@@ -204,13 +205,7 @@ def downscale_image(
 
 
 def _require_file(function: str, path: Path) -> None:
-    try:
-        found = path.is_file()
-    except (OSError, ValueError):
-        found = False
-    if not found:
-        raise IoError(message(function, repr(str(path)), "an image file", "no such file"))
-    if path.stat().st_size == 0:
+    if require_file(function, path) == 0:
         raise IoError(message(function, repr(str(path)), "an image file", "an empty file"))
     allow_pixels()
 
