@@ -139,11 +139,11 @@ def _sixteen_bits(path: Path, opened: Image.Image) -> npt.NDArray[np.uint16]:
     layout = opened.tile[0].args  # type: ignore[attr-defined]
     if layout not in ("RGB;16B", "RGBA;16B") or "transparency" in opened.info:
         raise _unreadable("read_image", path, f"unsupported 16-bit layout {layout}")
-    samples = np.asarray(opened).astype(np.uint16) << 8
+    samples = np.asarray(opened).astype(np.uint16) * np.uint16(256)
     with Image.open(path) as again:
         swapped = layout.replace("16B", "16L")
         again.tile = [again.tile[0]._replace(args=swapped)]
-        samples |= np.asarray(again)
+        samples += np.asarray(again)
     return samples
 
 
