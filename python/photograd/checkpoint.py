@@ -18,11 +18,13 @@ from typing import Any
 import numpy as np
 from photograd_course.atomic_io import atomic_write
 
+from photograd.data.npz import read_npz
 from photograd.errors import IoError, message
 from photograd.representation import Array
 
 VERSION = 1
 FILE_NAME = "model.npz"
+_EXPECTED, _REMEDY = "a photograd checkpoint", "the file is damaged: restore it or fit again"
 
 
 @dataclass(frozen=True)
@@ -59,13 +61,11 @@ def load_checkpoint(path: Path) -> Checkpoint:
             message("load_checkpoint", "path", "a model (DIR/model.npz)", f"{path}, which is none",
                     "run 'photograd fit' first")
         )  # fmt: skip
+    arrays = read_npz("load_checkpoint", file, expected=_EXPECTED, remedy=_REMEDY)
     try:
-        # Opened here, since NumPy leaves a file open that turns out to be no archive.
-        with file.open("rb") as stream, np.load(stream, allow_pickle=False) as archive:
-            arrays = {name: archive[name] for name in archive.files}
         meta = json.loads(str(arrays.pop("meta")))
         history = arrays.pop("history")
-    except Exception as failure:  # whatever numpy, zipfile, json and tokenize say of foreign bytes
+    except (KeyError, ValueError, RecursionError) as failure:
         raise _damaged(file, f"{failure}") from failure
     if not isinstance(meta, dict):
         raise _damaged(file, f"meta that is no JSON object but {type(meta).__name__}")
@@ -95,8 +95,7 @@ def make_folder(folder: Path) -> None:
 
 
 def _damaged(file: Path, got: str) -> IoError:
-    remedy = "the file is damaged: restore it or fit again"
-    return IoError(message("load_checkpoint", f"{file}", "a photograd checkpoint", got, remedy))
+    return IoError(message("load_checkpoint", f"{file}", _EXPECTED, got, _REMEDY))
 
 
 def _part(arrays: Mapping[str, Array], prefix: str) -> dict[str, Array]:

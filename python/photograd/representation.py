@@ -104,6 +104,12 @@ class RenderOptions:
     camera_adjoint: bool = False  # also dL/d "origins" and "directions", "points" of a canvas, or
     # "camera_from_world" of a picture
 
+    def __post_init__(self) -> None:
+        """Raises RangeError for a `stop` that is no transmittance below 1."""
+        if not 0 <= self.stop < 1:
+            expected = "a transmittance of at least 0 and below 1"
+            raise RangeError(message("RenderOptions", "stop", expected, self.stop))
+
 
 @dataclass(frozen=True)
 class Outputs:

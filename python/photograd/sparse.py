@@ -7,6 +7,7 @@ such points to world metres. What is not active has the background's value. [Mus
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -18,7 +19,9 @@ from photograd.errors import DtypeError, Error, RangeError, ShapeError, message
 from photograd.memory import require_room
 from photograd.representation import Array
 
-MOST_STEPS = 1000
+MOST_STEPS = 200
+"""Of one dilation: a single voxel becomes a cube of 401^3, 64 million in a few seconds. Time and
+memory grow with the cube of the steps."""
 OWN_KEYS = ("name", "file_")
 """Metadata that belong to a grid's name or that every writing makes anew."""
 
@@ -214,9 +217,24 @@ class SparseGrid:
         """Activate all voxels within `steps` of an active one along each axis (a cube around it).
 
         One step covers whatever a trilinear lookup reads around a point in an active voxel.
+
+        Raises:
+            RangeError: steps outside of 1 to `MOST_STEPS`, or more voxels than memory may hold.
         """
         if not 0 < steps <= MOST_STEPS:
             raise RangeError(message("SparseGrid.dilate", "steps", f"1 to {MOST_STEPS}", steps))
+        found = self.statistics
+        around = [
+            found.active_voxels * (2 * steps + 1) ** 3,
+            math.prod((np.diff(found.box, axis=0)[0] + 2 * steps).tolist()),
+        ]
+        if not found.active_tiles:
+            around.append(found.leaves * (8 + 2 * steps) ** 3)
+        room = 5 * self.channels * min(around)  # four bytes a value, masks and nodes
+        require_room(
+            "SparseGrid.dilate", f"up to {min(around):,} voxels", room - found.memory,
+            argument="steps", remedy="take fewer steps, or a coarser grid",
+        )  # fmt: skip
         self.core.dilate(steps)
 
     def copy(self) -> SparseGrid:

@@ -10,6 +10,7 @@ from typing import BinaryIO
 from photograd_course.atomic_io import atomic_write
 
 from photograd.core import _core
+from photograd.data.file_bytes import require_file
 from photograd.errors import IoError, message
 from photograd.memory import available_memory
 from photograd.sparse import SparseGrid
@@ -47,8 +48,7 @@ def read_vdb(path: Path, *, memory_limit: int | None = None) -> VdbFile:
         IoError: no file, a damaged one, one that needs more memory; a grid that is neither float
             nor vec3s, whose transform is not affine or cannot be inverted, or that is not finite.
     """
-    if not Path(path).is_file():
-        raise IoError(message("read_vdb", f"{path}", "a file", "none"))
+    require_file("read_vdb", path)
     limit = available_memory() if memory_limit is None else memory_limit
     try:
         found, metadata = _core.read_vdb(str(path), limit)

@@ -73,7 +73,7 @@ def test_other_integrators(photograd: Photograd, tmp_path: Path, integrator: str
     [
         (("nowhere",), "nowhere"),
         (("cornel-box",), "did you mean 'cornell-box'"),
-        (("none.toml",), "No such file"),
+        (("none.toml",), "expected a file, got none"),
         (("cornell-box", "--integrator", "magic"), "--integrator"),
         (("cornell-box", "--strategy", "hope"), "strategy"),
         (("cornell-box", "--out", "a.jpg"), ".exr or .png"),

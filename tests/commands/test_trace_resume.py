@@ -89,7 +89,7 @@ def test_what_cannot_become_a_picture_is_said_at_once(
     for text, words, said in (
         (SCENE, ("--out", "nowhere/a.exr"), "a file in a folder that exists, got nowhere/a.exr"),
         (huge, (), "camera.size: expected width and height in pixels, 1 to 65536"),
-        (SCENE + bright, (), "sky.exr: expected an EXR image, got no such file"),
+        (SCENE + bright, (), "sky.exr: expected a file, got none"),
         (SCENE + bright.replace("sky", "bad"), (), "1 bad pixels, the first in row 1, column 5"),
     ):
         scene.write_text(text, encoding="utf-8")

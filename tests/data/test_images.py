@@ -96,7 +96,7 @@ def test_truncated_files_are_refused(tmp_path: Path, name: str, kept: float) -> 
 
 
 def test_not_an_image(tmp_path: Path) -> None:
-    with pytest.raises(IoError, match="no such file"):
+    with pytest.raises(IoError, match="expected a file, got none"):
         read_image(tmp_path / "absent.png")
     (tmp_path / "text.png").write_text("hello")
     with pytest.raises(IoError, match="readable image"):
@@ -106,7 +106,7 @@ def test_not_an_image(tmp_path: Path) -> None:
     Image.new("CMYK", (4, 4)).save(tmp_path / "cmyk.jpg")
     with pytest.raises(IoError, match="mode CMYK"):
         read_image(tmp_path / "cmyk.jpg")
-    with pytest.raises(IoError, match="no such file"):
+    with pytest.raises(IoError, match="expected a readable file, got embedded null"):
         read_image(tmp_path / "\0.png")
 
 

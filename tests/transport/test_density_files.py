@@ -183,7 +183,7 @@ def test_grids_that_are_no_densities(tmp_path: Path) -> None:
             read_density(tmp_path / "a.vdb")
     with pytest.raises(RangeError, match=r"of the box that a \.npy fills"):
         read_density(tmp_path / "a.npy")
-    with pytest.raises(IoError, match=r"a file of numbers \(.npy\)"):
+    with pytest.raises(IoError, match="expected a file, got none"):
         read_density(tmp_path / "a.npy", corner=[0, 0, 0], size=[1, 1, 1])
 
 
@@ -193,13 +193,13 @@ def test_more_than_there_is_room_for_is_refused_before_it_is_taken(tmp_path: Pat
     grid.activate(np.array([(0, 0, 0), (10**6,) * 3], np.int32), np.ones((2, 1), np.float32))
     write_vdb(tmp_path / "cloud.vdb", [grid])
     (tmp_path / "s.toml").write_text(TEXT)
-    text = r"line 11: media.cloud.density: .*grid 'far', 1000003 x .* bytes"
+    text = r"line 11: media.cloud.density: .*grid 'far', 1000003 x .* TiB"
     with pytest.raises(SceneError, match=text):
         read_scene(tmp_path / "s.toml")
     near = SparseGrid.from_dense(np.zeros((2, 2, 2), np.float32), name="near")
     near.activate(np.array([(0, 0, 0), (99,) * 3], np.int32), np.ones((2, 1), np.float32))
     write_vdb(tmp_path / "a.vdb", [near])
-    with pytest.raises(RangeError, match=r"102 x 102 x 102 voxels in a medium \(21,224,160 bytes"):
+    with pytest.raises(RangeError, match=r"102 x 102 x 102 voxels in a medium \(20\.2 MiB"):
         read_density(tmp_path / "a.vdb", memory_limit=20_000_000)
 
 

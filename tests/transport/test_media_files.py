@@ -75,7 +75,7 @@ def test_what_a_file_says_is_what_the_scene_has(tmp_path: Path) -> None:
         ("sigma_t = [9, 10, 11]", "sigma_t = [-9, 10, 11]", "media.milk.*expected finite coeff"),
         ("cornette_shanks", "cornet", "media.milk.phase: expected one of"),
         ('interior = "milk"', 'interior = "mlik"', "interior: expected one of milk, ink"),
-        ('"smoke.npy"', '"fog.npy"', "expected a file of numbers"),
+        ('"smoke.npy"', '"fog.npy"', "fog.npy: expected a file, got none"),
         ("size = [2, 3, 4]", "size = [2, 3, 0]", "a box with a volume"),
         ('material = "boundary"', 'material = "grey"', "expected a surface that lets light in"),
     ],

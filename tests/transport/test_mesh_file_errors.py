@@ -10,9 +10,8 @@ import numpy as np
 import pytest
 from photograd.errors import Error, IoError, SceneError
 from photograd.transport import read_model
-from photograd.transport.mesh_files.container import LARGEST
 
-from tests.transport.gltf_samples import core, square
+from tests.transport.gltf_samples import Glb, core, square
 from tests.transport.test_mesh_files import corners, read
 
 
@@ -27,6 +26,7 @@ def damaged(change: str) -> bytes:
         "view": lambda: json["accessors"][0].update(bufferView=99),
         "count": lambda: json["accessors"][0].update(count=5),
         "huge": lambda: json["accessors"][0].update(count=2**31 - 1),
+        "zeros": lambda: json["accessors"][0].update(sparse_zeros(glb, 2**28 - 10)),
         "kind": lambda: json["accessors"][0].update(type="VEC9"),
         "component": lambda: json["accessors"][0].update(componentType=5124),
         "indices": lambda: part.update(indices=glb.accessor(np.array([0, 1, 4], np.uint16))),
@@ -44,6 +44,14 @@ def damaged(change: str) -> bytes:
     return glb.bytes()
 
 
+def sparse_zeros(glb: Glb, count: int) -> dict[str, Any]:
+    """Entries of an accessor without a view: zeros, but for one row."""
+    indices = {"bufferView": glb.view(np.uint16(0).tobytes()), "componentType": 5123}
+    values = {"bufferView": glb.view(np.zeros(3, np.float32).tobytes())}
+    sparse = {"count": 1, "indices": indices, "values": values}
+    return {"bufferView": None, "count": count, "sparse": sparse}
+
+
 @pytest.mark.parametrize(
     ("change", "words"),
     [
@@ -52,7 +60,11 @@ def damaged(change: str) -> bytes:
         ("two parents", "nodes[0]: expected a tree of nodes"),
         ("view", "accessors[0]: bufferView: expected a whole number from 0 to"),
         ("count", "accessors[0]: expected numbers inside of the buffer view, got 5 rows of 12"),
-        ("huge", f"accessors[0]: expected at most {LARGEST} vertices"),
+        ("huge", "accessors[0]: expected at most 268,435,456 vertices"),
+        (
+            "zeros",
+            "accessors[0]: expected at most 268,435,456 bytes more than the file is",
+        ),
         ("kind", "accessors[0]: type"),
         ("component", "accessors[0]: componentType"),
         ("indices", "primitives[0]: indices: expected vertex numbers below 4, got 4"),
@@ -114,3 +126,18 @@ def test_buffers_beside_the_file_stay_in_its_folder(tmp_path: Path) -> None:
         with pytest.raises(IoError) as caught:
             read(tmp_path, text, "m.gltf")
         assert words in str(caught.value)
+
+
+def test_zeros_of_sparse_accessors_are_counted_together(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    glb = square()
+    glb.json["accessors"][0].update(sparse_zeros(glb, 100))
+    part = glb.json["meshes"][0]["primitives"][0]
+    part["attributes"]["TEXCOORD_0"] = part["attributes"]["NORMAL"] = 0
+    monkeypatch.setenv("PHOTOGRAD_MAX_EXPANSION", "2400")
+    with pytest.raises(IoError, match="at most 2,400 bytes more than the file is long, got 3,600"):
+        read(tmp_path, glb.bytes())
+    monkeypatch.setenv("PHOTOGRAD_MAX_EXPANSION", "3600")
+    with pytest.raises(IoError, match="expected 2 components, got 3"):
+        read(tmp_path, glb.bytes())

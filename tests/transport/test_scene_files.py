@@ -137,9 +137,9 @@ def test_a_mistake_is_named_with_line_and_key(
 
 
 def test_what_is_no_toml_or_no_file(tmp_path: Path) -> None:
-    with pytest.raises(SceneError, match="line 1"):
+    with pytest.raises(IoError, match="line 1"):
         read_scene(write(tmp_path, "[camera\n"))
-    with pytest.raises(IoError, match="No such file"):
+    with pytest.raises(IoError, match="expected a file, got none"):
         read_scene(tmp_path / "none.toml")
     (tmp_path / "b.toml").write_bytes(b"\xff\xfe\x00")
     with pytest.raises(IoError):
@@ -156,6 +156,8 @@ def test_lines_of_keys_in_odd_places() -> None:
     assert lines["i", 0, "j"] == 8
     assert lines["i", 1] == 9
     assert len(lines) == 7
+    lines = key_lines('a = """\nb = 1\n[c] \\""" \n"""\nd = \'\'\'[\'\'\'\ne = 1\n')
+    assert lines == {("a",): 1, ("d",): 5, ("e",): 6}
 
 
 def test_built_in_scenes_are_found_by_name() -> None:

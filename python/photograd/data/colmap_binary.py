@@ -20,6 +20,7 @@ import numpy as np
 from photograd_course.errors import IoError, message
 
 from .colmap_model import MODELS, ColmapCamera, ColmapImage, ColmapModel, ColmapPoints
+from .file_bytes import read_file
 
 _OBSERVATION = np.dtype([("x", "<f8"), ("y", "<f8"), ("point", "<i8")])
 _POINT = struct.Struct("<Q3d3BdQ")
@@ -85,11 +86,7 @@ def read_binary_model(folder: Path) -> ColmapModel:
 
 
 def _open(path: Path) -> _Reader:
-    try:
-        return _Reader(path.name, path.read_bytes())
-    except OSError as error:
-        got = error.strerror or str(error)
-        raise IoError(message("read_binary_model", str(path), "a readable file", got)) from error
+    return _Reader(path.name, read_file("read_binary_model", path))
 
 
 def _read_cameras(reader: _Reader) -> dict[int, ColmapCamera]:

@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 from photograd_course.errors import IoError, RangeError, message
 
+from .file_bytes import read_text
 from .frames import FloatArray
 
 MODELS = (
@@ -125,11 +126,7 @@ class _Line:
 
 def _lines(path: Path) -> Iterator[_Line]:
     """Lines of a text file without comments; empty lines are kept, since they mean no points."""
-    try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, ValueError) as error:
-        expected = "a readable text file"
-        raise IoError(message("read_text_model", str(path), expected, error)) from error
+    text = read_text("read_text_model", path)
     for number, line in enumerate(text.split("\n"), start=1):
         if not line.startswith("#"):
             yield _Line(f"{path.name} line {number}", line.split())

@@ -11,6 +11,9 @@ import numpy.typing as npt
 import OpenEXR
 from photograd_course.errors import IoError, RangeError, message
 
+from .file_bytes import require_file
+from .pixel_limit import require_pixels
+
 _CHANNELS = ("R", "G", "B", "A")
 
 LARGEST_HALF = 65504.0
@@ -26,8 +29,7 @@ def read_exr_header(path: Path) -> tuple[int, int, bool]:
         IoError: no such file, not an EXR file, empty or absurd window, or neither R, G, B nor Y
             channels.
     """
-    if not path.is_file():  # the library would call it damaged, and write to stderr
-        raise IoError(message("read_exr_header", str(path), "an EXR image", "no such file"))
+    require_file("read_exr_header", path)  # the library would call it damaged, and write to stderr
     try:
         with OpenEXR.File(str(path), separate_channels=True, header_only=True) as opened:
             header = opened.header()
@@ -40,6 +42,7 @@ def read_exr_header(path: Path) -> tuple[int, int, bool]:
     if not (0 < width <= LARGEST_SIDE and 0 < height <= LARGEST_SIDE):
         got = f"{width} x {height}"
         raise IoError(message("read_exr_header", str(path), "1 to 65536 pixels a side", got))
+    require_pixels("read_exr_header", str(path), width, height)
     if not (set(_CHANNELS[:3]) <= names or "Y" in names):
         expected = "channels R, G, B or Y"
         raise IoError(message("read_exr_header", str(path), expected, sorted(names)))

@@ -7,8 +7,6 @@ its neighbours, nine tenths opaque. The frame is that of the file.
 
 from __future__ import annotations
 
-import io
-import math
 import zipfile
 from pathlib import Path
 
@@ -18,9 +16,9 @@ from photograd.errors import IoError, message
 from photograd.sh import Y_0
 from photograd.splat import Gaussians
 
-from .file_bytes import read_file
 from .frames import LARGEST_COORDINATE
 from .gaussian_coding import Array, logit_of, require_room
+from .npz import read_npz
 
 _NAME = "read_point_npz"
 NEEDED = ("means3d", "colors")
@@ -38,8 +36,7 @@ def read_point_npz(path: Path, *, memory_limit: int | None = None) -> tuple[Gaus
         IoError: no file, a damaged one, other arrays, more than memory holds, or positions that are
             no numbers.
     """
-    read_file(_NAME, path)  # says what is wrong where there is no file
-    arrays = {name: _member(path, name, memory_limit) for name in NEEDED}
+    arrays = read_npz(_NAME, path, NEEDED, memory_limit=memory_limit)
     means, colors = arrays["means3d"], arrays["colors"]
     n = len(means) if means.ndim else 0
     if means.shape != (n, 3) or means.dtype.kind != "f" or not n:
@@ -108,30 +105,6 @@ def neighbour_spacing(points: Array) -> Array:
         1e-6 * extent, LARGEST_SPACING * max(np.median(mean), 1e-6 * extent)
     )
     return size
-
-
-def _member(path: Path, name: str, limit: int | None) -> Array:
-    """One array of the archive, its size known before it is taken; never pickled objects."""
-    try:
-        with zipfile.ZipFile(path) as archive:
-            stated = archive.getinfo(f"{name}.npy").file_size
-            require_room(_NAME, path, stated // 12, 1, limit)
-            stream = io.BytesIO(archive.read(f"{name}.npy"))
-        version = np.lib.format.read_magic(stream)
-        if version != (1, 0):
-            raise ValueError(f"format version {version}")
-        shape, by_column, dtype = np.lib.format.read_array_header_1_0(stream)
-        if dtype.hasobject or math.prod(shape) * dtype.itemsize != stated - stream.tell():
-            raise ValueError(f"{name}: {dtype} of shape {shape} in {stated} bytes")
-        values = np.frombuffer(stream.getbuffer()[stream.tell() :], dtype)
-        return values.reshape(shape, order="F" if by_column else "C")
-    except IoError:
-        raise
-    except KeyError as failure:
-        raise _refusal(path, f"arrays {' and '.join(NEEDED)}", f"no {name}") from failure
-    except Exception as failure:  # damaged archives and headers raise a dozen kinds
-        text = " ".join(str(failure).split())[:120] or type(failure).__name__
-        raise _refusal(path, "a readable .npz file", text) from failure
 
 
 def _refusal(path: Path, expected: str, got: str) -> IoError:

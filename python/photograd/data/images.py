@@ -11,7 +11,7 @@ import struct
 import zlib
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal, TypeAlias
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -19,6 +19,8 @@ from photograd_course.errors import IoError, RangeError, message
 from PIL import Image
 
 from . import exr
+from .file_bytes import require_file
+from .pixel_limit import allow_pixels, require_pixels, too_many_pixels
 
 ColorSpace: TypeAlias = Literal["display", "linear"]
 ImageArray: TypeAlias = npt.NDArray[np.float32]
@@ -119,40 +121,42 @@ def _checked(path: Path, stored: ImageArray) -> ImageArray:
 
 def _pixels(path: Path, opened: Image.Image) -> ImageArray:
     if opened.mode.startswith("I;16"):
-        grey = np.asarray(opened, dtype=np.float32) / np.float32(65535.0)
-        return _with_channels(grey[..., None])
+        return _with_channels(np.asarray(opened)[..., None], 65535.0)
     tiles = getattr(opened, "tile", [])
     layout = tiles[0].args if tiles else None
     if isinstance(layout, str) and layout.endswith(";16B"):
-        return _with_channels(_sixteen_bits(path, opened))
+        return _with_channels(_sixteen_bits(path, opened), 65535.0)
     if opened.mode in ("P", "1") or "transparency" in opened.info:
         opened = opened.convert("RGBA" if "transparency" in opened.info else "RGB")
-    array = np.asarray(opened, dtype=np.float32) / np.float32(255.0)
-    return _with_channels(array if array.ndim == 3 else array[..., None])
+    array = np.asarray(opened)
+    return _with_channels(array if array.ndim == 3 else array[..., None], 255.0)
 
 
-def _sixteen_bits(path: Path, opened: Image.Image) -> ImageArray:
+def _sixteen_bits(path: Path, opened: Image.Image) -> npt.NDArray[np.uint16]:
     """Pillow keeps the high byte of 16-bit colour. Asked to unpack the same bytes in the other
     order, it keeps the low byte; both together are the sample.
     """
     layout = opened.tile[0].args  # type: ignore[attr-defined]
     if layout not in ("RGB;16B", "RGBA;16B") or "transparency" in opened.info:
         raise _unreadable("read_image", path, f"unsupported 16-bit layout {layout}")
-    high = np.asarray(opened, dtype=np.float32)
+    samples = np.asarray(opened).astype(np.uint16) * np.uint16(256)
     with Image.open(path) as again:
         swapped = layout.replace("16B", "16L")
         again.tile = [again.tile[0]._replace(args=swapped)]
-        low = np.asarray(again, dtype=np.float32)
-    return (high * np.float32(256.0) + low) / np.float32(65535.0)
+        samples += np.asarray(again)
+    return samples
 
 
-def _with_channels(array: ImageArray) -> ImageArray:
-    """1 (grey), 2 (grey, alpha), 3 or 4 channels to RGBA."""
-    channels = array.shape[2]
-    color = array[..., :3] if channels >= 3 else np.repeat(array[..., :1], 3, axis=2)
-    opaque = np.ones((*array.shape[:2], 1), dtype=np.float32)
-    alpha = array[..., -1:] if channels in (2, 4) else opaque
-    return np.ascontiguousarray(np.concatenate([color, alpha], axis=2), dtype=np.float32)
+def _with_channels(samples: npt.NDArray[Any], most: float) -> ImageArray:
+    """1 (grey), 2 (grey, alpha), 3 or 4 channels of 0 to `most` to RGBA in 0..1."""
+    channels = samples.shape[2]
+    rgba = np.ones((*samples.shape[:2], 4), np.float32)
+    color = samples[..., : 3 if channels >= 3 else 1]
+    # Straight into the result: a picture of a hundred megapixels leaves no room for copies.
+    np.divide(color, np.float32(most), out=rgba[..., :3], dtype=np.float32)
+    if channels in (2, 4):
+        np.divide(samples[..., -1], np.float32(most), out=rgba[..., 3], dtype=np.float32)
+    return rgba
 
 
 SMALLEST_ALPHA = 1e-6
@@ -201,14 +205,9 @@ def downscale_image(
 
 
 def _require_file(function: str, path: Path) -> None:
-    try:
-        found = path.is_file()
-    except (OSError, ValueError):
-        found = False
-    if not found:
-        raise IoError(message(function, repr(str(path)), "an image file", "no such file"))
-    if path.stat().st_size == 0:
+    if require_file(function, path) == 0:
         raise IoError(message(function, repr(str(path)), "an image file", "an empty file"))
+    allow_pixels()
 
 
 def _require_mode(function: str, path: Path, opened: Image.Image) -> None:
@@ -217,8 +216,11 @@ def _require_mode(function: str, path: Path, opened: Image.Image) -> None:
         raise IoError(message(function, str(path), "grey, RGB or RGBA", got, "convert it first"))
     if opened.width < 1 or opened.height < 1:
         raise IoError(message(function, str(path), "at least one pixel", opened.size))
+    require_pixels(function, str(path), opened.width, opened.height)
 
 
 def _unreadable(function: str, path: Path, error: object) -> IoError:
+    if isinstance(error, Image.DecompressionBombError):
+        return too_many_pixels(function, str(path), error)
     text = " ".join(str(error).split()) or type(error).__name__
     return IoError(message(function, str(path), "a readable image", f"damaged data: {text}"))

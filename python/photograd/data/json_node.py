@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 from photograd_course.errors import IoError, RangeError, message
 
+from .file_bytes import read_text
 from .frames import FloatArray
 
 
@@ -142,19 +143,12 @@ def read_json(function: str, path: Path) -> JsonNode:
     """Parse a JSON file.
 
     Raises:
-        IoError: missing, unreadable, not UTF-8, not JSON, or nested too deeply.
+        IoError: missing, no regular file, not UTF-8, not JSON, or nested too deeply.
     """
+    text = read_text(function, path)
     try:
-        text = path.read_text(encoding="utf-8")
         return JsonNode(function, path.name, json.loads(text))
-    except UnicodeDecodeError as error:
-        raise IoError(message(function, str(path), "UTF-8 text", error)) from error
-    except json.JSONDecodeError as error:
-        raise IoError(message(function, str(path), "valid JSON", error)) from error
     except RecursionError as error:
         raise IoError(message(function, str(path), "valid JSON", "too deep nesting")) from error
-    except ValueError as error:  # a NUL in the path, an integer of thousands of digits
+    except ValueError as error:  # JSONDecodeError, or an integer of thousands of digits
         raise IoError(message(function, str(path), "valid JSON", error)) from error
-    except OSError as error:
-        got = error.strerror or str(error)
-        raise IoError(message(function, str(path), "a readable file", got)) from error

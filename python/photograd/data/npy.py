@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 from photograd_course.errors import DtypeError, IoError, message
 
+from .file_bytes import require_file
 from .frames import FloatArray
 
 
@@ -18,6 +19,7 @@ def read_npy(function: str, path: Path) -> FloatArray:
         IoError: missing, not an .npy file, damaged, or shorter than its header promises.
         DtypeError: neither floats nor integers.
     """
+    size = require_file(function, path)
     try:
         with path.open("rb") as stream:
             version = np.lib.format.read_magic(stream)
@@ -31,9 +33,9 @@ def read_npy(function: str, path: Path) -> FloatArray:
             wanted = stream.tell() + math.prod(shape) * dtype.itemsize
         if dtype.kind not in "fiu":
             raise DtypeError(message(function, path.name, "floats or integers", dtype))
-        if wanted != path.stat().st_size:
-            got = f"{path.stat().st_size}"
-            raise IoError(message(function, path.name, f"{wanted} bytes, as its header says", got))
+        if wanted != size:
+            expected = f"{wanted} bytes, as its header says"
+            raise IoError(message(function, path.name, expected, size))
         return np.asarray(np.load(path, allow_pickle=False), dtype=np.float64)
     except (IoError, DtypeError):
         raise

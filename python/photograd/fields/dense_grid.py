@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any, ClassVar
@@ -13,6 +14,7 @@ from photograd_course.resample import upsample_trilinear
 
 from photograd.errors import DtypeError, Error, RangeError, ShapeError, message
 from photograd.fields.march import MarchContext, MarchPolicy, march, march_backward
+from photograd.memory import require_room
 from photograd.representation import (
     Array,
     Outputs,
@@ -31,6 +33,12 @@ In front of a random background it makes the first dL/dsigma_t negative for blac
 white alike, and about equally large: a brighter grey is further from black than the average
 background is, so that dark matter would first be pushed away.
 """
+
+
+def cubic_voxels(extent: Array, resolution: int) -> list[int]:
+    """Voxels along each edge of a box of this extent (3,), `resolution` along the longest."""
+    voxel = float(extent.max()) / resolution
+    return [max(math.ceil(edge / voxel - 1e-6), 2) for edge in extent.tolist()]
 
 
 @register
@@ -78,7 +86,7 @@ class DenseGrid(Representation):
         `resolution` counts voxels along the longest edge; the box grows a little so that voxels are
         cubes. `finest` is the resolution that a coarse-to-fine fit will end with: it fixes the
         density scale, so that a parameter keeps its meaning from level to level. `sigma_t` (1/m) is
-        the start. Raises RangeError for a bad box or fewer than 2 voxels.
+        the start. Raises RangeError for a bad box, fewer than 2 voxels, or more than memory holds.
         """
         if resolution < 2:
             raise RangeError(
@@ -91,9 +99,15 @@ class DenseGrid(Representation):
                 message("DenseGrid.empty", "box", "finite, lower corner below upper", f"{box}")
             )
         voxel = extent.max() / resolution
-        shape = np.maximum(np.ceil(extent / voxel - 1e-6).astype(int), 2)
+        shape = cubic_voxels(extent, resolution)
+        size = 4 * (np.dtype(dtype).itemsize + 1) * math.prod(shape)  # and a mask: all finite?
+        require_room(
+            "DenseGrid.empty", f"{' x '.join(map(str, shape))} voxels", size,
+            argument="resolution", remedy="take a lower resolution, or a flatter box",
+        )  # fmt: skip
         centre = box.mean(axis=0)
-        lo, hi = centre - shape * voxel / 2, centre + shape * voxel / 2
+        half = np.array(shape) * voxel / 2
+        lo, hi = centre - half, centre + half
         scale = (finest or resolution) / extent.max()
         policy = MarchPolicy(
             (tuple(lo.tolist()), tuple(hi.tolist())), voxel / steps_per_voxel, density_scale=scale

@@ -6,20 +6,35 @@ cpp/photograd/render/march.h (the loop).
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from photograd_course.random import uniform
 
 from photograd.core import _core
-from photograd.errors import Error, RangeError, message
+from photograd.errors import DtypeError, Error, RangeError, message
 from photograd.representation import Array, Outputs, RayBatch, RenderOptions
 
 LATTICES = {"origin": 0, "entry": 1}
 QUADRATURES = {"alpha": 0, "riemann": 1}
 BORDERS = {"clamp": 0, "zero": 1}
 ACTIVATIONS = {"identity": 0, "relu": 1, "softplus": 2, "exp": 3, "sigmoid": 4}
+CODES = {
+    "lattice": LATTICES,
+    "quadrature": QUADRATURES,
+    "border": BORDERS,
+    "density_activation": ACTIVATIONS,
+    "color_activation": ACTIVATIONS,
+}
+Lattice = Literal["origin", "entry"]
+Quadrature = Literal["alpha", "riemann"]
+Border = Literal["clamp", "zero"]
+Activation = Literal["identity", "relu", "softplus", "exp", "sigmoid"]
+
+MOST_SAMPLES = 1 << 20
+"""Of a ray along the diagonal of the box; a shorter step takes hours, and then memory."""
 
 
 @dataclass(frozen=True)
@@ -30,16 +45,49 @@ class MarchPolicy:
     point where it enters the box. quadrature: "alpha" (1 - exp(-sigma_t dt), second order) or
     "riemann" (sigma_t dt, first order, kept for the lesson). border: "clamp" continues the
     outermost voxels, "zero" fades to nothing over one voxel.
+
+    Raises:
+        DtypeError: a number that is none.
+        RangeError: a box that is not finite or has no volume, a step that is not positive or takes
+            more than `MOST_SAMPLES` to cross the box, a density scale that is not finite, or an
+            unknown name.
     """
 
     box: tuple[tuple[float, float, float], tuple[float, float, float]]  # world, metres
     dt: float  # step in metres
-    lattice: str = "origin"
-    quadrature: str = "alpha"
-    border: str = "clamp"
-    density_activation: str = "softplus"
-    color_activation: str = "sigmoid"
+    lattice: Lattice = "origin"
+    quadrature: Quadrature = "alpha"
+    border: Border = "clamp"
+    density_activation: Activation = "softplus"
+    color_activation: Activation = "sigmoid"
     density_scale: float = 1.0  # 1/m
+
+    def __post_init__(self) -> None:
+        box = np.asarray(self.box)
+        if box.dtype.kind not in "fiu" or box.shape != (2, 3):
+            raise DtypeError(
+                message("MarchPolicy", "box", "two corners of three numbers", self.box)
+            )
+        extent = box[1].astype(np.float64) - box[0]
+        if not (np.isfinite(box).all() and (extent > 0).all()):
+            expected = "finite, lower corner below upper"
+            raise RangeError(message("MarchPolicy", "box", expected, self.box))
+        for name in ("dt", "density_scale"):
+            value = getattr(self, name)
+            if isinstance(value, bool) or not isinstance(value, int | float | np.number):
+                raise DtypeError(message("MarchPolicy", name, "a number", repr(value)))
+        shortest = math.hypot(*extent.tolist()) / MOST_SAMPLES
+        if not shortest <= self.dt < math.inf:
+            expected = f"{shortest:.3g} m or more, {MOST_SAMPLES:,} samples across the box"
+            raise RangeError(message("MarchPolicy", "dt", expected, self.dt))
+        if not math.isfinite(self.density_scale):
+            got = self.density_scale
+            raise RangeError(message("MarchPolicy", "density_scale", "a finite number", got))
+        for name, codes in CODES.items():
+            value = getattr(self, name)
+            if not isinstance(value, str) or value not in codes:
+                expected = f"one of {list(codes)}"
+                raise RangeError(message("MarchPolicy", name, expected, repr(value)))
 
     def settings(self, stop: float) -> Any:
         """The core's form of this policy."""
@@ -47,19 +95,9 @@ class MarchPolicy:
             box=[list(corner) for corner in self.box],
             dt=self.dt,
             stop=stop,
-            lattice=_code("lattice", self.lattice, LATTICES),
-            quadrature=_code("quadrature", self.quadrature, QUADRATURES),
-            border=_code("border", self.border, BORDERS),
-            density_activation=_code("density_activation", self.density_activation, ACTIVATIONS),
-            color_activation=_code("color_activation", self.color_activation, ACTIVATIONS),
             density_scale=self.density_scale,
+            **{name: codes[getattr(self, name)] for name, codes in CODES.items()},
         )
-
-
-def _code(argument: str, value: str, codes: dict[str, int]) -> int:
-    if value not in codes:
-        raise RangeError(message("MarchPolicy", argument, f"one of {list(codes)}", repr(value)))
-    return codes[value]
 
 
 @dataclass(frozen=True)

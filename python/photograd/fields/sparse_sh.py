@@ -6,6 +6,7 @@ cpp/photograd/field/sparse_sh.h.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Self
@@ -18,8 +19,9 @@ from photograd import sh
 from photograd.core import _core
 from photograd.errors import DtypeError, RangeError, ShapeError, message
 from photograd.fields.active_voxels import ActiveVoxels, dilated, resampled_mask
-from photograd.fields.dense_grid import START_COLOR, DenseGrid
+from photograd.fields.dense_grid import START_COLOR, DenseGrid, cubic_voxels
 from photograd.fields.march import MarchPolicy, checked_rays, checked_values, require_finite_image
+from photograd.memory import require_room
 from photograd.representation import (
     Array,
     Outputs,
@@ -122,6 +124,15 @@ class SparseSh(Representation):
         """
         if degree not in range(MOST_DEGREE + 1):
             raise RangeError(message("SparseSh.full", "degree", f"0 to {MOST_DEGREE}", degree))
+        corners = np.asarray(box, np.float64)
+        if resolution >= 2 and np.ptp(corners, axis=0).max() > 0:  # else refused below
+            shape = cubic_voxels(corners[1] - corners[0], resolution)
+            numbers = 5 + 1 + 3 * sh.count(degree)  # the dense grid is there for a moment
+            require_room(
+                "SparseSh.full", f"{' x '.join(map(str, shape))} voxels of degree {degree}",
+                numbers * np.dtype(dtype).itemsize * math.prod(shape),
+                argument="resolution", remedy="take a lower resolution, or a lower degree",
+            )  # fmt: skip
         dense = DenseGrid.empty(
             box, resolution, finest=finest, sigma_t=sigma_t, steps_per_voxel=steps_per_voxel,
             dtype=dtype,

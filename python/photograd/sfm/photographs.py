@@ -13,6 +13,8 @@ from pathlib import Path
 
 from PIL import Image, ImageOps
 
+from photograd.data.file_bytes import read_file
+from photograd.data.pixel_limit import allow_pixels, require_pixels, too_many_pixels
 from photograd.errors import IoError, SceneError, message
 
 SUFFIXES = (".jpg", ".jpeg", ".png")
@@ -102,14 +104,20 @@ def copy_photographs(photographs: list[Photograph], folder: Path) -> None:
 
 
 def _look_at(file: Path) -> Photograph:
+    content = read_file(_NAME, file)
+    allow_pixels()
     try:
-        content = file.read_bytes()
         with Image.open(file) as opened:
+            require_pixels(_NAME, f"{file}", *opened.size)
             tags = opened.getexif()
             inner = tags.get_ifd(_EXIF)
             orientation = int(tags.get(_ORIENTATION, 1) or 1)
             width, height = opened.size
             opened.load()
+    except IoError:
+        raise
+    except Image.DecompressionBombError as failure:
+        raise too_many_pixels(_NAME, f"{file}", failure) from failure
     except Exception as failure:  # damaged pictures raise a dozen kinds
         text = " ".join(str(failure).split())[:120] or type(failure).__name__
         raise IoError(message(_NAME, f"{file}", "a readable photograph", text)) from failure

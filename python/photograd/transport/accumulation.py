@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 from photograd_course.atomic_io import atomic_write
 
+from photograd.data.npz import read_npz
 from photograd.errors import Error, IoError, RangeError, ShapeError, message
 
 Array = npt.NDArray[Any]
@@ -120,16 +121,16 @@ def load_accumulation(path: Path, key: dict[str, Any]) -> Accumulation:
     Raises:
         IoError: missing or damaged, or of another scene, seed or options.
     """
+    expected = "sums of an interrupted rendering"
+    if not path.exists():
+        raise IoError(message("load_accumulation", "path", expected, f"no {path}"))
+    names = ("radiance", "squares", "meta")
+    arrays = read_npz("load_accumulation", path, names, expected=expected)
+    radiance, squares = arrays["radiance"], arrays["squares"]
     try:
-        with path.open("rb") as stream, np.load(stream, allow_pickle=False) as archive:
-            radiance, squares = archive["radiance"], archive["squares"]
-            meta = json.loads(str(archive["meta"]))
+        meta = json.loads(str(arrays["meta"]))
         count, found, version = int(meta["count"]), meta["key"], meta["version"]
-    except FileNotFoundError as failure:
-        expected = "sums of an interrupted rendering"
-        raise IoError(message("load_accumulation", "path", expected, f"no {path}")) from failure
-    except Exception as failure:  # whatever numpy, zipfile and json say of foreign bytes
-        expected = "sums of an interrupted rendering"
+    except (KeyError, TypeError, ValueError, RecursionError) as failure:
         raise IoError(message("load_accumulation", f"{path}", expected, failure)) from failure
     if version != VERSION or found != json.loads(json.dumps(key)):
         differing = (

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from photograd.data.npy import read_npy
 from photograd.errors import IoError, RangeError, message
 from photograd.memory import require_room
 from photograd.sparse import SparseGrid
@@ -60,7 +61,7 @@ def read_density(
         if corner is None or size is None:
             expected = "both, of the box that a .npy fills"
             raise RangeError(message(NAME, "corner, size", expected, f"{corner}, {size}"))
-        return DensityGrid(_numbers(path), _box(corner, size), majorant)
+        return DensityGrid(read_npy(NAME, path), _box(corner, size), majorant)
     if path.name.lower().endswith(".vdb"):
         sparse = _grid_of(path, read_vdb(path, memory_limit=memory_limit), grid)
         values, world_from_index, first = _layers(path, sparse, memory_limit)
@@ -112,15 +113,6 @@ def _layers(
     require_room(NAME, what, BYTES * int(np.prod(shape, dtype=object)), memory_limit)
     values, first = grid.to_dense(box, memory_limit=memory_limit)
     return values[..., 0], grid.world_from_index, first.astype(np.float64)
-
-
-def _numbers(path: Path) -> Array:
-    try:
-        values: Array = np.load(path, allow_pickle=False)
-    except (OSError, ValueError, EOFError) as failure:
-        expected = "a file of numbers (.npy)"
-        raise IoError(message(NAME, f"{path}", expected, failure)) from failure
-    return values
 
 
 def _moved(world_from_index: Array, ends: Array, corner: Any, size: Any) -> Array:

@@ -43,7 +43,6 @@ Textures, and meshes from files, are described in `scene_meshes`; fog, milk and 
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
@@ -51,9 +50,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from photograd_course.input_files import read_text
+from photograd_course.toml_limits import parse_toml
 
 from photograd.data.camera import Camera
-from photograd.errors import IoError, SceneError, message
 from photograd.geometry.sdf_shapes import Shape as SdfNode
 from photograd.transport.builtin import camera_at
 from photograd.transport.file_views import camera_of_file
@@ -83,21 +83,11 @@ def read_scene(path: Path) -> Scene:
     """The scene that a file describes.
 
     Raises:
-        IoError: the file is missing or no text.
+        IoError: the file is missing, no regular file, no TOML, or exceeds a limit of `parse_toml`.
         SceneError: what it says is no scene; names the line and the key.
     """
-    try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as failure:
-        raise IoError(message("read_scene", "path", "a TOML file", failure)) from failure
-    try:
-        data = tomllib.loads(text)
-    except (
-        ValueError,
-        RecursionError,
-    ) as failure:  # numbers or nesting beyond Python's limits, too
-        raise SceneError(message("read_scene", f"{path}", "TOML", failure)) from failure
-    root = Node(path, data, (), key_lines(text))
+    text = read_text("read_scene", path)
+    root = Node(path, parse_toml("read_scene", f"{path}", text), (), key_lines(text))
     scene = root.built(lambda: _scene(root, path.stem))
     root.refuse_other_keys()
     return scene

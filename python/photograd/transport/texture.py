@@ -134,7 +134,12 @@ def read_texture(
 
 def decode(color: Array) -> Array:
     """Display-encoded sRGB as linear float32."""
-    return np.asarray(srgb_decode(np.asarray(color, np.float64)), np.float32)
+    encoded = np.ravel(color)
+    linear = np.empty(encoded.shape, np.float32)
+    for start in range(0, encoded.size, 1 << 16):  # in double, but never all of it
+        piece = slice(start, start + (1 << 16))
+        linear[piece] = srgb_decode(encoded[piece].astype(np.float64))
+    return linear.reshape(np.shape(color))
 
 
 def checked_uses(

@@ -6,14 +6,16 @@ import re
 import tomllib
 from typing import Any
 
+from photograd_course.toml_limits import without_strings
+
 KeyPath = tuple[str | int, ...]
-_TEXT = re.compile(r'"(?:[^"\\]|\\.)*"|\'[^\']*\'')
-_HEADER = re.compile(r"^\s*(\[\[?)(.+?)\]\]?\s*$")
-_KEY = re.compile(r"^\s*([^=\[\]]+?)\s*=")
 
 
 def key_lines(text: str) -> dict[KeyPath, int]:
     r"""{path of a key or table: line, from 1}; tables of an array are counted from 0.
+
+    Args:
+        text: TOML that `parse_toml` has accepted.
 
     >>> key_lines("[a]\nb = 1\n[[c]]\nd = 2\n[[c]]\n")
     {('a',): 1, ('a', 'b'): 2, ('c', 0): 3, ('c', 0, 'd'): 4, ('c', 1): 5}
@@ -22,29 +24,20 @@ def key_lines(text: str) -> dict[KeyPath, int]:
     counts: dict[KeyPath, int] = {}
     table: KeyPath = ()
     depth = 0  # of brackets that earlier lines have opened
-    for number, line in enumerate(text.splitlines(), start=1):
-        code = _without_comment(line)
-        if depth == 0:
-            header, key = _HEADER.match(code), _KEY.match(code)
-            if header:
-                table = _parts(header[2])
-                if header[1] == "[[":
-                    counts[table] = counts.get(table, -1) + 1
-                    table = (*table, counts[table])
-                lines.setdefault(table, number)
-                continue
-            if key:
-                lines.setdefault((*table, *_parts(key[1])), number)
-        bare = _TEXT.sub("", code)
-        depth = max(0, depth + sum(bare.count(c) for c in "[{") - sum(bare.count(c) for c in "]}"))
+    split = text.split("\n")
+    for number, bare in enumerate(without_strings(text).split("\n"), start=1):
+        line = split[number - 1]
+        if depth == 0 and (header := re.match(r"[ \t]*(\[\[?)([^\]]+)\]", bare)):
+            table = _parts(line[header.start(2) : header.end(2)])
+            if header[1] == "[[":
+                counts[table] = counts.get(table, -1) + 1
+                table = (*table, counts[table])
+            lines.setdefault(table, number)
+            continue
+        if depth == 0 and "=" in bare:
+            lines.setdefault((*table, *_parts(line[: bare.index("=")])), number)
+        depth += sum(bare.count(c) for c in "[{") - sum(bare.count(c) for c in "]}")
     return lines
-
-
-def _without_comment(line: str) -> str:
-    """The line up to a # that stands in no string."""
-    blind = _TEXT.sub(lambda found: "x" * len(found[0]), line)
-    end = blind.find("#")
-    return line if end < 0 else line[:end]
 
 
 def _parts(key: str) -> KeyPath:

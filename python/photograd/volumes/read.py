@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from photograd.errors import IoError, message
+from photograd.data.file_bytes import require_file
 from photograd.volumes.mitsuba import read_mitsuba
 from photograd.volumes.nifti import read_nifti
 from photograd.volumes.volume import Volume, refuse
@@ -30,6 +30,5 @@ def read_volume(path: Path, *, memory_limit: int | None = None) -> Volume:
     readers = [reader for suffix, reader in READERS.items() if name.endswith(suffix)]
     if not readers:
         raise refuse(path, f"a name that ends in one of {', '.join(SUFFIXES)}", path.suffix)
-    if not path.is_file():
-        raise IoError(message("read_volume", f"{path}", "a file", "none"))
+    require_file("read_volume", path)
     return readers[0](path, memory_limit=memory_limit)

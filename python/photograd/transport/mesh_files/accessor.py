@@ -1,6 +1,7 @@
 """Arrays of a glTF file: typed numbers in its buffers [Khronos2021, Sec. 3.6.2].
 
-Counts are believed only as far as the buffer is long, so that a damaged file asks for no memory.
+Counts are believed only as far as the buffer is long, and the zeros of sparse accessors without a
+buffer view only up to a limit, so that a damaged file asks for no memory.
 """
 
 from __future__ import annotations
@@ -60,6 +61,7 @@ def _read(container: Container, reference: JsonNode) -> tuple[JsonNode, Array]:
     if "bufferView" in accessor:
         values = _rows(container, accessor, dtype, WIDTHS[kind], count)
     elif "sparse" in accessor:
+        container.expand(accessor, count * WIDTHS[kind] * dtype.itemsize)
         values = np.zeros((count, WIDTHS[kind]), dtype)
     else:
         raise IoError(message(NAME, accessor.place, "a member 'bufferView'", "none"))

@@ -14,13 +14,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from urllib.parse import unquote
 
+from photograd_course.limits import EXPANSION, MODEL_ELEMENTS, Limit
+
 from photograd.data.file_bytes import read_file
 from photograd.data.json_node import JsonNode
 from photograd.errors import IoError, message
 
 NAME = "read_model"
-LARGEST = 1 << 28
-"""Vertices, triangles and texels that a file may ask for: a small one can name its parts often."""
 
 
 @dataclass
@@ -31,26 +31,37 @@ class Container:
         path: where it lies.
         root: its JSON.
         embedded: the buffer of a .glb, or none.
-        left: of `LARGEST`, what may still be asked for.
+        asked: what was asked for so far, limit by limit; a small file can name its parts often.
     """
 
     path: Path
     root: JsonNode
     embedded: bytes | None
-    left: int = LARGEST
+    asked: dict[Limit, int] = field(default_factory=dict)
     _buffers: dict[int, bytes] = field(default_factory=dict)
     _arrays: dict[str, list[JsonNode]] = field(default_factory=dict)
 
-    def spend(self, node: JsonNode, amount: int) -> None:
-        """Count numbers that are about to be made.
+    def spend(self, node: JsonNode, elements: int) -> None:
+        """Count vertices, triangles or texels before they are allocated.
 
         Raises:
-            IoError: more than `LARGEST` altogether.
+            IoError: more than `MODEL_ELEMENTS` altogether.
         """
-        self.left -= amount
-        if self.left < 0:
-            expected = f"at most {LARGEST} vertices, triangles and texels"
-            raise IoError(message(NAME, node.place, expected, "more"))
+        self._count(node, MODEL_ELEMENTS, elements)
+
+    def expand(self, node: JsonNode, size: int) -> None:
+        """Count bytes of an array that the file does not hold, before it is allocated.
+
+        Raises:
+            IoError: more than `EXPANSION` altogether.
+        """
+        self._count(node, EXPANSION, size)
+
+    def _count(self, node: JsonNode, limit: Limit, amount: int) -> None:
+        total = self.asked[limit] = self.asked.get(limit, 0) + amount
+        if total > limit.value():
+            got = f"{total:,}"
+            raise IoError(message(NAME, node.place, limit.expected(), got, limit.remedy()))
 
     def entries(self, name: str) -> list[JsonNode]:
         """The elements of an array of the file.

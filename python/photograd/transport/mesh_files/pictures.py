@@ -13,6 +13,7 @@ import numpy.typing as npt
 from PIL import Image
 
 from photograd.data.json_node import JsonNode
+from photograd.data.pixel_limit import allow_pixels, require_pixels, too_many_pixels
 from photograd.errors import Error, IoError, message
 from photograd.transport.mesh_files.container import NAME, Container, real, whole
 from photograd.transport.mesh_files.gltf_samplers import Wrap, read_sampler
@@ -20,6 +21,7 @@ from photograd.transport.texture import Texture, decode
 
 Array = npt.NDArray[Any]
 TRANSFORM = "KHR_texture_transform"
+_LEVELS = np.arange(256, dtype=np.float32) / np.float32(255)
 
 
 @dataclass(frozen=True)
@@ -75,16 +77,16 @@ class Pictures:
             return None
         image, (wrap, looked_up), label = found
         name = f"{label} ({encoding}, {number})"
-        if encoding in ("alpha", "mask") and bool((image[..., 3] == 1).all()):
+        if encoding in ("alpha", "mask") and bool((image[..., 3] == 255).all()):
             return None
         if encoding == "mask" and looked_up == "mip":
             self._sees_points(info)
             looked_up = "bilinear"
         if name not in self.textures:
             parts = {"srgb": slice(0, 3), "linear": slice(0, 3)}
-            color = image[..., parts.get(encoding, slice(3, 4))]
-            color = decode(color) if encoding == "srgb" else color
-            self.textures[name] = Texture(np.asarray(color, np.float32), wrap, looked_up)
+            levels = decode(_LEVELS) if encoding == "srgb" else _LEVELS
+            color = levels[image[..., parts.get(encoding, slice(3, 4))]]
+            self.textures[name] = Texture(color, wrap, looked_up)
         return name
 
     def glow(self, info: JsonNode) -> str | None:
@@ -95,14 +97,14 @@ class Pictures:
         return name
 
     def normal_map(self, info: JsonNode) -> tuple[Array, Wrap] | None:
-        """Pixels (H, W, 4) and wrap of a texture that holds normals."""
+        """Pixels (H, W, 3) in 0..1 and wrap of a texture that holds normals."""
         found = self._pixels(info)
         if found is None:
             return None
         image, (wrap, looked_up), _ = found
         if looked_up == "mip":
             self._sees_points(info)
-        return image, wrap
+        return _LEVELS[image[..., :3]], wrap
 
     def _sees_points(self, info: JsonNode) -> None:
         self.note(f"{info.place}: mip maps of its sampler: not supported, seen point by point")
@@ -130,17 +132,21 @@ class Pictures:
         return None if pixels is None else (pixels, looks, PurePath(name).name or f"image {number}")
 
     def _decoded(self, image: JsonNode) -> Array:
-        """(H, W, 4) float32 in 0..1, as stored; alpha is 1 where the file has none."""
+        """(H, W, 4) of 8 bits, as stored; alpha is 255 where the file has none."""
         if "bufferView" in image:
             data = bytes(self.container.view(image["bufferView"])[0])
         else:
             data = self.container.fetch(image["uri"])
+        allow_pixels()
         try:
             with Image.open(io.BytesIO(data), formats=("PNG", "JPEG")) as opened:
+                require_pixels(NAME, image.place, opened.width, opened.height)
                 self.container.spend(image, opened.width * opened.height)
-                return np.asarray(opened.convert("RGBA"), np.float32) / np.float32(255)
+                return np.asarray(opened.convert("RGBA"))
         except IoError:
             raise
+        except Image.DecompressionBombError as failure:
+            raise too_many_pixels(NAME, image.place, failure) from failure
         except Exception as failure:  # Pillow's plugins do not share an exception
             text = " ".join(str(failure).split())[:120] or type(failure).__name__
             raise IoError(message(NAME, image.place, "a PNG or JPEG image", text)) from failure

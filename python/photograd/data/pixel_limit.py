@@ -1,0 +1,38 @@
+"""How many pixels an image may have, asked of its header: a few kB can decode to gigabytes."""
+
+from __future__ import annotations
+
+from photograd_course.errors import IoError, message
+from photograd_course.limits import PIXELS
+from PIL import Image
+
+
+def require_pixels(function: str, place: str, width: int, height: int) -> None:
+    """Refuse an image with more pixels than `PHOTOGRAD_MAX_PIXELS`, by default 2^27.
+
+    Args:
+        function: reader on whose behalf errors speak.
+        place: the file.
+        width, height: as the header states them.
+
+    Raises:
+        IoError: it has more.
+    """
+    if width * height > PIXELS.value():
+        raise too_many_pixels(function, place, f"{width} x {height} = {width * height:,}")
+
+
+def too_many_pixels(function: str, place: str, got: object) -> IoError:
+    """The error of an image beyond the limit; `got` may be Pillow's own, which names the size."""
+    return IoError(message(function, place, PIXELS.expected(), got, PIXELS.remedy()))
+
+
+def allow_pixels() -> None:
+    """Let Pillow open what `require_pixels` allows; call it before `Image.open`.
+
+    Pillow has a limit of its own, one for the process: it warns from 89 million pixels on and
+    refuses twice as many. It is raised to ours and never lowered.
+    """
+    own = Image.MAX_IMAGE_PIXELS
+    if own is not None:
+        Image.MAX_IMAGE_PIXELS = max(own, PIXELS.value())
