@@ -1,26 +1,18 @@
-"""Read TOML on every supported Python."""
+"""Read the TOML files of assignments."""
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import Any
 
-from ..errors import IoError, message
-
-if sys.version_info >= (3, 11):
-    import tomllib
-else:
-    import tomli as tomllib
+from ..input_files import read_text
+from ..toml_limits import parse_toml
 
 
 def read_toml(path: Path) -> dict[str, Any]:
     """The tables of a file.
 
     Raises:
-        IoError: it is missing, or no TOML.
+        IoError: it is missing, no regular file, no TOML, or exceeds a limit of `parse_toml`.
     """
-    try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise IoError(message("read_toml", str(path), "a TOML file", str(error))) from error
+    return parse_toml("read_toml", str(path), read_text("read_toml", path))
