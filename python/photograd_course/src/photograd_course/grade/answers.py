@@ -9,7 +9,7 @@ from typing import Any
 
 from ..assignment.bundle import Bundle
 from ..assignment.drawing import draw
-from ..assignment.questions import LETTERS, Question
+from ..assignment.questions import LETTERS, Question, flat_answers
 from ..errors import IoError, SceneError
 from ..student.folder import LOCK_NAME
 from ..student.predictions import locked_answers
@@ -94,10 +94,7 @@ def plain_answers(bundle: Bundle) -> HandIn:
 
 
 def read_answers(data: bytes | None) -> tuple[str, dict[str, Any], list[str]]:
-    """Name, answers by id, and warnings; whatever the file holds.
-
-    Ids with a dot are taken quoted (`"01.p1" = "b"`) or as tables within tables (`01.p1 = "b"`).
-    """
+    """Name, answers by id, and warnings; whatever the file holds."""
     if data is None:
         return "", {}, []
     try:
@@ -108,17 +105,7 @@ def read_answers(data: bytes | None) -> tuple[str, dict[str, Any], list[str]]:
     if not isinstance(answers, dict):
         return "", {}, ["answers.toml: [answers] is no table, so nothing is answered"]
     name = table.get("student", "")
-    return printable(name, 120) if isinstance(name, str) else "", _flat(answers), []
-
-
-def _flat(table: Mapping[str, Any], prefix: str = "", depth: int = 0) -> dict[str, Any]:
-    flat: dict[str, Any] = {}
-    for key, value in table.items():
-        if isinstance(value, dict) and depth < 4:
-            flat.update(_flat(value, f"{prefix}{key}.", depth + 1))
-        else:
-            flat[prefix + key] = value
-    return flat
+    return printable(name, 120) if isinstance(name, str) else "", flat_answers(answers), []
 
 
 def _prediction(question: Question, answer: Any, locked: Mapping[str, str]) -> Answered:
