@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from photograd_course.assignment.bundle import Bundle
 from photograd_course.errors import IoError, SceneError
+from photograd_course.grade import exports
 from photograd_course.grade.exports import find_sources, is_batch
 
 MODULE = "x = 1\n"
@@ -44,6 +45,49 @@ def test_gradescope(bundle: Bundle, tmp_path: Path) -> None:
     assert taken(bundle, tmp_path) == {
         "Ada Lovelace": "a = 1\n", "Bo & Cy": "b = 1\n", "submission_13": "c = 1\n",
     }  # fmt: skip
+
+
+YAML = r"""
+submission_11:
+  :submitters:
+  - :name: "J\u00fcrgen"
+    :sid: '007'
+  :created_at: !ruby/object:ActiveSupport::TimeWithZone 2026-01-01 00:00:00.0 Z
+  :results:
+    :tests:
+    - :name: secret
+submission_12: {":submitters": [{":name": 'O''Brien, A'}, &a {":name": Yes}, *a]}
+submission_13:
+  :submitters: [{":name": ""}, {":sid": 3}, 7]
+submission_14: 3
+"""
+
+
+def test_names_are_read_as_yaml(bundle: Bundle, tmp_path: Path) -> None:
+    for number in (11, 12, 13, 14):
+        put(tmp_path / f"submission_{number}" / "toy.py", f"a = {number}\n")
+    put(tmp_path / "submission_metadata.yml", YAML)
+    assert taken(bundle, tmp_path) == {
+        "Jürgen": "a = 11\n", "O'Brien, A & Yes & Yes": "a = 12\n",
+        "submission_13": "a = 13\n", "submission_14": "a = 14\n",
+    }  # fmt: skip
+
+
+def test_yaml_that_grows_or_is_none(
+    bundle: Bundle, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    put(tmp_path / "submission_11" / "toy.py")
+    place = tmp_path / "submission_metadata.yml"
+    bomb = "a0: &a0 [x]\n" + "".join(f"a{k + 1}: &a{k + 1} [*a{k}, *a{k}]\n" for k in range(60))
+    put(place, bomb + "m: &m {<<: [*a60, *a60], ':submitters': *a60}\nsubmission_11: *m\n")
+    assert taken(bundle, tmp_path) == {"submission_11": MODULE}
+    for text in ("a: [", "- " * 3000 + "a", "a: \x00", "? [b]\n: c\n"):
+        put(place, text)
+        with pytest.raises(IoError, match=r"expected YAML, got .*remove it, and folders"):
+            find_sources(bundle.manifest, tmp_path)
+    monkeypatch.setattr(exports, "LARGEST_NAMES", 8)
+    with pytest.raises(IoError, match="at most 0 MB"):
+        find_sources(bundle.manifest, tmp_path)
 
 
 def test_canvas(bundle: Bundle, tmp_path: Path) -> None:

@@ -182,13 +182,19 @@ def first_row(reports: list[Report], earlier: dict[str, Report]) -> dict[str, st
     return next(csv.DictReader(io.StringIO(grades_table(reports, earlier).decode())))
 
 
-def test_grades_of_ours_are_empty_or_stay() -> None:
-    ours = report(outcome(), staff=("1.b: broken",))
+def test_our_own_failure_lowers_no_grade_and_saves_none() -> None:
+    broken = outcome("1.b", status=Status.ERROR_OURS, points=0.0)
+    ours = report(wrong("1.a"), broken, staff=("1.b: broken",))
     row = first_row([ours], {})
     assert (row["score"], row["status"]) == ("", "error-ours")
     better = report(outcome(), outcome("1.b"))
     row = first_row([ours], {"Ada": better})
-    assert (row["score"], row["status"]) == ("6", "error-ours, earlier grade kept")
+    # 1.b keeps what it had; 1.a has failed this time, and that counts.
+    assert (row["score"], row["status"]) == ("3", "error-ours, earlier points kept")
+    # Points of another submission say nothing about this one.
+    other = replace(better, hand_in="c" * 64)
+    row = first_row([ours], {"Ada": other})
+    assert (row["score"], row["status"]) == ("", "error-ours")
 
 
 def test_two_hand_ins_that_declare_one_name_are_pointed_out() -> None:

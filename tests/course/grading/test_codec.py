@@ -80,6 +80,13 @@ def test_what_may_not_cross_is_refused(value: object) -> None:
         encode("result", 1, [value])
 
 
+@pytest.mark.parametrize("number", ["9" * 400, "-9223372036854775808", "18446744073709551616"])
+def test_integers_beyond_64_bits_do_not_come_in_either(number: str) -> None:
+    head = f'{{"kind": "result", "number": 1, "value": [{number}], "arrays": []}}'.encode()
+    with pytest.raises(FrameError, match="64 bits"):
+        decode(reader(PREFIX.pack(b"PGF1", len(head), 0) + head))
+
+
 def test_a_list_in_itself_is_refused() -> None:
     loop: list[object] = []
     loop.append(loop)

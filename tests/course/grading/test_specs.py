@@ -13,6 +13,7 @@ from photograd_course.grading import (
     Record,
     Text,
     Truth,
+    asks,
 )
 
 GOOD = [
@@ -21,6 +22,8 @@ GOOD = [
     (Array((2,), "i8"), np.zeros(2, np.int64)),
     (Number(), 2.5),
     (Number(), 3),
+    (Number(), (1 << 63) - 1),
+    (Array((2,), finite=False), np.array([0.0, np.nan])),
     (Number(), np.array(1.0)),
     (Integer(0, 3), 3),
     (Truth(), False),
@@ -45,6 +48,8 @@ BAD = [
     (Number(), np.zeros(1)),
     (Number(), np.array(1.0, np.float32)),
     (Number(), "1"),
+    (Number(), 10**400),  # which NumPy can't even ask for finiteness
+    (Number(), -(1 << 63)),
     (Integer(), 1.0),
     (Integer(), True),
     (Integer(0, 3), 4),
@@ -66,6 +71,16 @@ def test_what_fits_passes(spec: Number, value: object) -> None:
 def test_what_does_not_fit_fails_with_a_sentence(spec: Number, value: object) -> None:
     with pytest.raises(CheckFailed, match=r"^f"):
         spec.require(value, "f")
+
+
+def test_a_service_looks_at_what_it_is_asked() -> None:
+    asked: list[object] = []
+    service = asks(asked.append, Array((2,), finite=False), name="grad")
+    service(np.array([1.0, np.inf]))
+    for wrong in ((np.ones((1, 2)),), (np.ones(2, np.float32),), (1.0,), (), (np.ones(2),) * 2):
+        with pytest.raises(CheckFailed, match="grad"):
+            service(*wrong)
+    assert len(asked) == 1
 
 
 def test_a_forgotten_return_is_recognised() -> None:

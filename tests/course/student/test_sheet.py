@@ -8,6 +8,8 @@ from pathlib import Path
 import pytest
 from photograd_course.assignment.bundle import Bundle, read_folder
 from photograd_course.assignment.questions import Question
+from photograd_course.errors import IoError
+from photograd_course.grade.answers import read_answers
 from photograd_course.student.folder import WorkFolder
 from photograd_course.student.predictions import prediction_letters, write_lock
 from photograd_course.student.session import write_answers
@@ -59,6 +61,44 @@ def test_a_comment_behind_an_answer_stays(work: WorkFolder) -> None:
         answer(work, d1="b")
         kept = (" " if value == "3 " else "") + comment
         assert path.read_text("utf-8") == f'[answers]\n"90.d1" = "b"{kept}\n'
+
+
+@pytest.mark.parametrize(
+    ("before", "after"),
+    [
+        # Single quotes, and a table behind the answers.
+        ("[answers]\n'90.d1' = ''\n", "[answers]\n'90.d1' = \"b\"\n"),
+        ("[answers]\n[notes]\nx = 1\n", '[answers]\n"90.d1" = "b"\n[notes]\nx = 1\n'),
+        ("[answers]\n90.d1 = 'a' # why\n", '[answers]\n90.d1 = "b" # why\n'),
+        ("[answers]\n90.x = 1\n", '[answers]\n90.x = 1\n"90.d1" = "b"\n'),
+        ("[answers.90]\nd1 = 'a'\n", '[answers.90]\nd1 = "b"\n'),
+        ('answers = {"90.d1" = ""}\n', 'answers = {"90.d1" = "b"}\n'),
+        ('[answers]\r\n"90.d1" = ""\r\n', '[answers]\r\n"90.d1" = "b"\r\n'),
+        ('[answers]\n"90.p1" = """\n"90.d1" = 3"""\n',
+         '[answers]\n"90.p1" = """\n"90.d1" = 3"""\n"90.d1" = "b"\n'),
+        ("student = 'Ada'\n", "student = 'Ada'\n\n[answers]\n\"90.d1\" = \"b\"\n"),
+        ("", '[answers]\n"90.d1" = "b"\n'),
+    ],
+)  # fmt: skip
+def test_any_toml_keeps_what_it_holds(work: WorkFolder, before: str, after: str) -> None:
+    path = work.path / "answers.toml"
+    path.write_bytes(before.encode())
+    kept = dict(work.answers()[1])
+    answer(work, d1="b")
+    assert path.read_bytes().decode() == after
+    assert work.answers()[1] == {**kept, "90.d1": "b"}
+    assert read_answers(path.read_bytes())[1] == work.answers()[1]
+
+
+@pytest.mark.parametrize("text", ["[answers", "answers = 3\n", "[answers]\n'90' = 1\n'90' = 2\n"])
+def test_a_file_that_cannot_be_kept_is_left_alone(work: WorkFolder, text: str) -> None:
+    path = work.path / "answers.toml"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(
+        IoError, match=r"predict: answers\.toml: expected (TOML|a table \[answers\]), got "
+    ):
+        answer(work, d1="b")
+    assert path.read_text("utf-8") == text
 
 
 def test_everything_open_is_named(bundle: Bundle, work: WorkFolder) -> None:

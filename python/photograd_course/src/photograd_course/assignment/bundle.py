@@ -33,6 +33,7 @@ class Bundle:
         manifest, checks, questions: of the assignment.
         secret: seeds of hidden checks come from it; public checks have seeds of their own.
         reference: the solution as a module; None in a public bundle.
+        solution: its text; empty in a public bundle.
         keys: `answers.py` as a module, with a function for each generated question; or None.
         adapters: text of `adapters.py`, which runs beside the hand-in; or None.
         hints: the table of known mistakes.
@@ -44,6 +45,7 @@ class Bundle:
     questions: tuple[Question, ...]
     secret: bytes = PUBLIC_SECRET
     reference: ModuleType | None = None
+    solution: str = ""
     keys: ModuleType | None = None
     adapters: str | None = None
     hints: Mapping[str, str] = field(default_factory=dict)
@@ -93,10 +95,11 @@ def read_folder(folder: Path, *, secret: bytes = PUBLIC_SECRET) -> Bundle:
     """
     manifest = read_manifest(folder)
     module = folder / f"{manifest.module}.py"
-    reference, brought = None, {}
+    reference, solution, brought = None, "", {}
     if module.exists():
         brought = brought_sources(folder, manifest)
-        reference = load_beside(manifest.module, module.read_text(encoding="utf-8"), brought)
+        solution = module.read_text(encoding="utf-8")
+        reference = load_beside(manifest.module, solution, brought)
     keys = folder / "answers.py"
     adapters, hints = folder / "adapters.py", folder / "hints.json"
     return Bundle(
@@ -105,6 +108,7 @@ def read_folder(folder: Path, *, secret: bytes = PUBLIC_SECRET) -> Bundle:
         questions=read_questions(folder),
         secret=secret,
         reference=reference,
+        solution=solution,
         keys=load_module("answers", keys.read_text(encoding="utf-8")) if keys.exists() else None,
         adapters=adapters.read_text(encoding="utf-8") if adapters.exists() else None,
         hints=json.loads(hints.read_text(encoding="utf-8")) if hints.exists() else {},

@@ -7,19 +7,13 @@ the code is final. Nothing of a hand-in is executed here, or parsed as more than
 from __future__ import annotations
 
 import hashlib
-import io
-import tokenize
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from .questions import Question
-
-_LAYOUT = {
-    tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT,
-    tokenize.ENCODING, tokenize.ENDMARKER,
-}  # fmt: skip
+from .tokens import code_words
 
 
 @dataclass(frozen=True)
@@ -48,15 +42,6 @@ def draw(question: Question, student: str, source: str) -> Drawn:
     if question.quote:
         text = text.replace("{quote}", last_line(source, question.quote))
     return Drawn(text, values)
-
-
-def code_words(source: str) -> list[str]:
-    """The tokens of a text without comments and layout; its lines where it is no Python."""
-    try:
-        tokens = list(tokenize.generate_tokens(io.StringIO(source).readline))
-    except (tokenize.TokenError, SyntaxError, ValueError):
-        return source.split()
-    return [token.string for token in tokens if token.type not in _LAYOUT]
 
 
 def last_line(source: str, function: str) -> str:

@@ -19,6 +19,7 @@ from .toml import read_toml
 
 KINDS = ("prediction", "diagnosis", "concept", "generated")
 LETTERS = "abcdefgh"
+MOST_DOTS = 4  # in the id of an answer
 
 
 @dataclass(frozen=True)
@@ -66,6 +67,20 @@ def read_questions(folder: Path) -> tuple[Question, ...]:
     if twice := {each for each in ids if ids.count(each) > 1}:
         raise _bad("id", "an id of its own each", f"{sorted(twice)} more than once")
     return tuple(questions)
+
+
+def flat_answers(table: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
+    """The answers in the table [answers], by id.
+
+    An id has a dot, so TOML has it quoted (`"01.p1" = "b"`) or as a table within (`01.p1 = "b"`).
+    """
+    flat: dict[str, Any] = {}
+    for key, value in table.items():
+        if isinstance(value, dict) and prefix.count(".") < MOST_DOTS:
+            flat.update(flat_answers(value, f"{prefix}{key}."))
+        else:
+            flat[prefix + key] = value
+    return flat
 
 
 def _question(kind: str, entry: dict[str, Any]) -> Question:

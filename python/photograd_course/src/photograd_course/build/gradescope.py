@@ -13,7 +13,9 @@ from importlib import metadata
 from .archive import zip_bytes
 from .wheel import course_wheel
 
-PINNED = ("numpy", "matplotlib", "pillow", "rich", "typer", "typing-extensions")
+PINNED = (
+    "numpy", "matplotlib", "pillow", "pyyaml", "rich", "tomlkit", "typer", "typing-extensions",
+)  # fmt: skip
 EXECUTABLE = ("setup.sh", "run_autograder")
 
 SETUP = """#!/usr/bin/env bash

@@ -12,12 +12,16 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from ..grade.hand_in import HandIn
 from ..grade.intake import take
 from ..grade.load import load
-from ..grade.one import Case, grade_one
+from ..grade.one import Case, grade_guarded, grade_one
+from ..grade.report import Report
 from ..grade.report_gradescope import ResultsFile, best_earlier
 from ..grade.workers import Workers, isolated_workers
 from ..grading.failures import GraderFault
+
+STUDENT = "submission"  # whose it is, Gradescope knows
 
 
 def main(words: Sequence[str] | None = None) -> int:
@@ -30,7 +34,6 @@ def main(words: Sequence[str] | None = None) -> int:
     loaded = load(given.number, given.bundle, given.secret_file)
     bundle = loaded.read()
     results = ResultsFile(given.results, bundle, best_earlier(given.metadata))
-    hand_in = take(bundle.manifest, given.submission)
     secrets = tuple(
         path.resolve()
         for path in (given.bundle, given.secret_file, given.submission, given.results)
@@ -42,8 +45,13 @@ def main(words: Sequence[str] | None = None) -> int:
             workers = stack.enter_context(isolated_workers(bundle.manifest, given.mode, secrets))
         except GraderFault as fault:
             unavailable = fault.text
-        case = Case("submission", hand_in, bundle, loaded.digest)
-        report = grade_one(case, workers, unavailable=unavailable, on_outcome=results.on_outcome)
+
+        def grade() -> Report:
+            taken = Case(STUDENT, take(bundle.manifest, given.submission), bundle, loaded.digest)
+            outcomes = results.on_outcome
+            return grade_one(taken, workers, unavailable=unavailable, on_outcome=outcomes)
+
+        report = grade_guarded(Case(STUDENT, HandIn({}), bundle, loaded.digest), workers, grade)
     results.finish(report)
     sys.stdout.write(f"isolation mode {report.mode}: {report.proven:g} of {report.max_score:g}\n")
     for line in report.staff:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import queue
 import threading
 from collections.abc import Callable, Sequence
@@ -11,8 +12,9 @@ from dataclasses import dataclass
 from ..assignment.bundle import Bundle
 from .exports import Source
 from .grades_csv import Change, changes, changes_table, grades_table
+from .hand_in import HandIn
 from .load import Loaded
-from .one import Case, grade_one
+from .one import Case, grade_guarded, grade_one
 from .printable import csv_cell
 from .report import Report
 from .run_folder import RunFolder
@@ -104,6 +106,17 @@ def _grade_all(batch: Batch, folder: RunFolder, on_report: OnReport | None) -> l
 
 
 def _grade(batch: Batch, folder: RunFolder, source: Source, slot: int, bundle: Bundle) -> Report:
+    """The report on one submission, kept on disk."""
+    case = Case(source.student, HandIn({}), bundle, batch.loaded.digest)
+    report = grade_guarded(
+        case, batch.workers, lambda: _judged(batch, folder, source, slot, bundle)
+    )
+    if not report.is_sound:
+        folder.keep(report)  # once more, where it is the guard's
+    return report
+
+
+def _judged(batch: Batch, folder: RunFolder, source: Source, slot: int, bundle: Bundle) -> Report:
     hand_in = source.take(bundle.manifest)
     kept = folder.kept(source.student)
     if (
@@ -123,9 +136,8 @@ def _similarity(batch: Batch, bundle: Bundle) -> bytes:
     module = f"{bundle.manifest.module}.py"
     texts: dict[str, str] = {}
     for source in batch.sources:
-        files = source.take(bundle.manifest).files
-        if module in files:
-            texts[source.student] = files[module].decode("utf-8")
+        with contextlib.suppress(Exception):  # its report says what is wrong with it
+            texts[source.student] = source.take(bundle.manifest).files[module].decode("utf-8")
     rows = ["student,student,share"]
     rows += [
         ",".join((_quoted(one), _quoted(two), f"{share:.2f}"))

@@ -8,16 +8,22 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
+import yaml
+
 from ..assignment.manifest import Manifest
 from ..errors import IoError, SceneError, message
+from ..input_files import read_file
 from .hand_in import HandIn, refused, wanted_names
 from .intake import take, take_parts
 
 # Canvas: "doejane_LATE_12345_67890_toy.py"; Moodle: "Jane Doe_12345_assignsubmission_file_".
 _CANVAS = re.compile(r"^([^_]+)_(?:LATE_)?(\d+)_\d+_(.+)$")
 _MOODLE = re.compile(r"^(.+?)_(\d+)_assignsubmission_file_?(.*)$")
-_YAML_KEY = re.compile(r"^(submission_\d+|[\w.-]+):\s*$")
-_YAML_NAME = re.compile(r"^\s+-?\s*:(name|email|sid):\s*(.*)$")
+# Stricter than the safe loader: it takes every scalar for text and no tag for a type, so that an
+# export's Ruby objects are read, and merges nothing, so that an alias costs nothing.
+_PLAIN = getattr(yaml, "CBaseLoader", yaml.BaseLoader)
+LARGEST_NAMES = 32 << 20  # bytes; some 20 KB a submission, results included
+MOST_SUBMITTERS, LONGEST_NAME = 20, 120
 
 
 @dataclass(frozen=True)
@@ -123,14 +129,28 @@ def _distinct(sources: list[Source]) -> list[Source]:
 
 
 def _gradescope_names(path: Path) -> dict[str, str]:
-    """Folder to submitters, out of the few lines of YAML that Gradescope writes."""
+    """Folder to submitters, where Gradescope has written them down.
+
+    Raises:
+        IoError: the file is too large, or no YAML.
+    """
     if not path.is_file():
         return {}
-    found: dict[str, list[str]] = {}
-    current: list[str] = []
-    for line in path.read_text(encoding="utf-8", errors="replace").splitlines():
-        if key := _YAML_KEY.match(line):
-            current = found.setdefault(key[1], [])
-        elif (entry := _YAML_NAME.match(line)) and entry[1] == "name":
-            current.append(entry[2].strip().strip("'\""))
-    return {key: " & ".join(names) for key, names in found.items() if names}
+    data = read_file("grade", path, LARGEST_NAMES + 1)
+    remedy = "remove it, and folders go by their own names"
+    if len(data) > LARGEST_NAMES:
+        expected = f"at most {LARGEST_NAMES >> 20} MB"
+        raise IoError(message("grade", path.name, expected, "more", remedy))
+    try:
+        table = yaml.load(data, Loader=_PLAIN)
+    except (yaml.YAMLError, RecursionError, ValueError) as error:
+        got = " ".join(str(error).split())
+        raise IoError(message("grade", path.name, "YAML", got, remedy)) from error
+    found = {}
+    for folder, entry in table.items() if isinstance(table, dict) else ():
+        listed = entry.get(":submitters") if isinstance(entry, dict) else None
+        who = listed[:MOST_SUBMITTERS] if isinstance(listed, list) else []
+        names = [each.get(":name") for each in who if isinstance(each, dict)]
+        if known := [name[:LONGEST_NAME] for name in names if isinstance(name, str) and name]:
+            found[str(folder)] = " & ".join(known)
+    return found

@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from ..grading.outcome import Status
 from .printable import csv_cell, file_name
 from .report import Report
 
@@ -33,7 +34,7 @@ class Change:
 def grades_table(reports: Sequence[Report], earlier: Mapping[str, Report]) -> bytes:
     """One row a student, by name; nothing in it depends on when or in what order it was graded.
 
-    A score is empty, not zero, where the grader failed; if an earlier run had one, it stays.
+    A score is empty, not zero, where the grader failed and no earlier points can stand in.
 
     Args:
         reports: of this run.
@@ -63,12 +64,20 @@ def _notes(report: Report, declared: Mapping[str, int]) -> list[str]:
 
 
 def counted(report: Report, earlier: Report | None) -> tuple[float | None, str]:
-    """The score that counts, and why: our own failure never lowers a grade."""
+    """The score that counts, and why: our own failure lowers no grade, and saves none.
+
+    Where we failed, a check or question keeps the points that the same submission had for it
+    before; all others count as they are now. Another submission's points stand for nothing.
+    """
     if report.is_sound:
         return report.score, "hand-in refused" if report.problem else "ok"
-    if earlier is not None and earlier.score is not None:
-        return max(earlier.score, report.proven), "error-ours, earlier grade kept"
-    return None, "error-ours"
+    if earlier is None or earlier.score is None or earlier.hand_in != report.hand_in:
+        return None, "error-ours"
+    ours = Status.ERROR_OURS.value
+    failed = [(check.id, check.max) for check in report.checks if check.status.value == ours]
+    failed += [(each.id, each.max) for each in report.questions if each.status == ours]
+    kept = sum(min(earlier.points.get(name, 0.0), most) for name, most in failed)
+    return report.proven + kept, "error-ours, earlier points kept"
 
 
 def changes(reports: Sequence[Report], earlier: Mapping[str, Report]) -> list[Change]:

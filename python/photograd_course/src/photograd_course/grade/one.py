@@ -1,9 +1,15 @@
-"""Judge one hand-in: every check of the bundle in a worker of its own, every question."""
+"""Judge one hand-in: every check of the bundle in a worker of its own, every question.
+
+Where judging itself breaks, a control decides whose doing it is: the same step is repeated with
+what is known to be good, the solution and plain answers. If that goes well, the submission has
+brought it about and fails; if not, the fault is ours.
+"""
 
 from __future__ import annotations
 
+import contextlib
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -15,12 +21,14 @@ from ..grading.outcome import Outcome, Status
 from ..grading.remote import RemoteStudent
 from ..grading.runner import run_checks
 from ..grading.trial import Student
-from .answers import score_answers
+from .answers import Answered, all_answered, plain_answers, score_answers
 from .hand_in import HandIn
+from .printable import printable
 from .report import Report, staff_notes, versions
 from .workers import Clocked, Workers
 
 LONGEST = 240.0  # seconds for a whole hand-in; grading services allow a few minutes
+Answers = tuple[list[Answered], str, list[str]]
 OnOutcome = Callable[[Outcome], None]
 
 
@@ -59,7 +67,56 @@ def grade_one(
     """
     started = time.monotonic()
     checks = _judge(case, workers, slot, unavailable, on_outcome)
-    answered, declared, warnings = score_answers(case.bundle, case.hand_in)
+    return _report(case, workers, checks, _answers(case), started)
+
+
+def grade_guarded(case: Case, workers: Workers | None, grade: Callable[[], Report]) -> Report:
+    """The report that ``grade`` makes; where it raises, one that says so to staff.
+
+    A mistake of ours in one submission, wherever it hides, must not cost the others their grades.
+
+    Args:
+        case: whose report it is, for the second kind; its `hand_in` may be empty.
+        workers: where it was to run.
+        grade: takes the submission in, judges it, perhaps keeps the report.
+
+    Raises:
+        IoError: results cannot be written, so nothing that is judged from here on could be kept.
+    """
+    try:
+        return grade()
+    except IoError:
+        raise
+    except Exception as error:
+        fault = f"{type(error).__name__}: {printable(error)}"
+    checks = _all(case, Status.ERROR_OURS, "error-ours", fault, None)
+    answered = all_answered(case.bundle, Status.ERROR_OURS.value, fault)
+    return _report(case, workers, checks, (answered, "", []), time.monotonic())
+
+
+def _answers(case: Case) -> Answers:
+    try:
+        return score_answers(case.bundle, case.hand_in)
+    except (OSError, MemoryError) as error:
+        ours: Exception = error
+    except Exception as error:
+        ours = error
+        with contextlib.suppress(Exception):
+            score_answers(case.bundle, plain_answers(case.bundle))
+            said = f"the answers cannot be judged: {type(error).__name__}"
+            return all_answered(case.bundle, Status.FAILED.value, said), "", [said]
+    fault = f"{type(ours).__name__}: {ours}"
+    return all_answered(case.bundle, Status.ERROR_OURS.value, fault), "", []
+
+
+def _report(
+    case: Case,
+    workers: Workers | None,
+    checks: Sequence[Outcome],
+    answers: Answers,
+    started: float,
+) -> Report:
+    answered, declared, warnings = answers
     manifest = case.bundle.manifest
     return Report(
         student=case.student,
@@ -118,7 +175,19 @@ def _run(case: Case, workers: Workers, slot: int, on_outcome: OnOutcome | None) 
             Clocked(connection, deadline), replace(hand, substitutes=dict(substitutes))
         )
 
-    found = run_checks(bundle.checks, bundle.setting, open_student, on_outcome=on_outcome)
+    def open_control() -> Student:
+        connection = workers.open(slot)
+        deadline = time.monotonic() + bundle.manifest.limits.seconds
+        solution = bundle.hand(bundle.solution_files(bundle.solution))
+        return RemoteStudent(Clocked(connection, deadline), solution)
+
+    found = run_checks(
+        bundle.checks,
+        bundle.setting,
+        open_student,
+        open_control=open_control if bundle.solution else None,
+        on_outcome=on_outcome,
+    )
     # Ids and points come from the bundle, whatever has happened meanwhile.
     expected = [(check.id, check.points) for check in bundle.checks]
     if [(outcome.id, outcome.max) for outcome in found] != expected:

@@ -15,9 +15,13 @@ _MARKDOWN = re.compile(r"([!-/:-@\[-`{-~])")  # every ASCII punctuation mark
 
 def printable(text: object, longest: int = 600) -> str:
     """One line without control, format and unassigned characters, cut at ``longest``."""
+    try:
+        whole = str(text)
+    except ValueError:  # Python writes no integers of more than 4,300 digits
+        whole = f"({type(text).__name__} too long to be shown)"
     words = "".join(
         " " if char in "\t\r\n" else "\N{REPLACEMENT CHARACTER}" if _is_unsafe(char) else char
-        for char in str(text)[: longest + 1]
+        for char in whole[: longest + 1]
     )
     return words if len(words) <= longest else words[: longest - 1] + "\N{HORIZONTAL ELLIPSIS}"
 

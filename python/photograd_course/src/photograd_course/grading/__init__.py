@@ -8,7 +8,7 @@ from __future__ import annotations
 from .check import Check, check
 from .failures import CheckFailed, GraderFault, StudentFailure
 from .outcome import Outcome, Status
-from .specs import Array, Integer, Items, Number, Record, Text, Truth
+from .specs import Array, Integer, Items, Number, Record, Text, Truth, asks
 from .tolerance import Tolerance
 from .trial import Trial
 
@@ -28,5 +28,6 @@ __all__ = [
     "Tolerance",
     "Trial",
     "Truth",
+    "asks",
     "check",
 ]

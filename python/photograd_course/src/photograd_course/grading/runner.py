@@ -14,6 +14,7 @@ from .outcome import Outcome, Status
 from .trial import Student, Trial
 
 Open = Callable[[Mapping[str, Callable[..., Any]]], Student]
+OpenControl = Callable[[], Student]
 
 
 @dataclass(frozen=True)
@@ -49,6 +50,7 @@ def run_checks(
     setting_of: Callable[[Check], Setting],
     open_student: Open,
     *,
+    open_control: OpenControl | None = None,
     on_outcome: Callable[[Outcome], None] | None = None,
 ) -> list[Outcome]:
     """The outcome of every check, none missing, in the given order.
@@ -56,17 +58,23 @@ def run_checks(
     Each check gets a student of its own, so nothing survives from one into the next. A check fails
     unless its body returns; whatever goes wrong on our side is "error-ours".
 
+    A body that ends with an exception of another kind has met values that nobody foresaw, or has
+    a mistake. The control tells: where the check passes for the solution, the values were to
+    blame, and the check has failed. Without a control the mistake counts as ours.
+
     Args:
         checks: sorted so that tasks come after those they need.
         setting_of: what the assignment adds to a check, such as `Bundle.setting`.
         open_student: starts the hand-in; gets the functions to be replaced by the reference's.
+        open_control: starts the solution in the same way; None where it is not at hand.
         on_outcome: called after each check.
     """
     failed: dict[str, str] = {}  # function of the hand-in to the check in which it failed
+    judge = _Judge(open_student, open_control)
     outcomes = []
     for check in checks:
         started = time.monotonic()
-        verdict = _judge(check, setting_of(check), open_student, failed)
+        verdict = judge.verdict(check, setting_of(check), failed)
         if verdict.status is not Status.PASSED:
             for function in check.calls:
                 failed.setdefault(function, check.id)
@@ -92,39 +100,73 @@ def run_checks(
     return outcomes
 
 
-def _judge(
-    check: Check, setting: Setting, open_student: Open, failed: Mapping[str, str]
-) -> _Verdict:
-    culprits = [name for name in check.needs if name in failed]
-    verdict = _run(check, setting, open_student, {})
-    if verdict.status is not Status.FAILED or not culprits:
-        return verdict
-    if setting.reference is None:
-        if verdict.reason == "not implemented":
+@dataclass(frozen=True)
+class _Judge:
+    """Runs one check after another; see `run_checks` for its fields."""
+
+    open_student: Open
+    open_control: OpenControl | None
+
+    def verdict(self, check: Check, setting: Setting, failed: Mapping[str, str]) -> _Verdict:
+        culprits = [name for name in check.needs if name in failed]
+        verdict = self._blamed(check, setting, {})
+        if verdict.status is not Status.FAILED or not culprits:
             return verdict
-        parents = ", ".join(sorted({failed[name] for name in culprits}))
-        return _Verdict(Status.BLOCKED, "blocked", f"blocked by {parents}: mend that first")
-    # Once more with the reference's earlier functions; the better verdict counts.
-    substitutes = {
-        f"{setting.module}.{name}": getattr(setting.reference, name) for name in culprits
-    }
-    second = _run(check, setting, open_student, substitutes)
-    if second.status is Status.PASSED:
-        second.text = f"with the reference's {', '.join(culprits)}"
-        return second
-    return verdict
+        if setting.reference is None:
+            if verdict.reason == "not implemented":
+                return verdict
+            parents = ", ".join(sorted({failed[name] for name in culprits}))
+            return _Verdict(Status.BLOCKED, "blocked", f"blocked by {parents}: mend that first")
+        # Once more with the reference's earlier functions; the better verdict counts.
+        substitutes = {
+            f"{setting.module}.{name}": getattr(setting.reference, name) for name in culprits
+        }
+        second = self._blamed(check, setting, substitutes)
+        if second.status is Status.PASSED:
+            second.text = f"with the reference's {', '.join(culprits)}"
+            return second
+        return verdict
+
+    def _blamed(
+        self, check: Check, setting: Setting, substitutes: Mapping[str, Callable[..., Any]]
+    ) -> _Verdict:
+        """The verdict; where the body broke, after asking whose doing that was."""
+        try:
+            return _run(check, setting, lambda: self.open_student(substitutes))
+        except _BodyBroke as broke:
+            if self.open_control is None or not self._control_passes(check, setting):
+                return _ours(broke.error)
+            # Its text is for staff: `for_student` shows it for public checks only.
+            said = {"exception": f"{type(broke.error).__name__}: {broke.error}"}
+            text = "the values that came back, or were asked for, cannot be judged"
+            return _Verdict(Status.FAILED, "output", text, check.hint, said)
+
+    def _control_passes(self, check: Check, setting: Setting) -> bool:
+        assert self.open_control is not None
+        try:
+            return _run(check, setting, self.open_control).status is Status.PASSED
+        except _BodyBroke:
+            return False
 
 
-def _run(
-    check: Check,
-    setting: Setting,
-    open_student: Open,
-    substitutes: Mapping[str, Callable[..., Any]],
-) -> _Verdict:
+class _BodyBroke(Exception):
+    """The body of a check ended with an exception that is no verdict."""
+
+    def __init__(self, error: Exception) -> None:
+        super().__init__(str(error))
+        self.error = error
+
+
+def _run(check: Check, setting: Setting, open_one: OpenControl) -> _Verdict:
+    """What comes of one run.
+
+    Raises:
+        _BodyBroke: nothing; it has to be found out whose doing that was.
+    """
     student: Student | None = None
     trial: Trial | None = None
     try:
-        student = open_student(substitutes)
+        student = open_one()
         seed = (*setting.seed, *check.id.encode())
         trial = Trial(check, student, seed=seed, module=setting.module, reference=setting.reference)
         check.body(trial)
@@ -146,10 +188,16 @@ def _run(
         if failure.private and check.visibility == "public":
             verdict.details["exception"] = failure.private
     except Exception as error:
-        verdict = _Verdict(Status.ERROR_OURS, "error-ours", f"{type(error).__name__}: {error}")
+        if trial is not None and not isinstance(error, (OSError, MemoryError)):
+            raise _BodyBroke(error) from error
+        verdict = _ours(error)  # a worker that does not start, or a machine in trouble
     finally:
         if student is not None:
             student.close()
     if trial is not None and trial.margins:
         verdict.details["margin"] = max(trial.margins)
     return verdict
+
+
+def _ours(error: Exception) -> _Verdict:
+    return _Verdict(Status.ERROR_OURS, "error-ours", f"{type(error).__name__}: {error}")

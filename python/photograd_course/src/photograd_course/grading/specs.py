@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
 
+from ..worker.codec import INTEGER_BITS
 from .failures import CheckFailed
 
 
@@ -20,10 +22,14 @@ class Spec(Protocol):
 
 @dataclass(frozen=True)
 class Array:
-    """A finite array of exactly this shape and dtype ("f8", "f4", "i8", "i4", "u1" or "bool")."""
+    """An array of exactly this shape and dtype ("f8", "f4", "i8", "i4", "u1" or "bool").
+
+    Finite, unless ``finite`` is False: then the check looks at NaN and infinities itself.
+    """
 
     shape: tuple[int, ...]
     dtype: str = "f8"
+    finite: bool = True
 
     def require(self, value: Any, where: str) -> None:
         """See Spec."""
@@ -34,7 +40,7 @@ class Array:
             raise CheckFailed(f"{where}: expected {want}, got shape {value.shape}")
         if value.dtype != np.dtype(_FULL[self.dtype]):
             raise CheckFailed(f"{where}: expected {want}, got dtype {value.dtype}")
-        if value.dtype.kind == "f" and not np.isfinite(value).all():
+        if self.finite and value.dtype.kind == "f" and not np.isfinite(value).all():
             index = tuple(int(i) for i in np.argwhere(~np.isfinite(value))[0])
             count = int((~np.isfinite(value)).sum())
             raise CheckFailed(
@@ -45,7 +51,7 @@ class Array:
 
 @dataclass(frozen=True)
 class Number:
-    """A finite real number; an array without axes will do."""
+    """A finite float, or an integer of at most 64 bits; an array without axes will do."""
 
     def require(self, value: Any, where: str) -> None:
         """See Spec."""
@@ -53,7 +59,9 @@ class Number:
             value = float(value)
         if isinstance(value, bool) or not isinstance(value, (int, float)):
             raise _wrong_kind(where, "a float", value)
-        if not np.isfinite(value):
+        if isinstance(value, int) and abs(value) >= 1 << INTEGER_BITS:
+            raise CheckFailed(f"{where}: expected a finite float, got an integer beyond 64 bits")
+        if not math.isfinite(value):
             raise CheckFailed(f"{where}: expected a finite float, got {value}")
 
 
@@ -129,6 +137,31 @@ class Record:
             raise CheckFailed(f"{where}: expected the keys {sorted(self.parts)}")
         for key, part in self.parts.items():
             part.require(value[key], f"{where}[{key!r}]")
+
+
+def asks(function: Callable[..., Any], *specs: Spec, name: str) -> Callable[..., Any]:
+    """``function`` as a service that looks at its arguments before it computes with them.
+
+    What a submission asks is as little to be trusted as what it answers: an array of another shape
+    can break the check that keeps it, or take hundreds of times its own memory.
+
+    Args:
+        function: of the check.
+        specs: one for each argument.
+        name: of the function, as the submission knows it.
+
+    Returns:
+        a function that raises CheckFailed, the verdict, for arguments that are not as specified.
+    """
+
+    def service(*args: Any) -> Any:
+        if len(args) != len(specs):
+            raise CheckFailed(f"{name}: expected {len(specs)} arguments, got {len(args)}")
+        for spec, arg in zip(specs, args, strict=True):
+            spec.require(arg, f"the argument of {name}")
+        return function(*args)
+
+    return service
 
 
 _FULL = {

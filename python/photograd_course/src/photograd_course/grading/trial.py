@@ -88,6 +88,12 @@ class Trial:
             CheckFailed: the value is not of that kind, or a function among `args` has raised it;
                 what the hand-in makes of such an exception does not matter.
         """
+        value = self._answer(function, args)
+        returns.require(value, function.rpartition(".")[2])
+        return value
+
+    def _answer(self, function: str, args: Sequence[Any]) -> Any:
+        """What the hand-in returns, unless a function among ``args`` has given the verdict."""
         where = function if "." in function else f"{self._module}.{function}"
         try:
             given = [self._watched(arg) for arg in args]
@@ -98,7 +104,6 @@ class Trial:
             raise
         if self._verdict is not None:
             raise self._verdict
-        returns.require(value, function.rpartition(".")[2])
         return value
 
     def _watched(self, arg: Any) -> Any:
@@ -183,10 +188,9 @@ class Trial:
 
     def refuses(self, function: str, *args: Any, error: str) -> None:
         """Require that the hand-in raises ``error``, named by its type, for these arguments."""
-        where = function if "." in function else f"{self._module}.{function}"
         self.asked += 1
         try:
-            self._student.call(where, args, seconds=self.check.seconds)
+            self._answer(function, args)
         except StudentFailure as failure:
             if failure.reason == "raised" and failure.private.startswith(f"{error}:"):
                 return

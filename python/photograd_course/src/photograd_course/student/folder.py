@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ..assignment.manifest import Manifest
+from ..assignment.questions import flat_answers
 from ..assignment.toml import read_toml
 from ..errors import IoError, message
 
@@ -58,7 +59,8 @@ class WorkFolder:
             return "", {}
         table = read_toml(path)
         answers = table.get("answers", {})
-        return str(table.get("student", "")), answers if isinstance(answers, dict) else {}
+        flat = flat_answers(answers) if isinstance(answers, dict) else {}
+        return str(table.get("student", "")), flat
 
     def _read(self, path: Path) -> bytes:
         try:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-import re
 import sys
-from collections.abc import Collection, Container, Sequence
+from collections.abc import Collection, Container, Mapping, MutableMapping, Sequence
 from pathlib import Path
+from typing import Any
 
+import tomlkit
 import typer
 from rich.console import Console
+from tomlkit.exceptions import TOMLKitError
 
 from ..assignment.bundle import Bundle
 from ..assignment.manifest import Manifest
@@ -23,9 +25,6 @@ from .folder import LOCK_NAME, WorkFolder, find_folder
 from .pictures import draw_failure, remove_picture
 from .predictions import prediction_letters, write_lock
 from .terminal import print_outcome, print_rest, print_summary
-
-# A line of an answer with a comment behind it; a # within quotes begins none.
-_COMMENTED = re.compile(r"""[^=]*=\s*(?:"[^"]*"|'[^']*'|[^"'#]*?)(\s*#.*)""")
 
 
 def run_check_command(
@@ -172,15 +171,37 @@ def _prompt(text: str, console: Console) -> str:
         raise
 
 
-def write_answers(path: Path, made: dict[str, str]) -> None:
-    """Fill in answers of a TOML file, leaving everything else as it is, comments included."""
-    lines = path.read_text(encoding="utf-8").splitlines() if path.exists() else ["[answers]"]
-    for name, answer in made.items():
-        line = f'"{name}" = "{answer}"'
-        at = [k for k, text in enumerate(lines) if text.split("=")[0].strip() == f'"{name}"']
-        if at:
-            commented = _COMMENTED.fullmatch(lines[at[0]])
-            lines[at[0]] = line + (commented[1] if commented else "")
-        else:
-            lines.append(line)
-    atomic_write(path, ("\n".join(lines) + "\n").encode())
+def write_answers(path: Path, made: Mapping[str, str]) -> None:
+    """Fill in answers of a TOML file, leaving everything else as it is, comments included.
+
+    Args:
+        path: of the file; made where there is none.
+        made: answers by id; each replaces the one that is there, however its key is written.
+
+    Raises:
+        IoError: the file is no TOML, or its `answers` are no table.
+    """
+    try:
+        document = tomlkit.parse(path.read_bytes().decode("utf-8") if path.exists() else "")
+        answers = document.setdefault("answers", tomlkit.table())
+        if not isinstance(answers, MutableMapping):
+            raise _unwritable(path, "a table [answers]", type(answers).__name__)
+        for name, answer in made.items():
+            _put(answers, name, answer)
+    except (TOMLKitError, ValueError) as error:
+        raise _unwritable(path, "TOML", str(error)) from error
+    atomic_write(path, tomlkit.dumps(document).encode())
+
+
+def _put(answers: MutableMapping[str, Any], name: str, answer: str) -> None:
+    task, _, rest = name.partition(".")
+    inner = answers.get(task)  # of keys without quotes, such as 01.p1
+    is_dotted = isinstance(inner, MutableMapping) and rest in inner
+    if is_dotted:
+        inner[rest] = answer
+    if name in answers or not is_dotted:
+        answers[name] = answer
+
+
+def _unwritable(path: Path, expected: str, got: str) -> IoError:
+    return IoError(message("predict", path.name, expected, got, "mend the file by hand"))

@@ -26,6 +26,7 @@ NAMES = {np.dtype(code): name for name, code in DTYPES.items()}
 MAX_HEADER = 8 << 20  # parsed as JSON it takes up to twenty-two times as much memory
 MAX_BODY = 256 << 20
 MAX_DEPTH = 24
+INTEGER_BITS = 63  # with a sign: what NumPy, too, can hold
 
 
 class FrameError(ValueError):
@@ -143,9 +144,7 @@ def _flatten(
         return bool(value)
     if isinstance(value, (int, np.integer)):
         number = int(value)
-        if abs(number) >= 1 << 63:
-            raise FrameError("an integer beyond 64 bits")
-        return number
+        return _bounded(number)
     if isinstance(value, float):  # np.float64 too
         return float(value)
     if isinstance(value, np.generic):
@@ -162,6 +161,12 @@ def _flatten(
     if callable(value) and name_function is not None:
         return {"function": name_function(value)}
     raise FrameError(f"an object of type {type(value).__name__}")
+
+
+def _bounded(number: int) -> int:
+    if abs(number) >= 1 << INTEGER_BITS:
+        raise FrameError("an integer beyond 64 bits")
+    return number
 
 
 def _keep(array: np.ndarray[Any, Any], arrays: list[Any]) -> int:
@@ -197,7 +202,7 @@ def _restore(tree: Any, arrays: list[Any], depth: int) -> Any:
             tree[k] = _restore(item, arrays, depth + 1)
         return tree
     if not isinstance(tree, dict):
-        return tree
+        return _bounded(tree) if isinstance(tree, int) else tree
     if len(tree) != 1:
         raise FrameError("an unknown node")
     ((tag, content),) = tree.items()

@@ -35,6 +35,11 @@ REFUSED = {
 # The C library falls back on older calls, whose arguments a filter can see.
 SAID_TO_BE_UNKNOWN = "clone3 openat2"
 CLONE_THREAD = 0x10000
+# F_SETOWN, F_SETSIG and F_SETOWN_EX of `fcntl` choose whom a descriptor signals when it is ready,
+# and how: another way to kill. The kernel asks for the same user, which mode D shares, and only
+# since 6.12 for Landlock's scope.
+OWNERS = (8, 10, 15)
+INT = 0xFFFFFFFF  # the kernel reads no more of an int, while a filter sees the whole register
 
 
 @lru_cache(maxsize=1)
@@ -59,6 +64,9 @@ def compiled_filter() -> bytes:
     for call, place in (("open", 1), ("openat", 2)):
         for flag in (os.O_WRONLY, os.O_RDWR, os.O_CREAT, os.O_TRUNC):
             _refuse(pyseccomp, table, refusal, call, pyseccomp.Arg(place, masked, flag, flag))
+    for call in ("fcntl", "fcntl64"):
+        for command in OWNERS:
+            _refuse(pyseccomp, table, refusal, call, pyseccomp.Arg(1, masked, INT, command))
     _refuse(pyseccomp, table, refusal, "prlimit64", pyseccomp.Arg(0, pyseccomp.NE, 0))
     with tempfile.TemporaryFile() as file:
         table.export_bpf(file)
