@@ -22,17 +22,38 @@ def available_memory() -> int:
         return 4 << 30
 
 
-def require_room(function: str, what: str, size: int, limit: int | None) -> None:
+def require_room(
+    function: str,
+    what: str,
+    size: int,
+    limit: int | None = None,
+    *,
+    argument: str = "memory_limit",
+    remedy: str = "take a smaller box, or raise the limit",
+) -> None:
     """Refuse what takes more than `limit` bytes, or more than there is if no limit is given.
 
+    Call it before anything is allocated.
+
+    Args:
+        function, argument: on whose behalf, and for which argument or option, the error speaks.
+        what: what the bytes are for, in words.
+        size: bytes that it takes at its peak, temporary arrays included.
+        limit: bytes that it may take; by default, what is available.
+        remedy: what to change.
+
     Raises:
-        RangeError: it does, with both numbers.
+        RangeError: it takes more, with both sizes.
     """
     most = available_memory() if limit is None else limit
     if size > most:
-        raise RangeError(
-            message(
-                function, "memory_limit", f"room for {what} ({size:,} bytes)", f"{most:,} bytes",
-                "take a smaller box, or raise the limit",
-            )
-        )  # fmt: skip
+        expected = f"room for {what} ({bytes_text(size)})"
+        raise RangeError(message(function, argument, expected, bytes_text(most), remedy))
+
+
+def bytes_text(size: int) -> str:
+    """A number of bytes to be read by people: 1,023 bytes, 1.5 MiB, 2.3 GiB."""
+    for unit, name in ((1 << 40, "TiB"), (1 << 30, "GiB"), (1 << 20, "MiB")):
+        if size >= unit:
+            return f"{size / unit:,.1f} {name}"
+    return f"{size:,} bytes"
