@@ -21,7 +21,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from photograd_course.atomic_io import remove_leftovers
 from photograd_course.optim import Adam
 from photograd_course.random import uniform
 from photograd_course.schedules import exponential
@@ -135,7 +134,7 @@ class Fit:
 
     @classmethod
     def resume(cls, capture: Capture, folder: Path) -> Fit:
-        """Continue the fit that left a checkpoint in `folder`, and clear what a crash left there.
+        """Continue the fit that left a checkpoint in `folder`.
 
         Raises IoError for a missing or damaged checkpoint, RangeError if it belongs to another
         capture: other names, other images, other cameras or another size.
@@ -145,7 +144,6 @@ class Fit:
         require_split_of(saved, capture)
         fit = cls(capture, model.options, model.field, saved.params.get("background"))
         require_pixels_of(saved, fit.pixels.digest)
-        remove_leftovers(folder / FILE_NAME)
         fit.optimiser.load_state(saved.optimiser)
         fit.step_number = int(saved.meta["step"])
         fit.history = [tuple(row) for row in saved.history.tolist()]

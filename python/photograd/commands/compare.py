@@ -13,7 +13,13 @@ from photograd_course.suggest import choose_from
 
 from photograd.commands.capture import make_capture
 from photograd.commands.fit import run_with_bar
-from photograd.commands.shared import DownscaleOption, StopRequest, stop_on_signals, use_threads
+from photograd.commands.shared import (
+    DownscaleOption,
+    StopRequest,
+    out_option,
+    stop_on_signals,
+    use_threads,
+)
 from photograd.compare import (
     Contender,
     Score,
@@ -28,6 +34,7 @@ from photograd.data.load import load_capture
 from photograd.errors import RangeError, SceneError, message
 from photograd.evaluate import Evaluation
 from photograd.fit_options import FitOptions
+from photograd.run_lock import one_run_in
 from photograd.scenes.registry import scenes
 
 DEFAULTS = FitOptions()
@@ -40,6 +47,7 @@ def register(app: typer.Typer) -> None:
 
 
 def compare(
+    context: typer.Context,
     captures: Annotated[
         list[str] | None,
         typer.Argument(
@@ -47,7 +55,7 @@ def compare(
             metavar="[CAPTURE]...",
         ),
     ] = None,
-    out: Annotated[Path, typer.Option("--out", help="Folder for models, table and pictures.")] = (
+    out: Annotated[Path, out_option("Folder for models, table and pictures.")] = (
         Path("out/compare")
     ),
     contenders: Annotated[
@@ -84,6 +92,7 @@ def compare(
     """
     use_threads(threads)
     candidates = parse_contenders(contenders)
+    context.with_resource(one_run_in("compare", out))
     shared = FitOptions(steps=steps, rays=rays, seed=seed)
     scores: list[Score] = []
     pictures: list[Path] = []
@@ -134,11 +143,12 @@ def contest(
     for candidate in candidates:
         note(f"{name}: {candidate.label}")
         source = source_of(candidate, candidates)
-        result = compare_one(
-            name, capture, candidate, folder[candidate], candidate.options(shared),
-            lambda job, folder: run_with_bar(job, folder, stopping),
-            source=None if source is None else folder[source],
-        )  # fmt: skip
+        with one_run_in("compare", folder[candidate]):
+            result = compare_one(
+                name, capture, candidate, folder[candidate], candidate.options(shared),
+                lambda job, folder: run_with_bar(job, folder, stopping),
+                source=None if source is None else folder[source],
+            )  # fmt: skip
         if result is None:
             note("stopped; the same command goes on from here")
             raise typer.Exit(stopping.exit_code or 1)

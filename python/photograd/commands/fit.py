@@ -40,6 +40,7 @@ from photograd.commands.fit_arguments import (
 from photograd.commands.shared import (
     CaptureArgument,
     DownscaleOption,
+    out_option,
     stop_on_signals,
     use_threads,
 )
@@ -52,6 +53,7 @@ from photograd.fit import Fit
 from photograd.fit_options import USERS_OF, FitOptions, options_for
 from photograd.fit_result import FitResult, Progress, summary
 from photograd.model import load_model
+from photograd.run_lock import one_run_in
 
 PLY_NAME = "gaussians.ply"
 DEFAULTS = FitOptions()
@@ -75,7 +77,7 @@ def register(app: typer.Typer) -> None:
 def fit(
     context: typer.Context,
     capture: CaptureArgument,
-    out: Annotated[Path, typer.Option("--out", help="Folder for the model and its checkpoints.")],
+    out: Annotated[Path, out_option("Folder for the model and its checkpoints.")],
     representation: RepresentationOption = DEFAULTS.representation,
     steps: StepsOption = None,
     resolution: ResolutionOption = None,
@@ -106,6 +108,7 @@ def fit(
     Example: photograd fit photos --out model --steps 1500 --resolution 128
     """
     use_threads(threads)
+    context.with_resource(one_run_in("fit", out))
     if not resume:
         refuse_to_overwrite(out)
     loaded = load_and_describe(capture, downscale)
