@@ -14,6 +14,7 @@ from photograd_course.suggest import choose_from
 from photograd.commands.capture import make_capture
 from photograd.commands.fit import run_with_bar
 from photograd.commands.shared import (
+    AllowOutsideOption,
     DownscaleOption,
     StopRequest,
     out_option,
@@ -67,6 +68,7 @@ def compare(
     size: Annotated[int, typer.Option("--size", min=8, help="Its pixels along an edge.")] = 128,
     spp: Annotated[int, typer.Option("--spp", min=1, help="Its samples a pixel.")] = 64,
     downscale: DownscaleOption = 1,
+    allow_outside: AllowOutsideOption = False,
     validate: Annotated[
         bool,
         typer.Option(
@@ -99,7 +101,8 @@ def compare(
     with stop_on_signals() as stopping:
         for given in captures or CONTRASTS:
             folder = photographs_of(given, out, views=views, size=size, spp=spp, seed=seed)
-            name, capture = Path(given).name, load_capture(folder, downscale=downscale)
+            name = Path(given).name
+            capture = load_capture(folder, downscale=downscale, allow_outside=allow_outside)
             if validate:
                 name, capture = f"{name}_validation", capture.validating()
             found = contest(name, capture, candidates, shared, out / name, stopping)

@@ -38,6 +38,7 @@ from photograd.commands.fit_arguments import (
     TotalVariationOption,
 )
 from photograd.commands.shared import (
+    AllowOutsideOption,
     CaptureArgument,
     DownscaleOption,
     out_option,
@@ -91,6 +92,7 @@ def fit(
     start_from: StartFromOption = None,
     background: BackgroundOption = DEFAULTS.background,
     downscale: DownscaleOption = 1,
+    allow_outside: AllowOutsideOption = False,
     checkpoint_seconds: CheckpointOption = 30.0,
     allow_blind: AllowBlindOption = False,
     resume: ResumeOption = False,
@@ -111,7 +113,7 @@ def fit(
     context.with_resource(one_run_in("fit", out))
     if not resume:
         refuse_to_overwrite(out)
-    loaded = load_and_describe(capture, downscale)
+    loaded = load_and_describe(capture, downscale, allow_outside=allow_outside)
     if resume:
         job = Fit.resume(loaded, out)
         refuse_other_options(context, job.options)
@@ -151,9 +153,9 @@ def refuse_to_overwrite(out: Path) -> None:
         )  # fmt: skip
 
 
-def load_and_describe(folder: Path, downscale: int) -> Capture:
+def load_and_describe(folder: Path, downscale: int, *, allow_outside: bool = False) -> Capture:
     """Load a capture and say on stderr what was converted and assumed."""
-    loaded = load_capture(folder, downscale=downscale)
+    loaded = load_capture(folder, downscale=downscale, allow_outside=allow_outside)
     for line in loaded.conversions:
         note(line)
     note(

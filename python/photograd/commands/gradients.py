@@ -20,6 +20,7 @@ from photograd_course.cli import (
 
 from photograd.checkpoint import make_folder
 from photograd.commands.shared import (
+    AllowOutsideOption,
     CaptureArgument,
     DownscaleOption,
     ModelArgument,
@@ -61,6 +62,7 @@ def gradients(
     out: Annotated[Path, out_option("Folder for the pictures.")],
     rays: Annotated[int, typer.Option("--rays", min=1, help="Random rays a gradient.")] = 1 << 18,
     downscale: DownscaleOption = 1,
+    allow_outside: AllowOutsideOption = False,
     seed: SeedOption = 0,
     threads: ThreadsOption = 0,
     as_json: JsonOption = False,
@@ -74,9 +76,8 @@ def gradients(
     """
     use_threads(threads)
     context.with_resource(one_run_in("gradients", out))
-    result = draw_gradients(
-        load_model(model), model, load_capture(capture, downscale=downscale), out, rays, seed
-    )
+    photographs = load_capture(capture, downscale=downscale, allow_outside=allow_outside)
+    result = draw_gradients(load_model(model), model, photographs, out, rays, seed)
     emit(result, as_json=as_json, title="gradients")
 
 

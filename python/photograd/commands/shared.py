@@ -29,6 +29,13 @@ ModelArgument = Annotated[
 DownscaleOption = Annotated[
     int, typer.Option("--downscale", min=1, metavar="N", help="Reduce images N times first.")
 ]
+AllowOutsideOption = Annotated[
+    bool,
+    typer.Option(
+        "--allow-outside",
+        help="Let the capture name files outside of its folder; only if you trust it.",
+    ),
+]
 
 
 def out_path(text: str | Path) -> Path:

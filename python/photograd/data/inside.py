@@ -26,6 +26,7 @@ def inside(
     name: str,
     *,
     allow_outside: bool = False,
+    portable: bool = False,
     remedy: str | None = None,
 ) -> Path:
     """The path of what `name` says, relative to `folder`.
@@ -35,12 +36,15 @@ def inside(
         folder: where the file that says so lies.
         name: as it stands in that file.
         allow_outside: also a name that leads out of the folder.
+        portable: refuse a colon, too: in names that are the same on all systems it ends a drive
+            or the scheme of a URI.
         remedy: what the error advises.
 
     Raises:
-        IoError: the name leads out of the folder.
+        IoError: the name leads out of the folder, or is empty.
     """
-    if leads_outside(name) and not allow_outside:
+    refused = not name or leads_outside(name) or (portable and ":" in name)
+    if refused and not allow_outside:
         shown = name if len(name) <= 80 else f"{name[:77]}..."
         raise IoError(message(function, place, f"a file in {folder}", repr(shown), remedy))
     return folder / name
