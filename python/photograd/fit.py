@@ -49,10 +49,10 @@ from photograd.fit_checks import (
     require_finite_loss,
     require_first_model,
     require_pixels_of,
-    require_room_to_refine,
     require_split_of,
     require_startable,
 )
+from photograd.fit_memory import require_room_to_refine, require_room_to_start
 from photograd.fit_options import FitOptions
 from photograd.fit_rays import background_color, ray_slope
 from photograd.fit_result import FitResult, Progress
@@ -107,8 +107,9 @@ class Fit:
         Gaussians may begin on the surfaces of another model; the leaves of an octree have to be cut
         from one.
 
-        Raises RangeError for an unknown or unfit representation, SceneError naming the training
-        cameras that do not see the scene's box (with `allow_blind` only if none does).
+        Raises RangeError for an unknown or unfit representation, or options that take more memory
+        than there is; SceneError naming the training cameras that do not see the scene's box (with
+        `allow_blind` only if none does).
         """
         require_startable(options.representation)
         bounds = estimate_bounds(capture)
@@ -116,6 +117,7 @@ class Fit:
             require_views_of(capture.train, bounds.box)
         require_background_of(capture, options)
         require_first_model(options.representation, given=start_from is not None)
+        require_room_to_start(capture, bounds.box, options)
         model: FittedField
         if start_from is not None and options.representation == OctreeSh.name:
             model, rule = frozen_field(start_from.field, options)

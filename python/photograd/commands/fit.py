@@ -51,6 +51,7 @@ from photograd.data.load import load_capture
 from photograd.errors import RangeError, message
 from photograd.fields.gaussians import GaussianScene
 from photograd.fit import Fit
+from photograd.fit_checks import require_startable
 from photograd.fit_options import USERS_OF, FitOptions, options_for
 from photograd.fit_result import FitResult, Progress, summary
 from photograd.model import load_model
@@ -112,6 +113,7 @@ def fit(
     use_threads(threads)
     context.with_resource(one_run_in("fit", out))
     if not resume:
+        require_startable(representation)
         refuse_to_overwrite(out)
     loaded = load_and_describe(capture, downscale, allow_outside=allow_outside)
     if resume:
