@@ -154,7 +154,12 @@ def unpack_rows(described: tuple[Parameter, ...], rows: Array) -> dict[str, Arra
 
 
 def _column(model: str, parameter: Parameter, value: Any) -> Array:
-    column = np.asarray(value, np.float64)
+    try:
+        column = np.asarray(value, np.float64)
+    except (TypeError, ValueError) as failure:
+        text = repr(value)
+        got = text if len(text) <= 60 else f"{text[:57]}..."
+        raise DtypeError(message(model, parameter.name, "numbers", got)) from failure
     one = (parameter.size,) if parameter.size > 1 else ()
     if column.shape != one and (column.ndim != len(one) + 1 or column.shape[1:] != one):
         expected = f"shape {one} or {('N', *one)}"

@@ -21,7 +21,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from photograd_course.atomic_io import remove_leftovers
 from photograd_course.optim import Adam
 from photograd_course.random import uniform
 from photograd_course.schedules import exponential
@@ -50,10 +49,10 @@ from photograd.fit_checks import (
     require_finite_loss,
     require_first_model,
     require_pixels_of,
-    require_room_to_refine,
     require_split_of,
     require_startable,
 )
+from photograd.fit_memory import require_room_to_refine, require_room_to_start
 from photograd.fit_options import FitOptions
 from photograd.fit_rays import background_color, ray_slope
 from photograd.fit_result import FitResult, Progress
@@ -108,8 +107,9 @@ class Fit:
         Gaussians may begin on the surfaces of another model; the leaves of an octree have to be cut
         from one.
 
-        Raises RangeError for an unknown or unfit representation, SceneError naming the training
-        cameras that do not see the scene's box (with `allow_blind` only if none does).
+        Raises RangeError for an unknown or unfit representation, or options that take more memory
+        than there is; SceneError naming the training cameras that do not see the scene's box (with
+        `allow_blind` only if none does).
         """
         require_startable(options.representation)
         bounds = estimate_bounds(capture)
@@ -117,6 +117,7 @@ class Fit:
             require_views_of(capture.train, bounds.box)
         require_background_of(capture, options)
         require_first_model(options.representation, given=start_from is not None)
+        require_room_to_start(capture, bounds.box, options)
         model: FittedField
         if start_from is not None and options.representation == OctreeSh.name:
             model, rule = frozen_field(start_from.field, options)
@@ -135,7 +136,7 @@ class Fit:
 
     @classmethod
     def resume(cls, capture: Capture, folder: Path) -> Fit:
-        """Continue the fit that left a checkpoint in `folder`, and clear what a crash left there.
+        """Continue the fit that left a checkpoint in `folder`.
 
         Raises IoError for a missing or damaged checkpoint, RangeError if it belongs to another
         capture: other names, other images, other cameras or another size.
@@ -145,7 +146,6 @@ class Fit:
         require_split_of(saved, capture)
         fit = cls(capture, model.options, model.field, saved.params.get("background"))
         require_pixels_of(saved, fit.pixels.digest)
-        remove_leftovers(folder / FILE_NAME)
         fit.optimiser.load_state(saved.optimiser)
         fit.step_number = int(saved.meta["step"])
         fit.history = [tuple(row) for row in saved.history.tolist()]

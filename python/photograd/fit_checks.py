@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
+from photograd_course.suggest import nearest
 
 from photograd.checkpoint import Checkpoint
 from photograd.data.capture import Capture
@@ -15,25 +15,24 @@ from photograd.fields.fitted import FITTED
 from photograd.fields.gaussians import GaussianScene
 from photograd.fields.octree_sh import OctreeSh
 from photograd.fit_options import FitOptions
-from photograd.memory import available_memory
-from photograd.representation import Array, representation
+from photograd.representation import Array, representation, representations
 
 _SAME = "resume with the capture, and the --downscale, that the fit was started on"
 
 
 def require_startable(name: str) -> None:
     """Raise RangeError unless a capture can start the representation called `name`."""
-    kind = representation(name)
-    if not kind.capabilities & {"rays", "image"}:
-        raise RangeError(
-            message("Fit", "representation", "one that is seen along rays", repr(name),
-                    f"it lives on a 2D canvas; a capture can start {_known()}")
-        )  # fmt: skip
-    if name not in FITTED:
-        raise RangeError(
-            message("Fit", "representation", f"one that a capture can start: {_known()}",
-                    repr(name), "start it from Python, with parameters of your own")
-        )  # fmt: skip
+    if name in FITTED:
+        return
+    if name not in representations():
+        near = nearest(name, FITTED)
+        remedy = f"did you mean {near!r}?" if near else None
+    elif representation(name).capabilities & {"rays", "image"}:
+        remedy = "start it from Python, with parameters of your own"
+    else:
+        remedy = "it lives on a 2D canvas"
+    expected = f"one that a capture can start: {_known()}"
+    raise RangeError(message("Fit", "representation", expected, repr(name), remedy))
 
 
 def _known() -> str:
@@ -47,24 +46,6 @@ def require_background_of(capture: Capture, options: FitOptions) -> None:
         raise RangeError(
             message("Fit", "background", "random, white or black for photographs with alpha",
                     "'learned'")
-        )  # fmt: skip
-
-
-def require_room_to_refine(grid: Any, resolution: int) -> None:
-    """Raise RangeError if a grid, refined, takes more memory than there is.
-
-    Each number has a gradient and two moments beside it, and is interpolated from the coarse grid
-    while that still exists. A sparse grid that pruned little, of a capture without alpha, can grow
-    eightfold.
-    """
-    now = sum(values.nbytes for values in grid.params.values())
-    needed = 4 * int(now * (1 + (resolution / grid.resolution) ** 3))
-    room = available_memory()
-    if needed > room:
-        raise RangeError(
-            message("Fit", "resolution", f"one whose grid fits in memory ({room:,} bytes)",
-                    f"{resolution}, which takes {needed:,}",
-                    f"fit with --resolution {grid.resolution}, or crop the capture's bounds")
         )  # fmt: skip
 
 

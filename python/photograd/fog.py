@@ -81,7 +81,7 @@ def fog_model(
         raise RangeError(message("render", "density", expected, f"{found}"))
     most = found if window is None else 1.0
     box, shape = _box_and_shape(grid, resolution)
-    require_room("render", f"a field of {shape} voxels", 64 * int(np.prod(shape)), None)
+    require_room("render", f"a field of {shape} voxels", 64 * int(np.prod(shape)))
     extent = box[1] - box[0]
     axes = [box[0, k] + (np.arange(n) + 0.5) * extent[k] / n for k, n in enumerate(shape)]
     at = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)

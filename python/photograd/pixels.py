@@ -46,6 +46,7 @@ class TrainingPixels:
             colors.append(_premultiplied_linear(rgba[valid], color_space))
             owners.append(np.full(len(valid), index, np.int32))
             ids.append(valid.astype(np.int32))
+        require_valid_pixels("TrainingPixels", [len(owner) > 0 for owner in owners])
         self.premultiplied: NDArray[np.float32] = np.concatenate(colors)
         self._view: NDArray[np.int32] = np.concatenate(owners)
         self._pixel: NDArray[np.int32] = np.concatenate(ids)
@@ -82,6 +83,16 @@ class TrainingPixels:
         local /= np.linalg.norm(local, axis=-1, keepdims=True)
         directions = np.einsum("rij,rj->ri", self._rotation[view], local)
         return RayBatch(self._position[view], directions, chosen.astype(np.uint32))
+
+
+def require_valid_pixels(function: str, has_some: Sequence[bool]) -> None:
+    """Raise RangeError if none of the training views has a valid pixel to learn from."""
+    if not any(has_some):
+        raise RangeError(
+            message(function, "views", "a valid pixel in the training views",
+                    f"none in {len(has_some)} of them",
+                    "their masks are empty, or the lens's distortion leaves nothing of them")
+        )  # fmt: skip
 
 
 def digest_of(views: Sequence[View]) -> str:

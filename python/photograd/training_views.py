@@ -13,7 +13,7 @@ from photograd_course.random import permutation
 from photograd.data.camera import Camera
 from photograd.data.view import View, display_color
 from photograd.errors import RangeError, message
-from photograd.pixels import digest_of
+from photograd.pixels import digest_of, require_valid_pixels
 from photograd.representation import Array
 
 
@@ -43,6 +43,9 @@ class TrainingViews:
             raise RangeError(message("TrainingViews", "views", "at least one view", "none"))
         self.names = [view.name for view in views]
         self.views = [_training_view(view) for view in views]
+        require_valid_pixels(
+            "TrainingViews", [view.valid is None or bool(view.valid.any()) for view in self.views]
+        )
         self.digest = digest_of(views)
 
     def __len__(self) -> int:

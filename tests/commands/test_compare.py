@@ -114,7 +114,7 @@ def test_a_dense_and_a_sparse_contender(
         ("dense_grid:4", "a resolution of 8 or more"),
         ("dense_grid:x", "for example"),
         ("dense_grid:8, dense_grid:8", "each only once"),
-        ("texture_2d:8", "seen along rays"),
+        ("texture_2d:8", "2D canvas"),
         ("dens_grid:8", "did you mean 'dense_grid'"),
     ],
 )

@@ -63,7 +63,9 @@ def test_bad_folders_and_a_missing_package_end_in_one_line(
     monkeypatch.setitem(sys.modules, "pycolmap", None)
     done = photograd("capture", "--photos", source)
     assert (done.code, done.out) == (1, "")
-    assert "pip install pycolmap" in done.err.splitlines()[-1]
+    assert done.err.count("\n") == 1
+    assert "pip install 'photograd[sfm]'" in done.err
+    monkeypatch.setattr(reconstruct, "open_engine", FakeEngine([6, 6]))
     done = photograd("capture", "--photos", source / "none")
     assert done.code == 1
     assert "expected a folder, got none" in done.err

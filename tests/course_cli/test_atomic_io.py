@@ -129,6 +129,35 @@ atomic_write(Path(sys.argv[1]), write_half)
         bystander.write_bytes(b"")
     assert remove_leftovers(target) == 1
     assert files_in(target.parent) == sorted(["model.npz", *(b.name for b in bystanders)])
+    assert run_python(code, target).returncode == -signal.SIGKILL
+    atomic_write(target, NEW)  # the next write removes it, too
+    assert files_in(target.parent) == sorted(["model.npz", *(b.name for b in bystanders)])
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows keeps files that are open")
+def test_what_a_running_process_writes_stays(target: Path) -> None:
+    code = """
+import sys
+from pathlib import Path
+from photograd_course.atomic_io import atomic_write
+def write_slowly(file):
+    print("writing", flush=True)
+    sys.stdin.readline()
+    file.write(b"slow")
+atomic_write(Path(sys.argv[1]), write_slowly)
+"""
+    with subprocess.Popen(
+        [sys.executable, "-c", code, str(target)],
+        stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
+    ) as slow:  # fmt: skip
+        assert slow.stdout is not None
+        assert slow.stdout.readline() == "writing\n"
+        atomic_write(target, NEW)
+        assert len(files_in(target.parent)) == 2
+        slow.communicate("go on\n")
+    assert slow.returncode == 0
+    assert target.read_bytes() == b"slow"
+    assert files_in(target.parent) == ["model.npz"]
 
 
 def test_a_missing_folder_is_an_io_error_that_names_the_file(tmp_path: Path) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+import json
 from typing import Any
 
 import pytest
@@ -28,6 +30,11 @@ PLUGIN = """
                 raise ZeroDivisionError("oh\\nno")
             if kind == "memory":
                 raise MemoryError
+            if kind == "disk":
+                raise PermissionError(13, "Permission denied", "/dev/full")
+            if kind == "late":
+                emit({"seed": seed}, as_json=as_json)
+                raise errors.IoError("draw: path: expected room, got none")
             if kind == "exit":
                 raise SystemExit(7)
             emit({"seed": seed, "threads": threads}, as_json=as_json)
@@ -55,7 +62,8 @@ def run_words(make_plugin: Any, capsys: pytest.CaptureFixture[str]) -> Run:
         ("io", 1, "error: load: path: expected a file, got none"),
         ("interrupt", 130, "interrupted"),
         ("bug", 1, "error: unexpected ZeroDivisionError: oh no; run with --debug for the tracebac"),
-        ("memory", 1, "error: unexpected MemoryError: ; run with --debug for the traceback"),
+        ("memory", 1, "error: not enough memory (take smaller sizes, or close other programs)"),
+        ("disk", 1, "error: Permission denied: /dev/full\n"),
     ],
 )
 def test_one_line_and_exit_code(run_words: Run, kind: str, code: int, line: str) -> None:
@@ -104,10 +112,66 @@ def test_wrong_usage_exits_with_2_and_points_to_help(
     assert "--help)" in err
 
 
+@pytest.mark.parametrize(
+    ("words", "code", "kind", "part"),
+    [
+        (("fail", "range"), 1, "RangeError", "fit: steps: expected at least 1, got 0"),
+        (("fail", "bug"), 1, "ZeroDivisionError", "unexpected ZeroDivisionError: oh"),
+        (("fail", "interrupt"), 130, "Interrupted", "interrupted"),
+        (("fail", "exit"), 7, "Exit", "ended with exit code 7"),
+        (("fail",), 2, "UsageError", "Missing argument"),
+        (("fail", "ok", "--seed", str(2**64)), 2, "UsageError", "--seed"),
+        (("fail", "ok", "--threads", "1000000000000"), 2, "UsageError", "--threads"),
+        (("fial",), 2, "UsageError", "Did you mean 'fail'?"),
+        (("fit", "photos"), 2, "UnavailableError", "photograd fit: core"),
+        (("course", "chekc"), 2, "UsageError", "Did you mean 'check'?"),
+        (("course", "check", "nothing"), 1, "", "nothing"),
+    ],
+)
+def test_with_json_an_error_is_an_object_on_stdout_and_a_line_on_stderr(
+    run_words: Run, words: tuple[str, ...], code: int, kind: str, part: str
+) -> None:
+    plain = run_words(*words)
+    got, out, err = run_words(*words, "--json")
+    assert (got, err) == (plain[0], plain[2])
+    assert (got, plain[1], out.count("\n")) == (code, "", 1)
+    error = json.loads(out)["error"]
+    assert error["exit_code"] == code
+    assert kind in error["type"]
+    assert part in error["message"]
+
+
+def test_a_result_in_json_is_not_followed_by_an_error(run_words: Run) -> None:
+    code, out, err = run_words("fail", "late", "--json")
+    assert (code, out) == (1, '{"seed": 0}\n')
+    assert err.splitlines()[-1].startswith("error: draw: path")
+    assert json.loads(run_words("fail", "range", "--json")[1])["error"]["type"] == "RangeError"
+    assert run_words("fail", "range", "--", "--json")[1] == ""  # an argument, and no option
+
+
+def test_the_largest_seed_and_number_of_threads_are_accepted(run_words: Run) -> None:
+    words = ("--seed", str(2**64 - 1), "--threads", "4096", "--json")
+    assert run_words("fail", "ok", *words)[1] == f'{{"seed": {2**64 - 1}, "threads": 4096}}\n'
+
+
 def test_success_and_explicit_exit(run_words: Run) -> None:
     code, out, _ = run_words("fail", "ok", "--seed", "3", "--threads", "2", "--json")
     assert (code, out) == (0, '{"seed": 3, "threads": 2}\n')
     assert run_words("fail", "exit")[0] == 7
+
+
+def test_paragraphs_of_help_are_broken_by_the_width_alone(
+    run_words: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
+    code, out, _ = run_words("course", "check", "-h")
+    assert code == 0
+    assert out == run_words("course", "check", "--help")[1]
+    lines = [line.strip() for line in out.splitlines()]
+    start = lines.index(next(line for line in lines if line.startswith("Checks run in")))
+    # The next line's first word did not fit into any line but the last.
+    for line, following in itertools.pairwise(lines[start : lines.index("", start)]):
+        assert len(line) + 1 + len(following.split()[0]) > 78
 
 
 def test_every_help_text_has_an_example_and_explains_each_option(run_words: Run) -> None:

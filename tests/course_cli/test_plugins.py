@@ -84,7 +84,7 @@ def test_core_commands_without_the_core_say_how_to_get_it(
     monkeypatch.setattr(core_commands, "find_spec", lambda _: None)
     assert run([name, *arguments], plugins=[]) == 2
     captured = capsys.readouterr()
-    assert captured.out == ""
+    assert ("UnavailableError" in captured.out) == ("--json" in arguments)
     assert captured.err.count("\n") == 1
     assert captured.err.startswith(f"error: photograd {name}: core not installed")
     assert "pip install ." in captured.err

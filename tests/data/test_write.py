@@ -13,7 +13,7 @@ from photograd.data import Camera, load_capture, write_blender_capture
 from photograd.data.write import Frame
 from photograd_course.errors import Error, IoError, RangeError, SceneError, ShapeError
 
-from support.capture_files import look_at, orbit, picture
+from support.capture_files import edit_json, look_at, orbit, picture, write_blender
 
 BOX = np.array([[-1.0, -0.5, -0.25], [1.0, 2.0, 3.0]])
 
@@ -75,9 +75,60 @@ def test_existing_folders_are_kept_unless_asked(tmp_path: Path) -> None:
     with pytest.raises(IoError, match="expected a new folder"):
         write_blender_capture(target, {"train": frames(orbit(1))})
     assert (target / "notes.txt").read_text() == "keep me"
-    write_blender_capture(target, {"train": frames(orbit(2))}, overwrite=True)
+    others = write_blender_capture(target, {"train": frames(orbit(2))}, overwrite=True)
+    assert others == ["notes.txt"]
     assert len(load_capture(target, trust_poses=True).views) == 2
-    assert not (target / "notes.txt").exists()
+    assert (target / "notes.txt").read_text() == "keep me"
+
+
+def test_only_files_that_were_written_are_replaced(tmp_path: Path) -> None:
+    write_blender_capture(tmp_path, {"train": frames(orbit(3)), "test": frames(orbit(1))})
+    (tmp_path / "train/mask.png").write_bytes(b"mine")
+    (tmp_path / "thesis").mkdir()
+    (tmp_path / "thesis/one.tex").write_text("years")
+    others = write_blender_capture(
+        tmp_path, {"train": frames(orbit(2), radiance=False)}, overwrite=True
+    )
+    assert others == ["thesis", "train/mask.png"]
+    files = sorted(str(p.relative_to(tmp_path)) for p in tmp_path.rglob("*") if p.is_file())
+    ours = ["train/r_0.png", "train/r_1.png", "transforms_train.json"]
+    assert files == sorted(["capture.json", "thesis/one.tex", "train/mask.png", *ours])
+
+
+def test_a_capture_of_another_hand_is_not_replaced(tmp_path: Path) -> None:
+    write_blender(tmp_path, orbit(2), orbit(1))
+    before = sorted(tmp_path.rglob("*"))
+    with pytest.raises(IoError, match=r"did not write, got .*transforms_train.json \(move it away"):
+        write_blender_capture(tmp_path, {"train": frames(orbit(2))}, overwrite=True)
+    assert sorted(tmp_path.rglob("*")) == before
+    # Nor does a manifest that names files elsewhere bring them into danger.
+    capture, elsewhere = tmp_path / "c", tmp_path / "transforms_test.json"
+    write_blender_capture(capture, {"train": frames(orbit(1))})
+    (capture / "linked").symlink_to(tmp_path / "test")
+    names = ["../transforms_test.json", str(elsewhere), "linked/0000.png"]
+    edit_json(capture / "capture.json", lambda content: content["files"].extend(names))
+    write_blender_capture(capture, {"train": frames(orbit(1))}, overwrite=True)
+    assert elsewhere.exists()
+    assert (tmp_path / "test/0000.png").exists()
+
+
+def test_a_disk_that_fails_while_files_are_moved_gives_the_old_capture_back(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    target = tmp_path / "c"
+    write_blender_capture(target, {"train": frames(orbit(2))})
+    before = {path: path.read_bytes() for path in target.rglob("*") if path.is_file()}
+    rename = Path.replace
+
+    def fails(self: Path, other: Path) -> Path:
+        if self.parts[-3:] == (".capture.partial", "train", "r_1.png"):
+            raise OSError(5, "Input/output error")
+        return rename(self, other)
+
+    monkeypatch.setattr(Path, "replace", fails)
+    with pytest.raises(IoError, match="writable folder, got Input/output error"):
+        write_blender_capture(target, {"train": frames(orbit(3))}, overwrite=True)
+    assert {path: path.read_bytes() for path in target.rglob("*") if path.is_file()} == before
 
 
 def test_a_failure_leaves_the_old_capture(tmp_path: Path) -> None:

@@ -78,7 +78,7 @@ def test_leftovers_of_a_killed_process_are_removed(tmp_path: Path) -> None:
     leftover = tmp_path / ".model.npz.12345.tmp"
     leftover.write_bytes(b"half a checkpoint")
     (tmp_path / "notes.tmp").write_text("mine")
-    Fit.resume(capture, tmp_path)
+    Fit.resume(capture, tmp_path).save(tmp_path)
     assert not leftover.exists()
     assert (tmp_path / "notes.tmp").exists()
 

@@ -66,10 +66,10 @@ def test_without_pycolmap_the_command_to_install_it_is_named(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setitem(sys.modules, "pycolmap", None)
-    with pytest.raises(IoError, match="got none \\(pip install pycolmap\\)"):
+    with pytest.raises(IoError, match="got none \\(pip install 'photograd\\[sfm\\]'\\)"):
         open_engine(tmp_path, tmp_path, Settings(), 0)
     photographs(tmp_path / "in")
-    with pytest.raises(IoError, match="pip install pycolmap"):
+    with pytest.raises(IoError, match=r"photograd\[sfm"):
         reconstruct(tmp_path / "in", tmp_path / "out", Settings(), note=print)
     assert not (tmp_path / "out").exists()  # said before anything is copied
 

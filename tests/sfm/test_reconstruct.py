@@ -120,10 +120,20 @@ def test_other_photographs_or_settings_need_another_folder(tmp_path: Path, sourc
 def test_what_is_not_ours_is_left_alone(tmp_path: Path, source: Path) -> None:
     (tmp_path / "out").mkdir()
     (tmp_path / "out/thesis.txt").write_text("years")
-    for overwrite in (False, True):
-        with pytest.raises(IoError, match="a new folder, got one with content"):
-            run(tmp_path, FakeEngine(), overwrite=overwrite)
+    with pytest.raises(IoError, match="a new folder, got one with content"):
+        run(tmp_path, FakeEngine())
+    for _ in range(2):
+        _, _, lines = run(tmp_path, FakeEngine(), overwrite=True)
+        assert lines[-1] == "not ours, left as it is: thesis.txt"
+        (tmp_path / "out/images/scan.png").write_bytes(b"mine")
+        _, _, lines = run(tmp_path, FakeEngine(), overwrite=True)
+        assert lines[-1] == "not ours, left as it is: images/scan.png, thesis.txt"
+        (tmp_path / "out/images/scan.png").unlink()
     assert (tmp_path / "out/thesis.txt").read_text() == "years"
+    (tmp_path / "out/capture.json").unlink()  # a model of another hand, as far as we can tell
+    with pytest.raises(IoError, match="that photograd did not write, got .*move it away"):
+        run(tmp_path, FakeEngine(), overwrite=True)
+    assert len(load_capture(tmp_path / "out").views) == 9
     for out in (source, tmp_path):
         with pytest.raises(IoError, match="a folder that does not hold the photographs"):
             reconstruct(source, out, Settings(), note=print, overwrite=True, engine=FakeEngine())

@@ -53,7 +53,7 @@ def test_what_is_usual_does_not_bind() -> None:
 
 def test_a_file_names_the_line(tmp_path: Path) -> None:
     wrong = TEXT.replace("roughness = 0.3", "roughness = 0")
-    with pytest.raises(SceneError, match=r"line 15: materials\.gold: .*roughness: expected above"):
+    with pytest.raises(SceneError, match=r"line 18: materials\.gold\.roughness: .*expected above"):
         read_scene(write(tmp_path, wrong))
 
 

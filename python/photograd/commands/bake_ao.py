@@ -15,6 +15,7 @@ from photograd_course.cli import note as say
 from photograd.commands.shared import (
     StopRequest,
     check_picture_name,
+    out_option,
     stop_on_signals,
     use_threads,
 )
@@ -28,9 +29,7 @@ PASS_SPP = 16
 ShapeOption = Annotated[
     str, typer.Option("--shape", help="The mesh; may be left out if one alone has coordinates.")
 ]
-OutOption = Annotated[
-    Path, typer.Option("--out", help="The texture: .exr, with a .png beside it, or .png alone.")
-]
+OutOption = Annotated[Path, out_option("The texture: .exr, with a .png beside it, or .png alone.")]
 TexelsOption = Annotated[
     int, typer.Option("--texels", min=1, max=1 << 14, help="Along each edge of the texture.")
 ]

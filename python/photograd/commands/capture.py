@@ -14,6 +14,7 @@ from photograd_course.cli import (
     SeedOption,
     ThreadsOption,
     emit,
+    note,
 )
 
 from photograd.commands.photo_capture import (
@@ -23,8 +24,9 @@ from photograd.commands.photo_capture import (
     capture_photographs,
     refuse_mixture,
 )
-from photograd.commands.shared import use_threads
-from photograd.data.write import write_blender_capture
+from photograd.commands.shared import out_option, use_threads
+from photograd.data.write import require_free_folder, write_blender_capture
+from photograd.run_lock import one_run_in
 from photograd.scenes.capture import capture_scene
 from photograd.scenes.registry import scene as build_scene
 from photograd.scenes.registry import scenes
@@ -43,7 +45,7 @@ def capture(
     context: typer.Context,
     out: Annotated[
         Path | None,
-        typer.Option("--out", help="Folder to create; beside the photographs if they are given."),
+        out_option("Folder to create; beside the photographs if they are given."),
     ] = None,
     photos: Annotated[
         Path | None,
@@ -58,7 +60,10 @@ def capture(
     spp: Annotated[int, typer.Option("--spp", min=1, help="Samples a pixel.")] = 64,
     max_size: MaxSizeOption = Settings.max_size,
     pairs: PairsOption = "auto",
-    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace what OUT holds.")] = False,
+    overwrite: Annotated[
+        bool,
+        typer.Option("--overwrite", help="Replace the capture in OUT; other files there stay."),
+    ] = False,
     seed: SeedOption = 0,
     threads: ThreadsOption = 0,
     as_json: JsonOption = False,
@@ -99,11 +104,15 @@ def make_capture(
 ) -> dict[str, Any]:  # fmt: skip
     """Render and write a capture under a progress bar; returns what the command reports."""
     description = build_scene(name, seed=seed)
-    traced = TracedScene(description)
-    with Progress("capture", views + test_views, [Column("view", "{:.0f}".format)]) as bar:
-        splits = capture_scene(
-            description, traced.render_view, views=views, test_views=test_views, size=size,
-            seed=seed, spp=spp, on_view=lambda done, _total: bar.update(done, view=done),
-        )  # fmt: skip
-    write_blender_capture(out, splits, aabb=description.bounds, overwrite=overwrite)
+    with one_run_in("capture", out):
+        require_free_folder("capture", out, overwrite=overwrite)
+        traced = TracedScene(description)
+        with Progress("capture", views + test_views, [Column("view", "{:.0f}".format)]) as bar:
+            splits = capture_scene(
+                description, traced.render_view, views=views, test_views=test_views, size=size,
+                seed=seed, spp=spp, on_view=lambda done, _total: bar.update(done, view=done),
+            )  # fmt: skip
+        others = write_blender_capture(out, splits, aabb=description.bounds, overwrite=overwrite)
+    if others:
+        note(f"not ours, left as it is: {', '.join(others)}")
     return {"out": out, "scene": name, "views": views, "test_views": test_views, "spp": spp}

@@ -13,7 +13,14 @@ from photograd_course.suggest import choose_from
 
 from photograd.commands.capture import make_capture
 from photograd.commands.fit import run_with_bar
-from photograd.commands.shared import DownscaleOption, StopRequest, stop_on_signals, use_threads
+from photograd.commands.shared import (
+    AllowOutsideOption,
+    DownscaleOption,
+    StopRequest,
+    out_option,
+    stop_on_signals,
+    use_threads,
+)
 from photograd.compare import (
     Contender,
     Score,
@@ -28,6 +35,7 @@ from photograd.data.load import load_capture
 from photograd.errors import RangeError, SceneError, message
 from photograd.evaluate import Evaluation
 from photograd.fit_options import FitOptions
+from photograd.run_lock import one_run_in
 from photograd.scenes.registry import scenes
 
 DEFAULTS = FitOptions()
@@ -40,6 +48,7 @@ def register(app: typer.Typer) -> None:
 
 
 def compare(
+    context: typer.Context,
     captures: Annotated[
         list[str] | None,
         typer.Argument(
@@ -47,7 +56,7 @@ def compare(
             metavar="[CAPTURE]...",
         ),
     ] = None,
-    out: Annotated[Path, typer.Option("--out", help="Folder for models, table and pictures.")] = (
+    out: Annotated[Path, out_option("Folder for models, table and pictures.")] = (
         Path("out/compare")
     ),
     contenders: Annotated[
@@ -59,6 +68,7 @@ def compare(
     size: Annotated[int, typer.Option("--size", min=8, help="Its pixels along an edge.")] = 128,
     spp: Annotated[int, typer.Option("--spp", min=1, help="Its samples a pixel.")] = 64,
     downscale: DownscaleOption = 1,
+    allow_outside: AllowOutsideOption = False,
     validate: Annotated[
         bool,
         typer.Option(
@@ -84,13 +94,15 @@ def compare(
     """
     use_threads(threads)
     candidates = parse_contenders(contenders)
+    context.with_resource(one_run_in("compare", out))
     shared = FitOptions(steps=steps, rays=rays, seed=seed)
     scores: list[Score] = []
     pictures: list[Path] = []
     with stop_on_signals() as stopping:
         for given in captures or CONTRASTS:
             folder = photographs_of(given, out, views=views, size=size, spp=spp, seed=seed)
-            name, capture = Path(given).name, load_capture(folder, downscale=downscale)
+            name = Path(given).name
+            capture = load_capture(folder, downscale=downscale, allow_outside=allow_outside)
             if validate:
                 name, capture = f"{name}_validation", capture.validating()
             found = contest(name, capture, candidates, shared, out / name, stopping)
@@ -134,11 +146,12 @@ def contest(
     for candidate in candidates:
         note(f"{name}: {candidate.label}")
         source = source_of(candidate, candidates)
-        result = compare_one(
-            name, capture, candidate, folder[candidate], candidate.options(shared),
-            lambda job, folder: run_with_bar(job, folder, stopping),
-            source=None if source is None else folder[source],
-        )  # fmt: skip
+        with one_run_in("compare", folder[candidate]):
+            result = compare_one(
+                name, capture, candidate, folder[candidate], candidate.options(shared),
+                lambda job, folder: run_with_bar(job, folder, stopping),
+                source=None if source is None else folder[source],
+            )  # fmt: skip
         if result is None:
             note("stopped; the same command goes on from here")
             raise typer.Exit(stopping.exit_code or 1)

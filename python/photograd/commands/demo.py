@@ -14,13 +14,14 @@ from photograd.commands.capture import DEFAULT_SCENE, make_capture
 from photograd.commands.evaluate import draw_strips
 from photograd.commands.fit import run_with_bar
 from photograd.commands.gradients import draw_gradients
-from photograd.commands.shared import stop_on_signals, use_threads
+from photograd.commands.shared import out_option, stop_on_signals, use_threads
 from photograd.data.load import load_capture
 from photograd.evaluate import display_image, evaluate
 from photograd.fit import Fit
 from photograd.fit_options import FitOptions
 from photograd.model import load_model
 from photograd.orbit import orbit_cameras
+from photograd.run_lock import one_run_in
 
 
 def register(app: typer.Typer) -> None:
@@ -29,9 +30,8 @@ def register(app: typer.Typer) -> None:
 
 
 def demo(
-    out: Annotated[
-        Path, typer.Option("--out", help="Folder for capture, model and figures.")
-    ] = Path("out/demo"),
+    context: typer.Context,
+    out: Annotated[Path, out_option("Folder for capture, model and figures.")] = Path("out/demo"),
     scene: Annotated[str, typer.Option("--scene", help="A built-in scene.")] = DEFAULT_SCENE,
     steps: Annotated[int, typer.Option("--steps", min=1, help="Steps of the fit.")] = 700,
     resolution: Annotated[
@@ -56,6 +56,8 @@ def demo(
 
     began = time.perf_counter()
     use_threads(threads)
+    context.with_resource(one_run_in("demo", out))
+    context.with_resource(one_run_in("demo", out / "model"))
     pictures = out / "figures"
     make_capture(
         scene, out / "capture", views=views, test_views=8, size=size, spp=spp, seed=seed,

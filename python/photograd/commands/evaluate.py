@@ -18,7 +18,13 @@ from photograd_course.cli import (
     note,
 )
 
-from photograd.commands.shared import CaptureArgument, DownscaleOption, ModelArgument, use_threads
+from photograd.commands.shared import (
+    AllowOutsideOption,
+    CaptureArgument,
+    DownscaleOption,
+    ModelArgument,
+    use_threads,
+)
 from photograd.data.load import load_capture
 from photograd.errors import RangeError, message
 from photograd.evaluate import Evaluation, as_result
@@ -38,6 +44,7 @@ def evaluate(
         Path | None, typer.Option("--out", help="Also draw truth, render and error to this PNG.")
     ] = None,
     downscale: DownscaleOption = 1,
+    allow_outside: AllowOutsideOption = False,
     seed: SeedOption = 0,  # noqa: ARG001  an evaluation draws nothing at random
     threads: ThreadsOption = 0,
     as_json: JsonOption = False,
@@ -49,7 +56,7 @@ def evaluate(
     """
     use_threads(threads)
     loaded = load_model(model)
-    photographs = load_capture(capture, downscale=downscale)
+    photographs = load_capture(capture, downscale=downscale, allow_outside=allow_outside)
     views = photographs.test
     if not views:
         raise RangeError(message("evaluate", "CAPTURE", "held-out views", f"none in {capture}"))

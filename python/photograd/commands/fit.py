@@ -38,8 +38,10 @@ from photograd.commands.fit_arguments import (
     TotalVariationOption,
 )
 from photograd.commands.shared import (
+    AllowOutsideOption,
     CaptureArgument,
     DownscaleOption,
+    out_option,
     stop_on_signals,
     use_threads,
 )
@@ -49,9 +51,11 @@ from photograd.data.load import load_capture
 from photograd.errors import RangeError, message
 from photograd.fields.gaussians import GaussianScene
 from photograd.fit import Fit
+from photograd.fit_checks import require_startable
 from photograd.fit_options import USERS_OF, FitOptions, options_for
 from photograd.fit_result import FitResult, Progress, summary
 from photograd.model import load_model
+from photograd.run_lock import one_run_in
 
 PLY_NAME = "gaussians.ply"
 DEFAULTS = FitOptions()
@@ -75,7 +79,7 @@ def register(app: typer.Typer) -> None:
 def fit(
     context: typer.Context,
     capture: CaptureArgument,
-    out: Annotated[Path, typer.Option("--out", help="Folder for the model and its checkpoints.")],
+    out: Annotated[Path, out_option("Folder for the model and its checkpoints.")],
     representation: RepresentationOption = DEFAULTS.representation,
     steps: StepsOption = None,
     resolution: ResolutionOption = None,
@@ -89,6 +93,7 @@ def fit(
     start_from: StartFromOption = None,
     background: BackgroundOption = DEFAULTS.background,
     downscale: DownscaleOption = 1,
+    allow_outside: AllowOutsideOption = False,
     checkpoint_seconds: CheckpointOption = 30.0,
     allow_blind: AllowBlindOption = False,
     resume: ResumeOption = False,
@@ -106,9 +111,11 @@ def fit(
     Example: photograd fit photos --out model --steps 1500 --resolution 128
     """
     use_threads(threads)
+    context.with_resource(one_run_in("fit", out))
     if not resume:
+        require_startable(representation)
         refuse_to_overwrite(out)
-    loaded = load_and_describe(capture, downscale)
+    loaded = load_and_describe(capture, downscale, allow_outside=allow_outside)
     if resume:
         job = Fit.resume(loaded, out)
         refuse_other_options(context, job.options)
@@ -148,9 +155,9 @@ def refuse_to_overwrite(out: Path) -> None:
         )  # fmt: skip
 
 
-def load_and_describe(folder: Path, downscale: int) -> Capture:
+def load_and_describe(folder: Path, downscale: int, *, allow_outside: bool = False) -> Capture:
     """Load a capture and say on stderr what was converted and assumed."""
-    loaded = load_capture(folder, downscale=downscale)
+    loaded = load_capture(folder, downscale=downscale, allow_outside=allow_outside)
     for line in loaded.conversions:
         note(line)
     note(

@@ -20,9 +20,11 @@ from photograd_course.cli import (
 
 from photograd.checkpoint import make_folder
 from photograd.commands.shared import (
+    AllowOutsideOption,
     CaptureArgument,
     DownscaleOption,
     ModelArgument,
+    out_option,
     use_threads,
 )
 from photograd.data.capture import Capture
@@ -36,6 +38,7 @@ from photograd.fields.octree_sh import OctreeSh
 from photograd.model import Model, load_model
 from photograd.pixels import TrainingPixels
 from photograd.representation import Array
+from photograd.run_lock import one_run_in
 from photograd.snapshots import load_snapshots
 from photograd.splats.clone_split_prune import CloneSplitPrune
 from photograd.splats.view_gradients import pressure_picture, view_gradients
@@ -53,11 +56,13 @@ def register(app: typer.Typer) -> None:
 
 
 def gradients(
+    context: typer.Context,
     model: ModelArgument,
     capture: CaptureArgument,
-    out: Annotated[Path, typer.Option("--out", help="Folder for the pictures.")],
+    out: Annotated[Path, out_option("Folder for the pictures.")],
     rays: Annotated[int, typer.Option("--rays", min=1, help="Random rays a gradient.")] = 1 << 18,
     downscale: DownscaleOption = 1,
+    allow_outside: AllowOutsideOption = False,
     seed: SeedOption = 0,
     threads: ThreadsOption = 0,
     as_json: JsonOption = False,
@@ -70,9 +75,9 @@ def gradients(
     Example: photograd gradients model photos --out pictures
     """
     use_threads(threads)
-    result = draw_gradients(
-        load_model(model), model, load_capture(capture, downscale=downscale), out, rays, seed
-    )
+    context.with_resource(one_run_in("gradients", out))
+    photographs = load_capture(capture, downscale=downscale, allow_outside=allow_outside)
+    result = draw_gradients(load_model(model), model, photographs, out, rays, seed)
     emit(result, as_json=as_json, title="gradients")
 
 

@@ -9,6 +9,7 @@ import numpy as np
 import typer
 from photograd_course.cli import DebugOption, JsonOption, SeedOption, ThreadsOption, emit
 
+from photograd.commands.shared import AllowOutsideOption
 from photograd.data.bounds import estimate_bounds
 from photograd.data.load import load_capture
 from photograd.fields.march import MarchPolicy
@@ -22,6 +23,7 @@ def register(app: typer.Typer) -> None:
 
 def info(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="A capture or a model.")],
+    allow_outside: AllowOutsideOption = False,
     seed: SeedOption = 0,  # noqa: ARG001
     threads: ThreadsOption = 0,  # noqa: ARG001
     as_json: JsonOption = False,
@@ -32,7 +34,7 @@ def info(
     Example: photograd info model
     """
     is_model = file.suffix == ".npz" or (file / "model.npz").is_file()
-    result = describe_model(file) if is_model else describe_capture(file)
+    result = describe_model(file) if is_model else describe_capture(file, allow_outside)
     emit(result, as_json=as_json, title=str(file))
 
 
@@ -58,9 +60,9 @@ def step_of(model: Model) -> dict[str, float]:
     return {"dt": policy.dt} if isinstance(policy, MarchPolicy) else {}
 
 
-def describe_capture(path: Path) -> dict[str, Any]:
+def describe_capture(path: Path, allow_outside: bool = False) -> dict[str, Any]:
     """Views, sizes, colour space, bounds and conversions of a capture."""
-    capture = load_capture(path)
+    capture = load_capture(path, allow_outside=allow_outside)
     bounds = estimate_bounds(capture)
     sizes = sorted({f"{v.camera.width}x{v.camera.height}" for v in capture.views})
     return {

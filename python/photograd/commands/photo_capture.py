@@ -9,6 +9,7 @@ from typing import Annotated, Any
 import typer
 from photograd_course.cli import note
 
+from photograd.run_lock import one_run_in
 from photograd.sfm.engine import Settings
 
 _PANEL = "Photographs"
@@ -67,10 +68,11 @@ def capture_photographs(
     if pairs not in exhaustive:
         raise typer.BadParameter("one of auto, all, walk", param_hint="--pairs")
     began = time.monotonic()
-    capture, report = reconstruct(
-        photos, out, Settings(seed=seed, max_size=max_size), threads=threads,
-        exhaustive=exhaustive[pairs], overwrite=overwrite, note=note,
-    )  # fmt: skip
+    with one_run_in("capture", out):
+        capture, report = reconstruct(
+            photos, out, Settings(seed=seed, max_size=max_size), threads=threads,
+            exhaustive=exhaustive[pairs], overwrite=overwrite, note=note,
+        )  # fmt: skip
     for line in capture.conversions:
         note(line)
     if report.left_out:

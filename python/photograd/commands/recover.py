@@ -20,11 +20,12 @@ from photograd_course.cli import (
 )
 from photograd_course.cli import Progress as Bar
 
-from photograd.commands.shared import StopRequest, stop_on_signals, use_threads
+from photograd.commands.shared import StopRequest, out_option, stop_on_signals, use_threads
 from photograd.commands.trace import SceneArgument, load_scene
 from photograd.data.exr import read_exr
 from photograd.data.image_write import write_exr
 from photograd.errors import IoError, RangeError, message
+from photograd.run_lock import one_run_in
 from photograd.transport.recovery import Recovery, RecoveryOptions, RecoveryResult, Target, Unknown
 from photograd.transport.recovery.options import LOSSES
 from photograd.transport.recovery.result import Progress
@@ -49,7 +50,7 @@ UnknownOption = Annotated[
         "lights.INDEX.PARAMETER; NAME=0.5 begins at a value. May be repeated.",
     ),
 ]
-OutOption = Annotated[Path, typer.Option("--out", help="Folder for the result and checkpoints.")]
+OutOption = Annotated[Path, out_option("Folder for the result and checkpoints.")]
 StepsOption = Annotated[int, typer.Option("--steps", min=1, help="Steps of gradient descent.")]
 SppOption = Annotated[
     int, typer.Option("--spp", min=1, help="Samples a pixel of each of a step's two halves.")
@@ -80,6 +81,7 @@ def register(app: typer.Typer) -> None:
 
 
 def recover(
+    context: typer.Context,
     scene: SceneArgument,
     target: TargetOption,
     unknown: UnknownOption,
@@ -108,6 +110,7 @@ def recover(
     --out found
     """
     use_threads(threads)
+    context.with_resource(one_run_in("recover", out))
     images = [read_target(path) for path in target]
     described, _ = load_scene(scene, size or max(images[0].shape[:2]))
     if camera and len(camera) != len(target):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import errno
+import os
 import signal
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -27,6 +29,37 @@ ModelArgument = Annotated[
 DownscaleOption = Annotated[
     int, typer.Option("--downscale", min=1, metavar="N", help="Reduce images N times first.")
 ]
+AllowOutsideOption = Annotated[
+    bool,
+    typer.Option(
+        "--allow-outside",
+        help="Let the capture name files outside of its folder; only if you trust it.",
+    ),
+]
+
+
+def out_path(text: str | Path) -> Path:
+    """The value of --out, checked before the work that it is for.
+
+    Raises:
+        BadParameter: an empty name, or one that is too long for this system.
+    """
+    if not str(text).strip():
+        raise typer.BadParameter("expected the name of a file or folder, got an empty one")
+    try:
+        # Hidden files beside it have longer names: .NAME.sums.npz.PID.tmp
+        os.lstat(f"{text}{'x' * 24}")
+    except OSError as failure:
+        if failure.errno == errno.ENAMETOOLONG:
+            got = f"one of {len(Path(text).name)} characters"
+            expected = "a name that this system can store"
+            raise typer.BadParameter(f"expected {expected}, got {got} (shorten it)") from failure
+    return Path(text)
+
+
+def out_option(help_text: str) -> Any:
+    """The option --out of a command."""
+    return typer.Option("--out", parser=out_path, metavar="PATH", help=help_text)
 
 
 def use_threads(threads: int) -> None:

@@ -26,6 +26,7 @@ from photograd_course.color import srgb_encode
 from photograd.commands.shared import (
     StopRequest,
     check_picture_name,
+    out_option,
     stop_on_signals,
     use_threads,
 )
@@ -39,6 +40,7 @@ from photograd.commands.trace_estimates import (
 )
 from photograd.data.exr import LARGEST_SIDE
 from photograd.data.image_write import write_exr, write_png
+from photograd.run_lock import one_run_for
 from photograd.transport.accumulation import Accumulation, load_accumulation
 from photograd.transport.builtin import BUILTIN, builtin_scene
 from photograd.transport.mesh_files import SUFFIXES, model_scene, read_model
@@ -60,7 +62,7 @@ SceneArgument = Annotated[
         metavar="SCENE",
     ),
 ]
-OutOption = Annotated[Path, typer.Option("--out", help="The picture: .exr, or .png alone.")]
+OutOption = Annotated[Path, out_option("The picture: .exr, or .png alone.")]
 SppOption = Annotated[int, typer.Option("--spp", min=1, help="Samples a pixel.")]
 SizeOption = Annotated[
     int,
@@ -98,6 +100,7 @@ def register(app: typer.Typer) -> None:
 
 
 def trace(
+    context: typer.Context,
     scene: SceneArgument,
     out: OutOption = Path("image.exr"),
     spp: SppOption = 64,
@@ -132,6 +135,7 @@ def trace(
     """
     use_threads(threads)
     check_picture_name("trace", out)
+    context.with_resource(one_run_for("trace", out))
     options = PathOptions(strategy, heuristic, 2 if integrator == "direct" else max_depth)
     estimate = Estimate(integrator, options, seed, radius, photons, derivative)
     described, fingerprint = load_scene(scene, size, camera)

@@ -12,6 +12,7 @@ from photograd_course.errors import Error, IoError, SceneError, message
 from .camera import Camera
 from .frames import FloatArray
 from .images import IMAGE_SUFFIXES, ColorSpace, ImageHeader, read_header
+from .inside import TRUST, inside
 
 
 @dataclass(frozen=True)
@@ -23,7 +24,13 @@ class Photograph:
 
 
 def find_photograph(
-    function: str, frame: str, folder: Path, reference: str, color_space: ColorSpace = "display"
+    function: str,
+    frame: str,
+    folder: Path,
+    reference: str,
+    color_space: ColorSpace = "display",
+    *,
+    allow_outside: bool = False,
 ) -> Photograph:
     """The image file that `reference` names relative to `folder`.
 
@@ -31,9 +38,10 @@ def find_photograph(
     or with .exr first when linear radiance is asked for.
 
     Raises:
-        IoError: there is none, or it is no image; the text names the frame.
+        IoError: there is none, or it is no image, or `reference` leads out of `folder` without
+            `allow_outside`; the text names the frame.
     """
-    path = folder / reference
+    path = inside(function, frame, folder, reference, allow_outside=allow_outside, remedy=TRUST)
     suffixes = (
         sorted(IMAGE_SUFFIXES, key=lambda s: s != ".exr") if color_space == "linear" else None
     )

@@ -33,7 +33,11 @@ _NAME = "load_blender"
 
 
 def load_blender(
-    folder: Path, *, color_space: ColorSpace = "display", trust_poses: bool = False
+    folder: Path,
+    *,
+    color_space: ColorSpace = "display",
+    trust_poses: bool = False,
+    allow_outside: bool = False,
 ) -> Capture:
     """Read a capture in the Blender convention.
 
@@ -42,6 +46,7 @@ def load_blender(
             any.
         color_space: "linear" prefers .exr where a frame has both .png and .exr.
         trust_poses: do not ask whether the poses look like another convention.
+        allow_outside: also photographs that lie outside of the folder.
 
     Raises:
         IoError, RangeError, ShapeError, SceneError: names the file, frame and member at fault.
@@ -54,7 +59,7 @@ def load_blender(
     views: dict[str, tuple[View, ...]] = {}
     found: list[tuple[str, Photograph]] = []
     for split, root in roots.items():
-        views[split] = _read_split(root, folder, color_space, found)
+        views[split] = _read_split(root, folder, color_space, found, allow_outside=allow_outside)
     check_same_size(_NAME, found)
     space, has_alpha, lines = common_color(_NAME, [photograph for _, photograph in found])
     lines = ["OpenGL camera -> OpenCV", "+Z up -> +Y up", *lines]
@@ -87,13 +92,20 @@ def load_blender(
 
 
 def _read_split(
-    root: JsonNode, folder: Path, color_space: ColorSpace, found: list[tuple[str, Photograph]]
+    root: JsonNode,
+    folder: Path,
+    color_space: ColorSpace,
+    found: list[tuple[str, Photograph]],
+    *,
+    allow_outside: bool,
 ) -> tuple[View, ...]:
     views: list[View] = []
     for node in root["frames"].items():
         reference = node["file_path"].text()
         frame = f"{node.place} '{reference}'"
-        photograph = find_photograph(_NAME, frame, folder, reference, color_space)
+        photograph = find_photograph(
+            _NAME, frame, folder, reference, color_space, allow_outside=allow_outside
+        )
         size = (photograph.header.width, photograph.header.height)
         lens = read_intrinsics(root, node, size)
         check_size(_NAME, frame, photograph, (lens.width, lens.height))

@@ -46,13 +46,14 @@ def find_model(folder: Path) -> Path | None:
     return None
 
 
-def load_colmap(folder: Path, *, trust_poses: bool = False) -> Capture:
+def load_colmap(folder: Path, *, trust_poses: bool = False, allow_outside: bool = False) -> Capture:
     """Read a sparse model in text or binary form (binary if both are there) and its images.
 
     Args:
         folder: holds sparse/0, sparse, colmap/sparse/0 or the model itself; the images lie in
             images/ beside it or up to two folders above.
         trust_poses: do not compare the poses with the model's own observations.
+        allow_outside: also photographs that lie outside of images/.
 
     Raises:
         IoError, RangeError, ShapeError, SceneError: names the image or camera at fault.
@@ -65,7 +66,10 @@ def load_colmap(folder: Path, *, trust_poses: bool = False) -> Capture:
     if not model.images:
         raise IoError(message(_NAME, str(model_folder), "at least one image", "an empty model"))
     image_folder = _find_images(folder, model_folder)
-    pairs = [_read_view(model, image, image_folder) for image in model.images]
+    pairs = [
+        _read_view(model, image, image_folder, allow_outside=allow_outside)
+        for image in model.images
+    ]
     photographs = [photograph for _, photograph in pairs]
     color_space, has_alpha, lines = common_color(_NAME, photographs)
     if not trust_poses:
@@ -112,7 +116,9 @@ def _find_images(folder: Path, model_folder: Path) -> Path:
     raise IoError(message(_NAME, str(folder), "a folder 'images'", f"none of {tried}"))
 
 
-def _read_view(model: ColmapModel, image: ColmapImage, folder: Path) -> tuple[View, Photograph]:
+def _read_view(
+    model: ColmapModel, image: ColmapImage, folder: Path, *, allow_outside: bool
+) -> tuple[View, Photograph]:
     """One view, still in the model's world."""
     frame = f"image '{image.name}'"
     if image.camera_id not in model.cameras:
@@ -125,7 +131,7 @@ def _read_view(model: ColmapModel, image: ColmapImage, folder: Path) -> tuple[Vi
     camera_from_world[:3, :3] = rotation_from_quaternion(image.quaternion)
     camera_from_world[:3, 3] = image.translation
     pose = invert_rigid(check_pose(_NAME, f"{frame}: pose", camera_from_world))
-    photograph = find_photograph(_NAME, frame, folder, image.name)
+    photograph = find_photograph(_NAME, frame, folder, image.name, allow_outside=allow_outside)
     stored = model.cameras[image.camera_id]
     check_size(_NAME, frame, photograph, (stored.width, stored.height))
     camera, distortion = pinhole_and_lens(stored, image.camera_id, pose)

@@ -25,6 +25,7 @@ def load_capture(
     limit: int | None = None,
     color_space: ColorSpace = "display",
     trust_poses: bool = False,
+    allow_outside: bool = False,
 ) -> Capture:
     """Read posed photographs in any supported format into our frame (+Y up, OpenCV cameras).
 
@@ -38,12 +39,14 @@ def load_capture(
         limit: largest number of views in each split, taken evenly.
         color_space: "linear" prefers .exr over .png where a Blender capture has both.
         trust_poses: do not ask whether the poses look like another convention.
+        allow_outside: read also files outside of the capture's folder that it names, by an absolute
+            path or through ".."; only for captures that you trust. Symbolic links are followed.
 
     Returns:
         The capture; `Capture.conversions` lists every conversion and assumption.
 
     Raises:
-        IoError: nothing that we know there, or files missing or damaged.
+        IoError: nothing that we know there, or files missing, damaged or outside of the folder.
         RangeError, ShapeError, SceneError: files that contradict themselves.
     """
     path = Path(path)
@@ -57,15 +60,21 @@ def load_capture(
         raise IoError(message(_NAME, repr(str(path)), expected, got))
     kind, place = found[0]
     if kind == "blender":
-        capture = load_blender(place, color_space=color_space, trust_poses=trust_poses)
+        capture = load_blender(
+            place,
+            color_space=color_space,
+            trust_poses=trust_poses,
+            allow_outside=allow_outside,
+        )
+    elif kind == "llff":  # names no files
+        capture = load_llff(place, trust_poses=trust_poses)
     else:
         readers = {
             "nerfstudio": load_nerfstudio,
             "colmap": load_colmap,
-            "llff": load_llff,
             "opensfm": load_opensfm,
         }
-        capture = readers[kind](place, trust_poses=trust_poses)
+        capture = readers[kind](place, trust_poses=trust_poses, allow_outside=allow_outside)
     if len(found) > 1:
         others = ", ".join(other for other, _ in found[1:])
         line = f"read as {kind}; also there: {others} (name the file itself to choose it)"

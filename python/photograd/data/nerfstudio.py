@@ -26,6 +26,7 @@ from .assemble import (
 from .capture import Capture
 from .convention import check_convention
 from .frames import OPENGL_FROM_OPENCV, FloatArray, check_pose, world_from_estimated_up
+from .inside import TRUST, inside
 from .intrinsics import read_intrinsics
 from .json_node import JsonNode, read_json
 from .point_ply import read_point_ply
@@ -37,7 +38,9 @@ _IGNORED = ("aabb_scale", "scale", "offset", "depth_unit_scale_factor")
 _SPLITS = ("train", "val", "test")
 
 
-def load_nerfstudio(path: Path, *, trust_poses: bool = False) -> Capture:
+def load_nerfstudio(
+    path: Path, *, trust_poses: bool = False, allow_outside: bool = False
+) -> Capture:
     """Read a transforms.json; image paths are relative to its folder.
 
     The file's own split (`train_filenames`, `val_filenames`, `test_filenames`) is used if it has
@@ -47,6 +50,7 @@ def load_nerfstudio(path: Path, *, trust_poses: bool = False) -> Capture:
     Args:
         path: the JSON file.
         trust_poses: do not ask whether the poses look like another convention.
+        allow_outside: also photographs, masks and points that lie outside of the folder.
 
     Raises:
         IoError, RangeError, ShapeError, SceneError: names the frame and member at fault.
@@ -55,7 +59,7 @@ def load_nerfstudio(path: Path, *, trust_poses: bool = False) -> Capture:
     views: list[View] = []
     photographs: list[Photograph] = []
     for node in root["frames"].items():
-        view, photograph = _read_frame(root, node, path.parent)
+        view, photograph = _read_frame(root, node, path.parent, allow_outside=allow_outside)
         views.append(view)
         photographs.append(photograph)
     color_space, has_alpha, lines = common_color(_NAME, photographs)
@@ -67,7 +71,9 @@ def load_nerfstudio(path: Path, *, trust_poses: bool = False) -> Capture:
     if not trust_poses:
         lines.extend(check_convention(_NAME, views, world_from_source, up_is_known=False))
     splits, split_line = _split(root, views)
-    points, colors, point_lines = _read_points(root, path.parent, world_from_source)
+    points, colors, point_lines = _read_points(
+        root, path.parent, world_from_source, allow_outside=allow_outside
+    )
     return Capture(
         train=splits["train"],
         test=splits["test"],
@@ -84,11 +90,13 @@ def load_nerfstudio(path: Path, *, trust_poses: bool = False) -> Capture:
     )
 
 
-def _read_frame(root: JsonNode, node: JsonNode, folder: Path) -> tuple[View, Photograph]:
+def _read_frame(
+    root: JsonNode, node: JsonNode, folder: Path, *, allow_outside: bool
+) -> tuple[View, Photograph]:
     """One view, still in the file's world."""
     reference = node["file_path"].text()
     frame = f"{node.place} '{reference}'"
-    photograph = find_photograph(_NAME, frame, folder, reference)
+    photograph = find_photograph(_NAME, frame, folder, reference, allow_outside=allow_outside)
     size = (photograph.header.width, photograph.header.height)
     lens = read_intrinsics(root, node, size)
     check_size(_NAME, frame, photograph, (lens.width, lens.height))
@@ -98,8 +106,9 @@ def _read_frame(root: JsonNode, node: JsonNode, folder: Path) -> tuple[View, Pho
     mask_file = None
     if "mask_path" in node:
         mask_reference = node["mask_path"].text()
-        mask = find_photograph(_NAME, f"{frame}: mask_path", folder, mask_reference)
-        check_size(_NAME, f"{frame}: mask_path", mask, size)
+        place = f"{frame}: mask_path"
+        mask = find_photograph(_NAME, place, folder, mask_reference, allow_outside=allow_outside)
+        check_size(_NAME, place, mask, size)
         mask_file = mask.file
     view = View(
         name=reference.removeprefix("./"),
@@ -114,15 +123,17 @@ def _read_frame(root: JsonNode, node: JsonNode, folder: Path) -> tuple[View, Pho
 
 
 def _read_points(
-    root: JsonNode, folder: Path, world_from_source: FloatArray
+    root: JsonNode, folder: Path, world_from_source: FloatArray, *, allow_outside: bool
 ) -> tuple[FloatArray | None, npt.NDArray[np.uint8] | None, list[str]]:
     """Points of `ply_file_path`, which lie in the world of the poses, moved with them into ours."""
     if "ply_file_path" not in root:
         return None, None, []
     reference = root["ply_file_path"].text()
-    if not is_file(folder / reference):
+    place = root["ply_file_path"].place
+    file = inside(_NAME, place, folder, reference, allow_outside=allow_outside, remedy=TRUST)
+    if not is_file(file):
         return None, None, [f"ply_file_path: no file {reference}, so no sparse points"]
-    positions, colors = read_point_ply(folder / reference)
+    positions, colors = read_point_ply(file)
     if not len(positions):
         return None, None, [f"ply_file_path: no points in {reference}"]
     return transform_points(world_from_source, positions), colors, []

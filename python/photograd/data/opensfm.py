@@ -33,12 +33,13 @@ from .view import View
 _NAME = "load_opensfm"
 
 
-def load_opensfm(path: Path, *, trust_poses: bool = False) -> Capture:
+def load_opensfm(path: Path, *, trust_poses: bool = False, allow_outside: bool = False) -> Capture:
     """Read the largest reconstruction of a file; its photographs lie in images/ beside it.
 
     Args:
         path: the JSON file.
         trust_poses: do not ask whether the poses look like another convention.
+        allow_outside: also photographs that lie outside of images/.
 
     Raises:
         IoError, RangeError, ShapeError, SceneError: names the shot or camera at fault.
@@ -51,7 +52,10 @@ def load_opensfm(path: Path, *, trust_poses: bool = False) -> Capture:
     if not image_folder.is_dir():
         raise IoError(message(_NAME, str(path.parent), "a folder 'images'", "none"))
     shots = list(root["shots"].members())
-    pairs = [_read_shot(root, name, shot, image_folder) for name, shot in shots]
+    pairs = [
+        _read_shot(root, name, shot, image_folder, allow_outside=allow_outside)
+        for name, shot in shots
+    ]
     photographs = [photograph for _, photograph in pairs]
     color_space, has_alpha, lines = common_color(_NAME, photographs)
     views = [view.turned(Y_UP_FROM_Z_UP) for view, _ in pairs]
@@ -85,10 +89,12 @@ def load_opensfm(path: Path, *, trust_poses: bool = False) -> Capture:
     )
 
 
-def _read_shot(root: JsonNode, name: str, shot: JsonNode, folder: Path) -> tuple[View, Photograph]:
+def _read_shot(
+    root: JsonNode, name: str, shot: JsonNode, folder: Path, *, allow_outside: bool
+) -> tuple[View, Photograph]:
     """One view, still in the file's world."""
     frame = f"shot '{name}'"
-    photograph = find_photograph(_NAME, frame, folder, name)
+    photograph = find_photograph(_NAME, frame, folder, name, allow_outside=allow_outside)
     size = (photograph.header.width, photograph.header.height)
     camera_from_world = np.eye(4)
     camera_from_world[:3, :3] = rotation_from_axis_angle(shot["rotation"].numbers((3,)))

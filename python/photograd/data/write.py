@@ -1,7 +1,8 @@
-"""Writing captures in the Blender convention, as one step: a reader sees all of it or nothing."""
+"""Writing captures in the Blender convention, so that a reader sees all of it or nothing."""
 
 from __future__ import annotations
 
+import contextlib
 import json
 import math
 import shutil
@@ -18,8 +19,12 @@ from .capture import check_box
 from .frames import OPENGL_FROM_OPENCV, Y_UP_FROM_Z_UP, FloatArray, invert_rigid
 from .image_write import write_exr, write_png
 from .images import ImageArray
+from .written import MANIFEST, left_alone, remove_empty_folders, require_free, written_files
 
 _NAME = "write_blender_capture"
+_SPLITS = ("train", "test", "val")
+_ALL_TRANSFORMS = tuple(f"transforms_{split}.json" for split in _SPLITS)
+_LAST = _ALL_TRANSFORMS[0]
 
 Frame: TypeAlias = tuple[str, Camera, ImageArray, ImageArray | None]
 """Name, camera, display-encoded (H, W, 4) image with straight alpha in 0..1, and linear radiance
@@ -32,38 +37,55 @@ def write_blender_capture(
     *,
     aabb: FloatArray | None = None,
     overwrite: bool = False,
-) -> None:
+) -> list[str]:
     """Write transforms_{split}.json with OpenGL cameras and +Z up, PNG images and EXR radiance.
 
-    Everything is written to a hidden folder beside `path`, which is renamed at the end.
+    Everything is written to a hidden folder in `path` and moved to its places at the end, what
+    makes it a capture last. capture.json lists the files.
 
     Args:
         path: folder to create.
         splits: frames of "train", and of "test" and "val" if any.
         aabb: (2, 3) box of the scene in our frame (+Y up); stored in the file's frame.
-        overwrite: replace an existing folder (else it must not exist, or be empty).
+        overwrite: replace the capture that photograd wrote there, and leave other files as they
+            are (else the folder must not exist, or be empty).
+
+    Returns:
+        Names of the other files and folders there.
 
     Raises:
-        IoError: the folder exists, or cannot be written.
+        IoError: the folder has content, a file that is not ours is in the way, or it cannot be
+            written.
         RangeError, SceneError, ShapeError: cameras or images that the format cannot express: it has
             one size, one focal length fx = fy and the principal point in the middle.
     """
     path = Path(path)
-    if path.exists() and (not path.is_dir() or any(path.iterdir())) and not overwrite:
-        remedy = "choose another, or overwrite it"
-        raise IoError(message(_NAME, str(path), "a new folder", "one with content", remedy))
     _check_splits(splits)
     extra: dict[str, object] = {}
     if aabb is not None:
         box = check_box(_NAME, "aabb", aabb)
         extra["aabb"] = box_from_source(invert_rigid(Y_UP_FROM_Z_UP), box).tolist()
-    partial = path.with_name(f".{path.name}.partial")
+    new = [*_file_names(splits), MANIFEST]
+    partial, aside = (path / name for name in (".capture.partial", ".capture.replaced"))
+    made = False
     try:
+        require_free(_NAME, str(path), path, [*new, *_ALL_TRANSFORMS], overwrite=overwrite)
+        made = not path.exists()
         shutil.rmtree(partial, ignore_errors=True)
+        shutil.rmtree(aside, ignore_errors=True)
         partial.mkdir(parents=True)
+        (partial / MANIFEST).write_text(json.dumps({"files": new}, indent=1), encoding="utf-8")
         for split, frames in splits.items():
             _write_split(partial, split, frames, extra)
-        _replace_folder(partial, path)
+        old = [name for name in written_files(path) if (path / name).exists()]
+        # A reader looks for transforms_train.json: it goes first, and comes last.
+        order = [*(name for name in new if name != _LAST), _LAST]
+        _move_all(
+            [(path / name, aside / name) for name in sorted(old, key=lambda name: name != _LAST)]
+            + [(partial / name, path / name) for name in order]
+        )
+        remove_empty_folders(path, old)
+        return left_alone(path)
     except IoError:
         raise
     except OSError as error:
@@ -71,21 +93,46 @@ def write_blender_capture(
         raise IoError(message(_NAME, str(path), "a writable folder", got)) from error
     finally:
         shutil.rmtree(partial, ignore_errors=True)
+        shutil.rmtree(aside, ignore_errors=True)
+        with contextlib.suppress(OSError):  # not empty, unless it could not be written
+            remove_empty_folders(path, new)
+            if made:
+                path.rmdir()
 
 
-def _replace_folder(partial: Path, path: Path) -> None:
-    """Rename; what stood there is moved aside first and removed last."""
-    aside = path.with_name(f".{path.name}.replaced")
-    shutil.rmtree(aside, ignore_errors=True)
-    if path.exists():
-        path.replace(aside)
+def require_free_folder(function: str, path: Path, *, overwrite: bool) -> None:
+    """Refuse, before the work, a folder that a capture cannot be written to.
+
+    Raises:
+        IoError: it has content; with `overwrite` transforms of another hand.
+    """
+    new = [*_ALL_TRANSFORMS, MANIFEST]
+    require_free(function, f"--out {path}", path, new, overwrite=overwrite)
+
+
+def _move_all(moves: Sequence[tuple[Path, Path]]) -> None:
+    """Rename all, or none."""
+    done = []
     try:
-        partial.replace(path)
+        for source, target in moves:
+            target.parent.mkdir(parents=True, exist_ok=True)
+            source.replace(target)
+            done.append((source, target))
     except OSError:
-        if aside.exists():
-            aside.replace(path)
+        for source, target in reversed(done):
+            target.replace(source)
         raise
-    shutil.rmtree(aside, ignore_errors=True)
+
+
+def _file_names(splits: Mapping[str, Sequence[Frame]]) -> list[str]:
+    """All files to write, relative to the folder."""
+    names = [f"transforms_{split}.json" for split in splits]
+    for split, frames in splits.items():
+        for name, _, _, radiance in frames:
+            names.append(f"{split}/{name}.png")
+            if radiance is not None:
+                names.append(f"{split}/{name}.exr")
+    return names
 
 
 def _write_split(
@@ -108,7 +155,7 @@ def _write_split(
 
 
 def _check_splits(splits: Mapping[str, Sequence[Frame]]) -> None:
-    unknown = sorted(set(splits) - {"train", "test", "val"})
+    unknown = sorted(set(splits) - set(_SPLITS))
     if unknown or not splits.get("train"):
         got = f"unknown {unknown}" if unknown else "no training frames"
         raise SceneError(message(_NAME, "splits", "'train', and 'test' and 'val' if any", got))

@@ -18,7 +18,7 @@ from typing import Any, Protocol
 
 from photograd.errors import IoError, SceneError, message
 
-INSTALL, UPGRADE = "pip install pycolmap", "pip install --upgrade pycolmap"
+INSTALL, UPGRADE = "pip install 'photograd[sfm]'", "pip install --upgrade pycolmap"
 _POLL_S = 0.1
 
 

@@ -19,6 +19,7 @@ from photograd.errors import IoError, SceneError, message
 
 SUFFIXES = (".jpg", ".jpeg", ".png")
 FEWEST = 3
+PARTIAL = ".partial_"  # begins the name of a copy that is being made
 _NAME = "capture"
 _ORIENTATION, _EXIF = 0x0112, 0x8769
 _MAKE, _MODEL, _FOCAL, _FOCAL_35 = 0x010F, 0x0110, 0x920A, 0xA405
@@ -91,7 +92,7 @@ def copy_photographs(photographs: list[Photograph], folder: Path) -> None:
             target = folder / photograph.name
             if target.exists():
                 continue
-            partial = target.with_name(f".partial_{target.name}")
+            partial = target.with_name(f"{PARTIAL}{target.name}")
             if photograph.orientation == 1:
                 shutil.copyfile(photograph.source, partial)
             else:

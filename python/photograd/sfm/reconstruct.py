@@ -3,7 +3,7 @@
 OUT/images/       the photographs, upright
 OUT/database.db   features and matches, as they are found
 OUT/sparse/0/     cameras, poses and points, a COLMAP model; further unconnected ones beside it
-OUT/capture.json  what went in, and how it went
+OUT/capture.json  what went in, how it went, and which files are ours
 OUT/cameras.png   where the cameras stand
 """
 
@@ -22,19 +22,24 @@ from photograd_course.atomic_io import atomic_write
 from photograd_course.cli import Column, Progress
 
 from photograd.data import Capture, load_capture
+from photograd.data.written import MANIFEST, left_alone, remove_written, require_free
 from photograd.errors import IoError, SceneError, message
 from photograd.sfm.engine import Engine, Reconstructed, Settings, open_engine
 from photograd.sfm.pairs import choose_pairs
 from photograd.sfm.photographs import (
     FEWEST,
+    PARTIAL,
     Photograph,
     copy_photographs,
     find_photographs,
 )
 from photograd.sfm.picture import draw_cameras
 
-STATE, PICTURE = "capture.json", "cameras.png"
-OURS = ("images", "sparse", ".sparse_again", "database.db", "pairs.txt", STATE, PICTURE)
+STATE, PICTURE = MANIFEST, "cameras.png"
+_OURS = (
+    "sparse", ".sparse.partial", ".sparse_again", "..sparse_again.partial", PICTURE,
+    "database.db", "database.db-shm", "database.db-wal", "pairs.txt",
+)  # fmt: skip
 PAIRS_AT_ONCE = 24
 AGREEING = (30, 15)
 """Points that must agree about the pose of a photograph, at first and when some got none."""
@@ -88,7 +93,8 @@ def reconstruct(
         settings: what the result depends on.
         threads: 0 for all cores.
         exhaustive: compare all pairs, or as if they were taken on a walk; None by their number.
-        overwrite: begin anew, whatever of ours `out` holds.
+        overwrite: remove the capture that photograd wrote to `out`, and begin anew; other files
+            stay.
         note: told what happens, a sentence at a time.
         engine: makes what does the work; pycolmap by default.
 
@@ -96,10 +102,10 @@ def reconstruct(
         IoError: a bad folder or photograph, no pycolmap, or `out` holds something else.
         SceneError: too few photographs, or none whose pose could be found.
     """
+    worker = (engine or open_engine)(out, out / "images", settings, threads)
     found, lines = find_photographs(photographs)
     for line in lines:
         note(line)
-    worker = (engine or open_engine)(out, out / "images", settings, threads)
     _prepare(found, photographs, out, settings, overwrite=overwrite, note=note)
     state = json.loads((out / STATE).read_text(encoding="utf-8"))
     if "models" not in state:
@@ -127,22 +133,20 @@ def _prepare(
         "settings": asdict(settings),
         "photographs": {photograph.name: photograph.checksum for photograph in found},
     }
-    if overwrite:
-        for name in OURS:
-            path = out / name
-            if path.is_dir() and not path.is_symlink():
-                shutil.rmtree(path)
-            else:
-                path.unlink(missing_ok=True)
-    if (out / STATE).is_file():
+    if not overwrite and (out / STATE).is_file():
         _require_same(out, wanted)
         note(f"going on with what {out} holds")
-    elif out.exists() and (not out.is_dir() or any(out.iterdir())):
-        remedy = "choose another, or empty it"
-        raise IoError(message(_NAME, f"--out {out}", "a new folder", "one with content", remedy))
     else:
+        names = [photograph.name for photograph in found]
+        copies = [f"images/{start}{name}" for name in names for start in ("", PARTIAL)]
+        files = [*copies, *_OURS, STATE]
+        require_free(_NAME, f"--out {out}", out, files, overwrite=overwrite)
+        if overwrite:
+            remove_written(out)
         out.mkdir(parents=True, exist_ok=True)
-        _save_state(out, wanted)
+        _save_state(out, wanted | {"files": files})
+    if others := left_alone(out):
+        note(f"not ours, left as it is: {', '.join(others)}")
     copy_photographs(found, out / "images")
 
 

@@ -43,7 +43,7 @@ Textures, and meshes from files, are described in `scene_meshes`; fog, milk and 
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -53,6 +53,7 @@ import numpy as np
 from photograd_course.input_files import read_text
 from photograd_course.toml_limits import parse_toml
 
+from photograd.bsdf import Parameter, pack_rows
 from photograd.data.camera import Camera
 from photograd.geometry.sdf_shapes import Shape as SdfNode
 from photograd.transport.builtin import camera_at
@@ -62,7 +63,16 @@ from photograd.transport.light_nodes import light_of
 from photograd.transport.media_nodes import filled, media_in
 from photograd.transport.medium import BOUNDARY
 from photograd.transport.motion import moved_on
-from photograd.transport.scene import Environment, Material, MeshShape, Scene, Shape, SphereShape
+from photograd.transport.scene import (
+    ALPHA,
+    MODELS,
+    Environment,
+    Material,
+    MeshShape,
+    Scene,
+    Shape,
+    SphereShape,
+)
 from photograd.transport.scene_meshes import (
     Brought,
     matrix_of,
@@ -74,6 +84,7 @@ from photograd.transport.scene_meshes import (
 from photograd.transport.scene_node import Node
 from photograd.transport.sdf_nodes import bodies_in, body_of
 from photograd.transport.sdf_shape import SdfShape
+from photograd.transport.shape_checks import check_range
 from photograd.transport.shapes import box, rectangle
 from photograd.transport.shutter import Shutter
 from photograd.transport.toml_lines import key_lines
@@ -159,11 +170,20 @@ def _environment(node: Node) -> Environment:
     return node.built(lambda: Environment(*parts))
 
 
+def _check_value(model: str, parameter: Parameter, values: Mapping[str, Any]) -> None:
+    named = {parameter.name: values[parameter.name]}
+    pack_rows(model, (parameter,), named, np.float64)
+    check_range(model, parameter, named[parameter.name])
+
+
 def _material(node: Node) -> Material:
     model = node.text("model")
     others = ("model", "textures", "normal_map", "alpha_cutoff")
     values = {key: node.value(key) for key in node.data if key not in others}
     uses, bent = pictures_of(node)
+    for parameter in (*MODELS[model].parameters, ALPHA) if model in MODELS else ():
+        if parameter.name in values:  # one at a time: the error then has the line of the key
+            node.built(partial(_check_value, model, parameter, values), parameter.name)
     cutoff = node.number("alpha_cutoff") if node.has("alpha_cutoff") else None
     return node.built(lambda: Material(model, values, uses, bent, cutoff))
 

@@ -17,6 +17,7 @@ from urllib.parse import unquote
 from photograd_course.limits import EXPANSION, MODEL_ELEMENTS, Limit
 
 from photograd.data.file_bytes import read_file
+from photograd.data.inside import inside
 from photograd.data.json_node import JsonNode
 from photograd.errors import IoError, message
 
@@ -123,11 +124,8 @@ class Container:
                 return base64.b64decode(body, validate=True)
             except (binascii.Error, ValueError) as failure:
                 raise IoError(message(NAME, uri.place, "base64", failure)) from failure
-        name = Path(unquote(text))
-        if ":" in text or name.is_absolute() or ".." in name.parts:
-            expected = f"a file in {self.path.parent}"
-            raise IoError(message(NAME, uri.place, expected, text[:80]))
-        return read_file(f"{NAME}: {uri.place}", self.path.parent / name)
+        file = inside(NAME, uri.place, self.path.parent, unquote(text), portable=True)
+        return read_file(f"{NAME}: {uri.place}", file)
 
 
 def open_container(path: Path) -> Container:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from pathlib import Path, PurePosixPath
+from pathlib import Path
 
 import numpy as np
 
 from photograd.data.file_bytes import read_file
-from photograd.errors import Error, IoError, RangeError, message
+from photograd.data.inside import inside
+from photograd.errors import Error, RangeError, message
 from photograd.transport.mesh_files.container import NAME
 from photograd.transport.mesh_files.plain import Note
 from photograd.transport.scene import Material
@@ -45,11 +46,8 @@ def _beside(path: Path, name: str) -> Path:
     Raises:
         IoError: a name that leads out of it.
     """
-    relative = PurePosixPath(name.strip().replace("\\", "/"))
-    if not name.strip() or relative.is_absolute() or ".." in relative.parts or ":" in name:
-        expected = f"a file in {path.parent}"
-        raise IoError(message(NAME, f"{path.name}", expected, name[:80]))
-    return path.parent / relative
+    relative = name.strip().replace("\\", "/")
+    return inside(NAME, path.name, path.parent, relative, portable=True)
 
 
 def _tables(text: str) -> dict[str, dict[str, str]]:

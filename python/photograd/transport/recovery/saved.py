@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
-from photograd_course.atomic_io import remove_leftovers
 
 from photograd.checkpoint import Checkpoint, load_checkpoint, save_checkpoint
 from photograd.errors import IoError, RangeError, message
@@ -56,7 +55,6 @@ def load_state(folder: Path, job: Recovery) -> dict[str, Array]:
         raise IoError(message("recover", f"{path}", expected, f"no {failure}")) from failure
     job.optimiser.load_state(saved.optimiser)
     job.history = [(float(a), float(b), float(c)) for a, b, c in saved.history]
-    remove_leftovers(path)
     return sampled
 
 

@@ -1,8 +1,9 @@
 """Files that are written whole or not at all: checkpoints, captures, figures.
 
 The bytes go to a hidden neighbour of the target, reach the disk (fsync) and only then take the
-target's name, which a file system does in one step. Whoever reads sees the old file or the new one;
-a full disk, an exception or a killed process leaves the old one as it was.
+target's name, which a file system does in one step. A reader sees the old file or the new one; a full
+disk, an exception or a killed process leaves the old one as it was. What a killed process leaves
+beside it, the next write to the same target removes.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from .errors import IoError, message
+from .file_locks import is_locked, open_locked
 
 Writer = Callable[[BinaryIO], object]
 
@@ -36,6 +38,7 @@ def atomic_write(path: Path, content: bytes | Writer) -> Path:
             half-written neighbour is removed. Whatever ``content`` raises is passed on, likewise.
     """
     target = Path(path).resolve()
+    remove_leftovers(target)
     neighbour = target.with_name(f".{target.name}.{os.getpid()}.tmp")
     try:
         _write_and_sync(neighbour, content)
@@ -45,7 +48,8 @@ def atomic_write(path: Path, content: bytes | Writer) -> Path:
         _remove(neighbour)
         if isinstance(error, IoError):  # raised by the writer itself, already in our words
             raise
-        raise IoError(_explain(path, error, kept=target.exists())) from error
+        kept = os.path.exists(target)  # noqa: PTH110  false, too, for a name that is too long
+        raise IoError(_explain(path, error, kept=kept)) from error
     except BaseException:  # also on Ctrl-C: nothing half-written stays behind
         _remove(neighbour)
         raise
@@ -53,24 +57,28 @@ def atomic_write(path: Path, content: bytes | Writer) -> Path:
 
 
 def remove_leftovers(path: Path) -> int:
-    """Delete hidden neighbours that killed processes left next to ``path``; how many there were.
+    """Delete hidden neighbors that killed processes left next to ``path``; how many there were.
 
-    Call it when nobody else writes to ``path``, for instance when a run is resumed.
+    One that a running process is writing stays.
     """
     target = Path(path).resolve()
-    leftovers = [
-        entry
-        for entry in target.parent.glob(".*.tmp")
-        if entry.name.startswith(f".{target.name}.")
-        and entry.name[len(target.name) + 2 : -4].isdigit()
-    ]
-    for entry in leftovers:
-        _remove(entry)
-    return len(leftovers)
+    start, end = f".{target.name}.", ".tmp"
+    removed = 0
+    with contextlib.suppress(OSError):
+        for name in os.listdir(target.parent):  # noqa: PTH208  names are all that is asked for
+            ours = name.startswith(start) and name.endswith(end)
+            if not (ours and name[len(start) : -len(end)].isdigit()):
+                continue
+            entry = target.with_name(name)
+            if not is_locked(entry):
+                _remove(entry)
+                removed += 1
+    return removed
 
 
 def _write_and_sync(neighbour: Path, content: bytes | Writer) -> None:
-    with neighbour.open("wb") as file:
+    with open_locked(neighbour, wait=True) as file:
+        file.truncate()
         if isinstance(content, bytes):
             file.write(content)
         else:

@@ -7,7 +7,7 @@ from importlib.util import find_spec
 
 import typer
 
-from .failures import MISUSED, complain
+from .failures import UnavailableError
 from .plugins import PluginProblem
 
 CORE_COMMANDS: tuple[tuple[str, str], ...] = (
@@ -15,10 +15,12 @@ CORE_COMMANDS: tuple[tuple[str, str], ...] = (
     ("fit", "Recover a scene from photographs."),
     ("render", "Render a recovered scene, for example as a turntable."),
     ("trace", "Path trace a described scene."),
+    ("bake-ao", "Bake how much of the sky each texel of a mesh sees."),
     ("recover", "Recover materials, textures and lights of a path traced scene from pictures."),
     ("convert", "Convert a file of Gaussians to another format."),
     ("evaluate", "Compare a recovered scene with held-out photographs."),
     ("gradients", "Draw where the loss wants matter to appear and to vanish."),
+    ("compare", "Fit several representations to the same photographs, side by side."),
     ("demo", "Capture, fit, evaluate and gradients on a built-in scene."),
     ("info", "Say what a capture or a model contains."),
 )
@@ -60,5 +62,4 @@ def _add_stand_in(app: typer.Typer, name: str, summary: str, reason: str) -> Non
         context_settings={"allow_extra_args": True, "ignore_unknown_options": True},
     )
     def stand_in(context: typer.Context) -> None:
-        complain(f"{context.command_path}: {reason}")
-        raise typer.Exit(MISUSED)
+        raise UnavailableError(f"{context.command_path}: {reason}")

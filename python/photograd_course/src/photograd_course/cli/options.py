@@ -11,12 +11,15 @@ from typing import Annotated
 import typer
 
 PANEL = "Common options"
+MOST_SEED = 2**64 - 1
+MOST_THREADS = 4096
 
 SeedOption = Annotated[
     int,
     typer.Option(
         "--seed",
         min=0,
+        max=MOST_SEED,
         metavar="N",
         help="Seed of all random numbers. The same seed gives the same bits.",
         rich_help_panel=PANEL,
@@ -28,6 +31,7 @@ ThreadsOption = Annotated[
     typer.Option(
         "--threads",
         min=0,
+        max=MOST_THREADS,
         metavar="N",
         help="Worker threads; 0 takes every core this process may use. The result is the same "
         "for any number.",
@@ -39,7 +43,8 @@ JsonOption = Annotated[
     bool,
     typer.Option(
         "--json",
-        help="Print the result as one JSON line, the last on stdout; all else goes to stderr.",
+        help="Print the result, or the error, as one JSON line, the last on stdout; all else goes "
+        "to stderr.",
         rich_help_panel=PANEL,
     ),
 ]
@@ -54,10 +59,10 @@ DebugOption = Annotated[
 ]
 
 
-def wants_debug(arguments: list[str]) -> bool:
-    """Whether ``--debug`` stands anywhere among the options.
+def has_option(arguments: list[str], option: str) -> bool:
+    """Whether a flag such as ``--debug`` stands anywhere among the options.
 
     Read from the raw arguments, since an error may come before any command has parsed its own.
     """
     options = arguments[: arguments.index("--")] if "--" in arguments else arguments
-    return "--debug" in options
+    return option in options

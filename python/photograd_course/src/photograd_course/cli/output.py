@@ -7,6 +7,7 @@ import math
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from threading import Event
 
 import numpy as np
 from rich.console import Console
@@ -14,6 +15,9 @@ from rich.table import Table
 from rich.text import Text
 
 from ..errors import DtypeError, message
+
+json_printed = Event()
+"""Set when a result went to stdout as JSON: no error follows it there."""
 
 
 def emit(result: Mapping[str, object], *, as_json: bool, title: str | None = None) -> None:
@@ -38,6 +42,7 @@ def emit(result: Mapping[str, object], *, as_json: bool, title: str | None = Non
         console.print(table)
     if as_json:
         sys.stdout.write(json.dumps(plain, allow_nan=False) + "\n")
+        json_printed.set()
     sys.stdout.flush()
 
 
