@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 import numpy as np
 import typer
-from photograd_course.cli import DebugOption, JsonOption, SeedOption, ThreadsOption, emit
+from photograd_course.cli import DebugOption, JsonOption, emit
 
 from photograd.data.bounds import estimate_bounds
 from photograd.data.load import load_capture
@@ -22,8 +22,6 @@ def register(app: typer.Typer) -> None:
 
 def info(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="A capture or a model.")],
-    seed: SeedOption = 0,  # noqa: ARG001
-    threads: ThreadsOption = 0,  # noqa: ARG001
     as_json: JsonOption = False,
     debug: DebugOption = False,  # noqa: ARG001
 ) -> None:

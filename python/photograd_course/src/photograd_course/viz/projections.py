@@ -10,9 +10,9 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, NDArray
 
-from ..checks import require_integer
+from ..checks import require_integer, require_mask
 from . import style
-from .checks import check_bounds, check_field, check_mask
+from .checks import check_bounds, check_field
 from .plane_row import draw_plane_row
 from .planes import PLANES
 from .scale import signed_scale
@@ -66,7 +66,7 @@ def signed_projections(
     """
     function = "signed_projections"
     field, box = check_field(function, "values", values), check_bounds(function, bounds)
-    mask = None if outline is None else check_mask(function, "outline", outline, field.shape)
+    mask = None if outline is None else require_mask(function, "outline", outline, field.shape)
     views = [signed_projection(field, plane.normal) for plane in PLANES]
     return draw_plane_row(
         views,

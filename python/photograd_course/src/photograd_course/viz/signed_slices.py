@@ -13,9 +13,10 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, NDArray
 
+from ..checks import require_mask
 from ..errors import RangeError, ShapeError, message
 from . import style
-from .checks import check_bounds, check_field, check_mask
+from .checks import check_bounds, check_field
 from .plane_row import draw_plane_row
 from .planes import AXIS_NAMES, PLANES
 from .scale import signed_scale
@@ -55,7 +56,7 @@ def signed_slices(
     """
     function = "signed_slices"
     field, box = check_field(function, "values", values), check_bounds(function, bounds)
-    mask = None if outline is None else check_mask(function, "outline", outline, field.shape)
+    mask = None if outline is None else require_mask(function, "outline", outline, field.shape)
     index = _voxel_at(function, at, box, field.shape)
     centre = box[0] + (index + 0.5) * (box[1] - box[0]) / np.array(field.shape)
     slices = [_cut(field, index, plane.normal) for plane in PLANES]
