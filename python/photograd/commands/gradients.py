@@ -121,7 +121,7 @@ def draw_gradients(
 
 
 def explanation(steps: StepGradients) -> str:
-    """What the colours of these pictures mean."""
+    """What the colors of these pictures mean."""
     sentences = [EXPLAIN]
     if isinstance(steps.start, OctreeSh):
         sentences.append("Each cell of a leaf shows the gradient of the whole leaf.")
