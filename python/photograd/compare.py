@@ -22,7 +22,7 @@ from photograd.checkpoint import FILE_NAME
 from photograd.core import _core
 from photograd.data.capture import Capture
 from photograd.errors import RangeError, message
-from photograd.evaluate import Evaluation, display_image, evaluate
+from photograd.evaluate import Evaluation, ViewScore, display_image, evaluate
 from photograd.fields.dense_grid import DenseGrid
 from photograd.fields.fitted import HARMONIC_GRIDS
 from photograd.fields.gaussians import GaussianScene
@@ -32,7 +32,6 @@ from photograd.fit_checks import require_startable
 from photograd.fit_options import DEFAULTS_OF, FitOptions
 from photograd.fit_result import FitResult
 from photograd.model import Model, load_model
-from photograd.representation import Array
 
 FRAMES = 5
 """Frames that are timed; the median counts."""
@@ -179,12 +178,11 @@ def frame_seconds(model: Model, capture: Capture) -> float:
     return float(np.median(times))
 
 
-def worst_view(evaluations: Sequence[Evaluation]) -> tuple[Array, list[Array], list[float]]:
-    """Truth (H, W, 3), renderings and PSNR of the view with the lowest mean PSNR over all."""
+def worst_view(evaluations: Sequence[Evaluation]) -> list[ViewScore]:
+    """What each evaluation says of the view with the lowest mean PSNR over all of them."""
     scores = np.array([[view.psnr for view in e.views] for e in evaluations])
     index = int(scores.mean(axis=0).argmin())
-    views = [e.views[index] for e in evaluations]
-    return views[0].truth, [view.render for view in views], [view.psnr for view in views]
+    return [e.views[index] for e in evaluations]
 
 
 def markdown(scores: Sequence[Score]) -> str:

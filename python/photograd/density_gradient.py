@@ -8,6 +8,7 @@ by it, either sign may occur.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,25 +17,33 @@ from photograd.backgrounds import random_background
 from photograd.data.capture import Capture
 from photograd.data.view import View
 from photograd.errors import RangeError, message
-from photograd.fields.dense_grid import DenseGrid
+from photograd.fields.fitted import VoxelField
+from photograd.fields.octree_sh import OctreeSh
 from photograd.imaging import image_loss, image_loss_backward
 from photograd.pixels import TrainingPixels
 from photograd.representation import Array, RenderOptions
+from photograd.voxel_rows import active_voxels, density_rows, to_voxels, voxel_shape
 
 RAYS_AT_ONCE = 1 << 16
+LEAF_RAYS_AT_ONCE = 1 << 13  # an octree keeps numbers of every leaf on the way of every ray
 OPAQUE, EMPTY = 0.99, 0.01  # alpha of pixels that count as matter, as background
 
 
 @dataclass(frozen=True)
 class DensityGradient:
-    """dL/dsigma_t (X, Y, Z) in units of loss * m, and the loss it belongs to."""
+    """dL/dsigma_t (X, Y, Z) in units of loss * m, and the loss it belongs to.
+
+    `active` (X, Y, Z) says where there is a voxel or a leaf to differentiate; elsewhere the
+    gradient is 0, which says nothing.
+    """
 
     d_sigma_t: Array
+    active: NDArray[np.bool_]
     loss: float
 
 
 def density_gradient(
-    field: DenseGrid,
+    field: VoxelField,
     pixels: TrainingPixels,
     *,
     seed: int,
@@ -44,27 +53,32 @@ def density_gradient(
     """The loss over `rays` random training pixels and its gradient with respect to sigma_t.
 
     Each ray gets a random background unless one (3,) is given: over one fixed background, matter of
-    the background's colour would be invisible and its gradient zero.
+    the background's colour would be invisible and its gradient zero. All cells of an octree's leaf
+    show the gradient with respect to the leaf's sigma_t, the sum over what the leaf stands for.
     """
     chosen = pixels.draw(rays, seed=seed, step=0)
     display = pixels.color_space == "display"
-    total, loss = np.zeros(field.params["values"].shape[:3]), 0.0
-    for start in range(0, rays, RAYS_AT_ONCE):
-        part = chosen[start : start + RAYS_AT_ONCE]
+    raw = density_rows(field, field.params)
+    total, loss = np.zeros(len(raw)), 0.0
+    model: Any = field  # which takes back the context that it gave
+    at_once = LEAF_RAYS_AT_ONCE if isinstance(field, OctreeSh) else RAYS_AT_ONCE
+    for start in range(0, rays, at_once):
+        part = chosen[start : start + at_once]
         behind = background
         if behind is None:
             behind = random_background(len(part), seed=seed, step=0, first=start)
-        outputs, context = field.render(
+        outputs, context = model.render(
             pixels.rays(part), seed=seed, step=0, options=RenderOptions(jitter=True)
         )
         result = image_loss(outputs, pixels.premultiplied[part], behind, display=display)
         d_outputs, _ = image_loss_backward(result)
         share = len(part) / rays
-        total += share * field.render_backward(context, d_outputs)["values"][..., 3]
+        total += share * density_rows(field, model.render_backward(context, d_outputs))
         loss += share * result.value
-    # The chain rule backwards through sigma_t = scale * softplus(raw), at the voxel centres.
-    slope = field.policy.density_scale / (1 + np.exp(-field.density.astype(np.float64)))
-    return DensityGradient((total / np.maximum(slope, 1e-12)).astype(np.float32), loss)
+    # The chain rule backwards through sigma_t = scale * softplus(raw), of each row.
+    slope = field.policy.density_scale / (1 + np.exp(-raw.astype(np.float64)))
+    d_sigma_t = (total / np.maximum(slope, 1e-12)).astype(np.float32)
+    return DensityGradient(to_voxels(field, d_sigma_t), active_voxels(field), loss)
 
 
 @dataclass(frozen=True)
@@ -75,19 +89,20 @@ class VoxelMasks:
     background_only: NDArray[np.bool_]
 
 
-def voxel_masks(field: DenseGrid, capture: Capture) -> VoxelMasks:
+def voxel_masks(field: VoxelField, capture: Capture) -> VoxelMasks:
     """Classify voxels by the alpha of the training views they project to.
 
     A voxel's basis function reaches one voxel around its centre: it is occupied only if all pixels
     it covers, in every view, are opaque, and background-only if all of them are empty. Voxels that
-    fewer than two views see are neither. Raises RangeError if the capture has no alpha.
+    fewer than two views see are neither, nor are those that a sparse grid lacks. Raises RangeError
+    if the capture has no alpha.
     """
     if not capture.has_alpha:
         raise RangeError(
             message("voxel_masks", "capture", "images with alpha", "images without",
                     "there is no truth to compare signs with")
         )  # fmt: skip
-    shape = field.params["values"].shape[:3]
+    shape = voxel_shape(field)
     lo, hi = field.box
     voxel = (hi - lo) / shape
     axes = [lo[k] + (np.arange(shape[k]) + 0.5) * voxel[k] for k in range(3)]
@@ -99,12 +114,13 @@ def voxel_masks(field: DenseGrid, capture: Capture) -> VoxelMasks:
         open_ids = np.flatnonzero(occupied | empty)
         found, rectangle = _footprints(view, centres[open_ids], voxel)
         shown = open_ids[found]
-        alpha = view.rgba()[..., 3]
+        # A pixel that does not exist, neither opaque nor empty, decides for neither.
+        alpha = np.where(view.valid_mask(), view.rgba()[..., 3], 0.5)
         occupied[shown] &= _count(alpha < OPAQUE, rectangle) == 0
         empty[shown] &= _count(alpha > EMPTY, rectangle) == 0
         seen[shown] += 1
-    known = seen >= 2
-    return VoxelMasks((known & occupied).reshape(shape), (known & empty).reshape(shape))
+    known = (seen >= 2).reshape(shape) & active_voxels(field)
+    return VoxelMasks(known & occupied.reshape(shape), known & empty.reshape(shape))
 
 
 def _footprints(view: View, centres: Array, voxel: Array) -> tuple[NDArray[np.int64], Array]:

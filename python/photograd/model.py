@@ -26,9 +26,9 @@ class Model:
     history: Array  # (n, 3): step, loss, PSNR of the batch
 
 
-def load_model(path: Path) -> Model:
+def load_model(path: str | Path) -> Model:
     """Load the model that a fit left in `path` (its folder, or the file). Raises IoError."""
-    return model_of(load_checkpoint(path), path)
+    return model_of(load_checkpoint(path), Path(path))
 
 
 def model_of(saved: Checkpoint, path: Path) -> Model:

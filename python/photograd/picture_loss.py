@@ -54,6 +54,8 @@ def picture_loss(
         similarity, d_ssim = ssim_backward(image, truth)
         value += ssim_weight * (1 - similarity)
     square = float(np.square(difference).mean(dtype=np.float64))
+    if view.valid is not None:
+        square /= max(float(view.valid.mean()), 1 / view.valid.size)
     return PictureLoss(value, square, image, truth, opacity, behind, ssim_weight, d_ssim)
 
 

@@ -15,7 +15,7 @@ from photograd_course.viz import SignReport, sign_report
 
 from photograd.data.capture import Capture
 from photograd.density_gradient import density_gradient, voxel_masks
-from photograd.fields.dense_grid import DenseGrid
+from photograd.fields.fitted import VoxelField
 from photograd.pixels import TrainingPixels
 from photograd.representation import Array
 
@@ -44,7 +44,7 @@ class SignClaim:
 
 
 def sign_claim(
-    field: DenseGrid, capture: Capture, *, rays: int, seed: int, background: Array | None = None
+    field: VoxelField, capture: Capture, *, rays: int, seed: int, background: Array | None = None
 ) -> SignClaim | None:
     """Weigh the signs of the first gradient; None if voxels of one kind are missing throughout.
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -71,6 +72,66 @@ def test_ssim_properties() -> None:
     shift = y + math.sqrt(float(np.mean(noise**2)))
     assert metrics.psnr(shift, y) == pytest.approx(metrics.psnr(x, y), abs=1e-9)
     assert metrics.ssim(shift, y) > metrics.ssim(x, y)
+
+
+MASK = np.ones((16, 14), np.bool_)
+MASK[:3] = MASK[:, 12:] = MASK[14, 4] = False
+
+
+@pytest.mark.parametrize("channels", [(), (3,)])
+def test_only_valid_pixels_count(channels: tuple[int, ...]) -> None:
+    x, y = images(channels)
+    error = [(x - y)[row, column] ** 2 for row, column in np.argwhere(MASK)]
+    assert metrics.psnr(x, y, valid=MASK) == pytest.approx(-10 * math.log10(np.mean(error)))
+    # Of 6 x 4 windows those of the rows 3, and of the columns 0 and 1, hold valid pixels alone.
+    windows = metrics.whole_windows(MASK)
+    assert windows.shape == (6, 4)
+    assert np.argwhere(windows).tolist() == [[3, 0], [3, 1]]
+    inside = [metrics.ssim(x[3:14, c : c + 11], y[3:14, c : c + 11]) for c in (0, 1)]
+    assert inside[0] != inside[1]
+    assert metrics.ssim(x, y, valid=MASK) == pytest.approx(np.mean(inside), abs=1e-14)
+
+
+@pytest.mark.parametrize("metric", [metrics.psnr, metrics.ssim])
+def test_other_pixels_may_hold_anything(metric: Any) -> None:
+    x, y = images((3,))
+    before = metric(x, y, valid=MASK)
+    for filling in (0.0, 1e30, np.nan, np.inf):
+        a, b = x.copy(), y.copy()
+        a[~MASK], b[~MASK] = filling, 0.25
+        assert metric(a, b, valid=MASK) == before
+    assert metric(x, y) != before
+    assert metric(x, y, valid=np.ones((16, 14), np.bool_)) == metric(x, y)  # to the bit
+    assert metric(x, np.where(MASK[..., None], x, y), valid=MASK) == metric(x, x)
+
+
+@pytest.mark.parametrize("metric", [metrics.psnr, metrics.ssim])
+def test_masks_that_cannot_be_are_refused(metric: Any) -> None:
+    x, y = images((3,))
+    name = metric.__name__
+    with pytest.raises(ShapeError, match=rf"{name}: valid: expected shape \(16, 14\)"):
+        metric(x, y, valid=MASK[1:])
+    with pytest.raises(DtypeError, match=f"{name}: valid: expected a boolean array, got float64"):
+        metric(x, y, valid=MASK.astype(np.float64))
+    with pytest.raises(RangeError, match=f"{name}: valid: expected at least one .*, got none"):
+        metric(x, y, valid=np.zeros_like(MASK))
+    x[14, 4] = np.nan
+    assert np.isfinite(metric(x, y, valid=MASK))
+    x[13, 4] = np.nan
+    with pytest.raises(RangeError, match="prediction: expected finite values, got 3 of 672"):
+        metric(x, y, valid=MASK)
+
+
+def test_a_window_needs_valid_pixels_alone() -> None:
+    x, y = images()
+    stripes = np.ones_like(MASK)
+    stripes[::10] = False
+    assert metrics.psnr(x, y, valid=stripes) > 0
+    with pytest.raises(RangeError, match="ssim: valid: expected at least one 11 x 11 window"):
+        metrics.ssim(x, y, valid=stripes)
+    assert metrics.whole_windows(MASK[:10]).shape == (0, 4)
+    with pytest.raises(ShapeError, match="whole_windows: valid"):
+        metrics.whole_windows(MASK[0])
 
 
 def test_round_to_8_bits() -> None:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from matplotlib.colors import to_rgb
 from photograd_course.errors import RangeError, ShapeError
-from photograd_course.viz import FitCurves, comparison_strips, fit_curves
+from photograd_course.viz import FitCurves, comparison_strips, fit_curves, style
 from photograd_course.viz.curves import running_mean
 
 
@@ -71,6 +72,25 @@ def test_strips_show_truth_render_and_error() -> None:
     assert np.abs(np.asarray(shown["error"]) - expected).max() < 1e-15
 
 
+def test_strips_show_no_error_where_there_is_no_photograph() -> None:
+    truth, render = np.full((20, 20, 3), 1.0), np.full((20, 20, 3), 0.9)
+    valid = np.ones((20, 20), np.bool_)
+    valid[:8] = False
+    render[~valid] = 0.0  # against a truth that was filled with white: an error of 1
+    figure = comparison_strips([truth], [render], valid=[valid])
+    shown = {axes.get_ylabel(): axes.images[0] for axes in figure.axes[:3]}
+    error = shown["error"].get_array()
+    assert np.array_equal(np.ma.getmaskarray(error), ~valid)
+    assert np.abs(error.compressed() - 0.1).max() < 1e-15
+    assert shown["error"].get_clim() == (0.0, 0.1)  # the scale is that of valid pixels
+    gray = np.array(to_rgb(style.MISSING))
+    assert np.abs(shown["error"].to_rgba(error)[0, 0, :3] - gray).max() < 1e-6
+    assert (shown["truth"].get_array()[~valid] == gray).all()
+    assert np.array_equal(shown["truth"].get_array()[valid], truth[valid])
+    assert np.array_equal(shown["render"].get_array(), render)
+    assert {axes.get_xlabel() for axes in figure.axes} >= {"20.00 dB"}
+
+
 def test_strips_refuse_pairs_that_do_not_match() -> None:
     image = np.zeros((4, 4, 3))
     with pytest.raises(ShapeError, match="renders: expected 1 images, got 2"):
@@ -81,3 +101,7 @@ def test_strips_refuse_pairs_that_do_not_match() -> None:
         comparison_strips([image], [image], names=["a", "b"])
     with pytest.raises(RangeError, match=r"truths\[0\]: expected display values in \[0, 1\]"):
         comparison_strips([image - 0.1], [image])
+    with pytest.raises(ShapeError, match=r"valid\[0\]: expected shape \(4, 4\)"):
+        comparison_strips([image], [image], valid=[np.ones((4, 5), np.bool_)])
+    with pytest.raises(RangeError, match=r"valid\[0\]: expected a valid pixel, got none"):
+        comparison_strips([image], [image], valid=[np.zeros((4, 4), np.bool_)])

@@ -8,9 +8,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
-from photograd_course.viz import projection_steps, signed_projections, signed_slices
+from photograd_course.errors import RangeError, ShapeError
+from photograd_course.viz import projection_steps, signed_projections, signed_slices, style
 from photograd_course.viz.style import save_figure
 from PIL import Image
 
@@ -112,3 +114,33 @@ def test_steps_come_in_order_and_state_their_own_scales(field: Any) -> None:
     common = projection_steps(fields, field.bounds)
     limits = {axes.images[0].get_clim() for axes in common.axes[:3]}
     assert len(limits) == 1
+
+
+@pytest.mark.parametrize("draw", [signed_projections, signed_slices])
+def test_voxels_that_do_not_exist_are_gray(draw: Any) -> None:
+    values = np.ones((4, 4, 4))
+    active = np.zeros((4, 4, 4), np.bool_)
+    active[1, 3, 3] = active[2, 2, 2] = True  # the slices cut the second
+    values[~active] = 0.0
+    figure = draw(values, CUBE, active=active)
+    shown = [axes.images[0] for axes in figure.axes[:3]]
+    count = 1 if draw is signed_slices else 2
+    assert [int((~np.ma.getmaskarray(image.get_array())).sum()) for image in shown] == [count] * 3
+    for image in shown:
+        assert image.cmap(np.ma.masked_all(1))[0][:3] == pytest.approx(to_rgb(style.MISSING))
+    whole = draw(values, CUBE)
+    assert not any(np.ma.getmaskarray(axes.images[0].get_array()).any() for axes in whole.axes[:3])
+    with pytest.raises(ShapeError, match="active: expected shape"):
+        draw(values, CUBE, active=active[1:])
+
+
+def test_steps_show_which_voxels_existed() -> None:
+    fields = {0: np.ones((2, 2, 2)), 5: np.ones((4, 4, 4))}
+    active = {0: np.ones((2, 2, 2), np.bool_), 5: np.zeros((4, 4, 4), np.bool_)}
+    active[5][1, 2, 3] = True
+    figure = projection_steps(fields, CUBE, active=active)
+    masks = [np.ma.getmaskarray(axes.images[0].get_array()) for axes in figure.axes[:2]]
+    assert not masks[0].any()
+    assert np.argwhere(~masks[1]).tolist() == [[2, 1]]  # rows are y, columns x
+    with pytest.raises(RangeError, match="active: expected a mask for step 5, got none"):
+        projection_steps(fields, CUBE, active={0: active[0]})

@@ -56,8 +56,17 @@ def test_everything_comes_back(tmp_path: Path) -> None:
     assert [path.name for path in tmp_path.iterdir()] == ["model.npz"]
 
 
+def test_a_path_may_be_text(model: Path) -> None:
+    expected = load_model(model)
+    for place in (str(model), str(model / "model.npz")):
+        loaded = load_model(place)
+        assert loaded.meta == expected.meta
+        assert np.array_equal(loaded.field.params["values"], expected.field.params["values"])
+
+
 def test_a_missing_one_says_what_to_do(tmp_path: Path) -> None:
-    for place in (tmp_path, tmp_path / "nothing", tmp_path / "nothing.npz"):
+    missing = (tmp_path, tmp_path / "nothing", tmp_path / "nothing.npz", str(tmp_path / "nothing"))
+    for place in missing:
         with pytest.raises(IoError, match=r"expected a model .*\(run 'photograd fit' first\)"):
             load_checkpoint(place)
 

@@ -69,6 +69,18 @@ def test_pixels_that_are_not_valid_have_no_gradient() -> None:
     assert np.abs(gradient["color"].reshape(12, 13, 3)[valid]).min() > 0
 
 
+def test_the_mean_square_is_that_of_valid_pixels() -> None:
+    valid = np.ones((12, 13), np.bool_)
+    valid[:4] = False
+    seen = view(4)
+    proof = Proof(3, 0.2, replace(seen, valid=valid))
+    loss = proof.loss(proof.place)
+    truth = seen.premultiplied[..., :3].astype(np.float64)  # opaque
+    expected = np.square(loss.image - truth)[valid].mean()
+    assert expected > 0.01
+    assert loss.mean_square == pytest.approx(expected, rel=1e-12)
+
+
 def test_wrong_gradients_die() -> None:
     proof = Proof(5, 0.2, view(6))
     report = check_mutants(

@@ -7,8 +7,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from photograd.checkpoint import load_checkpoint
-from photograd.commands.gradients import dense_grid
-from photograd.errors import RangeError
 from photograd.evaluate import evaluate
 from photograd.fields import SparseSh
 from photograd.fields.active_voxels import dilated
@@ -93,11 +91,6 @@ def test_one_view_alone_would_prune_what_others_need() -> None:
     one = field.greatest_weights([fit.pixels.rays(np.arange(pixels))])
     assert (one <= every).all()
     assert ((every >= 0.05) & (one < 0.05)).sum() > 0.2 * (every >= 0.05).sum()
-
-
-def test_pictures_of_dense_gradients_refuse_a_sparse_grid() -> None:
-    with pytest.raises(RangeError, match="a model of dense_grid, got 'sparse_sh'"):
-        dense_grid(SparseSh.example(seed=1))
 
 
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])

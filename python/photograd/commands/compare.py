@@ -12,6 +12,7 @@ from photograd_course.cli import DebugOption, JsonOption, SeedOption, ThreadsOpt
 from photograd_course.suggest import choose_from
 
 from photograd.commands.capture import make_capture
+from photograd.commands.evaluate import draw_strips
 from photograd.commands.fit import run_with_bar
 from photograd.commands.shared import (
     AllowOutsideOption,
@@ -182,11 +183,6 @@ def photographs_of(given: str, out: Path, *, views: int, size: int, spp: int, se
 
 def draw(evaluations: list[Evaluation], candidates: list[Contender], name: str, path: Path) -> None:
     """Truth, rendering and error of every contender at the view that all find hardest."""
-    from photograd_course.viz import comparison_strips, save_figure
-
-    truth, renders, psnr = worst_view(evaluations)
-    figure = comparison_strips(
-        [truth] * len(renders), renders, names=[c.label for c in candidates], psnr=psnr, title=name,
-        caption="The held-out view with the lowest mean PSNR of all. " + evaluations[0].protocol,
-    )  # fmt: skip
-    save_figure(figure, path)
+    caption = f"The held-out view with the lowest mean PSNR of all. {evaluations[0].protocol}."
+    labels = [candidate.label for candidate in candidates]
+    draw_strips(worst_view(evaluations), labels, path, title=name, caption=caption)

@@ -11,7 +11,7 @@ import typer
 from photograd_course.cli import DebugOption, JsonOption, SeedOption, ThreadsOption, emit, note
 
 from photograd.commands.capture import DEFAULT_SCENE, make_capture
-from photograd.commands.evaluate import draw_strips
+from photograd.commands.evaluate import draw_picked
 from photograd.commands.fit import run_with_bar
 from photograd.commands.gradients import draw_gradients
 from photograd.commands.shared import out_option, stop_on_signals, use_threads
@@ -73,7 +73,7 @@ def demo(
     model = load_model(out / "model")
     scores = evaluate(model, capture.test)
     pictures.mkdir(parents=True, exist_ok=True)
-    draw_strips(scores, pictures / "comparison.png")
+    draw_picked(scores, pictures / "comparison.png")
     signs = draw_gradients(model, out / "model", capture, pictures, 1 << 18, seed)
     cameras = orbit_cameras(model.field.box, 40, size=192)
     write_gif([display_image(model, camera) for camera in cameras], pictures / "turntable.gif")

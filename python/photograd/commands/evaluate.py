@@ -12,7 +12,6 @@ from photograd_course.cli import (
     DebugOption,
     JsonOption,
     Progress,
-    SeedOption,
     ThreadsOption,
     emit,
     note,
@@ -27,7 +26,7 @@ from photograd.commands.shared import (
 )
 from photograd.data.load import load_capture
 from photograd.errors import RangeError, message
-from photograd.evaluate import Evaluation, as_result
+from photograd.evaluate import Evaluation, ViewScore, as_result
 from photograd.evaluate import evaluate as score
 from photograd.model import load_model
 
@@ -45,12 +44,14 @@ def evaluate(
     ] = None,
     downscale: DownscaleOption = 1,
     allow_outside: AllowOutsideOption = False,
-    seed: SeedOption = 0,  # noqa: ARG001  an evaluation draws nothing at random
     threads: ThreadsOption = 0,
     as_json: JsonOption = False,
     debug: DebugOption = False,  # noqa: ARG001
 ) -> None:
     """PSNR and SSIM on the test split, with the protocol they hold under.
+
+    Only pixels that a photograph has are scored: not the border that undistortion leaves, nor what
+    a mask excludes.
 
     Example: photograd evaluate model photos --out comparison.png
     """
@@ -65,7 +66,7 @@ def evaluate(
     with Progress("evaluate", len(views), [Column("view", "{:.0f}".format)]) as bar:
         result = score(loaded, views, on_view=lambda n: bar.update(n, view=n))
     if out is not None:
-        draw_strips(result, out)
+        draw_picked(result, out)
     emit(as_result(result), as_json=as_json, title="evaluate")
 
 
@@ -76,16 +77,30 @@ def picked_views(psnr: Sequence[float]) -> list[int]:
     return [ranked[i * (len(ranked) - 1) // max(shown - 1, 1)] for i in range(shown)]
 
 
-def draw_strips(result: Evaluation, path: Path) -> None:
+def draw_picked(result: Evaluation, path: Path) -> None:
     """Truth, rendering and error of a few views, the worst among them."""
-    from photograd_course.viz import comparison_strips, save_figure
-
     picked = [result.views[i] for i in picked_views([view.psnr for view in result.views])]
     which = "Worst, middle and best of " if len(result.views) > len(picked) else ""
+    title = f"Held-out views: mean PSNR {result.psnr:.2f} dB"
+    names = [view.name for view in picked]
+    draw_strips(picked, names, path, title=title, caption=f"{which}{result.protocol}.")
+
+
+def draw_strips(
+    views: Sequence[ViewScore], names: Sequence[str], path: Path, *, title: str, caption: str
+) -> None:
+    """Truth, rendering and error of views of one size under headings `names`."""
+    from photograd_course.viz import comparison_strips, save_figure
+
+    if not all(view.valid.all() for view in views):
+        caption += " Gray: not valid, not scored."
     figure = comparison_strips(
-        [v.truth for v in picked], [v.render for v in picked],
-        names=[v.name for v in picked], psnr=[v.psnr for v in picked],
-        title=f"Held-out views: mean PSNR {result.psnr:.2f} dB",
-        caption=f"{which}{result.protocol}.",
-    )  # fmt: skip
+        [view.truth for view in views],
+        [view.render for view in views],
+        valid=[view.valid for view in views],
+        names=names,
+        psnr=[view.psnr for view in views],
+        title=title,
+        caption=caption,
+    )
     save_figure(figure, path)

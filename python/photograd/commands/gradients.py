@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 import typer
+from numpy.typing import NDArray
 from photograd_course.cli import (
     Column,
     DebugOption,
@@ -29,10 +31,8 @@ from photograd.commands.shared import (
 )
 from photograd.data.capture import Capture
 from photograd.data.load import load_capture
-from photograd.density_gradient import density_gradient
-from photograd.errors import RangeError, message
-from photograd.fields.dense_grid import DenseGrid
-from photograd.fields.fitted import FittedField
+from photograd.density_gradient import DensityGradient, density_gradient
+from photograd.fields.fitted import VoxelField
 from photograd.fields.gaussians import GaussianScene
 from photograd.fields.octree_sh import OctreeSh
 from photograd.model import Model, load_model
@@ -46,6 +46,8 @@ from photograd.training_views import TrainingViews
 
 if TYPE_CHECKING:
     from photograd_course import viz
+
+    from photograd.sign_claim import SignClaim
 
 EXPLAIN = "Blue: more density lowers the loss. Red: less density does. White: no effect."
 
@@ -68,7 +70,7 @@ def gradients(
     as_json: JsonOption = False,
     debug: DebugOption = False,  # noqa: ARG001
 ) -> None:
-    """Draw the gradient of the loss in every voxel, from the start of the fit to its end.
+    """Draw the gradient of the loss in every voxel or leaf, from the start of the fit to its end.
 
     Of Gaussians: where their means are pulled, which should be denser, and which will be split.
 
@@ -87,36 +89,32 @@ def draw_gradients(
     """All pictures of one fit; returns the files and, where alpha tells, the sign shares."""
     from photograd_course import viz
 
-    from photograd.sign_claim import sign_claim
-
     make_folder(out)
     if isinstance(model.field, GaussianScene):
         return draw_gaussians(model, folder, capture, out)
-    fields, starts = gradients_of_steps(model, folder, capture, rays, seed)
-    first = min(fields)
-    start, gradient = starts[first], fields[first]
-    result: dict[str, Any] = {"out": out, "steps": sorted(fields)}
-    caption, outline = EXPLAIN, None
-    claim = sign_claim(start, capture, rays=rays, seed=seed) if capture.has_alpha else None
+    steps = gradients_of_steps(model, folder, capture, rays, seed)
+    explain = explanation(steps)
+    result: dict[str, Any] = {"out": out, "steps": list(steps.strongest)}
+    claim = claim_of(steps.start, capture, rays, seed)
+    gradient, outline, caption = steps.gradient.d_sigma_t, None, explain
     if claim is not None:
-        caption, outline, gradient = claim.caption(), claim.occupied, claim.d_sigma_t
+        gradient, outline, caption = claim.d_sigma_t, claim.occupied, claim.caption()
         result["occupied_negative"] = claim.report.occupied_fraction
         result["background_positive"] = claim.report.background_fraction
         result["views_of_signs"] = claim.views
-    else:
-        note("no voxel is known to be matter, or none to be empty: signs are shown, not weighed")
+    box, active, first = steps.start.box, steps.gradient.active, min(steps.strongest)
     pictures = {
         "gradient_slices": viz.signed_slices(
-            gradient, start.box, outline=outline, caption=caption,
+            gradient, box, outline=outline, active=active, caption=caption,
             title=f"Gradient of the loss at step {first}",
         ),
         "gradient_projections": viz.signed_projections(
-            gradient, start.box, outline=outline, caption=caption,
+            gradient, box, outline=outline, active=active, caption=caption,
             title=f"Largest gradient along each axis, step {first}",
         ),
         "gradient_steps": viz.projection_steps(
-            fields, start.box, common_scale=False, title="The gradient as the fit goes on",
-            caption=EXPLAIN
+            steps.strongest, box, active=steps.active, common_scale=False, caption=explain,
+            title="The gradient as the fit goes on",
         ),
     }  # fmt: skip
     if len(model.history) > 1:
@@ -125,6 +123,29 @@ def draw_gradients(
         viz.save_figure(figure, out / f"{name}.png")
         result[name] = out / f"{name}.png"
     return result
+
+
+def explanation(steps: StepGradients) -> str:
+    """What the colors of these pictures mean."""
+    sentences = [EXPLAIN]
+    if isinstance(steps.start, OctreeSh):
+        sentences.append("Each cell of a leaf shows the gradient of the whole leaf.")
+    if not all(mask.all() for mask in (steps.gradient.active, *steps.active.values())):
+        sentences.append("Gray: nothing there to differentiate.")
+    return " ".join(sentences)
+
+
+def claim_of(start: VoxelField, capture: Capture, rays: int, seed: int) -> SignClaim | None:
+    """The signs of the first gradient, weighed; None, with a note, where nothing can be claimed."""
+    from photograd.sign_claim import sign_claim
+
+    if isinstance(start, OctreeSh):
+        note("leaves begin with the matter of another model: signs are shown, not weighed")
+        return None
+    claim = sign_claim(start, capture, rays=rays, seed=seed) if capture.has_alpha else None
+    if claim is None:
+        note("no voxel is known to be matter, or none to be empty: signs are shown, not weighed")
+    return claim
 
 
 def draw_gaussians(model: Model, folder: Path, capture: Capture, out: Path) -> dict[str, Any]:
@@ -158,29 +179,41 @@ def draw_gaussians(model: Model, folder: Path, capture: Capture, out: Path) -> d
     return {"out": out, "steps": chosen, **files}
 
 
+@dataclass(frozen=True)
+class StepGradients:
+    """The gradient at the first of a fit's snapshots, and what its pictures need of all of them.
+
+    `strongest` {step: (X, Y, 1)} is the largest gradient along z, `active` where that meets voxels:
+    whole grids of all steps would take several times the memory of the fit.
+    """
+
+    start: VoxelField
+    gradient: DensityGradient
+    strongest: dict[int, Array]
+    active: dict[int, NDArray[np.bool_]]
+
+
 def gradients_of_steps(
     model: Model, folder: Path, capture: Capture, rays: int, seed: int
-) -> tuple[dict[int, Array], dict[int, DenseGrid]]:
-    """{step: dL/dsigma_t} and {step: field} of every snapshot of a fit, under a progress bar."""
+) -> StepGradients:
+    """The gradients of every snapshot of a fit, in order, under a progress bar."""
+    from photograd_course import viz
+
     pixels = TrainingPixels(capture.train, capture.color_space)
-    found_fields = load_snapshots(folder) or {int(model.meta["step"]): model.field}
-    snapshots = {step: dense_grid(field) for step, field in found_fields.items()}
-    fields: dict[int, Array] = {}
-    with Progress("gradients", len(snapshots), [Column("loss", "{:.2e}".format)]) as bar:
-        for number, (step, field) in enumerate(snapshots.items()):
+    fields: dict[int, Any] = load_snapshots(folder) or {int(model.meta["step"]): model.field}
+    start: tuple[VoxelField, DensityGradient] | None = None
+    strongest, active = {}, {}
+    with Progress("gradients", len(fields), [Column("loss", "{:.2e}".format)]) as bar:
+        for number, (step, field) in enumerate(sorted(fields.items())):
             found = density_gradient(
                 field, pixels, seed=seed, background=model.background, rays=rays
             )
-            fields[step] = found.d_sigma_t
+            start = start or (field, found)
+            strongest[step] = viz.signed_projection(found.d_sigma_t, 2)[..., None]
+            active[step] = np.asarray(found.active.any(axis=2, keepdims=True))
             bar.update(number + 1, loss=found.loss)
-    return fields, snapshots
-
-
-def dense_grid(field: FittedField) -> DenseGrid:
-    """The field, if it is one whose gradient can be drawn voxel by voxel; else RangeError."""
-    if not isinstance(field, DenseGrid):
-        raise RangeError(message("gradients", "model", "a model of dense_grid", repr(field.name)))
-    return field
+    assert start is not None
+    return StepGradients(*start, strongest, active)
 
 
 def curves_of(model: Model) -> viz.FitCurves:

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 import numpy as np
 import typer
-from photograd_course.cli import DebugOption, JsonOption, SeedOption, ThreadsOption, emit
+from photograd_course.cli import DebugOption, JsonOption, emit
 
 from photograd.commands.shared import AllowOutsideOption
 from photograd.data.bounds import estimate_bounds
@@ -24,8 +24,6 @@ def register(app: typer.Typer) -> None:
 def info(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="A capture or a model.")],
     allow_outside: AllowOutsideOption = False,
-    seed: SeedOption = 0,  # noqa: ARG001
-    threads: ThreadsOption = 0,  # noqa: ARG001
     as_json: JsonOption = False,
     debug: DebugOption = False,  # noqa: ARG001
 ) -> None:

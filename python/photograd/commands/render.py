@@ -12,7 +12,6 @@ from photograd_course.cli import (
     DebugOption,
     JsonOption,
     Progress,
-    SeedOption,
     ThreadsOption,
     emit,
     note,
@@ -68,7 +67,6 @@ def render(
     up: Annotated[
         str, typer.Option("--up", help=f"What is up among Gaussians: {', '.join(UP_AXES)}.")
     ] = "-y",
-    seed: SeedOption = 0,  # noqa: ARG001  a rendering draws nothing at random
     threads: ThreadsOption = 0,
     as_json: JsonOption = False,
     debug: DebugOption = False,  # noqa: ARG001

@@ -22,7 +22,8 @@ from photograd.splat import SplatOptions
 from photograd.splats.first_scene import first_scene, scene_control
 
 FittedGrid: TypeAlias = DenseGrid | SparseSh
-FittedField: TypeAlias = FittedGrid | OctreeSh | GaussianScene
+VoxelField: TypeAlias = FittedGrid | OctreeSh
+FittedField: TypeAlias = VoxelField | GaussianScene
 HARMONIC_GRIDS: dict[str, type[SparseSh]] = {SparseSh.name: SparseSh, DenseSh.name: DenseSh}
 FITTED = (DenseGrid.name, *HARMONIC_GRIDS, OctreeSh.name, GaussianScene.name)
 

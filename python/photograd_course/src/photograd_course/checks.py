@@ -48,6 +48,22 @@ def require_like(
     return array
 
 
+def require_mask(
+    function: str, argument: str, mask: object, shape: tuple[int, ...]
+) -> NDArray[np.bool_]:
+    """Return `mask` when it is a boolean array of the given shape.
+
+    Raises:
+        DtypeError, ShapeError: it is not boolean, or has another shape.
+    """
+    if not isinstance(mask, np.ndarray) or mask.dtype != np.bool_:
+        got = mask.dtype if isinstance(mask, np.ndarray) else type(mask).__name__
+        raise DtypeError(message(function, argument, "a boolean array", got, "compare first"))
+    if mask.shape != shape:
+        raise ShapeError(message(function, argument, f"shape {shape}", mask.shape))
+    return mask
+
+
 def require_not_empty(function: str, argument: str, array: FloatArray) -> None:
     """Raise ShapeError for an array without elements: its mean does not exist."""
     if array.size == 0:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..checks import require_float_array
-from ..errors import DtypeError, RangeError, ShapeError, message
+from ..errors import RangeError, ShapeError, message
 
 
 def check_field(function: str, argument: str, values: object) -> NDArray[np.floating]:
@@ -35,22 +35,6 @@ def check_bounds(function: str, bounds: ArrayLike) -> NDArray[np.float64]:
     if not np.isfinite(box).all() or not (box[1] > box[0]).all():
         raise RangeError(message(function, "bounds", "finite corners, lower < upper", box.tolist()))
     return box
-
-
-def check_mask(
-    function: str, argument: str, mask: object, shape: tuple[int, ...]
-) -> NDArray[np.bool_]:
-    """A boolean array of the given shape.
-
-    Raises:
-        DtypeError, ShapeError: it is not boolean, or has another shape.
-    """
-    if not isinstance(mask, np.ndarray) or mask.dtype != np.bool_:
-        got = mask.dtype if isinstance(mask, np.ndarray) else type(mask).__name__
-        raise DtypeError(message(function, argument, "a boolean array", got, "compare first"))
-    if mask.shape != shape:
-        raise ShapeError(message(function, argument, f"shape {shape}", mask.shape))
-    return mask
 
 
 def check_images(

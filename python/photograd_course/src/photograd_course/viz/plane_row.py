@@ -33,7 +33,8 @@ def draw_plane_row(
     """Front, side and top view side by side, in metres, with one signed colour bar.
 
     Args:
-        sections: three arrays, over the axes that remain, for the planes of ``planes.PLANES``.
+        sections: three arrays, over the axes that remain, for the planes of ``planes.PLANES``;
+            gray where masked.
         bounds: (2, 3) outer faces, metres.
         headings: one line above each panel.
         outlines: boolean sections whose border is drawn.

@@ -116,14 +116,14 @@ def draw_plane(
     """Draw one section with axes in metres; every voxel is a flat square, nothing is blurred.
 
     Args:
-        section: values over the two axes of the plane, in x-y-z order.
+        section: values over the two axes of the plane, in x-y-z order; gray where masked.
         bounds: (2, 3) outer faces of the grid, metres.
     """
     low_across, high_across = (float(face) for face in bounds[:, plane.across])
     low_up, high_up = (float(face) for face in bounds[:, plane.up])
     image = axes.imshow(
         plane.image(section),
-        cmap=colour_map,
+        cmap=colour_map.with_extremes(bad=style.MISSING),
         norm=norm,
         origin="lower",
         interpolation="nearest",

@@ -10,9 +10,9 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, NDArray
 
-from ..checks import require_integer
+from ..checks import require_integer, require_mask
 from . import style
-from .checks import check_bounds, check_field, check_mask
+from .checks import check_bounds, check_field
 from .plane_row import draw_plane_row
 from .planes import PLANES
 from .scale import signed_scale
@@ -45,6 +45,7 @@ def signed_projections(
     unit: str = "",
     limit: float | None = None,
     outline: NDArray[np.bool_] | None = None,
+    active: NDArray[np.bool_] | None = None,
     title: str | None = None,
     caption: str | None = None,
 ) -> Figure:
@@ -58,6 +59,8 @@ def signed_projections(
         limit: the colours span [-limit, limit]; by default the 99.9 % quantile of the non-zero
             magnitudes of what is shown, rounded up.
         outline: (X, Y, Z) boolean; the silhouette of its True voxels is drawn.
+        active: (X, Y, Z) boolean, the voxels that exist; gray is where a line of sight meets none.
+            All of them if None.
         title: a line above the pictures.
         caption: text below the pictures.
 
@@ -66,10 +69,17 @@ def signed_projections(
     """
     function = "signed_projections"
     field, box = check_field(function, "values", values), check_bounds(function, bounds)
-    mask = None if outline is None else check_mask(function, "outline", outline, field.shape)
+    mask = None if outline is None else require_mask(function, "outline", outline, field.shape)
     views = [signed_projection(field, plane.normal) for plane in PLANES]
+    shown = views
+    if active is not None:
+        require_mask(function, "active", active, field.shape)
+        shown = [
+            np.ma.array(view, mask=~active.any(axis=plane.normal))
+            for view, plane in zip(views, PLANES, strict=True)
+        ]
     return draw_plane_row(
-        views,
+        shown,
         box,
         headings=[f"seen from {plane.viewpoint}" for plane in PLANES],
         scale=signed_scale(function, views, limit),

@@ -12,8 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..checks import require_mask
 from ..errors import RangeError, message
-from .checks import check_field, check_mask
+from .checks import check_field
 
 
 @dataclass(frozen=True)
@@ -65,8 +66,8 @@ def sign_report(
     """
     function = "sign_report"
     gradient = check_field(function, "d_sigma_t", d_sigma_t).astype(np.float64)
-    check_mask(function, "occupied", occupied, gradient.shape)
-    check_mask(function, "background_only", background_only, gradient.shape)
+    require_mask(function, "occupied", occupied, gradient.shape)
+    require_mask(function, "background_only", background_only, gradient.shape)
     overlap = int((occupied & background_only).sum())
     if overlap:
         raise RangeError(

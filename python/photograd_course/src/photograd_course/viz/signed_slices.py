@@ -13,9 +13,10 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, NDArray
 
+from ..checks import require_mask
 from ..errors import RangeError, ShapeError, message
 from . import style
-from .checks import check_bounds, check_field, check_mask
+from .checks import check_bounds, check_field
 from .plane_row import draw_plane_row
 from .planes import AXIS_NAMES, PLANES
 from .scale import signed_scale
@@ -30,6 +31,7 @@ def signed_slices(
     unit: str = "",
     limit: float | None = None,
     outline: NDArray[np.bool_] | None = None,
+    active: NDArray[np.bool_] | None = None,
     title: str | None = None,
     caption: str | None = None,
 ) -> Figure:
@@ -44,6 +46,7 @@ def signed_slices(
         limit: the colours span [-limit, limit]; by default the 99.9 % quantile of the non-zero
             magnitudes, rounded up. Clipped ends are shown as arrows on the colour bar.
         outline: (X, Y, Z) boolean; the border of its True voxels is drawn, e.g. the true object.
+        active: (X, Y, Z) boolean, the voxels that exist; the others are gray. All of them if None.
         title: a line above the pictures.
         caption: text below the pictures.
 
@@ -55,10 +58,16 @@ def signed_slices(
     """
     function = "signed_slices"
     field, box = check_field(function, "values", values), check_bounds(function, bounds)
-    mask = None if outline is None else check_mask(function, "outline", outline, field.shape)
+    mask = None if outline is None else require_mask(function, "outline", outline, field.shape)
     index = _voxel_at(function, at, box, field.shape)
     centre = box[0] + (index + 0.5) * (box[1] - box[0]) / np.array(field.shape)
     slices = [_cut(field, index, plane.normal) for plane in PLANES]
+    if active is not None:
+        require_mask(function, "active", active, field.shape)
+        slices = [
+            np.ma.array(part, mask=~_cut(active, index, plane.normal))
+            for part, plane in zip(slices, PLANES, strict=True)
+        ]
     return draw_plane_row(
         slices,
         box,

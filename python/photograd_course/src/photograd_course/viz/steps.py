@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import ArrayLike, NDArray
 
-from ..checks import require_integer
+from ..checks import require_integer, require_mask
 from ..errors import RangeError, ShapeError, message
 from . import style
 from .checks import check_bounds, check_field
@@ -29,6 +29,7 @@ def projection_steps(
     bounds: ArrayLike,
     *,
     view: Literal["front", "side", "top"] = "front",
+    active: Mapping[int, NDArray[np.bool_]] | None = None,
     common_scale: bool = True,
     quantity: str = style.GRADIENT,
     unit: str = "",
@@ -41,6 +42,8 @@ def projection_steps(
         fields: step -> (X, Y, Z) float32 or float64; resolutions may differ, the box may not.
         bounds: (2, 3) outer faces of the box in metres; world right-handed, +Y up.
         view: from which side the box is seen (+Z, +X or +Y).
+        active: step -> (X, Y, Z) boolean, the voxels that exist; gray is where a line of sight
+            meets none. All of them if None.
         common_scale: one colour bar for all panels. If False every panel has its own scale, which
             its heading states, since gradients shrink by orders of magnitude during a fit.
         quantity: name for the colour bar (mathtext allowed).
@@ -54,18 +57,21 @@ def projection_steps(
     box, plane = check_bounds("projection_steps", bounds), _plane(view)
     steps = _steps(fields)
     views = [_project(step, fields[step], plane) for step in steps]
+    hidden = [_hidden(step, fields, active, plane) for step in steps]
     shared = signed_scale("projection_steps", views, None)
     own = [shared if common_scale else _own_scale(picture) for picture in views]
     with style.house_style():
         heading_height = 0.3 if common_scale else 0.46
         head = heading_height, 0.26 if title else 0.0
         figure, panels = _layout(box, plane, len(views), head, caption)
-        for panel, step, picture, scale in zip(panels, steps, views, own, strict=True):
+        for panel, step, picture, gray, scale in zip(
+            panels, steps, views, hidden, own, strict=True
+        ):
             limit = 1.0 if common_scale else scale.limit  # own scales: shown as shares of the limit
             image = draw_plane(
                 panel,
                 plane,
-                picture / limit,
+                np.ma.array(picture / limit, mask=gray),
                 box,
                 colour_map=style.signed_colour_map(),
                 norm=style.symmetric_scale(scale.limit / limit),
@@ -103,6 +109,21 @@ def _steps(fields: Mapping[int, object]) -> list[int]:
 def _project(step: int, field: object, plane: Plane) -> NDArray[np.floating]:
     grid = check_field("projection_steps", f"fields[{step}]", field)
     return signed_projection(grid, plane.normal)
+
+
+def _hidden(
+    step: int,
+    fields: Mapping[int, NDArray[np.floating]],
+    active: Mapping[int, NDArray[np.bool_]] | None,
+    plane: Plane,
+) -> NDArray[np.bool_]:
+    """Where the projection of a step shows no voxel."""
+    if active is None:
+        return np.zeros(np.delete(fields[step].shape, plane.normal), np.bool_)
+    if step not in active:
+        raise RangeError(message("projection_steps", "active", f"a mask for step {step}", "none"))
+    mask = require_mask("projection_steps", f"active[{step}]", active[step], fields[step].shape)
+    return np.asarray(~mask.any(axis=plane.normal))
 
 
 def _own_scale(picture: NDArray[np.floating]) -> Scale:

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any, TypeAlias
 
+import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 from numpy.typing import NDArray
 
-from ..checks import require_number
+from .. import metrics
+from ..checks import require_mask, require_number
 from ..errors import RangeError, ShapeError, message
 from . import style
 from .checks import check_images
@@ -21,6 +25,9 @@ ROOM = 6.2  # inches for all columns
 WIDEST, TALLEST = 1.9, 1.9  # inches for one picture
 ROWS = ("truth", "render", "error")
 
+MaskedError: TypeAlias = "np.ma.MaskedArray[Any, Any]"
+"""Mean absolute error (H, W), masked where the photograph has no pixel."""
+
 
 def comparison_strips(
     truths: Sequence[NDArray[np.floating]],
@@ -28,6 +35,7 @@ def comparison_strips(
     *,
     names: Sequence[str] | None = None,
     psnr: Sequence[float] | None = None,
+    valid: Sequence[NDArray[np.bool_]] | None = None,
     error_limit: float | None = None,
     title: str | None = None,
     caption: str | None = None,
@@ -41,7 +49,9 @@ def comparison_strips(
         renders: the same number of images of the same size.
         names: one heading per view; "view 0", "view 1", ... if None.
         psnr: numbers to print (dB), so that the figure agrees with a table made by another
-            protocol; by default -10 log10 of the mean squared difference of what is shown.
+            protocol; by default those of `photograd_course.metrics.psnr` over the valid pixels.
+        valid: (H, W) for each view, the pixels that its photograph has; the others are gray in
+            truth and error. All of them if None.
         error_limit: upper end of the error scale; by default the 99.5 % quantile, rounded up.
         title: a line above the pictures.
         caption: text below the pictures.
@@ -52,16 +62,18 @@ def comparison_strips(
     function = "comparison_strips"
     true, rendered = _pairs(function, truths, renders)
     labels = [f"view {i}" for i in range(len(true))] if names is None else list(names)
-    numbers = [_psnr(*pair) for pair in zip(true, rendered, strict=True)] if psnr is None else psnr
     _check_count(function, "names", labels, len(true))
+    views = list(zip(true, rendered, _masks(function, valid, true), strict=True))
+    numbers = [_psnr(*view) for view in views] if psnr is None else psnr
     _check_count(function, "psnr", numbers, len(true))
-    errors = [np.abs(r - t).mean(axis=2) for t, r in zip(true, rendered, strict=True)]
+    errors = [np.ma.array(np.abs(r - t).mean(axis=2), mask=~kept) for t, r, kept in views]
     limit = _limit(function, errors, error_limit)
+    shown_truth = [np.where(kept[..., None], t, to_rgb(style.MISSING)) for t, _, kept in views]
 
     with style.house_style():
         figure, grid = _layout(len(true), true[0].shape[:2], 0.26 if title else 0.0, caption)
         for column, (pictures, name, number) in enumerate(
-            zip(zip(true, rendered, errors, strict=True), labels, numbers, strict=True)
+            zip(zip(shown_truth, rendered, errors, strict=True), labels, numbers, strict=True)
         ):
             shown = [
                 _draw(grid[row][column], picture, limit) for row, picture in enumerate(pictures)
@@ -106,20 +118,36 @@ def _pairs(
     return true, rendered
 
 
-def _psnr(truth: NDArray[np.floating], render: NDArray[np.floating]) -> float:
-    """Peak signal-to-noise ratio in dB for a peak of 1; infinite for equal images."""
-    squared = float(np.mean((render.astype(np.float64) - truth) ** 2))
-    return float("inf") if squared == 0.0 else float(-10.0 * np.log10(squared))
+def _masks(
+    function: str,
+    valid: Sequence[NDArray[np.bool_]] | None,
+    images: Sequence[NDArray[np.floating]],
+) -> list[NDArray[np.bool_]]:
+    """A mask (H, W) for each image, all True by default."""
+    shape = images[0].shape[:2]
+    if valid is None:
+        return [np.ones(shape, np.bool_)] * len(images)
+    _check_count(function, "valid", valid, len(images))
+    for index, mask in enumerate(valid):
+        if not require_mask(function, f"valid[{index}]", mask, shape).any():
+            raise RangeError(message(function, f"valid[{index}]", "a valid pixel", "none"))
+    return list(valid)
+
+
+def _psnr(
+    truth: NDArray[np.floating], render: NDArray[np.floating], valid: NDArray[np.bool_]
+) -> float:
+    return metrics.psnr(render.astype(np.float64), truth.astype(np.float64), valid=valid)
 
 
 def _decibels(number: float) -> str:
     return "identical" if number == float("inf") else f"{number:.2f} dB"
 
 
-def _limit(function: str, errors: list[NDArray[np.floating]], given: float | None) -> float:
+def _limit(function: str, errors: list[MaskedError], given: float | None) -> float:
     if given is None:
-        quantile = float(np.quantile(np.concatenate([error.ravel() for error in errors]), 0.995))
-        return nice_limit(quantile)
+        scored = np.concatenate([error.compressed() for error in errors])
+        return nice_limit(float(np.quantile(scored, 0.995)))
     if require_number(function, "error_limit", given) <= 0.0:
         raise RangeError(message(function, "error_limit", "a positive number", given))
     return float(given)
@@ -149,11 +177,11 @@ def _layout(
     return figure, grid
 
 
-def _draw(axes: Axes, picture: NDArray[np.floating], limit: float) -> AxesImage:
-    """A colour image as it is, or an error map in the magnitude colours."""
+def _draw(axes: Axes, picture: NDArray[np.floating] | MaskedError, limit: float) -> AxesImage:
+    """A colour image as it is, or an error map in the magnitude colours, gray where masked."""
     image = axes.imshow(
         picture,
-        cmap=style.MAGNITUDE_MAP,
+        cmap=mpl.colormaps[style.MAGNITUDE_MAP].with_extremes(bad=style.MISSING),
         vmin=0.0,
         vmax=limit,
         interpolation="nearest" if picture.ndim == 2 else "auto",  # error is not to be smoothed

@@ -34,6 +34,7 @@ FRAME = "#8a9097"  # axes frames, ticks
 GUIDE = "#5b6168"  # thin lines drawn over a picture
 BLUE, RED, ORANGE, GREY = "#2166ac", "#b2182b", "#d9730d", "#9aa0a6"
 MAGNITUDE_MAP = "viridis"
+MISSING = "#cfd3d7"  # pixels that a photograph does not have, voxels that do not exist
 
 GRADIENT = r"$\partial L\,/\,\partial\sigma_t$"  # dL/dsigma_t, what signed pictures usually show
 
