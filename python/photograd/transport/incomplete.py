@@ -72,7 +72,8 @@ def incomplete_derivatives(scene: Scene) -> dict[str, Missing]:
         reasons = {
             parameter: Missing(
                 f"it turns the refracted rays of smooth {material.model}, and paths are held fixed",
-                f"model {rough} has the whole derivative, with little noise from roughness 0.3 on",
+                f"model {rough} has the whole derivative; against its noise, take a roughness of "
+                "0.3 or more and many samples",
             )
             for parameter in parameters
         }
