@@ -1,10 +1,10 @@
-"""Compares derivatives of traced pictures with differences: `python docs/results_differences.py`.
+"""Derivatives of traced pictures against finite differences: `python docs/results_differences.py`.
 
 Every continuous parameter of every reflectance model, light and medium, by the adjoint and by
-differences of pictures; what is compared, and how, is in tests/transport/difference_rows.py and
-differences.py. Each row is kept in docs/differences.json, so a run that was stopped goes on; then
-the tables of docs/results_differences.md are written. `--only THING` measures the rows of a model,
-light or medium anew, `--pages` writes the tables alone.
+finite differences of pictures; what is compared, and how, is in
+tests/transport/difference_rows.py and differences.py. Each row is kept in docs/differences.json, so
+a run that was stopped goes on; then the tables of docs/results_differences.md are written. `--only
+THING` measures the rows of a model, light or medium anew, `--pages` writes the tables alone.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ PAGE = ROOT / "docs" / "results_differences.md"
 WAYS = differences.WAYS[:3]
 PASSES = (float("inf"), 0.05, 0.002)
 """Relative errors of the estimates; in each pass, what takes fewest paths comes first."""
-HELD = 0.05  # is enough for what is known to differ
+ROUGHLY = 0.05  # is enough for what is known to differ
 CASES = cases()
 PLACES = {row.name: (case, row) for case in CASES for row in case.rows}
 Rows = dict[str, dict[str, Any]]
@@ -64,6 +64,7 @@ def paths_left(row: dict[str, Any], enough: float, most: int) -> float:
     left = {
         way: min(most, row[way][2] * (row[way][1] / limit) ** 2) - row[way][2]
         for way, limit in limits.items()
+        if row[way][1] > 0  # a derivative that is always 0 is known
     }
     return sum(max(0.0, more) for more in left.values())
 
@@ -109,7 +110,7 @@ def main() -> None:
     names = [] if given.pages else [row.name for case in wanted for row in case.rows]
     with multiprocessing.get_context("fork").Pool(given.jobs) as pool:
         for enough in PASSES:
-            goals = {name: max(enough, HELD * PLACES[name][0].held) for name in names}
+            goals = {name: max(enough, ROUGHLY * PLACES[name][0].refused) for name in names}
             left = {
                 name: paths_left(rows[name], goal, given.most) if name in rows else 1.0
                 for name, goal in goals.items()

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from photograd.data.image_write import write_exr
 from PIL import Image
 
 from tests.commands.conftest import Photograd
@@ -63,6 +64,20 @@ def test_mistakes_are_named(
     done = photograd("recover", scene, "--target", target, "--out", tmp_path / "x", *words)
     assert done.code in (1, 2)
     assert said in " ".join(done.err.split())
+
+
+def test_what_has_an_incomplete_derivative_is_refused_before_any_tracing(
+    photograd: Photograd, tmp_path: Path
+) -> None:
+    target, out = tmp_path / "black.exr", tmp_path / "found"
+    write_exr(target, np.zeros((8, 8, 3), np.float32))
+    unknown = ("--unknown", "materials.glass.eta=1.35", "--steps", 10**6)
+    done = photograd("recover", "cornell-spheres", "--target", target, *unknown, "--out", out)
+    assert done.code == 1
+    said = " ".join(done.err.split())
+    assert "it turns the refracted rays of smooth glass, and paths are held fixed" in said
+    assert "(model rough_dielectric" in said
+    assert not out.exists()
 
 
 def test_photographs_of_8_bits_are_refused(photograd: Photograd, tmp_path: Path) -> None:

@@ -47,6 +47,7 @@ def test_photons_make_a_picture(photograd: Photograd, tmp_path: Path) -> None:
     ("words", "text"),
     [
         (("--derivative", "materials.coper.roughness"), "materials.copper.roughness"),
+        (("--derivative", "materials.glass.eta"), "(model rough_dielectric"),
         (("--derivative", "shapes.0.center"), "where things are has no derivative here"),
         (("--derivative", "emission.lamp", "--integrator", "occlusion"), "path or direct"),
         (("--integrator", "photon"), "--radius"),

@@ -10,6 +10,7 @@ import photograd
 import pytest
 from photograd.core import _core
 from photograd.errors import RangeError, ShapeError
+from photograd.fields.march import MarchPolicy
 from photograd.representation import (
     CanvasBatch,
     ImageBatch,
@@ -123,6 +124,21 @@ def test_camera_gradient_agrees_with_central_differences(name: str) -> None:
         proof.forward_camera, proof.backward_camera, proof.camera(), seed=4, directions=4
     )
     assert report, str(report)
+
+
+def test_camera_gradient_is_refused_where_samples_hang_on_the_point_of_entry() -> None:
+    camera, refused = replace(OPTIONS, camera_adjoint=True), []
+    for name in NAMES:
+        field: Any = REPRESENTATIONS[name].example(seed=1)
+        if not isinstance(getattr(field, "policy", None), MarchPolicy):
+            continue
+        field.policy = replace(field.policy, lattice="entry")
+        batch = field.example_batch(seed=1)
+        field.render(batch, seed=0, step=0, options=OPTIONS)
+        with pytest.raises(RangeError, match=r"camera_adjoint: .*'entry'.*lattice='origin'"):
+            field.render(batch, seed=0, step=0, options=camera)
+        refused.append(name)
+    assert {"dense_grid", "dense_sh", "sparse_sh", "sunlit_medium", "tiny_network"} <= {*refused}
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -65,19 +65,24 @@ def line(name: str, row: Row) -> str:
 
 def table(names: Iterable[str], rows: dict[str, Row]) -> list[str]:
     """Header and rows."""
-    head = "| of | by | adjoint | differences | apart, % | error, % | cut, % | paths, 1e6 | says |"
+    columns = ("of", "with respect to", "adjoint", "differences", "apart, %", "error, %", "cut, %",
+               "paths, 1e6", "says")  # fmt: skip
+    head = f"| {' | '.join(columns)} |"
     return [head, "|---" * 9 + "|", *(line(name, rows[name]) for name in names)]
 
 
 def tables(rows: dict[str, Row]) -> list[str]:
     """Everything between the markers."""
     known = [(case, row.name) for case in cases() for row in case.rows if row.name in rows]
-    judged = [name for case, name in known if not case.held]
-    good = [name for name in judged if holds(rows[name])]
-    wrong = [name for name in judged if fails(rows[name])]
-    left = len(judged) - len(good) - len(wrong)
+    incomplete = [case for case in cases() if case.refused]
+    refused_rows = [name for case, name in known if case.refused]
+    good = [name for _, name in known if holds(rows[name])]
+    wrong = [name for _, name in known if fails(rows[name])]
+    left = len(known) - len(good) - len(wrong)
     lines = [
-        f"{len(judged)} rows: {len(good)} hold, {len(wrong)} fail, {left} are open.",
+        f"{len(known)} rows: {len(good)} hold, {len(wrong)} fail, {left} are open.",
+        f"{len({*wrong} & {*refused_rows})} of those that fail are known to be incomplete, and are"
+        " refused: the last section.",
     ]
     if good:
         name = max(good, key=lambda name: abs(gap(rows[name])))
@@ -85,17 +90,14 @@ def tables(rows: dict[str, Row]) -> list[str]:
     for kind, title in TITLES.items():
         names = [name for case, name in known if case.kind == kind]
         lines += ["", f"## {title}", "", *table(names, rows)]
-    held = [name for case, name in known if case.held]
     lines += [
-        "", "## Held by design", "",
-        "Directions into which smooth glass refracts are held fixed, so these are a part of the",
-        "derivative, unless all that is seen through the glass is alike: in the rows above the sky",
-        "behind the glass is even.", "",
-        *(text.replace("| FAILS |", "| held |") for text in table(held, rows)),
         "", "## Refused", "",
-        "What moves edges of shadows and silhouettes has no derivative here: held paths see",
-        "nothing of that. Whoever asks is told.", "",
-        "| of | by | what is said |", "|---|---|---|",
-        *(f"| {thing} | {name} | {said} |" for thing, name, said in refused()),
+        "Paths are held fixed: neither do refracted rays of smooth glass turn, nor do edges of",
+        "masks, shadows and silhouettes move. What that leaves of a derivative is incomplete, as",
+        "these rows show, where it is handed out on request (`PathTracer(allow_incomplete=True)`):",
+        "", *table(refused_rows, rows), "",
+        "All else refuses, whatever the scene, and says why:", "",
+        "| of | with respect to | what is said |", "|---|---|---|",
+        *(f"| {thing} | {name} | {said} |" for thing, name, said in refused(incomplete)),
     ]  # fmt: skip
     return lines

@@ -14,6 +14,7 @@ import numpy as np
 from photograd import delta_bsdf, phase
 from photograd.lights import EnvironmentMap, RegisteredLight
 from photograd.transport import Medium, PathOptions, PathTracer, Scene
+from photograd.transport.incomplete import TURNING
 from photograd.transport.scene import ALPHA, MODELS
 
 from tests.transport import difference_scenes as scenes
@@ -34,8 +35,6 @@ STEPS = {
 """Where a fifth of the range, or three tenths of the value, would be too long, or too short."""
 VEILED = ("lambert", "gltf_refraction", "mirror", "glass")
 """Coverage does not know what it covers: rough and smooth, with and without what lies behind."""
-MOVING = {"glass": ("eta",), "dispersive_glass": ("eta", "dispersion")}
-"""Of smooth models, what turns the directions of their lobes: these are held fixed."""
 GRAZING = ("sheen", "sheen_tint")
 """What is hardly seen from above."""
 OTHERS = {"map": "environment map", "mesh": "mesh light"}
@@ -60,13 +59,13 @@ class Row:
 
 @dataclass(frozen=True)
 class Case:
-    """A scene and the rows that it is for; `held`: their differences are known to be others."""
+    """A scene and the rows that it is for; `refused`: their derivatives are incomplete."""
 
     kind: str
     thing: str
     scene: Callable[[], Scene]
     rows: tuple[Row, ...]
-    held: bool = False
+    refused: bool = False
 
 
 def step_of(name: str, value: float, lo: float, hi: float) -> float:
@@ -84,9 +83,9 @@ def rows_of(thing: str, name: str, key: str, value: Any, lo: float, hi: float) -
 
 
 def models() -> Iterator[Case]:
-    """Every parameter of every model; what covers in part; and what is held of smooth glass."""
+    """Every parameter of every model, what covers in part, and what is refused of both."""
     for model in MODELS:
-        material, moving = scenes.own(model), MOVING.get(model, ())
+        material, (moving, _) = scenes.own(model), TURNING.get(model, ((), ""))
         rows = {
             p.name: tuple(rows_of(model, p.name, f"materials.own.{p.name}",
                                   material.values[p.name], p.lo, p.hi))
@@ -99,18 +98,19 @@ def models() -> Iterator[Case]:
             place = scenes.nook if smooth or flat else scenes.glint
             if chosen:
                 yield Case("model", model, lambda m=material, f=place: f(m), tuple(chosen))
-        turned = tuple(row for name in moving for row in rows[name])
+        turned = tuple(replace(row, thing=f"{model} ball") for p in moving for row in rows[p])
         if turned:
-            inside = tuple(replace(row, thing=f"{model} from inside") for row in turned)
-            held = tuple(replace(row, thing=f"{model} ball") for row in rows["eta"])
-            yield Case("model", model, lambda m=material: scenes.pane(m), turned)
-            yield Case("model", model, lambda m=material: scenes.pane_from_inside(m), inside)
-            yield Case("held", model, lambda m=material: scenes.nook(m), held, held=True)
+            yield Case("refused", model, lambda m=material: scenes.nook(m), turned, refused=True)
         if model not in VEILED:
             continue
         sheer = replace(material, values={**material.values, ALPHA.name: 0.7})
         row = Row(model, ALPHA.name, (), "materials.own.alpha", 0.25)
         yield Case("alpha", model, lambda m=sheer: scenes.nook(m), (row,))
+    edges = (
+        Row("mask", ALPHA.name, (), "materials.card.alpha", 0.1),
+        Row("mask", "texels", (1, 0, 0), "textures.t", 0.1),
+    )
+    yield Case("refused", "mask", scenes.mask, edges, refused=True)
 
 
 def lights() -> Iterator[Case]:

@@ -77,33 +77,6 @@ def glint(material: Material) -> Scene:
     return Scene("glint", shapes, materials, camera, DIM, (BULB,))
 
 
-def pane(material: Material) -> Scene:
-    """A ball above a pane, and below the pane an even sky: where light is refracted to is all one.
-
-    So the derivative with directions held is the whole derivative.
-    """
-    shapes = (
-        rectangle("floor", *FLOOR, "own"),
-        SphereShape("ball", np.array([0.0, 0.6, 0.0]), 0.4, "grey"),
-        rectangle("lamp", *LAMP, "black", SOFT),
-    )
-    camera = view(4, (0.0, 0.9, 1.9), (0.0, 0.2, 0.3))
-    even = Environment([0.5, 0.6, 0.9], [0.3, 0.35, 0.4], [0.3, 0.35, 0.4])
-    materials = {"own": material, "grey": GREY, "black": BLACK}
-    return Scene("pane", shapes, materials, camera, even, (BULB,))
-
-
-def pane_from_inside(material: Material) -> Scene:
-    """The pane from the side that counts as inside, an even sky above; nothing that scatters.
-
-    The camera looks steeply: all of what it sees refracts.
-    """
-    shapes = (rectangle("floor", *FLOOR, "own"),)
-    even = Environment([0.3, 0.35, 0.4], [0.3, 0.35, 0.4], [0.9, 0.6, 0.5])
-    camera = replace(view(4, (0.0, -1.5, 0.1), (0.0, 0.0, 0.0)))
-    return Scene("pane", shapes, {"own": material}, camera, even)
-
-
 def fog(medium: Medium) -> Scene:
     """A box of the medium before a dark sky, with a bulb behind it: light that has been turned.
 
@@ -123,3 +96,10 @@ def veil() -> Scene:
     """A card between lamp and floor whose coverage is painted."""
     painted = grey(0.8, textures={"alpha": TextureUse("t")})
     return shade(painted, size=4, textures={"t": checker()})
+
+
+def mask() -> Scene:
+    """The same card, cut out where its coverage is below a half."""
+    scene = veil()
+    card = replace(scene.materials["card"], alpha_cutoff=0.5)
+    return replace(scene, materials={**scene.materials, "card": card})

@@ -85,7 +85,7 @@ class Bench:
         """
         self.case, self.row, self.spp, self.paths = case, row, spp, paths
         self.number = zlib.crc32(row.name.encode())
-        self.tracer = PathTracer(case.scene(), dtype=np.float64)
+        self.tracer = PathTracer(case.scene(), dtype=np.float64, allow_incomplete=case.refused)
         self.start = {key: value.copy() for key, value in self.tracer.params.items()}
         shape = (self.tracer.scene.camera.height, self.tracer.scene.camera.width, 3)
         size = 0.5 + np.random.default_rng(self.number).random(shape)
@@ -124,7 +124,7 @@ class Bench:
 
     def bend(self, batch: int) -> float:
         """What is to be added to D(h), one batch."""
-        held = not self.case.held  # there, paths that are held lead to another mean
+        held = not self.case.refused  # there, paths that are held lead to another mean
         seed, h = self.seed("cut", batch), self.row.step
         return 4 / 3 * (self.slope(h / 2, seed, held=held) - self.slope(h, seed, held=held))
 

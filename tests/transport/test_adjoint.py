@@ -25,7 +25,7 @@ INDEPENDENT = PathOptions(max_depth=5, roulette_from=2, sampler="independent")
 
 def proof(scene: Scene, options: PathOptions = OPTIONS) -> tuple[Any, Any, dict[str, Any]]:
     """(function, backward, start) of the picture with paths held where `start` puts them."""
-    tracer = PathTracer(scene, dtype=np.float64)
+    tracer = PathTracer(scene, dtype=np.float64, allow_incomplete=True)
     start = {name: value.copy() for name, value in tracer.params.items()}
 
     def function(params: dict[str, Any]) -> Any:
@@ -139,7 +139,9 @@ def test_twice_is_twice_and_any_number_of_threads() -> None:
 @pytest.mark.parametrize("scene", [cornell_box, cornell_spheres])
 def test_float_agrees_with_double(scene: Any) -> None:
     # Single paths fall the other way at edges, where float rounds; the rest agrees to rounding.
-    tracers = [PathTracer(scene(12), dtype=t) for t in (np.float32, np.float64)]
+    tracers = [
+        PathTracer(scene(12), dtype=t, allow_incomplete=True) for t in (np.float32, np.float64)
+    ]
     a, b = (t.render(spp=8, seed=1).mean for t in tracers)
     same = np.isclose(a, b, rtol=1e-4, atol=1e-6).all(axis=2, keepdims=True)
     assert same.mean() > 0.97

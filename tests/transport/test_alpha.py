@@ -176,8 +176,7 @@ def test_a_mask_cuts_a_shape_out() -> None:
     d = PathTracer(shade(cut, textures={"t": mask})).render_backward(
         np.ones((6, 6, 3)), spp=16, seed=4
     )
-    assert (d["textures.t"] == 0).all()
-    assert d["materials.card.alpha"] == 0
+    assert not {"textures.t", "materials.card.alpha"} & d.keys()  # edges would move
     assert np.abs(d["materials.card.albedo"]).max() > 0
 
 

@@ -47,7 +47,8 @@ UnknownOption = Annotated[
     typer.Option(
         "--unknown",
         help="A parameter to find: materials.NAME.PARAMETER, textures.NAME, emission.SHAPE, "
-        "lights.INDEX.PARAMETER; NAME=0.5 begins at a value. May be repeated.",
+        "lights.INDEX.PARAMETER; NAME=0.5 begins at a value. May be repeated. Refused where the "
+        "derivative is incomplete: eta of smooth glass, a mask's alpha.",
     ),
 ]
 OutOption = Annotated[Path, out_option("Folder for the result and checkpoints.")]

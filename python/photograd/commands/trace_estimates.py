@@ -14,6 +14,7 @@ from photograd.data.image_write import write_exr, write_png
 from photograd.errors import RangeError, message
 from photograd.transport.accumulation import Accumulation
 from photograd.transport.derivative import add_derivative_samples, direction_of
+from photograd.transport.incomplete import require_whole
 from photograd.transport.photons import PhotonMap
 from photograd.transport.tracer import PathOptions, PathTracer
 
@@ -26,8 +27,9 @@ DerivativeOption = Annotated[
     typer.Option(
         "--derivative",
         metavar="PARAMETER",
-        help="Draw the derivative by this parameter, such as materials.red.albedo[0] or "
-        "textures.wood, whose texels then rise together.",
+        help="Draw the derivative with respect to this parameter, such as "
+        "materials.red.albedo[0] or textures.wood, whose texels then rise together. Refused where "
+        "it is incomplete: eta of smooth glass, a mask's alpha.",
     ),
 ]
 PhotonsOption = Annotated[
@@ -76,7 +78,8 @@ class Estimate:
         """What adds samples to `sums`, from where they stand.
 
         Raises:
-            RangeError: no such parameter, or photons without lights.
+            RangeError: no such parameter, one whose derivative is incomplete, or photons without
+                lights.
         """
         if self.derivative:
             return self._add_derivative(tracer, sums)
@@ -89,6 +92,7 @@ class Estimate:
 
     def _add_derivative(self, tracer: PathTracer, sums: Accumulation) -> Callable[[int], None]:
         along = direction_of(tracer.params, self.derivative)
+        require_whole("trace", "--derivative", along, tracer.incomplete)
         picture = Accumulation.empty(*sums.radiance.shape[:2])
         picture.count = sums.count
         return lambda n: add_derivative_samples(

@@ -42,9 +42,10 @@ class MarchPolicy:
     """How a field is marched through.
 
     lattice: "origin" puts samples at multiples of `dt` from the ray's origin, "entry" from the
-    point where it enters the box. quadrature: "alpha" (1 - exp(-sigma_t dt), second order) or
-    "riemann" (sigma_t dt, first order, kept for the lesson). border: "clamp" continues the
-    outermost voxels, "zero" fades to nothing over one voxel.
+    point where it enters the box; that has no derivatives with respect to the camera.
+    quadrature: "alpha" (1 - exp(-sigma_t dt), second order) or "riemann" (sigma_t dt, first order,
+    kept for the lesson). border: "clamp" continues the outermost voxels, "zero" fades to nothing
+    over one voxel.
 
     Raises:
         DtypeError: a number that is none.
@@ -140,8 +141,9 @@ def march(
     `fused=False` forces the staged form, the readable oracle of the dense grid's kernel. `t_max`
     (R,) ends each ray at that distance, infinity included: samples beyond are left out. Raises
     Error if a parameter or an output is not finite, RangeError for rays that are not finite or
-    whose directions are not of length one; they are named by their pixel.
+    whose directions are not of length one, named by their pixel, or as `check_camera_adjoint`.
     """
+    check_camera_adjoint("march", policy, options)
     checked_values("march", "parameters", parameters)
     settings = policy.settings(options.stop)
     origins, directions, t0, samples = checked_rays(
@@ -184,6 +186,21 @@ def march_backward(context: MarchContext, d_outputs: Outputs) -> dict[str, Array
         gradients["parameters"], gradients.get("origins"), gradients.get("directions"), c.fused,
     )  # fmt: skip
     return gradients
+
+
+def check_camera_adjoint(function: str, policy: MarchPolicy, options: RenderOptions) -> None:
+    """Refuse derivatives with respect to the camera where samples hang on the point of entry.
+
+    That point moves with the camera; the adjoint holds all t fixed and would leave its part out.
+
+    Raises:
+        RangeError: `camera_adjoint` with the lattice "entry".
+    """
+    if options.camera_adjoint and policy.lattice == "entry":
+        got = "'entry', whose samples move with the point where a ray enters the box"
+        remedy = "MarchPolicy(lattice='origin') has the whole derivative"
+        expected = "a lattice with a whole derivative with respect to the camera"
+        raise RangeError(message(function, "options.camera_adjoint", expected, got, remedy))
 
 
 def checked_rays(

@@ -20,7 +20,13 @@ from photograd.core import _core
 from photograd.errors import DtypeError, RangeError, ShapeError, message
 from photograd.fields.active_voxels import ActiveVoxels, dilated, resampled_mask
 from photograd.fields.dense_grid import START_COLOR, DenseGrid, cubic_voxels
-from photograd.fields.march import MarchPolicy, checked_rays, checked_values, require_finite_image
+from photograd.fields.march import (
+    MarchPolicy,
+    check_camera_adjoint,
+    checked_rays,
+    checked_values,
+    require_finite_image,
+)
 from photograd.memory import require_room
 from photograd.representation import (
     Array,
@@ -192,6 +198,7 @@ class SparseSh(Representation):
         self, batch: RayBatch, *, seed: int, step: int, options: RenderOptions
     ) -> tuple[Outputs, SparseContext]:
         """Colour (R, 3) linear, premultiplied, without background; opacity (R,); depth (R,) m."""
+        check_camera_adjoint("SparseSh.render", self.policy, options)
         density, coefficients = self.params["density"], self.params["sh"]
         checked_values("SparseSh.render", "density", density)
         checked_values("SparseSh.render", "sh", coefficients)

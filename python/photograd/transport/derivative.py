@@ -1,7 +1,8 @@
 """Derivative pictures: how every pixel changes with one number of a scene.
 
 The mathematics is in cpp/photograd/render/path_tangent.h. Where `PathTracer.render_backward` gives
-the derivatives of one number by all parameters, this gives the derivative of all pixels by one.
+the derivatives of one number with respect to all parameters, this gives the derivative of all
+pixels with respect to one.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from photograd.core import _core
 from photograd.data.camera import Camera
 from photograd.errors import RangeError, ShapeError, message
 from photograd.transport.accumulation import Accumulation
+from photograd.transport.incomplete import changed_names, require_whole
 from photograd.transport.scene import Array
 from photograd.transport.tracer import DEFAULTS, PathOptions, PathTracer
 
@@ -62,7 +64,8 @@ def derivative_image(
 
     Both are linear radiance (H, W, 3); the derivative is per unit of the parameter. Paths and their
     weights are held fixed, as in `PathTracer.render_backward`, whose interior term this is: edges
-    of shadows and silhouettes do not move. In float64, whatever the tracer's dtype.
+    of shadows and silhouettes do not move. Parameters for which that is not the whole derivative
+    are refused. In float64, whatever the tracer's dtype.
 
     Args:
         tracer: the scene, at its present `params`.
@@ -77,7 +80,8 @@ def derivative_image(
         The picture, and its derivative.
 
     Raises:
-        RangeError: spp below 1, no such parameter, or a change that is not finite.
+        RangeError: spp below 1, no such parameter, one whose derivative is incomplete, or a change
+            that is not finite.
         ShapeError: a change of another shape than its parameter.
         Error: radiance that is not finite; names the pixel.
     """
@@ -107,6 +111,7 @@ def add_derivative_samples(
         expected = f"{picture.count} samples, as of the picture"
         raise RangeError(message("derivative_image", "derivative", expected, derivative.count))
     step = direction_of(tracer.params, along) if isinstance(along, str) else along
+    require_whole("derivative_image", "along", changed_names(step), tracer.incomplete)
     changes = tracer.wide_changes(_whole_direction(tracer.params, step))
     _core.trace_paths_tangent(
         **tracer.wide_arguments(camera=view),

@@ -55,7 +55,7 @@ class Material:
             parameter's range.
         normal_map: bends the shading normals, or None.
         alpha_cutoff: of a mask, or None: where alpha times its texture is at least this, the
-            surface covers all, elsewhere nothing. A mask has no derivative by alpha.
+            surface covers all, elsewhere nothing. A mask has no derivative with respect to alpha.
 
     Raises:
         SceneError: no such model, or a cutoff without alpha.

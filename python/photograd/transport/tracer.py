@@ -23,6 +23,7 @@ from photograd.transport.core_arrays import (
     mean_emission,
     textures_of,
 )
+from photograd.transport.incomplete import WholeGradients, incomplete_derivatives
 from photograd.transport.light_list import light_shapes, listed_lights
 from photograd.transport.media_list import ListedMedia
 from photograd.transport.motion import closing_arrays, refuse_motion
@@ -101,10 +102,15 @@ class PathTracer:
             tracer was built: pictures stay right, but a tracer that is built again is less noisy
             where a light has become much stronger. Places and directions of lights are fixed;
             "media.NAME.sigma_t" and ".albedo" (3,), ".g" (), ".density" (X, Y, Z).
+        incomplete: {name: what is missing} of those params whose derivative is not handed out.
     """
 
-    def __init__(self, scene: Scene, *, dtype: npt.DTypeLike = np.float32) -> None:
+    def __init__(
+        self, scene: Scene, *, dtype: npt.DTypeLike = np.float32, allow_incomplete: bool = False
+    ) -> None:
         """Build the hierarchy.
+
+        With `allow_incomplete`, incomplete derivatives are handed out: the part with paths fixed.
 
         Raises:
             DtypeError: dtype is neither float32 nor float64.
@@ -115,6 +121,7 @@ class PathTracer:
             expected = "float32 or float64"
             raise DtypeError(message("PathTracer", "dtype", expected, self.dtype))
         self.scene = scene
+        self.incomplete = {} if allow_incomplete else incomplete_derivatives(scene)
         self._lights = listed_lights(scene)
         self._media = ListedMedia(scene)
         names = {name: number for number, name in enumerate(scene.materials)}
@@ -229,7 +236,8 @@ class PathTracer:
         With the seed and spp of a rendering it is the derivative of that very picture, its paths
         held fixed. To fit, take another seed: the noise of `d_image` then has nothing to do with
         this estimate's, and their product is right on average. Geometry is held fixed: edges of
-        shadows and silhouettes, and the directions into which smooth glass refracts.
+        shadows and silhouettes. What that leaves incomplete (`incomplete.py`) is absent from the
+        result, and asking for it raises.
 
         Args:
             d_image: dL/dimage (H, W, 3).
@@ -252,13 +260,13 @@ class PathTracer:
         if spp < 1:
             raise RangeError(message("PathTracer", "spp", "at least 1", spp))
         return self.add_up(
-            _core.trace_paths_backward, view, options=options.numbers(seed), spp=spp,
-            counts=sample_counts(d_image, spp, spread),
+            "render_backward", _core.trace_paths_backward, view,
+            options=options.numbers(seed), spp=spp, counts=sample_counts(d_image, spp, spread),
             d_image=np.ascontiguousarray(d_image, np.float64),
         )  # fmt: skip
 
-    def add_up(self, backward: Any, view: Camera, **given: Any) -> dict[str, Array]:
-        """What an adjoint of the core adds to zeros, by the names of `params`."""
+    def add_up(self, function: str, backward: Any, view: Camera, **given: Any) -> WholeGradients:
+        """What an adjoint of the core adds to zeros, by names of `params`, for a `function`."""
         arguments = self._arguments(view)
         d_rows = np.zeros_like(arguments["parameters"])
         d_emission = np.zeros_like(arguments["emission"])
@@ -286,7 +294,7 @@ class PathTracer:
         for light, derivative in zip(self._lights, d_lights, strict=True):
             gradients.update(light.named(derivative))
         gradients.update(self._media.named(d_media, d_densities))
-        return {name: gradients[name] for name in self.params}
+        return WholeGradients(function, gradients, self.params, self.incomplete)
 
     def add_occlusion(
         self, sums: Accumulation, spp: int, *, seed: int, radius: float = np.inf

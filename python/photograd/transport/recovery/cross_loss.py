@@ -31,6 +31,7 @@ from photograd.core import _core
 from photograd.data.camera import Camera
 from photograd.errors import RangeError, ShapeError, message
 from photograd.transport.accumulation import Accumulation
+from photograd.transport.incomplete import WholeGradients, require_whole
 from photograd.transport.sample_counts import pair_counts
 from photograd.transport.tracer import DEFAULTS, PathOptions, PathTracer
 
@@ -58,16 +59,16 @@ def loss_and_gradients(
     camera: Camera | None = None, options: PathOptions = DEFAULTS,
     names: Iterable[str] | None = None, spread: str = "even",
 ) -> tuple[float, dict[str, Array]]:  # fmt: skip
-    """The loss of two half pictures, and its derivative by the tracer's parameters.
+    """The loss of two half pictures, and its derivative with respect to the tracer's parameters.
 
     Args:
-        tracer: whose `params` are those to differentiate by.
+        tracer: whose `params` are those to differentiate with respect to.
         target, weight: (H, W, 3), linear radiance, and what squares are multiplied by.
         spp: samples a pixel of each half; powers of two are spread most evenly.
         seeds: of the two halves. Two equal ones give the derivative of mean w (a - t)^2, which is
             biased.
         camera, options: as for `PathTracer.render`.
-        names: of the parameters wanted; None for all.
+        names: of the parameters wanted; None for all whose derivative is whole.
         spread: "even" gives each pixel as many samples; "cotangent" more to those that are noisy
             and far from the target (sample_counts.py), as one sample in `PILOT` finds out first.
 
@@ -76,8 +77,11 @@ def loss_and_gradients(
         of paths held fixed.
 
     Raises:
-        As `PathTracer.render` and `render_backward`.
+        As `PathTracer.render` and `render_backward`; RangeError: names whose derivative is
+        incomplete.
     """
+    wanted = None if names is None else list(names)
+    require_whole("loss_and_gradients", "names", wanted or (), tracer.incomplete)
     view = tracer.scene.camera if camera is None else camera
     shape = (view.height, view.width, 3)
     given = {"target": target, "weight": weight}
@@ -97,12 +101,14 @@ def loss_and_gradients(
         counts = pair_counts(pilot, weight * (pilot.mean - target), spp, spread)
     halves = np.zeros((2, *shape))
     found = tracer.add_up(
-        _core.trace_pairs_backward, view, options=options.numbers(seeds[0]), other_seed=seeds[1],
+        "loss_and_gradients", _core.trace_pairs_backward, view,
+        options=options.numbers(seeds[0]), other_seed=seeds[1],
         spp=spp, counts=counts, pictures=halves,
         target=np.ascontiguousarray(target, np.float64),
         weight=np.ascontiguousarray(weight, np.float64) / np.size(weight),
     )  # fmt: skip
     Accumulation(halves.sum(axis=0), halves.sum(axis=0), 2).check_finite("loss_and_gradients")
-    wanted = found if names is None else names
-    gradients = {name: found[name].astype(np.float64) for name in wanted}
+    wide = {name: d.astype(np.float64) for name, d in found.items()}
+    names = wide if wanted is None else wanted
+    gradients = WholeGradients("loss_and_gradients", wide, names, tracer.incomplete)
     return cross_loss(halves[0], halves[1], target, weight), gradients

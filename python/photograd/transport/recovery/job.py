@@ -61,7 +61,8 @@ class Recovery:
         """Check everything, and begin at the unknowns' starts.
 
         Raises:
-            RangeError: no unknown, one twice, one that the scene does not have, or out of bounds.
+            RangeError: no unknown, one twice, one that the scene does not have or whose derivative
+                is incomplete, or out of bounds.
             ShapeError: no picture, or one that its camera does not take.
         """
         self.scene = scene

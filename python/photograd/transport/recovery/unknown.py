@@ -11,6 +11,7 @@ import numpy.typing as npt
 from photograd_course.suggest import choose_from
 
 from photograd.errors import RangeError, ShapeError, message
+from photograd.transport.incomplete import require_whole
 from photograd.transport.recovery.activation import KINDS, Activation
 from photograd.transport.scene import Scene
 from photograd.transport.tracer import PathTracer
@@ -77,13 +78,15 @@ class Unknown:
         """The first value, float64, of the parameter's shape.
 
         Raises:
-            RangeError: no such parameter, or a start that is not finite or out of bounds.
+            RangeError: no such parameter, one whose derivative is incomplete, or a start that is
+                not finite or out of bounds.
             ShapeError: a start of another shape.
         """
         if self.name not in tracer.params:
             known = choose_from(self.name, tracer.params)
             expected = "a parameter of the scene"
             raise RangeError(message("recover", "unknowns", expected, f"'{self.name}'", known))
+        require_whole("recover", "unknowns", [self.name], tracer.incomplete)
         own = np.asarray(tracer.params[self.name], np.float64)
         if self.start is None:
             return own.copy()

@@ -33,6 +33,8 @@ def recover(
     [Vicini2021].
 
     Geometry is not among the unknowns: edges of shadows and silhouettes have no derivative here.
+    Neither is what has an incomplete one (`incomplete.py`): a search would walk away from the
+    truth. For eta of smooth glass, take the rough model, `rough_dielectric`.
 
     Args:
         scene: with shapes, cameras and all that is known; for the unknowns a first guess.
@@ -48,7 +50,8 @@ def recover(
         Values, the scene with them, losses and curves.
 
     Raises:
-        RangeError: unknowns that the scene does not have, starts out of bounds, a checkpoint of
+        RangeError: unknowns that the scene does not have or whose derivative is incomplete, starts
+            out of bounds, a checkpoint of
             another recovery, a folder that holds one already without `resume`.
         ShapeError: pictures that their cameras do not take.
         IoError: a checkpoint that cannot be written, or is not there to resume from.
