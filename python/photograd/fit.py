@@ -58,6 +58,7 @@ from photograd.fit_options import FitOptions
 from photograd.fit_rays import background_color, ray_slope
 from photograd.fit_result import FitResult, Progress
 from photograd.fit_views import view_slope
+from photograd.imaging import decibels
 from photograd.model import Model, model_of
 from photograd.pixels import TrainingPixels
 from photograd.representation import Array
@@ -187,7 +188,7 @@ class Fit:
             return slope.loss, slope.gradients
         assert not isinstance(model, GaussianScene)
         loss, gradients = ray_slope(model, self.pixels, chosen, *rest)
-        self.batch_psnr = float(-10 * np.log10(max(loss, 1e-12)))
+        self.batch_psnr = decibels(loss)
         return loss, gradients
 
     def background_color(self, count: int) -> Array:

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Self
 
 import numpy as np
+from photograd_course.portable_math import log
 from photograd_course.random import uniform
 from photograd_course.row_map import RowMap
 
@@ -130,7 +131,7 @@ class SparseSh(Representation):
         active = ActiveVoxels(np.ones(dense.density.shape, bool))
         density = np.full(len(active), dense.density.flat[0], dtype)
         coefficients = np.zeros((len(active), sh.count(degree), 3), dtype)
-        coefficients[:, 0] = np.log(START_COLOR / (1 - START_COLOR)) / sh.Y_0
+        coefficients[:, 0] = log(START_COLOR / (1 - START_COLOR)) / sh.Y_0
         start = float(dense.density.flat[0])
         return cls(active, density, coefficients, policy, background_density=start)
 
