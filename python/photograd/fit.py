@@ -55,6 +55,7 @@ from photograd.fit_checks import (
     require_startable,
 )
 from photograd.fit_options import FitOptions
+from photograd.fit_pruning import prune_voxels
 from photograd.fit_rays import background_color, ray_slope
 from photograd.fit_result import FitResult, Progress
 from photograd.fit_views import view_slope
@@ -67,7 +68,6 @@ from photograd.snapshots import save_snapshot, snapshot_steps
 from photograd.splats.surface_points import surface_points
 from photograd.training_views import TrainingViews
 
-PRUNING_RAYS = 1 << 20  # from all views; what they do not need is dropped from a sparse grid
 PRUNE_AT = 0.5  # fraction of the steps; before that, pruning goes along with refining
 
 
@@ -319,15 +319,16 @@ class Fit:
             self.optimiser.resample(group, np.zeros_like)
 
     def _prune(self) -> None:
-        """Drop voxels of a sparse grid that no pixel of any view needs."""
+        """Drop voxels of a sparse grid that no view needs, and that do not want density."""
         if not isinstance(self.model, SparseSh) or isinstance(self.model, DenseSh):
             return
         if self.options.prune == 0:
             return
         assert isinstance(self.pixels, TrainingPixels)
-        weight = self.model.greatest_weights(self.pixels.batches(PRUNING_RAYS))
-        statistics = {"weight": weight, "threshold": np.array(self.options.prune)}
-        rows = self.model.refine(self.step_number, statistics)
+        rows = prune_voxels(
+            self.model, self.pixels, self.loss_and_gradients,
+            threshold=self.options.prune, step=self.step_number,
+        )  # fmt: skip
         if rows is not None:
             self.optimiser.apply_row_map(rows, self.model.params)
 

@@ -280,13 +280,16 @@ class SparseSh(Representation):
     def refine(self, step: int, statistics: Mapping[str, Array]) -> RowMap | None:
         """Drop voxels with statistics["weight"] (N,) below statistics["threshold"], then dilate.
 
+        Where statistics["wanted"] (N,) bool is given and true, a voxel stays whatever it weighs.
         Every voxel next to one that stays is kept, or made anew with the background's density and
-        no colour. Nothing happens without these statistics.
+        no color. Nothing happens without these statistics.
         """
         del step
         if "weight" not in statistics:
             return None
         stays = statistics["weight"] >= statistics["threshold"]
+        if "wanted" in statistics:
+            stays = stays | statistics["wanted"]
         mask = np.zeros(self.active.shape, bool)
         i, j, k = self.active.voxels[stays].T
         mask[i, j, k] = True

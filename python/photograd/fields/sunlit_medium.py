@@ -29,8 +29,8 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
-from photograd_course.portable_math import norm
 from numpy.typing import ArrayLike
+from photograd_course.portable_math import norm
 
 from photograd.errors import DtypeError, RangeError, ShapeError, message
 from photograd.fields.march import MarchContext, MarchPolicy, march, march_backward
