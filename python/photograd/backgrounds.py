@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 from photograd_course.color import srgb_decode
+from photograd_course.portable_math import log, sigmoid
 from photograd_course.random import uniform
 
 from photograd.representation import Array
@@ -31,14 +32,12 @@ def first_background(mean: Array) -> Array:
 
 def raw_background(color: Array) -> Array:
     """Raw parameter (3,) float32 whose `learned_background` is this linear colour in (0, 1)."""
-    raw: Array = np.log(color / (1 - color)).astype(np.float32)
-    return raw
+    return log(color / (1 - color)).astype(np.float32)
 
 
 def learned_background(raw: Array) -> Array:
     """Linear colour (3,) of the raw parameter (3,): sigmoid(raw)."""
-    color: Array = 1 / (1 + np.exp(-raw))
-    return color
+    return sigmoid(raw)
 
 
 def learned_background_backward(raw: Array, d_color: Array) -> Array:

@@ -54,9 +54,11 @@ from photograd.fit_checks import (
 )
 from photograd.fit_memory import require_room_to_refine, require_room_to_start
 from photograd.fit_options import FitOptions
+from photograd.fit_pruning import prune_voxels
 from photograd.fit_rays import background_color, ray_slope
 from photograd.fit_result import FitResult, Progress
 from photograd.fit_views import view_slope
+from photograd.imaging import decibels
 from photograd.model import Model, model_of
 from photograd.pixels import TrainingPixels
 from photograd.representation import Array
@@ -65,7 +67,6 @@ from photograd.snapshots import save_snapshot, snapshot_steps
 from photograd.splats.surface_points import surface_points
 from photograd.training_views import TrainingViews
 
-PRUNING_RAYS = 1 << 20  # from all views; what they do not need is dropped from a sparse grid
 PRUNE_AT = 0.5  # fraction of the steps; before that, pruning goes along with refining
 
 
@@ -187,7 +188,7 @@ class Fit:
             return slope.loss, slope.gradients
         assert not isinstance(model, GaussianScene)
         loss, gradients = ray_slope(model, self.pixels, chosen, *rest)
-        self.batch_psnr = float(-10 * np.log10(max(loss, 1e-12)))
+        self.batch_psnr = decibels(loss)
         return loss, gradients
 
     def background_color(self, count: int) -> Array:
@@ -318,15 +319,16 @@ class Fit:
             self.optimiser.resample(group, np.zeros_like)
 
     def _prune(self) -> None:
-        """Drop voxels of a sparse grid that no pixel of any view needs."""
+        """Drop voxels of a sparse grid that no view needs, and that do not want density."""
         if not isinstance(self.model, SparseSh) or isinstance(self.model, DenseSh):
             return
         if self.options.prune == 0:
             return
         assert isinstance(self.pixels, TrainingPixels)
-        weight = self.model.greatest_weights(self.pixels.batches(PRUNING_RAYS))
-        statistics = {"weight": weight, "threshold": np.array(self.options.prune)}
-        rows = self.model.refine(self.step_number, statistics)
+        rows = prune_voxels(
+            self.model, self.pixels, self.loss_and_gradients,
+            threshold=self.options.prune, step=self.step_number,
+        )  # fmt: skip
         if rows is not None:
             self.optimiser.apply_row_map(rows, self.model.params)
 

@@ -15,6 +15,7 @@ from photograd.backgrounds import (
 )
 from photograd.fields.gaussians import GaussianScene
 from photograd.fit_options import FitOptions
+from photograd.imaging import decibels
 from photograd.picture_loss import picture_loss, picture_loss_backward
 from photograd.representation import Array, ImageBatch, RenderOptions
 from photograd.training_views import TrainingView
@@ -55,7 +56,7 @@ def view_slope(
     if raw_background is not None:
         d_linear = srgb_encode_backward(learned_background(raw_background), d_background)
         gradients["background"] = learned_background_backward(raw_background, d_linear)
-    return Slope(loss.value, float(-10 * np.log10(max(loss.mean_square, 1e-12))), gradients)
+    return Slope(loss.value, decibels(loss.mean_square), gradients)
 
 
 def display_background(raw: Array | None, kind: str, *, seed: int, step: int) -> Array:

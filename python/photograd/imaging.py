@@ -24,9 +24,12 @@ from photograd_course.color import (
     srgb_encode_backward,
 )
 from photograd_course.losses import l2, l2_backward
+from photograd_course.portable_math import log
 
 from photograd.errors import ShapeError, message
 from photograd.representation import Array, Outputs
+
+LN_10 = 2.302585092994046
 
 
 @dataclass(frozen=True)
@@ -83,3 +86,8 @@ def image_loss_backward(loss: ImageLoss) -> tuple[Outputs, Array]:
     )
     _, _, d_behind = composite_over_backward(loss.photograph, loss.alpha, loss.background, d_truth)
     return Outputs(d_color, d_opacity), d_background + d_behind
+
+
+def decibels(mean_square: float) -> float:
+    """PSNR in dB of a mean squared error against a peak of 1, at most 120."""
+    return -10.0 / LN_10 * float(log(max(mean_square, 1e-12)))

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from photograd.backgrounds import learned_background
 from photograd.checkpoint import Checkpoint, load_checkpoint
 from photograd.errors import IoError, message
 from photograd.fields.fitted import FittedField, saved_field
@@ -47,5 +48,5 @@ def model_of(saved: Checkpoint, path: Path) -> Model:
                     f"one without ({failure})", "the file is from another version or damaged")
         ) from failure  # fmt: skip
     raw = saved.params.get("background")
-    background = None if raw is None else 1 / (1 + np.exp(-raw.astype(np.float64)))
+    background = None if raw is None else learned_background(raw.astype(np.float64))
     return Model(field, background, options, saved.meta, saved.history)

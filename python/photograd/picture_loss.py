@@ -65,6 +65,6 @@ def picture_loss_backward(loss: PictureLoss) -> tuple[Outputs, Array]:
     d_image = np.sign(loss.image - loss.truth) * loss.image.dtype.type(share)
     if loss.d_ssim is not None:
         d_image -= loss.ssim_weight * loss.d_ssim
-    d_opacity = -(d_image @ loss.background)
+    d_opacity = -(d_image * loss.background).sum(axis=-1)
     d_background = np.einsum("hwc,hw->c", d_image, 1 - loss.opacity)
     return Outputs(d_image.reshape(-1, 3), d_opacity.ravel()), d_background

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from photograd_course.portable_math import matmul
 
 from photograd.errors import ShapeError, message
 from photograd.representation import Array
@@ -24,5 +25,5 @@ def rotation_matrices(quats: Array) -> Array:
     w, x, y, z = (np.where(length > 0, q / np.where(length > 0, length, 1), [1, 0, 0, 0])).T
     zero = np.zeros_like(w)
     cross = np.stack([zero, -z, y, z, zero, -x, -y, x, zero], axis=-1).reshape(-1, 3, 3)
-    turned: Array = np.eye(3) + 2 * w[:, None, None] * cross + 2 * cross @ cross
+    turned: Array = np.eye(3) + 2 * w[:, None, None] * cross + 2 * matmul(cross, cross)
     return turned

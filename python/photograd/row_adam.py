@@ -10,6 +10,7 @@ import math
 
 import numpy as np
 from photograd_course.optim import Adam, Gradient
+from photograd_course.portable_math import integer_power
 
 from photograd.core import _core
 from photograd.representation import Array
@@ -27,8 +28,8 @@ class RowAdam(Adam):
             self._steps[name] = 0
         self._steps[name] += 1
         step = self._steps[name]
-        root = math.sqrt(1.0 - self.beta_2**step)
-        length = rate * root / (1.0 - self.beta_1**step)
+        root = math.sqrt(1.0 - integer_power(self.beta_2, step))
+        length = rate * root / (1.0 - integer_power(self.beta_1, step))
         p, g, mean, mean_square = (
             a.reshape(len(a), -1)
             for a in (

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from photograd.core import _core
+from photograd_course import portable_math
 from photograd_course.random import philox4x32, uniform
 
 # Bounds: the polynomials' remainders (5e-9, 4e-18) plus two to four roundings of each type.
@@ -41,6 +42,13 @@ def test_exp_saturates_instead_of_overflowing() -> None:
     assert 0 < low < 1e-37
     assert np.isfinite(high)
     assert high > 1e38
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+@pytest.mark.parametrize("name", ["exp", "expm1"])
+def test_both_languages_have_the_same_exponentials(name: str, dtype: Any) -> None:
+    x = np.linspace(-800, 800, 200001).astype(dtype)
+    assert np.array_equal(getattr(_core, name)(x), getattr(portable_math, name)(x))
 
 
 def test_philox_is_the_same_in_both_languages() -> None:

@@ -99,6 +99,16 @@ def test_pruning_keeps_what_weighs_and_its_neighbours() -> None:
     assert field.refine(2, {}) is None
 
 
+def test_what_wants_density_stays_whatever_it_weighs() -> None:
+    field = SparseSh.example(seed=3)
+    old, weight = field.active, np.zeros(len(field.active))
+    wanted = np.random.default_rng(4).random(len(old)) < 0.02
+    mask = np.zeros(old.shape, bool)
+    mask[tuple(old.voxels[wanted].T)] = True
+    field.refine(1, {"weight": weight, "threshold": np.array(0.5), "wanted": wanted})
+    assert np.array_equal(field.active.mask, dilated(mask))
+
+
 def test_a_rendering_keeps_the_topology_that_it_was_made_with() -> None:
     field = SparseSh.example(seed=4)
     batch = field.example_batch(seed=4)

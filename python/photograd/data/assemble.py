@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 from photograd_course.errors import Error, IoError, SceneError, message
+from photograd_course.portable_math import matmul
 
 from .camera import Camera
 from .frames import FloatArray
@@ -172,8 +173,7 @@ def box_corners(box: FloatArray) -> FloatArray:
 
 def transform_points(world_from_source: FloatArray, points: FloatArray) -> FloatArray:
     """Points (N, 3) of the file's world in ours."""
-    moved: FloatArray = points @ world_from_source[:3, :3].T + world_from_source[:3, 3]
-    return moved
+    return matmul(points, world_from_source[:3, :3].T) + world_from_source[:3, 3]
 
 
 def background_of(has_alpha: bool) -> tuple[float, float, float] | None:

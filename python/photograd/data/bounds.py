@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from photograd_course.errors import SceneError, message
+from photograd_course.portable_math import matmul, norm
 
 from .capture import Capture
 from .convention import meeting_of_axes
@@ -96,7 +97,7 @@ def _hull(capture: Capture) -> FloatArray | None:
     half = 0.0
     for view in views:
         camera = view.camera
-        distance = float(np.linalg.norm(camera.position - centre))
+        distance = norm(camera.position - centre)
         half = max(half, 0.5 * distance * camera.width / camera.fx)
         half = max(half, 0.5 * distance * camera.height / camera.fy)
     box = visual_hull_box(silhouettes, np.stack([centre - half, centre + half]))
@@ -110,7 +111,7 @@ def _frustum(capture: Capture, depth: float) -> FloatArray:
         x = (np.array([0.0, camera.width]) - camera.cx) / camera.fx * depth
         y = (np.array([0.0, camera.height]) - camera.cy) / camera.fy * depth
         local = np.array([[a, b, depth] for a in x for b in y])
-        corners.append(local @ camera.world_from_camera[:3, :3].T + camera.position)
+        corners.append(matmul(local, camera.world_from_camera[:3, :3].T) + camera.position)
     return np.concatenate(corners)
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 from photograd_course.errors import DtypeError, RangeError, ShapeError, message
+from photograd_course.portable_math import matmul
 
 from .frames import FloatArray, check_pose, invert_rigid
 
@@ -91,7 +92,7 @@ class Camera:
         y = (ids // self.width + 0.5 - self.cy) / self.fy
         local = np.stack([x, y, np.ones_like(x)], axis=-1)
         local /= np.linalg.norm(local, axis=-1, keepdims=True)
-        directions = local @ self.world_from_camera[:3, :3].T
+        directions = matmul(local, self.world_from_camera[:3, :3].T)
         origins = np.broadcast_to(self.position, directions.shape).copy()
         return origins, directions
 
@@ -107,7 +108,7 @@ class Camera:
         if points.ndim != 2 or points.shape[1] != 3:
             raise ShapeError(message("project", "points", "shape (N, 3)", points.shape))
         camera_from_world = invert_rigid(self.world_from_camera)
-        local = points @ camera_from_world[:3, :3].T + camera_from_world[:3, 3]
+        local = matmul(points, camera_from_world[:3, :3].T) + camera_from_world[:3, 3]
         depth = local[:, 2]
         safe = np.where(depth > 0.0, depth, np.nan)
         pixels = np.stack(

@@ -12,6 +12,7 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 from photograd_course.errors import RangeError, SceneError, ShapeError, message
+from photograd_course.portable_math import cos, matmul, norm, sin
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
@@ -54,12 +55,12 @@ def check_pose(function: str, argument: str, matrix: FloatArray) -> FloatArray:
         largest = float(np.abs(matrix).max())
         raise RangeError(message(function, argument, "entries below 1e9", f"{largest:.3g}"))
     rotation = matrix[:3, :3]
-    deviation = float(np.abs(rotation.T @ rotation - np.eye(3)).max())
+    deviation = float(np.abs(matmul(rotation.T, rotation) - np.eye(3)).max())
     remedy = "a pose holds a rotation and a translation, no scale or shear"
     if deviation > RIGID_TOLERANCE:
         got = f"columns that deviate by {deviation:.3g} from orthonormal"
         raise SceneError(message(function, argument, "a rigid pose", got, remedy))
-    if float(np.linalg.det(rotation)) < 0.0:
+    if float((np.cross(rotation[0], rotation[1]) * rotation[2]).sum()) < 0.0:
         got = "a reflection, determinant -1"
         raise SceneError(message(function, argument, "a rotation, determinant +1", got, remedy))
     if float(np.abs(matrix[3] - [0.0, 0.0, 0.0, 1.0]).max()) > RIGID_TOLERANCE:
@@ -71,13 +72,13 @@ def invert_rigid(matrix: FloatArray) -> FloatArray:
     """Inverse of a (4, 4) rigid transform through the transpose, exact to rounding."""
     inverse = np.eye(4)
     inverse[:3, :3] = matrix[:3, :3].T
-    inverse[:3, 3] = -matrix[:3, :3].T @ matrix[:3, 3]
+    inverse[:3, 3] = -matmul(matrix[:3, :3].T, matrix[:3, 3])
     return inverse
 
 
 def rotation_from_quaternion(quaternion: FloatArray) -> FloatArray:
     """(3, 3) rotation of a quaternion (w, x, y, z) of any non-zero length."""
-    w, x, y, z = np.asarray(quaternion, dtype=np.float64) / np.linalg.norm(quaternion)
+    w, x, y, z = np.asarray(quaternion, dtype=np.float64) / norm(np.asarray(quaternion, np.float64))
     return np.array(
         [
             [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - z * w), 2.0 * (x * z + y * w)],
@@ -89,12 +90,12 @@ def rotation_from_quaternion(quaternion: FloatArray) -> FloatArray:
 
 def rotation_from_axis_angle(vector: FloatArray) -> FloatArray:
     """(3, 3) rotation about `vector` (3,) by its length in radians (Rodrigues' formula)."""
-    angle = float(np.linalg.norm(vector))
+    angle = norm(np.asarray(vector, np.float64))
     if angle == 0.0:
         return np.eye(3)
     half = 0.5 * angle
-    xyz = np.asarray(vector, dtype=np.float64) * (np.sin(half) / angle)
-    return rotation_from_quaternion(np.concatenate([[np.cos(half)], xyz]))
+    xyz = np.asarray(vector, dtype=np.float64) * (float(sin(half)) / angle)
+    return rotation_from_quaternion(np.concatenate([[float(cos(half))], xyz]))
 
 
 def rotation_between(source: FloatArray, target: FloatArray) -> FloatArray:
@@ -104,13 +105,12 @@ def rotation_between(source: FloatArray, target: FloatArray) -> FloatArray:
     `target`. Opposite vectors have no halfway; then any axis at right angles serves.
     """
     halfway = source + target
-    length = float(np.linalg.norm(halfway))
+    length = norm(halfway)
     if length < 1e-8:
         axis = np.cross(source, np.eye(3)[int(np.argmin(np.abs(source)))])
-        return rotation_from_axis_angle(axis / np.linalg.norm(axis) * np.pi)
-    half_turn = 2.0 * np.outer(halfway, halfway) / length**2 - np.eye(3)
-    result: FloatArray = (2.0 * np.outer(target, target) - np.eye(3)) @ half_turn
-    return result
+        return rotation_from_axis_angle(axis / norm(axis) * np.pi)
+    half_turn = 2.0 * np.outer(halfway, halfway) / (length * length) - np.eye(3)
+    return matmul(2.0 * np.outer(target, target) - np.eye(3), half_turn)
 
 
 def mean_camera_up(poses: Sequence[FloatArray]) -> FloatArray:
@@ -137,13 +137,13 @@ def world_from_estimated_up(
         The rotation and a sentence for the log that says what was done.
     """
     up = mean_camera_up(poses)
-    agreement = float(np.linalg.norm(up))
+    agreement = norm(up)
     if agreement < 0.1:
         if declared_z_up:
             return Y_UP_FROM_Z_UP, "+Z up -> +Y up (assumed: the cameras have no common up)"
         return np.eye(4), "world axes kept (assumed: the cameras have no common up)"
     up = up / agreement
-    if declared_z_up and float(up[2]) > np.cos(np.deg2rad(25.0)):
+    if declared_z_up and float(up[2]) > cos(np.deg2rad(25.0)):
         return Y_UP_FROM_Z_UP, "+Z up -> +Y up"
     transform = np.eye(4)
     transform[:3, :3] = rotation_between(up, np.array([0.0, 1.0, 0.0]))

@@ -7,6 +7,7 @@ from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
+from photograd_course.portable_math import norm
 
 from .camera import Camera
 from .frames import FloatArray
@@ -59,7 +60,7 @@ def _carve(
     silhouettes: Sequence[Silhouette], box: FloatArray, resolution: int
 ) -> npt.NDArray[np.bool_]:
     size = (box[1] - box[0]) / resolution
-    radius = 0.5 * float(np.linalg.norm(size))
+    radius = 0.5 * norm(size)
     steps = [box[0, a] + (np.arange(resolution) + 0.5) * size[a] for a in range(3)]
     centres = np.stack(np.meshgrid(*steps, indexing="ij"), axis=-1).reshape(-1, 3)
     alive = np.ones(len(centres), dtype=np.bool_)

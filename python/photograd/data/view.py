@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 from photograd_course.color import srgb_encode
 from photograd_course.errors import IoError, message
+from photograd_course.portable_math import matmul
 
 from .camera import Camera
 from .frames import FloatArray
@@ -98,7 +99,7 @@ class View:
 
     def turned(self, world_from_source: FloatArray) -> View:
         """The same view after the world was moved by a (4, 4) rigid transform."""
-        pose = world_from_source @ self.camera.world_from_camera
+        pose = matmul(world_from_source, self.camera.world_from_camera)
         return replace(self, camera=replace(self.camera, world_from_camera=pose))
 
     def _source_size(self) -> tuple[int, int]:

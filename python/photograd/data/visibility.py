@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 from photograd_course.errors import SceneError, message
+from photograd_course.portable_math import matmul
 
 from .assemble import box_corners
 from .camera import Camera
@@ -26,15 +27,15 @@ def sees_box(camera: Camera, box: FloatArray) -> bool:
     local = np.stack(
         [(u - camera.cx) / camera.fx, (v - camera.cy) / camera.fy, np.ones(4)], axis=-1
     )
-    edges = local @ camera.world_from_camera[:3, :3].T
+    edges = matmul(local, camera.world_from_camera[:3, :3].T)
     sides = np.cross(edges, np.roll(edges, -1, axis=0))
     crossed = np.cross(edges[:, None, :], np.eye(3)[None, :, :]).reshape(-1, 3)
     axes = np.concatenate([np.eye(3), sides, crossed])
     axes = np.concatenate([axes, -axes])
     relative = box_corners(check_box("sees_box", "box", box)) - camera.position
     slack = 1e-12 * (1.0 + float(np.abs(edges).max()))
-    pyramid_below = (axes @ edges.T <= slack).all(axis=1)
-    box_above = (axes @ relative.T).min(axis=1) > 0.0
+    pyramid_below = (matmul(axes, edges.T) <= slack).all(axis=1)
+    box_above = matmul(axes, relative.T).min(axis=1) > 0.0
     degenerate = np.linalg.norm(axes, axis=1) < 1e-12
     return not bool((pyramid_below & box_above & ~degenerate).any())
 

@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 from photograd_course import priors
+from photograd_course.portable_math import expm1, log
 from photograd_course.random import uniform
 from photograd_course.resample import upsample_trilinear
 
@@ -108,12 +109,12 @@ class DenseGrid(Representation):
         centre = box.mean(axis=0)
         half = np.array(shape) * voxel / 2
         lo, hi = centre - half, centre + half
-        scale = (finest or resolution) / extent.max()
+        scale = float((finest or resolution) / extent.max())
         policy = MarchPolicy(
             (tuple(lo.tolist()), tuple(hi.tolist())), voxel / steps_per_voxel, density_scale=scale
         )
-        values = np.full((*shape, 4), np.log(START_COLOR / (1 - START_COLOR)), dtype)
-        values[..., 3] = np.log(np.expm1(sigma_t / scale))
+        values = np.full((*shape, 4), log(START_COLOR / (1 - START_COLOR)), dtype)
+        values[..., 3] = log(expm1(sigma_t / scale))
         return cls(values, policy)
 
     @property

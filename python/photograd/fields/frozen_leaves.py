@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from photograd_course.portable_math import expm1, log, log1p, sigmoid, softplus
 
 from photograd import sh
 from photograd.errors import RangeError, message
@@ -45,20 +46,20 @@ def leaves_of_grid(field: DenseGrid, *, degree: int, opacity: float, tolerance: 
     """See `OctreeSh.from_dense_grid`: voxels that are nearly equal share a larger leaf."""
     cell = (field.box[1, 0] - field.box[0, 0]) / field.density.shape[0]
     scale = field.policy.density_scale
-    sigma_t = scale * np.logaddexp(0.0, field.density.astype(np.float64))
-    shown = 1.0 - np.exp(-sigma_t * cell)
+    sigma_t = scale * softplus(field.density.astype(np.float64))
+    shown = -expm1(-sigma_t * cell)
     full = shown > opacity
-    rgb = 1.0 / (1.0 + np.exp(-field.color.astype(np.float64)))
+    rgb = sigmoid(field.color.astype(np.float64))
     known = np.concatenate([shown[..., None], rgb], axis=-1) * full[..., None]
     tree = Octree.from_dense(known.astype(np.float32), field.box, tolerance=tolerance)
     held = tree.values.astype(np.float64)
     occupied = held[:, 0] > 0.5 * opacity
     row = np.where(occupied, np.cumsum(occupied) - 1, -1).astype(np.int32)
-    mean = -np.log1p(-np.minimum(held[occupied, 0], 1.0 - 1e-6)) / cell
+    mean = -log1p(-np.minimum(held[occupied, 0], 1.0 - 1e-6)) / cell
     color = np.clip(held[occupied, 1:], 1e-4, 1.0 - 1e-4)
     coefficients = np.zeros((int(occupied.sum()), sh.count(degree), 3))
-    coefficients[:, 0] = np.log(color / (1.0 - color)) / sh.Y_0
-    density = np.log(np.expm1(np.minimum(mean / scale, 500.0)))
+    coefficients[:, 0] = log(color / (1.0 - color)) / sh.Y_0
+    density = log(expm1(np.minimum(mean / scale, 500.0)))
     return Leaves(tree, row, density, coefficients)
 
 
@@ -71,7 +72,7 @@ def leaves_of_voxels(field: SparseSh, *, degree: int | None, opacity: float) -> 
         raise RangeError(message("OctreeSh.from_sparse_sh", "field", expected, got))
     cell = (field.box[1, 0] - field.box[0, 0]) / field.active.shape[0]
     density = field.params["density"].astype(np.float64)
-    shown = 1.0 - np.exp(-policy.density_scale * np.logaddexp(0.0, density) * cell)
+    shown = -expm1(-policy.density_scale * softplus(density) * cell)
     kept = np.flatnonzero(shown > opacity)
     label = np.full(field.active.shape, -1.0)
     i, j, k = field.active.voxels[kept].T

@@ -15,11 +15,13 @@ from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 import numpy as np
+from photograd_course.portable_math import log
 from photograd_course.random import normal_vectors
 from photograd_course.row_map import RowMap
 
 from photograd import sh
 from photograd.data.camera import Camera
+from photograd.data.frames import invert_rigid
 from photograd.errors import RangeError, message
 from photograd.orbit import orbit_cameras
 from photograd.representation import (
@@ -110,7 +112,7 @@ class GaussianScene(Representation):
         colors = normal_vectors(seed, step=1, row=np.arange(11 * 9)).reshape(11, 9, 3)
         gaussians = Gaussians(
             means=0.25 * spread,
-            log_scales=np.log(0.15) + 0.3 * look,
+            log_scales=log(0.15) + 0.3 * look,
             quats=np.concatenate([np.full((11, 1), 0.7), turn], axis=1),
             opacity_logits=normal_vectors(seed, step=2, row=rows)[:, 0],
             sh=np.concatenate([0.5 + 0.2 * colors[:, :1], 0.1 * colors[:, 1:]], axis=1),
@@ -123,7 +125,7 @@ class GaussianScene(Representation):
         box = np.array([[-0.6, -0.6, -0.6], [0.6, 0.6, 0.6]])
         camera = list(orbit_cameras(box, 5, size=12, elevation=20.0))[seed % 5]
         low = replace(camera, height=10, cy=camera.cy - 1.0)
-        pose = np.linalg.inv(low.world_from_camera)[:3]
+        pose = invert_rigid(low.world_from_camera)[:3]
         return ImageBatch(low, np.ascontiguousarray(pose))
 
     @property

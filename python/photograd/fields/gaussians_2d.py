@@ -27,6 +27,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
+from photograd_course import portable_math as pm
 from photograd_course.random import uniform
 
 from photograd.errors import DtypeError, ShapeError, message
@@ -66,11 +67,11 @@ class Blend:
     def of(cls, params: Mapping[str, Array], points: Array) -> Blend:
         """The formulas above."""
         d = points[:, None] - params["mean"]
-        cos, sin = np.cos(params["angle"]), np.sin(params["angle"])
-        inverse = np.exp(-params["log_scale"])
+        cos, sin = pm.cos(params["angle"]), pm.sin(params["angle"])
+        inverse = pm.exp(-params["log_scale"])
         a = (d[..., 0] * cos + d[..., 1] * sin) * inverse[:, 0]
         b = (d[..., 1] * cos - d[..., 0] * sin) * inverse[:, 1]
-        alpha = opacity_of(params) * np.exp(-0.5 * (a * a + b * b))
+        alpha = opacity_of(params) * pm.exp(-0.5 * (a * a + b * b))
         behind = np.cumprod(1 - alpha, axis=1)
         front = np.concatenate([np.ones_like(behind[:, :1]), behind[:, :-1]], axis=1)
         return cls(a, b, alpha, front, behind[:, -1])
@@ -78,7 +79,7 @@ class Blend:
 
 def opacity_of(params: Mapping[str, Array]) -> Array:
     """sigmoid(opacity_logit), (N,)."""
-    e = np.exp(-np.abs(params["opacity_logit"]))  # cannot overflow
+    e = pm.exp(-np.abs(params["opacity_logit"]))  # cannot overflow
     return np.asarray(np.where(params["opacity_logit"] < 0, e, 1) / (1 + e))
 
 
@@ -122,7 +123,7 @@ class Gaussians2D(Representation):
         """
         index = np.arange(count)
         mean = np.stack([uniform(seed, step=0, pixel=index, dimension=k) for k in range(2)], -1)
-        size = np.full((count, 2), -0.5 * np.log(np.pi * count))
+        size = np.full((count, 2), -0.5 * pm.log(np.pi * count))
         arrays = (mean, size, np.zeros(count), np.zeros(count), np.full((count, 3), 0.5))
         return cls(*(array.astype(dtype) for array in arrays))
 
@@ -132,7 +133,7 @@ class Gaussians2D(Representation):
         index = np.arange(9)
         u = np.stack([uniform(seed, step=0, pixel=index, dimension=k) for k in range(9)], axis=-1)
         arrays = (
-            0.1 + 0.8 * u[:, :2], np.log(0.08 + 0.25 * u[:, 2:4]), 6 * u[:, 4], 4 * u[:, 5] - 2,
+            0.1 + 0.8 * u[:, :2], pm.log(0.08 + 0.25 * u[:, 2:4]), 6 * u[:, 4], 4 * u[:, 5] - 2,
             0.1 + 0.8 * u[:, 6:],
         )  # fmt: skip
         return cls(*(array.astype(dtype) for array in arrays))
@@ -199,8 +200,8 @@ def _add_slab(
     # Fully opaque is possible; nothing behind it counts.
     e = k.alpha * (k.front * v - behind / np.maximum(1 - k.alpha, 1e-6))
     ea, eb = e * k.a, e * k.b
-    s = np.exp(params["log_scale"])
-    cos, sin = np.cos(params["angle"]), np.sin(params["angle"])
+    s = pm.exp(params["log_scale"])
+    cos, sin = pm.cos(params["angle"]), pm.sin(params["angle"])
     x_axis, y_axis = (
         np.stack([cos, sin], axis=-1) / s[:, :1], np.stack([-sin, cos], axis=-1) / s[:, 1:]
     )  # fmt: skip

@@ -28,6 +28,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
+from photograd_course.portable_math import exp, expm1, sigmoid, softplus
 from photograd_course.random import uniform
 
 from photograd import sh
@@ -228,11 +229,10 @@ class OctreeSh(Representation):
         origins = np.ascontiguousarray(batch.origins, density.dtype)
         borders = Borders(self.tree, origins, directions)
         segments = segments_of(borders, self.row)
-        zero = density.dtype.type(0)
-        sigma_t = (self.density_scale * np.logaddexp(zero, density))[segments.row]
+        sigma_t = (self.density_scale * softplus(density))[segments.row]
         way = directions[segments.ray]
         raw = sh.evaluate(coefficients[segments.row], way)
-        rgb = 1 / (1 + np.exp(-raw))
+        rgb = sigmoid(raw)
         rays = len(origins)
         walk = _walk(segments, sigma_t * (segments.t1 - segments.t0), rays, options.stop)
         color = np.stack(
@@ -267,7 +267,7 @@ class OctreeSh(Representation):
         d_met, d_way = sh.evaluate_backward(met, way, d_raw)
         d_sigma_t = d_s * (segments.t1 - segments.t0)
         d_density = _sums(segments.row, d_sigma_t, len(density))
-        slope = self.density_scale / (1 + np.exp(-density))
+        slope = self.density_scale * sigmoid(density)
         flat = d_met.reshape(len(d_met), -1)
         d_sh = np.stack(
             [_sums(segments.row, column, len(density)) for column in flat.T], axis=-1
@@ -306,16 +306,16 @@ def _walk(segments: Segments, s: Array, rays: int, stop: float) -> Walk:
 
     A ray of which less than `stop` is left meets nothing any more.
     """
-    tau = np.zeros(rays, s.dtype)
+    tau, transmittance = np.zeros(rays, s.dtype), np.ones(rays, s.dtype)
     weight, behind, seen = np.zeros_like(s), np.zeros_like(s), np.zeros(len(s), np.bool_)
     for ray, m in segments.waves():
-        front = np.exp(-tau[ray])
+        front = transmittance[ray]
         seen[m] = front > stop
         thick = s[m] * seen[m]
-        weight[m] = front * -np.expm1(-thick)
+        weight[m] = front * -expm1(-thick)
         tau[ray] += thick
-        behind[m] = np.exp(-tau[ray])
-    return Walk(weight, behind, seen, np.exp(-tau))
+        behind[m] = transmittance[ray] = exp(-tau[ray])
+    return Walk(weight, behind, seen, transmittance)
 
 
 def _optical_depth_backward(

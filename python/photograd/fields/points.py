@@ -20,6 +20,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
+from photograd_course.portable_math import log
 from photograd_course.random import uniform
 
 from photograd.errors import DtypeError, RangeError, ShapeError, message
@@ -99,7 +100,7 @@ class Points(Representation):
         """Twelve points of 0.15 to 0.4 m in a box of 2 m, each of which all rays see a little."""
         index = np.arange(12)
         u = np.stack([uniform(seed, step=0, pixel=index, dimension=k) for k in range(7)], axis=-1)
-        arrays = (2 * u[:, :3] - 1, 0.1 + 0.8 * u[:, 3:6], np.log(0.15 + 0.25 * u[:, 6]))
+        arrays = (2 * u[:, :3] - 1, 0.1 + 0.8 * u[:, 3:6], log(0.15 + 0.25 * u[:, 6]))
         return cls(*(array.astype(dtype) for array in arrays), alpha_min=0.0)
 
     def example_batch(self, *, seed: int) -> RayBatch:
@@ -125,7 +126,7 @@ class Points(Representation):
         position, color = self.params["position"], self.params["color"]
         count, dtype = len(position), position.dtype
         log_scales = np.broadcast_to(self.params["log_radius"][:, None], (count, 3))
-        logit = np.log(self.opacity / (1 - self.opacity))
+        logit = log(self.opacity / (1 - self.opacity))
         return Gaussians(
             position.copy(), np.ascontiguousarray(log_scales),
             np.tile(np.array([1, 0, 0, 0], dtype), (count, 1)), np.full(count, logit, dtype),

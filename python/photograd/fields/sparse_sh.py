@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Self
 
 import numpy as np
+from photograd_course.portable_math import log
 from photograd_course.random import uniform
 from photograd_course.row_map import RowMap
 
@@ -147,7 +148,7 @@ class SparseSh(Representation):
         active = ActiveVoxels(np.ones(dense.density.shape, bool))
         density = np.full(len(active), dense.density.flat[0], dtype)
         coefficients = np.zeros((len(active), sh.count(degree), 3), dtype)
-        coefficients[:, 0] = np.log(START_COLOR / (1 - START_COLOR)) / sh.Y_0
+        coefficients[:, 0] = log(START_COLOR / (1 - START_COLOR)) / sh.Y_0
         start = float(dense.density.flat[0])
         return cls(active, density, coefficients, policy, background_density=start)
 
@@ -297,13 +298,16 @@ class SparseSh(Representation):
     def refine(self, step: int, statistics: Mapping[str, Array]) -> RowMap | None:
         """Drop voxels with statistics["weight"] (N,) below statistics["threshold"], then dilate.
 
+        Where statistics["wanted"] (N,) bool is given and true, a voxel stays whatever it weighs.
         Every voxel next to one that stays is kept, or made anew with the background's density and
-        no colour. Nothing happens without these statistics.
+        no color. Nothing happens without these statistics.
         """
         del step
         if "weight" not in statistics:
             return None
         stays = statistics["weight"] >= statistics["threshold"]
+        if "wanted" in statistics:
+            stays = stays | statistics["wanted"]
         mask = np.zeros(self.active.shape, bool)
         i, j, k = self.active.voxels[stays].T
         mask[i, j, k] = True

@@ -30,6 +30,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
+from photograd_course.portable_math import norm
 
 from photograd.errors import DtypeError, RangeError, ShapeError, message
 from photograd.fields.march import MarchContext, MarchPolicy, march, march_backward
@@ -102,7 +103,7 @@ class SunlitMedium(Representation):
         """
         self.params = _checked(params)
         corners, towards = np.asarray(box, np.float64), np.asarray(sun, np.float64)
-        length = float(np.linalg.norm(towards))
+        length = norm(towards)
         if corners.shape != (2, 3) or not (corners[1] > corners[0]).all() or not dt > 0:
             got = f"{corners.tolist()}, dt {dt}"
             raise RangeError(message("SunlitMedium", "box, dt", "a box and a step", got))

@@ -22,6 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 from photograd_course import priors
 from photograd_course.optim import Gradient
+from photograd_course.portable_math import exp, log
 from photograd_course.random import uniform
 from photograd_course.row_map import RowMap
 
@@ -101,7 +102,7 @@ class ToyBlobs(Representation):
         index = np.arange(9)
         u = np.stack([uniform(seed, step=0, pixel=index, dimension=k) for k in range(6)], axis=-1)
         color = np.where(index[:, None] % 3 == 1, 0.015, 0.8) * (0.2 + 0.8 * u[:, 3:])
-        arrays = (0.1 + 0.8 * u[:, :2], np.log(0.1 + 0.15 * u[:, 2]), color)
+        arrays = (0.1 + 0.8 * u[:, :2], log(0.1 + 0.15 * u[:, 2]), color)
         return cls(*(array.astype(dtype) for array in arrays))
 
     def example_batch(self, *, seed: int) -> CanvasBatch:
@@ -126,11 +127,11 @@ class ToyBlobs(Representation):
         del seed, step  # nothing random here
         mean, log_radius, color = (self.params[name] for name in ("mean", "log_radius", "color"))
         points = np.asarray(batch.points, mean.dtype)
-        offset = (points[:, None, :] - mean) / np.exp(log_radius)[:, None]
+        offset = (points[:, None, :] - mean) / exp(log_radius)[:, None]
         q = np.einsum("pnk,pnk->pn", offset, offset)
-        weight = np.exp(-q / 2)
+        weight = exp(-q / 2)
         if self.reach is not None:
-            weight *= q <= self.reach**2
+            weight *= q <= self.reach * self.reach
         params = {name: array.copy() for name, array in self.params.items()}
         context = BlobContext(params, points, offset, weight, options.camera_adjoint)
         return Outputs(np.einsum("pn,nc->pc", weight, color)), context
@@ -141,7 +142,7 @@ class ToyBlobs(Representation):
         Rows are the blobs that reach some point; einsum adds over the points in their order.
         """
         color = context.params["color"]
-        radius = np.exp(context.params["log_radius"])
+        radius = exp(context.params["log_radius"])
         d_color = np.asarray(d_outputs.color, color.dtype)
         e = np.einsum("pc,nc->pn", d_color, color) * context.weight
         pull = e[..., None] * context.offset / radius[:, None]  # (P, N, 2)

@@ -20,6 +20,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
+from photograd_course.portable_math import exp, log
 from photograd_course.random import normal_vectors
 from photograd_course.row_map import RowMap
 
@@ -71,7 +72,7 @@ class CloneSplitPrune(DensityControl):
         if not self.schedule.due(step):
             return self._faded(params) if reset else None
         alpha = opacities(params)
-        longest = np.exp(params["log_scales"].astype(np.float64)).max(axis=1)
+        longest = exp(params["log_scales"].astype(np.float64)).max(axis=1)
         pruned = (alpha < self.faint) | (longest > self.large * extent)
         if pruned.all():
             pruned[np.argmax(alpha)] = False  # an empty scene has no gradient to grow from
@@ -104,10 +105,10 @@ class CloneSplitPrune(DensityControl):
         """Two parts of each row, at places drawn from the Gaussian itself."""
         parts = _rows(params, np.concatenate([rows, rows]))
         unit = normal_vectors(self.seed, step=step, row=np.arange(2 * len(rows)), sample=3)
-        local = unit * np.exp(parts["log_scales"].astype(np.float64))
+        local = unit * exp(parts["log_scales"].astype(np.float64))
         turn = rotation_matrices(parts["quats"])
         parts["means"] = parts["means"] + np.einsum("nij,nj->ni", turn, local)
-        parts["log_scales"] = parts["log_scales"] - np.log(SPLIT)
+        parts["log_scales"] = parts["log_scales"] - log(SPLIT)
         return parts
 
     def _faded(self, params: Params) -> Change:

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from photograd_course.portable_math import log, log1p, sigmoid
 from photograd_course.row_map import RowMap
 
 from photograd.errors import RangeError, message
@@ -81,15 +82,13 @@ class NoControl(DensityControl):
 
 def opacities(params: Params) -> Array:
     """(N,) float64 in 0 .. 1, of the logits."""
-    found: Array = 1 / (1 + np.exp(-params["opacity_logits"].astype(np.float64)))
-    return found
+    return sigmoid(params["opacity_logits"].astype(np.float64))
 
 
 def logits(opacity: Array) -> Array:
     """The inverse of the sigmoid, (N,) float64, finite for 0 and 1."""
     held = np.clip(opacity, 1e-7, 1 - 1e-7)
-    found: Array = np.log(held) - np.log1p(-held)
-    return found
+    return np.asarray(log(held) - log1p(-held))
 
 
 def rebuilt(

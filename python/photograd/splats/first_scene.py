@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
+from photograd_course.portable_math import norm
 
 from photograd.data.capture import Capture
 from photograd.fields.gaussians import GaussianScene
@@ -63,5 +64,5 @@ def scene_extent(capture: Capture, box: Array) -> float:
     """
     places = np.array([view.camera.position for view in capture.train])
     spread = float(np.linalg.norm(places - places.mean(axis=0), axis=1).max())
-    diagonal = float(np.linalg.norm(box[1] - box[0]))
+    diagonal = norm(box[1] - box[0])
     return 1.1 * spread if spread > 0.05 * diagonal else 0.5 * diagonal

@@ -25,6 +25,7 @@ from math import comb
 
 import numpy as np
 from numpy.typing import NDArray
+from photograd_course.portable_math import exp, expm1, log, log1p, sigmoid
 from photograd_course.random import normal_vectors, uniform
 from photograd_course.row_map import RowMap
 
@@ -83,7 +84,7 @@ class MarkovChain(DensityControl):
     def add_priors(self, params: Params, gradients: dict[str, Array], *, extent: float) -> None:
         """Add w a (1 - a) / N to d_logit and w s / (3 N extent) to d_log_scale."""
         alpha = opacities(params)
-        scales = np.exp(params["log_scales"].astype(np.float64)) / extent
+        scales = exp(params["log_scales"].astype(np.float64)) / extent
         d_logits = self.opacity_weight * alpha * (1 - alpha) / len(alpha)
         d_scales = self.scale_weight * scales / scales.size
         gradients["opacity_logits"] += d_logits.astype(gradients["opacity_logits"].dtype)
@@ -99,9 +100,9 @@ class MarkovChain(DensityControl):
         if not len(rows):
             return
         unit = normal_vectors(self.seed, step=step, row=rows, sample=4)
-        gate = 1 / (1 + np.exp(-100 * (self.faint - alpha[rows])))
+        gate = sigmoid(100 * (self.faint - alpha[rows]))
         turn = rotation_matrices(params["quats"][rows])
-        square = np.exp(2 * params["log_scales"][rows].astype(np.float64)) / extent**2
+        square = exp(2 * params["log_scales"][rows].astype(np.float64)) / (extent * extent)
         local = square * np.einsum("nji,nj->ni", turn, unit * gate[:, None])
         moved = self.noise * rate * np.einsum("nij,nj->ni", turn, local)
         params["means"][rows] += moved.astype(params["means"].dtype)
@@ -123,8 +124,8 @@ def _copied(params: Params, chosen: NDArray[np.int64], targets: NDArray[np.int64
     sources = np.flatnonzero(copies > 1)
     n = np.minimum(copies[sources], MOST_COPIES)
     total = opacities(params)[sources]
-    share = 1 - (1 - total) ** (1 / n)
-    shrink = np.log(total / _coverage(share, n))
+    share = -expm1(log1p(-total) / n)
+    shrink = log(total / _coverage(share, n))
     size = max(count, int(targets.max()) + 1)
     rows = np.arange(size, dtype=np.int64)
     rows[targets] = chosen
@@ -141,8 +142,9 @@ def _copied(params: Params, chosen: NDArray[np.int64], targets: NDArray[np.int64
 
 def _coverage(share: Array, n: Array) -> Array:
     """sum_j C(n, j) (-1)^(j - 1) share^j / sqrt(j) for each row, in the order of j."""
-    total = np.zeros(len(share))
+    total, signed = np.zeros(len(share)), -np.ones(len(share))
     for j in range(1, int(n.max(initial=1)) + 1):
         term = np.array([comb(int(k), j) for k in range(int(n.max(initial=1)) + 1)], np.float64)
-        total += (-1.0) ** (j - 1) * term[n] * share**j / np.sqrt(j)
+        signed *= -share
+        total += signed * term[n] / np.sqrt(j)
     return total

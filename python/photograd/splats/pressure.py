@@ -45,7 +45,7 @@ class Pressure:
     def add(self, screen: Array, visible: NDArray[np.bool_], camera: Camera) -> None:
         """Add a picture: dL/d projected means (N, 2) per pixel, and which were in it (N,)."""
         half = max(camera.width, camera.height) / 2
-        self.total += half * np.hypot(screen[:, 0], screen[:, 1])
+        self.total += half * np.linalg.norm(screen.astype(np.float64), axis=1)
         self.count += visible
 
     def mean(self) -> Array:

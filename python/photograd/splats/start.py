@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from photograd_course.portable_math import log, root
 from photograd_course.random import uniform
 
 from photograd import sh
@@ -38,7 +39,7 @@ CARVED = 0.6
 MOST_TRIES = 64
 """A hull that holds less than this share of its box gets fewer points."""
 
-_ROWS_AT_ONCE = 1 << 10
+_PAIRS_AT_ONCE = 1 << 18
 
 
 def start_gaussians(
@@ -72,7 +73,7 @@ def start_gaussians(
     else:
         points, volume, rule = random_points(capture, box, count, seed=seed)
         colors = mean_colors(capture.train, points)
-        size = np.full(len(points), RANDOM_DISTANCE * np.cbrt(volume / len(points)))
+        size = np.full(len(points), RANDOM_DISTANCE * root(volume / len(points), 3))
     return around(points, size, colors, degree=degree), rule
 
 
@@ -88,7 +89,7 @@ def around(points: Array, size: Array, colors: Array, *, degree: int) -> Gaussia
     harmonics[:, 0] = (colors - 0.5) / sh.Y_0
     return Gaussians(
         means=np.array(points, np.float64),
-        log_scales=np.repeat(np.log(size)[:, None], 3, axis=1),
+        log_scales=np.repeat(log(size)[:, None], 3, axis=1),
         quats=np.tile([1.0, 0.0, 0.0, 0.0], (len(points), 1)),
         opacity_logits=np.full(len(points), float(logits(np.array(FIRST_OPACITY)))),
         sh=harmonics,
@@ -104,16 +105,19 @@ def neighbour_distance(points: Array) -> Array:
     if len(points) <= NEIGHBOURS:
         spread = float(np.ptp(points, axis=0).max()) if len(points) > 1 else 1.0
         return np.full(len(points), max(spread, 1e-7))
-    middle = points - points.mean(axis=0)
-    square = np.einsum("nk,nk->n", middle, middle)
     found = np.empty(len(points))
-    for start in range(0, len(points), _ROWS_AT_ONCE):
-        part = slice(start, start + _ROWS_AT_ONCE)
-        distance = square[part, None] + square - 2 * middle[part] @ middle.T
+    rows = max(1, _PAIRS_AT_ONCE // len(points))
+    for start in range(0, len(points), rows):
+        part = slice(start, start + rows)
+        distance = np.zeros((len(points[part]), len(points)))
+        for axis in points.T:
+            gap = axis[part, None] - axis
+            distance += np.multiply(gap, gap, out=gap)
         near = np.partition(distance, NEIGHBOURS, axis=1)[:, : NEIGHBOURS + 1]
         near.sort(axis=1)
-        found[part] = np.maximum(near[:, 1:], 0).mean(axis=1)  # the nearest is the point itself
-    least = 1e-7 * max(float(np.sqrt(square.max())), 1e-7)
+        found[part] = near[:, 1:].mean(axis=1)  # the nearest is the point itself
+    reach = np.linalg.norm(points - points.mean(axis=0), axis=1).max()
+    least = 1e-7 * max(float(reach), 1e-7)
     return np.maximum(np.sqrt(found), least)
 
 

@@ -7,6 +7,7 @@ says that there is something at that depth along its ray; its colour is the phot
 from __future__ import annotations
 
 import numpy as np
+from photograd_course.portable_math import matmul
 from photograd_course.random import choice
 
 from photograd.data.capture import Capture
@@ -56,7 +57,7 @@ def _points_of(
     origins, directions = view.camera.rays(rows)
     distance = depth.ravel()[rows] / opacity.ravel()[rows]
     if "rays" not in model.field.capabilities:  # whose depth is along the viewing axis
-        distance = distance / (directions @ view.camera.forward)
+        distance = distance / matmul(directions, view.camera.forward)
     rgba = view.rgba().reshape(-1, 4)[rows].astype(np.float64)
     color = display_color(rgba[:, :3], view.color_space)
     return origins + distance[:, None] * directions, color

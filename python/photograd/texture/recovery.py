@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from photograd_course.portable_math import norm
 
 from photograd.errors import Error, RangeError, message
 from photograd.texture.plan import TexturePlan
@@ -65,9 +66,9 @@ def stable_learning_rate(
     vector = np.ones(plan.shape, uv.dtype)
     largest = 0.0
     for _ in range(steps):
-        vector /= uv.dtype.type(np.linalg.norm(vector))
+        vector /= uv.dtype.type(norm(vector))
         _, image = plan.loss_and_gradient(vector)
-        largest = float(np.vdot(vector, image))
+        largest = float((vector * image).sum(dtype=np.float64))
         vector = image
     return SAFETY * 2.0 / (largest / channels)
 

@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+from photograd_course.portable_math import exp, log, log1p, sigmoid
 
 Array = npt.NDArray[Any]
 KINDS = ("logit", "log")
@@ -36,8 +37,8 @@ class Activation:
         """Parameters, shape and dtype of `x`."""
         x = np.clip(x, -LARGEST, LARGEST)
         if self.kind == "log":
-            return np.asarray(self.lo + np.exp(x))
-        return np.asarray(self.lo + (self.hi - self.lo) / (1.0 + np.exp(-x)))
+            return np.asarray(self.lo + exp(x))
+        return np.asarray(self.lo + (self.hi - self.lo) * sigmoid(x))
 
     def value_backward(self, x: Array, d_value: Array) -> Array:
         """dL/dx of d_value = dL/dp, shape of `x`."""
@@ -50,6 +51,6 @@ class Activation:
         """What gives these parameters; those on a bound are first moved inside by `MARGIN`."""
         value = np.asarray(value, np.float64)
         if self.kind == "log":
-            return np.asarray(np.log(np.maximum(value - self.lo, MARGIN)))
+            return np.asarray(log(np.maximum(value - self.lo, MARGIN)))
         part = np.clip((value - self.lo) / (self.hi - self.lo), MARGIN, 1.0 - MARGIN)
-        return np.asarray(np.log(part) - np.log1p(-part))
+        return np.asarray(log(part) - log1p(-part))

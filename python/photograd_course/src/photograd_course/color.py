@@ -10,6 +10,7 @@ import numpy as np
 
 from .checks import FloatArray, require_float_array, require_like
 from .errors import DtypeError, ShapeError, message
+from .portable_math import root
 
 _LINEAR_END = 0.0031308
 _ENCODED_END = 0.04045
@@ -31,7 +32,7 @@ def srgb_encode(linear: FloatArray) -> FloatArray:
         DtypeError: not a float array.
     """
     x = require_float_array("srgb_encode", "linear", linear)
-    power = 1.055 * np.maximum(x, _LINEAR_END) ** (1.0 / 2.4) - 0.055
+    power = 1.055 * _encoding_power(np.maximum(x, _LINEAR_END)) - 0.055
     return np.where(x <= _LINEAR_END, 12.92 * x, power).astype(x.dtype, copy=False)
 
 
@@ -43,7 +44,8 @@ def srgb_encode_backward(linear: FloatArray, d_encoded: FloatArray) -> FloatArra
     """
     x = require_float_array("srgb_encode_backward", "linear", linear)
     d_out = require_like("srgb_encode_backward", "d_encoded", d_encoded, "linear", x)
-    power = (1.055 / 2.4) * np.maximum(x, _LINEAR_END) ** (1.0 / 2.4 - 1.0)
+    held = np.maximum(x, _LINEAR_END)
+    power = (1.055 / 2.4) * _encoding_power(held) / held
     return (d_out * np.where(x <= _LINEAR_END, 12.92, power)).astype(x.dtype, copy=False)
 
 
@@ -53,7 +55,8 @@ def srgb_decode(encoded: FloatArray) -> FloatArray:
     The rounded constants of the standard leave a gap of about 1e-8 between the two thresholds.
     """
     y = require_float_array("srgb_decode", "encoded", encoded)
-    power = ((np.maximum(y, _ENCODED_END) + 0.055) / 1.055) ** 2.4
+    z = (np.maximum(y, _ENCODED_END) + 0.055) / 1.055
+    power = np.square(z * root(z, 5))
     return np.where(y <= _ENCODED_END, y / 12.92, power).astype(y.dtype, copy=False)
 
 
@@ -61,7 +64,8 @@ def srgb_decode_backward(encoded: FloatArray, d_linear: FloatArray) -> FloatArra
     """d_encoded = d_linear / 12.92, above the threshold d_linear * 2.4/1.055 (...)^1.4."""
     y = require_float_array("srgb_decode_backward", "encoded", encoded)
     d_out = require_like("srgb_decode_backward", "d_linear", d_linear, "encoded", y)
-    power = (2.4 / 1.055) * ((np.maximum(y, _ENCODED_END) + 0.055) / 1.055) ** 1.4
+    z = (np.maximum(y, _ENCODED_END) + 0.055) / 1.055
+    power = (2.4 / 1.055) * z * np.square(root(z, 5))
     return (d_out * np.where(y <= _ENCODED_END, 1.0 / 12.92, power)).astype(y.dtype, copy=False)
 
 
@@ -131,6 +135,12 @@ def unpremultiply_backward(
     inverse = _reciprocal(opacity)
     d_color = np.asarray(d_out * inverse[..., None])
     return d_color, np.asarray(-np.sum(d_color * color, axis=-1) * inverse)
+
+
+def _encoding_power(x: FloatArray) -> FloatArray:
+    """x^(1/2.4) as x^(1/3) x^(1/12)."""
+    third = root(x, 3)
+    return np.asarray(third * np.sqrt(np.sqrt(third)))
 
 
 def _reciprocal(opacity: FloatArray) -> FloatArray:

@@ -14,6 +14,7 @@ import numpy as np
 
 from .checks import FloatArray, require_float_array, require_like, require_not_empty, require_number
 from .errors import ShapeError, message
+from .portable_math import log1p
 
 # Elements of one slab of X planes: a few slabs fit into the cache together.
 _SLAB = 65_536
@@ -126,7 +127,7 @@ def sparsity_cauchy(density: FloatArray, *, scale: float) -> float:
     scale = require_number("sparsity_cauchy", "scale", scale, least=0.0, open_ends=True)
     ratio = density / scale
     np.multiply(ratio, ratio, out=ratio)
-    return float(np.mean(np.log1p(ratio, out=ratio), dtype=np.float64))
+    return float(np.mean(log1p(ratio), dtype=np.float64))
 
 
 def sparsity_cauchy_backward(

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 from .checks import require_integer
 from .errors import DtypeError, RangeError, ShapeError, message
+from .portable_math import cos, log1p, sin
 
 _MULTIPLIERS = (np.uint64(0xD2511F53), np.uint64(0xCD9E8D57))
 _WEYL = (0x9E3779B9, 0xBB67AE85)
@@ -133,9 +134,9 @@ def normal_vectors(
     counter = np.stack([*columns, np.zeros_like(address)], axis=-1)
     words = philox4x32(counter, _key("normal_vectors", seed))
     u = (words >> np.uint32(8)) * np.float64(2.0**-24)
-    radius = np.sqrt(-2.0 * np.log1p(-u[:, 0::2]))
+    radius = np.sqrt(-2.0 * log1p(-u[:, 0::2]))
     angle = 2.0 * np.pi * u[:, 1::2]
-    pairs = np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=-1)
+    pairs = np.stack([radius * cos(angle), radius * sin(angle)], axis=-1)
     return pairs.reshape(-1, 4)[:, :3]
 
 

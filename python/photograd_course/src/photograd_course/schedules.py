@@ -9,6 +9,7 @@ import math
 from collections.abc import Callable
 
 from .checks import require_integer, require_number
+from .portable_math import cos, integer_power, power
 
 Schedule = Callable[[int], float]
 
@@ -32,7 +33,12 @@ def exponential(final: float, steps: int) -> Schedule:
     """
     final = require_number("exponential", "final", final, least=0.0, open_ends=True)
     steps = require_integer("exponential", "steps", steps, least=1)
-    return lambda step: final ** (min(_at("exponential", step), steps) / steps)
+
+    def factor(step: int) -> float:
+        passed = _at("exponential", step) / steps
+        return final if passed >= 1.0 else float(power(final, passed))
+
+    return factor
 
 
 def cosine(steps: int, final: float = 0.0) -> Schedule:
@@ -42,7 +48,7 @@ def cosine(steps: int, final: float = 0.0) -> Schedule:
 
     def factor(step: int) -> float:
         phase = math.pi * min(_at("cosine", step), steps) / steps
-        return final + (1.0 - final) * 0.5 * (1.0 + math.cos(phase))
+        return final + (1.0 - final) * 0.5 * (1.0 + float(cos(phase)))
 
     return factor
 
@@ -51,7 +57,7 @@ def step_decay(every: int, factor: float) -> Schedule:
     """Multiplied by `factor` after each `every` steps: factor^(step // every)."""
     every = require_integer("step_decay", "every", every, least=1)
     factor = require_number("step_decay", "factor", factor, least=0.0, open_ends=True)
-    return lambda step: factor ** (_at("step_decay", step) // every)
+    return lambda step: integer_power(factor, _at("step_decay", step) // every)
 
 
 def warmup(steps: int, schedule: Schedule) -> Schedule:

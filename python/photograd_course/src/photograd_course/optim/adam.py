@@ -21,6 +21,7 @@ from typing import ClassVar
 import numpy as np
 
 from ..checks import FloatArray, require_number
+from ..portable_math import integer_power
 from .optimizer import Optimizer
 
 
@@ -52,8 +53,8 @@ class Adam(Optimizer):
         step: int,
     ) -> None:
         mean, mean_square = moments
-        root = math.sqrt(1.0 - self.beta_2**step)
-        length = learning_rate * root / (1.0 - self.beta_1**step)
+        root = math.sqrt(1.0 - integer_power(self.beta_2, step))
+        length = learning_rate * root / (1.0 - integer_power(self.beta_1, step))
         np.multiply(mean, self.beta_1, out=mean)
         np.multiply(gradient, 1.0 - self.beta_1, out=scratch)
         np.add(mean, scratch, out=mean)

@@ -1,0 +1,64 @@
+"""Digests of short fits of every representation, for tests that compare processes.
+
+`python -m tests.fit.all_fits CAPTURE` prints them.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from photograd.data.load import load_capture
+from photograd.fields.fitted import FITTED
+from photograd.fit import Fit
+from photograd.fit_options import DENSITY_CONTROLS, options_for
+from photograd.model import Model
+
+# Few steps, but with every event: levels, pruning, clones, splits, motion of faint Gaussians.
+JOBS: dict[str, dict[str, Any]] = {
+    "dense_grid": {"resolution": 16, "rays": 256, "steps": 20},
+    "dense_sh": {"resolution": 12, "rays": 128, "steps": 8, "degree": 1},
+    "sparse_sh": {"resolution": 16, "rays": 256, "steps": 20},
+    "octree_sh": {"rays": 64, "steps": 5, "degree": 1},
+    "gaussians": {"gaussians": 200, "steps": 12},
+}
+
+
+def digest(arrays: Mapping[str, Any]) -> str:
+    total = hashlib.blake2b(digest_size=8)
+    for name in sorted(arrays):
+        total.update(name.encode() + np.ascontiguousarray(arrays[name]).tobytes())
+    return total.hexdigest()
+
+
+def digests(folder: Path) -> dict[str, str]:
+    """Of everything that a checkpoint holds after a fit of each kind, background learned."""
+    assert set(JOBS) == set(FITTED)
+    capture = load_capture(folder)
+    x = np.linspace(0.1, 3.0, 999, dtype=np.float32)
+    found = {"of the processor": digest({"exp": np.exp(x)})}
+    start = None
+    for name, changes in JOBS.items():
+        for control in DENSITY_CONTROLS if name == "gaussians" else ("mcmc",):
+            options = options_for(
+                name, seed=1, background="learned", density_control=control, **changes
+            )
+            fit = Fit.start(capture, options, start_from=start if name == "octree_sh" else None)
+            while fit.step_number < options.steps:
+                fit.step()
+            parts = fit.model.params, fit.model.state(), fit.optimiser.state()
+            arrays = {f"{k}/{key}": a for k, part in enumerate(parts) for key, a in part.items()}
+            rest = {"background": fit.background, "history": np.array(fit.history)}
+            found[f"{name}, {control}"] = digest(arrays | rest)
+            if name == "sparse_sh":
+                start = Model(fit.model, None, options, {}, np.zeros((0, 3)))
+    return found
+
+
+if __name__ == "__main__":
+    json.dump(digests(Path(sys.argv[1])), sys.stdout)
