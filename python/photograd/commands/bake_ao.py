@@ -14,7 +14,7 @@ from photograd_course.cli import note as say
 
 from photograd.commands.shared import (
     StopRequest,
-    check_picture_name,
+    check_output_name,
     stop_on_signals,
     use_threads,
 )
@@ -67,7 +67,7 @@ def bake_ao(
     Example: photograd bake-ao chair.glb --shape seat --texels 1024 --radius 0.5 --out seat_ao.exr
     """
     use_threads(threads)
-    check_picture_name("bake-ao", out)
+    check_output_name("bake-ao", out)
     described, _ = load_scene(scene, 16)
     bake = OcclusionBake(
         described, shape or _only_mesh(described), texels, radius=radius, seed=seed

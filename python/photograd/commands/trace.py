@@ -23,9 +23,10 @@ from photograd_course.cli import (
 )
 from photograd_course.color import srgb_encode
 
+from photograd.commands.drawable import check_traced
 from photograd.commands.shared import (
     StopRequest,
-    check_picture_name,
+    check_output_name,
     stop_on_signals,
     use_threads,
 )
@@ -131,7 +132,7 @@ def trace(
     Example: photograd trace cornell-box --spp 256 --out cornell.exr
     """
     use_threads(threads)
-    check_picture_name("trace", out)
+    check_output_name("trace", out)
     options = PathOptions(strategy, heuristic, 2 if integrator == "direct" else max_depth)
     estimate = Estimate(integrator, options, seed, radius, photons, derivative)
     described, fingerprint = load_scene(scene, size, camera)
@@ -200,9 +201,10 @@ def load_scene(name: str, size: int, camera: str | None = None) -> tuple[Scene, 
     """The scene of an argument SCENE, and a text that changes with it; warnings become notes.
 
     Raises:
-        SceneError, IoError, RangeError: no such scene or camera.
+        SceneError, IoError, RangeError: no such scene or camera, or what 'photograd render' draws.
     """
     check_has_cameras(name, camera)
+    check_traced(name)
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         if name in BUILTIN:
