@@ -57,6 +57,18 @@ def test_names_say_what_is_written(photograd: Photograd, cloud: Path) -> None:
     assert np.array_equal(still, first)
 
 
+def test_a_picture_that_is_not_finite_is_an_error(photograd: Photograd, tmp_path: Path) -> None:
+    g = oracle.cloud(8, 1).astype(np.float32)
+    g.sh[:] = 3.3e38
+    write_gaussians(tmp_path / "a.ply", g)
+    out = tmp_path / "a.gif"
+    done = photograd("render", tmp_path / "a.ply", "--orbit", 6, "--size", 24, "--out", out)
+    assert done.code == 1
+    assert "error: splat.render: color: expected finite values" in done.err
+    assert "the first in pixel (" in done.err
+    assert not out.exists()
+
+
 def test_files_of_other_kinds_are_refused_by_name(photograd: Photograd, tmp_path: Path) -> None:
     (tmp_path / "bob.obj").write_text(TRIANGLE)
     (tmp_path / "scan.slc").write_bytes(b"SLC")

@@ -19,7 +19,8 @@ from photograd.commands.shared import (
     use_threads,
 )
 from photograd.commands.trace import SceneArgument, load_scene
-from photograd.data.image_write import write_exr, write_png
+from photograd.data.image_kind import LINEAR_SUFFIXES
+from photograd.data.image_write import write_png, write_radiance
 from photograd.errors import SceneError, message
 from photograd.transport.occlusion_map import OcclusionBake
 from photograd.transport.scene import MeshShape, Scene
@@ -29,7 +30,10 @@ ShapeOption = Annotated[
     str, typer.Option("--shape", help="The mesh; may be left out if one alone has coordinates.")
 ]
 OutOption = Annotated[
-    Path, typer.Option("--out", help="The texture: .exr, with a .png beside it, or .png alone.")
+    Path,
+    typer.Option(
+        "--out", help="The texture: .exr, .hdr or .pfm, with a .png beside it, or .png alone."
+    ),
 ]
 TexelsOption = Annotated[
     int, typer.Option("--texels", min=1, max=1 << 14, help="Along each edge of the texture.")
@@ -78,8 +82,8 @@ def bake_ao(
     seconds = time.monotonic() - began
     if bake.count:
         values = np.repeat(bake.texture().values, 3, axis=2)
-        if out.suffix.lower() == ".exr":
-            write_exr(out, values)
+        if out.suffix.lower() in LINEAR_SUFFIXES:
+            write_radiance(out, values)
         write_png(out.with_suffix(".png"), values)
         covered = bake.points.covered
         open_sky = float(values[covered].mean(dtype=np.float64))

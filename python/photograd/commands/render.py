@@ -37,6 +37,22 @@ from photograd.splat_orbit import orbit_splats
 
 AUTO = "auto"
 STILL = ".png"
+OutOption = Annotated[
+    Path,
+    typer.Option(
+        "--out",
+        help="A .gif file; a name without a suffix: a folder for PNG frames; or, with --orbit 1, a "
+        ".png file.",
+    ),
+]
+UpOption = Annotated[
+    str,
+    typer.Option(
+        "--up",
+        help=f"What is up in a file of Gaussians: {', '.join(UP_AXES)}; by default what its header "
+        f"says, else {USUAL_UP}.",
+    ),
+]
 
 
 def register(app: typer.Typer) -> None:
@@ -54,14 +70,7 @@ def render(
         ),
     ],
     orbit: Annotated[int, typer.Option("--orbit", min=1, help="Frames on the circle.")] = 60,
-    out: Annotated[
-        Path,
-        typer.Option(
-            "--out",
-            help="A .gif file; a name without a suffix: a folder for PNG frames; or, with --orbit "
-            "1, a .png file.",
-        ),
-    ] = Path("turntable.gif"),
+    out: OutOption = Path("turntable.gif"),
     size: Annotated[int, typer.Option("--size", min=8, help="Pixels along an edge.")] = 256,
     elevation: Annotated[
         float, typer.Option("--elevation", min=-89.0, max=89.0, help="Degrees above the horizon.")
@@ -80,14 +89,7 @@ def render(
         tuple[float, float] | None,
         typer.Option("--window", help="Values of a volume that count as 0 and as 1."),
     ] = None,
-    up: Annotated[
-        str,
-        typer.Option(
-            "--up",
-            help=f"What is up in a file of Gaussians: {', '.join(UP_AXES)}; by default what its "
-            f"header says, else {USUAL_UP}.",
-        ),
-    ] = AUTO,
+    up: UpOption = AUTO,
     seed: SeedOption = 0,  # noqa: ARG001  a rendering draws nothing at random
     threads: ThreadsOption = 0,
     as_json: JsonOption = False,
@@ -98,13 +100,7 @@ def render(
     Example: photograd render model --orbit 60 --out turntable.gif
     """
     use_threads(threads)
-    check_output_name("render", out, (".gif", STILL), folder="PNG frames")
-    if out.suffix.lower() == STILL and orbit > 1:
-        expected = f"--orbit 1 for one picture {out.name}"
-        remedy = "for a turntable name a .gif file, or a folder"
-        raise RangeError(message("render", "--orbit", expected, orbit, remedy))
-    if up not in (AUTO, *UP_AXES):
-        raise RangeError(message("render", "--up", f"{AUTO} or one of {', '.join(UP_AXES)}", up))
+    _check_options(out, orbit, up)
     check_rendered(model)
     circle = {"count": orbit, "size": size, "elevation": elevation}
     if holds_gaussians(model):
@@ -115,6 +111,17 @@ def render(
     else:
         views = _model_views(load_model(model), circle)
     _save(_drawn(views, orbit), out, as_json=as_json)
+
+
+def _check_options(out: Path, orbit: int, up: str) -> None:
+    """Refuse, before anything is drawn, names and axes that mean nothing."""
+    check_output_name("render", out, (".gif", STILL), folder="PNG frames")
+    if out.suffix.lower() == STILL and orbit > 1:
+        expected = f"--orbit 1 for one picture {out.name}"
+        remedy = "for a turntable name a .gif file, or a folder"
+        raise RangeError(message("render", "--orbit", expected, orbit, remedy))
+    if up not in (AUTO, *UP_AXES):
+        raise RangeError(message("render", "--up", f"{AUTO} or one of {', '.join(UP_AXES)}", up))
 
 
 def _splat_views(path: Path, up: str, circle: Mapping[str, Any]) -> Iterable[Array]:

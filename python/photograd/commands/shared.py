@@ -12,9 +12,12 @@ from typing import Annotated, Any
 import typer
 
 from photograd.core import _core
+from photograd.data.image_kind import LINEAR_SUFFIXES
 from photograd.errors import IoError, message
 
-PICTURES = (".exr", ".png")
+PICTURES = (*LINEAR_SUFFIXES, ".png")
+SIGNED_PICTURES = tuple(suffix for suffix in PICTURES if suffix != ".hdr")
+"""Files that hold numbers below 0, too."""
 CaptureArgument = Annotated[
     Path,
     typer.Argument(
@@ -56,7 +59,7 @@ def check_output_name(
             raise IoError(message(command, "--out", f"a folder for {folder}", f"{out}, a file"))
         return
     if suffix not in suffixes:
-        expected = f"a name that ends in {' or '.join(suffixes)}"
+        expected = f"a name that ends in {', '.join(suffixes[:-1])} or {suffixes[-1]}"
         expected += f", or one without a suffix: a folder for {folder}" if folder else ""
         raise IoError(message(command, "--out", expected, out))
     if not out.parent.is_dir() or out.is_dir():

@@ -25,6 +25,8 @@ from photograd_course.color import srgb_encode
 
 from photograd.commands.drawable import check_traced
 from photograd.commands.shared import (
+    PICTURES,
+    SIGNED_PICTURES,
     StopRequest,
     check_output_name,
     stop_on_signals,
@@ -39,7 +41,8 @@ from photograd.commands.trace_estimates import (
     write_derivative,
 )
 from photograd.data.exr import LARGEST_SIDE
-from photograd.data.image_write import write_exr, write_png
+from photograd.data.image_kind import LINEAR_SUFFIXES
+from photograd.data.image_write import write_png, write_radiance
 from photograd.transport.accumulation import Accumulation, load_accumulation
 from photograd.transport.builtin import BUILTIN, builtin_scene
 from photograd.transport.mesh_files import SUFFIXES, model_scene, read_model
@@ -61,7 +64,9 @@ SceneArgument = Annotated[
         metavar="SCENE",
     ),
 ]
-OutOption = Annotated[Path, typer.Option("--out", help="The picture: .exr, or .png alone.")]
+OutOption = Annotated[
+    Path, typer.Option("--out", help="The picture: .exr, .hdr or .pfm, or .png alone.")
+]
 SppOption = Annotated[int, typer.Option("--spp", min=1, help="Samples a pixel.")]
 SizeOption = Annotated[
     int,
@@ -123,16 +128,16 @@ def trace(
     studio, from in front and above, under a pale sky and one lamp. What it has and cannot be drawn
     is named.
 
-    Writes the picture as linear EXR, a PNG preview beside it every ten seconds, and OUT.sums.npz,
+    Writes the picture, linear, a PNG preview beside it every ten seconds, and OUT.sums.npz,
     from which --resume goes on: after Ctrl-C, or for more samples.
 
     With --derivative, what is written is how every pixel changes with one parameter instead: signed
-    in the EXR, red where it grows and blue where it falls in the PNG.
+    in the picture, red where it grows and blue where it falls in the PNG.
 
     Example: photograd trace cornell-box --spp 256 --out cornell.exr
     """
     use_threads(threads)
-    check_output_name("trace", out)
+    check_output_name("trace", out, SIGNED_PICTURES if derivative else PICTURES)
     options = PathOptions(strategy, heuristic, 2 if integrator == "direct" else max_depth)
     estimate = Estimate(integrator, options, seed, radius, photons, derivative)
     described, fingerprint = load_scene(scene, size, camera)
@@ -172,10 +177,10 @@ def _report(sums: Accumulation, out: Path, spp: int, seconds: float, *, as_json:
 
 
 def write_pictures(sums: Accumulation, out: Path) -> None:
-    """The mean as EXR, if that is what `out` is, and display-encoded as PNG beside it."""
+    """The mean, linear, unless `out` is a .png; and display-encoded as PNG beside it."""
     mean = sums.mean
-    if out.suffix.lower() == ".exr":
-        write_exr(out, mean.astype(np.float32))
+    if out.suffix.lower() in LINEAR_SUFFIXES:
+        write_radiance(out, mean.astype(np.float32))
     write_png(out.with_suffix(".png"), srgb_encode(np.clip(mean, 0.0, 1.0)).astype(np.float32))
 
 

@@ -11,6 +11,7 @@ from photograd_course.errors import Error, IoError, SceneError, message
 
 from .camera import Camera
 from .frames import FloatArray
+from .image_kind import LINEAR_SUFFIXES
 from .images import IMAGE_SUFFIXES, ColorSpace, ImageHeader, read_header
 
 
@@ -27,15 +28,17 @@ def find_photograph(
 ) -> Photograph:
     """The image file that `reference` names relative to `folder`.
 
-    Without a suffix (the Blender convention), .png, .jpg, .jpeg and .exr are tried in this order,
-    or with .exr first when linear radiance is asked for.
+    Without a suffix (the Blender convention), those of `IMAGE_SUFFIXES` are tried in this order, or
+    the linear ones first when linear radiance is asked for.
 
     Raises:
         IoError: there is none, or it is no image; the text names the frame.
     """
     path = folder / reference
     suffixes = (
-        sorted(IMAGE_SUFFIXES, key=lambda s: s != ".exr") if color_space == "linear" else None
+        sorted(IMAGE_SUFFIXES, key=lambda s: s not in LINEAR_SUFFIXES)
+        if color_space == "linear"
+        else None
     )
     candidates = [path]
     if path.suffix.lower() not in IMAGE_SUFFIXES:

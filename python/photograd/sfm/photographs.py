@@ -13,6 +13,7 @@ from pathlib import Path
 
 from PIL import Image, ImageOps
 
+from photograd.data.image_kind import PILLOW_KINDS, image_kind
 from photograd.errors import IoError, SceneError, message
 
 SUFFIXES = (".jpg", ".jpeg", ".png")
@@ -102,9 +103,10 @@ def copy_photographs(photographs: list[Photograph], folder: Path) -> None:
 
 
 def _look_at(file: Path) -> Photograph:
+    image_kind(_NAME, file, PILLOW_KINDS)
     try:
         content = file.read_bytes()
-        with Image.open(file) as opened:
+        with Image.open(file, formats=PILLOW_KINDS) as opened:
             tags = opened.getexif()
             inner = tags.get_ifd(_EXIF)
             orientation = int(tags.get(_ORIENTATION, 1) or 1)
@@ -128,12 +130,12 @@ def _look_at(file: Path) -> Photograph:
 
 def _save_upright(source: Path, target: Path) -> None:
     """Pixels turned, tags kept but for the orientation, so that the focal length is still known."""
-    with Image.open(source) as opened:
+    with Image.open(source, formats=PILLOW_KINDS) as opened:
         tags = opened.getexif()
         tags.get_ifd(_EXIF)  # read now, or it would be lost
         turned = ImageOps.exif_transpose(opened)
         tags[_ORIENTATION] = 1
-        kind = opened.format or "JPEG"
+        kind = "PNG" if opened.format == "PNG" else "JPEG"  # of several pictures in one, the first
         options = {"quality": _JPEG_QUALITY, "subsampling": 0} if kind == "JPEG" else {}
         turned.save(target, format=kind, exif=tags.tobytes(), **options)
 

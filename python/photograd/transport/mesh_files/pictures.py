@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 from PIL import Image
 
+from photograd.data.image_kind import PILLOW_KINDS
 from photograd.data.json_node import JsonNode
 from photograd.errors import Error, IoError, message
 from photograd.transport.mesh_files.container import NAME, Container, real, whole
@@ -136,7 +137,7 @@ class Pictures:
         else:
             data = self.container.fetch(image["uri"])
         try:
-            with Image.open(io.BytesIO(data), formats=("PNG", "JPEG")) as opened:
+            with Image.open(io.BytesIO(data), formats=PILLOW_KINDS) as opened:
                 self.container.spend(image, opened.width * opened.height)
                 return np.asarray(opened.convert("RGBA"), np.float32) / np.float32(255)
         except IoError:
