@@ -18,9 +18,10 @@ from numpy.typing import NDArray
 from photograd.core import _core
 from photograd.data.camera import Camera
 from photograd.data.gaussian_files import read_gaussians
+from photograd.data.gaussian_frame import file_from_upright
 from photograd.orbit import orbit_cameras
 from photograd.splat import Gaussians, SplatOptions, render
-from photograd.splat_orbit import file_from_upright, scene_box
+from photograd.splat_orbit import scene_box
 from photograd_course.metrics import psnr
 
 ROOT = Path(__file__).resolve().parent.parent

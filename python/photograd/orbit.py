@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from photograd.data.camera import Camera
+from photograd.errors import RangeError, message
 from photograd.representation import Array
 
 
@@ -14,10 +15,16 @@ def orbit_cameras(
     """`count` square cameras of `size` pixels around the vertical (+Y) axis.
 
     elevation and field_of_view in degrees; the distance is such that the box's sphere fills 90 % of
-    the view. Raises what `Camera` raises.
+    the view.
+
+    Raises:
+        RangeError: a box without extent; what `Camera` raises.
     """
     centre = np.asarray(box, np.float64).mean(axis=0)
     radius = 0.5 * float(np.linalg.norm(box[1] - box[0]))
+    if not 0 < radius < np.inf:
+        got = f"{np.asarray(box).tolist()}"
+        raise RangeError(message("orbit_cameras", "box", "two different finite corners", got))
     half = np.radians(field_of_view) / 2
     distance = radius / np.sin(half) / 0.9
     focal = 0.5 * size / np.tan(half)

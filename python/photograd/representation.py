@@ -20,6 +20,7 @@ from photograd_course.suggest import nearest
 
 from photograd.data.camera import Camera
 from photograd.errors import RangeError, ShapeError, message
+from photograd.finite import require_finite
 
 Array: TypeAlias = NDArray[Any]
 Gradients: TypeAlias = Mapping[str, Gradient]
@@ -124,6 +125,19 @@ class Outputs:
     color: Array
     opacity: Array | None = None
     depth: Array | None = None
+
+    def checked(self, function: str, batch: RayBatch | CanvasBatch) -> Outputs:
+        """These outputs, as `function` returns them for `batch`.
+
+        Raises Error, naming the first pixel or point, if one is not finite.
+        """
+        pixel = batch.pixel if isinstance(batch, RayBatch) else None
+        require_finite(
+            function,
+            vars(self),
+            lambda at: f"point {at[0]}" if pixel is None else f"pixel {int(pixel[at[0]])}",
+        )
+        return self
 
 
 class Representation(ABC):

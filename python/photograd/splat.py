@@ -22,6 +22,7 @@ from photograd.core import _core
 from photograd.data.camera import Camera
 from photograd.data.frames import invert_rigid
 from photograd.errors import DtypeError, RangeError, ShapeError, message
+from photograd.finite import require_finite
 
 Array = NDArray[Any]
 MAX_DEGREE = 3
@@ -222,6 +223,7 @@ def render(
     Raises:
         RangeError: a parameter is NaN, or infinite where that has no meaning; the row is named.
         ShapeError: a background or matrix of another shape.
+        Error: the picture is not finite, since colors overflow; the pixel is named.
     """
     dtype = gaussians.means.dtype
     if camera_from_world is None:
@@ -239,6 +241,7 @@ def render(
         camera_from_world=view, background=behind,
     )  # fmt: skip
     picture = SplatPicture(*prepared.render())
+    require_finite("splat.render", vars(picture), lambda at: f"pixel ({at[1]}, {at[0]})")
     return picture, SplatContext(gaussians, picture, prepared, view)
 
 

@@ -26,6 +26,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from photograd.core import _core
 from photograd.errors import RangeError, ShapeError, message
+from photograd.finite import require_finite
 from photograd.splat import Gaussians
 
 Array = NDArray[Any]
@@ -137,6 +138,7 @@ def render(
         RangeError: a parameter, a ray or the background is no number where it must be one, or a
             direction is zero; the row is named.
         ShapeError: an array of another shape.
+        Error: what is seen is not finite, since colors overflow; the ray is named.
     """
     dtype = gaussians.means.dtype
     rays = [_rays(name, a, dtype) for name, a in (("origins", origins), ("directions", directions))]
@@ -154,6 +156,7 @@ def render(
         options=_core.RayOptions(**vars(policies)),
     )  # fmt: skip
     picture = RayPicture(*prepared.render(**gaussians.arrays()))
+    require_finite("splat_rays.render", vars(picture), lambda at: f"ray {at[0]}")
     return picture, RayContext(gaussians, picture, prepared)
 
 

@@ -40,7 +40,7 @@ def test_a_floor_becomes_a_texture(photograd: Photograd, tmp_path: Path) -> None
         ((), "name one of them"),
         (("--shape", "flor"), "did you mean 'floor'"),
         (("--shape", "floor", "--radius", "0"), "above 0 m"),
-        (("--shape", "floor", "--out", "ao.jpg"), ".exr or .png"),
+        (("--shape", "floor", "--out", "ao.jpg"), ".exr, .hdr, .pfm or .png"),
     ],
 )
 def test_mistakes_are_named(

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from photograd.data.gaussian_files import read_gaussians, write_gaussians
+from photograd.data.gaussian_header import Presentation
+from photograd.splat_orbit import orbit_splats
 from PIL import Image
 
 from tests.commands.conftest import Photograd
@@ -35,6 +38,38 @@ def test_a_conversion_says_what_it_changed(photograd: Photograd, scene: Path) ->
     assert read_gaussians(scene.with_suffix(".splat")).gaussians.degree == 0
 
 
+def test_what_was_clamped_counts_as_a_change(photograd: Photograd, scene: Path) -> None:
+    g = read_gaussians(scene).gaussians
+    g.log_scales[3, 1] = -17.5
+    write_gaussians(scene, g)
+    done = photograd("convert", scene, scene.with_suffix(".spz"), "--json")
+    row = next(r for r in done.result()["changes"] if r["attribute"] == "log_scales")
+    assert (row["largest_change"], row["clamped"]) == (7.5, 1)
+    assert row["format_allows"] < 0.04
+
+
+def test_an_axis_that_the_header_names_stays_up(photograd: Photograd, tmp_path: Path) -> None:
+    g, told = oracle.cloud(60, 1).astype(np.float32), Presentation("+z", (0.0, 0.5, 1.0), True)
+    write_gaussians(tmp_path / "a.ply", g, presentation=told)
+    (expected,) = orbit_splats(g, 1, size=32, presentation=told)
+    for name, rotated in (("b.ply", False), ("c.spz", True)):
+        done = photograd("convert", tmp_path / "a.ply", tmp_path / name, "--json")
+        notes = " ".join(row["note"] for row in done.result()["notes"])
+        assert ("rotated from +z up to -y up" in notes) == rotated
+        assert ("the background 0.000 0.500 1.000 (display values) is dropped" in notes) == rotated
+        found = read_gaussians(tmp_path / name)
+        assert (found.presentation == told) != rotated
+        shown = replace(found.presentation, background=told.background)
+        (picture,) = orbit_splats(found.gaussians, 1, size=32, presentation=shown)
+        # Measured: 0 and, of the rounded one, 2/255.
+        assert np.abs(picture - expected).max() < (4 / 255 if rotated else 1e-9)
+    words = ("--orbit", 1, "--size", 32, "--out", tmp_path / "a.png")
+    assert photograd("render", tmp_path / "a.ply", *words).code == 0
+    drawn = np.asarray(Image.open(tmp_path / "a.png"))
+    assert drawn[0, 0].tolist() == [0, 128, 255]
+    assert np.abs(drawn / 255 - expected).max() < 1e-6
+
+
 def test_versions_and_frames_are_named(photograd: Photograd, scene: Path) -> None:
     for version in (2, 3, 4):
         target = scene.with_name(f"v{version}.spz")
@@ -54,7 +89,7 @@ def test_every_format_is_rendered(photograd: Photograd, scene: Path, shared_data
     for name in ("a.ply", "a.splat", "a.spz"):
         if name != "a.ply":
             assert photograd("convert", scene, scene.with_name(name)).code == 0
-        out = scene.with_name(f"pictures of {name}")
+        out = scene.with_name(f"pictures of {name}".replace(".", " "))
         words = ("--orbit", 1, "--size", 32, "--out", out)
         assert photograd("render", scene.with_name(name), *words).code == 0
         pictures[name] = np.asarray(Image.open(out / "frame_0000.png"), np.float64) / 255

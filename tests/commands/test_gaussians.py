@@ -2,15 +2,28 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
-from photograd.commands.fit import PLY_NAME
+from photograd.commands.fit import PLY_NAME, exported
+from photograd.data.gaussian_frame import half_turn
+from photograd.data.gaussian_header import Presentation
 from photograd.data.gaussian_ply import read_gaussian_ply
 from photograd.data.images import read_image
+from photograd.evaluate import display_image
+from photograd.fit import Fit
+from photograd.fit_options import options_for
+from photograd.model import load_model
+from photograd.orbit import orbit_cameras
+from photograd.representation import Array
+from photograd.splat_orbit import orbit_splats
 from photograd_course.cli.entry import run
+from PIL import Image
 
 from tests.commands.conftest import Photograd
+from tests.fit import scene
 
 FIT = ("--representation", "gaussians", "--gaussians", 300, "--steps", 60)
 
@@ -30,11 +43,72 @@ def test_the_fit_leaves_a_file_for_other_viewers(
     assert done.code == 0, done.err
     assert done.result()["finished"] is True
     assert done.result()["gaussians"] == str(tmp_path / PLY_NAME)
-    for words in ("Gaussians: 300 random points in the silhouettes of all views", "Gaussians 300"):
+    start = "Gaussians: 300 random points in the silhouettes of all views"
+    for words in (start, "Gaussians 300", "gaussians.ply: -y is up"):
         assert words in done.err
     gaussians = read_gaussian_ply(tmp_path / PLY_NAME)
     assert len(gaussians) == 300
     assert gaussians.degree == 3
+
+
+CIRCLE = {"size": 48, "elevation": 10}
+
+
+def frame(photograd: Photograd, model: Path, out: Path, *words: object) -> Array:
+    """The first picture of an orbit, in 8 bits."""
+    options = [word for name, value in CIRCLE.items() for word in (f"--{name}", value)]
+    done = photograd("render", model, "--orbit", 1, *options, "--out", out, *words)
+    assert done.code == 0, done.err
+    return np.asarray(Image.open(out), np.int64)
+
+
+@pytest.fixture(scope="module")
+def walled(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A model of opaque photographs in front of a wall, whose color is learned, and its file."""
+    out = tmp_path_factory.mktemp("walled")
+    options = options_for("gaussians", steps=60, gaussians=300, degree=2, seed=1)
+    job = Fit.start(scene.capture(wall=(0.2, 0.4, 0.7)), options)
+    job.run(out)
+    assert exported(job, out) == {"gaussians": str(out / PLY_NAME)}
+    return out
+
+
+def test_the_file_shows_what_the_model_shows(
+    photograd: Photograd, walled: Path, tmp_path: Path
+) -> None:
+    shown = frame(photograd, walled, tmp_path / "model.png")
+    from_file = frame(photograd, walled / PLY_NAME, tmp_path / "file.png")
+    assert shown[0, 0, 2] > shown[0, 0, 0] + 30  # the wall, not white
+    assert np.ptp(shown) > 100
+    model = load_model(walled)
+    (camera,) = orbit_cameras(model.field.box, 1, **CIRCLE)
+    own = np.rint(255 * display_image(model, camera)).astype(np.int64)
+    for picture in (shown, from_file):
+        # Measured: no difference. A value between two levels may be rounded to either.
+        assert np.abs(picture - own).max() <= 1
+        assert (picture == own).mean() > 0.99
+    turned = frame(photograd, walled / PLY_NAME, tmp_path / "turned.png", "--up", "+y")
+    assert np.abs(turned - own).max() > 50
+
+
+@pytest.mark.parametrize(("name", "degree", "notes"), [("a.spz", 2, 2), ("a.splat", 0, 3)])
+def test_other_formats_show_it_upright_and_name_what_they_drop(
+    photograd: Photograd, walled: Path, tmp_path: Path, name: str, degree: int, notes: int
+) -> None:
+    done = photograd("convert", walled / PLY_NAME, tmp_path / name, "--json")
+    dropped = [row["note"] for row in done.result()["notes"] if "dropped" in row["note"]]
+    assert sum("background 0." in line for line in dropped) == 1
+    assert len(dropped) == notes  # how it was antialiased; harmonics
+    assert photograd("convert", tmp_path / name, tmp_path / "back.ply").code == 0
+    g = half_turn(read_gaussian_ply(walled / PLY_NAME))
+    kept = replace(g, sh=g.sh[:, : (degree + 1) ** 2])
+    (expected,) = orbit_splats(kept, 1, presentation=Presentation("+y"), **CIRCLE)
+    for file in (name, "back.ply"):
+        picture = frame(photograd, tmp_path / file, tmp_path / "other.png")
+        assert tuple(picture[0, 0]) == (255, 255, 255)
+        # Measured: 2 at most. Upside down: 7 in the mean.
+        assert np.abs(picture - 255 * expected).max() < 4
+    assert np.abs(picture[::-1] - 255 * expected).mean() > 4
 
 
 def test_a_model_is_described(photograd: Photograd, model: Path) -> None:

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from photograd.data.exr import read_exr
+from photograd.data.images import read_image
 from PIL import Image
 
 from tests.commands.conftest import Photograd
@@ -44,6 +45,39 @@ def test_a_built_in_scene_becomes_pictures(photograd: Photograd, tmp_path: Path)
     assert preview.max() == 255
 
 
+@pytest.mark.parametrize(
+    ("suffix", "relative"), [(".exr", 1e-7), (".pfm", 1e-7), (".hdr", 1 / 256)]
+)
+def test_radiance_of_ten_thousand_survives_to_the_end(
+    photograd: Photograd, tmp_path: Path, suffix: str, relative: float
+) -> None:
+    scene, out = tmp_path / "s.toml", tmp_path / f"a{suffix}"
+    bright = SCENE.replace('material = "grey"', 'material = "grey"\nemission = [10000, 1, 0.01]')
+    bright = bright.replace("radiance = 0.5", "radiance = 0").replace(
+        "radius = 0.5", "radius = 1.2"
+    )
+    scene.write_text(bright, encoding="utf-8")
+    assert photograd("trace", scene, "--spp", 4, "--out", out).code == 0
+    image = read_image(out)[..., :3]
+    np.testing.assert_allclose(image[3, 4, 0], 1e4, rtol=relative)
+    # The other channels are off by a step of the largest one where they share its exponent.
+    np.testing.assert_allclose(image[3, 4], [1e4, 1, 0.01], rtol=relative, atol=relative * 1e4)
+    assert (image[0, 0] == 0).all()
+    assert (image <= 1e4 * (1 + relative)).all()
+    preview = np.asarray(Image.open(out.with_suffix(".png")))
+    assert tuple(preview[3, 4][:2]) == (255, 255)
+
+
+def test_signed_pictures_have_no_place_in_rgbe(photograd: Photograd, tmp_path: Path) -> None:
+    words = ("trace", "cornell-box", "--size", 4, "--derivative", "materials.red.albedo", "--spp")
+    done = photograd(*words, 1, "--out", tmp_path / "a.hdr")
+    assert done.code == 1
+    assert "--out: expected a name that ends in .exr, .pfm or .png" in done.err
+    done = photograd(*words, 1, "--out", tmp_path / "a.pfm")
+    assert done.code == 0, done.err
+    assert read_image(tmp_path / "a.pfm").shape == (4, 4, 4)
+
+
 def test_a_resumed_picture_has_the_same_bits(photograd: Photograd, tmp_path: Path) -> None:
     scene = tmp_path / "s.toml"
     scene.write_text(SCENE, encoding="utf-8")
@@ -76,7 +110,7 @@ def test_other_integrators(photograd: Photograd, tmp_path: Path, integrator: str
         (("none.toml",), "expected a file, got none"),
         (("cornell-box", "--integrator", "magic"), "--integrator"),
         (("cornell-box", "--strategy", "hope"), "strategy"),
-        (("cornell-box", "--out", "a.jpg"), ".exr or .png"),
+        (("cornell-box", "--out", "a.jpg"), ".exr, .hdr, .pfm or .png"),
         (("cornell-box", "--out", "none.exr", "--resume"), "interrupted rendering"),
     ],
 )

@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 from photograd.data.gaussian_coding import Difference, differences
 from photograd.data.gaussian_files import codings_of, read_gaussians, write_gaussians
-from photograd.data.gaussian_spz import half_turn
+from photograd.data.gaussian_frame import half_turn
 from photograd.errors import IoError, RangeError
+from photograd.sh import Y_0
 from photograd.splat import Gaussians, render
 
 from tests.splat import oracle
@@ -83,6 +84,10 @@ def test_extremes_are_moved_to_the_limits_and_counted(tmp_path: Path) -> None:
     assert {name: each.clamped for name, each in found.items()} == {
         "means": 0, "log_scales": 6, "rotation": 0, "opacity": 0, "color": 3, "harmonics": 3,
     }  # fmt: skip
+    # What was moved to a limit counts: 9 to 1/2 / 0.15; -3, which is 3 after the half turn.
+    assert found["log_scales"].largest == np.inf
+    assert found["color"].largest == pytest.approx((9.0 - 0.5 / 0.15) * Y_0)
+    assert found["harmonics"].largest == 3.0 - 127 / 128
     after = read_gaussians(tmp_path / "a.spz").gaussians
     assert after.log_scales[0].tolist() == [-10.0, -10.0, 5.9375]
     assert after.opacity_logits[:2].tolist() == [np.inf, -np.inf]

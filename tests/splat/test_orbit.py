@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import struct
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,10 +11,12 @@ import pytest
 from photograd import sh
 from photograd.commands import register
 from photograd.data.frames import rotation_from_axis_angle
+from photograd.data.gaussian_frame import UP_AXES, file_from_upright
+from photograd.data.gaussian_header import Presentation
 from photograd.data.gaussian_ply import write_gaussian_ply
 from photograd.errors import RangeError
 from photograd.splat import Gaussians, render
-from photograd.splat_orbit import UP_AXES, file_from_upright, orbit_splats, scene_box
+from photograd.splat_orbit import orbit_splats, scene_box
 from PIL import Image
 from typer import Typer
 from typer.testing import CliRunner
@@ -50,7 +53,7 @@ def test_up_is_up(up: str) -> None:
     g.sh[:] = 0.0  # grey, but for a black one on top
     g.means[0] = 0.38 * turn[:, 1]
     g.sh[0], g.log_scales[0], g.opacity_logits[0] = -2.0, -2.3, 5.0
-    picture = next(orbit_splats(g, 1, size=48, elevation=0.0, up=up))
+    picture = next(orbit_splats(g, 1, size=48, elevation=0.0, presentation=Presentation(up)))
     rows, _ = np.nonzero(picture.sum(-1) < 0.7)
     assert len(rows) > 3
     assert rows.max() < 20
@@ -66,6 +69,59 @@ def test_stragglers_do_not_shrink_the_scene() -> None:
         scene_box(none)
     with pytest.raises(RangeError, match="one of"):
         file_from_upright("up")
+
+
+def dots(g: Gaussians) -> int:
+    """Pixels in which something is drawn, of a picture of 48 x 48."""
+    return int(((1 - next(orbit_splats(g, 1, size=48))) > 0.2).any(-1).sum())
+
+
+@pytest.mark.parametrize("log_scale", [-np.inf, -12.0, -3.0, 2.0])
+@pytest.mark.parametrize("place", [(0.0, 0.0, 0.0), (1e3, -2e3, 5.0)])
+@pytest.mark.parametrize("count", [1, 5])
+def test_gaussians_in_one_place_are_drawn(
+    log_scale: float, place: tuple[float, float, float], count: int
+) -> None:
+    g = oracle.cloud(count, 1, degree=0).astype(np.float32)
+    g.means[:], g.log_scales[:], g.opacity_logits[:], g.sh[:] = place, log_scale, 9.0, -1.0
+    lower, upper = scene_box(g)
+    np.testing.assert_allclose((lower + upper) / 2, place, rtol=1e-6)
+    # A point is a dot of a pixel or four, a ball of three sigmas fills most of the picture.
+    drawn = dots(g)
+    assert drawn >= 1
+    if log_scale == 2.0 or (log_scale > -9.0 and place[0] == 0.0):
+        assert drawn > 300
+
+
+def test_points_without_extent_are_dots() -> None:
+    g = oracle.cloud(30, 1, degree=0).astype(np.float32)
+    g.log_scales[:], g.sh[:], g.opacity_logits[:] = -np.inf, -1.0, 9.0
+    assert 30 <= dots(g) <= 30 * 9
+
+
+def test_a_scene_of_millimeters_is_not_cut_off_by_the_near_plane() -> None:
+    g = oracle.cloud(60, 1, degree=0, size=-3.0).astype(np.float32)
+    g.sh[:] = -1.0
+    small = replace(
+        g, means=np.float32(1e-3) * g.means, log_scales=g.log_scales + np.float32(np.log(1e-3))
+    )
+    assert dots(g) > 100
+    assert dots(small) == pytest.approx(dots(g), rel=0.01)
+
+
+def test_a_file_of_one_gaussian_is_drawn(tmp_path: Path) -> None:
+    record = struct.pack("<6f8B", 1, 2, 3, 0.5, 0.5, 0.5, 255, 0, 0, 255, 255, 128, 128, 128)
+    (tmp_path / "one.splat").write_bytes(record)
+    one = {"means3d": np.ones((1, 3), np.float32), "colors": np.zeros((1, 3), np.uint8)}
+    np.savez(tmp_path / "one.npz", **one)
+    for name in ("one.splat", "one.npz"):
+        out = tmp_path / f"{name}.png"
+        app = Typer()
+        register(app)
+        words = ["render", f"{tmp_path / name}", "--orbit", "1", "--size", "24", "--out", f"{out}"]
+        done = CliRunner().invoke(app, words)
+        assert done.exit_code == 0, done.output
+        assert np.asarray(Image.open(out))[12, 12, 1] < 100
 
 
 def test_the_command_renders_a_ply_file(tmp_path: Path) -> None:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from photograd.data.exr import encode_exr
+from photograd.data.image_write import write_radiance
 from photograd.errors import SceneError
 from photograd.lights import EnvironmentMap, Light, SpotLight, SunLight
 from photograd.transport import PathTracer, builtin_scene, read_scene
@@ -169,6 +170,23 @@ def test_pictures_that_are_no_environment_are_refused(
         read_scene(write(tmp_path, LIGHTS, image))
     assert f"line {FIRST + 45}:" in str(caught.value)
     assert words in str(caught.value)
+
+
+@pytest.mark.parametrize("suffix", [".hdr", ".pfm"])
+def test_maps_of_other_formats_are_the_same_light(tmp_path: Path, suffix: str) -> None:
+    pixels = np.random.default_rng(2).random((4, 8, 3)).astype(np.float32) * np.float32(1e4)
+    expected = read_scene(write(tmp_path, LIGHTS, pixels)).lights[9]
+    write_radiance(tmp_path / f"sky{suffix}", pixels)
+    path = write(tmp_path, LIGHTS.replace("sky.exr", f"sky{suffix}"))
+    found = read_scene(path).lights[9]
+    assert isinstance(expected, EnvironmentMap)
+    assert isinstance(found, EnvironmentMap)
+    largest = expected.texels.max(axis=-1, keepdims=True)
+    bound = largest / 256 if suffix == ".hdr" else 0 * largest
+    assert (np.abs(found.texels - expected.texels) <= bound).all()
+    path.write_text(path.read_text("utf-8").replace(f"sky{suffix}", "sky.png"), "utf-8")
+    with pytest.raises(SceneError, match=r"a name that ends in \.exr or \.hdr or \.pfm"):
+        read_scene(path)
 
 
 def test_lights_are_tables(tmp_path: Path) -> None:

@@ -14,13 +14,14 @@ from photograd_course.cli import note as say
 
 from photograd.commands.shared import (
     StopRequest,
-    check_picture_name,
+    check_output_name,
     out_option,
     stop_on_signals,
     use_threads,
 )
 from photograd.commands.trace import SceneArgument, load_scene
-from photograd.data.image_write import write_exr, write_png
+from photograd.data.image_kind import LINEAR_SUFFIXES
+from photograd.data.image_write import write_png, write_radiance
 from photograd.errors import SceneError, message
 from photograd.transport.occlusion_map import OcclusionBake
 from photograd.transport.scene import MeshShape, Scene
@@ -29,7 +30,9 @@ PASS_SPP = 16
 ShapeOption = Annotated[
     str, typer.Option("--shape", help="The mesh; may be left out if one alone has coordinates.")
 ]
-OutOption = Annotated[Path, out_option("The texture: .exr, with a .png beside it, or .png alone.")]
+OutOption = Annotated[
+    Path, out_option("The texture: .exr, .hdr or .pfm, with a .png beside it, or .png alone.")
+]
 TexelsOption = Annotated[
     int, typer.Option("--texels", min=1, max=1 << 14, help="Along each edge of the texture.")
 ]
@@ -66,7 +69,7 @@ def bake_ao(
     Example: photograd bake-ao chair.glb --shape seat --texels 1024 --radius 0.5 --out seat_ao.exr
     """
     use_threads(threads)
-    check_picture_name("bake-ao", out)
+    check_output_name("bake-ao", out)
     described, _ = load_scene(scene, 16)
     bake = OcclusionBake(
         described, shape or _only_mesh(described), texels, radius=radius, seed=seed
@@ -77,8 +80,8 @@ def bake_ao(
     seconds = time.monotonic() - began
     if bake.count:
         values = np.repeat(bake.texture().values, 3, axis=2)
-        if out.suffix.lower() == ".exr":
-            write_exr(out, values)
+        if out.suffix.lower() in LINEAR_SUFFIXES:
+            write_radiance(out, values)
         write_png(out.with_suffix(".png"), values)
         covered = bake.points.covered
         open_sky = float(values[covered].mean(dtype=np.float64))

@@ -18,6 +18,8 @@ from photograd.data.gaussian_files import (
     read_gaussians,
     write_gaussians,
 )
+from photograd.data.gaussian_frame import USUAL_UP, with_usual_up
+from photograd.data.gaussian_header import dropped
 from photograd.errors import IoError, RangeError, message
 
 SPZ_VERSION = 3
@@ -50,6 +52,8 @@ def convert(
 ) -> None:
     """Convert a file of Gaussians, and say by how much each attribute was rounded.
 
+    What is up stays up; what OUT has no place for, such as a background, is named.
+
     Where OUT is .glb or .gltf, IN is a scene or a mesh file; what the file cannot hold, or is read
     back changed, is named.
 
@@ -74,15 +78,20 @@ def convert_file(source: Path, target: Path, spz_version: int) -> dict[str, Any]
     """
     _check_other(source, target)
     before = read_gaussians(source)
-    write_gaussians(target, before.gaussians, spz_version=spz_version)
+    gaussians, told, suffix = before.gaussians, before.presentation, target.suffix.lower()
+    lost = []
+    if suffix != ".ply" and told.up not in (None, USUAL_UP):
+        gaussians = with_usual_up(gaussians, told.up)
+        lost.append(f"rotated from {told.up} up to {USUAL_UP} up, which {suffix} files have")
+    write_gaussians(target, gaussians, spz_version=spz_version, presentation=told)
     after = read_gaussians(target)
-    lost = before.gaussians.degree - after.gaussians.degree
+    if after.gaussians.degree < gaussians.degree:
+        degrees = f"{after.gaussians.degree + 1} to {gaussians.degree}"
+        lost.append(f"harmonics of degree {degrees} are dropped")
+    lost += dropped(suffix, told)
     notes = [{"reading": source.name, "note": line} for line in before.conversions]
-    notes += [{"reading": target.name, "note": line} for line in after.conversions]
-    if lost:
-        degrees = f"{after.gaussians.degree + 1} to {before.gaussians.degree}"
-        notes.append({"reading": target.name, "note": f"harmonics of degree {degrees} are dropped"})
-    codings = codings_of(target, before.gaussians, spz_version=spz_version)
+    notes += [{"reading": target.name, "note": line} for line in (*after.conversions, *lost)]
+    codings = codings_of(target, gaussians, spz_version=spz_version)
     changes = [
         {
             "attribute": each.attribute,
@@ -91,7 +100,7 @@ def convert_file(source: Path, target: Path, spz_version: int) -> dict[str, Any]
             "format_allows": float(f"{each.bound:.4g}"),
             "clamped": each.clamped,
         }
-        for each in differences(before.gaussians, after.gaussians, codings)
+        for each in differences(gaussians, after.gaussians, codings)
     ]
     return {
         "gaussians": len(before.gaussians),

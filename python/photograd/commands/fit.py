@@ -19,6 +19,7 @@ from photograd_course.cli import (
 )
 from photograd_course.cli import Progress as Bar
 
+from photograd.backgrounds import learned_background
 from photograd.checkpoint import FILE_NAME
 from photograd.commands.fit_arguments import (
     AllowBlindOption,
@@ -46,7 +47,9 @@ from photograd.commands.shared import (
     use_threads,
 )
 from photograd.data.capture import Capture
-from photograd.data.gaussian_ply import write_gaussian_ply
+from photograd.data.gaussian_files import write_gaussians
+from photograd.data.gaussian_frame import USUAL_UP, half_turn
+from photograd.data.gaussian_header import Presentation
 from photograd.data.load import load_capture
 from photograd.errors import RangeError, message
 from photograd.fields.gaussians import GaussianScene
@@ -106,7 +109,8 @@ def fit(
 
     Writes OUT/model.npz: every 30 seconds, on Ctrl-C or SIGTERM, and at the end. --resume continues
     and ends with the same bits as a fit that was never interrupted. A fit of Gaussians also leaves
-    OUT/gaussians.ply, which other viewers of splats read.
+    OUT/gaussians.ply for other programs: with -y up, as they expect, and a learned background in a
+    comment.
 
     Example: photograd fit photos --out model --steps 1500 --resolution 128
     """
@@ -132,17 +136,26 @@ def fit(
         note(job.start_rule)
     with stop_on_signals() as stopping:
         result = run_with_bar(job, out, stopping, checkpoint_seconds)
-    emit(summary(result) | exported(job, out), as_json=as_json, title="fit")
+    files = exported(job, out)
+    if files:
+        note(f"{PLY_NAME}: {USUAL_UP} is up, as other programs expect; the model's world has +y up")
+    emit(summary(result) | files, as_json=as_json, title="fit")
     if not result.finished:
         note(f"stopped at step {result.step}; continue with --resume")
         raise typer.Exit(stopping.exit_code or 1)
 
 
 def exported(job: Fit, out: Path) -> dict[str, str]:
-    """Write finished Gaussians for other viewers; {"gaussians": path} if there are any."""
-    if job.step_number < job.options.steps or not isinstance(job.model, GaussianScene):
+    """Write finished Gaussians for other programs; {"gaussians": path} if there are any.
+
+    Half a turn about x takes the world, +y up, to the frame of such files.
+    """
+    scene = job.model
+    if job.step_number < job.options.steps or not isinstance(scene, GaussianScene):
         return {}
-    write_gaussian_ply(out / PLY_NAME, job.model.gaussians)
+    behind = None if job.background is None else learned_background(job.background)
+    presentation = Presentation.of_fit(USUAL_UP, behind, antialiased=scene.policy.antialiased)
+    write_gaussians(out / PLY_NAME, half_turn(scene.gaussians), presentation=presentation)
     return {"gaussians": str(out / PLY_NAME)}
 
 

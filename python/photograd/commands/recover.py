@@ -22,8 +22,9 @@ from photograd_course.cli import Progress as Bar
 
 from photograd.commands.shared import StopRequest, out_option, stop_on_signals, use_threads
 from photograd.commands.trace import SceneArgument, load_scene
-from photograd.data.exr import read_exr
+from photograd.data.image_kind import LINEAR_SUFFIXES
 from photograd.data.image_write import write_exr
+from photograd.data.images import read_radiance
 from photograd.errors import IoError, RangeError, message
 from photograd.run_lock import one_run_in
 from photograd.transport.recovery import Recovery, RecoveryOptions, RecoveryResult, Target, Unknown
@@ -36,7 +37,10 @@ from photograd.transport.tracer import PathOptions, PathTracer
 DEFAULTS = RecoveryOptions()
 LOOK_SPP = 64  # samples a pixel of the picture that is shown beside the target
 TargetOption = Annotated[
-    list[Path], typer.Option("--target", help="A picture to match, linear .exr; may be repeated.")
+    list[Path],
+    typer.Option(
+        "--target", help="A picture to match, linear: .exr, .hdr or .pfm; may be repeated."
+    ),
 ]
 CameraOption = Annotated[
     list[Path] | None,
@@ -139,15 +143,16 @@ def recover(
 
 
 def read_target(path: Path) -> Any:
-    """(H, W, 3) linear, of an .exr.
+    """(H, W, 3) linear, of an .exr, .hdr or .pfm.
 
     Raises:
         IoError: another suffix, or a damaged file.
     """
-    if path.suffix.lower() != ".exr":
+    if path.suffix.lower() not in LINEAR_SUFFIXES:
         remedy = "photographs of 8 bits are clipped at white; 'photograd trace' writes .exr"
-        raise IoError(message("recover", "--target", "a linear .exr", path, remedy))
-    return read_exr(path)[..., :3].astype(np.float64)
+        expected = f"a linear {' or '.join(LINEAR_SUFFIXES)}"
+        raise IoError(message("recover", "--target", expected, path, remedy))
+    return read_radiance(path).astype(np.float64)
 
 
 def parsed(text: str) -> Unknown:

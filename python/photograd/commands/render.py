@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
+import numpy as np
 import typer
 from photograd_course.cli import (
     Column,
@@ -17,15 +19,39 @@ from photograd_course.cli import (
     note,
 )
 
-from photograd.commands.shared import use_threads
+from photograd.commands.drawable import check_rendered, is_volume
+from photograd.commands.shared import check_output_name, use_threads
 from photograd.data.gaussian_files import holds_gaussians, read_gaussians
+from photograd.data.gaussian_frame import UP_AXES, USUAL_UP, WORLD_UP
+from photograd.data.gaussian_header import Presentation
+from photograd.data.image_write import write_png
+from photograd.errors import RangeError, message
 from photograd.evaluate import display_image
+from photograd.fields.gaussians import GaussianScene
 from photograd.fog import RAMPS, load_fog
-from photograd.model import load_model
+from photograd.model import Model, load_model
 from photograd.orbit import orbit_cameras
 from photograd.representation import Array
-from photograd.splat_orbit import UP_AXES, orbit_splats
-from photograd.volumes import SUFFIXES
+from photograd.splat_orbit import orbit_splats
+
+AUTO = "auto"
+STILL = ".png"
+OutOption = Annotated[
+    Path,
+    typer.Option(
+        "--out",
+        help="A .gif file; a name without a suffix: a folder for PNG frames; or, with --orbit 1, a "
+        ".png file.",
+    ),
+]
+UpOption = Annotated[
+    str,
+    typer.Option(
+        "--up",
+        help=f"What is up in a file of Gaussians: {', '.join(UP_AXES)}; by default what its header "
+        f"says, else {USUAL_UP}.",
+    ),
+]
 
 
 def register(app: typer.Typer) -> None:
@@ -43,9 +69,7 @@ def render(
         ),
     ],
     orbit: Annotated[int, typer.Option("--orbit", min=1, help="Frames on the circle.")] = 60,
-    out: Annotated[
-        Path, typer.Option("--out", help="A .gif file, or a folder for PNG frames.")
-    ] = Path("turntable.gif"),
+    out: OutOption = Path("turntable.gif"),
     size: Annotated[int, typer.Option("--size", min=8, help="Pixels along an edge.")] = 256,
     elevation: Annotated[
         float, typer.Option("--elevation", min=-89.0, max=89.0, help="Degrees above the horizon.")
@@ -64,9 +88,7 @@ def render(
         tuple[float, float] | None,
         typer.Option("--window", help="Values of a volume that count as 0 and as 1."),
     ] = None,
-    up: Annotated[
-        str, typer.Option("--up", help=f"What is up among Gaussians: {', '.join(UP_AXES)}.")
-    ] = "-y",
+    up: UpOption = AUTO,
     threads: ThreadsOption = 0,
     as_json: JsonOption = False,
     debug: DebugOption = False,  # noqa: ARG001
@@ -76,21 +98,47 @@ def render(
     Example: photograd render model --orbit 60 --out turntable.gif
     """
     use_threads(threads)
+    _check_options(out, orbit, up)
+    check_rendered(model)
+    circle = {"count": orbit, "size": size, "elevation": elevation}
     if holds_gaussians(model):
-        found = read_gaussians(model)
-        for line in found.conversions:
-            note(line)
-        views = orbit_splats(found.gaussians, orbit, size=size, elevation=elevation, up=up)
-        _save(_drawn(views, orbit), out, as_json=as_json)
-        return
-    if model.name.lower().endswith((".vdb", *SUFFIXES)):
-        loaded = load_fog(model, ramp=ramp, sigma_t=sigma_t, resolution=resolution, window=window)
+        views = _splat_views(model, up, circle)
+    elif is_volume(model):
+        fog = load_fog(model, ramp=ramp, sigma_t=sigma_t, resolution=resolution, window=window)
+        views = _model_views(fog, circle)
     else:
-        loaded = load_model(model)
-    cameras = orbit_cameras(loaded.field.box, orbit, size=size, elevation=elevation)
-    _save(
-        _drawn((display_image(loaded, camera) for camera in cameras), orbit), out, as_json=as_json
-    )
+        views = _model_views(load_model(model), circle)
+    _save(_drawn(views, orbit), out, as_json=as_json)
+
+
+def _check_options(out: Path, orbit: int, up: str) -> None:
+    """Refuse, before anything is drawn, names and axes that mean nothing."""
+    check_output_name("render", out, (".gif", STILL), folder="PNG frames")
+    if out.suffix.lower() == STILL and orbit > 1:
+        expected = f"--orbit 1 for one picture {out.name}"
+        remedy = "for a turntable name a .gif file, or a folder"
+        raise RangeError(message("render", "--orbit", expected, orbit, remedy))
+    if up not in (AUTO, *UP_AXES):
+        raise RangeError(message("render", "--up", f"{AUTO} or one of {', '.join(UP_AXES)}", up))
+
+
+def _splat_views(path: Path, up: str, circle: Mapping[str, Any]) -> Iterable[Array]:
+    """The pictures of a file of Gaussians, one after the other."""
+    found = read_gaussians(path)
+    for line in found.conversions:
+        note(line)
+    told = found.presentation if up == AUTO else replace(found.presentation, up=up)
+    return orbit_splats(found.gaussians, presentation=told, **circle)
+
+
+def _model_views(model: Model, circle: Mapping[str, Any]) -> Iterable[Array]:
+    """The pictures of a model; of Gaussians, the same that its gaussians.ply gives."""
+    scene = model.field
+    if isinstance(scene, GaussianScene):
+        told = Presentation.of_fit(WORLD_UP, model.background, antialiased=scene.policy.antialiased)
+        return orbit_splats(scene.gaussians, presentation=told, **circle)
+    cameras = orbit_cameras(scene.box, **circle)
+    return (display_image(model, camera) for camera in cameras)
 
 
 def _drawn(views: Iterable[Array], count: int) -> list[Array]:
@@ -104,11 +152,13 @@ def _drawn(views: Iterable[Array], count: int) -> list[Array]:
 
 
 def _save(frames: list[Array], out: Path, *, as_json: bool) -> None:
-    """Write the frames to a .gif or a folder, and say so."""
+    """Write the frames to a .gif, a .png or a folder, and say so."""
     from photograd_course.viz import write_frames, write_gif
 
     if out.suffix.lower() == ".gif":
         write_gif(frames, out)
+    elif out.suffix.lower() == STILL:
+        write_png(out, frames[0].astype(np.float32))
     else:
         write_frames(frames, out)
     emit({"out": out, "frames": len(frames)}, as_json=as_json, title="render")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import errno
 import os
 import signal
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from types import FrameType
@@ -14,8 +14,12 @@ from typing import Annotated, Any
 import typer
 
 from photograd.core import _core
+from photograd.data.image_kind import LINEAR_SUFFIXES
 from photograd.errors import IoError, message
 
+PICTURES = (*LINEAR_SUFFIXES, ".png")
+SIGNED_PICTURES = tuple(suffix for suffix in PICTURES if suffix != ".hdr")
+"""Files that hold numbers below 0, too."""
 CaptureArgument = Annotated[
     Path,
     typer.Argument(
@@ -67,15 +71,31 @@ def use_threads(threads: int) -> None:
     _core.set_thread_count(threads)
 
 
-def check_picture_name(command: str, out: Path) -> None:
+def check_output_name(
+    command: str, out: Path, suffixes: Sequence[str] = PICTURES, *, folder: str = ""
+) -> None:
     """Refuse an --out of `command` that cannot be written, before the work and not after it.
 
+    Args:
+        command: on whose behalf the error speaks.
+        out: the name.
+        suffixes: ends of names of files that can be written.
+        folder: what a folder would hold, where a name without a suffix means one; "" where not.
+
     Raises:
-        IoError: a name that ends neither in .exr nor in .png, or a folder that is not there.
+        IoError: another end of the name, a file where a folder should be or the other way round, or
+            a folder that is not there.
     """
-    if out.suffix.lower() not in (".exr", ".png"):
-        raise IoError(message(command, "--out", "a name that ends in .exr or .png", out))
-    if not out.parent.is_dir():
+    suffix = out.suffix.lower()
+    if folder and not suffix:
+        if out.exists() and not out.is_dir():
+            raise IoError(message(command, "--out", f"a folder for {folder}", f"{out}, a file"))
+        return
+    if suffix not in suffixes:
+        expected = f"a name that ends in {', '.join(suffixes[:-1])} or {suffixes[-1]}"
+        expected += f", or one without a suffix: a folder for {folder}" if folder else ""
+        raise IoError(message(command, "--out", expected, out))
+    if not out.parent.is_dir() or out.is_dir():
         raise IoError(message(command, "--out", "a file in a folder that exists", out))
 
 

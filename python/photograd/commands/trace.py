@@ -23,9 +23,12 @@ from photograd_course.cli import (
 )
 from photograd_course.color import srgb_encode
 
+from photograd.commands.drawable import check_traced
 from photograd.commands.shared import (
+    PICTURES,
+    SIGNED_PICTURES,
     StopRequest,
-    check_picture_name,
+    check_output_name,
     out_option,
     stop_on_signals,
     use_threads,
@@ -38,8 +41,9 @@ from photograd.commands.trace_estimates import (
     PhotonsOption,
     write_derivative,
 )
-from photograd.data.exr import LARGEST_SIDE
-from photograd.data.image_write import write_exr, write_png
+from photograd.data.image_kind import LINEAR_SUFFIXES
+from photograd.data.image_write import write_png, write_radiance
+from photograd.data.pixel_limit import LARGEST_SIDE
 from photograd.run_lock import one_run_for
 from photograd.transport.accumulation import Accumulation, load_accumulation
 from photograd.transport.builtin import BUILTIN, builtin_scene
@@ -62,7 +66,7 @@ SceneArgument = Annotated[
         metavar="SCENE",
     ),
 ]
-OutOption = Annotated[Path, out_option("The picture: .exr, or .png alone.")]
+OutOption = Annotated[Path, out_option("The picture: .exr, .hdr or .pfm, or .png alone.")]
 SppOption = Annotated[int, typer.Option("--spp", min=1, help="Samples a pixel.")]
 SizeOption = Annotated[
     int,
@@ -125,16 +129,16 @@ def trace(
     studio, from in front and above, under a pale sky and one lamp. What it has and cannot be drawn
     is named.
 
-    Writes the picture as linear EXR, a PNG preview beside it every ten seconds, and OUT.sums.npz,
+    Writes the picture, linear, a PNG preview beside it every ten seconds, and OUT.sums.npz,
     from which --resume goes on: after Ctrl-C, or for more samples.
 
     With --derivative, what is written is how every pixel changes with one parameter instead: signed
-    in the EXR, red where it grows and blue where it falls in the PNG.
+    in the picture, red where it grows and blue where it falls in the PNG.
 
     Example: photograd trace cornell-box --spp 256 --out cornell.exr
     """
     use_threads(threads)
-    check_picture_name("trace", out)
+    check_output_name("trace", out, SIGNED_PICTURES if derivative else PICTURES)
     context.with_resource(one_run_for("trace", out))
     options = PathOptions(strategy, heuristic, 2 if integrator == "direct" else max_depth)
     estimate = Estimate(integrator, options, seed, radius, photons, derivative)
@@ -175,10 +179,10 @@ def _report(sums: Accumulation, out: Path, spp: int, seconds: float, *, as_json:
 
 
 def write_pictures(sums: Accumulation, out: Path) -> None:
-    """The mean as EXR, if that is what `out` is, and display-encoded as PNG beside it."""
+    """The mean, linear, unless `out` is a .png; and display-encoded as PNG beside it."""
     mean = sums.mean
-    if out.suffix.lower() == ".exr":
-        write_exr(out, mean.astype(np.float32))
+    if out.suffix.lower() in LINEAR_SUFFIXES:
+        write_radiance(out, mean.astype(np.float32))
     write_png(out.with_suffix(".png"), srgb_encode(np.clip(mean, 0.0, 1.0)).astype(np.float32))
 
 
@@ -204,9 +208,10 @@ def load_scene(name: str, size: int, camera: str | None = None) -> tuple[Scene, 
     """The scene of an argument SCENE, and a text that changes with it; warnings become notes.
 
     Raises:
-        SceneError, IoError, RangeError: no such scene or camera.
+        SceneError, IoError, RangeError: no such scene or camera, or what 'photograd render' draws.
     """
     check_has_cameras(name, camera)
+    check_traced(name)
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         if name in BUILTIN:

@@ -10,7 +10,8 @@ from typing import Annotated
 import numpy as np
 import typer
 
-from photograd.data.image_write import write_exr, write_png
+from photograd.data.image_kind import LINEAR_SUFFIXES
+from photograd.data.image_write import write_png, write_radiance
 from photograd.errors import RangeError, message
 from photograd.transport.accumulation import Accumulation
 from photograd.transport.derivative import add_derivative_samples, direction_of
@@ -101,12 +102,12 @@ class Estimate:
 
 
 def write_derivative(sums: Accumulation, out: Path) -> None:
-    """The mean as EXR, if that is what `out` is, and the channels' sum in signed colours as PNG."""
+    """The mean unless `out` is a .png, and the channels' sum in signed colors as PNG."""
     from photograd_course.viz import style
 
     mean = sums.mean
-    if out.suffix.lower() == ".exr":
-        write_exr(out, mean.astype(np.float32))
+    if out.suffix.lower() in LINEAR_SUFFIXES:
+        write_radiance(out, mean.astype(np.float32))
     slope = mean.sum(axis=2)
     limit = float(np.quantile(np.abs(slope), 1.0 - CLIPPED)) or float(np.abs(slope).max()) or 1.0
     colors = style.signed_colour_map()(style.symmetric_scale(limit)(slope))

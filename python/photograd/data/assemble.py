@@ -12,6 +12,7 @@ from photograd_course.portable_math import matmul
 
 from .camera import Camera
 from .frames import FloatArray
+from .image_kind import LINEAR_SUFFIXES
 from .images import IMAGE_SUFFIXES, ColorSpace, ImageHeader, read_header
 from .inside import TRUST, inside
 
@@ -35,8 +36,8 @@ def find_photograph(
 ) -> Photograph:
     """The image file that `reference` names relative to `folder`.
 
-    Without a suffix (the Blender convention), .png, .jpg, .jpeg and .exr are tried in this order,
-    or with .exr first when linear radiance is asked for.
+    Without a suffix (the Blender convention), those of `IMAGE_SUFFIXES` are tried in this order, or
+    the linear ones first when linear radiance is asked for.
 
     Raises:
         IoError: there is none, or it is no image, or `reference` leads out of `folder` without
@@ -44,7 +45,9 @@ def find_photograph(
     """
     path = inside(function, frame, folder, reference, allow_outside=allow_outside, remedy=TRUST)
     suffixes = (
-        sorted(IMAGE_SUFFIXES, key=lambda s: s != ".exr") if color_space == "linear" else None
+        sorted(IMAGE_SUFFIXES, key=lambda s: s not in LINEAR_SUFFIXES)
+        if color_space == "linear"
+        else None
     )
     candidates = [path]
     if path.suffix.lower() not in IMAGE_SUFFIXES:

@@ -12,14 +12,11 @@ import OpenEXR
 from photograd_course.errors import IoError, RangeError, message
 
 from .file_bytes import require_file
-from .pixel_limit import require_pixels
+from .pixel_limit import require_size
 
 _CHANNELS = ("R", "G", "B", "A")
 
 LARGEST_HALF = 65504.0
-
-LARGEST_SIDE = 1 << 16
-"""Larger images are refused from the header alone, before their memory is asked for."""
 
 
 def read_exr_header(path: Path) -> tuple[int, int, bool]:
@@ -39,10 +36,7 @@ def read_exr_header(path: Path) -> tuple[int, int, bool]:
         raise _unreadable("read_exr_header", path, error) from error
     width = int(upper[0]) - int(lower[0]) + 1
     height = int(upper[1]) - int(lower[1]) + 1
-    if not (0 < width <= LARGEST_SIDE and 0 < height <= LARGEST_SIDE):
-        got = f"{width} x {height}"
-        raise IoError(message("read_exr_header", str(path), "1 to 65536 pixels a side", got))
-    require_pixels("read_exr_header", str(path), width, height)
+    require_size("read_exr_header", str(path), width, height)
     if not (set(_CHANNELS[:3]) <= names or "Y" in names):
         expected = "channels R, G, B or Y"
         raise IoError(message("read_exr_header", str(path), expected, sorted(names)))

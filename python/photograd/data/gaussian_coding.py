@@ -49,9 +49,10 @@ class Difference:
 
     Attributes:
         attribute, unit: what was compared.
-        largest: difference over all rows with values inside of the format's limits.
-        bound: what the format promises for it.
-        clamped: number of values that lay outside of the limits.
+        largest: difference over all rows.
+        bound: what the format promises for values inside of its limits.
+        clamped: number of values that lay outside of the limits; their differences may exceed the
+            bound.
     """
 
     attribute: str
@@ -75,9 +76,8 @@ def differences(before: Gaussians, after: Gaussians, codings: Codings) -> list[D
             a, b = a[:, :shared], b[:, :shared]
         with np.errstate(invalid="ignore"):  # infinite on both sides is the same
             difference = np.where(a == b, 0.0, np.abs(a - b))
-        inside = (a >= coding.low) & (a <= coding.high)
-        largest = float(difference[inside].max(initial=0.0))
-        clamped = int((~inside).sum())
+        largest = float(difference.max(initial=0.0))
+        clamped = int(((a < coding.low) | (a > coding.high)).sum())
         found.append(Difference(name, UNITS[name], largest, coding.error, clamped))
     return found
 

@@ -17,6 +17,7 @@ from photograd.splat import Gaussians
 from .file_bytes import read_file
 from .gaussian_coding import Coding, Codings
 from .gaussian_compressed_ply import is_compressed, read_compressed_ply
+from .gaussian_header import UNSTATED, Presentation, read_presentation
 from .gaussian_npz import is_point_npz, read_point_npz
 from .gaussian_ply import read_gaussian_ply, write_gaussian_ply
 from .gaussian_splat import read_gaussian_splat, splat_codings, write_gaussian_splat
@@ -35,14 +36,17 @@ class GaussianFile:
     """What a file held.
 
     Attributes:
-        gaussians: float32, in the frame of .ply files, whichever the format's is.
+        gaussians: float32, in the frame of .ply files, whichever the format's is: -y is up unless
+            `presentation` names another axis.
         format: name of the format.
         conversions: what was converted or left aside, one sentence each, for the log.
+        presentation: what the file says of up, background and antialiasing.
     """
 
     gaussians: Gaussians
     format: str
     conversions: tuple[str, ...] = ()
+    presentation: Presentation = UNSTATED
 
 
 def read_gaussians(path: Path, *, memory_limit: int | None = None) -> GaussianFile:
@@ -63,8 +67,8 @@ def read_gaussians(path: Path, *, memory_limit: int | None = None) -> GaussianFi
     if start[:3] == b"ply":
         return _read_ply(path, head, memory_limit)
     if start[:3] == GZIP or start == MAGIC:
-        gaussians, lines = read_gaussian_spz(path, memory_limit=memory_limit)
-        return GaussianFile(gaussians, "spz", (*lines, *_misnamed(path, ".spz")))
+        gaussians, lines, presentation = read_gaussian_spz(path, memory_limit=memory_limit)
+        return GaussianFile(gaussians, "spz", (*lines, *_misnamed(path, ".spz")), presentation)
     if start == b"PK\x03\x04":
         gaussians, lines = read_point_npz(path, memory_limit=memory_limit)
         return GaussianFile(gaussians, "points", (*lines, *_misnamed(path, ".npz")))
@@ -76,8 +80,21 @@ def read_gaussians(path: Path, *, memory_limit: int | None = None) -> GaussianFi
     raise IoError(message(_READ, f"{path}", expected, got))
 
 
-def write_gaussians(path: Path, gaussians: Gaussians, *, spz_version: int = 3) -> None:
+def write_gaussians(
+    path: Path,
+    gaussians: Gaussians,
+    *,
+    spz_version: int = 3,
+    presentation: Presentation = UNSTATED,
+) -> None:
     """Write Gaussians in the format that the name's end says, whole or not at all.
+
+    Args:
+        path: .ply, .splat or .spz.
+        gaussians: with -y up, but for a .ply file whose `presentation` says otherwise.
+        spz_version: of an .spz file.
+        presentation: kept as far as the format has a place: all of it in a .ply file, antialiasing
+            in an .spz file.
 
     Raises:
         IoError: another end of the name, or the file cannot be written.
@@ -96,10 +113,13 @@ def write_gaussians(path: Path, gaussians: Gaussians, *, spz_version: int = 3) -
             row = int(np.argwhere(bad)[0, 0])
             raise RangeError(message(_WRITE, name, "numbers", f"none in row {row}"))
     writers: dict[str, Callable[[], None]] = {
-        ".ply": lambda: write_gaussian_ply(path, gaussians),
+        ".ply": lambda: write_gaussian_ply(path, gaussians, presentation),
         ".splat": lambda: write_gaussian_splat(path, gaussians),
-        ".spz": lambda: write_gaussian_spz(path, gaussians, version=spz_version),
-    }
+        ".spz": lambda: write_gaussian_spz(
+            path, gaussians, version=spz_version,
+            antialiased=presentation.antialiased is True,
+        ),
+    }  # fmt: skip
     writers[suffix]()
 
 
@@ -119,10 +139,13 @@ def holds_gaussians(path: Path) -> bool:
 
 
 def _read_ply(path: Path, head: bytes, memory_limit: int | None) -> GaussianFile:
+    presentation = read_presentation(_READ, path, head)
+    said = tuple(f"the file says: {line}" for line in presentation.sentences())
     if is_compressed(head):
         found = read_compressed_ply(path, memory_limit=memory_limit)
-        return GaussianFile(found, "compressed ply", ("four words each, between limits of 256",))
-    return GaussianFile(read_gaussian_ply(path), "ply")
+        lines = ("four words each, between limits of 256", *said)
+        return GaussianFile(found, "compressed ply", lines, presentation)
+    return GaussianFile(read_gaussian_ply(path), "ply", said, presentation)
 
 
 def _misnamed(path: Path, suffix: str) -> tuple[str, ...]:

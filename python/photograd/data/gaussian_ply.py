@@ -3,7 +3,8 @@
 One vertex a Gaussian, float32 properties, before any activation: x y z, scale_0..2 (logarithms),
 rot_0..3 (w x y z), opacity (logit), f_dc_0..2 and f_rest_0.. (spherical harmonics; f_rest runs
 through all coefficients of red, then of green, then of blue). Positions and quaternions stay in the
-frame of the file, which is usually that of a structure-from-motion program, y down.
+frame of the file, which is usually that of a structure-from-motion program, y down; comments in
+files that `photograd fit` writes say so (`gaussian_header`).
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from numpy.typing import NDArray
 from photograd_course.atomic_io import atomic_write
 from plyfile import PlyData, PlyElement
 
+from photograd.data.gaussian_header import UNSTATED, Presentation
 from photograd.data.ply_elements import read_ply
 from photograd.errors import IoError, message
 from photograd.splat import Gaussians
@@ -42,7 +44,7 @@ def read_gaussian_ply(path: Path) -> Gaussians:
     names = set(vertex.dtype.names or ())
     missing = [name for group in REQUIRED.values() for name in group if name not in names]
     if missing:
-        remedy = "a file of points or a mesh holds no Gaussians"
+        remedy = "a file of points or a mesh holds none; 'photograd trace' draws meshes"
         found = f"no {', '.join(missing[:3])}" + (" ..." if len(missing) > 3 else "")
         raise _refusal(path, "the properties of 3D Gaussians", found, remedy)
     rest = sum(name.startswith("f_rest_") for name in names)
@@ -59,10 +61,13 @@ def read_gaussian_ply(path: Path) -> Gaussians:
     return Gaussians(**columns, sh=coefficients)
 
 
-def write_gaussian_ply(path: Path, gaussians: Gaussians) -> None:
+def write_gaussian_ply(
+    path: Path, gaussians: Gaussians, presentation: Presentation = UNSTATED
+) -> None:
     """Write Gaussians in binary little-endian float32, whole or not at all.
 
     Reading the file gives the same float32 numbers. Normals, which some writers add, are left out.
+    `presentation` goes into comments of the header.
 
     Raises:
         IoError: the file cannot be written.
@@ -78,7 +83,8 @@ def write_gaussian_ply(path: Path, gaussians: Gaussians) -> None:
     vertex = np.empty(n, [(name, "<f4") for name, _ in columns])
     for name, column in columns:
         vertex[name] = column
-    data = PlyData([PlyElement.describe(vertex, "vertex")], byte_order="<")
+    vertices = PlyElement.describe(vertex, "vertex")
+    data = PlyData([vertices], byte_order="<", comments=presentation.comments())
     atomic_write(Path(path), data.write)
 
 

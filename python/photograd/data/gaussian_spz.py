@@ -35,6 +35,8 @@ from .gaussian_coding import (
     turn_of_error,
     unit_quats,
 )
+from .gaussian_frame import USUAL_UP, half_turn
+from .gaussian_header import Presentation
 from .spz_streams import (
     FLAG_ANTIALIASED,
     READER,
@@ -58,10 +60,11 @@ _XYZW_FROM_WXYZ, _WXYZ_FROM_XYZW = [1, 2, 3, 0], [3, 0, 1, 2]
 
 def read_gaussian_spz(
     path: Path, *, memory_limit: int | None = None
-) -> tuple[Gaussians, list[str]]:
+) -> tuple[Gaussians, list[str], Presentation]:
     """Read Gaussians in float32, in the frame of .ply files, and sentences for the log.
 
-    Opacities of 0 and 255 have infinite logits.
+    Opacities of 0 and 255 have infinite logits. What is up follows from the format; that a file
+    does not say "antialiased" says nothing, since few programs set the flag.
 
     Raises:
         IoError: no file, a damaged one, another version than 2, 3 or 4, more than memory holds.
@@ -93,16 +96,19 @@ def read_gaussian_spz(
     lines.append("half a turn about x: y up, z backward -> y down, z forward (right-handed both)")
     if header.degree > bands:
         lines.append(f"harmonics of degree {header.degree} dropped: {MAX_DEGREE} is ours")
-    if header.flags & FLAG_ANTIALIASED:
+    antialiased = bool(header.flags & FLAG_ANTIALIASED)
+    if antialiased:
         lines.append("the file says: fitted with antialiasing")
     kinds = extensions_of(path, content, header)
     if kinds:
         lines.append(f"extensions left aside: {', '.join(kinds)}")
-    return half_turn(gaussians), lines
+    return half_turn(gaussians), lines, Presentation(USUAL_UP, None, antialiased or None)
 
 
-def write_gaussian_spz(path: Path, gaussians: Gaussians, *, version: int = 3) -> None:
-    """Write Gaussians of the frame of .ply files in their order, whole or not at all.
+def write_gaussian_spz(
+    path: Path, gaussians: Gaussians, *, version: int = 3, antialiased: bool = False
+) -> None:
+    """Write Gaussians of the frame of .ply files, -y up, in their order, whole or not at all.
 
     Harmonics keep all of their 8 bits; the format's own writer drops 3 and 4 of them, for smaller
     files. What lies outside of `spz_codings` is moved to the limit.
@@ -126,7 +132,8 @@ def write_gaussian_spz(path: Path, gaussians: Gaussians, *, version: int = 3) ->
         "rotations": pack(unit_quats(turned.quats)[:, _XYZW_FROM_WXYZ]),
         "harmonics": _bytes(128.0 * (1.0 + turned.sh[:, 1:].astype(np.float64))),
     }
-    header = SpzHeader(version, len(gaussians), gaussians.degree, bits, 0)
+    flags = FLAG_ANTIALIASED if antialiased else 0
+    header = SpzHeader(version, len(gaussians), gaussians.degree, bits, flags)
     atomic_write(path, packed(header, streams))
 
 
@@ -156,24 +163,6 @@ def fractional_bits(gaussians: Gaussians) -> int:
     largest = float(np.abs(gaussians.means).max(initial=0.0))
     room = np.floor(np.log2(_LARGEST / largest)) if largest > 0 else MOST_BITS
     return int(np.clip(room, 0, MOST_BITS))
-
-
-def half_turn(gaussians: Gaussians) -> Gaussians:
-    """The Gaussians after half a turn about x, which is its own inverse, to the bit.
-
-    Their axes turn too and are then reversed in y and z, which changes no Gaussian: the quaternion
-    (w, x, y, z) becomes (w, x, -y, -z). A harmonic keeps its sign or changes it.
-    """
-    flips = np.array([1, -1, -1], gaussians.means.dtype)
-    turn = sh.rotation(np.diag([1.0, -1.0, -1.0]), gaussians.degree)
-    signs = np.rint(np.diag(turn)).astype(flips.dtype)
-    return Gaussians(
-        means=gaussians.means * flips,
-        log_scales=gaussians.log_scales,
-        quats=gaussians.quats * np.array([1, 1, -1, -1], flips.dtype),
-        opacity_logits=gaussians.opacity_logits,
-        sh=gaussians.sh * signs[:, None],
-    )
 
 
 def _bytes(values: Array) -> bytes:

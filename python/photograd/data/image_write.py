@@ -1,20 +1,23 @@
-"""Writing photographs: PNG with 8 or 16 bits, JPEG and EXR, each atomically."""
+"""Writing photographs: PNG with 8 or 16 bits, JPEG, EXR, Radiance .hdr and PFM, atomically."""
 
 from __future__ import annotations
 
 import struct
 import zlib
+from collections.abc import Callable
 from pathlib import Path
 from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
 from photograd_course.atomic_io import atomic_write
-from photograd_course.errors import RangeError, ShapeError, message
+from photograd_course.errors import IoError, RangeError, ShapeError, message
 from PIL import Image
 
 from . import exr
 from .images import ImageArray
+from .pfm import encode_pfm
+from .rgbe import encode_rgbe
 
 
 def write_png(path: Path, image: ImageArray, *, bits: Literal[8, 16] = 8) -> None:
@@ -57,6 +60,28 @@ def write_exr(path: Path, image: ImageArray, *, half: bool = False) -> None:
     """
     _check_pixels("write_exr", image)
     atomic_write(path, exr.encode_exr(image, half=half))
+
+
+def write_radiance(path: Path, image: ImageArray) -> None:
+    """Write linear (H, W, 3) radiance as the name's end says: .exr, .hdr or .pfm; atomic.
+
+    .exr and .pfm keep float32; .hdr rounds, by 1/256 of a pixel's largest channel at most.
+
+    Raises:
+        ShapeError, RangeError: wrong channels, empty, non-finite, below 0 in .hdr.
+        IoError: another end of the name, or the file cannot be written.
+    """
+    encoders: dict[str, Callable[[ImageArray], bytes]] = {
+        ".exr": lambda pixels: exr.encode_exr(pixels, half=False),
+        ".hdr": encode_rgbe,
+        ".pfm": encode_pfm,
+    }
+    suffix = path.suffix.lower()
+    if suffix not in encoders:
+        expected = f"a name that ends in {' or '.join(encoders)}"
+        raise IoError(message("write_radiance", "path", expected, path.name))
+    _check_pixels("write_radiance", image)
+    atomic_write(path, encoders[suffix](image))
 
 
 def _check_pixels(function: str, image: ImageArray) -> None:

@@ -1,14 +1,16 @@
-"""Photographs on disk: PNG, JPEG and EXR in, one kind of array out.
+"""Photographs on disk: PNG, JPEG, EXR, Radiance .hdr and PFM in, one kind of array out.
 
 8 and 16 bit files hold display-encoded values (sRGB is assumed) with straight alpha; they are
 scaled to 0..1 and not decoded. EXR holds linear radiance with premultiplied alpha, as OpenEXR
-prescribes; it is divided by alpha here, so that every array in memory has straight alpha.
+prescribes, and is divided by it here, since photographs have straight alpha in this project and
+renderings premultiplied alpha. Radiance .hdr and PFM hold linear radiance without alpha.
 """
 
 from __future__ import annotations
 
 import struct
 import zlib
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal, TypeAlias
@@ -20,7 +22,10 @@ from PIL import Image
 
 from . import exr
 from .file_bytes import require_file
+from .image_kind import LINEAR_KINDS, LINEAR_SUFFIXES, image_kind
+from .pfm import read_pfm, read_pfm_header
 from .pixel_limit import allow_pixels, require_pixels, too_many_pixels
+from .rgbe import read_rgbe, read_rgbe_header
 
 ColorSpace: TypeAlias = Literal["display", "linear"]
 ImageArray: TypeAlias = npt.NDArray[np.float32]
@@ -31,7 +36,7 @@ ALPHA_SLACK = 0.01
 LARGEST_RADIANCE = 1e12
 """A thousand times the sun's disc; beyond it, squares of radiance leave the range of float."""
 
-IMAGE_SUFFIXES = (".png", ".jpg", ".jpeg", ".exr")
+IMAGE_SUFFIXES = (".png", ".jpg", ".jpeg", *LINEAR_SUFFIXES)
 
 _DECODE_ERRORS = (
     OSError,
@@ -69,11 +74,15 @@ def read_header(path: Path) -> ImageHeader:
         IoError: missing, not an image, zero-size, or of a mode that is not supported.
     """
     _require_file("read_header", path)
-    if path.suffix.lower() == ".exr":
+    kind = image_kind("read_header", path)
+    if kind == "EXR":
         width, height, has_alpha = exr.read_exr_header(path)
         return ImageHeader(width, height, has_alpha, "linear")
+    if kind in LINEAR_KINDS:
+        size = read_rgbe_header(path) if kind == "HDR" else read_pfm_header(path)
+        return ImageHeader(*size, False, "linear")
     try:
-        with Image.open(path) as opened:
+        with Image.open(path, formats=(kind,)) as opened:
             _require_mode("read_header", path, opened)
             has_alpha = "A" in opened.getbands() or "transparency" in opened.info
             return ImageHeader(opened.width, opened.height, has_alpha, "display")
@@ -86,24 +95,49 @@ def read_header(path: Path) -> ImageHeader:
 def read_image(path: Path) -> ImageArray:
     """Pixels of an image file as (H, W, 4) float32, straight alpha (1 where the file has none).
 
-    Display-encoded k/255 (or k/65535) for PNG and JPEG, linear radiance for EXR. Grey is repeated
-    in the three colours; a palette is looked up. The orientation tag of JPEG is not applied, since
-    poses refer to the pixels as stored.
+    Display-encoded k/255 (or k/65535) for PNG and JPEG, linear radiance for EXR, .hdr and PFM; the
+    content says which it is, not the name. Gray is repeated in the three colors; a palette is
+    looked up. The orientation tag of JPEG is not applied, since poses refer to pixels as stored.
 
     Raises:
         IoError: missing, truncated, damaged, zero-size, non-finite, or of an unsupported mode.
     """
     _require_file("read_image", path)
-    if path.suffix.lower() == ".exr":
-        return _straight(_checked(path, exr.read_exr(path)))
+    kind = image_kind("read_image", path)
+    if kind in LINEAR_KINDS:
+        return _straight(_checked(path, _READERS[kind](path)))
     try:
-        with Image.open(path) as opened:
+        with Image.open(path, formats=(kind,)) as opened:
             _require_mode("read_image", path, opened)
             return _pixels(path, opened)
     except IoError:
         raise
     except _DECODE_ERRORS as error:
         raise _unreadable("read_image", path, error) from error
+
+
+def read_radiance(path: Path) -> ImageArray:
+    """Pixels of a linear image, EXR, Radiance .hdr or PFM, as (H, W, 3) float32, as stored.
+
+    Alpha is left aside: colors are premultiplied by it.
+
+    Raises:
+        IoError: as `read_image`, or an image of another kind: 8 bits are clipped at white.
+    """
+    _require_file("read_radiance", path)
+    kind = image_kind("read_radiance", path, LINEAR_KINDS)
+    return np.ascontiguousarray(_READERS[kind](path)[..., :3])
+
+
+def _opaque(color: ImageArray) -> ImageArray:
+    return np.concatenate([color, np.ones_like(color[..., :1])], axis=2)
+
+
+_READERS: dict[str, Callable[[Path], ImageArray]] = {
+    "EXR": exr.read_exr,
+    "HDR": lambda path: _opaque(read_rgbe(path)),
+    "PFM": lambda path: _opaque(read_pfm(path)),
+}
 
 
 def _checked(path: Path, stored: ImageArray) -> ImageArray:
@@ -140,7 +174,7 @@ def _sixteen_bits(path: Path, opened: Image.Image) -> npt.NDArray[np.uint16]:
     if layout not in ("RGB;16B", "RGBA;16B") or "transparency" in opened.info:
         raise _unreadable("read_image", path, f"unsupported 16-bit layout {layout}")
     samples = np.asarray(opened).astype(np.uint16) * np.uint16(256)
-    with Image.open(path) as again:
+    with Image.open(path, formats=("PNG",)) as again:
         swapped = layout.replace("16B", "16L")
         again.tile = [again.tile[0]._replace(args=swapped)]
         samples += np.asarray(again)

@@ -6,6 +6,25 @@ from photograd_course.errors import IoError, message
 from photograd_course.limits import PIXELS
 from PIL import Image
 
+LARGEST_SIDE = 1 << 16
+
+
+def require_size(function: str, place: str, width: int, height: int) -> None:
+    """Refuse an image whose header states sides or pixels beyond reason, before it is decoded.
+
+    Args:
+        function: reader on whose behalf errors speak.
+        place: the file.
+        width, height: as the header states them.
+
+    Raises:
+        IoError: a side below 1 or above 65536 pixels, or more than `require_pixels` allows.
+    """
+    if not (0 < width <= LARGEST_SIDE and 0 < height <= LARGEST_SIDE):
+        got = f"{width} x {height}"
+        raise IoError(message(function, place, f"1 to {LARGEST_SIDE} pixels a side", got))
+    require_pixels(function, place, width, height)
+
 
 def require_pixels(function: str, place: str, width: int, height: int) -> None:
     """Refuse an image with more pixels than `PHOTOGRAD_MAX_PIXELS`, by default 2^27.

@@ -40,6 +40,7 @@ from photograd.splat import (
     render,
     render_backward,
 )
+from photograd.splat_orbit import scene_box
 from photograd.splats.density import DensityControl, NoControl
 from photograd.splats.pressure import Pressure
 
@@ -151,9 +152,7 @@ class GaussianScene(Representation):
     @property
     def box(self) -> Array:
         """(2, 3) corners of what holds 96 % of the means along each axis, padded by 5 %."""
-        low, high = np.percentile(self.params["means"].astype(np.float64), [2, 98], axis=0)
-        pad = 0.05 * (high - low) + 1e-6 * self.extent
-        return np.stack([low - pad, high + pad])
+        return scene_box(self.gaussians)
 
     def param_groups(self) -> Mapping[str, ParamSpec]:
         """Six groups with a row a Gaussian; the rates are those of [Kerbl2023]."""

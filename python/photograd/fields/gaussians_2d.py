@@ -172,7 +172,7 @@ class Gaussians2D(Representation):
             color[part] = np.einsum("pn,nc->pc", k.front * k.alpha, params["color"])
             opacity[part] = 1 - k.end
         context = CanvasContext(params, points, options.camera_adjoint)
-        return Outputs(color, opacity), context
+        return Outputs(color, opacity).checked("Gaussians2D.render", batch), context
 
     def render_backward(self, context: CanvasContext, d_outputs: Outputs) -> dict[str, Array]:
         """All groups, dense, and "points" (P, 2) if the options asked."""

@@ -15,6 +15,7 @@ from photograd_course.random import uniform
 
 from photograd.core import _core
 from photograd.errors import DtypeError, Error, RangeError, message
+from photograd.finite import require_finite
 from photograd.representation import Array, Outputs, RayBatch, RenderOptions
 
 LATTICES = {"origin": 0, "entry": 1}
@@ -250,14 +251,5 @@ def _check_rays(batch: RayBatch) -> None:
 
 def require_finite_image(color: Array, transmittance: Array, batch: RayBatch) -> None:
     """Raise Error, naming the first pixel, if a ray is not finite."""
-    if np.isfinite(color.sum()) and np.isfinite(transmittance.sum()):
-        return
-    bad = ~(np.isfinite(color).all(axis=1) & np.isfinite(transmittance))
-    first = int(np.flatnonzero(bad)[0]) if bad.any() else 0
-    raise Error(
-        message(
-            "march", "color", "finite values",
-            f"{int(bad.sum())} rays that are not, the first for pixel {int(batch.pixel[first])}",
-            "a parameter or a ray holds NaN or infinity",
-        )
-    )  # fmt: skip
+    outputs = {"color": color, "transmittance": transmittance}
+    require_finite("march", outputs, lambda at: f"pixel {int(batch.pixel[at[0]])}")

@@ -241,7 +241,7 @@ class OctreeSh(Representation):
         depth = _sums(segments.ray, walk.weight * segments.middle, rays)
         outputs = Outputs(
             color.astype(density.dtype), 1 - walk.transmittance, depth.astype(density.dtype)
-        )
+        ).checked("OctreeSh.render", batch)
         context = OctreeContext(
             dict(self.params), borders, segments, walk, sigma_t, rgb, outputs,
             options.camera_adjoint,

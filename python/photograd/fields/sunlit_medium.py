@@ -201,7 +201,8 @@ class SunlitMedium(Representation):
         p, s = self.phase.p(self.params["g"], cos_theta), outputs.color[:, 0]
         color = (p * s)[:, None] * (self.params["albedo"] * self.params["irradiance"])
         context = SunlitContext(dict(self.params), view, shadow, cos_theta, p, s)
-        return Outputs(color, outputs.opacity, outputs.depth), context
+        found = Outputs(color, outputs.opacity, outputs.depth)
+        return found.checked("SunlitMedium.render", batch), context
 
     def render_backward(self, context: SunlitContext, d_outputs: Outputs) -> dict[str, Array]:
         """A gradient for each group, and "origins", "directions" (R, 3) if the options asked."""

@@ -77,7 +77,7 @@ class Texture2D(Representation):
         texels = self.params["texels"]
         points = np.asarray(batch.points, texels.dtype)
         context = CanvasContext(dict(self.params), points, options.camera_adjoint)
-        return Outputs(sample(texels, points)), context
+        return Outputs(sample(texels, points)).checked("Texture2D.render", batch), context
 
     def render_backward(self, context: CanvasContext, d_outputs: Outputs) -> dict[str, Array]:
         """{"texels": (H, W, 3)}, and "points" (N, 2) if the options asked."""

@@ -134,7 +134,8 @@ class ToyBlobs(Representation):
             weight *= q <= self.reach * self.reach
         params = {name: array.copy() for name, array in self.params.items()}
         context = BlobContext(params, points, offset, weight, options.camera_adjoint)
-        return Outputs(np.einsum("pn,nc->pc", weight, color)), context
+        outputs = Outputs(np.einsum("pn,nc->pc", weight, color))
+        return outputs.checked("ToyBlobs.render", batch), context
 
     def render_backward(self, context: BlobContext, d_outputs: Outputs) -> dict[str, Gradient]:
         """(rows, values) of each group, and "points" (P, 2) dense if the options asked.

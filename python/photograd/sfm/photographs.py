@@ -14,6 +14,7 @@ from pathlib import Path
 from PIL import Image, ImageOps
 
 from photograd.data.file_bytes import read_file
+from photograd.data.image_kind import PILLOW_KINDS, image_kind
 from photograd.data.pixel_limit import allow_pixels, require_pixels, too_many_pixels
 from photograd.errors import IoError, SceneError, message
 
@@ -105,10 +106,11 @@ def copy_photographs(photographs: list[Photograph], folder: Path) -> None:
 
 
 def _look_at(file: Path) -> Photograph:
+    image_kind(_NAME, file, PILLOW_KINDS)
     content = read_file(_NAME, file)
     allow_pixels()
     try:
-        with Image.open(file) as opened:
+        with Image.open(file, formats=PILLOW_KINDS) as opened:
             require_pixels(_NAME, f"{file}", *opened.size)
             tags = opened.getexif()
             inner = tags.get_ifd(_EXIF)
@@ -137,12 +139,12 @@ def _look_at(file: Path) -> Photograph:
 
 def _save_upright(source: Path, target: Path) -> None:
     """Pixels turned, tags kept but for the orientation, so that the focal length is still known."""
-    with Image.open(source) as opened:
+    with Image.open(source, formats=PILLOW_KINDS) as opened:
         tags = opened.getexif()
         tags.get_ifd(_EXIF)  # read now, or it would be lost
         turned = ImageOps.exif_transpose(opened)
         tags[_ORIENTATION] = 1
-        kind = opened.format or "JPEG"
+        kind = "PNG" if opened.format == "PNG" else "JPEG"  # of several pictures in one, the first
         options = {"quality": _JPEG_QUALITY, "subsampling": 0} if kind == "JPEG" else {}
         turned.save(target, format=kind, exif=tags.tobytes(), **options)
 

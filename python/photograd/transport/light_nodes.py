@@ -13,8 +13,9 @@ sun           direction, radiance, angle (degrees from the middle to the rim of 
 rectangle     corner, edge_x, edge_y (perpendicular), radiance; its front is that of edge_x x edge_y
 sphere        center, radius, radiance
 triangle      a, b, c (counter-clockwise seen from where it shines), radiance
-environment   image (.exr beside the file, twice as wide as high), and optionally turn (degrees
-              around +Y), scale (what radiances are multiplied by), uniform_share (0 to 1)
+environment   image (.exr, .hdr or .pfm beside the file, twice as wide as high), and optionally
+              turn (degrees around +Y), scale (what radiances are multiplied by), uniform_share
+              (0 to 1)
 """
 
 from __future__ import annotations
@@ -25,7 +26,8 @@ from pathlib import Path
 
 import numpy as np
 
-from photograd.data.exr import read_exr
+from photograd.data.image_kind import LINEAR_SUFFIXES
+from photograd.data.images import read_radiance
 from photograd.light import cap_height
 from photograd.lights import EnvironmentMap, Light, about_y
 from photograd.lights.registered import CLASSES, RegisteredLight
@@ -78,12 +80,12 @@ def _angle(node: Node) -> float:
 
 def _environment(node: Node) -> EnvironmentMap:
     path = Path(node.text("image"))
-    if path.suffix.lower() != ".exr":
-        raise node.wrong("image", "a name that ends in .exr", path)
+    if path.suffix.lower() not in LINEAR_SUFFIXES:
+        raise node.wrong("image", f"a name that ends in {' or '.join(LINEAR_SUFFIXES)}", path)
     scale = node.number("scale", 1.0)
     if scale < 0:
         raise node.wrong("scale", "a number of at least 0", scale)
-    texels = np.ascontiguousarray(read_exr(node.path.parent / path)[..., :3]) * np.float32(scale)
+    texels = read_radiance(node.path.parent / path) * np.float32(scale)
     turn = about_y(math.radians(node.number("turn", 0.0)))
     return EnvironmentMap(texels, turn, node.number("uniform_share", 0.0))
 

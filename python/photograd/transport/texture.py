@@ -23,7 +23,7 @@ import numpy as np
 import numpy.typing as npt
 from photograd_course.color import srgb_decode
 
-from photograd.data.images import read_image
+from photograd.data.images import read_header, read_image
 from photograd.errors import DtypeError, RangeError, ShapeError, message
 
 Array = npt.NDArray[Any]
@@ -112,10 +112,9 @@ def read_texture(
     """The colours of an image file, without its alpha; or its alpha alone.
 
     Args:
-        path: .png, .jpg or .exr.
+        path: .png, .jpg, or, always linear, .exr, .hdr and .pfm.
         encoding: "srgb" for colours of 8 or 16 bits, which are decoded; "linear" for numbers that
-            are not colours (roughness), taken as they are; "alpha" for the opacity, (H, W, 1). EXR
-            is always linear.
+            are not colours (roughness), taken as they are; "alpha" for the opacity, (H, W, 1).
         wrap, filter: as of `Texture`.
 
     Raises:
@@ -128,7 +127,7 @@ def read_texture(
     if encoding == "alpha":
         return Texture(color[..., 3:], wrap, filter)
     color = color[..., :3]
-    decoded = encoding == "srgb" and path.suffix.lower() != ".exr"
+    decoded = encoding == "srgb" and read_header(path).color_space == "display"
     return Texture(decode(color) if decoded else color, wrap, filter)
 
 

@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 from PIL import Image
 
+from photograd.data.image_kind import PILLOW_KINDS
 from photograd.data.json_node import JsonNode
 from photograd.data.pixel_limit import allow_pixels, require_pixels, too_many_pixels
 from photograd.errors import Error, IoError, message
@@ -139,7 +140,7 @@ class Pictures:
             data = self.container.fetch(image["uri"])
         allow_pixels()
         try:
-            with Image.open(io.BytesIO(data), formats=("PNG", "JPEG")) as opened:
+            with Image.open(io.BytesIO(data), formats=PILLOW_KINDS) as opened:
                 require_pixels(NAME, image.place, opened.width, opened.height)
                 self.container.spend(image, opened.width * opened.height)
                 return np.asarray(opened.convert("RGBA"))

@@ -18,9 +18,13 @@ def read_ply_mesh(path: Path, note: Note) -> ModelFile:
 
     Raises:
         IoError: a damaged file.
-        SceneError: no faces.
+        SceneError: no faces; 3D Gaussians have none.
     """
     elements = read_ply(NAME, path)
+    names = set(elements["vertex"].dtype.names or ()) if "vertex" in elements else set()
+    if "face" not in elements and names & {"scale_0", "packed_scale"}:
+        remedy = "'photograd render' draws them"
+        raise SceneError(message(NAME, f"{path}", "a mesh", "3D Gaussians", remedy))
     for element in ("vertex", "face"):
         if element not in elements:
             raise SceneError(message(NAME, f"{path}", f"an element '{element}'", sorted(elements)))
