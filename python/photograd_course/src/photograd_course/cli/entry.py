@@ -11,6 +11,7 @@ from typing import Annotated
 import typer
 from typer.main import get_command
 
+from ..limits import LIMITS
 from . import course, version
 from .core_commands import add_missing_core_commands
 from .failures import INTERRUPTED, exit_code
@@ -21,7 +22,9 @@ from .plugins import PluginProblem, find_plugins, load_plugins
 EPILOG = (
     "Example: photograd demo\n\n"
     "Example: photograd fit my_capture --out my_model\n\n"
-    "Each command explains itself: photograd COMMAND --help"
+    "Each command explains itself: photograd COMMAND --help\n\n"
+    "Input files that ask for much memory are refused. These environment variables raise the "
+    f"limits: {', '.join(limit.variable for limit in LIMITS)}"
 )
 
 
