@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from photograd.errors import RangeError, message
+from photograd.plain_values import require_types
 
 BACKGROUNDS = ("random", "white", "black", "learned")
 DENSITY_CONTROLS = ("mcmc", "default", "none")
@@ -54,7 +55,8 @@ class FitOptions:
     ssim_weight: float = 0.2  # share of 1 - SSIM in the loss of whole pictures
 
     def __post_init__(self) -> None:
-        """Raises RangeError, naming the option."""
+        """Raises DtypeError or RangeError, naming the option."""
+        require_types(self)
         positive = (
             "resolution",
             "steps",
@@ -71,6 +73,14 @@ class FitOptions:
                 raise RangeError(
                     message("FitOptions", name, "a positive number", f"{getattr(self, name)}")
                 )
+        for name in ("resolution", "steps", "rays", "gaussians"):
+            if getattr(self, name) >= 1 << 31:
+                got = getattr(self, name)
+                raise RangeError(message("FitOptions", name, "a number below 2^31", got))
+        if not 0 <= self.seed < 1 << 64:
+            raise RangeError(message("FitOptions", "seed", "0 to 2^64 - 1", self.seed))
+        if not self.stop < 1:
+            raise RangeError(message("FitOptions", "stop", "a transmittance below 1", self.stop))
         for name in ("total_variation", "stop", "prune"):
             if not 0 <= getattr(self, name) < math.inf:
                 raise RangeError(

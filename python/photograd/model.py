@@ -10,9 +10,11 @@ import numpy as np
 
 from photograd.backgrounds import learned_background
 from photograd.checkpoint import Checkpoint, load_checkpoint
-from photograd.errors import IoError, message
+from photograd.checkpoint_schema import check_checkpoint
+from photograd.errors import Error, IoError, message
 from photograd.fields.fitted import FittedField, saved_field
 from photograd.fit_options import FitOptions
+from photograd.plain_values import from_plain
 from photograd.representation import Array
 
 
@@ -35,18 +37,16 @@ def load_model(path: str | Path) -> Model:
 def model_of(saved: Checkpoint, path: Path) -> Model:
     """The model in a checkpoint.
 
-    Raises IoError if the checkpoint's contents do not fit together.
+    Raises IoError if its contents, the optimizer's state included, do not fit together.
     """
     try:
-        stored = dict(saved.meta["options"])
-        stored["refine_at"] = tuple(stored["refine_at"])
-        options = FitOptions(**stored)
-        field = saved_field(saved.params, saved.state, saved.meta["policy"], options)
-    except (KeyError, TypeError) as failure:
-        raise IoError(
-            message("load_model", f"{path}", "a checkpoint with policy, options and values",
-                    f"one without ({failure})", "the file is from another version or damaged")
-        ) from failure  # fmt: skip
+        options = from_plain("load_model", FitOptions, saved.meta.get("options"))
+        check_checkpoint(saved, options)
+        field = saved_field(saved.params, saved.state, saved.meta.get("policy"), options)
+    except Error as failure:
+        remedy = "the file is from another version or damaged"
+        expected = "a checkpoint of a fit"
+        raise IoError(message("load_model", f"{path}", expected, failure, remedy)) from failure
     raw = saved.params.get("background")
     background = None if raw is None else learned_background(raw.astype(np.float64))
     return Model(field, background, options, saved.meta, saved.history)

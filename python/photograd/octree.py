@@ -287,22 +287,42 @@ def tree_of_leaves(
     if side.ndim != 1 or lower.shape != (len(side), 3):
         expected = f"({len(np.atleast_1d(side))}, 3), a row a leaf"
         raise ShapeError(message("tree_of_leaves", "lower", expected, lower.shape))
-    rows = np.column_stack([lower, side]).astype(np.int64).tolist()
-    number = {(*corner, size): leaf for leaf, (*corner, size) in enumerate(rows)}
-    edge = int((lower + side[:, None]).max(initial=1))
+    cubes = np.column_stack([lower, side]).astype(np.int64)
+    edge = int((cubes[:, :3] + cubes[:, 3:]).max(initial=1))
     depth = max(edge - 1, 0).bit_length()
+    if not all(1 <= cells <= 1 << depth for cells in shape):
+        expected = f"1 to {1 << depth} cells, as the leaves have"
+        raise RangeError(message("tree_of_leaves", "shape", expected, shape))
+    if not _fill_the_cube(cubes, depth):
+        expected = f"{len(side)} cubes that fill one of {1 << depth} cells a side, once"
+        raise RangeError(message("tree_of_leaves", "side", expected, "others"))
+    number = {(*corner, size): leaf for leaf, (*corner, size) in enumerate(cubes.tolist())}
 
     def classify(at: tuple[int, ...], size: int) -> list[float] | None:
         found = number.get((*at, size))
         return None if found is None else [float(found)]
 
     whole = Octree.from_function(classify, depth)
-    if len(whole.values) != len(side):
-        expected = f"{len(side)} cubes that fill one of {1 << depth} cells a side, once"
-        raise RangeError(
-            message("tree_of_leaves", "side", expected, f"{len(whole.values)} of them")
-        )
     return Octree(whole._core, whole.values, _box("tree_of_leaves", bounds, shape), shape)
+
+
+def _fill_the_cube(cubes: npt.NDArray[np.int64], depth: int) -> bool:
+    """Whether cubes (L, 4), lower corner and side, tile 2^depth cells a side: along the Morton
+    curve each is an interval, and one begins where the last ends. Asked beforehand, since a tree
+    with a hole would be cut down to single cells there.
+    """
+    lower, side = cubes[:, :3], cubes[:, 3]
+    if depth > 20 or not len(cubes) or int(side.min()) < 1 or int(lower.min()) < 0:
+        return False
+    if (side & (side - 1)).any() or (lower & (side[:, None] - 1)).any():
+        return False
+    start = np.zeros(len(cubes), np.int64)
+    for bit in range(depth):
+        for axis in range(3):
+            start |= (lower[:, axis] >> bit & 1) << (3 * bit + axis)
+    order = np.argsort(start)
+    ends = np.cumsum(side[order] ** 3)
+    return bool((start[order] == ends - side[order] ** 3).all()) and int(ends[-1]) == 8**depth
 
 
 class Quadtree(_SpatialTree):

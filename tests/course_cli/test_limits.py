@@ -8,10 +8,13 @@ from pathlib import Path
 
 import pytest
 from photograd_course.assignment.toml import read_toml
+from photograd_course.cli import run
 from photograd_course.errors import IoError, RangeError
 from photograd_course.input_files import read_file, read_text, require_file
-from photograd_course.limits import Limit
+from photograd_course.limits import LIMITS, Limit
 from photograd_course.toml_limits import parse_toml, without_strings
+
+from support.tree import ROOT
 
 
 @pytest.mark.parametrize(
@@ -98,3 +101,13 @@ def test_a_link_to_a_regular_file_is_followed(tmp_path: Path) -> None:
     assert require_file("f", tmp_path / "b") == 4
     assert read_file("f", tmp_path / "b", 2) == b"x\r"
     assert read_text("f", tmp_path / "b") == "x\ny"
+
+
+def test_the_readme_and_the_help_list_all_limits(capsys: pytest.CaptureFixture[str]) -> None:
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert run(["--help"]) == 0
+    shown = capsys.readouterr().out
+    for limit in LIMITS:
+        assert f"| `{limit.variable}` | {limit.default:,} | {limit.unit}" in readme
+        assert limit.variable in shown
+    assert readme.count("PHOTOGRAD_MAX_") == len(LIMITS)

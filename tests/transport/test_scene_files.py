@@ -162,6 +162,15 @@ def test_lines_of_keys_in_odd_places() -> None:
     assert lines == {("a",): 1, ("d",): 5, ("e",): 6}
 
 
+def test_long_keys_and_strings_take_no_time(tmp_path: Path) -> None:
+    # Each took minutes: the parser keeps all beginnings of a key, and a search that started over at
+    # every quote or space.
+    with pytest.raises(IoError, match="dotted keys of at most 16 parts, got 50000"):
+        read_scene(write(tmp_path, ".".join("a" * 50_000) + " = 1"))
+    text = 'a = """' + '\\"' * 50_000 + '"""\nb = [' + " " * 100_000 + "]\nc = 1\n"
+    assert key_lines(text) == {("a",): 1, ("b",): 2, ("c",): 3}
+
+
 def test_built_in_scenes_are_found_by_name() -> None:
     for name in BUILTIN:
         scene = builtin_scene(name, 4)

@@ -47,8 +47,8 @@ def describe_model(path: Path) -> dict[str, Any]:
         "megabytes": sum(values.nbytes for values in params.values()) / 1e6,
         "box": model.field.box, **step_of(model),
         "step": model.meta["step"], "steps": model.options.steps,
-        "batch_psnr": float(last.mean()), "capture": model.meta["capture"],
-        "split": model.meta["split"], "seed": model.options.seed,
+        "batch_psnr": float(last.mean()), "capture": model.meta.get("capture", "unknown"),
+        "split": model.meta.get("split", "unknown"), "seed": model.options.seed,
     }  # fmt: skip
 
 

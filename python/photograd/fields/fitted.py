@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 from photograd.data.bounds import Bounds
 from photograd.data.capture import Capture
@@ -17,6 +17,7 @@ from photograd.fields.march import MarchPolicy
 from photograd.fields.octree_sh import OctreeSh
 from photograd.fields.sparse_sh import SparseSh
 from photograd.fit_options import FitOptions
+from photograd.plain_values import from_plain
 from photograd.representation import Array
 from photograd.splat import SplatOptions
 from photograd.splats.first_scene import first_scene, scene_control
@@ -75,19 +76,20 @@ def frozen_field(field: FittedField, options: FitOptions) -> tuple[OctreeSh, str
 def saved_field(
     params: Mapping[str, Array],
     state: Mapping[str, Array],
-    policy: Mapping[str, Any],
+    policy: object,
     options: FitOptions,
 ) -> FittedField:
-    """The field of a checkpoint. Raises KeyError or TypeError where something is lacking."""
+    """The field of a checkpoint that `check_checkpoint` has passed, `policy` as JSON has it.
+
+    Raises Error where a policy or the values of the state make no sense.
+    """
     if options.representation == GaussianScene.name:
-        return GaussianScene.of_state(
-            params, state, policy=SplatOptions(**policy), control=scene_control(options)
-        )
+        splats = from_plain("load_model", SplatOptions, policy)
+        return GaussianScene.of_state(params, state, policy=splats, control=scene_control(options))
     if options.representation == OctreeSh.name:
-        box = (tuple(policy["box"][0]), tuple(policy["box"][1]))
-        tree_policy = TreePolicy(box, tuple(policy["cells"]), policy["density_scale"])
+        tree_policy = from_plain("load_model", TreePolicy, policy)
         return OctreeSh.of_state(params, state, tree_policy)
-    march = MarchPolicy(**{**policy, "box": tuple(tuple(corner) for corner in policy["box"])})
+    march = from_plain("load_model", MarchPolicy, policy)
     if options.representation in HARMONIC_GRIDS:
         rest = {key: value for key, value in state.items() if key != "background_density"}
         return HARMONIC_GRIDS[options.representation](

@@ -7,6 +7,7 @@ and what that loses is what fine-tuning the leaves brings back.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -30,6 +31,12 @@ class TreePolicy:
     box: tuple[Corner, Corner]  # world, metres
     cells: tuple[int, int, int]  # along each edge of the box
     density_scale: float = 1.0  # 1/m
+
+    def __post_init__(self) -> None:
+        """Raises RangeError for a density scale that is not finite."""
+        if not math.isfinite(self.density_scale):
+            got = self.density_scale
+            raise RangeError(message("TreePolicy", "density_scale", "a finite number", got))
 
 
 @dataclass(frozen=True)

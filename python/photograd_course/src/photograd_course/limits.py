@@ -58,3 +58,6 @@ MODEL_ELEMENTS = Limit(
 EXPANSION = Limit("PHOTOGRAD_MAX_EXPANSION", 1 << 28, "bytes more than the file is long")
 """Memory for arrays that a file declares but does not hold: zeros of a sparse accessor, what an
 archive unpacks to. What a file holds byte by byte needs no limit."""
+
+LIMITS = (PIXELS, MODEL_ELEMENTS, EXPANSION, TOML_BYTES)
+"""All of them; README and `photograd --help` list them."""

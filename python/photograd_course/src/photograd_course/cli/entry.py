@@ -12,6 +12,7 @@ from typing import Annotated
 import typer
 from typer.main import get_command
 
+from ..limits import LIMITS
 from . import course, version
 from .core_commands import add_missing_core_commands
 from .failures import INTERRUPTED, Failure, ended_early, tell
@@ -23,7 +24,9 @@ EPILOG = (
     "Example: photograd course start 01\n\n"
     "Example: photograd demo\n\n"
     "Example: photograd fit my_capture --out my_model\n\n"
-    "Each command explains itself: photograd COMMAND --help"
+    "Each command explains itself: photograd COMMAND --help\n\n"
+    "Input files that ask for much memory are refused. These environment variables raise the "
+    f"limits: {', '.join(limit.variable for limit in LIMITS)}"
 )
 
 
