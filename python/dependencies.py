@@ -1,7 +1,8 @@
 """Build-time metadata: where `photograd` finds `photograd-course`, on which it depends.
 
-Inside a source tree the two are installed together, from the tree. For a wheel that is handed on,
-set PHOTOGRAD_RELEASE=1: the dependency is then named without a place.
+Inside a source tree the two are installed together, from the tree. In an sdist, and in what is
+built from one, the dependency is named without a place (pyproject.toml sets `place = false`); for
+a wheel that is handed on, set PHOTOGRAD_RELEASE=1.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ def dynamic_metadata(
     """The value of `project.dependencies`."""
     if field != "dependencies":
         raise ValueError(f"dynamic_metadata: field: expected 'dependencies', got {field!r}")
+    elsewhere = os.environ.get("PHOTOGRAD_RELEASE") or not (settings or {}).get("place", True)
     course = Path(__file__).resolve().parent / "photograd_course"
-    place = "" if os.environ.get("PHOTOGRAD_RELEASE") else f" @ {course.as_uri()}"
+    place = "" if elsewhere else f" @ {course.as_uri()}"
     return [f"photograd-course{place}", *REQUIREMENTS]

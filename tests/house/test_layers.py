@@ -35,7 +35,7 @@ def allowed_imports() -> dict[str, set[str]]:
         declared: list[str] = import_module("dependencies").dynamic_metadata("dependencies")
     finally:
         sys.path.pop(0)
-    optional = [line for name in ("viewer", "sfm", "data") for line in extras[name]]
+    optional = [line for name in ("sfm", "data") for line in extras[name]]
     extras_of_course = course["project"].get("optional-dependencies", {})
     of_course = [*course["project"]["dependencies"], *chain(*extras_of_course.values())]
     standard = set(sys.stdlib_module_names)

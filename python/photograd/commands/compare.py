@@ -41,6 +41,14 @@ from photograd.scenes.registry import scenes
 
 DEFAULTS = FitOptions()
 CONTRASTS = ("foliage", "smooth_curves", "fur", "flat_walls")
+ValidateOption = Annotated[
+    bool,
+    typer.Option(
+        "--validate",
+        help="To choose an option: score on every eighth training view, held out from the fit. "
+        "The test views are not looked at.",
+    ),
+]
 
 
 def register(app: typer.Typer) -> None:
@@ -70,14 +78,7 @@ def compare(
     spp: Annotated[int, typer.Option("--spp", min=1, help="Its samples a pixel.")] = 64,
     downscale: DownscaleOption = 1,
     allow_outside: AllowOutsideOption = False,
-    validate: Annotated[
-        bool,
-        typer.Option(
-            "--validate",
-            help="To choose an option: score on every eighth training view, held out from the fit. "
-            "The test views are not looked at.",
-        ),
-    ] = False,
+    validate: ValidateOption = False,
     seed: SeedOption = 0,
     threads: ThreadsOption = 0,
     as_json: JsonOption = False,

@@ -47,8 +47,8 @@ def demo(
 ) -> None:
     """Photograph a built-in scene, recover it, score it, and draw where the loss pulled.
 
-    Takes two to three minutes on two cores, and at most 1.5 GiB. Nothing is opened: the table at
-    the end names the folder of figures.
+    Takes about a minute on two free cores, and half a GiB. Nothing is opened: the table at the end
+    names the folder of figures.
 
     Example: photograd demo --out out/demo
     """
