@@ -53,7 +53,7 @@ def hills(n):
 def photograph():
     """(picture, where it is from); linear values (H, W, 3)."""
     if file := option("image", ""):
-        picture, origin = Image.open(file).convert("RGB"), file
+        picture, origin = Image.open(file, formats=("PNG", "JPEG")).convert("RGB"), file
     elif find_spec("skimage") is not None:
         data = importlib.import_module("skimage.data")
         picture, origin = Image.fromarray(data.astronaut()), "the astronaut of scikit-image"

@@ -203,7 +203,7 @@ def views(folder):
     for frame in frames[::some]:
         file = folder / frame["file_path"]
         file = file if file.suffix else file.with_suffix(".png")
-        image = Image.open(file)
+        image = Image.open(file, formats=("PNG", "JPEG"))
         wide, tall = image.size
         focal = frame.get("fl_x", told.get("fl_x"))
         angle = frame.get("camera_angle_x", told.get("camera_angle_x"))

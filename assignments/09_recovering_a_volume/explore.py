@@ -263,7 +263,8 @@ def taken(folder, size):
     pictures, poses = [], []
     for frame in frames:
         file = folder / frame["file_path"]
-        image = Image.open(file if file.suffix else file.with_suffix(".png"))
+        file = file if file.suffix else file.with_suffix(".png")
+        image = Image.open(file, formats=("PNG", "JPEG"))
         wide, tall = image.size
         given = frame.get("fl_x", told.get("fl_x"))
         angle = frame.get("camera_angle_x", told.get("camera_angle_x"))

@@ -312,7 +312,8 @@ def photographs(folder, reach):
     origins, directions, colours, sizes = [], [], [], []
     for frame in told["frames"][:: max(1, len(told["frames"]) // max(1, views))]:
         file = folder / frame["file_path"]
-        image = Image.open(file if file.suffix else file.with_suffix(".png"))
+        file = file if file.suffix else file.with_suffix(".png")
+        image = Image.open(file, formats=("PNG", "JPEG"))
         wide, tall = image.size
         focal = frame.get("fl_x", told.get("fl_x"))
         angle = frame.get("camera_angle_x", told.get("camera_angle_x"))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,8 @@ from photograd.errors import IoError
 from photograd.sfm.photographs import copy_photographs, find_photographs
 from photograd.transport.texture import read_texture
 from PIL import Image
+
+from support.tree import ROOT, python_texts
 
 POSTSCRIPT = b"%!PS-Adobe-3.0 EPSF-3.0\n%%BoundingBox: 0 0 16 16\n%%EndComments\n(x) show\n"
 READERS: list[Callable[[Path], Any]] = [
@@ -59,6 +62,15 @@ def test_other_kinds_are_named(tmp_path: Path, kind: str, found: str) -> None:
     for read in READERS:
         with pytest.raises(IoError, match=f"a readable image .*, got {found}"):
             read(tmp_path / "a.png")
+
+
+def test_every_call_of_pillow_names_its_formats() -> None:
+    texts = [*python_texts().values()]
+    texts += [path.read_text(encoding="utf-8") for path in ROOT.glob("assignments/*/*.py")]
+    call = re.compile(r"Image\.open\((?:[^()]|\([^()]*\))*\)")
+    calls = [found for text in texts for found in call.findall(text)]
+    assert len(calls) >= 9
+    assert [found for found in calls if "formats=" not in found] == []
 
 
 def test_a_name_that_misleads_does_no_harm(tmp_path: Path) -> None:

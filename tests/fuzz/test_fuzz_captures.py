@@ -18,7 +18,14 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, Phase, given, seed, settings
 from hypothesis import strategies as st
-from photograd.data import estimate_bounds, load_capture, read_image, write_exr, write_png
+from photograd.data import (
+    estimate_bounds,
+    load_capture,
+    read_image,
+    write_exr,
+    write_png,
+    write_radiance,
+)
 from photograd_course.errors import Error
 from PIL import Image
 
@@ -235,12 +242,16 @@ def test_damaged_numbers_in_llff(folder: Path, tmp_path: Path) -> None:
     survive("llff", st.lists(places, min_size=1, max_size=3), use)
 
 
-@pytest.mark.parametrize("name", ["eight.png", "sixteen.png", "radiance.exr", "photo.jpg"])
+@pytest.mark.parametrize(
+    "name", ["eight.png", "sixteen.png", "radiance.exr", "photo.jpg", "sky.hdr", "sky.pfm"]
+)
 def test_damaged_images(
     folder: Path, tmp_path: Path, name: str, capfd: pytest.CaptureFixture[str]
 ) -> None:
     if name == "photo.jpg":
         Image.open(folder / "eight.png").convert("RGB").save(folder / name)
+    if name.startswith("sky"):
+        write_radiance(folder / name, read_image(folder / "radiance.exr")[..., :3])
     data = (folder / name).read_bytes()
     target = tmp_path / name
 

@@ -129,7 +129,7 @@ def trace(
     studio, from in front and above, under a pale sky and one lamp. What it has and cannot be drawn
     is named.
 
-    Writes the picture, linear, a PNG preview beside it every ten seconds, and OUT.sums.npz,
+    Writes the linear picture and a PNG preview beside it every ten seconds, and OUT.sums.npz,
     from which --resume goes on: after Ctrl-C, or for more samples.
 
     With --derivative, what is written is how every pixel changes with one parameter instead: signed

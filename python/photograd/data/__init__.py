@@ -10,8 +10,8 @@ from __future__ import annotations
 from .bounds import Bounds, estimate_bounds
 from .camera import Camera
 from .capture import Capture
-from .image_write import write_exr, write_jpeg, write_png
-from .images import ColorSpace, downscale_image, read_image
+from .image_write import write_exr, write_jpeg, write_png, write_radiance
+from .images import ColorSpace, downscale_image, read_image, read_radiance
 from .load import load_capture
 from .undistort import Distortion, distort, undistort, undistort_image
 from .view import View
@@ -31,6 +31,7 @@ __all__ = [
     "estimate_bounds",
     "load_capture",
     "read_image",
+    "read_radiance",
     "require_views_of",
     "sees_box",
     "undistort",
@@ -39,4 +40,5 @@ __all__ = [
     "write_exr",
     "write_jpeg",
     "write_png",
+    "write_radiance",
 ]
