@@ -109,4 +109,4 @@ def test_what_render_draws_is_no_scene(
         assert "draws" in done.err
     assert not cloud.with_name("a.png").exists()
     done = photograd("trace", "none.toml", "--out", cloud.with_name("a.png"))
-    assert "a TOML file" in done.err
+    assert "none.toml: expected a file, got none" in done.err

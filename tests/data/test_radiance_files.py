@@ -175,13 +175,15 @@ def test_damaged_files_are_refused(tmp_path: Path) -> None:
     ("content", "words"),
     [
         (HDR + b"\n-Y 70000 +X 8\n" + b"\0" * 99, "1 to 65536 pixels a side, got 8 x 70000"),
-        (HDR + b"\n-Y 60000 +X 30000\n" + bytes([2, 2, 117, 48]) * 9, "115,200,000,000 by|36 by"),
+        (HDR + b"\n-Y 60000 +X 30000\n", "30000 x 60000 = 1,800,000,000"),
+        (HDR + b"\n-Y 4000 +X 30000\n" + bytes([2, 2, 117, 48]) * 9, "36 bytes are too few"),
         (HDR + b"\n-Y 9000 +X 9\n" + bytes([2, 2, 0, 9]) * 9, "36 bytes are too few"),
         (HDR + b"\n-Y 0 +X 8\n", "1 to 65536 pixels a side"),
         (HDR + b"\n-Y 8 +Y 8\n", "a Radiance header"),
         (HDR.replace(b"rgbe", b"xyze") + b"\n-Y 1 +X 1\n1234", "FORMAT=32-bit_rle_rgbe"),
         (HDR + b"EXPOSURE=0\n\n-Y 1 +X 1\n1234", "a positive EXPOSURE"),
-        (b"PF\n60000 60000\n-1\n" + b"\0" * 99, "43,200,000,018 bytes for 60000 x 60000 pixels"),
+        (b"PF\n60000 60000\n-1\n" + b"\0" * 99, "60000 x 60000 = 3,600,000,000 .*PHOTOGRAD_MAX_PI"),
+        (b"PF\n10000 10000\n-1\n" + b"\0" * 99, "1,200,000,018 bytes for 10000 x 10000 pixels"),
         (b"PF\n70000 1\n-1\n", "1 to 65536 pixels a side"),
         (b"PF\n1 1\n0\n" + b"\0" * 12, "a PFM header"),
         (b"PF\n1 1\nnan\n" + b"\0" * 12, "a PFM header"),
@@ -195,7 +197,7 @@ def test_headers_without_sense_take_no_memory(tmp_path: Path, content: bytes, wo
         read_radiance(tmp_path / "a")
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
-    assert peak < 1 << 20
+    assert peak < 4 << 20  # what remains are imports and the texts of tracebacks
 
 
 def test_radiance_is_not_read_from_clipped_images(tmp_path: Path) -> None:

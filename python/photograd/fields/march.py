@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
+from photograd_course.portable_math import norm
 from photograd_course.random import uniform
 
 from photograd.core import _core
@@ -78,7 +79,7 @@ class MarchPolicy:
             value = getattr(self, name)
             if isinstance(value, bool) or not isinstance(value, int | float | np.number):
                 raise DtypeError(message("MarchPolicy", name, "a number", repr(value)))
-        shortest = math.hypot(*extent.tolist()) / MOST_SAMPLES
+        shortest = norm(extent) / MOST_SAMPLES
         if not shortest <= self.dt < math.inf:
             expected = f"{shortest:.3g} m or more, {MOST_SAMPLES:,} samples across the box"
             raise RangeError(message("MarchPolicy", "dt", expected, self.dt))
