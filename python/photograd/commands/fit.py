@@ -48,7 +48,7 @@ from photograd.commands.shared import (
 )
 from photograd.data.capture import Capture
 from photograd.data.gaussian_files import write_gaussians
-from photograd.data.gaussian_frame import USUAL_UP, half_turn
+from photograd.data.gaussian_frame import USUAL_UP, WORLD_UP, half_turn
 from photograd.data.gaussian_header import Presentation
 from photograd.data.load import load_capture
 from photograd.errors import RangeError, message
@@ -136,19 +136,15 @@ def fit(
         note(job.start_rule)
     with stop_on_signals() as stopping:
         result = run_with_bar(job, out, stopping, checkpoint_seconds)
-    files = exported(job, out)
-    if files:
-        note(f"{PLY_NAME}: {USUAL_UP} is up, as other programs expect; the model's world has +y up")
-    emit(summary(result) | files, as_json=as_json, title="fit")
+    emit(summary(result) | exported(job, out), as_json=as_json, title="fit")
     if not result.finished:
         note(f"stopped at step {result.step}; continue with --resume")
         raise typer.Exit(stopping.exit_code or 1)
 
 
 def exported(job: Fit, out: Path) -> dict[str, str]:
-    """Write finished Gaussians for other programs; {"gaussians": path} if there are any.
-
-    Half a turn about x takes the world, +y up, to the frame of such files.
+    """Write finished Gaussians for other programs, and say how; {"gaussians": path} if there are
+    any. Half a turn about x takes the world, +y up, to the frame of such files.
     """
     scene = job.model
     if job.step_number < job.options.steps or not isinstance(scene, GaussianScene):
@@ -156,6 +152,8 @@ def exported(job: Fit, out: Path) -> dict[str, str]:
     behind = None if job.background is None else learned_background(job.background)
     presentation = Presentation.of_fit(USUAL_UP, behind, antialiased=scene.policy.antialiased)
     write_gaussians(out / PLY_NAME, half_turn(scene.gaussians), presentation=presentation)
+    kept = "" if behind is None else "; the learned background is in its header"
+    note(f"{PLY_NAME}: {USUAL_UP} is up, as other programs expect, {WORLD_UP} in the model{kept}")
     return {"gaussians": str(out / PLY_NAME)}
 
 
