@@ -42,7 +42,7 @@ def read_exr_header(path: Path) -> tuple[int, int, bool]:
     if not (0 < width <= LARGEST_SIDE and 0 < height <= LARGEST_SIDE):
         got = f"{width} x {height}"
         raise IoError(message("read_exr_header", str(path), "1 to 65536 pixels a side", got))
-    require_pixels("read_exr_header", str(path), width, height)
+    require_pixels("read_exr_header", str(path), width, height, len(names))
     if not (set(_CHANNELS[:3]) <= names or "Y" in names):
         expected = "channels R, G, B or Y"
         raise IoError(message("read_exr_header", str(path), expected, sorted(names)))

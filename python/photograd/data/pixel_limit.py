@@ -7,19 +7,21 @@ from photograd_course.limits import PIXELS
 from PIL import Image
 
 
-def require_pixels(function: str, place: str, width: int, height: int) -> None:
+def require_pixels(function: str, place: str, width: int, height: int, channels: int = 4) -> None:
     """Refuse an image with more pixels than `PHOTOGRAD_MAX_PIXELS`, by default 2^27.
 
     Args:
         function: reader on whose behalf errors speak.
         place: the file.
         width, height: as the header states them.
+        channels: beyond four, they count as more pixels.
 
     Raises:
         IoError: it has more.
     """
-    if width * height > PIXELS.value():
-        raise too_many_pixels(function, place, f"{width} x {height} = {width * height:,}")
+    if width * height * max(channels, 4) > 4 * PIXELS.value():
+        more = f" of {channels} channels" if channels > 4 else ""
+        raise too_many_pixels(function, place, f"{width} x {height} = {width * height:,}{more}")
 
 
 def too_many_pixels(function: str, place: str, got: object) -> IoError:
