@@ -106,9 +106,7 @@ def test_a_dilation_beyond_time_or_memory_is_refused(monkeypatch: pytest.MonkeyP
         with pytest.raises(RangeError, match=f"steps: expected 1 to 200, got {steps}"):
             grid.dilate(steps)
     monkeypatch.setattr("photograd.memory.available_memory", lambda: 40_000_000)
-    with pytest.raises(
-        RangeError, match=r"steps: expected room for up to 64,481,201 voxels"
-    ):
+    with pytest.raises(RangeError, match=r"steps: expected room for up to 64,481,201 voxels"):
         grid.dilate(200)
     assert grid.statistics.active_voxels == 1
     grid.dilate(90)
