@@ -22,7 +22,7 @@ from tests.transport.gltf_samples import core, square
 
 
 def textured(picture: bytes) -> bytes:
-    """A .glb whose one material has the colours of an image file."""
+    """A .glb whose one material has the colors of an image file."""
     glb = square(**core(baseColorTexture={"index": 0}))
     view = glb.view(picture)
     glb.json |= {"textures": [{"source": 0}], "images": [{"bufferView": view}]}
