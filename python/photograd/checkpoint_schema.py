@@ -1,4 +1,4 @@
-"""What the checkpoint of a fit must hold: names, types and shapes, checked before any is used.
+"""What checkpoints must hold: names, types and shapes, checked before any is used.
 
 Each array has a row here: its types, and its shape, where a letter is the same number throughout
 the file. Values are checked for what arithmetic needs (finite, not negative); what they mean is
@@ -21,7 +21,7 @@ from photograd.representation import Array
 
 Row: TypeAlias = tuple[tuple[str, ...], tuple[int | str, ...]]
 """Types, of which the array has one, and shape."""
-_NAME = "load_model"
+_NAME = "checkpoint"
 _FLOAT = ("float32", "float64")
 _HARMONICS: dict[str, Row] = {"density": (_FLOAT, ("N",)), "sh": (_FLOAT, ("N", "K", 3))}
 _ACTIVE: dict[str, Row] = {
@@ -60,8 +60,8 @@ STATE: dict[str, dict[str, Row]] = {
     },
 }
 BACKGROUND: Row = (("float32",), (3,))
-META = {"step": int, "capture": str, "split": str, "pixels": str, "color_space": str}
-"""All but the step may be missing: snapshots belong to a fit, and know of no capture."""
+META = ("capture", "split", "pixels", "color_space")
+"""Texts that may be missing: snapshots belong to a fit, and know of no capture."""
 MOST_STEPS = 1 << 40
 
 
@@ -70,11 +70,9 @@ def check_checkpoint(saved: Checkpoint, options: FitOptions) -> None:
 
     The state of the optimizer may be empty, as in snapshots; a group of it is complete or absent.
     """
-    for name in ("step", *sorted(META.keys() & saved.meta.keys())):
-        typed(_NAME, f"meta.{name}", META[name], saved.meta.get(name))
-    step = saved.meta["step"]
-    if not 0 <= step <= MOST_STEPS:
-        raise RangeError(message(_NAME, "meta.step", f"0 to {MOST_STEPS}", step))
+    step = checked_step(saved)
+    for name in sorted(saved.meta.keys() & set(META)):
+        typed(_NAME, f"meta.{name}", str, saved.meta[name])
     if options.representation not in PARAMS:
         expected = f"one of {list(PARAMS)}"
         got = repr(options.representation)
@@ -84,21 +82,31 @@ def check_checkpoint(saved: Checkpoint, options: FitOptions) -> None:
     params = dict(PARAMS[options.representation])
     if "background" in saved.params:
         params["background"] = BACKGROUND
-    _check_arrays("params", saved.params, params, sizes)
+    check_arrays("params", saved.params, params, sizes)
     kinds = {array.dtype for name, array in saved.params.items() if name != "background"}
     if len(kinds) > 1:
         got = ", ".join(sorted(map(str, kinds)))
         raise DtypeError(message(_NAME, "params", "one type of all groups", got))
-    _check_arrays("state", saved.state, STATE[options.representation], sizes)
+    check_arrays("state", saved.state, STATE[options.representation], sizes)
     _check_values(options.representation, saved.state)
-    _check_optimizer(saved.optimiser, saved.params)
-    _check_history(saved.history, step)
+    check_optimizer(saved.optimiser, saved.params)
+    check_history(saved.history, step)
 
 
-def _check_arrays(
+def checked_step(saved: Checkpoint) -> int:
+    """The number of steps that were done; raises DtypeError or RangeError for what is none."""
+    step = int(typed(_NAME, "meta.step", int, saved.meta.get("step")))
+    if not 0 <= step <= MOST_STEPS:
+        raise RangeError(message(_NAME, "meta.step", f"0 to {MOST_STEPS}", step))
+    return step
+
+
+def check_arrays(
     part: str, arrays: Mapping[str, Array], rows: Mapping[str, Row], sizes: dict[str, int]
 ) -> None:
-    """Names, types, shapes and finite values; `sizes` gains what the letters stand for."""
+    """Raise DtypeError, ShapeError or RangeError unless names, types and shapes of the arrays of a
+    part are those of its rows, and their values finite; `sizes` gains what the letters stand for.
+    """
     odd = sorted(set(arrays) ^ set(rows))
     if odd:
         got = f"missing or unknown {', '.join(odd[:5])}"
@@ -142,8 +150,8 @@ def _check_values(representation: str, state: Mapping[str, Array]) -> None:
                 raise RangeError(message(_NAME, f"state.{name}", "0 or more", got))
 
 
-def _check_optimizer(state: Mapping[str, Array], params: Mapping[str, Array]) -> None:
-    """The moments are those of the parameters."""
+def check_optimizer(state: Mapping[str, Array], params: Mapping[str, Array]) -> None:
+    """Raise as `check_arrays` unless Adam's moments are those of the parameters, or of some."""
     groups = {key.partition("/")[2] for key in state}
     expected: dict[str, Any] = {}
     for group in sorted(groups & set(params)):
@@ -151,7 +159,7 @@ def _check_optimizer(state: Mapping[str, Array], params: Mapping[str, Array]) ->
         expected[f"step/{group}"] = (("int64",), ())
         for slot in ("mean", "mean_square"):
             expected[f"{slot}/{group}"] = ((array.dtype.name,), array.shape)
-    _check_arrays("optimiser", state, expected, {})
+    check_arrays("optimiser", state, expected, {})
     for key, array in state.items():
         least = -np.inf if key.startswith("mean/") else 0
         if array.size and array.min() < least:
@@ -160,8 +168,8 @@ def _check_optimizer(state: Mapping[str, Array], params: Mapping[str, Array]) ->
             raise RangeError(message(_NAME, f"optimiser.{key}", f"0 to {MOST_STEPS}", array))
 
 
-def _check_history(history: Array, step: int) -> None:
-    """Rows of step, loss and PSNR, in the order of the steps before this one."""
+def check_history(history: Array, step: int) -> None:
+    """Raise as `check_arrays` unless these are rows of step, loss and another number, in order."""
     if history.dtype != np.float64:
         raise DtypeError(message(_NAME, "history", "float64", history.dtype))
     _require_finite("history", history)

@@ -40,7 +40,7 @@ def model_of(saved: Checkpoint, path: Path) -> Model:
     Raises IoError if its contents, the optimizer's state included, do not fit together.
     """
     try:
-        options = from_plain("load_model", FitOptions, saved.meta.get("options"))
+        options = from_plain("checkpoint", FitOptions, saved.meta.get("options"))
         check_checkpoint(saved, options)
         field = saved_field(saved.params, saved.state, saved.meta.get("policy"), options)
     except Error as failure:

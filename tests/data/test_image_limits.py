@@ -9,6 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
+import OpenEXR
 import pytest
 from photograd.data import read_image, write_exr, write_png
 from photograd.data.images import read_header
@@ -21,7 +22,7 @@ from tests.transport.gltf_samples import core, square
 
 
 def textured(picture: bytes) -> bytes:
-    """A .glb whose one material has the colours of an image file."""
+    """A .glb whose one material has the colors of an image file."""
     glb = square(**core(baseColorTexture={"index": 0}))
     view = glb.view(picture)
     glb.json |= {"textures": [{"source": 0}], "images": [{"bufferView": view}]}
@@ -76,6 +77,18 @@ def test_the_limit_can_be_set(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -
             read_image(tmp_path / name)
     monkeypatch.setenv("PHOTOGRAD_MAX_PIXELS", "100")
     assert read_image(tmp_path / "a.png").shape == read_image(tmp_path / "a.exr").shape
+
+
+def test_channels_of_an_exr_count(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    planes = {name: np.zeros((10, 10), np.float32) for name in "RGBXYZUV"}
+    header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
+    with OpenEXR.File(header, planes) as opened:
+        opened.write(str(tmp_path / "a.exr"))
+    monkeypatch.setenv("PHOTOGRAD_MAX_PIXELS", "199")
+    with pytest.raises(IoError, match=r"at most 199 pixels .*got 10 x 10 = 100 of 8 channels"):
+        read_image(tmp_path / "a.exr")
+    monkeypatch.setenv("PHOTOGRAD_MAX_PIXELS", "200")
+    assert read_image(tmp_path / "a.exr").shape == (10, 10, 4)
 
 
 def test_pillow_refuses_no_picture_that_the_limit_allows(

@@ -12,7 +12,7 @@ from photograd.checkpoint import load_checkpoint
 from photograd.data import load_capture, read_image
 from photograd.data.colmap_binary import read_binary_model
 from photograd.data.colmap_model import read_text_model
-from photograd.data.gaussian_files import read_gaussians
+from photograd.data.gaussian_files import holds_gaussians, read_gaussians
 from photograd.data.images import read_header
 from photograd.data.npy import read_npy
 from photograd.data.npz import read_npz
@@ -65,6 +65,11 @@ def test_a_device_and_what_a_file_names(tmp_path: Path) -> None:
     (tmp_path / "a.obj").write_text("mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
     with pytest.warns(UserWarning, match=r"m\.mtl: expected a file, got a FIFO"):
         read_model(tmp_path / "a.obj")
+
+
+def test_a_fifo_is_no_archive_of_points(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "a.npz")
+    assert not holds_gaussians(tmp_path / "a.npz")
 
 
 def test_folders_of_photographs_leave_them_out(tmp_path: Path) -> None:

@@ -76,3 +76,8 @@ def test_a_grid_says_how_much_memory_it_needs(resolution: int) -> None:
     assert "(take a lower resolution, or a flatter box)" in str(caught.value)
     with pytest.raises(RangeError, match=r"SparseSh\.full: resolution: .* voxels of degree 3 \("):
         SparseSh.full(box, resolution, degree=3)
+    for grid in (DenseGrid.empty(box, 4), SparseSh.full(box, 4)):
+        with pytest.raises(RangeError, match=r"refined: resolution: expected room for 1000000"):
+            grid.refined(resolution)
+        with pytest.raises(RangeError, match=r"refined: resolution: expected at least 2, got 1"):
+            grid.refined(1)

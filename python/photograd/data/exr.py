@@ -36,7 +36,7 @@ def read_exr_header(path: Path) -> tuple[int, int, bool]:
         raise _unreadable("read_exr_header", path, error) from error
     width = int(upper[0]) - int(lower[0]) + 1
     height = int(upper[1]) - int(lower[1]) + 1
-    require_size("read_exr_header", str(path), width, height)
+    require_size("read_exr_header", str(path), width, height, len(names))
     if not (set(_CHANNELS[:3]) <= names or "Y" in names):
         expected = "channels R, G, B or Y"
         raise IoError(message("read_exr_header", str(path), expected, sorted(names)))

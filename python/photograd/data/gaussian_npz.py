@@ -16,6 +16,7 @@ from photograd.errors import IoError, message
 from photograd.sh import Y_0
 from photograd.splat import Gaussians
 
+from .file_bytes import require_file
 from .frames import LARGEST_COORDINATE
 from .gaussian_coding import Array, logit_of, require_room
 from .npz import read_npz
@@ -68,6 +69,7 @@ def read_point_npz(path: Path, *, memory_limit: int | None = None) -> tuple[Gaus
 def is_point_npz(path: Path) -> bool:
     """Whether a file is a .npz archive with the arrays of this format."""
     try:
+        require_file(_NAME, path)
         with zipfile.ZipFile(path) as archive:
             return {f"{name}.npy" for name in NEEDED} <= set(archive.namelist())
     except (OSError, ValueError, zipfile.BadZipFile, NotImplementedError):

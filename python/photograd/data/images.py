@@ -182,7 +182,7 @@ def _sixteen_bits(path: Path, opened: Image.Image) -> npt.NDArray[np.uint16]:
 
 
 def _with_channels(samples: npt.NDArray[Any], most: float) -> ImageArray:
-    """1 (grey), 2 (grey, alpha), 3 or 4 channels of 0 to `most` to RGBA in 0..1."""
+    """1 (gray), 2 (gray, alpha), 3 or 4 channels of 0 to `most` to RGBA in 0..1."""
     channels = samples.shape[2]
     rgba = np.ones((*samples.shape[:2], 4), np.float32)
     color = samples[..., : 3 if channels >= 3 else 1]

@@ -9,13 +9,14 @@ from PIL import Image
 LARGEST_SIDE = 1 << 16
 
 
-def require_size(function: str, place: str, width: int, height: int) -> None:
+def require_size(function: str, place: str, width: int, height: int, channels: int = 4) -> None:
     """Refuse an image whose header states sides or pixels beyond reason, before it is decoded.
 
     Args:
         function: reader on whose behalf errors speak.
         place: the file.
         width, height: as the header states them.
+        channels: as `require_pixels` counts them.
 
     Raises:
         IoError: a side below 1 or above 65536 pixels, or more than `require_pixels` allows.
@@ -23,22 +24,24 @@ def require_size(function: str, place: str, width: int, height: int) -> None:
     if not (0 < width <= LARGEST_SIDE and 0 < height <= LARGEST_SIDE):
         got = f"{width} x {height}"
         raise IoError(message(function, place, f"1 to {LARGEST_SIDE} pixels a side", got))
-    require_pixels(function, place, width, height)
+    require_pixels(function, place, width, height, channels)
 
 
-def require_pixels(function: str, place: str, width: int, height: int) -> None:
+def require_pixels(function: str, place: str, width: int, height: int, channels: int = 4) -> None:
     """Refuse an image with more pixels than `PHOTOGRAD_MAX_PIXELS`, by default 2^27.
 
     Args:
         function: reader on whose behalf errors speak.
         place: the file.
         width, height: as the header states them.
+        channels: beyond four, they count as more pixels.
 
     Raises:
         IoError: it has more.
     """
-    if width * height > PIXELS.value():
-        raise too_many_pixels(function, place, f"{width} x {height} = {width * height:,}")
+    if width * height * max(channels, 4) > 4 * PIXELS.value():
+        more = f" of {channels} channels" if channels > 4 else ""
+        raise too_many_pixels(function, place, f"{width} x {height} = {width * height:,}{more}")
 
 
 def too_many_pixels(function: str, place: str, got: object) -> IoError:

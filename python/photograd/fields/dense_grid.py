@@ -42,6 +42,28 @@ def cubic_voxels(extent: Array, resolution: int) -> list[int]:
     return [max(math.ceil(edge / voxel - 1e-6), 2) for edge in extent.tolist()]
 
 
+def finer_voxels(function: str, box: Array, resolution: int) -> tuple[int, int, int]:
+    """Voxels along each edge of a box that stays as it is; they are nearly cubes.
+
+    Raises:
+        RangeError: fewer than 2 voxels along the longest edge.
+    """
+    if resolution < 2:
+        raise RangeError(message(function, "resolution", "at least 2", resolution))
+    extent = box[1] - box[0]
+    voxel = extent.max() / resolution
+    x, y, z = (max(round(edge), 2) for edge in (extent / voxel).tolist())
+    return x, y, z
+
+
+def _require_room(function: str, voxels: list[int], itemsize: int) -> None:
+    """Raise RangeError if the values, and the mask of what is finite, take too much memory."""
+    require_room(
+        function, f"{' x '.join(map(str, voxels))} voxels", 4 * (itemsize + 1) * math.prod(voxels),
+        argument="resolution", remedy="take a lower resolution, or a flatter box",
+    )  # fmt: skip
+
+
 @register
 class DenseGrid(Representation):
     """A radiance field on X x Y x Z voxels (values at voxel centres, trilinear in between).
@@ -100,15 +122,11 @@ class DenseGrid(Representation):
                 message("DenseGrid.empty", "box", "finite, lower corner below upper", f"{box}")
             )
         voxel = extent.max() / resolution
-        shape = cubic_voxels(extent, resolution)
-        size = 4 * (np.dtype(dtype).itemsize + 1) * math.prod(shape)  # and a mask: all finite?
-        require_room(
-            "DenseGrid.empty", f"{' x '.join(map(str, shape))} voxels", size,
-            argument="resolution", remedy="take a lower resolution, or a flatter box",
-        )  # fmt: skip
+        voxels = cubic_voxels(extent, resolution)
+        _require_room("DenseGrid.empty", voxels, np.dtype(dtype).itemsize)
+        shape = np.array(voxels)
         centre = box.mean(axis=0)
-        half = np.array(shape) * voxel / 2
-        lo, hi = centre - half, centre + half
+        lo, hi = centre - shape * voxel / 2, centre + shape * voxel / 2
         scale = float((finest or resolution) / extent.max())
         policy = MarchPolicy(
             (tuple(lo.tolist()), tuple(hi.tolist())), voxel / steps_per_voxel, density_scale=scale
@@ -161,10 +179,13 @@ class DenseGrid(Representation):
         )
 
     def refined(self, resolution: int, *, steps_per_voxel: float = 2.0) -> DenseGrid:
-        """The same field on a finer grid over the same box, by trilinear interpolation."""
-        extent = self.box[1] - self.box[0]
-        voxel = extent.max() / resolution
-        x, y, z = np.maximum(np.rint(extent / voxel).astype(int), 2).tolist()
+        """The same field on a finer grid over the same box, by trilinear interpolation.
+
+        Raises RangeError for fewer than 2 voxels, or more than memory holds.
+        """
+        x, y, z = finer_voxels("DenseGrid.refined", self.box, resolution)
+        _require_room("DenseGrid.refined", [x, y, z], self.params["values"].itemsize)
+        voxel = (self.box[1] - self.box[0]).max() / resolution
         values = upsample_trilinear(self.params["values"], (x, y, z))
         return DenseGrid(values, replace(self.policy, dt=voxel / steps_per_voxel), fused=self.fused)
 

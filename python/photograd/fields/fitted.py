@@ -84,12 +84,12 @@ def saved_field(
     Raises Error where a policy or the values of the state make no sense.
     """
     if options.representation == GaussianScene.name:
-        splats = from_plain("load_model", SplatOptions, policy)
+        splats = from_plain("checkpoint", SplatOptions, policy)
         return GaussianScene.of_state(params, state, policy=splats, control=scene_control(options))
     if options.representation == OctreeSh.name:
-        tree_policy = from_plain("load_model", TreePolicy, policy)
+        tree_policy = from_plain("checkpoint", TreePolicy, policy)
         return OctreeSh.of_state(params, state, tree_policy)
-    march = from_plain("load_model", MarchPolicy, policy)
+    march = from_plain("checkpoint", MarchPolicy, policy)
     if options.representation in HARMONIC_GRIDS:
         rest = {key: value for key, value in state.items() if key != "background_density"}
         return HARMONIC_GRIDS[options.representation](

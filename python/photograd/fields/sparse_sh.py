@@ -20,7 +20,7 @@ from photograd import sh
 from photograd.core import _core
 from photograd.errors import DtypeError, RangeError, ShapeError, message
 from photograd.fields.active_voxels import ActiveVoxels, dilated, resampled_mask
-from photograd.fields.dense_grid import START_COLOR, DenseGrid, cubic_voxels
+from photograd.fields.dense_grid import START_COLOR, DenseGrid, cubic_voxels, finer_voxels
 from photograd.fields.march import (
     MarchPolicy,
     check_camera_adjoint,
@@ -322,11 +322,20 @@ class SparseSh(Representation):
         return source
 
     def refined(self, resolution: int, *, steps_per_voxel: float = 2.0) -> Self:
-        """The same field on a finer grid over the same box, by trilinear interpolation."""
-        extent = self.box[1] - self.box[0]
-        voxel = extent.max() / resolution
-        x, y, z = np.maximum(np.rint(extent / voxel).astype(int), 2).tolist()
-        active = ActiveVoxels(resampled_mask(self.active.mask, (x, y, z)))
+        """The same field on a finer grid over the same box, by trilinear interpolation.
+
+        Raises RangeError for fewer than 2 voxels, or more than memory holds.
+        """
+        where = f"{type(self).__name__}.refined"
+        shape = finer_voxels(where, self.box, resolution)
+        share = len(self.active) / self.active.mask.size
+        numbers = share * self.params["density"].itemsize * (1 + self.params["sh"][0].size)
+        require_room(
+            where, f"{' x '.join(map(str, shape))} voxels", int((3 + numbers) * math.prod(shape)),
+            argument="resolution", remedy="take a lower resolution, or prune",
+        )  # fmt: skip
+        voxel = (self.box[1] - self.box[0]).max() / resolution
+        active = ActiveVoxels(resampled_mask(self.active.mask, shape))
         density = self._resampled(self.params["density"], active, self.background_density)
         coefficients = self._resampled(self.params["sh"], active, 0.0)
         policy = replace(self.policy, dt=voxel / steps_per_voxel)

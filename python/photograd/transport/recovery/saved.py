@@ -11,7 +11,13 @@ import numpy as np
 import numpy.typing as npt
 
 from photograd.checkpoint import Checkpoint, load_checkpoint, save_checkpoint
-from photograd.errors import IoError, RangeError, message
+from photograd.checkpoint_schema import (
+    check_arrays,
+    check_history,
+    check_optimizer,
+    checked_step,
+)
+from photograd.errors import Error, IoError, RangeError, message
 from photograd.transport.scene_digest import scene_digest
 
 if TYPE_CHECKING:
@@ -46,16 +52,30 @@ def load_state(folder: Path, job: Recovery) -> dict[str, Array]:
     saved = load_checkpoint(path)
     _require_same(fingerprint(job), saved.meta)
     try:
-        job.x = {name: saved.params[name].astype(np.float64) for name in job.x}
-        sampled = {name: saved.state[f"sampled.{name}"] for name in job.x}
-        job.curves = {name: list(saved.state[f"curves.{name}"]) for name in job.x}
-        job.step_number = int(saved.meta["step"])
-    except KeyError as failure:
+        job.step_number = _checked_step(saved, job)
+    except Error as failure:
         expected = "a checkpoint of a recovery"
-        raise IoError(message("recover", f"{path}", expected, f"no {failure}")) from failure
+        raise IoError(message("recover", f"{path}", expected, failure)) from failure
+    job.x = {name: saved.params[name] for name in job.x}
+    sampled = {name: saved.state[f"sampled.{name}"] for name in job.x}
+    job.curves = {name: list(saved.state[f"curves.{name}"]) for name in job.x}
     job.optimiser.load_state(saved.optimiser)
     job.history = [(float(a), float(b), float(c)) for a, b, c in saved.history]
     return sampled
+
+
+def _checked_step(saved: Checkpoint, job: Recovery) -> int:
+    """Steps done. Raises Error unless the arrays are those of a recovery of the same unknowns."""
+    step = checked_step(saved)
+    kinds, state = ("float64",), {}
+    for name, x in job.x.items():
+        state[f"sampled.{name}"] = (kinds, x.shape)
+        state[f"curves.{name}"] = (kinds, (step + 1, *job.curves[name][0].shape))
+    check_arrays("params", saved.params, {name: (kinds, x.shape) for name, x in job.x.items()}, {})
+    check_arrays("state", saved.state, state, {})
+    check_optimizer(saved.optimiser, saved.params)
+    check_history(saved.history, step)
+    return step
 
 
 def _require_same(own: dict[str, Any], saved: dict[str, Any]) -> None:
@@ -66,7 +86,7 @@ def _require_same(own: dict[str, Any], saved: dict[str, Any]) -> None:
         if other == value:
             continue
         got = f"other {name}"
-        if isinstance(other, dict):
+        if isinstance(other, dict) and isinstance(value, dict):
             differing = [key for key in value if other.get(key) != value[key]]
             got = f"another {', '.join(differing)}"
         expected = f"the {name} of the checkpoint"
