@@ -24,6 +24,7 @@ from photograd.errors import RangeError, message
 from photograd.evaluate import Evaluation, as_result
 from photograd.evaluate import evaluate as score
 from photograd.model import load_model
+from photograd.step_check import as_entry, step_change
 
 
 def register(app: typer.Typer) -> None:
@@ -45,6 +46,8 @@ def evaluate(
 ) -> None:
     """PSNR and SSIM on the test split, with the protocol they hold under.
 
+    Of grids also how much halving the step of the march changes colors (half_step).
+
     Example: photograd evaluate model photos --out comparison.png
     """
     use_threads(threads)
@@ -59,7 +62,8 @@ def evaluate(
         result = score(loaded, views, on_view=lambda n: bar.update(n, view=n))
     if out is not None:
         draw_strips(result, out)
-    emit(as_result(result), as_json=as_json, title="evaluate")
+    entries = as_result(result) | as_entry(step_change(loaded, views))
+    emit(entries, as_json=as_json, title="evaluate")
 
 
 def picked_views(psnr: Sequence[float]) -> list[int]:
