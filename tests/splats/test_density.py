@@ -300,8 +300,9 @@ def test_pressure_means_the_same_at_every_resolution() -> None:
     one, two = chosen
     assert 50 < one.sum() < 550
     assert (one != two).sum() < 0.1 * one.sum()
-    assert raw[3] == pytest.approx(raw[7], rel=0.05)  # the measure
-    assert raw[0] == pytest.approx(2 * raw[4], rel=0.1)  # the derivative by a pixel
+    # Measured: 0.4 and 0.5 %.
+    assert raw[3] == pytest.approx(raw[7], rel=0.02)  # the measure
+    assert raw[0] == pytest.approx(2 * raw[4], rel=0.02)  # the gradient with respect to pixels
 
 
 def test_pressure_is_a_mean_over_the_pictures_that_show_a_gaussian() -> None:
