@@ -56,7 +56,7 @@ from photograd.fit_memory import require_room_to_refine, require_room_to_start
 from photograd.fit_options import FitOptions
 from photograd.fit_pruning import prune_voxels
 from photograd.fit_rays import background_color, ray_slope
-from photograd.fit_result import FitResult, Progress
+from photograd.fit_result import FitResult, Pace, Progress
 from photograd.fit_views import view_slope
 from photograd.imaging import decibels
 from photograd.model import Model, model_of
@@ -213,22 +213,21 @@ class Fit:
         """
         make_folder(folder)
         began = saved = time.perf_counter()
-        keep = snapshot_steps(self.options)
+        keep, pace = snapshot_steps(self.options), Pace(began)
         if self.step_number == 0:
             save_snapshot(folder, self.model, self.options, 0)
         while self.step_number < self.options.steps and not should_stop():
-            before = time.perf_counter()
             self.step()
             if self.step_number in keep:
                 require_finite(self.model.params, self.step_number)
                 save_snapshot(folder, self.model, self.options, self.step_number)
             now = time.perf_counter()
+            rate = pace.after(self._rays(), now)
             if on_step:
                 on_step(
                     Progress(
                         self.step_number, self.options.steps, *self.history[-1][1:],
-                        self.model.resolution,
-                        self._rays() / max(now - before, 1e-9),
+                        self.model.resolution, rate,
                     )
                 )  # fmt: skip
             if now - saved > checkpoint_seconds:

@@ -13,8 +13,8 @@ from photograd.errors import RangeError, message
 from photograd.plain_values import require_types
 
 BACKGROUNDS = ("random", "white", "black", "learned")
-DENSITY_CONTROLS = ("mcmc", "default", "none")
-"""Of Gaussians: a fixed number that wanders, clone-split-prune, or none."""
+DENSITY_CONTROLS = ("mcmc", "clone_split_prune", "none")
+"""Of Gaussians: a fixed number that wanders, a growing one, or none."""
 
 MOST_DEGREE = 3
 USERS_OF = {

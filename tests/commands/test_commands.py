@@ -93,7 +93,9 @@ def test_evaluate_prints_its_protocol_and_its_numbers(
     done = photograd("evaluate", model_folder, capture_folder, "--json", "--out", strips)
     assert done.code == 0
     result = done.result()
-    assert set(result) >= {"psnr", "ssim", "views", "protocol"}
+    assert set(result) >= {"psnr", "ssim", "views", "protocol", "half_step"}
+    assert 0 < result["half_step"]["mean"] < result["half_step"]["largest"] < 0.1
+    assert result["half_step"]["views"] == 2
     assert 25 < result["psnr"] < 60
     assert 0.8 < result["ssim"] < 1
     assert [view["name"] for view in result["views"]] == [f"test/test_{k}" for k in range(4)]

@@ -65,4 +65,4 @@ def test_uniform_is_the_same_in_both_languages() -> None:
         mine = _core.uniform(seed, step, pixel.astype(np.uint32), 2, dimension)
         python = uniform(seed, step=step, pixel=pixel, sample=2, dimension=dimension)
         assert np.array_equal(mine, python)
-    assert 0.45 < mine.mean() < 0.55
+    assert abs(mine.mean() - 0.5) < 0.03  # three standard errors of 1000 numbers

@@ -58,7 +58,7 @@ def test_jpeg_is_close(tmp_path: Path) -> None:
     x = np.linspace(0.1, 0.9, 32, dtype=np.float32)
     image = np.stack(np.broadcast_arrays(x, x[:, None], np.float32(0.5)), axis=-1)
     write_jpeg(tmp_path / "a.jpg", image)
-    # Quality 95 of a smooth picture: a few of 255 levels.
+    # Quality 95 of a smooth picture: a few of 255 levels; measured: 2.5.
     np.testing.assert_allclose(read_image(tmp_path / "a.jpg")[..., :3], image, atol=3.5 / 255)
     with pytest.raises(ShapeError, match="write_jpeg: image"):
         write_jpeg(tmp_path / "b.jpg", PICTURE)

@@ -114,7 +114,7 @@ def test_a_grid_becomes_a_tree_that_learns_what_the_conversion_lost() -> None:
     grid = ball(16)
     tree = OctreeSh.from_dense_grid(grid, degree=1, tolerance=0.2)
     # Empty space and the inside are few leaves.
-    assert len(tree.params["density"]) < 0.2 * 16**3
+    assert len(tree.params["density"]) < 0.1 * 16**3  # measured: 0.08
     batch = grid.example_batch(seed=5)
     many = [grid.example_batch(seed=s) for s in range(5, 25)]
     batch = RayBatch(

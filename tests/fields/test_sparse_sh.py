@@ -48,8 +48,8 @@ def test_empty_space_has_the_density_that_was_asked_for() -> None:
     outputs, _ = field.render(batch, seed=0, step=0, options=OPTIONS)
     assert outputs.opacity is not None
     np.testing.assert_allclose(outputs.opacity, [1 - np.exp(-0.6)], rtol=1e-12)
-    # In the half-active cells of the rim colour fades to that of no coefficients: measured 0.183.
-    np.testing.assert_allclose(outputs.color[0] / outputs.opacity, [0.18] * 3, rtol=0.03)
+    # In the half-active cells of the rim color fades to that of no coefficients: measured 0.1832.
+    np.testing.assert_allclose(outputs.color[0] / outputs.opacity, [0.1832] * 3, rtol=1e-3)
 
 
 def test_a_finer_grid_shows_the_same_image() -> None:
@@ -70,7 +70,7 @@ def test_a_finer_grid_shows_the_same_image() -> None:
     few = [replace(f.policy, box=((-1, -0.5, 0), (1, 1, 0.8))) for f in (field, fine)]
     assert few[0].box == few[1].box
     a, b = (f.render(batch, seed=0, step=0, options=inside)[0] for f in (field, fine))
-    np.testing.assert_allclose(a.color, b.color, rtol=2e-2)
+    np.testing.assert_allclose(a.color, b.color, rtol=1e-7)  # measured: 7e-9
     rows = field.active.rows[4:10, 4:8, 2:5].ravel()
     up = field.resampled(field.params["density"], fine)
     i, j, k = (2 * field.active.voxels[rows]).T

@@ -165,8 +165,9 @@ def test_many_rays_are_the_mean_of_their_parts() -> None:
     field = start(6)
     whole = density_gradient(field, pixels, seed=4, rays=(1 << 16) + 5000, background=np.ones(3))
     part = density_gradient(field, pixels, seed=4, rays=1 << 16, background=np.ones(3))
-    assert whole.loss == pytest.approx(part.loss, rel=0.02)
+    # Measured: 0.4 and 0.3 %.
+    assert whole.loss == pytest.approx(part.loss, rel=0.01)
     assert whole.loss != part.loss
     np.testing.assert_allclose(
-        np.abs(whole.d_sigma_t).sum(), np.abs(part.d_sigma_t).sum(), rtol=0.02
+        np.abs(whole.d_sigma_t).sum(), np.abs(part.d_sigma_t).sum(), rtol=0.01
     )

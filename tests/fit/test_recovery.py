@@ -54,7 +54,8 @@ def test_a_known_scene_is_recovered() -> None:
     assert outputs.opacity[1] < 0.05
     depth = outputs.depth[0] / outputs.opacity[0]
     voxel = 1.6 / 24
-    assert depth == pytest.approx(3 + centre[0] - radius, abs=2 * voxel)
+    # Measured: 0.38 voxels, and 0.035.
+    assert depth == pytest.approx(3 + centre[0] - radius, abs=voxel)
     np.testing.assert_allclose(outputs.color[0] / outputs.opacity[0], color, atol=0.05)
 
 

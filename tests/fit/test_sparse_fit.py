@@ -88,8 +88,9 @@ def test_no_voxel_that_wants_density_is_lost_at_any_pruning_of_a_fit(
 
 def test_one_view_alone_would_prune_what_others_need() -> None:
     capture = scene.capture()
-    fit = Fit.start(capture, scene.options(**OPTIONS, **UNPRUNED))
-    for _ in range(40):
+    changes = {"resolution": 24, "steps": 60, "rays": 1024}
+    fit = Fit.start(capture, scene.options(**{**OPTIONS, **UNPRUNED, **changes}))
+    while fit.step_number < fit.options.steps:
         fit.step()
     field = fit.model
     assert isinstance(field, SparseSh)
@@ -97,7 +98,10 @@ def test_one_view_alone_would_prune_what_others_need() -> None:
     pixels = len(fit.pixels) // len(capture.train)
     one = field.greatest_weights([fit.pixels.rays(np.arange(pixels))])
     assert (one <= every).all()
-    assert ((every >= 0.05) & (one < 0.05)).sum() > 0.2 * (every >= 0.05).sum()
+    needed = every >= FitOptions().prune
+    assert needed.sum() > 1000  # measured: 1902
+    # Of one view in twelve; measured for each of them: 70 to 80 %.
+    assert 0.6 < (one[needed] < FitOptions().prune).mean() < 0.9
 
 
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])

@@ -112,7 +112,8 @@ def test_derivative_by_the_table() -> None:
 
 def test_errors_are_those_of_the_representation() -> None:
     # What a representation holds exactly costs no error.
-    assert best_harmonics(lambda d: 1 + d, 1) < 1e-14
+    # Sums over 4608 directions round by about sqrt(4608) 2.2e-16 = 1.5e-14.
+    assert best_harmonics(lambda d: 1 + d, 1) < 1e-13
     exact = np.random.default_rng(8).normal(size=(3, 6, 2))
     assert best_table(lambda d: evaluate(exact, d), 3) < 1e-13
     # Parseval: what degree 1 leaves of Y_00 + Y_20 / 2 is the latter, of norms 1 and 1/2.
@@ -127,7 +128,7 @@ def test_errors_are_those_of_the_representation() -> None:
     values = glow(directions)
     found = evaluate(glow(centres.reshape(-1, 3)).reshape(4, 8, 6), directions)
     sampled = np.sqrt((weights @ (found - values) ** 2).sum() / (weights @ values**2).sum())
-    assert 0.3 * sampled < best_table(glow, 4) < sampled
+    assert 0.55 * sampled < best_table(glow, 4) < 0.7 * sampled  # measured: 0.62
 
 
 def test_harmonics_need_fewer_numbers_for_soft_light() -> None:

@@ -130,7 +130,8 @@ def test_gradients_with_cutoffs_are_those_of_the_cut_picture() -> None:
     d = {name: np.ones_like(a) for name, a in scene.forward(scene.place).items()}
     cut, whole = scene.backward(scene.place, d), smooth.backward(scene.place, d)
     for name in cut:
-        assert np.linalg.norm(cut[name] - whole[name]) < 0.3 * np.linalg.norm(whole[name]), name
+        # Measured: at most 3.6 %, of the pose.
+        assert np.linalg.norm(cut[name] - whole[name]) < 0.06 * np.linalg.norm(whole[name]), name
 
 
 def opaque(policy: Any) -> tuple[Scene, Any]:

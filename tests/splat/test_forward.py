@@ -137,6 +137,6 @@ def test_antialiased_splats_keep_their_total_when_the_camera_moves_back() -> Non
 
     smooth = DEFAULT.smooth()
     steady = totals(replace(smooth, antialiased=True))
-    np.testing.assert_allclose(steady, steady[0], rtol=0.05)
+    np.testing.assert_allclose(steady, steady[0], rtol=0.02)  # measured: 0.9 %
     grown = totals(smooth)
     assert grown[2] > 5 * grown[0]  # without: 31 times brighter for its size at 0.01 pixel^2

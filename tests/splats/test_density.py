@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from photograd.fields.gaussians import GaussianScene
 from photograd.orbit import orbit_cameras
+from photograd.quaternions import rotation_matrices
 from photograd.representation import ImageBatch, Outputs, RenderOptions
 from photograd.row_adam import RowAdam
 from photograd.splat import Gaussians, SplatOptions, render
@@ -97,15 +98,15 @@ def fitted_quality(change: Callable[[GaussianScene], None], control: Any) -> flo
     return psnr(before, truth) - psnr(picture(field), truth)
 
 
-def test_splitting_a_few_and_pruning_costs_less_than_half_a_decibel() -> None:
+def test_splitting_half_of_all_and_pruning_cost_less_than_half_a_decibel() -> None:
     control = CloneSplitPrune(budget=5000, schedule=ALWAYS, small=0.0, large=9.0)
 
     def split(field: GaussianScene) -> None:
-        press(field, np.arange(0, 1500, 60))  # 25 of 1500, as a step of a fit splits them
+        press(field, np.arange(0, 1500, 2))  # more at once than at any event of a fit
         field.refine(5, {})
-        assert len(field.params["means"]) == 1500 + 25
+        assert len(field.params["means"]) == 1500 + 750
 
-    assert fitted_quality(split, control) < 0.5
+    assert fitted_quality(split, control) < 0.4  # measured: 0.26
 
     def prune(field: GaussianScene) -> None:
         field.params["opacity_logits"][::10] = logits(np.array(0.004))
@@ -117,18 +118,32 @@ def test_splitting_a_few_and_pruning_costs_less_than_half_a_decibel() -> None:
     fitted_quality(prune, CloneSplitPrune(budget=5000, schedule=ALWAYS, large=9.0))
 
 
-def test_split_parts_lie_in_the_gaussian_and_are_smaller() -> None:
+def test_split_parts_have_the_mean_the_covariance_and_the_coverage_of_the_whole() -> None:
     one = cloud(1, seed=2)
     field = scene(one, CloneSplitPrune(budget=9, schedule=ALWAYS, small=0.0, large=9.0))
     press(field, np.array([0]))
-    _, rows = change_in_db(field)
+    quality, rows = change_in_db(field)
     assert (rows.source == FRESH).all()
-    np.testing.assert_allclose(
-        field.params["log_scales"], np.repeat(one.log_scales, 2, axis=0) - np.log(1.6)
-    )
-    away = np.linalg.norm(field.params["means"] - one.means, axis=1)
-    assert (away > 0).all()
-    assert (away < 5 * np.exp(one.log_scales).max()).all()
+    longest = int(one.log_scales[0].argmax())
+    shrink = one.log_scales - field.params["log_scales"]
+    np.testing.assert_allclose(shrink, np.log(1.6) * np.tile(np.eye(3)[longest], (2, 1)))
+    offset = field.params["means"] - one.means
+    np.testing.assert_allclose(offset[0], -offset[1], atol=1e-15)
+    assert np.linalg.norm(offset[0]) > 0.01
+    covariance = [
+        (turn * np.exp(2 * scales)) @ turn.T
+        for turn, scales in zip(
+            rotation_matrices(np.concatenate([one.quats, field.params["quats"]])),
+            np.concatenate([one.log_scales, field.params["log_scales"]]),
+            strict=True,
+        )
+    ]
+    mixture = np.mean(covariance[1:], axis=0) + np.outer(offset[0], offset[0])
+    np.testing.assert_allclose(mixture, covariance[0], rtol=1e-12, atol=1e-15)
+    whole = 1 / (1 + np.exp(-one.opacity_logits))
+    # Half as much each, on an axis shorter by 1.6.
+    np.testing.assert_allclose(opacities(field.params), np.repeat(0.8 * whole, 2), rtol=1e-6)
+    assert quality > 40  # dB of the picture; measured: 51
 
 
 def test_the_budget_is_honoured_and_the_most_pressed_go_first() -> None:
@@ -285,8 +300,9 @@ def test_pressure_means_the_same_at_every_resolution() -> None:
     one, two = chosen
     assert 50 < one.sum() < 550
     assert (one != two).sum() < 0.1 * one.sum()
-    assert raw[3] == pytest.approx(raw[7], rel=0.05)  # the measure
-    assert raw[0] == pytest.approx(2 * raw[4], rel=0.1)  # the derivative by a pixel
+    # Measured: 0.4 and 0.5 %.
+    assert raw[3] == pytest.approx(raw[7], rel=0.02)  # the measure
+    assert raw[0] == pytest.approx(2 * raw[4], rel=0.02)  # the gradient with respect to pixels
 
 
 def test_pressure_is_a_mean_over_the_pictures_that_show_a_gaussian() -> None:

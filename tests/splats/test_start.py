@@ -55,7 +55,8 @@ def test_random_points_fill_the_hull_and_nothing_else() -> None:
     assert "silhouettes" in rule
     radius = np.linalg.norm(points, axis=1)
     assert radius.max() < 0.75  # the ball of 0.5 and what twelve silhouettes leave around it
-    assert volume == pytest.approx(4 / 3 * np.pi * 0.5**3, rel=0.35)
+    # The hull is larger than the ball, 3000 of about 8000 points fall into it: measured 4 % more.
+    assert volume == pytest.approx(4 / 3 * np.pi * 0.5**3, rel=0.1)
     again, _, _ = random_points(capture, box, 3000, seed=4)
     np.testing.assert_array_equal(points, again)
 

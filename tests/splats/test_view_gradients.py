@@ -31,17 +31,23 @@ def scene() -> GaussianScene:
     return fit.model
 
 
-def test_loss_falls_along_what_is_drawn(scene: GaussianScene) -> None:
+def test_loss_falls_along_what_is_drawn(
+    scene: GaussianScene, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # Without cut-offs: what a splat gains at its rim when it becomes more opaque has no gradient,
+    # and is 3 % of the whole here.
+    monkeypatch.setattr(scene, "policy", scene.policy.smooth())
     views = TrainingViews(cloud_capture().train)
     found = view_gradients(scene, views, 2)
     before = scene.params["opacity_logits"].copy()
-    # Ten views of ten are looked at, so that the mean loss is that of `found`.
-    scene.params["opacity_logits"] = (before - 2e3 * found.d_logit).astype(np.float32)
-    after = view_gradients(scene, views, 2)
-    scene.params["opacity_logits"] = before
-    assert after.loss < found.loss
-    wish = np.square(found.d_logit).sum()
-    assert found.loss - after.loss == pytest.approx(2e3 * wish, rel=0.3)
+    losses = []
+    for step in (-20, 20):  # ten views of ten are looked at: the mean loss is that of `found`
+        moved = (before + step * found.d_logit).astype(np.float32)
+        monkeypatch.setitem(scene.params, "opacity_logits", moved)
+        losses.append(view_gradients(scene, views, 2).loss)
+    assert losses[0] < found.loss < losses[1]
+    # Measured: 4e-6 apart, in float32.
+    assert losses[1] - losses[0] == pytest.approx(40 * np.square(found.d_logit).sum(), rel=1e-4)
 
 
 def test_one_splat_has_the_moments_of_its_ellipse() -> None:

@@ -29,6 +29,7 @@ from photograd.errors import RangeError, message
 from photograd.evaluate import Evaluation, ViewScore, as_result
 from photograd.evaluate import evaluate as score
 from photograd.model import load_model
+from photograd.step_check import as_entry, step_change
 
 
 def register(app: typer.Typer) -> None:
@@ -51,7 +52,7 @@ def evaluate(
     """PSNR and SSIM on the test split, with the protocol they hold under.
 
     Only pixels that a photograph has are scored: not the border that undistortion leaves, nor what
-    a mask excludes.
+    a mask excludes. Of grids, half_step says how much halving the step of the march changes colors.
 
     Example: photograd evaluate model photos --out comparison.png
     """
@@ -67,7 +68,8 @@ def evaluate(
         result = score(loaded, views, on_view=lambda n: bar.update(n, view=n))
     if out is not None:
         draw_picked(result, out)
-    emit(as_result(result), as_json=as_json, title="evaluate")
+    entries = as_result(result) | as_entry(step_change(loaded, views))
+    emit(entries, as_json=as_json, title="evaluate")
 
 
 def picked_views(psnr: Sequence[float]) -> list[int]:

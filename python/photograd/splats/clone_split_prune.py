@@ -1,17 +1,25 @@
-"""The default density control: clone, split, prune, and now and then make everything faint.
+"""A growing number of Gaussians: clone, split, prune, and now and then make everything faint.
 
 A Gaussian under pressure (see `pressure`) covers too much or too little. A small one is cloned: its
-twin is free to go elsewhere. A large one is split in two, drawn from itself, each smaller by 1.6.
-Faint ones are dropped. From time to time all opacities are lowered: what is needed recovers, what
-only fogs the view in front of a camera does not [Kerbl2023].
+twin is free to go elsewhere. A large one is split in two along its longest axis. Faint ones are
+dropped. From time to time all opacities are lowered: what is needed recovers, what only fogs the
+view in front of a camera does not [Kerbl2023].
 
-Two Gaussians of opacity a at one place cover like one of 1 - (1 - a)^2. A clone and its original
-therefore get
+Neither may cost what the fit has learned. Two Gaussians of opacity a at one place cover like one of
+1 - (1 - a)^2, so a clone and its original get
 
     a' = 1 - sqrt(1 - a)
 
 which keeps the middle of the splat as it was [Bulo2024]; where its falloff is g, the two cover more
 by a'^2 g (1 - g). The original code leaves a to both, and doubles the matter.
+
+The parts of a split Gaussian of scale s along its longest axis get
+
+    s' = s / 1.6,    offsets +-d with d^2 + s'^2 = s^2,    a' = 1.6 a / 2
+
+so that together they have its mean, its covariance and, but for their overlap, its coverage. The
+original code draws two places from the Gaussian itself, shrinks all axes and leaves a to both: in
+a fit that costs up to two decibels.
 """
 
 from __future__ import annotations
@@ -21,7 +29,6 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 from photograd_course.portable_math import exp, log
-from photograd_course.random import normal_vectors
 from photograd_course.row_map import RowMap
 
 from photograd.quaternions import rotation_matrices
@@ -38,14 +45,13 @@ from photograd.splats.density import (
 from photograd.splats.pressure import Pressure
 
 SPLIT = 1.6
-"""A part of a split Gaussian is smaller by this."""
+"""A part of a split Gaussian is shorter by this, along its longest axis [Kerbl2023]."""
 
 
 @dataclass(frozen=True)
 class CloneSplitPrune(DensityControl):
     """Attributes:
     budget: there are never more Gaussians; those under the highest pressure go first.
-    seed: of the places of split Gaussians.
     schedule: of cloning, splitting and pruning.
     threshold: pressure above which a Gaussian is cloned or split.
     small: in extents; Gaussians whose longest scale is below are cloned, others split.
@@ -55,7 +61,6 @@ class CloneSplitPrune(DensityControl):
     """
 
     budget: int
-    seed: int = 0
     schedule: Schedule = field(default_factory=Schedule)
     threshold: float = 2e-4
     small: float = 0.01
@@ -80,7 +85,7 @@ class CloneSplitPrune(DensityControl):
         small = longest <= self.small * extent
         cloned, split = np.flatnonzero(chosen & small), np.flatnonzero(chosen & ~small)
         before = _with_clones_thinned(params, cloned)
-        added = _concatenated(_rows(before, cloned), self._parts(before, split, step))
+        added = _concatenated(_rows(before, cloned), _parts(before, split))
         kept = np.flatnonzero(~pruned & ~(chosen & ~small))
         after, row_map = rebuilt(before, kept, added)
         if not reset:
@@ -101,16 +106,6 @@ class CloneSplitPrune(DensityControl):
         chosen[wanted[order]] = True
         return chosen
 
-    def _parts(self, params: Params, rows: Array, step: int) -> dict[str, Array]:
-        """Two parts of each row, at places drawn from the Gaussian itself."""
-        parts = _rows(params, np.concatenate([rows, rows]))
-        unit = normal_vectors(self.seed, step=step, row=np.arange(2 * len(rows)), sample=3)
-        local = unit * exp(parts["log_scales"].astype(np.float64))
-        turn = rotation_matrices(parts["quats"])
-        parts["means"] = parts["means"] + np.einsum("nij,nj->ni", turn, local)
-        parts["log_scales"] = parts["log_scales"] - log(SPLIT)
-        return parts
-
     def _faded(self, params: Params) -> Change:
         """Opacities held below `reset_to`; Adam's moments of the logits begin anew."""
         after = dict(params)
@@ -128,6 +123,21 @@ def _rows(params: Params, rows: Array) -> dict[str, Array]:
 
 def _concatenated(one: Params, two: Params) -> dict[str, Array]:
     return {name: np.concatenate([one[name], two[name]]) for name in one}
+
+
+def _parts(params: Params, rows: Array) -> dict[str, Array]:
+    """The first part of each row, then the second."""
+    parts = _rows(params, np.concatenate([rows, rows]))
+    log_scales = parts["log_scales"].astype(np.float64)
+    part, longest = np.arange(len(log_scales)), log_scales.argmax(axis=1)
+    offset = np.sqrt(1 - 1 / (SPLIT * SPLIT)) * exp(log_scales[part, longest])
+    offset[: len(rows)] *= -1
+    axis = rotation_matrices(parts["quats"])[part, :, longest]
+    parts["means"] = parts["means"] + offset[:, None] * axis
+    log_scales[part, longest] -= log(SPLIT)
+    parts["log_scales"] = log_scales
+    parts["opacity_logits"] = logits(0.5 * SPLIT * opacities(parts))
+    return parts
 
 
 def _with_clones_thinned(params: Params, cloned: Array) -> dict[str, Array]:

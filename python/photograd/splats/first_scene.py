@@ -52,8 +52,8 @@ def scene_control(options: FitOptions) -> DensityControl:
     )
     if options.density_control == "mcmc":
         return MarkovChain(options.gaussians, seed=options.seed, schedule=schedule)
-    if options.density_control == "default":
-        return CloneSplitPrune(options.gaussians, seed=options.seed, schedule=schedule)
+    if options.density_control == "clone_split_prune":
+        return CloneSplitPrune(options.gaussians, schedule=schedule)
     return NoControl()
 
 
