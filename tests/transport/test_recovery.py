@@ -207,7 +207,7 @@ def test_lights_are_found_while_they_are_sampled_anew(tmp_path: Path) -> None:
     unknowns = [Unknown("lights.0.texels", start=1.0)]
     whole = recover(scene, targets, unknowns, options=options)
     first, last = (np.mean(part) for part in (whole.history[:6, 1], whole.history[-12:, 1]))
-    assert last < 0.3 * first
+    assert last < 0.15 * first  # 0.10; 0.09 and 0.10 with other seeds
     parts = Recovery(scene, targets, unknowns, options)
     parts.run(tmp_path, should_stop=lambda: parts.step_number >= 13)
     resumed = recover(scene, targets, unknowns, options=options, folder=tmp_path, resume=True)

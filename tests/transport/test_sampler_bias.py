@@ -65,25 +65,25 @@ def point_in_pixel() -> Known:
 
 def opacity() -> Known:
     # A card that returns 0.6 of a sky of 1 covers half of that sky.
-    veil = Material("lambert", {"albedo": [0.6] * 3, "alpha": 0.5})
+    half = Material("lambert", {"albedo": [0.6] * 3, "alpha": 0.5})
     card = rectangle("card", *FLOOR, "own")
-    scene = pencil(card, material=veil, environment=Environment.constant(1.0))
+    scene = pencil(card, material=half, environment=Environment.constant(1.0))
     return Known(scene, 0.8, PathOptions("bsdf", roulette_from=None), 512)
 
 
 def choice_of_a_light() -> Known:
-    # Of three bulbs of one power, from different distances.
-    bulbs = tuple(PointLight(POINT + r * UP, [1.0] * 3) for r in (1.0, 1.1, 1.25))
+    # Of three lights of one power, from different distances.
+    lights = tuple(PointLight(POINT + r * UP, [1.0] * 3) for r in (1.0, 1.1, 1.25))
     floor = rectangle("floor", *FLOOR, "own")
     irradiance = sum(1 / r**2 for r in (1.0, 1.1, 1.25))
-    scene = pencil(floor, material=GREY, lights=bulbs)
+    scene = pencil(floor, material=GREY, lights=lights)
     return Known(scene, 0.5 * irradiance / np.pi, PathOptions(max_depth=2), 448)
 
 
 def point_on_a_light() -> Known:
     corner, u, v = (np.array(x, float) for x in LAMP)
     corners = [corner, corner + u, corner + u + v, corner + v]
-    shapes = rectangle("floor", *FLOOR, "own"), rectangle("lamp", *LAMP, "black", [4.0] * 3)
+    shapes = rectangle("floor", *FLOOR, "own"), rectangle("light", *LAMP, "black", [4.0] * 3)
     radiance = 0.5 * 4 * polygon_irradiance(corners, POINT, UP) / np.pi
     scene = pencil(*shapes, material=GREY)
     return Known(scene, radiance, PathOptions("light", max_depth=2), 256)
