@@ -125,10 +125,8 @@ def test_a_bias_of_a_tenth_of_a_percent_would_be_seen(
     tracer = PathTracer(known.scene, dtype=np.float64)
     options = replace(known.options, sampler=sampler)
     spp = known.spp if sampler == "independent" else known.spp // 4  # whose means err less
-    means = np.array([
-        tracer.render(spp=spp, seed=seed, options=options).mean[..., 0].mean()
-        for seed in range(SEEDS)
-    ])  # fmt: skip
+    pictures = [tracer.render(spp=spp, seed=seed, options=options) for seed in range(SEEDS)]
+    means = np.array([picture.mean[..., 0].mean() for picture in pictures])
     error = float(means.std(ddof=1)) / np.sqrt(SEEDS) / known.radiance
     assert error < ERROR  # 0.1 % is five of these
     gap = abs(means.mean() / known.radiance - 1)
