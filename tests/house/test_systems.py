@@ -21,10 +21,39 @@ def systems() -> list[dict[str, Any]]:
     return found
 
 
-def functions_of(path: Path) -> set[str]:
-    """Names of the test functions of a file, those in classes included."""
-    nodes = ast.walk(ast.parse(path.read_text(encoding="utf-8")))
-    return {node.name for node in nodes if isinstance(node, ast.FunctionDef)}
+def module_file(module: str) -> Path | None:
+    """The file of a module that test files share, or None: it is of another distribution."""
+    tail = Path(*module.split(".")).with_suffix(".py")
+    return next((top / tail for top in (ROOT, ROOT / "tests") if (top / tail).is_file()), None)
+
+
+def classes_of(path: Path) -> dict[str, set[str]]:
+    """{class: its test methods} of a file, inherited ones included, and of what it imports."""
+    found: dict[str, set[str]] = {}
+    for node in ast.parse(path.read_text(encoding="utf-8")).body:
+        if isinstance(node, ast.ImportFrom) and (source := module_file(node.module or "")):
+            known = classes_of(source)
+            found |= {n.asname or n.name: known[n.name] for n in node.names if n.name in known}
+        elif isinstance(node, ast.ClassDef):
+            bases = [found.get(base.id, set()) for base in node.bases if isinstance(base, ast.Name)]
+            found[node.name] = set().union(own_tests(node.body), *bases)
+    return found
+
+
+def own_tests(body: list[ast.stmt]) -> set[str]:
+    """Names of the test functions of a file's or a class's own statements."""
+    functions = [node.name for node in body if isinstance(node, ast.FunctionDef)]
+    return {name for name in functions if name.startswith("test_")}
+
+
+def collected(path: Path) -> set[str]:
+    """What pytest collects from a file: "function" and "Class::method"."""
+    if not path.name.startswith("test_"):
+        return set()
+    found = own_tests(ast.parse(path.read_text(encoding="utf-8")).body)
+    for name, methods in classes_of(path).items():
+        found |= {f"{name}::{method}" for method in methods if name.startswith("Test")}
+    return found
 
 
 def faults(row: dict[str, Any], root: Path = ROOT) -> list[str]:
@@ -37,8 +66,8 @@ def faults(row: dict[str, Any], root: Path = ROOT) -> list[str]:
         path, _, function = proof.partition("::")
         if not path.startswith("tests/") or not (root / path).is_file():
             found.append(f"no test file {path}")
-        elif not function.startswith("test_") or function not in functions_of(root / path):
-            found.append(f"no test {proof}")
+        elif function not in collected(root / path):
+            found.append(f"not collected: {proof}")
     if "assignment" in row and not (root / row["assignment"] / "assignment.toml").is_file():
         found.append(f"no assignment {row['assignment']}")
     return found
@@ -73,7 +102,19 @@ def test_a_broken_row_is_seen() -> None:
     }
     assert faults(good) == []
     assert faults(good | {"files": ["cpp/none.h"]}) == ["no file cpp/none.h"]
-    assert faults(good | {"proof": [f"{here}::test_none"]}) == [f"no test {here}::test_none"]
+    base = "tests/course/assignments/support.py"
+    heir = "tests/course/assignments/test_01.py::TestGradientDescent"
+    inherited = "test_the_solution_earns_everything"
+    assert faults(good | {"proof": [f"{heir}::{inherited}"]}) == []
+    for proof in (
+        f"{here}::test_none",
+        f"{here}::collected",
+        f"{base}::{inherited}",  # a file that pytest passes by
+        f"{base}::AssignmentTests::{inherited}",
+        f"{heir}::test_none",
+        f"{heir.partition('::')[0]}::{inherited}",  # a method, without its class
+    ):
+        assert faults(good | {"proof": [proof]}) == [f"not collected: {proof}"]
     assert faults(good | {"proof": ["tests/none.py::test_x"]}) == ["no test file tests/none.py"]
     assert faults(good | {"assignment": "assignments/none"}) == ["no assignment assignments/none"]
     assert faults({"id": "A01"}) == ["fields ['id']"]

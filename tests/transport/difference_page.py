@@ -65,9 +65,8 @@ def line(name: str, row: Row) -> str:
 
 def table(names: Iterable[str], rows: dict[str, Row]) -> list[str]:
     """Header and rows."""
-    columns = ("of", "with respect to", "adjoint", "differences", "apart, %", "error, %", "cut, %",
-               "paths, 1e6", "says")  # fmt: skip
-    head = f"| {' | '.join(columns)} |"
+    head = "| of | with respect to | adjoint | differences | apart, % | error, % | cut, % "
+    head += "| paths, 1e6 | says |"
     return [head, "|---" * 9 + "|", *(line(name, rows[name]) for name in names)]
 
 

@@ -161,7 +161,7 @@ def test_rectangle_and_ball() -> None:
     light, found = emitted("rectangle")
     normal = unit(np.cross(light.edge_x, light.edge_y))
     inside = found.origins - light.corner
-    np.testing.assert_allclose(inside @ normal, 2e-5, rtol=0.2)  # beside the surface
+    np.testing.assert_allclose(inside @ normal, 2e-5, rtol=1e-6)  # beside the surface
     place = [inside @ np.asarray(e) / (np.asarray(e) @ e) for e in (light.edge_x, light.edge_y)]
     assert_even([*place, *by_cosine(found.directions, normal)])
     area = np.linalg.norm(np.cross(light.edge_x, light.edge_y))

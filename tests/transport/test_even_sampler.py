@@ -36,7 +36,7 @@ def test_even_points_keep_the_mean_and_err_less() -> None:
     # A bias of two percent would be seen.
     spread = np.sqrt((variance["even"] + variance["independent"]).sum() / 3 / SEEDS / 12**4)
     assert 3.9 * spread < 0.02 * even.mean()
-    assert variance["even"].mean() < 0.5 * variance["independent"].mean()
+    assert variance["even"].mean() < 0.5 * variance["independent"].mean()  # 0.35
 
 
 def test_the_spread_of_samples_is_not_the_error_of_even_ones() -> None:

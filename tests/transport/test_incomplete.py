@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,7 @@ from photograd.transport import (
     PathTracer,
     Scene,
     SphereShape,
+    Texture,
     TextureUse,
     Unknown,
     derivative_image,
@@ -25,9 +27,10 @@ from photograd.transport import (
 from photograd.transport.builtin import camera_at, cornell_spheres
 from photograd.transport.incomplete import TURNING, incomplete_derivatives
 from photograd.transport.recovery import loss_and_gradients
+from photograd.transport.shapes import rectangle
 
 from tests.transport import difference_page as page
-from tests.transport.scenes import any_material
+from tests.transport.scenes import FLOOR, any_material
 from tests.transport.test_alpha import checker, grey, shade
 from tests.transport.test_differences import KNOWN
 
@@ -169,6 +172,16 @@ def test_each_entry_refuses_with_a_reason_and_a_remedy(
     for unknown in (name, Unknown(name, start=0.6)):
         with pytest.raises(RangeError, match=f"^recover: unknowns: {says}"):
             recover(tracer.scene, target, [unknown])
+
+
+def test_a_texture_that_scales_a_refused_parameter_is_refused() -> None:
+    painted = Material(GLASS.model, GLASS.values, {"eta": TextureUse("t"), "tint": TextureUse("u")})
+    shape = rectangle("pane", *FLOOR, "own")
+    uv = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], np.float64)
+    textures = {"t": checker(), "u": Texture(np.ones((2, 2, 3)))}
+    camera = camera_at([0.0, 1.0, 2.0], [0.0, 0.0, 0.0], 20.0, 2, 2)
+    scene = Scene("pane", (replace(shape, uv=uv),), {"own": painted}, camera, textures=textures)
+    assert incomplete_derivatives(scene).keys() == {"materials.own.eta", "textures.t"}
 
 
 def test_what_else_is_in_the_scene_keeps_its_gradient() -> None:

@@ -19,6 +19,6 @@ def test_the_loss_wants_the_sun_elsewhere() -> None:
     summed = gradient.sum(axis=2)
     assert summed[figure.texel_towards(SUN)] < 0
     assert summed[figure.texel_towards(figure.WRONG)] > 0
-    # What lies below the horizon says little.
+    # What lies below the horizon says little: 0.003 of what lies above.
     below = np.abs(summed[figure.HEIGHT // 2 + 2 :]).mean()
-    assert below < 0.2 * np.abs(summed[: figure.HEIGHT // 2]).mean()
+    assert below < 0.02 * np.abs(summed[: figure.HEIGHT // 2]).mean()

@@ -47,7 +47,6 @@ def test_the_blur_of_the_radius_in_closed_form_falls() -> None:
         noise = 1 / np.sqrt((1 << 18) * r * r * blurred / 4)
         np.testing.assert_allclose(found, blurred * np.array([1.0, 2.0, 0.5]), rtol=4 * noise)
         bias.append(1 - found[0])
-        assert bias[-1] == pytest.approx(0.75 * r * r, rel=0.5, abs=4 * noise)
     assert bias[0] > 2 * bias[1] > 4 * bias[2]
     assert not photons.irradiance(np.array([[0, 0.5, 0]]), up).any()
     assert not photons.irradiance(point, -up).any()
@@ -72,17 +71,20 @@ def test_a_caustic_keeps_its_power() -> None:
 
 def test_pictures_agree_with_path_tracing_but_for_the_blur() -> None:
     tracer = PathTracer(cornell_box(10))
-    truth = tracer.render(spp=256, seed=1, options=PathOptions(sampler="independent")).mean
+    truth = tracer.render(spp=256, seed=1).mean
+    # Without the lamp, whose edges few samples draw well.
+    seen = tracer.render(spp=256, seed=1, options=PathOptions(max_depth=1)).mean.max(axis=2) == 0
+    assert seen.sum() == 96
     errors = []
     for radius in (0.5, 0.15):
         photons = PhotonMap(tracer, 40_000, radius=radius, seed=2)
         picture = photons.render(spp=8, seed=3).mean
-        # Without the lamp, whose edges few samples draw well.
-        seen = truth.max(axis=2) < 5
         errors.append(np.abs(picture - truth)[seen].mean() / truth[seen].mean())
-        assert picture[seen].mean() == pytest.approx(truth[seen].mean(), rel=0.3)
-    assert errors[0] > 1.5 * errors[1], errors
-    assert errors[1] < 0.15
+        # Discs reach beyond edges, where nothing lands: what that loses falls with their radius.
+        lost = 1 - picture[seen].mean() / truth[seen].mean()
+        assert lost == pytest.approx(0.43 * radius, rel=0.2)  # 0.218 and 0.057; other seeds: 0.071
+    assert errors[0] > 2 * errors[1], errors
+    assert errors[1] < 0.1  # 0.075; with other seeds up to 0.086
 
 
 @pytest.mark.parametrize(

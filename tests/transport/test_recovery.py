@@ -156,17 +156,26 @@ def room() -> tuple[Any, Any]:
     return scene, PathTracer(scene).render(spp=256, seed=1, options=OPTIONS.path).mean
 
 
-def test_wall_colours_are_found_and_a_resumed_search_has_the_same_bits(
-    room: tuple[Any, Any], tmp_path: Path
-) -> None:
+def test_wall_colors_are_found_to_a_hundredth() -> None:
+    scene = cornell_box(16)
+    picture = PathTracer(scene).render(spp=1024, seed=1, options=OPTIONS.path).mean
+    options = replace(OPTIONS, steps=200, spp=8, learning_rate=0.2, final_rate=0.05)
+    found = recover(scene, picture, WALLS, options=options)
+    for name, value in found.params.items():
+        truth = np.asarray(scene.materials[name.split(".")[1]].values["albedo"])
+        assert np.abs(truth - 0.5).max() > 0.4  # where it began
+        assert np.abs(value - truth).max() < 0.01  # 0.0008; with other seeds up to 0.0082
+
+
+def test_a_resumed_search_has_the_same_bits(room: tuple[Any, Any], tmp_path: Path) -> None:
     scene, picture = room
     whole = recover(scene, picture, WALLS, options=OPTIONS)
     assert whole.finished
     assert whole.history.shape == (60, 3)
     for name, value in whole.params.items():
         material = name.split(".")[1]
-        truth = scene.materials[material].values["albedo"]
-        assert np.abs(value - truth).max() < 0.05  # 0.03; 0.45 at first
+        truth = np.asarray(scene.materials[material].values["albedo"])
+        assert np.abs(value - truth).max() < 0.2 * np.abs(0.5 - truth).max()  # on its way
         assert whole.curves[name].shape == (61, 3)
         np.testing.assert_allclose(whole.curves[name][0], 0.5)
         np.testing.assert_array_equal(whole.scene.materials[material].values["albedo"], value)
@@ -198,7 +207,7 @@ def test_lights_are_found_while_they_are_sampled_anew(tmp_path: Path) -> None:
     unknowns = [Unknown("lights.0.texels", start=1.0)]
     whole = recover(scene, targets, unknowns, options=options)
     first, last = (np.mean(part) for part in (whole.history[:6, 1], whole.history[-12:, 1]))
-    assert last < 0.3 * first
+    assert last < 0.15 * first  # 0.10; 0.09 and 0.10 with other seeds
     parts = Recovery(scene, targets, unknowns, options)
     parts.run(tmp_path, should_stop=lambda: parts.step_number >= 13)
     resumed = recover(scene, targets, unknowns, options=options, folder=tmp_path, resume=True)

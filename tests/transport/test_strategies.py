@@ -149,7 +149,8 @@ def test_noise_falls_as_one_over_the_root() -> None:
     for spp in (8, 32, 128):
         found = tracer.render(spp=spp, seed=5, options=options)
         rms = float(np.sqrt(np.square(found.mean - truth).mean()))
-        assert rms == pytest.approx(np.sqrt(np.square(found.standard_error).mean()), rel=0.2)
+        # The error of 256 pixels is itself known by chance: 0.93 to 1.00; other seeds: to 1.16.
+        assert rms == pytest.approx(np.sqrt(np.square(found.standard_error).mean()), rel=0.1)
         errors.append(rms)
     slope = np.polyfit(np.log([8, 32, 128]), np.log(errors), 1)[0]
     assert slope == pytest.approx(-0.5, abs=0.06)

@@ -26,4 +26,4 @@ def test_one_filtered_sample_is_grey_where_many_would_be() -> None:
     one, filtered, truth = figure.floor_pictures(32, 256)
     far = slice(9, 17)
     plain, mip = (float(np.std((found - truth)[far])) for found in (one, filtered))
-    assert mip < 0.5 * plain
+    assert mip < 0.5 * plain  # 0.37

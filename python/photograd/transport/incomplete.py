@@ -49,9 +49,12 @@ class WholeGradients(dict[str, Array]):
     """
 
     def __init__(
-        self, function: str, found: Mapping[str, Array], names: Iterable[str],
+        self,
+        function: str,
+        found: Mapping[str, Array],
+        names: Iterable[str],
         incomplete: Mapping[str, Missing],
-    ) -> None:  # fmt: skip
+    ) -> None:
         """Keep what is whole of `names`, in their order; errors name the `function`."""
         super().__init__({name: found[name] for name in names if name not in incomplete})
         self._function, self._incomplete = function, dict(incomplete)
