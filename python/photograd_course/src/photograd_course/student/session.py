@@ -195,7 +195,7 @@ def write_answers(path: Path, made: Mapping[str, str]) -> None:
 
 def _put(answers: MutableMapping[str, Any], name: str, answer: str) -> None:
     task, _, rest = name.partition(".")
-    inner = answers.get(task)  # of keys without quotes, such as 01.p1
+    inner: Any = answers.get(task)  # of keys without quotes, such as 01.p1
     is_dotted = isinstance(inner, MutableMapping) and rest in inner
     if is_dotted:
         inner[rest] = answer
