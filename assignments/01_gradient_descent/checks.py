@@ -5,24 +5,20 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from photograd_course.grading import Array, CheckFailed, Items, Number, Tolerance, Truth, check
+from photograd_course.grading import (
+    Array,
+    CheckFailed,
+    Items,
+    Number,
+    Tolerance,
+    Truth,
+    asks,
+    check,
+)
 
 # Right answers: solution and alternatives with six secrets; wrong ones: all mutants with two.
 EXACT = Tolerance(1e-12, "right answers differ by at most 3e-15, wrong ones by 4e-9 or more")
 DIFFERENCE = Tolerance(1e-11, "right answers differ by at most 1.3e-14, wrong ones by 0.15 or more")
-
-
-class Values:
-    """Floats of a given length; NaN and infinities are looked at by the check."""
-
-    def __init__(self, count):
-        self.count = count
-
-    def require(self, value, where):
-        """See photograd_course.grading.specs.Spec."""
-        right = isinstance(value, np.ndarray) and value.dtype == np.float64
-        if not right or value.shape != (self.count,):
-            raise CheckFailed(f"{where}: expected a float64 array of shape ({self.count},)")
 
 
 class Patient:
@@ -48,11 +44,18 @@ def walk(n, *axes):
     return Items(Array((n + 1, *axes)), Array((n + 1,)), Truth(), names=names)
 
 
+def on_points(count, f, grad):
+    """f and its gradient, which take nothing but arrays of shape (count,)."""
+    spec = Array((count,), finite=False)
+    return asks(f, spec, name="f"), asks(grad, spec, name="grad")
+
+
 def rotated_bowl(rng, curvatures):
     """f, its gradient and the eigenvectors (columns) for given eigenvalues of the Hessian."""
     vectors, _ = np.linalg.qr(rng.normal(size=(len(curvatures), len(curvatures))))
     hessian = vectors @ np.diag(curvatures) @ vectors.T
-    return lambda x: float(0.5 * x @ hessian @ x), lambda x: hessian @ x, vectors
+    f, grad = lambda x: float(0.5 * x @ hessian @ x), lambda x: hessian @ x
+    return *on_points(len(hessian), f, grad), vectors
 
 
 def scripted(gradients):
@@ -66,7 +69,7 @@ def scripted(gradients):
             raise RuntimeError(f"grad was called more than {len(gradients)} times: once a step")
         return row
 
-    return grad, asked
+    return asks(grad, Array(np.shape(gradients)[1:], finite=False), name="grad"), asked
 
 
 # 01.1 ------------------------------------------------------------------------------------------
@@ -543,7 +546,7 @@ def nothing_is_not_better(t):
         return x - math.log(x) if x > 0.0 else math.nan
 
     names = ("the points", "the values", "the verdict")
-    spec = Items(Array((4,)), Values(4), Truth(), names=names)
+    spec = Items(Array((4,)), Array((4,), finite=False), Truth(), names=names)
     x0 = float(t.rng.uniform(1.15, 1.2))
     _, loss, wrong = t.call("gd_1d", f, lambda x: 1.0 - 1.0 / x, x0, 12.0, 3, returns=spec)
     t.require(bool(np.isnan(loss[-1])), "f is not defined where this walk must end")
@@ -736,7 +739,8 @@ LOGISTIC_MINIMUM = 0.5052239008227084  # where the gradient is 1e-15
 )
 def it_needs_no_tuning(t):
     """On five functions the loss never rises, in at most twice the steps of the best fixed tau."""
-    for name, (f, grad, x0) in five_functions().items():
+    for name, (*functions, x0) in five_functions().items():
+        f, grad = on_points(len(x0), *functions)
         x, tau, goal, most = x0, 1.0, goal_of(name, f, x0), 2 * FIXED_STEPS[name]
         for _ in range(most):
             d = -grad(x)

@@ -7,7 +7,17 @@ count against `backward`; graphs made by hand, with their order given, do the sa
 from __future__ import annotations
 
 import numpy as np
-from photograd_course.grading import Array, Integer, Items, Number, Record, Tolerance, Truth, check
+from photograd_course.grading import (
+    Array,
+    Integer,
+    Items,
+    Number,
+    Record,
+    Tolerance,
+    Truth,
+    asks,
+    check,
+)
 
 EXACT = Tolerance(
     1e-12,
@@ -270,6 +280,11 @@ def chain(n):
     return [[]] + [[[k, 1.0]] for k in range(n - 1)]
 
 
+def ordered(n):
+    """What `adapters.chain` returns."""
+    return Record({"order": Array((2 * n + 1,), "i8"), "gradient": Number()})
+
+
 WORK_PER_NODE = 20  # right walks need 1 or 2; all paths through a ladder of 12 need over 300
 
 
@@ -296,12 +311,14 @@ def require_work(t, edges, what):
 def a_chain_of_a_hundred_thousand(t):
     """A chain of 100,000 values is put in order, without a recursion error."""
     require_work(t, chain(1500), "a chain")
-    answer = Record({"length": Integer(), "in_order": Truth(), "gradient": Number()})
-    found = t.call("adapters.chain", 100_000, returns=answer)
-    t.require(found["length"] >= 0, "a chain of 100,000 nodes: topo_order: RecursionError",
+    n = 100_000
+    order = t.call("adapters.chain", n, returns=ordered(n))["order"]
+    t.require(order[0] != -3, "a chain of 100,000 nodes: topo_order: RecursionError",
               hint=TOO_DEEP)  # fmt: skip
-    t.require(found["length"] == 100_000, f"the order holds {found['length']} values, not 100,000")
-    t.require(found["in_order"], "the values of a chain are not in the order of the chain")
+    length = int((order != -2).sum())
+    t.require(length == n, f"the order holds {length} values, not 100,000")
+    in_order = np.array_equal(order[:n], np.arange(n))
+    t.require(in_order, "the values of a chain are not in the order of the chain")
 
 
 def program_34():
@@ -572,8 +589,7 @@ def fifty_random_expressions(t):
 def a_long_chain_backward(t):
     """backward passes a chain of 50,000 values."""
     slope = float(1.0 + t.rng.uniform(1e-6, 1e-5))
-    answer = Record({"length": Integer(), "in_order": Truth(), "gradient": Number()})
-    found = t.call("adapters.chain", 50_000, slope, True, returns=answer)
+    found = t.call("adapters.chain", 50_000, slope, True, returns=ordered(50_000))
     t.close("gradient of the first value", found["gradient"], slope**49_999, ANALYTIC)
 
 
@@ -581,7 +597,8 @@ def a_long_chain_backward(t):
 
 ONE_BY_ONE = "two sides, one coordinate at a time, and a new copy of x for each point"
 COPIES = "move copies of x, a new one each time"
-VERDICT = Record({"accepted": Truth(), "error": Number(), "unchanged": Truth()})
+VERDICT = Number(finite=False)
+SMALL = 1e-6  # the error of a gradient that is accepted
 
 
 def smooth(rng, n):
@@ -602,19 +619,22 @@ def right_gradients_are_accepted(t):
     """Right gradients of smooth functions have an error close to 0, and x stays as it is."""
     for n in (1, 4, 7):
         f, x = smooth(t.rng, n)
-        calls = []
+        asked = []
 
-        def counted(x, f=f, calls=calls):
-            calls.append(1)
-            return f(np.asarray(x))
+        def counted(x, f=f, asked=asked):
+            asked.append(np.array(x))
+            return f(asked[-1])
 
-        found = t.call("adapters.checked", counted, x, returns=VERDICT)
-        t.require(found["unchanged"], "grad_check has changed the x that it was given",
-                  hint=COPIES)  # fmt: skip
+        watched = asks(counted, Array((n,), finite=False), name="f")
+        errors = t.call("adapters.checked_twice", watched, x, returns=Array((2,), finite=False))
+        # Where x has changed, the second call begins elsewhere.
+        calls = len(asked) // 2
+        same = np.array_equal(asked[:calls], asked[calls:])
+        t.require(same, "grad_check has changed the x that it was given", hint=COPIES)
         numbers = "1 number" if n == 1 else f"{n} numbers"
-        t.close(f"error of a right gradient by {numbers}", found["error"], 0.0, ACCEPTED,
+        t.close(f"error of a right gradient by {numbers}", errors[0], 0.0, ACCEPTED,
                 reveal=True, hint=ONE_BY_ONE)  # fmt: skip
-        t.require(len(calls) <= 2 * n + 1, f"{len(calls)} calls of f, {2 * n + 1} are enough")
+        t.require(calls <= 2 * n + 1, f"{calls} calls of f, {2 * n + 1} are enough")
 
 
 @check("02.6.rejects", task="02.6", points=3, calls=("grad_check",), tolerance=REPORTED,
@@ -639,7 +659,7 @@ def wrong_gradients_are_measured(t):
             value, gradient = f(np.asarray(x))
             return value, spoil(gradient)
 
-        reported.append(t.call("adapters.checked", spoiled, x, returns=VERDICT)["error"])
+        reported.append(t.call("adapters.checked", spoiled, x, returns=VERDICT))
         scale = max(np.linalg.norm(spoil(right)), np.linalg.norm(right))
         expected.append(np.linalg.norm(spoil(right) - right) / scale)
     # All together: mistakes that agree in one of the errors, such as 1, differ in another.
@@ -661,7 +681,7 @@ def large_coordinates_move_further(t):
 
     found = t.call("adapters.checked", stretched, x * size, returns=VERDICT)
     where = ", ".join(f"{number:.1e}" for number in x * size)
-    t.close(f"error of a right gradient at x = ({where})", found["error"], 0.0, ACCEPTED,
+    t.close(f"error of a right gradient at x = ({where})", found, 0.0, ACCEPTED,
             reveal=True, hint="the step of Eq. (15) grows with the coordinate")  # fmt: skip
 
 
@@ -675,14 +695,13 @@ def not_a_number_is_refused(t):
         found = t.call("adapters.checked",
                        lambda x, bad=bad: (f(np.asarray(x))[0], np.array([bad, 0.0, 0.0])), x,
                        returns=VERDICT)  # fmt: skip
-        t.require(found["error"] == -1.0, f"{bad} in the gradient does not give infinity",
+        t.require(found == np.inf, f"{bad} in the gradient does not give infinity",
                   hint=finite)  # fmt: skip
     found = t.call("adapters.checked", lambda _: (np.nan, np.ones(3)), x, returns=VERDICT)
-    t.require(found["error"] == -1.0, "a value that is not a number does not give infinity",
+    t.require(found == np.inf, "a value that is not a number does not give infinity",
               hint=finite)  # fmt: skip
     found = t.call("adapters.checked", lambda _: (1.0, np.zeros(3)), x, returns=VERDICT)
-    t.require(found["accepted"] and found["error"] == 0.0,
-              "a constant's gradient of zero does not give 0",
+    t.require(found == 0.0, "a constant's gradient of zero does not give 0",
               hint="with both lengths zero there is nothing to divide by")  # fmt: skip
 
 
@@ -710,11 +729,11 @@ def large_and_small_numbers(t):
         moves.clear()
         found = t.call("adapters.checked", stretched(size, height, 1.0), x * size, returns=VERDICT)
         where = f"x of {size[0]:g}, f of {height:g}"
-        t.require(found["accepted"], f"right, but refused: {where}")
+        t.require(0.0 <= found <= SMALL, f"right, but refused: {where}")
         steps = STEP * np.maximum(1.0, np.abs(x * size))
         t.close("the steps of Eq. (15)", np.max(moves, 0) / steps, np.ones(3), STEPS)
         found = t.call("adapters.checked", stretched(size, height, 1.1), x * size, returns=VERDICT)
-        t.require(not found["accepted"], f"wrong, but accepted: {where}")
+        t.require(not 0.0 <= found <= SMALL, f"wrong, but accepted: {where}")
 
 
 # <<< hidden

@@ -10,7 +10,7 @@ from photograd_course.grading import (
     Number,
     StudentFailure,
     Tolerance,
-    Truth,
+    agree,
     check,
 )
 from photograd_course.grading.adjoint_gate import (
@@ -348,12 +348,13 @@ def steps_can_be_chained(t):
 @check("03.5.start", task="03.5", points=1, calls=("recover_texture",), needs=EARLIER,
        kills=("start_overwritten",), hint="T0 itself has changed: copy it first")  # fmt: skip
 def the_start_is_left_alone(t):
-    """The array T0 holds the same numbers after the descent as before."""
+    """A second descent from the same array T0 finds what the first one found."""
     shape = (4, 3, 2)
     uv, T0 = t.rng.uniform(0.0, 1.0, (60, 2)), t.rng.uniform(0.0, 1.0, shape)
     target = t.rng.uniform(0.0, 1.0, (60, 2))
-    same = t.call("adapters.recover_leaves_start", T0, uv, target, 2, returns=Truth())
-    t.require(same, "recover_texture has written into its argument T0")
+    once = recover(t, T0, uv, target, 2)
+    again = t.call("adapters.recover_again", T0, uv, target, 2, returns=recovered(shape, 2))
+    t.require(agree(again, once), "recover_texture has written into its argument T0")
 
 
 @check("03.5.unseen", task="03.5", points=2, calls=("recover_texture",), needs=EARLIER,

@@ -1,12 +1,11 @@
-"""Between the checks and your `plenoxels.py`: calls in a row, and what cannot be seen from outside.
+"""Between the checks and your `plenoxels.py`: calls in a row.
 
 Runs beside your file; nothing here is to be changed or handed in. Arrays reach your functions as
-copies, so only somebody who stands beside them sees whether they were written to.
+copies. Whether one was written to shows in what a second call makes of the same array.
 """
 
 from __future__ import annotations
 
-import numpy as np
 import plenoxels
 
 
@@ -16,9 +15,7 @@ def gradient(density, coefficients, rays, target):
     return plenoxels.loss_and_grad(density, coefficients, samples, target)
 
 
-def fit_leaves_start(density, coefficients, rays, target):
-    """Whether `fit_plenoxels` leaves the arrays as they were where it starts."""
-    before = density.copy(), coefficients.copy()
-    plenoxels.fit_plenoxels(density, coefficients, rays, target, 2, 2)
-    same = np.array_equal(before[0], density) and np.array_equal(before[1], coefficients)
-    return bool(same)
+def fit_again(*given):
+    """What `fit_plenoxels` returns for the same arrays the second time."""
+    plenoxels.fit_plenoxels(*given)
+    return plenoxels.fit_plenoxels(*given)

@@ -6,8 +6,9 @@ import json
 from pathlib import Path
 
 import pytest
+from photograd_course.build import kits
 from photograd_course.build.course_file import course_findings, read_course
-from photograd_course.build.kits import source_folders
+from photograd_course.build.kits import ENVIRONMENT, source_folders
 from photograd_course.build.new import new_assignment
 from photograd_course.build.syllabus import syllabus
 from photograd_course.cli import run
@@ -119,3 +120,20 @@ def test_new_refuses_what_is_no_number_or_name(tmp_path: Path, number: str, name
 def test_new_refuses_a_taken_number(scaffold: Path) -> None:
     with pytest.raises(RangeError, match="17_light has it"):
         new_assignment("17", "other", scaffold.parent)
+
+
+def test_what_was_scaffolded_can_be_built_as_the_note_says(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """In an install that is no checkout, where the folder has to be named."""
+    monkeypatch.setattr(kits, "PACKAGE", tmp_path / "site-packages" / "photograd_course")
+    monkeypatch.delenv(ENVIRONMENT, raising=False)
+    monkeypatch.chdir(tmp_path)
+    for command in (["course", "grade", "77", "."], ["course", "build", "77"]):
+        assert run(command) == 1
+        assert f"set {ENVIRONMENT} to their folder" in " ".join(capsys.readouterr().err.split())
+    assert run(["course", "new", "77", "tiny"]) == 0
+    noted = "".join(capsys.readouterr().err.split())
+    assert f"{ENVIRONMENT}={tmp_path / 'assignments'}photogradcoursebuild77" in noted
+    monkeypatch.setenv(ENVIRONMENT, str(tmp_path / "assignments"))
+    assert list(source_folders()) == ["77_tiny"]

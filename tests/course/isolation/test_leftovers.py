@@ -147,3 +147,34 @@ def test_a_chmod_in_mode_e_does_not_keep_its_folder(home: WorkerHome) -> None:
     assert student.call("toy.f", [0], seconds=5.0) == 0
     student.close()
     time.sleep(0)  # the fixture asserts that the folder is gone
+
+
+def test_the_home_of_a_killed_grader_is_removed_by_the_next(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("fcntl")
+    code = (
+        "import time; from photograd_course.worker.home import WorkerHome; home = WorkerHome(); "
+        "home.scratch(); print(home.folder, flush=True); time.sleep(1000)"
+    )
+    killed, running = (
+        subprocess.Popen(
+            [sys.executable, "-c", code],
+            env={**os.environ, "TMPDIR": str(tmp_path)}, stdout=subprocess.PIPE, text=True,
+        )
+        for _ in range(2)
+    )  # fmt: skip
+    assert killed.stdout is not None
+    assert running.stdout is not None
+    abandoned, alive = (Path(each.stdout.readline().strip()) for each in (killed, running))
+    killed.kill()
+    killed.communicate()
+    foreign = tmp_path / "photograd-home-foreign"  # without a lock: nobody knows whose
+    foreign.mkdir()
+    assert all((place / "program").is_dir() for place in (abandoned, alive))
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    with WorkerHome() as home:
+        assert sorted(tmp_path.iterdir()) == sorted([alive, foreign, home.folder])
+    running.kill()
+    running.communicate()
+    assert sorted(tmp_path.iterdir()) == sorted([alive, foreign])

@@ -51,6 +51,7 @@ def variants() -> dict[str, bytes]:
         "not_text": "frame(b'\\xff' * 40)",
         "surrogate": head(value='"\\ud800\\udfff\\u0000"'),
         "brackets": "frame(b'[' * 1_000_000)",
+        "huge": head(value="9" * 400),
         "digits": "frame(b'{\"number\": ' + b'9' * 3_000_000 + b'}')",
         "amplified": 'frame(b\'{"kind": "result", "number": 3, "arrays": [], "value": [\''
         " + b'[],' * 2_700_000 + b'[]]}')",

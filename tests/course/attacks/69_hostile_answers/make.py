@@ -21,6 +21,8 @@ def variants() -> dict[str, bytes]:
         "nested": "a = " + "[" * 30_000 + "]" * 30_000 + "\n",
         "tables": "[" + ".".join("a" * 30_000) + "]\nx = 1\n",
         "digits": '[answers]\n"91.c1" = ' + "1" * 60_000 + "\n",
+        "hex": '[answers]\n"91.c1" = 0x' + "F" * 4000 + "\n",
+        "dotted": "a." * 32_000 + "a = 1\n",
         "nan": '[answers]\n"91.c1" = nan\n',
         "infinity": '[answers]\n"91.c1" = "1e999"\n',
         "truth": '[answers]\n"91.c1" = true\n',
@@ -45,4 +47,7 @@ def variants() -> dict[str, bytes]:
         answers = '[answers]\n"91.p1" = "a"\n'
         files = {"arena.py": MODULE, "answers.toml": answers, "predictions.lock.json": text}
         made[name] = zip_of(files)
+    # Each quote is none that closes the one before.
+    answers = '[answers]\n"91.c1" = 1\n'
+    made["quotes"] = zip_of({"arena.py": "'" + "\\'" * 100_000, "answers.toml": answers})
     return made

@@ -16,7 +16,7 @@ from .course_file import NAME, course_findings, read_course
 from .course_files import dossier_of
 from .dossier import Dossier
 from .hint_table import public_hints, write_hints
-from .kits import match_folder, source_folders, source_root
+from .kits import match_folder, no_sources, source_folders, source_root
 from .products import make_products, publishable, write_tree
 from .rules import Finding, findings, reading_findings, seed_findings
 from .secret import course_secret
@@ -76,8 +76,7 @@ def chosen_folders(numbers: Sequence[str]) -> tuple[Path, dict[str, Path]]:
     """
     root, folders = source_root(), source_folders()
     if root is None or not folders:
-        remedy = "run in a checkout of the course"
-        raise IoError(message("course build", "assignments", "their sources", "none", remedy))
+        raise no_sources("course build", "assignments")
     names = [match_folder(number, list(folders)) for number in numbers] or list(folders)
     return root, {name: folders[name].resolve() for name in names}
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from ..assignment.bundle import Bundle, read_folder
 from ..assignment.manifest import Manifest
-from ..errors import RangeError, message
+from ..errors import IoError, RangeError, message
 from ..suggest import choose_from
 from .public import kit_files, public_files
 
@@ -93,6 +93,18 @@ def source_root() -> Path | None:
         checkout = PACKAGE.parents[3] / "assignments"
         return checkout if checkout.is_dir() else None
     return None
+
+
+def no_sources(function: str, argument: str, more: str = "") -> IoError:
+    """The error for a command that needs assignments in source and finds none.
+
+    Args:
+        function, argument: as for `message`.
+        more: what else can be done.
+    """
+    expected = "assignments in source"
+    remedy = f"install from a checkout with 'pip install -e', or set {ENVIRONMENT} to their folder"
+    return IoError(message(function, argument, expected, "none", remedy + more))
 
 
 def bundle_of(files: Mapping[str, bytes], name: str, *, secret: bytes | None = None) -> Bundle:

@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import Any
 
 from ..cli.output import emit
-from ..errors import IoError, SceneError, message
+from ..errors import SceneError, message
 from .course_file import course_findings, read_course
-from .kits import source_root
+from .kits import no_sources, source_root
 
 
 def syllabus(track: str, root: Path) -> dict[str, Any]:
@@ -53,6 +53,5 @@ def print_syllabus(track: str, *, as_json: bool) -> None:
     """
     root = source_root()
     if root is None:
-        remedy = "run in a checkout of the course"
-        raise IoError(message("syllabus", "course.toml", "a file", "none", remedy))
+        raise no_sources("syllabus", "course.toml")
     emit(syllabus(track, root), as_json=as_json)

@@ -13,7 +13,7 @@ from typing import Any
 
 from ..assignment.bundle import Bundle
 from ..build.evidence import evidence
-from ..build.kits import source_folders
+from ..build.kits import no_sources, source_folders
 from ..errors import Error
 from ..grading.outcome import Status
 from ..worker.modes import probe
@@ -53,7 +53,7 @@ def examine(
         attacks = attack_evidence()
     findings = [text for each in (*assignments, attacks) for text in each["findings"]]
     if not folders:
-        findings.append("assignments: there is none in source (run in a checkout)")
+        findings.append(str(no_sources("doctor", "assignments")))
     sound = bool(folders) and all(each["ok"] for each in (*assignments, attacks))
     modes = {mode: reason or "works" for mode, reason in probe().items()}
     return {

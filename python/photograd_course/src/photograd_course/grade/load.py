@@ -10,7 +10,7 @@ from pathlib import Path
 from ..assignment.brought import brought_sources
 from ..assignment.bundle import PUBLIC_SECRET, Bundle, read_folder
 from ..assignment.manifest import Manifest, read_manifest
-from ..build.kits import find_kit, kit_files, match_folder, source_folders
+from ..build.kits import find_kit, kit_files, match_folder, no_sources, source_folders
 from ..build.seal import open_bundle
 from ..build.secret import read_secret
 from ..errors import Error, IoError, SceneError, message
@@ -82,8 +82,7 @@ def find_source(number: str) -> Path:
     """
     folders = source_folders()
     if not folders:
-        remedy = "run in a checkout, or give a built bundle with --bundle"
-        raise IoError(message("grade", number, "the assignment's sources", "none", remedy))
+        raise no_sources("grade", number, ", or give a built bundle with --bundle")
     return folders[match_folder(number, list(folders))]
 
 

@@ -6,6 +6,7 @@ An assignment's `checks.py` needs only what this module exports.
 from __future__ import annotations
 
 from .check import Check, check
+from .cost import agree
 from .failures import CheckFailed, GraderFault, StudentFailure
 from .outcome import Outcome, Status
 from .specs import Array, Integer, Items, Number, Record, Text, Truth, asks
@@ -28,6 +29,7 @@ __all__ = [
     "Tolerance",
     "Trial",
     "Truth",
+    "agree",
     "asks",
     "check",
 ]

@@ -97,7 +97,7 @@ def _varied(trial: Trial, value: Any) -> Any:
 
 def _require_fresh(trial: Trial, function: str, args: Sequence[Any], answer: Any) -> None:
     reference = _reference(trial, function, args)
-    if reference is not None and not _agree(answer, reference(*args)):
+    if reference is not None and not agree(answer, reference(*args)):
         raise CheckFailed(
             f"{function}: the answer to a timed call does not belong to its arguments",
             {"advice": "compute it from the arguments each time"},
@@ -128,11 +128,12 @@ def _reference_cost(reference: Callable[..., Any], args: Sequence[Any]) -> float
     return (time.process_time() - began) / calls
 
 
-def _agree(got: Any, expected: Any) -> bool:
+def agree(got: Any, expected: Any) -> bool:
+    """Whether two answers to one question are the same but for rounding, whatever they are."""
     if isinstance(expected, dict):
-        return isinstance(got, dict) and all(_agree(got.get(k), v) for k, v in expected.items())
+        return isinstance(got, dict) and all(agree(got.get(k), v) for k, v in expected.items())
     if isinstance(expected, (tuple, list)):
-        return len(got) == len(expected) and all(map(_agree, got, expected))
+        return len(got) == len(expected) and all(map(agree, got, expected))
     if isinstance(expected, (float, int, np.number, np.ndarray)):
         right, answer = np.asarray(expected, np.float64), np.asarray(got, np.float64)
         if right.shape != answer.shape:

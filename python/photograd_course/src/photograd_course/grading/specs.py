@@ -51,7 +51,12 @@ class Array:
 
 @dataclass(frozen=True)
 class Number:
-    """A finite float, or an integer of at most 64 bits; an array without axes will do."""
+    """A float, or an integer of at most 64 bits; an array without axes will do.
+
+    Finite, unless ``finite`` is False.
+    """
+
+    finite: bool = True
 
     def require(self, value: Any, where: str) -> None:
         """See Spec."""
@@ -61,7 +66,7 @@ class Number:
             raise _wrong_kind(where, "a float", value)
         if isinstance(value, int) and abs(value) >= 1 << INTEGER_BITS:
             raise CheckFailed(f"{where}: expected a finite float, got an integer beyond 64 bits")
-        if not math.isfinite(value):
+        if self.finite and not math.isfinite(value):
             raise CheckFailed(f"{where}: expected a finite float, got {value}")
 
 

@@ -14,9 +14,18 @@ from typing import Any
 
 from .program import install_program
 
+try:
+    import fcntl
+except ImportError:  # Windows
+    fcntl = None  # type: ignore[assignment]
+
+PREFIX, LOCK = "photograd-home-", "lock"
+
 
 class WorkerHome:
     """A private folder with the worker program and the working folders of running workers.
+
+    Those that killed graders left behind are removed first.
 
     Attributes:
         folder: absolute.
@@ -26,7 +35,9 @@ class WorkerHome:
     """
 
     def __init__(self, imports: Sequence[str] = ()) -> None:
-        self.folder = Path(tempfile.mkdtemp(prefix="photograd-home-")).resolve()
+        remove_abandoned(Path(tempfile.gettempdir()))
+        self.folder = Path(tempfile.mkdtemp(prefix=PREFIX)).resolve()
+        self._lock = lock_folder(self.folder)
         self.folder.chmod(0o711)  # a worker must reach its own folder, and list nothing
         self.program = install_program(self.folder / "program")
         self.imports = tuple(imports)
@@ -49,6 +60,9 @@ class WorkerHome:
     def close(self) -> None:
         """Remove it all, and give the user ids back."""
         remove_tree(self.folder)
+        if self._lock >= 0:
+            os.close(self._lock)
+            self._lock = -1
         if self._users is not None:
             self._users.close()
             self._users = None
@@ -76,6 +90,33 @@ class WorkerHome:
         folder = Path(tempfile.mkdtemp(prefix="room-", dir=self.folder))
         folder.chmod(0o755)
         return folder
+
+
+def lock_folder(folder: Path) -> int:
+    """Lock a new folder for as long as this process lives; a descriptor, -1 without such locks."""
+    if fcntl is None:
+        return -1
+    lock = os.open(folder / "lock.new", os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
+    fcntl.flock(lock, fcntl.LOCK_EX)
+    (folder / "lock.new").rename(folder / LOCK)  # under this name it has never been free
+    return lock
+
+
+def remove_abandoned(place: Path) -> None:
+    """Remove the homes in a folder whose grader was killed: ours, and locked by nobody."""
+    if fcntl is None:
+        return
+    for folder in place.glob(f"{PREFIX}*"):
+        with contextlib.suppress(OSError):
+            status = folder.lstat()
+            if not stat.S_ISDIR(status.st_mode) or status.st_uid != os.geteuid():
+                continue
+            lock = os.open(folder / LOCK, os.O_RDWR | os.O_NOFOLLOW | os.O_CLOEXEC)
+            try:
+                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                remove_tree(folder)
+            finally:
+                os.close(lock)
 
 
 def remove_tree(folder: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 from typing import Annotated
 
@@ -30,9 +31,13 @@ def register(course: typer.Typer) -> None:
 
         It builds as it is. Change it piece by piece, and run 'photograd course build' after each.
         """
-        from ...build.kits import source_root
+        from ...build.kits import ENVIRONMENT, source_root
         from ...build.new import new_assignment
 
-        top = root or source_root() or Path("assignments")
+        found = source_root()
+        top = root or found or Path("assignments")
         folder = new_assignment(number, name, top)
-        note(f"{folder}: build it with 'photograd course build {number}', then make it yours")
+        command = f"photograd course build {number}"
+        if found is None or top.resolve() != found.resolve():
+            command = f"{ENVIRONMENT}={shlex.quote(str(top.resolve()))} {command}"
+        note(f"{folder}: build it with '{command}', then make it yours")
