@@ -56,6 +56,10 @@ void ArrayArgs::check(const char* name, const py::array& array, std::string_view
                      std::to_string(known->second.first) + " as in " + known->second.second,
                  shape_text(array));
     }
+    constexpr int aligned = py::detail::npy_api::NPY_ARRAY_ALIGNED_;
+    if (!(array.flags() & aligned))
+        fail(ErrorKind::shape, function_, name, "an aligned array", "one at an odd address",
+             "pass a copy");
     if (!(array.flags() & py::array::c_style))
         fail(ErrorKind::shape, function_, name, "a C-contiguous array", "a strided one",
              "pass numpy.ascontiguousarray(...)");

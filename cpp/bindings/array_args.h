@@ -9,13 +9,17 @@
 
 #include <pybind11/numpy.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "photograd/core/errors.h"
+#include "photograd/core/world_limit.h"
 
 namespace photograd {
 
@@ -33,6 +37,23 @@ public:
     const T* in(const char* name, const py::array& array, std::string_view axes) {
         check(name, array, axes, py::dtype::of<T>());
         return static_cast<const T*>(array.data());
+    }
+
+    /// The same, and every number lies within [-most, most]; most alone refuses what is not finite.
+    template <class T>
+    const T* within(const char* name, const py::array& array, std::string_view axes, double most) {
+        const T* values = in<T>(name, array, axes);
+        const T limit = static_cast<T>(std::min(most, double(std::numeric_limits<T>::max())));
+        std::int64_t bad = 0;
+        for (std::int64_t i = 0; i < array.size(); ++i) bad += !(std::abs(values[i]) <= limit);
+        if (bad > 0)
+            refuse_numbers(name, array, bad, most,
+                           [&](std::int64_t i) { return !(std::abs(values[i]) <= limit); });
+        return values;
+    }
+    template <class T>
+    const T* finite(const char* name, const py::array& array, std::string_view axes) {
+        return within<T>(name, array, axes, std::numeric_limits<double>::max());
     }
 
     /// Writable data of `array`, under the same conditions.
@@ -54,6 +75,19 @@ public:
     }
 
 private:
+    template <class Bad>
+    [[noreturn]] void refuse_numbers(const char* name, const py::array& array, std::int64_t count,
+                                     double most, Bad&& bad) const {
+        std::int64_t first = 0;
+        while (!bad(first)) ++first;
+        const std::int64_t row_size = array.size() / std::max<std::int64_t>(array.shape(0), 1);
+        const bool any = most >= std::numeric_limits<double>::max();
+        range(name,
+              any ? "finite numbers"
+                  : "numbers from " + number_text(-most) + " to " + number_text(most),
+              std::to_string(count) + " that are not, the first in row " +
+                  std::to_string(first / row_size));
+    }
     void check(const char* name, const py::array& array, std::string_view axes,
                const py::dtype& type);
 
@@ -61,6 +95,13 @@ private:
     std::map<std::string, std::pair<std::int64_t, std::string>>
         sizes_;  // axis -> size, who fixed it
 };
+
+/// Samples [first, first + count) have numbers of 32 bits.
+inline void check_samples(const ArrayArgs& args, std::uint32_t first, std::uint32_t count) {
+    if (count > std::numeric_limits<std::uint32_t>::max() - first)
+        args.range("first, count", "numbers of samples below 2^32",
+                   std::to_string(first) + " + " + std::to_string(count));
+}
 
 /// Calls visit(float{}) or visit(double{}) according to the dtype of `array`; refuses others by name.
 template <class Visit>
@@ -71,6 +112,18 @@ decltype(auto) dispatch_real(const char* function, const char* argument, const p
     fail(ErrorKind::dtype, function, argument, "dtype float32 or float64",
          "dtype " + std::string(py::str(array.dtype())),
          "convert with numpy.asarray(..., numpy.float32)");
+}
+
+/// An entry of a tuple or a list as a T, refused by name if it is something else.
+template <class T>
+T entry_as(const char* function, const char* argument, const char* expected,
+           const py::handle& entry) {
+    try {
+        return entry.cast<T>();
+    } catch (const py::cast_error&) {
+        fail(ErrorKind::dtype, function, argument, expected,
+             std::string(py::str(py::type::of(entry))));
+    }
 }
 
 /// A fresh zero-filled array.

@@ -11,13 +11,15 @@ namespace photograd {
 inline py::tuple cover_arrays(const py::array& uv, const py::array& faces, std::int64_t height,
                               std::int64_t width) {
     ArrayArgs args("cover_texels");
-    const float* coordinates = args.in<float>("uv", uv, "V 2");
+    const float* coordinates = args.finite<float>("uv", uv, "V 2");
     const std::uint32_t* corners = args.in<std::uint32_t>("faces", faces, "F 3");
     const auto V = static_cast<std::size_t>(args.size("V")),
                F = static_cast<std::size_t>(args.size("F"));
-    constexpr std::int64_t largest_side = 1 << 16;
-    if (height < 1 || width < 1 || height > largest_side || width > largest_side)
-        args.range("shape", "1 to " + std::to_string(largest_side) + " texels along each axis",
+    constexpr std::int64_t largest_side = 1 << 16, most_texels = 1 << 26;
+    if (height < 1 || width < 1 || height > largest_side || width > largest_side ||
+        height * width > most_texels)
+        args.range("shape",
+                   "1 to " + std::to_string(largest_side) + " texels along each axis, 2^26 in all",
                    std::to_string(height) + " x " + std::to_string(width));
     for (std::size_t k = 0; k < 3 * F; ++k)
         if (corners[k] >= V)
@@ -39,11 +41,12 @@ inline void occlusion_arrays(const PathGeometry& geometry, const py::array& poin
                              const py::array& normals, double radius, std::uint64_t seed,
                              std::uint32_t first, std::uint32_t count, py::array sums) {
     ArrayArgs args("point_occlusion");
-    const double *x = args.in<double>("points", points, "N 3"),
-                 *n = args.in<double>("normals", normals, "N 3");
+    const double *x = args.within<double>("points", points, "N 3", world_limit),
+                 *n = args.within<double>("normals", normals, "N 3", world_limit);
     double* out = args.out<double>("sums", sums, "N");
     if (!(radius > 0)) args.range("radius", "above 0 m", std::to_string(radius));
     const std::int64_t N = args.size("N");
+    check_samples(args, first, count);
     const py::gil_scoped_release release;
     add_point_occlusion(geometry, {x, n, N}, radius, seed, {first, count}, out);
 }

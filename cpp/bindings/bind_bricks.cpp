@@ -27,7 +27,7 @@ struct Call {
                        std::to_string(args.size("N")));
         field = {&topology, from, args.in<R>("background", background, "C"),
                  static_cast<int>(args.size("C"))};
-        batch = {args.in<R>("points", points, "P 3"), 0};
+        batch = {args.within<R>("points", points, "P 3", 1 << 30), 0};
         batch.count = args.size("P");
     }
 };

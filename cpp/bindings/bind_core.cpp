@@ -49,8 +49,16 @@ py::array map_real(const char* name, const py::array& x, Function&& function) {
 }  // namespace
 
 void bind_core(py::module_& m) {
-    m.def("set_thread_count", &set_thread_count, py::arg("threads"),
-          "Upper limit on threads; 0 restores the default, all cores.");
+    m.def(
+        "set_thread_count",
+        [](std::int64_t threads) {
+            constexpr std::int64_t most = 1 << 12;
+            if (threads < 0 || threads > most)
+                fail(ErrorKind::range, "set_thread_count", "threads",
+                     "0 to " + std::to_string(most), std::to_string(threads));
+            set_thread_count(static_cast<int>(threads));
+        },
+        py::arg("threads"), "Upper limit on threads; 0 restores the default, all cores.");
     m.def("thread_count", &thread_count);
     m.def(
         "instruction_set", [] { return kernels().name; },

@@ -23,11 +23,20 @@ std::vector<AlbedoLayout> layouts_of(const ArrayArgs& args, const Bvh& bvh, cons
         const auto [kind, first, width, height] = given[i];
         layouts.push_back({static_cast<AlbedoKind>(kind), first, width, height});
         const std::int64_t count = layouts[i].count(bvh.meshes()[i]);
-        if (kind < 0 || kind > 2 || first < 0 || count < 1 || first + count > entries)
+        if (kind < 0 || kind > 2 || first < 0 || width < 1 || height < 1 || count < 1 ||
+            count > entries || first > entries - count)
             args.range("layouts", "places within the " + std::to_string(entries) + " colours",
                        "entry " + std::to_string(first) + " of mesh " + std::to_string(i));
     }
     return layouts;
+}
+
+/// Rows of the colours, and a look at the number of samples.
+template <class R>
+std::int64_t entries_of(ArrayArgs& args, const py::array& albedo, int spp) {
+    args.in<R>("albedo", albedo, "A 3");
+    if (spp < 1) args.range("spp", "at least 1 sample", std::to_string(spp));
+    return args.size("A");
 }
 
 template <class R>
@@ -42,6 +51,11 @@ DirectScene<R> direct_scene(ArrayArgs& args, const Bvh& bvh, std::span<const Alb
                             const std::array<double, 3>& sun_direction, double sun_radius) {
     const R* values = args.in<R>("albedo", albedo, "A 3");
     const R* light = args.in<R>("lights", lights, "4 3");
+    for (const double x : sun_direction)
+        if (!(std::abs(x) <= world_limit))
+            args.range("sun_direction", "finite numbers", number_text(x));
+    if (!(sun_radius >= 0 && sun_radius <= pi))
+        args.range("sun_radius", "an angle from 0 to pi", number_text(sun_radius));
     const double half = std::sin(0.5 * sun_radius);
     Sun<R> sun{row(light, 0),
                {R(sun_direction[0]), R(sun_direction[1]), R(sun_direction[2])},
@@ -57,7 +71,7 @@ py::tuple direct(const Bvh& bvh, const Layouts& given, const py::array& albedo,
         using R = decltype(real);
         ArrayArgs args("render_direct");
         const Pinhole camera = pinhole(camera_numbers);
-        const auto layouts = layouts_of(args, bvh, given, albedo.shape(0));
+        const auto layouts = layouts_of(args, bvh, given, entries_of<R>(args, albedo, spp));
         const DirectScene<R> scene =
             direct_scene<R>(args, bvh, layouts, albedo, lights, sun_direction, sun_radius);
         py::array_t<R> radiance({camera.height, camera.width, 3}),
@@ -81,7 +95,7 @@ void direct_backward(const Bvh& bvh, const Layouts& given, const py::array& albe
         using R = decltype(real);
         ArrayArgs args("render_direct_backward");
         const Pinhole camera = pinhole(camera_numbers);
-        const auto layouts = layouts_of(args, bvh, given, albedo.shape(0));
+        const auto layouts = layouts_of(args, bvh, given, entries_of<R>(args, albedo, spp));
         const DirectScene<R> scene =
             direct_scene<R>(args, bvh, layouts, albedo, lights, sun_direction, sun_radius);
         const R* d = args.in<R>("d_radiance", d_radiance, "H W 3");

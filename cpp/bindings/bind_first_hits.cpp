@@ -49,8 +49,8 @@ void trace_packet(const PathGeometry& geometry, const Rows& rows, std::int64_t f
 py::tuple first_hits(const PathGeometry& geometry, const py::array& origins,
                      const py::array& directions) {
     ArrayArgs args("first_hits");
-    const double* o = args.in<double>("origins", origins, "R 3");
-    const double* d = args.in<double>("directions", directions, "R 3");
+    const double* o = args.within<double>("origins", origins, "R 3", world_limit);
+    const double* d = args.within<double>("directions", directions, "R 3", world_limit);
     const std::int64_t count = args.size("R");
     py::array_t<std::int32_t> shape(count);
     py::array_t<double> t(count), position({count, std::int64_t{3}}),

@@ -57,6 +57,22 @@ struct RayArrays {
         interval.t_max = args.in<R>("t_max", t_max, t_max.size() == 1 ? "1" : "R");
         interval.t_min_step = t_min.size() == 1 ? 0 : 1;
         interval.t_max_step = t_max.size() == 1 ? 0 : 1;
+        check(args, "t_min", "numbers of at least 0", t_min, [](R t) { return t >= R(0); });
+        check(args, "t_max", "numbers", t_max, [](R t) { return t == t; });
+    }
+
+private:
+    template <class Good>
+    static void check(const ArrayArgs& args, const char* name, const char* expected,
+                      const py::array& array, Good&& good) {
+        const R* values = static_cast<const R*>(array.data());
+        std::int64_t bad = 0;
+        for (std::int64_t i = 0; i < array.size(); ++i) bad += !good(values[i]);
+        for (std::int64_t i = 0; bad > 0; ++i)
+            if (!good(values[i]))
+                args.range(name, expected,
+                           std::to_string(bad) + " that are not, the first, " +
+                               number_text(double(values[i])) + ", in row " + std::to_string(i));
     }
 };
 

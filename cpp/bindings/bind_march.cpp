@@ -18,9 +18,9 @@ py::tuple place(const MarchSettings& settings, const py::array& origins,
     return dispatch_real("place_samples", "origins", origins, [&](auto real) -> py::tuple {
         using R = decltype(real);
         ArrayArgs args("place_samples");
-        const R* o = args.in<R>("origins", origins, "R 3");
-        const R* d = args.in<R>("directions", directions, "R 3");
-        const R* u = jitter ? args.in<R>("jitter", *jitter, "R") : nullptr;
+        const R* o = args.within<R>("origins", origins, "R 3", world_limit);
+        const R* d = args.within<R>("directions", directions, "R 3", world_limit);
+        const R* u = jitter ? args.within<R>("jitter", *jitter, "R", 1.0) : nullptr;
         const std::int64_t count = args.size("R");
         py::array_t<R> t0(count);
         py::array_t<std::int32_t> samples(count);
@@ -41,8 +41,44 @@ py::tuple place(const MarchSettings& settings, const py::array& origins,
                 }
             });
         }
+        for (std::int64_t ray = 0; ray < count; ++ray)
+            if (samples_out[ray] > most_samples)
+                args.range("settings",
+                           "a step of which " + std::to_string(most_samples) + " cross the box",
+                           number_text(settings.dt) + " m, too short in row " + std::to_string(ray),
+                           "take longer steps, or a smaller box");
         return py::make_tuple(t0, samples);
     });
+}
+
+const MarchSettings& checked(const MarchSettings& s) {
+    const auto refuse = [](const char* argument, const std::string& expected,
+                           const std::string& got) {
+        fail(ErrorKind::range, "MarchSettings", argument, expected, got);
+    };
+    if (!(s.dt > 0 && s.dt <= world_limit)) refuse("dt", "a positive step", number_text(s.dt));
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double lo = s.box[0][axis], hi = s.box[1][axis];
+        const std::string got = number_text(lo) + " and " + number_text(hi);
+        if (!(hi > lo)) refuse("box", "a lower corner below the upper one on every axis", got);
+        if (!(std::abs(lo) <= world_limit && std::abs(hi) <= world_limit &&
+              hi - lo >= 1 / world_limit))
+            refuse("box", "corners up to 1e15 m away and 1e-15 m apart", got);
+    }
+    if (!(s.stop >= 0 && s.stop < 1))
+        refuse("stop", "a transmittance in [0, 1)", number_text(s.stop));
+    if (!std::isfinite(s.density_scale))
+        refuse("density_scale", "a finite number", number_text(s.density_scale));
+    const std::tuple<const char*, int, int> choices[] = {
+        {"lattice", s.lattice, 1},
+        {"quadrature", s.quadrature, 1},
+        {"border", s.border, 1},
+        {"density_activation", s.density_activation, 4},
+        {"color_activation", s.color_activation, 4}};
+    for (const auto& [name, chosen, last] : choices)
+        if (chosen < 0 || chosen > last)
+            refuse(name, "0 to " + std::to_string(last), std::to_string(chosen));
+    return s;
 }
 
 py::tuple field_names() {
@@ -134,24 +170,8 @@ void bind_march(py::module_& m) {
         .def(py::init([](const Box& box, double dt, double stop, int lattice, int quadrature,
                          int border, int density_activation, int color_activation,
                          double density_scale) {
-                 if (!(dt > 0))
-                     fail(ErrorKind::range, "MarchSettings", "dt", "a positive step",
-                          std::to_string(dt));
-                 for (std::size_t axis = 0; axis < 3; ++axis)
-                     if (!(box[1][axis] > box[0][axis]))
-                         fail(
-                             ErrorKind::range, "MarchSettings", "box",
-                             "a lower corner below the upper one on every axis",
-                             std::to_string(box[0][axis]) + " and " + std::to_string(box[1][axis]));
-                 return MarchSettings{box,
-                                      dt,
-                                      stop,
-                                      lattice,
-                                      quadrature,
-                                      border,
-                                      density_activation,
-                                      color_activation,
-                                      density_scale};
+                 return checked(MarchSettings{box, dt, stop, lattice, quadrature, border,
+                                              density_activation, color_activation, density_scale});
              }),
              py::arg("box"), py::arg("dt"), py::arg("stop"), py::arg("lattice"),
              py::arg("quadrature"), py::arg("border"), py::arg("density_activation"),

@@ -94,7 +94,8 @@ py::tuple from_function(int depth, const py::function& classify, int channels) {
         const auto ask = [&](const Cell<D>& lower, std::int32_t side) -> std::optional<P> {
             const py::object answer = classify(py::tuple(py::cast(lower)), side);
             if (answer.is_none()) return std::nullopt;
-            const auto given = answer.cast<std::vector<double>>();
+            const auto given = entry_as<std::vector<double>>("Octree.from_function", "classify",
+                                                             "None or a list of numbers", answer);
             if (given.size() != C)
                 fail(ErrorKind::shape, "Octree.from_function", "classify",
                      "None or " + std::to_string(C) + " channels",
@@ -128,8 +129,8 @@ py::tuple traverse(const SpatialTree<D>& tree, const py::array& origins,
         using R = decltype(real);
         ArrayArgs args("Octree.traverse");
         const char* const axes = D == 3 ? "R 3" : "R 2";
-        const R *o = args.in<R>("origins", origins, axes),
-                *d = args.in<R>("directions", directions, axes),
+        const R *o = args.finite<R>("origins", origins, axes),
+                *d = args.finite<R>("directions", directions, axes),
                 *from = args.in<R>("t_min", t_min, "R"), *to = args.in<R>("t_max", t_max, "R");
         const LeafVisits<R> visits = [&] {
             const py::gil_scoped_release release;

@@ -24,12 +24,20 @@ ParticleOptions particles_of(const ArrayArgs& args, const PathGeometry& geometry
     return {max_depth, roulette_from, seed};
 }
 
+/// Fewer than 2^31: rows and photons are numbered with 32 bits.
+void check_count(const ArrayArgs& args, std::uint64_t count) {
+    constexpr std::uint64_t most = (std::uint64_t{1} << 31) - 1;
+    if (count < 1 || count > most)
+        args.range("count", "1 to " + std::to_string(most) + " particles", std::to_string(count));
+}
+
 /// origins, directions and flux (N, 3), entries of the table of lights (N,).
 py::tuple emit_rows(const SceneRows& scene, std::uint64_t seed, std::uint64_t first,
                     std::uint64_t count) {
     ArrayArgs args("emit_particles");
     const SceneNumbers<double> at(args, scene);
     particles_of(args, scene.geometry, {1, 0, seed});
+    check_count(args, count);
     const auto rows = static_cast<std::int64_t>(count);
     py::array_t<double> origins({rows, std::int64_t(3)}), directions({rows, std::int64_t(3)}),
         flux({rows, std::int64_t(3)});
@@ -55,7 +63,7 @@ void land(const SceneRows& scene, const ParticleNumbers& given, std::uint64_t fi
     ArrayArgs args("trace_light");
     const SceneNumbers<double> at(args, scene);
     const ParticleOptions options = particles_of(args, scene.geometry, given);
-    const double* r = args.in<double>("rectangle", rectangle, "3 3");
+    const double* r = args.within<double>("rectangle", rectangle, "3 3", world_limit);
     const PathSums sums{args.out<double>("irradiance", irradiance, "H W 3"),
                         args.out<double>("squares", squares, "H W 3")};
     const auto row = [r](int k) { return Vec3<double>(r[3 * k], r[3 * k + 1], r[3 * k + 2]); };
@@ -73,17 +81,17 @@ std::unique_ptr<PhotonMap> gather_photons(const PathGeometry& geometry, const Mo
     const SceneNumbers<double> at(args,
                                   {geometry, models, parameters, emission, lights, textures, {}});
     const ParticleOptions options = particles_of(args, geometry, given);
-    if (count < 1) args.range("particles", "at least 1", "0");
-    if (!(radius > 0) || !std::isfinite(radius))
-        args.range("radius", "above 0 m, and finite", std::to_string(radius));
+    check_count(args, count);
+    if (!(radius >= 1 / world_limit && radius <= world_limit))
+        args.range("radius", "above 0 m, and finite", number_text(radius));
     const py::gil_scoped_release release;
     return std::make_unique<PhotonMap>(at.scene, options, count, radius, direct);
 }
 
 py::array irradiance_rows(const PhotonMap& map, const py::array& points, const py::array& normals) {
     ArrayArgs args("PhotonMap.irradiance");
-    const double *x = args.in<double>("points", points, "N 3"),
-                 *n = args.in<double>("normals", normals, "N 3");
+    const double *x = args.within<double>("points", points, "N 3", world_limit),
+                 *n = args.finite<double>("normals", normals, "N 3");
     const std::int64_t count = args.size("N");
     py::array_t<double> out({count, std::int64_t(3)});
     double* E = out.mutable_data();
@@ -107,6 +115,7 @@ void picture(const PhotonMap& map, const PathGeometry& geometry, const Models& m
     const ThinLens camera = thin_lens(camera_numbers);
     const PathSums sums = path_sums(args, camera, radiance, squares);
     const PathOptions options = options_of(args, given);
+    check_samples(args, first, count);
     const py::gil_scoped_release release;
     trace_photons(at.scene, map, camera, options, {first, count}, sums);
 }

@@ -98,9 +98,13 @@ void trace(const PathGeometry& geometry, const Models& models, const py::array& 
         const SceneNumbers<R> numbers(
             args, {geometry, models, parameters, emission, lights, textures, media},
             {sampling_parameters, sampling_textures, sampling_media});
+        for (std::size_t i = 0; i < numbers.sampling_media.size(); ++i)
+            if (!same_phase(numbers.media[i], numbers.sampling_media[i]))
+                args.range("sampling_media", "the same phase functions as media", "others");
         const ThinLens camera = thin_lens(camera_numbers);
         const PathSums sums = path_sums(args, camera, radiance, squares);
         const PathOptions options = options_of(args, given);
+        check_samples(args, first, count);
         const py::gil_scoped_release release;
         trace_paths(numbers.scene, camera, options, {first, count}, sums);
     });
@@ -129,6 +133,7 @@ void ambient_occlusion(const PathGeometry& geometry, const py::tuple& camera_num
     double* out = args.out<double>(
         "sums", sums, std::to_string(camera.height) + " " + std::to_string(camera.width));
     if (!(radius > 0)) args.range("radius", "above 0 m", std::to_string(radius));
+    check_samples(args, first, count);
     const py::gil_scoped_release release;
     trace_ambient_occlusion<double>(geometry, camera, radius, seed, {first, count}, out);
 }

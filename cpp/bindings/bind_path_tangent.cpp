@@ -20,14 +20,13 @@ void trace(const SceneRows& rows, const py::array& v_parameters, const py::array
         if (at.lights[i].model.index() != along.lights[i].model.index())
             args.range("v_lights", "the same kinds as lights", "others");
     for (std::size_t m = 0; m < at.media.size(); ++m)
-        if (at.media[m].phase.has_value() != along.media[m].phase.has_value() ||
-            (at.media[m].phase &&
-             at.media[m].phase->model.index() != along.media[m].phase->model.index()))
+        if (!same_phase(at.media[m], along.media[m]))
             args.range("v_media", "the same phase functions as media", "others");
     const ThinLens camera = thin_lens(camera_numbers);
     const PathSums picture = path_sums(args, camera, radiance, squares);
     const PathSums tangent = path_sums(args, camera, d_radiance, d_squares, "d_");
     const PathOptions options = options_of(args, given);
+    check_samples(args, first, count);
     const py::gil_scoped_release release;
     trace_paths_tangent(at.scene, along.scene, camera, options, {first, count}, picture, tangent);
 }

@@ -43,11 +43,14 @@ struct TracedRays {
     std::int32_t *primitive, *boxes, *triangles;
 
     TracedRays(const char* function, const py::array& origins, const py::array& directions,
-               py::array& t_out, py::array& primitive_out, py::array& barycentrics_out,
-               py::array& visits) {
+               double t_min, double t_max, py::array& t_out, py::array& primitive_out,
+               py::array& barycentrics_out, py::array& visits) {
         ArrayArgs args(function);
-        const double* o = args.in<double>("origins", origins, "R 3");
-        const double* d = args.in<double>("directions", directions, "R 3");
+        const double* o = args.finite<double>("origins", origins, "R 3");
+        const double* d = args.finite<double>("directions", directions, "R 3");
+        if (!(t_min >= 0 && t_min <= t_max))
+            args.range("t_min, t_max", "0 <= t_min <= t_max",
+                       number_text(t_min) + " and " + number_text(t_max));
         rays = {o, d, args.size("R")};
         t = args.out<double>("t", t_out, "R");
         primitive = args.out<std::int32_t>("primitive", primitive_out, "R");
@@ -68,7 +71,8 @@ struct TracedRays {
 void trace(const ReferenceBvh& bvh, const py::array& origins, const py::array& directions,
            double t_min, double t_max, bool any, py::array t, py::array primitive,
            py::array barycentrics, py::array visits) {
-    const TracedRays out("trace", origins, directions, t, primitive, barycentrics, visits);
+    const TracedRays out("trace", origins, directions, t_min, t_max, t, primitive, barycentrics,
+                         visits);
     const py::gil_scoped_release release;
     for_each_ray(out.rays.count, [&](std::int64_t i) {
         Visits cost;
@@ -81,7 +85,8 @@ void trace(const ReferenceBvh& bvh, const py::array& origins, const py::array& d
 void trace_all(const ReferenceBvh& bvh, const py::array& origins, const py::array& directions,
                double t_min, double t_max, py::array t, py::array primitive, py::array barycentrics,
                py::array visits) {
-    const TracedRays out("trace_all", origins, directions, t, primitive, barycentrics, visits);
+    const TracedRays out("trace_all", origins, directions, t_min, t_max, t, primitive, barycentrics,
+                         visits);
     const py::gil_scoped_release release;
     const auto every = static_cast<std::int32_t>(bvh.mesh.face_count());
     for_each_ray(out.rays.count, [&](std::int64_t i) {
@@ -110,7 +115,7 @@ py::tuple nodes(const ReferenceBvh& bvh) {
 
 py::array_t<std::uint32_t> back_to_front(const BspTree& tree, const py::array& eyes) {
     ArrayArgs args("back_to_front");
-    const double* eye = args.in<double>("eyes", eyes, "E 3");
+    const double* eye = args.finite<double>("eyes", eyes, "E 3");
     const std::int64_t count = args.size("E"), polygons = tree.polygon_count();
     py::array_t<std::uint32_t> order({count, polygons});
     std::uint32_t* out = order.mutable_data();
@@ -164,6 +169,10 @@ py::array_t<std::uint32_t> order_by_depth(const py::array& depth, bool far_first
     ArrayArgs args("order_by_depth");
     const double* key = args.in<double>("depth", depth, "N");
     const std::int64_t count = args.size("N");
+    for (std::int64_t i = 0; i < count; ++i)
+        if (!(key[i] >= 0))
+            args.range("depth", "numbers of at least 0",
+                       number_text(key[i]) + " in row " + std::to_string(i));
     std::vector<std::uint32_t> rows(static_cast<std::size_t>(count));
     std::iota(rows.begin(), rows.end(), 0u);
     // Farthest first is nearest first read backwards; rows go in backwards too, so that equals do not swap.

@@ -31,6 +31,10 @@ py::array_t<std::uint32_t> even_words(std::uint64_t seed, std::uint32_t step, st
                                       std::uint32_t count) {
     ArrayArgs args("even_words");
     const std::uint32_t* pixels = args.in<std::uint32_t>("pixel", pixel, "N");
+    constexpr std::int64_t most = 1 << 26;
+    if (count > most / std::max<std::int64_t>(args.size("N"), 1))
+        args.range("count", "at most 2^26 points in all",
+                   std::to_string(count) + " of " + std::to_string(args.size("N")) + " pixels");
     py::array_t<std::uint32_t> words({args.size("N"), std::int64_t(count), std::int64_t(4)});
     std::uint32_t* out = words.mutable_data();
     for (std::int64_t i = 0; i < args.size("N"); ++i) {

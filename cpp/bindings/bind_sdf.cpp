@@ -69,13 +69,22 @@ py::array_t<double> bounds(const Sdf& body, const py::array& numbers) {
 
 /// t_min, t_max, tolerance, max_steps.
 using MarchArgs = std::tuple<double, double, double, std::int32_t>;
-SdfMarch march_of(const MarchArgs& m) {
+SdfMarch march_of(const ArrayArgs& args, const MarchArgs& m) {
+    const auto& [t_min, t_max, tolerance, max_steps] = m;
+    constexpr std::int32_t most_steps = 1 << 20;
+    if (!(t_min >= 0 && t_min <= t_max))
+        args.range("march", "0 <= t_min <= t_max",
+                   number_text(t_min) + " and " + number_text(t_max));
+    if (!(tolerance > 0)) args.range("march", "a tolerance above 0 m", number_text(tolerance));
+    if (max_steps < 1 || max_steps > most_steps)
+        args.range("march", "1 to " + std::to_string(most_steps) + " steps",
+                   std::to_string(max_steps));
     return {std::get<0>(m), std::get<1>(m), std::get<2>(m), std::get<3>(m)};
 }
 
 RaySpan<double> rays_of(ArrayArgs& args, const py::array& origins, const py::array& directions) {
-    const double* o = args.in<double>("origins", origins, "R 3");
-    const double* d = args.in<double>("directions", directions, "R 3");
+    const double* o = args.finite<double>("origins", origins, "R 3");
+    const double* d = args.finite<double>("directions", directions, "R 3");
     return {o, d, args.size("R")};
 }
 
@@ -84,6 +93,7 @@ py::tuple trace(const Sdf& body, const py::array& numbers, const py::array& orig
     ArrayArgs args("trace");
     const double* x = checked_numbers(args, body, numbers);
     const RaySpan<double> rays = rays_of(args, origins, directions);
+    const SdfMarch limits = march_of(args, march);
     py::array_t<double> t(rays.count);
     py::array_t<std::int32_t> steps(rays.count);
     py::array_t<std::int8_t> end(rays.count);
@@ -91,7 +101,7 @@ py::tuple trace(const Sdf& body, const py::array& numbers, const py::array& orig
                        reinterpret_cast<SdfEnd*>(end.mutable_data())};
     {
         const py::gil_scoped_release release;
-        trace_sdf(body, x, rays, march_of(march), hits);
+        trace_sdf(body, x, rays, limits, hits);
     }
     return py::make_tuple(t, steps, end);
 }
@@ -109,8 +119,9 @@ void trace_backward(const Sdf& body, const py::array& numbers, const py::array& 
     double* d_x = args.out<double>("d_numbers", d_numbers, std::to_string(body.number_count()));
     double* d_o = args.out<double>("d_origins", d_origins, "R 3");
     double* d_w = args.out<double>("d_directions", d_directions, "R 3");
+    const SdfMarch limits = march_of(args, march);
     const py::gil_scoped_release release;
-    trace_sdf_backward(body, x, rays, march_of(march), found, ends, d, d_x, d_o, d_w);
+    trace_sdf_backward(body, x, rays, limits, found, ends, d, d_x, d_o, d_w);
 }
 
 }  // namespace

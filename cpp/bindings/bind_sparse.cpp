@@ -15,6 +15,38 @@ py::array_t<T> filled(const std::vector<T>& from, std::vector<py::ssize_t> shape
     return array;
 }
 
+constexpr std::int64_t farthest_voxel = std::int64_t{1} << 30;
+
+/// Refuses a box of voxels that is empty or reaches beyond +-2^30, so that sums do not overflow.
+std::array<int, 3> checked_box(const ArrayArgs& args, const std::array<int, 3>& origin) {
+    std::array<int, 3> shape{};
+    constexpr const char* axes[] = {"X", "Y", "Z"};
+    for (std::size_t k = 0; k < 3; ++k) {
+        const std::int64_t size = args.size(axes[k]), end = origin[k] + size;
+        if (size < 1 || origin[k] < -farthest_voxel || end > farthest_voxel)
+            args.range("origin", "a box of voxels that is not empty, within 2^30 of voxel 0",
+                       std::to_string(size) + " voxels from " + std::to_string(origin[k]) + " on");
+        shape[k] = static_cast<int>(size);
+    }
+    return shape;
+}
+
+/// Voxels (N, 3) within the same bounds.
+const std::int32_t* voxels_in(ArrayArgs& args, const py::array& voxels) {
+    const auto* at = args.in<std::int32_t>("voxels", voxels, "N 3");
+    for (std::int64_t i = 0; i < voxels.size(); ++i)
+        if (at[i] < -farthest_voxel || at[i] > farthest_voxel)
+            args.range("voxels", "numbers within 2^30 of 0",
+                       std::to_string(at[i]) + " in row " + std::to_string(i / 3));
+    return at;
+}
+
+void check_path(const char* function, const std::string& path) {
+    if (path.empty() || path.find('\0') != std::string::npos)
+        fail(ErrorKind::io, function, "path", "the name of a file",
+             "none, or one with a zero in it");
+}
+
 SparseGrid from_dense(const py::array& values, std::array<int, 3> origin,
                       const py::array& background, float tolerance) {
     ArrayArgs args("SparseGrid.from_dense");
@@ -22,9 +54,7 @@ SparseGrid from_dense(const py::array& values, std::array<int, 3> origin,
     const float* empty = args.in<float>("background", background, "C");
     if (args.size("C") != 1 && args.size("C") != 3)
         args.range("values", "1 or 3 channels", std::to_string(args.size("C")));
-    const std::array<int, 3> shape{static_cast<int>(args.size("X")),
-                                   static_cast<int>(args.size("Y")),
-                                   static_cast<int>(args.size("Z"))};
+    const std::array<int, 3> shape = checked_box(args, origin);
     const auto channels = static_cast<int>(args.size("C"));
     const py::gil_scoped_release release;
     return SparseGrid::from_dense(from, shape, channels, origin, empty, tolerance);
@@ -35,16 +65,14 @@ void to_dense(const SparseGrid& grid, std::array<int, 3> origin, py::array out) 
     float* to = args.out<float>("out", out, "X Y Z C");
     if (args.size("C") != grid.channels())
         args.range("out", "the channels of the grid", std::to_string(args.size("C")));
-    const std::array<int, 3> shape{static_cast<int>(args.size("X")),
-                                   static_cast<int>(args.size("Y")),
-                                   static_cast<int>(args.size("Z"))};
+    const std::array<int, 3> shape = checked_box(args, origin);
     const py::gil_scoped_release release;
     grid.to_dense(shape, origin, to);
 }
 
 py::tuple values_at(const SparseGrid& grid, const py::array& voxels) {
     ArrayArgs args("SparseGrid.values_at");
-    const auto* at = args.in<std::int32_t>("voxels", voxels, "N 3");
+    const auto* at = voxels_in(args, voxels);
     py::array_t<float> values({args.size("N"), std::int64_t(grid.channels())});
     py::array_t<std::uint8_t> active(args.size("N"));
     float* to = values.mutable_data();
@@ -58,7 +86,7 @@ py::tuple values_at(const SparseGrid& grid, const py::array& voxels) {
 
 void activate(SparseGrid& grid, const py::array& voxels, const py::array& values) {
     ArrayArgs args("SparseGrid.activate");
-    const auto* at = args.in<std::int32_t>("voxels", voxels, "N 3");
+    const auto* at = voxels_in(args, voxels);
     const float* from = args.in<float>("values", values, "N C");
     if (args.size("C") != grid.channels())
         args.range("values", "the channels of the grid", std::to_string(args.size("C")));
@@ -68,7 +96,7 @@ void activate(SparseGrid& grid, const py::array& voxels, const py::array& values
 
 py::array_t<float> sample(const SparseGrid& grid, const py::array& points) {
     ArrayArgs args("SparseGrid.sample");
-    const auto* at = args.in<double>("points", points, "N 3");
+    const auto* at = args.within<double>("points", points, "N 3", double(farthest_voxel));
     py::array_t<float> values({args.size("N"), std::int64_t(grid.channels())});
     float* to = values.mutable_data();
     {
@@ -113,6 +141,27 @@ void keep(SparseGrid& grid, const py::array& stays) {
     grid.keep({from, static_cast<std::size_t>(args.size("N"))});
 }
 
+void set_metadata(SparseGrid& grid, const std::string& key, const MetaValue& value) {
+    if (key.empty())
+        fail(ErrorKind::range, "SparseGrid.set_metadata", "key", "a name", "an empty one");
+    grid.set_metadata(key, value);
+}
+
+void prune(SparseGrid& grid, float tolerance) {
+    if (!(tolerance >= 0))
+        fail(ErrorKind::range, "SparseGrid.prune", "tolerance", "a number of at least 0",
+             number_text(double(tolerance)));
+    grid.prune(tolerance);
+}
+
+void dilate(SparseGrid& grid, int steps) {
+    constexpr int most = 1000;
+    if (steps < 0 || steps > most)
+        fail(ErrorKind::range, "SparseGrid.dilate", "steps", "0 to " + std::to_string(most),
+             std::to_string(steps));
+    grid.dilate(steps);
+}
+
 }  // namespace
 
 void bind_sparse(py::module_& m) {
@@ -132,7 +181,7 @@ void bind_sparse(py::module_& m) {
         .def_property_readonly("background", &SparseGrid::background)
         .def_property("name", &SparseGrid::name, &SparseGrid::rename)
         .def("metadata", &SparseGrid::metadata)
-        .def("set_metadata", &SparseGrid::set_metadata, py::arg("key"), py::arg("value"))
+        .def("set_metadata", &set_metadata, py::arg("key"), py::arg("value"))
         .def("world_from_index", &SparseGrid::world_from_index)
         .def("set_world_from_index", &SparseGrid::set_world_from_index, py::arg("matrix"))
         .def("statistics", &SparseGrid::statistics)
@@ -140,8 +189,8 @@ void bind_sparse(py::module_& m) {
         .def("values_at", &values_at, py::arg("voxels"))
         .def("activate", &activate, py::arg("voxels"), py::arg("values"))
         .def("sample", &sample, py::arg("points"))
-        .def("prune", &SparseGrid::prune, py::arg("tolerance"))
-        .def("dilate", &SparseGrid::dilate, py::arg("steps"))
+        .def("prune", &prune, py::arg("tolerance"))
+        .def("dilate", &dilate, py::arg("steps"))
         .def("voxelize", &SparseGrid::voxelize)
         .def("leaves", &leaves)
         .def("leaf_values", &leaf_values)
@@ -151,6 +200,7 @@ void bind_sparse(py::module_& m) {
         "read_vdb",
         [](const std::string& path, std::int64_t memory_limit) {
             VdbFile file;
+            check_path("read_vdb", path);
             {
                 const py::gil_scoped_release release;
                 file = VdbFile::read(path, memory_limit);
@@ -161,7 +211,10 @@ void bind_sparse(py::module_& m) {
     m.def(
         "write_vdb",
         [](const std::string& path, const std::vector<SparseGrid>& grids, const MetaTable& metadata,
-           std::optional<bool> half) { VdbFile{grids, metadata}.write(path, half); },
+           std::optional<bool> half) {
+            check_path("write_vdb", path);
+            VdbFile{grids, metadata}.write(path, half);
+        },
         py::arg("path"), py::arg("grids"), py::arg("metadata"), py::arg("half"));
 }
 

@@ -22,7 +22,7 @@ py::object prepare(const py::array& means, const py::array& log_scales, const py
         using R = decltype(real);
         ArrayArgs args("splat");
         const auto cloud = cloud_of<R>(args, means, log_scales, quats, opacity_logits, sh);
-        const R* view = args.in<R>("camera_from_world", camera_from_world, "3 4");
+        const R* view = args.within<R>("camera_from_world", camera_from_world, "3 4", world_limit);
         const R* behind = args.in<R>("background", background, "3");
         Prepared<R> out;
         {
@@ -121,6 +121,14 @@ void bind_splat(py::module_& m) {
                  if (width < 1 || height < 1 || std::int64_t{width} * height > (1 << 28))
                      fail(ErrorKind::range, "splat", "width, height", "1 to 2^28 pixels",
                           std::to_string(width) + " x " + std::to_string(height));
+                 for (const double f : {fx, fy})
+                     if (!(f > 0 && f <= world_limit))
+                         fail(ErrorKind::range, "splat", "fx, fy", "focal lengths above 0 pixels",
+                              number_text(f));
+                 for (const double c : {cx, cy})
+                     if (!(std::abs(c) <= world_limit))
+                         fail(ErrorKind::range, "splat", "cx, cy", "finite positions in pixels",
+                              number_text(c));
                  return SplatImage{width, height, fx, fy, cx, cy};
              }),
              py::arg("width"), py::arg("height"), py::arg("fx"), py::arg("fy"), py::arg("cx"),
@@ -129,6 +137,18 @@ void bind_splat(py::module_& m) {
         .def(py::init([](double low_pass, bool antialiased, double alpha_min, double alpha_max,
                          bool pass_clamped, double extent_sigmas, double stop, double near,
                          double frustum_margin) {
+                 const std::tuple<const char*, double, double> numbers[] = {
+                     {"low_pass", low_pass, 1e12},
+                     {"alpha_min", alpha_min, 1},
+                     {"alpha_max", alpha_max, 1},
+                     {"extent_sigmas", extent_sigmas, 1e6},
+                     {"stop", stop, 1},
+                     {"near", near, world_limit},
+                     {"frustum_margin", frustum_margin, 1e12}};
+                 for (const auto& [name, x, most] : numbers)
+                     if (!(x >= 0 && x <= most))
+                         fail(ErrorKind::range, "SplatOptions", name, "0 to " + number_text(most),
+                              number_text(x));
                  return SplatOptions{low_pass,  antialiased,  alpha_min,
                                      alpha_max, pass_clamped, extent_sigmas,
                                      stop,      near,         frustum_margin};

@@ -12,6 +12,7 @@ template <class R>
 struct PreparedRays {
     RayFrame<R> frame;
     std::int64_t gaussians;
+    bool rendered = false;  // the backward pass has room for the crossings that were counted then
 };
 
 py::object prepare(const py::array& means, const py::array& log_scales, const py::array& quats,
@@ -22,8 +23,8 @@ py::object prepare(const py::array& means, const py::array& log_scales, const py
         using R = decltype(real);
         ArrayArgs args("splat_rays");
         const auto cloud = cloud_of<R>(args, means, log_scales, quats, opacity_logits, sh);
-        const R* from = args.in<R>("origins", origins, "R 3");
-        const R* to = args.in<R>("directions", directions, "R 3");
+        const R* from = args.within<R>("origins", origins, "R 3", world_limit);
+        const R* to = args.within<R>("directions", directions, "R 3", world_limit);
         const R* behind = args.in<R>("background", background, "3");
         const std::int64_t rays = args.size("R");
         if (rays >= std::int64_t{1} << 31)
@@ -65,6 +66,7 @@ py::tuple render(PreparedRays<R>& prepared, const py::array& means, const py::ar
         const py::gil_scoped_release release;
         blend_rays(cloud, prepared.frame, out);
     }
+    prepared.rendered = true;
     return py::make_tuple(color, opacity, depth);
 }
 
@@ -77,6 +79,8 @@ void backward(const PreparedRays<R>& prepared, const py::array& means, const py:
               py::array d_background, py::object d_origins, py::object d_directions) {
     ArrayArgs args("splat_rays_backward");
     const auto cloud = same_cloud(args, prepared, means, log_scales, quats, opacity_logits, sh);
+    if (!prepared.rendered)
+        args.range("self", "rays that were rendered", "prepared ones", "call render first");
     const std::string rays = std::to_string(prepared.frame.rays());
     const RayPicture<R> picture{args.out<R>("color", color, rays + " 3"),
                                 args.out<R>("opacity", opacity, rays),
@@ -130,6 +134,14 @@ void bind_prepared(py::module_& m, const char* name) {
 void bind_splat_rays(py::module_& m) {
     py::class_<RayOptions>(m, "RayOptions", "Policies of casting rays at Gaussians.")
         .def(py::init([](double alpha_min, double alpha_max, double stop, double t_min) {
+                 const std::pair<const char*, double> numbers[] = {
+                     {"alpha_min", alpha_min}, {"alpha_max", alpha_max}, {"stop", stop}};
+                 for (const auto& [name, x] : numbers)
+                     if (!(x >= 0 && x <= 1))
+                         fail(ErrorKind::range, "RayOptions", name, "0 to 1", number_text(x));
+                 if (!std::isfinite(t_min))
+                     fail(ErrorKind::range, "RayOptions", "t_min", "a finite distance",
+                          number_text(t_min));
                  return RayOptions{alpha_min, alpha_max, stop, t_min};
              }),
              py::arg("alpha_min"), py::arg("alpha_max"), py::arg("stop"), py::arg("t_min"));

@@ -23,6 +23,12 @@ namespace {
 constexpr std::int64_t largest_side = 1 << 16;
 constexpr std::int64_t most_points = std::int64_t{1} << 31;
 
+void check_side(const ArrayArgs& args, std::int64_t height, std::int64_t width) {
+    if (height < 1 || width < 1 || height > largest_side || width > largest_side)
+        args.range("shape", "1 to " + std::to_string(largest_side) + " texels along each axis",
+                   std::to_string(height) + " x " + std::to_string(width));
+}
+
 /// The shape that the axes H, W and C of `args` have.
 TextureShape checked_shape(const ArrayArgs& args, const char* name) {
     const std::int64_t h = args.size("H"), w = args.size("W"), c = args.size("C");
@@ -155,9 +161,7 @@ py::array level_of(std::int64_t height, std::int64_t width, const py::array& foo
         using R = decltype(real);
         ArrayArgs args("mip_level");
         const R* d = finite_in<R>(args, "footprint", footprint, "N 2 2");
-        if (height < 1 || width < 1)
-            args.range("shape", "at least one texel along each axis",
-                       std::to_string(height) + " x " + std::to_string(width));
+        check_side(args, height, width);
         py::array_t<R> level(args.size("N"));
         mip_level({static_cast<int>(height), static_cast<int>(width)}, d, args.size("N"),
                   level.mutable_data());
@@ -221,9 +225,7 @@ BoundPlan make_plan(std::int64_t height, std::int64_t width, const py::array& uv
         if (channels < 1 || channels > max_channels)
             args.range("colors", "1 to " + std::to_string(max_channels) + " channels",
                        std::to_string(channels));
-        if (height < 1 || width < 1 || height > largest_side || width > largest_side)
-            args.range("shape", "1 to " + std::to_string(largest_side) + " texels along each axis",
-                       std::to_string(height) + " x " + std::to_string(width));
+        check_side(args, height, width);
         const py::gil_scoped_release release;
         return {std::make_unique<TexturePlan<R>>(
             TextureShape{static_cast<int>(height), static_cast<int>(width)},
@@ -294,6 +296,7 @@ void bind_texture(py::module_& m) {
         "mip_shapes",
         [](int height, int width) {
             std::vector<std::pair<int, int>> shapes;
+            check_side(ArrayArgs("mip_shapes"), height, width);
             for (const TextureShape& s : mip_shapes({height, width}))
                 shapes.emplace_back(s.height, s.width);
             return shapes;

@@ -11,13 +11,36 @@ namespace photograd {
 
 using LightTuples = std::vector<py::tuple>;
 
+/// What all of these tuples begin with.
+struct LightRow {
+    std::string name;
+    py::array first, second;
+
+    explicit LightRow(const py::tuple& row) {
+        if (row.size() < 3) refuse("3 entries a light", row.size());
+        name = entry_as<std::string>("PathTracer", "lights", "names of lights", row[0]);
+        first = entry_as<py::array>("PathTracer", "lights", "arrays", row[1]);
+        second = entry_as<py::array>("PathTracer", "lights", "arrays", row[2]);
+    }
+    [[noreturn]] static void refuse(const char* expected, std::size_t size) {
+        fail(ErrorKind::shape, "PathTracer", "lights", expected,
+             "a tuple of " + std::to_string(size));
+    }
+};
+
 template <class R>
 AnyLight<R> listed_light(const py::tuple& row) {
-    const auto name = row[0].cast<std::string>();
+    const LightRow of(row);
+    const std::string& name = of.name;
     ArrayArgs args(name);
-    const auto first = row[1].cast<py::array>(), second = row[2].cast<py::array>();
-    if (name == Environment<R>::name)
-        return {environment_in<R>(args, row[3].cast<const EnvironmentSampler&>(), first, second)};
+    const py::array &first = of.first, &second = of.second;
+    if (name == Environment<R>::name) {
+        if (row.size() < 4) of.refuse("4 entries, the last of them a sampler", row.size());
+        const auto* sampler = entry_as<const EnvironmentSampler*>("environment", "lights",
+                                                                  "an EnvironmentSampler", row[3]);
+        if (!sampler) of.refuse("an EnvironmentSampler", row.size());
+        return {environment_in<R>(args, *sampler, first, second)};
+    }
     AnyLight<R> light;
     bool found = false;
     const auto look = [&]<template <class> class M>() {
@@ -48,7 +71,7 @@ std::vector<R*> light_derivatives(const LightTuples& rows, std::vector<py::array
              std::to_string(rows.size()) + " arrays", std::to_string(d_lights.size()));
     std::vector<R*> out;
     for (std::size_t i = 0; i < rows.size(); ++i) {
-        const auto first = rows[i][1].cast<py::array>();
+        const py::array first = LightRow(rows[i]).first;
         std::string axes;
         for (py::ssize_t k = 0; k < first.ndim(); ++k) {
             if (k > 0) axes += ' ';

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "array_args.h"
+#include "photograd/render/lattice.h"
 #include "photograd/render/march.h"
 
 namespace photograd {
@@ -35,11 +36,15 @@ template <class R>
 RayBatch<R> ray_batch(ArrayArgs& args, const py::array& origins, const py::array& directions,
                       const py::array& t0, const py::array& samples) {
     RayBatch<R> rays{};
-    rays.origins = args.in<R>("origins", origins, "R 3");
-    rays.directions = args.in<R>("directions", directions, "R 3");
-    rays.t0 = args.in<R>("t0", t0, "R");
+    rays.origins = args.within<R>("origins", origins, "R 3", world_limit);
+    rays.directions = args.within<R>("directions", directions, "R 3", world_limit);
+    rays.t0 = args.within<R>("t0", t0, "R", world_limit);
     rays.samples = args.in<std::int32_t>("samples", samples, "R");
     rays.count = args.size("R");
+    for (std::int64_t ray = 0; ray < rays.count; ++ray)
+        if (rays.samples[ray] < 0 || rays.samples[ray] > most_samples)
+            args.range("samples", "0 to " + std::to_string(most_samples) + " samples of a ray",
+                       std::to_string(rays.samples[ray]) + " in row " + std::to_string(ray));
     return rays;
 }
 

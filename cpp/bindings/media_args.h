@@ -17,6 +17,24 @@ using MediumTuple = std::tuple<std::string, py::array, std::optional<py::array>,
 /// (X, Y, Z) and box_from_world (3, 4), or None.
 using GridPlaces = std::vector<std::optional<std::tuple<std::array<int, 3>, py::array>>>;
 
+inline constexpr double most_mean_free_paths = 1e6;
+
+/// At least the longest way through the box of a grid, meters: the diagonal of a cube, through the
+/// inverse of the matrix, by its cofactors.
+inline double longest_way(const DensityLayout& layout) {
+    const Affine box_from_world{layout.box_from_world};
+    const auto row = [&](std::size_t i) {
+        const double* m = box_from_world.m.data() + 4 * i;
+        return Vec3<double>(m[0], m[1], m[2]);
+    };
+    double sum = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Vec3<double> column = cross(row((i + 1) % 3), row((i + 2) % 3));
+        sum += dot(column, column);
+    }
+    return std::sqrt(3 * sum) / std::abs(box_from_world.determinant());
+}
+
 inline void set_media(PathGeometry& geometry, const py::array& interior, const py::array& boundary,
                       std::int32_t world, const GridPlaces& grids) {
     ArrayArgs args("PathTracer");
@@ -42,8 +60,10 @@ inline void set_media(PathGeometry& geometry, const py::array& interior, const p
                 args.range("density", "at least two voxels along each axis", "fewer");
             layout.shape = {shape[0], shape[1], shape[2]};
             ArrayArgs own("PathTracer");
-            std::copy_n(own.in<double>("box_from_world", matrix, "3 4"), 12,
+            std::copy_n(own.within<double>("box_from_world", matrix, "3 4", world_limit), 12,
                         layout.box_from_world.begin());
+            if (!(longest_way(layout) <= world_limit))
+                args.range("box_from_world", "a matrix that can be inverted", "another");
         }
         out.grids.push_back(layout);
     }
@@ -68,17 +88,32 @@ std::vector<Medium<R>> media_of(const PathGeometry& geometry,
         Medium<R> medium;
         if (!phase.empty()) medium.phase = AnyPhase<R>::named(phase);
         ArrayArgs own("trace_paths");
-        const R* next = own.in<R>("media", row, std::to_string(medium.parameter_count()));
+        const R* next =
+            own.within<R>("media", row, std::to_string(medium.parameter_count()), world_limit);
         medium.for_each([&](R& x) { x = *next++; });
         if (density.has_value() == grids[m].empty())
             args.range("media", "densities for media with a grid alone", "others");
         if (density) {
+            // Every null collision is a step of a path: at some density they never end.
+            const double paths = sigma_maj * longest_way(grids[m]);
+            if (!(sigma_maj >= 0 && paths <= most_mean_free_paths))
+                args.range("sigma_maj",
+                           "at most " + number_text(most_mean_free_paths) +
+                               " mean free paths across the box of the densities",
+                           number_text(paths), "lower the densities or sigma_t");
             medium.density = own.in<R>("density", *density, axes_of(grids[m].shape));
             medium.sigma_maj = R(sigma_maj);
         }
         out.push_back(medium);
     }
     return out;
+}
+
+/// Whether two media scatter by the same kind of phase function, or both by none.
+template <class R>
+bool same_phase(const Medium<R>& a, const Medium<R>& b) {
+    return a.phase.has_value() == b.phase.has_value() &&
+           (!a.phase || a.phase->model.index() == b.phase->model.index());
 }
 
 /// Where derivatives by media go: rows like their parameters, and arrays like their grids or None.

@@ -61,6 +61,9 @@ inline py::list path_rows(const SceneRows& rows, const py::tuple& camera_numbers
     const SceneNumbers<double> numbers(args, rows);
     const ThinLens camera = thin_lens(camera_numbers);
     const PathOptions options = options_of(args, given);
+    const std::int64_t pixels = std::int64_t{camera.width} * camera.height;
+    if (pixel >= pixels)
+        args.range("pixel", "below " + std::to_string(pixels), std::to_string(pixel));
     py::list out;
     if (!rows.geometry.media.any()) {
         for (const auto& v : trace_path(numbers.scene, camera, options, pixel, sample))

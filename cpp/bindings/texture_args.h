@@ -17,12 +17,26 @@ using BentNormals = std::tuple<py::array, int, int>;
 
 inline TextureLayout layout_of(const ArrayArgs& args, const Layout& given) {
     const auto [height, width, channels, u, v, mips] = given;
-    if (height < 1 || width < 1 || channels < 1 || channels > max_channels)
-        args.range("layouts", "textures (H, W, 1 to 4)", "others");
+    constexpr int largest_side = 1 << 16;
+    if (height < 1 || width < 1 || height > largest_side || width > largest_side || channels < 1 ||
+        channels > max_channels)
+        args.range("layouts", "textures (H, W, 1 to 4), H and W at most 65536", "others");
     if (u < 0 || u > 2 || v < 0 || v > 2) args.range("wrap", "0 to 2", "others");
     const TextureShape shape{height, width};
     return {shape, channels, static_cast<Wrap>(u), static_cast<Wrap>(v),
             mips ? PackedMips::of(shape) : PackedMips{}};
+}
+
+/// Refuses textures on shapes that are no meshes: they have no coordinates and no triangles.
+inline void check_coordinates(const ArrayArgs& args, const PathGeometry& geometry,
+                              const SurfaceTextures& textures) {
+    for (std::size_t s = geometry.bvh.instances().size(); s < geometry.shape_count(); ++s) {
+        const auto m = static_cast<std::size_t>(geometry.material[s]);
+        if (!textures.of(m).empty() || textures.bends(m) || textures.is_directed(m) ||
+            textures.glows(s))
+            args.range("uses", "textures on meshes alone", "one on shape " + std::to_string(s),
+                       "spheres and bodies have no texture coordinates");
+    }
 }
 
 inline void set_textures(PathGeometry& geometry, const std::vector<Layout>& layouts,
@@ -39,15 +53,16 @@ inline void set_textures(PathGeometry& geometry, const std::vector<Layout>& layo
         out.uses.emplace_back();
         for (const auto& [texture, channel, first, count, lo, hi] : of_material) {
             if (texture < 0 || texture >= static_cast<int>(layouts.size()) || channel < 0 ||
-                first < 0 || count < 1 || first + count > max_parameters ||
-                channel + count > out.layouts[static_cast<std::size_t>(texture)].channels)
+                first < 0 || count < 1 || count > max_parameters ||
+                first > max_parameters - count || !std::isfinite(lo) || !std::isfinite(hi) ||
+                channel > out.layouts[static_cast<std::size_t>(texture)].channels - count)
                 args.range("uses", "channels of textures that are there", "others");
             out.uses.back().push_back({texture, channel, first, count, lo, hi});
         }
     }
     for (const auto& [texture, channel] : emission) {
         if (texture >= static_cast<int>(layouts.size()) || channel < 0 ||
-            (texture >= 0 && channel + 3 > out.layouts[static_cast<std::size_t>(texture)].channels))
+            (texture >= 0 && channel > out.layouts[static_cast<std::size_t>(texture)].channels - 3))
             args.range("emission", "three channels of a texture that is there", "others");
         out.emission.push_back({texture, channel});
     }
@@ -56,13 +71,16 @@ inline void set_textures(PathGeometry& geometry, const std::vector<Layout>& layo
         if (given) {
             const auto& [values, u, v] = *given;
             ArrayArgs own("PathTracer");
-            const float* n = own.in<float>("normal_maps", values, "H W 3");
-            const auto H = static_cast<int>(own.size("H")), W = static_cast<int>(own.size("W"));
-            map.layout = layout_of(own, {H, W, 3, u, v, false});
+            const float* n = own.finite<float>("normal_maps", values, "H W 3");
+            const auto side = [&](const char* axis) {
+                return static_cast<int>(std::min<std::int64_t>(own.size(axis), 1 << 30));
+            };
+            map.layout = layout_of(own, {side("H"), side("W"), 3, u, v, false});
             map.values.assign(n, n + 3 * map.layout.shape.texels());
         }
         out.normal_maps.push_back(std::move(map));
     }
+    check_coordinates(args, geometry, out);
     geometry.textures = std::move(out);
 }
 

@@ -13,6 +13,7 @@
 #include <string>
 
 #include "photograd/core/errors.h"
+#include "photograd/geometry/bvh_limits.h"
 #include "photograd/geometry/ray_batch.h"
 
 namespace photograd {
@@ -55,11 +56,22 @@ void any_hit(const int* valid, RTCScene scene, bool side_by_side, RTCRay16* rays
 }
 #endif
 
+/// Whether Embree takes lane i: it ends the process over other numbers, NaN among them.
+bool acceptable(const RayPacket& rays, int i, float reach) {
+    // Without short cuts, so that the loop over the lanes turns into vector instructions.
+    bool good = (rays.t_min[i] >= 0) & (rays.t_min[i] <= rays.t_max[i]);
+    for (int axis = 0; axis < 3; ++axis)
+        good = good & (std::abs(rays.origin[axis][i]) <= reach) &
+               (std::abs(rays.direction[axis][i]) <= reach);
+    return good;
+}
+
 /// Where packets of sixteen have no kernel (processors without AVX-512), Embree splits them up and does
 /// not look at `valid`, only at the interval: a lane that is off gets an empty one, and a harmless ray.
-void load(const RayPacket& rays, RTCRay16& out, int* valid) {
+/// A ray that is not acceptable is off as well, and meets nothing: paths may scatter that far.
+void load(const RayPacket& rays, float reach, RTCRay16& out, int* valid) {
     for (int i = 0; i < width; ++i) {
-        const bool on = rays.active[i];
+        const bool on = rays.active[i] & acceptable(rays, i, reach);
         valid[i] = on ? -1 : 0;
         out.org_x[i] = on ? rays.origin[0][i] : 0;
         out.org_y[i] = on ? rays.origin[1][i] : 0;
@@ -80,15 +92,6 @@ void load(const RayPacket& rays, RTCRay16& out, int* valid) {
 void keep_message(void* message, RTCError, const char* text) {
     auto& kept = *static_cast<std::string*>(message);
     if (kept.empty() && text) kept = text;
-}
-
-void check_spheres(const std::vector<Sphere>& spheres) {
-    for (std::size_t i = 0; i < spheres.size(); ++i) {
-        const Sphere& s = spheres[i];
-        if (!std::isfinite(s.x + s.y + s.z + s.radius) || !(s.radius > 0))
-            fail(ErrorKind::scene, "bvh", "spheres", "finite centres and radii above 0",
-                 "radius " + std::to_string(s.radius) + " in sphere " + std::to_string(i));
-    }
 }
 
 void bounds_of_solid(const RTCBoundsFunctionArguments* a) {
@@ -137,6 +140,7 @@ struct Bvh::Tree {
     std::vector<RTCScene> mesh_scenes;  // of meshes that are placed by a transformation
     std::vector<RTCGeometry> geometries;
     bool transformed = false;  // some instance lies under a transformation
+    float reach = 1e18f;  // no ray from or to beyond it is traced; Embree's own bound is 1.8e18
 
     Tree() : device(rtcNewDevice(nullptr)) {
         if (!device)
@@ -251,7 +255,12 @@ Bvh::Bvh(std::vector<Mesh> meshes, std::vector<Instance> instances, std::vector<
     if (moves_ && closing_spheres_.size() != spheres_.size())
         fail(ErrorKind::scene, "bvh", "closing_spheres", "one for each sphere, or none",
              std::to_string(closing_spheres_.size()));
-    for (const Mesh& mesh : meshes_) tree_->add_mesh(mesh);
+    std::vector<Vec3<double>> extents;
+    for (const Mesh& mesh : meshes_) {
+        extents.push_back(extent_of(mesh));
+        check_place("vertices", {}, extents.back(), "mesh " + std::to_string(extents.size() - 1));
+        tree_->add_mesh(mesh);
+    }
     tree_->mesh_scenes.resize(meshes_.size(), nullptr);
     for (std::size_t i = 0; i < instances_.size(); ++i) {
         const Instance& it = instances_[i];
@@ -264,6 +273,11 @@ Bvh::Bvh(std::vector<Mesh> meshes, std::vector<Instance> instances, std::vector<
         if (!(std::abs(volume) > 0 && std::abs(volume) < std::numeric_limits<double>::infinity()))
             fail(ErrorKind::scene, "bvh", "world_from_object", "finite, invertible matrices",
                  "determinant " + std::to_string(volume) + " in " + name);
+        const Vec3<double>& extent = extents[static_cast<std::size_t>(it.mesh)];
+        check_place("world_from_object", it.world_from_object, extent, name);
+        if (it.moves) check_place("world_from_object", it.closing, extent, name);
+        if (it.moves || !it.world_from_object.is_identity())
+            tree_->reach = std::min(tree_->reach, static_cast<float>(reach_into(it, name)));
         moves_ = moves_ || it.moves;
         tree_->add_instance(it, static_cast<unsigned>(i));
     }
@@ -275,6 +289,7 @@ Bvh::Bvh(std::vector<Mesh> meshes, std::vector<Instance> instances, std::vector<
     RTCBounds b;
     rtcGetSceneBounds(tree_->scene, &b);
     bounds_ = {{b.lower_x, b.lower_y, b.lower_z}, {b.upper_x, b.upper_y, b.upper_z}};
+    check_reach(double(tree_->reach), bounds_);
 }
 
 Bvh::~Bvh() = default;
@@ -292,7 +307,7 @@ bool Bvh::moves(std::int32_t shape) const {
 void Bvh::trace(const RayPacket& rays, bool side_by_side, PacketHits& hits) const {
     RTCRayHit16 packet;
     alignas(64) int valid[width];
-    load(rays, packet.ray, valid);
+    load(rays, tree_->reach, packet.ray, valid);
     for (int i = 0; i < width; ++i) {
         packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
         packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
@@ -314,7 +329,7 @@ void Bvh::trace(const RayPacket& rays, bool side_by_side, PacketHits& hits) cons
 void Bvh::occluded(const RayPacket& rays, bool side_by_side, bool* blocked) const {
     RTCRay16 packet;
     alignas(64) int valid[width];
-    load(rays, packet, valid);
+    load(rays, tree_->reach, packet, valid);
     // In scenes with transformed instances rtcOccluded16 of Embree 3.13.5 (Debian's) loops for ever on
     // packets with the coherent hint whose directions differ in sign; rtcIntersect16 does not, nor does
     // Embree 4.4. Occlusion goes without the hint there.
@@ -325,7 +340,7 @@ void Bvh::occluded(const RayPacket& rays, bool side_by_side, bool* blocked) cons
 template <Real R>
 void Bvh::trace(const RaySpan<R>& rays, const RayInterval<R>& interval,
                 const HitSpan<R>& out) const {
-    for_each_packet(rays, interval, bounds_, "trace",
+    for_each_packet(rays, interval, bounds_, tree_->reach, "trace",
                     [&](const RayPacket& packet, bool near, const auto& rows) {
                         PacketHits hits;
                         trace(packet, near, hits);
@@ -351,7 +366,7 @@ void Bvh::trace(const RaySpan<R>& rays, const RayInterval<R>& interval,
 
 template <Real R>
 void Bvh::occluded(const RaySpan<R>& rays, const RayInterval<R>& interval, bool* blocked) const {
-    for_each_packet(rays, interval, bounds_, "occluded",
+    for_each_packet(rays, interval, bounds_, tree_->reach, "occluded",
                     [&](const RayPacket& packet, bool near, const auto& rows) {
                         bool hit[width];
                         occluded(packet, near, hit);

@@ -81,7 +81,7 @@ public:
 
     /// Nearest hits of a batch, in the order of the input. Rays that run side by side are traced in
     /// packets; others are reordered first (ray_order.h). The same bits for any number of threads.
-    /// Rays with non-finite numbers or without direction are counted and refused (RangeError).
+    /// RangeError, with a count, for rays without direction or with numbers Embree does not take.
     template <Real R>
     void trace(const RaySpan<R>& rays, const RayInterval<R>& interval,
                const HitSpan<R>& hits) const;
@@ -90,7 +90,7 @@ public:
     template <Real R>
     void occluded(const RaySpan<R>& rays, const RayInterval<R>& interval, bool* blocked) const;
 
-    /// One packet; `side_by_side` promises that the rays are neighbours, which is faster if true.
+    /// One packet; `side_by_side`: neighbours, a hint. What Embree does not take meets nothing.
     void trace(const RayPacket& rays, bool side_by_side, PacketHits& hits) const;
     void occluded(const RayPacket& rays, bool side_by_side, bool* blocked) const;
 

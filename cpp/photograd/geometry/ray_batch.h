@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string>
 
 #include "photograd/core/errors.h"
 #include "photograd/core/parallel.h"
+#include "photograd/core/world_limit.h"
 #include "photograd/geometry/bvh.h"
 
 namespace photograd {
@@ -14,23 +16,25 @@ namespace photograd {
 /// The rows of the batch that the lanes of a packet hold.
 using PacketRows = std::array<std::int64_t, RayPacket::width>;
 
-/// Fills lane k with ray `row`; returns false, leaving the lane inactive, for a ray that is no ray.
+/// Fills lane k with ray `row`; returns false, leaving the lane inactive, for a ray that is no ray
+/// or beyond `reach`.
 template <class R>
-bool load_lane(const RaySpan<R>& rays, const RayInterval<R>& interval, std::int64_t row, int k,
-               RayPacket& packet) {
+bool load_lane(const RaySpan<R>& rays, const RayInterval<R>& interval, float reach,
+               std::int64_t row, int k, RayPacket& packet) {
     const R *o = rays.origins + 3 * row, *d = rays.directions + 3 * row;
-    float finite = 0, squared = 0;
+    float squared = 0;
+    bool good = true;  // NaN is within no limit
     for (int axis = 0; axis < 3; ++axis) {
         const float p = float(o[axis]), e = float(d[axis]);
         packet.origin[axis][k] = p;
         packet.direction[axis][k] = e;
-        finite += (p - p) + (e - e);  // 0, or NaN if any of them is NaN or infinite
+        good = good && std::abs(p) <= reach && std::abs(e) <= reach;
         squared += e * e;
     }
     packet.time[k] = 0;
     packet.t_min[k] = float(interval.t_min[row * interval.t_min_step]);
     packet.t_max[k] = float(interval.t_max[row * interval.t_max_step]);
-    packet.active[k] = finite == 0 && squared > 0;
+    packet.active[k] = good && squared > 0;
     return packet.active[k];
 }
 
@@ -44,16 +48,17 @@ void prefetch(const RaySpan<R>& rays, const std::uint32_t* order, std::int64_t f
     }
 }
 
-[[noreturn]] inline void refuse_rays(const char* function, std::int64_t count, std::int64_t first) {
+[[noreturn]] inline void refuse_rays(const char* function, float reach, std::int64_t count,
+                                     std::int64_t first) {
     fail(ErrorKind::range, function, "origins, directions",
-         "finite numbers and directions of some length",
+         "finite numbers up to " + number_text(double(reach)) + " and directions of some length",
          std::to_string(count) + " rays that have not, the first in row " + std::to_string(first));
 }
 
 /// visit(packet, side_by_side, rows) for all rays, packets being cut the same way for any number of threads.
 template <class R, class Visit>
 void for_each_packet(const RaySpan<R>& rays, const RayInterval<R>& interval, const Box& scene,
-                     const char* function, Visit&& visit) {
+                     float reach, const char* function, Visit&& visit) {
     constexpr int width = RayPacket::width;
     constexpr std::int64_t block_size = 4096;    // rays of one task
     constexpr std::int64_t slab_size = 1 << 20;  // rays ordered at a time: 20 MB of scratch
@@ -80,7 +85,7 @@ void for_each_packet(const RaySpan<R>& rays, const RayInterval<R>& interval, con
                     rows[static_cast<std::size_t>(k)] =
                         start + (near ? at : order[static_cast<std::size_t>(at)]);
                     const std::int64_t row = rows[static_cast<std::size_t>(k)];
-                    const bool good = load_lane(rays, interval, row, k, packet);
+                    const bool good = load_lane(rays, interval, reach, row, k, packet);
                     if (i + k >= end) {
                         packet.active[k] = false;
                     } else if (!good) {
@@ -96,7 +101,7 @@ void for_each_packet(const RaySpan<R>& rays, const RayInterval<R>& interval, con
             count += refused[b];
             first = std::min(first, first_refused[b]);
         }
-        if (count > 0) refuse_rays(function, count, first);
+        if (count > 0) refuse_rays(function, reach, count, first);
     }
 }
 

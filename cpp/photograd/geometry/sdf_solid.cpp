@@ -6,6 +6,7 @@
 #include <string>
 
 #include "photograd/core/errors.h"
+#include "photograd/core/world_limit.h"
 #include "photograd/geometry/sdf_layout.h"
 
 namespace photograd {
@@ -40,6 +41,10 @@ SdfSolid::SdfSolid(const Sdf& body, const double* numbers) {
     if (!(largest < 1e30))
         fail(ErrorKind::scene, "SdfSolid", "body", "an end on all sides", "none",
              "intersect planes with a box or a sphere");
+    if (!(largest <= world_limit))
+        fail(ErrorKind::scene, "SdfSolid", "body",
+             "all of it within " + number_text(world_limit) + " m of the origin",
+             number_text(largest) + " m");
     tolerance_ = 1e-7 * largest;
     for (int k = 0; k < 3; ++k) {
         // Rounding to float takes less than this away.

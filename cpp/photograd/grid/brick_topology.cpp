@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "photograd/core/errors.h"
+#include "photograd/core/world_limit.h"
 
 namespace photograd {
 
@@ -27,10 +28,12 @@ BrickTopology::BrickTopology(std::span<const std::int32_t> origins,
         extent_[axis] = static_cast<int>(hi[axis] - lo[axis] + 1);
     }
     const double bytes = 4.0 * extent_[0] * extent_[1] * extent_[2] + 4.0 * voxels_a_brick * count;
-    if (bytes > static_cast<double>(memory_limit))
+    constexpr double most_entries = 1 << 28;
+    if (bytes > static_cast<double>(memory_limit) ||
+        1.0 * extent_[0] * extent_[1] * extent_[2] > most_entries)
         fail(ErrorKind::range, "BrickTopology", "memory_limit",
-             "room for tables of " + std::to_string(static_cast<std::int64_t>(bytes)) + " bytes",
-             std::to_string(memory_limit) + " bytes",
+             "room for tables of " + number_text(bytes) + " bytes",
+             std::to_string(memory_limit) + " bytes, and at most 2^28 bricks in the table",
              "bricks far apart need a large table: crop the grid");
     top_.assign(static_cast<std::size_t>(extent_[0]) * static_cast<std::size_t>(extent_[1]) *
                     static_cast<std::size_t>(extent_[2]),

@@ -11,6 +11,7 @@
 namespace photograd {
 namespace {
 
+constexpr int most_voxels = 1 << 13;        // the table has 2^30 entries then
 constexpr std::int32_t farthest = 1 << 20;  // bricks, where nothing is active at all
 
 /// Rows of the 9^3 voxels from `corner` on; true if there is one.
@@ -33,7 +34,13 @@ CellTable::CellTable(const BrickTopology& topology, std::array<int, 3> shape,
                      std::int64_t memory_limit)
     : topology_(topology), shape_(shape) {
     const std::vector<std::int32_t>& origins = topology_.origins();
-    for (std::size_t axis = 0; axis < 3; ++axis) extent_[axis] = (shape[axis] + 7) / 8 + 1;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (shape[axis] < 1 || shape[axis] > most_voxels)
+            fail(ErrorKind::range, "CellTable", "shape",
+                 "1 to " + std::to_string(most_voxels) + " voxels along each axis",
+                 std::to_string(shape[axis]));
+        extent_[axis] = (shape[axis] + 7) / 8 + 1;
+    }
     const std::size_t entries =
         std::size_t(extent_[0]) * std::size_t(extent_[1]) * std::size_t(extent_[2]);
     std::set<std::size_t>

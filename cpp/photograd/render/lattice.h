@@ -41,6 +41,10 @@ Span<R> clip_to_box(const R* origin, const R* direction, const double (*box)[3])
     return {near, far};
 }
 
+/// Samples of one ray: what a chunk of rays records of them fits into memory.
+inline constexpr std::int32_t most_samples = 1 << 18;
+
+/// `count` is `most_samples` + 1 where there would be more.
 template <Real R>
 struct RaySamples {
     R t0;
@@ -48,17 +52,22 @@ struct RaySamples {
 };
 
 template <Real R>
+std::int32_t sample_count(R samples) {
+    return static_cast<std::int32_t>(std::fmin(std::fmax(samples, R(0)), R(most_samples + 1)));
+}
+
+template <Real R>
 RaySamples<R> place_samples(const Span<R>& span, R dt, Lattice lattice, R jitter) {
     if (!(span.far > span.near)) return {span.near, 0};
     const R shift = (jitter - R(0.5)) * dt;
     if (lattice == Lattice::entry) {
         const R t0 = span.near + shift;
-        return {t0, static_cast<std::int32_t>(std::floor((span.far - span.near) / dt))};
+        return {t0, sample_count(std::floor((span.far - span.near) / dt))};
     }
     // First k with (k + 1/2) dt + shift >= near, last with ... <= far.
     const R first = std::fmax(std::ceil((span.near - shift) / dt - R(0.5)), R(0));
     const R last = std::floor((span.far - shift) / dt - R(0.5));
-    return {first * dt + shift, static_cast<std::int32_t>(std::fmax(last - first + R(1), R(0)))};
+    return {first * dt + shift, sample_count(last - first + R(1))};
 }
 
 }  // namespace photograd

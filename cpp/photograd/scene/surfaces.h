@@ -44,7 +44,8 @@ struct AlbedoTaps {
 template <class R>
 AlbedoTaps<R> texture_taps(const AlbedoLayout& layout, const Vec2<R>& uv) {
     const auto along = [](R coordinate, int n, int& low, int& high, R& fraction) {
-        const R q = std::clamp(coordinate * R(n) - R(0.5), R(0), R(n - 1));
+        const R place = coordinate * R(n) - R(0.5);
+        const R q = place > R(0) ? std::min(place, R(n - 1)) : R(0);  // of NaN, 0
         low = std::min(static_cast<int>(q), n - 1);
         high = std::min(low + 1, n - 1);
         fraction = q - R(low);
