@@ -131,7 +131,7 @@ def test_what_is_not_ours_is_left_alone(tmp_path: Path, source: Path) -> None:
         (tmp_path / "out/images/scan.png").unlink()
     assert (tmp_path / "out/thesis.txt").read_text() == "years"
     (tmp_path / "out/capture.json").unlink()  # a model of another hand, as far as we can tell
-    with pytest.raises(IoError, match="that photograd did not write, got .*move it away"):
+    with pytest.raises(IoError, match=r"that photograd did not write, got .*move it away"):
         run(tmp_path, FakeEngine(), overwrite=True)
     assert len(load_capture(tmp_path / "out").views) == 9
     for out in (source, tmp_path):

@@ -1,9 +1,9 @@
 """Files that are written whole or not at all: checkpoints, captures, figures.
 
 The bytes go to a hidden neighbour of the target, reach the disk (fsync) and only then take the
-target's name, which a file system does in one step. A reader sees the old file or the new one; a full
-disk, an exception or a killed process leaves the old one as it was. What a killed process leaves
-beside it, the next write to the same target removes.
+target's name, which a file system does in one step. A reader sees the old file or the new one; a
+full disk, an exception or a killed process leaves the old one as it was. What a killed process
+leaves beside it, the next write to the same target removes.
 """
 
 from __future__ import annotations
