@@ -24,7 +24,7 @@ COPIES = 4
 BYTES_A_RAY = 480
 """Measured: 478 to 696, of dense_grid and sparse_sh, 200,000 and 800,000 rays."""
 BYTES_A_PIXEL = 48
-"""Colour and alpha, view and place in it, and as much again while views are joined."""
+"""Color and alpha, view and place in it, and as much again while views are joined."""
 
 
 def require_room_to_start(capture: Capture, box: Array, options: FitOptions) -> None:

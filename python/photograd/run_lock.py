@@ -42,12 +42,12 @@ def one_run_in(command: str, folder: Path) -> Iterator[None]:
 
 @contextmanager
 def one_run_for(command: str, out: Path) -> Iterator[None]:
-    """Hold the output file `out`, and what lies beside it under its name, for this process alone.
+    """Hold the output file `out`, and files beside it that differ in the suffix, for this process.
 
     Raises:
         IoError: another run holds it, or nothing can be written there.
     """
-    with _one_run(command, out, out.with_name(f".{out.name}.lock")):
+    with _one_run(command, out, out.with_name(f".{out.stem}.lock")):
         yield
 
 

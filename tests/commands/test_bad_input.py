@@ -133,6 +133,7 @@ def test_blind_cameras_may_be_allowed(
     ("name", "words"),
     [
         ("dense_gird", ("did you mean 'dense_grid'?",)),
+        ("gaussian", ("did you mean 'gaussians'?",)),
         ("texture_2d", ("2D canvas", "'dense_grid'")),
         ("tiny_network", ("a capture can start",)),
     ],
@@ -144,6 +145,8 @@ def test_a_representation_that_cannot_be_fitted(
         "fit", capture_folder, "--out", tmp_path / "model", "--representation", name, *FEW
     )
     assert_one_line(done, name, *words)
+    assert "toy_blobs" not in done.err  # only what a fit can start is listed
+    assert done.err.count("\n") == 1  # said before the photographs are read
     assert not (tmp_path / "model").exists()
 
 

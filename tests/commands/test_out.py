@@ -71,3 +71,13 @@ def test_a_name_that_no_file_can_have_is_refused_before_the_work(
     assert says in done.err
     assert done.err.count("\n") == 1
     assert not list(tmp_path.iterdir())
+
+
+def test_what_a_killed_trace_left_goes_with_the_next(photograd: Photograd, tmp_path: Path) -> None:
+    halves = [f".x.{kind}.99999.tmp" for kind in ("exr", "png", "sums.npz")]
+    for name in (*halves, ".x.lock", ".x.exr.notes.tmp", ".y.exr.99999.tmp"):
+        (tmp_path / name).write_bytes(b"half")
+    words = ("trace", "cornell-box", "--size", 8, "--spp", 1, "--out", tmp_path / "x.exr")
+    assert photograd(*words).code == 0
+    hidden = sorted(path.name for path in tmp_path.glob(".*"))
+    assert hidden == [".x.exr.notes.tmp", ".y.exr.99999.tmp"]  # another's, and of another picture

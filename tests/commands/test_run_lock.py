@@ -83,6 +83,7 @@ def test_every_command_that_fills_a_folder_asks(
          "--out", folder),
         ("trace", "cornell-box", "--out", picture),
         ("trace", "cornell-box", "--out", picture, "--resume"),
+        ("trace", "cornell-box", "--out", picture.with_suffix(".png")),  # it writes x.png, too
     ]  # fmt: skip
     with one_run_in("fit", folder), one_run_for("trace", picture):
         for words in lines:

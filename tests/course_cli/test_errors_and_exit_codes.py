@@ -120,7 +120,7 @@ def test_wrong_usage_exits_with_2_and_points_to_help(
         (("fail", "interrupt"), 130, "Interrupted", "interrupted"),
         (("fail", "exit"), 7, "Exit", "ended with exit code 7"),
         (("fail",), 2, "UsageError", "Missing argument"),
-        (("fail", "ok", "--seed", str(2**64)), 2, "UsageError", "--seed"),
+        (("fail", "ok", "--seed", str(2**63)), 2, "UsageError", "--seed"),
         (("fail", "ok", "--threads", "1000000000000"), 2, "UsageError", "--threads"),
         (("fial",), 2, "UsageError", "Did you mean 'fail'?"),
         (("fit", "photos"), 2, "UnavailableError", "photograd fit: core"),
@@ -150,8 +150,8 @@ def test_a_result_in_json_is_not_followed_by_an_error(run_words: Run) -> None:
 
 
 def test_the_largest_seed_and_number_of_threads_are_accepted(run_words: Run) -> None:
-    words = ("--seed", str(2**64 - 1), "--threads", "4096", "--json")
-    assert run_words("fail", "ok", *words)[1] == f'{{"seed": {2**64 - 1}, "threads": 4096}}\n'
+    words = ("--seed", str(2**63 - 1), "--threads", "4096", "--json")
+    assert run_words("fail", "ok", *words)[1] == f'{{"seed": {2**63 - 1}, "threads": 4096}}\n'
 
 
 def test_success_and_explicit_exit(run_words: Run) -> None:

@@ -131,6 +131,15 @@ def test_a_disk_that_fails_while_files_are_moved_gives_the_old_capture_back(
     assert {path: path.read_bytes() for path in target.rglob("*") if path.is_file()} == before
 
 
+def test_what_a_killed_run_left_is_in_nobodys_way(tmp_path: Path) -> None:
+    for name in (".capture.partial/train/r_9.png", ".capture.replaced/train/r_0.png"):
+        (tmp_path / name).parent.mkdir(parents=True)
+        (tmp_path / name).write_bytes(b"half")
+    (tmp_path / ".photograd.lock").write_text("99999 photograd capture")
+    assert write_blender_capture(tmp_path, {"train": frames(orbit(2))}) == []
+    assert [path.name for path in tmp_path.glob(".*")] == [".photograd.lock"]
+
+
 def test_a_failure_leaves_the_old_capture(tmp_path: Path) -> None:
     target = tmp_path / "c"
     write_blender_capture(target, {"train": frames(orbit(2))})

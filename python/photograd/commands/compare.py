@@ -175,7 +175,7 @@ def photographs_of(given: str, out: Path, *, views: int, size: int, spp: int, se
         )
     # Other numbers make other photographs, which may not stand in for these.
     folder = out / given / f"capture_{views}_{size}_{spp}_{seed}"
-    if not (folder / "transforms_test.json").exists():
+    if not (folder / "transforms_train.json").exists():  # which is written last
         make_capture(
             given, folder, views=views, test_views=8, size=size, spp=spp, seed=seed, overwrite=True
         )

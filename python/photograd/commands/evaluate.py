@@ -22,6 +22,7 @@ from photograd.commands.shared import (
     CaptureArgument,
     DownscaleOption,
     ModelArgument,
+    out_option,
     use_threads,
 )
 from photograd.data.load import load_capture
@@ -41,7 +42,7 @@ def evaluate(
     model: ModelArgument,
     capture: CaptureArgument,
     out: Annotated[
-        Path | None, typer.Option("--out", help="Also draw truth, render and error to this PNG.")
+        Path | None, out_option("Also draw truth, render and error to this PNG.")
     ] = None,
     downscale: DownscaleOption = 1,
     allow_outside: AllowOutsideOption = False,

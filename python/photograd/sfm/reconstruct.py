@@ -38,7 +38,7 @@ from photograd.sfm.picture import draw_cameras
 STATE, PICTURE = MANIFEST, "cameras.png"
 _OURS = (
     "sparse", ".sparse.partial", ".sparse_again", "..sparse_again.partial", PICTURE,
-    "database.db", "database.db-shm", "database.db-wal", "pairs.txt",
+    "database.db", "database.db-journal", "database.db-shm", "database.db-wal", "pairs.txt",
 )  # fmt: skip
 PAIRS_AT_ONCE = 24
 AGREEING = (30, 15)

@@ -35,7 +35,8 @@ def open_locked(path: Path, *, wait: bool = False) -> BinaryIO:
         OSError: the file cannot be opened.
     """
     while True:
-        file = os.fdopen(os.open(path, os.O_RDWR | os.O_CREAT, 0o666), "r+b")
+        flags = os.O_RDWR | os.O_CREAT | getattr(os, "O_BINARY", 0)  # binary, on Windows
+        file = os.fdopen(os.open(path, flags, 0o666), "r+b")
         try:
             _lock(file, wait=wait)
             if fcntl is None or _still_at(path, file):

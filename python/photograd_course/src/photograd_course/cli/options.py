@@ -11,7 +11,7 @@ from typing import Annotated
 import typer
 
 PANEL = "Common options"
-MOST_SEED = 2**64 - 1
+MOST_SEED = 2**63 - 1  # NumPy and the scenes take no more
 MOST_THREADS = 4096
 
 SeedOption = Annotated[
