@@ -157,7 +157,7 @@ def check(found: dict[str, tuple[Array, Array]], size: int) -> dict[str, float]:
     """Raises AssertionError unless the caption is true; returns the numbers that it rests on."""
     clear = PathTracer(fog(size, clear=True)).render(spp=32, seed=2, options=OPTIONS).mean
     picture, by_extinction = found["fog"]
-    air, stone = (0.1, 0.9, 0.08, 0.22), (0.37, 0.46, 0.66, 0.735)  # over the posts; lit, behind
+    air, stone = (0.1, 0.9, 0.08, 0.22), (0.18, 0.2, 0.3, 0.7)  # over the posts; lit side of one
     field, by_thickness = found["cloud"]
     shadow, beside = (0.08, 0.3, 0.72, 0.745), (0.6, 0.95, 0.72, 0.745)
     body = (0.3, 0.75, 0.3, 0.5)
@@ -167,7 +167,8 @@ def check(found: dict[str, tuple[Array, Array]], size: int) -> dict[str, float]:
         "light in the air, of that in clear air": part(picture, *air).mean()
         / part(clear, *air).mean(),
         "change of the air by more fog": part(by_extinction, *air).mean(),
-        "change of the stone behind it": part(by_extinction, *stone).mean(),
+        # The median: single paths of few samples are brighter than all others together.
+        "change of the stone behind it": float(np.median(part(by_extinction, *stone))),
         "shadow, of the field beside": part(field, *shadow).mean() / part(field, *beside).mean(),
         "change of the cloud by more extinction": part(by_thickness, *body).mean(),
         "red over blue in the wax, of those of its lamp": float(red / blue) / (7.0 / 5.6),
