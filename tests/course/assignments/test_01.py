@@ -9,11 +9,13 @@ import numpy as np
 import pytest
 from photograd_course.assignment.bundle import read_folder
 from photograd_course.assignment.checks_file import load_module
+from photograd_course.grading import Status
 
 from course.assignments.support import (
     ASSIGNMENTS,
     AssignmentTests,
     apply_mutant,
+    judge,
     load_figures,
     source,
 )
@@ -134,3 +136,21 @@ def test_predictions_are_as_the_solution_says() -> None:
 def test_every_fact_of_every_figure_has_a_mutant_or_a_reason() -> None:
     module = load_figures(FOLDER)
     assert set(module.RED_FACTS) == set(module.FIGURES) == set(module.RED)
+
+
+@pytest.mark.parametrize(
+    ("task", "before", "after"),
+    [
+        ("01.5", "grad(x[k - 1])", "np.ravel(grad(x[k - 1] if k == 1 else x[k - 1 : k]))"),
+        ("01.6", "float(grad(x) @ d)", "float(grad(np.tile(x, (1000, 1)).T)[:, 0] @ d)"),
+    ],
+    ids=["ragged", "large"],
+)  # fmt: skip
+def test_points_of_another_shape_are_a_failed_check(task: str, before: str, after: str) -> None:
+    text = source(FOLDER)
+    assert text.count(before) == 1
+    outcomes = judge(FOLDER, text.replace(before, after), tasks=(task,))
+    failed = [each for each in outcomes if "the argument of grad: expected an array" in each.text]
+    assert len(failed) >= 2
+    assert {each.status for each in failed} == {Status.FAILED}
+    assert not any(each.status is Status.ERROR_OURS for each in outcomes)
