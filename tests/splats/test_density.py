@@ -58,7 +58,8 @@ def press(field: GaussianScene, rows: Any) -> None:
 def test_clones_all_but_keep_the_picture() -> None:
     # Exactly in the middle of each; around it two cover more, by at most a'^2 / 4. Measured: 49 dB
     # with a third of all cloned at once, 35 dB with the opacity of the original in both.
-    field = scene(cloud(), CloneSplitPrune(budget=1000, schedule=ALWAYS, small=1.0, large=9.0))
+    control = CloneSplitPrune(budget=1000, schedule=ALWAYS, small=1.0, large=9.0, fading=0.0)
+    field = scene(cloud(), control)
     press(field, np.arange(0, 400, 3))
     quality, rows = change_in_db(field)
     assert len(field.params["means"]) == 400 + 134
@@ -116,15 +117,13 @@ def test_faint_and_huge_ones_are_dropped_but_never_all() -> None:
     assert rows.source.tolist() == [7]
 
 
-def test_opacities_are_lowered_and_their_moments_begin_anew() -> None:
-    control = CloneSplitPrune(budget=99, schedule=Schedule(0, 10_000, 100), reset_every=50)
-    field = scene(cloud(30), control)
-    assert field.refine(49, {}) is None
+def test_each_event_lowers_all_opacities_a_little() -> None:
+    field = scene(cloud(30), CloneSplitPrune(budget=99, schedule=ALWAYS, large=9.0))
+    before = opacities(field.params)
     rows = field.refine(50, {})
     assert rows is not None
     assert (rows.source == np.arange(30)).all()
-    assert opacities(field.params).max() == pytest.approx(0.01)
-    assert field.cleared == ("opacity_logits",)
+    np.testing.assert_allclose(opacities(field.params), before - 0.001, rtol=1e-12)
 
 
 def test_moments_follow_their_rows() -> None:

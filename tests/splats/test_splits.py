@@ -48,7 +48,8 @@ def test_splitting_half_of_all_and_pruning_cost_less_than_half_a_decibel() -> No
 
 def test_split_parts_have_the_mean_the_covariance_and_the_coverage_of_the_whole() -> None:
     one = cloud(1, seed=2)
-    field = scene(one, CloneSplitPrune(budget=9, schedule=ALWAYS, small=0.0, large=9.0))
+    control = CloneSplitPrune(budget=9, schedule=ALWAYS, small=0.0, large=9.0, fading=0.0)
+    field = scene(one, control)
     press(field, np.array([0]))
     quality, rows = change_in_db(field)
     assert (rows.source == FRESH).all()
