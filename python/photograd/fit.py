@@ -314,8 +314,6 @@ class Fit:
         if rows is None:
             return
         self.optimiser.apply_row_map(rows, scene.params)
-        for group in scene.cleared:
-            self.optimiser.resample(group, np.zeros_like)
 
     def _prune(self) -> None:
         """Drop voxels of a sparse grid that no view needs, and that do not want density."""

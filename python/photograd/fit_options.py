@@ -44,7 +44,7 @@ class FitOptions:
     total_variation: float = 3e-5  # weight of the prior, 0 switches it off
     background: str = "auto"  # random where the capture has alpha, else learned
     stop: float = 1e-4  # early stop of rays; the discarded light is below this fraction
-    steps_per_voxel: float = 1.5
+    steps_per_voxel: float = 1.5  # of the march; docs/results.md says what more would change
     refine_at: tuple[float, float] = (0.15, 0.4)
     sigma_t: float = 0.1  # 1/m, density of the start
     degree: int = 2  # of the harmonics, 0 to MOST_DEGREE

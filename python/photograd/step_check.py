@@ -46,7 +46,7 @@ def step_change(
     policy = model.field.policy
     if not isinstance(policy, MarchPolicy) or not views:
         return None
-    finer: Any = copy(model.field)
+    finer: Any = copy(model.field)  # whose parameters are shared
     finer.policy = replace(policy, dt=0.5 * policy.dt)
     chosen = views[:: -(-len(views) // most)]
     models = model, replace(model, field=finer)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 from photograd.core import _core
+from photograd.data.view import View
 from photograd.evaluate import as_result, evaluate
 from photograd.fields import DenseGrid
 from photograd.fit import Fit
@@ -57,6 +59,24 @@ def test_a_known_scene_is_recovered() -> None:
     # Measured: 0.38 voxels, and 0.035.
     assert depth == pytest.approx(3 + centre[0] - radius, abs=voxel)
     np.testing.assert_allclose(outputs.color[0] / outputs.opacity[0], color, atol=0.05)
+
+
+def test_64_voxels_are_recovered_from_thirty_photographs_of_100_pixels() -> None:
+    # More than 26 dB is asked for; measured: 34.0 with these few rays, 38.2 with three times as
+    # many. The nearly empty start scores 17.9 dB.
+    cameras = {
+        "train": [c for up in (35.0, -10.0) for c in scene.cameras(15, elevation=up, size=100)],
+        "test": scene.cameras(4, elevation=15.0, size=100),
+    }
+    views = {
+        split: tuple(View(f"{split}_{k}", c, scene.photograph(c)) for k, c in enumerate(members))
+        for split, members in cameras.items()
+    }
+    capture = replace(scene.capture(), train=views["train"], test=views["test"])
+    fit = Fit.start(capture, scene.options(resolution=64, steps=100, rays=1024))
+    model = finish(fit)
+    assert model.field.shape[:3] == (64, 48, 56)
+    assert evaluate(model, capture.test).psnr > 32
 
 
 def test_photographs_without_alpha_get_a_learned_background() -> None:

@@ -69,7 +69,6 @@ class GaussianScene(Representation):
         extent: size of the scene in metres; rates and thresholds are in units of it.
         active_degree: harmonics up to here are drawn.
         pressure: what the pictures since the last refinement asked of each Gaussian.
-        cleared: groups whose moments begin anew after the last refinement.
     """
 
     name: ClassVar[str] = "gaussians"
@@ -101,7 +100,6 @@ class GaussianScene(Representation):
         self.control = control or NoControl()
         self.active_degree = degree
         self.pressure = Pressure.zero(len(gaussians))
-        self.cleared: tuple[str, ...] = ()
 
     @classmethod
     def example(cls, *, seed: int, dtype: type[np.floating[Any]] = np.float64) -> GaussianScene:
@@ -212,15 +210,15 @@ class GaussianScene(Representation):
         self.control.explore(self.params, extent=self.extent, rate=rate, step=step)
 
     def refine(self, step: int, statistics: Mapping[str, Array]) -> RowMap | None:
-        """What the density control decides before this step; `cleared` then names the groups whose
-        moments begin anew. `statistics` is not looked at: a scene gathers its own, see `observe`.
+        """What the density control decides before this step.
+
+        `statistics` is not looked at: a scene gathers its own, see `observe`.
         """
         del statistics
         change = self.control.change(self.params, self.pressure, extent=self.extent, step=step)
         if change is None:
-            self.cleared = ()
             return None
-        self.params, self.cleared = change.params, change.cleared
+        self.params = change.params
         self.pressure = Pressure.zero(self.resolution)
         return change.row_map
 

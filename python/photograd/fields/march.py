@@ -57,7 +57,7 @@ class MarchPolicy:
     """
 
     box: tuple[tuple[float, float, float], tuple[float, float, float]]  # world, metres
-    dt: float  # step in metres
+    dt: float  # step in meters; `photograd evaluate` says what half of it would change
     lattice: Lattice = "origin"
     quadrature: Quadrature = "alpha"
     border: Border = "clamp"

@@ -59,7 +59,7 @@ class SparseContext:
     transmittance: Array
     depth: Array
     camera_adjoint: bool
-    looked_up: int  # samples whose voxels were read; the others were skipped
+    looked_up: int  # samples whose voxels were read, all in float64; the others were skipped
 
 
 @register

@@ -25,11 +25,10 @@ Params = Mapping[str, Array]
 
 @dataclass(frozen=True, eq=False)
 class Change:
-    """New parameters, the rows they came from, and groups whose moments start at zero."""
+    """New parameters, and the rows they came from."""
 
     params: dict[str, Array]
     row_map: RowMap
-    cleared: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
