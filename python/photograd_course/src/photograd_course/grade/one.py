@@ -1,4 +1,4 @@
-"""Judge one hand-in: every check of the bundle in a worker of its own, every question.
+"""Judge one submission: every check of the bundle in a worker of its own, every question.
 
 Where judging itself breaks, a control decides whose doing it is: the same step is repeated with
 what is known to be good, the solution and plain answers. If that goes well, the submission has

@@ -93,7 +93,7 @@ class Trial:
         return value
 
     def _answer(self, function: str, args: Sequence[Any]) -> Any:
-        """What the hand-in returns, unless a function among ``args`` has given the verdict."""
+        """What the submission returns, unless a function among ``args`` has given the verdict."""
         where = function if "." in function else f"{self._module}.{function}"
         try:
             given = [self._watched(arg) for arg in args]
