@@ -143,7 +143,7 @@ struct Bvh::Tree {
     std::vector<RTCScene> mesh_scenes;  // of meshes that are placed by a transformation
     std::vector<RTCGeometry> geometries;
     bool transformed = false;  // some instance lies under a transformation
-    float reach = 1e18f;  // most that sizes of a ray add up to; Embree takes 1.8e18 each
+    float reach = 1e18f;       // most that sizes of a ray add up to; Embree takes 1.8e18 each
 
     Tree() : device(rtcNewDevice(nullptr)) {
         if (!device)
