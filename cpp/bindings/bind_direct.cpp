@@ -31,7 +31,7 @@ std::vector<AlbedoLayout> layouts_of(const ArrayArgs& args, const Bvh& bvh, cons
     return layouts;
 }
 
-/// Rows of the colours, and a look at the number of samples.
+/// Rows of the colors, and a look at the number of samples.
 template <class R>
 std::int64_t entries_of(ArrayArgs& args, const py::array& albedo, int spp) {
     args.in<R>("albedo", albedo, "A 3");

@@ -32,8 +32,7 @@ inline void check_coordinates(const ArrayArgs& args, const PathGeometry& geometr
                               const SurfaceTextures& textures) {
     for (std::size_t s = geometry.bvh.instances().size(); s < geometry.shape_count(); ++s) {
         const auto m = static_cast<std::size_t>(geometry.material[s]);
-        if (!textures.of(m).empty() || textures.bends(m) || textures.is_directed(m) ||
-            textures.glows(s))
+        if (!textures.of(m).empty() || textures.bends(m) || textures.glows(s))
             args.range("uses", "textures on meshes alone", "one on shape " + std::to_string(s),
                        "spheres and bodies have no texture coordinates");
     }

@@ -47,8 +47,8 @@ RAYS = {
     "-1e-07, in row 0",
     "t_min = np.full(9, 1, np.float32); t_min[2] = -1": "t_min: expected numbers of at least 0, "
     "got 1 that are not, the first, -1, in row 2",
-    "o[3, 1] = 1e20": "origins, directions: expected finite numbers up to 1e+18 and directions of "
-    "some length, got 1 rays that have not, the first in row 3",
+    "o[3, 1] = 1e20": "origins, directions: expected finite numbers whose sizes add up to at most "
+    "1e+18, and directions of some length, got 1 rays that have not, the first in row 3",
     "d[4, 0] = -1e20": "got 1 rays that have not, the first in row 4",
 }
 SCENES = {

@@ -10,7 +10,7 @@
 
 namespace photograd {
 
-inline constexpr double world_limit = 1e15;  // metres, in scene files: BEYOND of scene_node.py
+inline constexpr double world_limit = 1e15;  // meters, in scene files: BEYOND of scene_node.py
 
 /// A number for a message: `1e+15`, `0.25`.
 inline std::string number_text(double x) {

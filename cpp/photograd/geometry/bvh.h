@@ -90,7 +90,7 @@ public:
     template <Real R>
     void occluded(const RaySpan<R>& rays, const RayInterval<R>& interval, bool* blocked) const;
 
-    /// One packet; `side_by_side`: neighbours, a hint. What Embree does not take meets nothing.
+    /// One packet; `side_by_side`: neighbors, a hint. What Embree does not take meets nothing.
     void trace(const RayPacket& rays, bool side_by_side, PacketHits& hits) const;
     void occluded(const RayPacket& rays, bool side_by_side, bool* blocked) const;
 

@@ -18,8 +18,8 @@ Vec3<double> extent_of(const Mesh& mesh);
 void check_place(const char* argument, const Affine& place, const Vec3<double>& extent,
                  const std::string& name);
 
-/// How far rays may reach so that Embree takes them also in the object's space. It brings them there
-/// by the inverse in float, adjugate / determinant; an entry of the adjugate is at most twice the
+/// How far rays may reach so that Embree takes them also in the object's space. The inverse in
+/// float brings them there, adjugate / determinant; an entry of the adjugate is at most twice the
 /// largest entry squared. Refuses (SceneError) what cannot be inverted so, at any time.
 double reach_into(const Instance& it, const std::string& name);
 

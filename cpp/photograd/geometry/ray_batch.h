@@ -22,19 +22,18 @@ template <class R>
 bool load_lane(const RaySpan<R>& rays, const RayInterval<R>& interval, float reach,
                std::int64_t row, int k, RayPacket& packet) {
     const R *o = rays.origins + 3 * row, *d = rays.directions + 3 * row;
-    float squared = 0;
-    bool good = true;  // NaN is within no limit
+    float squared = 0, size = 0;
     for (int axis = 0; axis < 3; ++axis) {
         const float p = float(o[axis]), e = float(d[axis]);
         packet.origin[axis][k] = p;
         packet.direction[axis][k] = e;
-        good = good && std::abs(p) <= reach && std::abs(e) <= reach;
+        size += std::abs(p) + std::abs(e);
         squared += e * e;
     }
     packet.time[k] = 0;
     packet.t_min[k] = float(interval.t_min[row * interval.t_min_step]);
     packet.t_max[k] = float(interval.t_max[row * interval.t_max_step]);
-    packet.active[k] = good && squared > 0;
+    packet.active[k] = size <= reach && squared > 0;  // NaN is not
     return packet.active[k];
 }
 
@@ -51,7 +50,8 @@ void prefetch(const RaySpan<R>& rays, const std::uint32_t* order, std::int64_t f
 [[noreturn]] inline void refuse_rays(const char* function, float reach, std::int64_t count,
                                      std::int64_t first) {
     fail(ErrorKind::range, function, "origins, directions",
-         "finite numbers up to " + number_text(double(reach)) + " and directions of some length",
+         "finite numbers whose sizes add up to at most " + number_text(double(reach)) +
+             ", and directions of some length",
          std::to_string(count) + " rays that have not, the first in row " + std::to_string(first));
 }
 

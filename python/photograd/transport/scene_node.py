@@ -15,8 +15,8 @@ from photograd.transport.toml_lines import KeyPath
 
 Built = TypeVar("Built")
 BEYOND = 1e15
-"""Numbers are smaller. Squares of them, areas, and what a light sends across such a distance then
-stay finite in float32, and coordinates within what the ray tracer takes (core/world_limit.h).
+"""Numbers are smaller. Squares of them and areas are then finite in float32, and coordinates within
+what the ray tracer takes (core/world_limit.h).
 """
 LARGEST = 2**53  # whole numbers up to here are exact in a float
 
