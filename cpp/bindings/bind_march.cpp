@@ -177,6 +177,7 @@ void bind_march(py::module_& m) {
              py::arg("quadrature"), py::arg("border"), py::arg("density_activation"),
              py::arg("color_activation"), py::arg("density_scale"));
     m.attr("fields") = field_names();
+    m.attr("most_samples") = most_samples;
     m.attr("tiny_network_parameters") = TinyNetwork<float>::parameter_count;
     m.def("place_samples", &place, py::arg("settings"), py::arg("origins"), py::arg("directions"),
           py::arg("jitter") = py::none(), "Per ray: t0 (R,) and the number of samples (R,) int32.");

@@ -35,7 +35,7 @@ Quadrature = Literal["alpha", "riemann"]
 Border = Literal["clamp", "zero"]
 Activation = Literal["identity", "relu", "softplus", "exp", "sigmoid"]
 
-MOST_SAMPLES = 1 << 20
+MOST_SAMPLES: int = _core.most_samples
 """Of a ray along the diagonal of the box; a shorter step takes hours, and then memory."""
 
 
