@@ -93,6 +93,7 @@ __all__: list[str] = [
     "march_sparse_sh_backward",
     "mip_level",
     "mip_shapes",
+    "most_samples",
     "ops",
     "order_by_depth",
     "phase_cornette_shanks",
@@ -4644,6 +4645,7 @@ lights: dict[str, typing.Any] = {
     "sky": sampled_sky,
     "constant": sampled_constant,
 }
+most_samples: int = 262144
 ops: dict[str, typing.Any]
 phases: dict[str, typing.Any] = {
     "henyey_greenstein": phase_henyey_greenstein,
