@@ -41,7 +41,7 @@ def call(**changes: Any) -> Any:
         ({"parameters": np.zeros((4, 4, 4, 3), np.float32)}, ShapeError, r"\(X, Y, Z, 4\)"),
         ({"parameters": np.zeros((4, 4, 1, 4), np.float32)}, RangeError, "two voxels"),
         ({"parameters": np.zeros((4, 4, 4, 4), np.int32)}, DtypeError, "float32 or float64"),
-        ({"field": "dense_gird"}, RangeError, "dense_grid or tiny_network"),
+        ({"field": "dense_gird"}, RangeError, "one of .'dense_grid', 'tiny_network'"),
         ({"origins": np.full((5, 3), np.nan, np.float32)}, RangeError,
          r"march: origins: expected numbers from -1e\+15 to 1e\+15, got 15 that are not, the first "
          "in row 0"),

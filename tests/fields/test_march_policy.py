@@ -22,7 +22,7 @@ SHORTEST = math.sqrt(12) / MOST_SAMPLES
 def test_a_step_that_takes_too_many_samples_is_refused(dt: float) -> None:
     with pytest.raises(RangeError) as caught:
         MarchPolicy(BOX, dt)
-    expected = "MarchPolicy: dt: expected 3.3e-06 m or more, 1,048,576 samples across the box, got"
+    expected = "MarchPolicy: dt: expected 1.32e-05 m or more, 262,144 samples across the box, got"
     assert str(caught.value).startswith(expected)
 
 

@@ -35,8 +35,7 @@ def open_locked(path: Path, *, wait: bool = False) -> BinaryIO:
         OSError: the file cannot be opened.
     """
     while True:
-        flags = os.O_RDWR | os.O_CREAT | getattr(os, "O_BINARY", 0)  # binary, on Windows
-        file = os.fdopen(os.open(path, flags, 0o666), "r+b")
+        file = open(path, "r+b", opener=_create)  # noqa: SIM115  it keeps its name
         try:
             _lock(file, wait=wait)
             if fcntl is None or _still_at(path, file):
@@ -45,6 +44,11 @@ def open_locked(path: Path, *, wait: bool = False) -> BinaryIO:
             file.close()
             raise
         file.close()
+
+
+def _create(path: str, _flags: int) -> int:
+    flags = os.O_RDWR | os.O_CREAT | getattr(os, "O_BINARY", 0)  # binary, on Windows
+    return os.open(path, flags, 0o666)
 
 
 def is_locked(path: Path) -> bool:
