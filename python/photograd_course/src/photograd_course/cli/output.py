@@ -41,9 +41,14 @@ def emit(result: Mapping[str, object], *, as_json: bool, title: str | None = Non
     for table in _tables(plain, title):
         console.print(table)
     if as_json:
-        sys.stdout.write(json.dumps(plain, allow_nan=False) + "\n")
-        json_printed.set()
+        print_json(json.dumps(plain, allow_nan=False))
+
+
+def print_json(text: str) -> None:
+    """Write a result that is JSON already, one line, to stdout. No error follows it there."""
+    sys.stdout.write(text + "\n")
     sys.stdout.flush()
+    json_printed.set()
 
 
 def note(text: str, *, style: str = "") -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,6 +13,7 @@ from rich.table import Table
 from rich.text import Text
 
 from ..assignment.manifest import Manifest
+from ..cli.output import print_json
 from ..cli.progress import Progress
 from ..grading.failures import GraderFault
 from .batch import Batch, run_batch
@@ -144,5 +144,4 @@ def _batch_json(
 
 def _say_json(request: Request, result: dict[str, Any]) -> None:
     if request.as_json:
-        sys.stdout.write(canonical(result).decode() + "\n")
-        sys.stdout.flush()
+        print_json(canonical(result).decode())

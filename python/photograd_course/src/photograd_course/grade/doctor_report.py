@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import sys
 from typing import Any
 
 from rich.console import Console
 from rich.text import Text
 
+from ..cli.output import print_json
 from .printable import printable
 from .report_json import canonical
 
@@ -26,8 +26,7 @@ def print_examination(result: dict[str, Any], *, as_json: bool) -> None:
     more = "" if result["complete"] else " (attacks left out)"
     console.print(Text(verdict + more, style="bold"))
     if as_json:
-        sys.stdout.write(canonical(result).decode() + "\n")
-        sys.stdout.flush()
+        print_json(canonical(result).decode())
 
 
 def _assignment(entry: dict[str, Any]) -> list[str]:
