@@ -20,6 +20,7 @@ from hypothesis import strategies as st
 from photograd.vdb import write_vdb
 
 from grid.solids import spotted_grid
+from support.tree import ROOT
 
 pytestmark = pytest.mark.fuzz
 
@@ -30,11 +31,8 @@ import sys
 from pathlib import Path
 from photograd.errors import IoError
 from photograd.vdb import read_vdb
-try:
-    import resource
-    resource.setrlimit(resource.RLIMIT_AS, (4 << 30, 4 << 30))
-except ImportError:
-    pass
+from support.memory_limit import limit_memory
+limit_memory(4 << 30)
 for line in sys.stdin:
     try:
         for grid in read_vdb(Path(line.strip()), memory_limit=1 << 30).grids:
@@ -58,6 +56,7 @@ class Reader:
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 text=True,
+                env=os.environ | {"PYTHONPATH": str(ROOT / "tests")},
             )
         assert self.process.stdin is not None
         assert self.process.stdout is not None

@@ -9,7 +9,6 @@ that ends in neither a result nor a typed error it prints a line that begins wit
 from __future__ import annotations
 
 import re
-import resource
 import sys
 import warnings
 from collections import defaultdict
@@ -20,6 +19,7 @@ from photograd_course.errors import Error
 
 from support.core_record import Call, copied, member_name, members, recorded
 from support.core_workload import PARTS
+from support.memory_limit import limit_memory
 
 MEMORY = 6 << 30
 AMOUNTS = {"count", "spp", "steps", "channels"}
@@ -175,7 +175,7 @@ def replay(seed: int, last: int, first: int = 0) -> None:
     known = {call.name for call in calls}
     if missing := sorted({member_name(owner, name) for owner, name, _ in members()} - known):
         say(f"BAD functions that the workload does not call: {missing}")
-    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+    limit_memory(MEMORY)
     damage = Damage(calls)
     for number in range(first, last):
         g = np.random.default_rng([seed, number])
