@@ -7,8 +7,8 @@
 #include "march_args.h"
 #include "module.h"
 #include "photograd/field/registry.h"
-#include "photograd/render/lattice.h"
-#include "photograd/render/march_dense.h"
+#include "photograd/render/march/lattice.h"
+#include "photograd/render/march/march_dense.h"
 
 namespace photograd {
 namespace {

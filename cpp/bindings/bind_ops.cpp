@@ -4,7 +4,7 @@
 #include "array_args.h"
 #include "module.h"
 #include "photograd/core/real.h"
-#include "photograd/ops/op_list.h"
+#include "bindings/op_adapters/op_list.h"
 
 namespace photograd {
 namespace {

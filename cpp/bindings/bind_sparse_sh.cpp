@@ -5,9 +5,9 @@
 
 #include "march_args.h"
 #include "module.h"
-#include "photograd/grid/row_adam.h"
-#include "photograd/grid/sparse_variation.h"
-#include "photograd/render/march_sparse_sh.h"
+#include "photograd/optim/sparse_adam.h"
+#include "photograd/optim/total_variation.h"
+#include "photograd/render/march/march_sparse_sh.h"
 
 namespace photograd {
 namespace {
@@ -148,17 +148,16 @@ void with_rows(const char* function, const BrickTopology& topology, const py::ar
 
 double variation(const BrickTopology& topology, const py::array& values) {
     double total = 0.0;
-    with_rows("sparse_variation", topology, values,
-              [&](ArrayArgs&, const auto* from, int channels) {
-                  const py::gil_scoped_release release;
-                  total = sparse_variation(topology, from, channels);
-              });
+    with_rows("total_variation", topology, values, [&](ArrayArgs&, const auto* from, int channels) {
+        const py::gil_scoped_release release;
+        total = total_variation(topology, from, channels);
+    });
     return total;
 }
 
 void variation_backward(const BrickTopology& topology, const py::array& values, double d_value,
                         std::int64_t first, std::int64_t last, py::array d_values) {
-    with_rows("sparse_variation_backward", topology, values,
+    with_rows("total_variation_backward", topology, values,
               [&](ArrayArgs& args, const auto* from, int channels) {
                   using R = std::remove_cvref_t<decltype(*from)>;
                   if (first < 0 || last > topology.bricks() || first > last)
@@ -166,22 +165,22 @@ void variation_backward(const BrickTopology& topology, const py::array& values, 
                                  std::to_string(first) + ", " + std::to_string(last));
                   R* to = args.out<R>("d_values", d_values, "N C");
                   const py::gil_scoped_release release;
-                  sparse_variation_backward(topology, from, channels, d_value, first, last, to);
+                  total_variation_backward(topology, from, channels, d_value, first, last, to);
               });
 }
 
 void adam(py::array parameter, const py::array& gradient, py::array mean, py::array mean_square,
           const std::array<double, 4>& step) {
-    dispatch_real("adam_rows", "parameter", parameter, [&](auto real) {
+    dispatch_real("sparse_adam", "parameter", parameter, [&](auto real) {
         using R = decltype(real);
-        ArrayArgs args("adam_rows");
+        ArrayArgs args("sparse_adam");
         R* p = args.out<R>("parameter", parameter, "N C");
         const R* g = args.in<R>("gradient", gradient, "N C");
         R* m = args.out<R>("mean", mean, "N C");
         R* v = args.out<R>("mean_square", mean_square, "N C");
         const AdamStep numbers{step[0], step[1], step[2], step[3]};
         const py::gil_scoped_release release;
-        adam_rows(numbers, args.size("N"), args.size("C"), g, p, m, v);
+        sparse_adam(numbers, args.size("N"), args.size("C"), g, p, m, v);
     });
 }
 
@@ -210,12 +209,12 @@ void bind_sparse_sh(py::module_& m) {
           py::arg("background"), py::arg("settings"), py::arg("origins"), py::arg("directions"),
           py::arg("t0"), py::arg("samples"), py::arg("most"),
           "Raises most (N,) to the greatest weight of each voxel over these rays.");
-    m.def("sparse_variation", &variation, py::arg("topology"), py::arg("values"),
+    m.def("total_variation", &variation, py::arg("topology"), py::arg("values"),
           "Squared total variation of values (N, C) over pairs of active neighbours.");
-    m.def("sparse_variation_backward", &variation_backward, py::arg("topology"), py::arg("values"),
+    m.def("total_variation_backward", &variation_backward, py::arg("topology"), py::arg("values"),
           py::arg("d_value"), py::arg("first"), py::arg("last"), py::arg("d_values"),
           "Adds to the rows of d_values that belong to bricks first .. last - 1.");
-    m.def("adam_rows", &adam, py::arg("parameter"), py::arg("gradient"), py::arg("mean"),
+    m.def("sparse_adam", &adam, py::arg("parameter"), py::arg("gradient"), py::arg("mean"),
           py::arg("mean_square"), py::arg("step"),
           "Adam on the rows with a gradient; step is beta_1, beta_2, length, epsilon.");
 }

@@ -2,7 +2,7 @@
 #include <optional>
 
 #include "module.h"
-#include "photograd/render/splat.h"
+#include "photograd/render/splat/splat.h"
 #include "splat_args.h"
 
 namespace photograd {

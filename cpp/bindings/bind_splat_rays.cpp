@@ -1,7 +1,7 @@
 // Gaussians along rays; photograd.splat_rays is the typed face.
 #include <algorithm>
 
-#include "photograd/render/splat_rays.h"
+#include "photograd/render/splat/splat_rays.h"
 #include "splat_args.h"
 
 namespace photograd {

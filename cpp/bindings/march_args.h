@@ -4,8 +4,8 @@
 #include <array>
 
 #include "array_args.h"
-#include "photograd/render/lattice.h"
-#include "photograd/render/march.h"
+#include "photograd/render/march/lattice.h"
+#include "photograd/render/march/march.h"
 
 namespace photograd {
 

@@ -1,7 +1,7 @@
 // The fused march through a dense grid (float): what the kernel gets and gives. Plain data only, because
 // every instruction set's translation unit includes it.
 //
-// The staged form, for any field and any Real, is photograd/render/march.h; the two are tested to agree
+// The staged form, for any field and any Real, is photograd/render/march/march.h; the two are tested to agree
 // bit for bit.
 #pragma once
 

@@ -1,5 +1,5 @@
 // The fused march through a sparse grid of density and spherical harmonics (float): what the kernel gets
-// and gives. The staged form is photograd/field/sparse_sh.h with photograd/render/march.h; the two are
+// and gives. The staged form is photograd/field/sparse_sh.h with photograd/render/march/march.h; the two are
 // tested to agree bit for bit.
 #pragma once
 

@@ -35,7 +35,7 @@ __all__: list[str] = [
     "SplatOptions",
     "TexturePlan",
     "VoxelHash",
-    "adam_rows",
+    "sparse_adam",
     "ambient_occlusion",
     "bsdf_beckmann_conductor",
     "bsdf_blinn_phong",
@@ -129,8 +129,8 @@ __all__: list[str] = [
     "sh_colors",
     "sh_colors_backward",
     "sparse_sh_weights",
-    "sparse_variation",
-    "sparse_variation_backward",
+    "total_variation",
+    "total_variation_backward",
     "square_to_cap",
     "square_to_cosine_hemisphere",
     "square_to_disk",
@@ -3854,7 +3854,7 @@ class CellTable:
     @property
     def tiles(self) -> int: ...
 
-def adam_rows(
+def sparse_adam(
     parameter: numpy.ndarray,
     gradient: numpy.ndarray,
     mean: numpy.ndarray,
@@ -4329,12 +4329,12 @@ def sparse_sh_weights(
     Raises most (N,) to the greatest weight of each voxel over these rays.
     """
 
-def sparse_variation(topology: BrickTopology, values: numpy.ndarray) -> float:
+def total_variation(topology: BrickTopology, values: numpy.ndarray) -> float:
     """
     Squared total variation of values (N, C) over pairs of active neighbours.
     """
 
-def sparse_variation_backward(
+def total_variation_backward(
     topology: BrickTopology,
     values: numpy.ndarray,
     d_value: typing.SupportsFloat | typing.SupportsIndex,

@@ -18,7 +18,7 @@
 #pragma once
 
 #include "photograd/core/vec.h"
-#include "photograd/ops/covariance.h"
+#include "photograd/ops/quaternion.h"
 
 namespace photograd {
 inline namespace PHOTOGRAD_ISA {

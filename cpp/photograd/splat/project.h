@@ -10,12 +10,12 @@
 #include <type_traits>
 
 #include "photograd/ops/activation.h"
-#include "photograd/ops/conic.h"
-#include "photograd/ops/covariance.h"
-#include "photograd/ops/projection.h"
-#include "photograd/ops/screen_splat.h"
-#include "photograd/ops/splat_color.h"
+#include "photograd/splat/conic.h"
+#include "photograd/splat/covariance.h"
 #include "photograd/splat/options.h"
+#include "photograd/splat/projection.h"
+#include "photograd/splat/screen_splat.h"
+#include "photograd/splat/splat_color.h"
 
 namespace photograd {
 

@@ -10,10 +10,10 @@
 
 #include "photograd/core/parallel.h"
 #include "photograd/ops/activation.h"
-#include "photograd/ops/ray_blend.h"
-#include "photograd/ops/ray_gaussian.h"
 #include "photograd/splat/box_tree.h"
 #include "photograd/splat/cloud_check.h"
+#include "photograd/splat/ray_blend.h"
+#include "photograd/splat/ray_gaussian.h"
 
 namespace photograd {
 

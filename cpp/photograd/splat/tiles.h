@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "photograd/ops/screen_splat.h"
+#include "photograd/splat/screen_splat.h"
 
 namespace photograd {
 

@@ -1,7 +1,7 @@
 """The ray marcher as representations use it: options as an enum-typed dataclass, context, backward.
 
 The mathematics is in cpp/photograd/ops/composite.h (value and adjoint of a ray) and
-cpp/photograd/render/march.h (the loop).
+cpp/photograd/render/march/march.h (the loop).
 """
 
 from __future__ import annotations

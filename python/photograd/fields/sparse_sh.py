@@ -246,7 +246,7 @@ class SparseSh(Representation):
 
     def _variation(self, values: Array) -> float:
         flat = np.ascontiguousarray(values).reshape(len(values), -1)
-        return float(_core.sparse_variation(self.active.topology, flat))
+        return float(_core.total_variation(self.active.topology, flat))
 
     def _variation_backward(self, values: Array, d_value: float = 1.0) -> Array:
         d_values = np.zeros_like(values)
@@ -258,7 +258,7 @@ class SparseSh(Representation):
     ) -> None:
         """Add the adjoint of the variation to the rows of bricks first .. last - 1."""
         n = len(values)
-        _core.sparse_variation_backward(
+        _core.total_variation_backward(
             self.active.topology, np.ascontiguousarray(values).reshape(n, -1), d_value, *bricks,
             d_values.reshape(n, -1),
         )  # fmt: skip

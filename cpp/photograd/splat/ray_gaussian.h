@@ -28,7 +28,7 @@
 //   d_log_s_i = -d_strain_ii,      dR_ki = (1/s_i) sum_j M_kj d_strain_ij
 #pragma once
 
-#include "photograd/ops/covariance.h"
+#include "photograd/splat/covariance.h"
 
 namespace photograd {
 inline namespace PHOTOGRAD_ISA {

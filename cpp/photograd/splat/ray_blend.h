@@ -5,7 +5,7 @@
 //   color = sum w c + T_end background,   opacity = 1 - T_end,   depth = sum w t
 //
 // A ray ends before the crossing that would leave T below `stop`. The adjoint is that of
-// ops/splat_blend.h for one ray instead of a row of pixels: with v = <d_color, c> + d_depth t and
+// splat/row_blend.h for one ray instead of a row of pixels: with v = <d_color, c> + d_depth t and
 // d_end = <d_color, background> - d_opacity,
 //
 //   d_c = w d_color,   d_t = w d_depth

@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "photograd/ops/input_group.h"
+#include "input_group.h"
 #include "photograd/ops/sdf_combine.h"
 #include "photograd/ops/sdf_shapes.h"
 

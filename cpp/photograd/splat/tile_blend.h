@@ -1,11 +1,11 @@
 // Stage 4: a tile of pixels, its splats front to back, and the same walk for the adjoint.
 //
 // Forward keeps five numbers a pixel. Backward starts from the finished picture and walks in the same
-// order (ops/splat_blend.h), so it needs no list of what a pixel has seen. What one splat gets from one
+// order (splat/row_blend.h), so it needs no list of what a pixel has seen. What one splat gets from one
 // tile goes to a place of its own; stage 5 adds up the tiles of a splat in their order.
 #pragma once
 
-#include "photograd/ops/splat_blend.h"
+#include "photograd/splat/row_blend.h"
 #include "photograd/splat/tiles.h"
 
 namespace photograd {

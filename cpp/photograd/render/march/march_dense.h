@@ -4,7 +4,7 @@
 #pragma once
 
 #include "photograd/field/dense_grid.h"
-#include "photograd/render/march.h"
+#include "photograd/render/march/march.h"
 
 namespace photograd {
 

@@ -1,4 +1,4 @@
-#include "photograd/render/splat.h"
+#include "photograd/render/splat/splat.h"
 
 #include <array>
 #include <span>
@@ -6,9 +6,9 @@
 #include "kernels/kernels.h"
 #include "photograd/core/errors.h"
 #include "photograd/core/scatter.h"
-#include "photograd/splat/blend.h"
 #include "photograd/splat/cloud_check.h"
 #include "photograd/splat/sort.h"
+#include "photograd/splat/tile_blend.h"
 
 namespace photograd {
 namespace {

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "photograd/field/sparse_sh.h"
-#include "photograd/render/march.h"
+#include "photograd/render/march/march.h"
 
 namespace photograd {
 

@@ -8,18 +8,18 @@
 
 #include <array>
 
+#include "facet_op_list.h"
+#include "input_group.h"
 #include "photograd/core/params.h"
 #include "photograd/ops/bilinear.h"
 #include "photograd/ops/cell_blend.h"
 #include "photograd/ops/composite.h"
-#include "photograd/ops/facet_op_list.h"
-#include "photograd/ops/input_group.h"
-#include "photograd/ops/ray_op_list.h"
-#include "photograd/ops/sdf_op_list.h"
 #include "photograd/ops/sh.h"
 #include "photograd/ops/sh_batch.h"
-#include "photograd/ops/splat_op_list.h"
 #include "photograd/ops/trilinear.h"
+#include "ray_op_list.h"
+#include "sdf_op_list.h"
+#include "splat_op_list.h"
 
 namespace photograd {
 

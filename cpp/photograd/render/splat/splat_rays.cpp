@@ -1,10 +1,10 @@
-#include "photograd/render/splat_rays.h"
+#include "photograd/render/splat/splat_rays.h"
 
 #include <algorithm>
 
 #include "photograd/core/scatter.h"
-#include "photograd/ops/ray_color.h"
 #include "photograd/splat/project.h"
+#include "photograd/splat/ray_color.h"
 #include "photograd/splat/ray_walk.h"
 
 namespace photograd {

@@ -3,10 +3,10 @@
 
 #include <array>
 
-#include "photograd/ops/input_group.h"
-#include "photograd/ops/ray_blend.h"
-#include "photograd/ops/ray_color.h"
-#include "photograd/ops/ray_gaussian.h"
+#include "input_group.h"
+#include "photograd/splat/ray_blend.h"
+#include "photograd/splat/ray_color.h"
+#include "photograd/splat/ray_gaussian.h"
 
 namespace photograd {
 

@@ -29,7 +29,7 @@
 
 #include "photograd/core/dual.h"
 #include "photograd/core/lanes.h"
-#include "photograd/ops/screen_splat.h"
+#include "photograd/splat/screen_splat.h"
 
 namespace photograd {
 inline namespace PHOTOGRAD_ISA {

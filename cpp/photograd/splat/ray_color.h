@@ -3,32 +3,18 @@
 //
 //   n = d / |d|,   Y_k = Y_k(n),   color_c = max(0, 1/2 + sum_k Y_k sh_kc)
 //
-// Splatting takes the direction from the eye to the Gaussian's mean instead (ops/splat_color.h). A ray has
+// Splatting takes the direction from the eye to the Gaussian's mean instead (splat/splat_color.h). A ray has
 // one n, so that its Y_k are computed once for all that it crosses.
 //
 // Adjoint: zero where the clamp holds, else d_Y_k = sum_c sh_kc d_color_c (the ray's share), d_sh_kc = Y_k
-// d_color_c (the Gaussian's);  d_d = (d_n - n <n, d_n>) / |d|, which has no part along d.
+// d_color_c (the Gaussian's);  d_d from d_n by ops/unit_direction.h.
 #pragma once
 
-#include "photograd/core/dual.h"
 #include "photograd/ops/sh.h"
+#include "photograd/ops/unit_direction.h"
 
 namespace photograd {
 inline namespace PHOTOGRAD_ISA {
-
-/// n[3] = d / |d|; returns 1 / |d|. d must not be zero.
-template <class R>
-inline R unit_direction(const R* d, R* n) {
-    const R inverse = R(1) / sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-    for (int i = 0; i < 3; ++i) n[i] = d[i] * inverse;
-    return inverse;
-}
-/// Adds to d_d[3].
-template <class R>
-inline void unit_direction_backward(const R* n, R inverse, const R* d_n, R* d_d) {
-    const R along = n[0] * d_n[0] + n[1] * d_n[1] + n[2] * d_n[2];
-    for (int i = 0; i < 3; ++i) d_d[i] += (d_n[i] - n[i] * along) * inverse;
-}
 
 /// color[3] from Y[K] and sh (K, 3).
 template <int Degree, class R>

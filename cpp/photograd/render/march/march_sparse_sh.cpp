@@ -1,7 +1,7 @@
-#include "photograd/render/march_sparse_sh.h"
+#include "photograd/render/march/march_sparse_sh.h"
 
 #include "kernels/kernels.h"
-#include "photograd/render/sparse_slab.h"
+#include "photograd/render/march/sparse_slab.h"
 
 namespace photograd {
 namespace {

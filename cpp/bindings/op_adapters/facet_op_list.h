@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "input_group.h"
 #include "photograd/ops/beckmann.h"
 #include "photograd/ops/charlie.h"
 #include "photograd/ops/dispersion.h"
@@ -13,7 +14,6 @@
 #include "photograd/ops/ggx.h"
 #include "photograd/ops/ggx_fast.h"
 #include "photograd/ops/gtr1.h"
-#include "photograd/ops/input_group.h"
 #include "photograd/ops/principled.h"
 #include "photograd/ops/refract.h"
 #include "photograd/ops/thin_film.h"

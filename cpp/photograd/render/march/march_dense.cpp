@@ -1,4 +1,4 @@
-#include "photograd/render/march_dense.h"
+#include "photograd/render/march/march_dense.h"
 
 #include "kernels/kernels.h"
 #include "photograd/core/scatter.h"

@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <array>
 
-#include "photograd/ops/conic.h"
-#include "photograd/ops/covariance.h"
-#include "photograd/ops/input_group.h"
-#include "photograd/ops/projection.h"
-#include "photograd/ops/splat_blend.h"
-#include "photograd/ops/splat_color.h"
+#include "input_group.h"
+#include "photograd/splat/conic.h"
+#include "photograd/splat/covariance.h"
+#include "photograd/splat/projection.h"
+#include "photograd/splat/row_blend.h"
+#include "photograd/splat/splat_color.h"
 
 namespace photograd {
 

@@ -7,7 +7,7 @@
 // batches and a ray that has become opaque drops out.
 //
 // Memory is O(1) per ray: the backward pass walks front to back again and subtracts from the totals that
-// the forward pass left. render/march_dense.h is the fused form for the dense grid in float.
+// the forward pass left. march_dense.h is the fused form for the dense grid in float.
 #pragma once
 
 #include <algorithm>

@@ -49,7 +49,7 @@ void for_neighbours(const BrickTopology& topology, std::int32_t brick, Visit&& v
 
 /// values (N, C).
 template <Real R>
-double sparse_variation(const BrickTopology& topology, const R* values, int channels) {
+double total_variation(const BrickTopology& topology, const R* values, int channels) {
     std::vector<double> part(static_cast<std::size_t>(topology.bricks()), 0.0);
     parallel_for(topology.bricks(), [&](std::int64_t brick) {
         double total = 0.0;
@@ -69,8 +69,8 @@ double sparse_variation(const BrickTopology& topology, const R* values, int chan
 }
 /// Adds to the rows of d_values (N, C) that belong to bricks first .. last - 1, and to no others.
 template <Real R>
-void sparse_variation_backward(const BrickTopology& topology, const R* values, int channels,
-                               double d_value, std::int64_t first, std::int64_t last, R* d_values) {
+void total_variation_backward(const BrickTopology& topology, const R* values, int channels,
+                              double d_value, std::int64_t first, std::int64_t last, R* d_values) {
     const R factor = static_cast<R>(2.0 * d_value / (double(topology.voxels()) * channels));
     parallel_for(last - first, [&](std::int64_t i) {
         detail::for_neighbours(topology, static_cast<std::int32_t>(first + i),

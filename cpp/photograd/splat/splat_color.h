@@ -8,8 +8,8 @@
 // from the harmonics, d_o = (d_d - d <d, d_d>) / |o|;  d_mean = d_o,  d_eye = -d_o.
 #pragma once
 
-#include "photograd/core/dual.h"
 #include "photograd/ops/sh.h"
+#include "photograd/ops/unit_direction.h"
 
 namespace photograd {
 inline namespace PHOTOGRAD_ISA {
@@ -17,14 +17,8 @@ inline namespace PHOTOGRAD_ISA {
 /// d[3] = (mean - eye) / |mean - eye|; returns 1 / |mean - eye|.
 template <class R>
 inline R direction_from(const R* eye, const R* mean, R* d) {
-    R square = R(0);
-    for (int i = 0; i < 3; ++i) {
-        d[i] = mean[i] - eye[i];
-        square += d[i] * d[i];
-    }
-    const R inverse = R(1) / sqrt(square);
-    for (int i = 0; i < 3; ++i) d[i] *= inverse;
-    return inverse;
+    const R o[3] = {mean[0] - eye[0], mean[1] - eye[1], mean[2] - eye[2]};
+    return unit_direction(o, d);
 }
 
 /// color[3]; sh is (K, 3). The mean must not be the eye.
@@ -46,11 +40,11 @@ inline void splat_color_backward(const R* eye, const R* mean, const R* sh, const
     sh_basis<Degree>(d[0], d[1], d[2], Y);
     sh_color_backward<Degree, 3>(Y, sh, live, d_Y, d_sh);
     sh_basis_backward<Degree>(d[0], d[1], d[2], d_Y, d_d);
-    const R along = d[0] * d_d[0] + d[1] * d_d[1] + d[2] * d_d[2];
+    R d_o[3] = {R(0), R(0), R(0)};
+    unit_direction_backward(d, inverse, d_d, d_o);
     for (int i = 0; i < 3; ++i) {
-        const R d_o = (d_d[i] - d[i] * along) * inverse;
-        d_mean[i] += d_o;
-        d_eye[i] -= d_o;
+        d_mean[i] += d_o[i];
+        d_eye[i] -= d_o[i];
     }
 }
 
