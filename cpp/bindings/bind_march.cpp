@@ -1,9 +1,4 @@
 // The sampler and the marcher: staged for every field of the registry, fused for the dense grid.
-#include <pybind11/stl.h>
-
-#include <optional>
-
-#include "array_args.h"
 #include "march_args.h"
 #include "module.h"
 #include "photograd/field/registry.h"
@@ -13,8 +8,8 @@
 namespace photograd {
 namespace {
 
-py::tuple place(const MarchSettings& settings, const py::array& origins,
-                const py::array& directions, const std::optional<py::array>& jitter) {
+py::tuple place_rays(const MarchSettings& settings, const py::array& origins,
+                     const py::array& directions, const std::optional<py::array>& jitter) {
     return dispatch_real("place_samples", "origins", origins, [&](auto real) -> py::tuple {
         using R = decltype(real);
         ArrayArgs args("place_samples");
@@ -42,9 +37,9 @@ py::tuple place(const MarchSettings& settings, const py::array& origins,
             });
         }
         for (std::int64_t ray = 0; ray < count; ++ray)
-            if (samples_out[ray] > most_samples)
+            if (samples_out[ray] > max_samples)
                 args.range("settings",
-                           "a step of which " + std::to_string(most_samples) + " cross the box",
+                           "a step of which " + std::to_string(max_samples) + " cross the box",
                            number_text(settings.dt) + " m, too short in row " + std::to_string(ray),
                            "take longer steps, or a smaller box");
         return py::make_tuple(t0, samples);
@@ -105,60 +100,43 @@ void with_field(ArrayArgs& args, const std::string& name, const py::array& param
 }
 
 py::tuple march_any(const std::string& name, const py::array& parameters,
-                    const MarchSettings& settings, const py::array& origins,
-                    const py::array& directions, const py::array& t0, const py::array& samples,
-                    bool fused) {
+                    const MarchSettings& settings, const RayArrays& ray_arrays, bool fused) {
     return dispatch_real("march", "parameters", parameters, [&](auto real) -> py::tuple {
         using R = decltype(real);
         ArrayArgs args("march");
-        const RayBatch<R> rays = ray_batch<R>(args, origins, directions, t0, samples);
-        py::array_t<R> color({rays.count, std::int64_t(3)}), transmittance(rays.count),
-            depth(rays.count);
-        const RayOutputs<R> out{color.mutable_data(), transmittance.mutable_data(),
-                                depth.mutable_data()};
+        const RayBatch<R> rays = ray_batch<R>(args, ray_arrays);
+        py::tuple image;
         with_field<R>(args, name, parameters, settings, [&](const auto& field, const char*) {
-            const py::gil_scoped_release release;
-            if constexpr (std::is_same_v<std::decay_t<decltype(field)>, DenseGrid<float>>)
-                if (fused) return march_dense(field, rays, settings.march(), out);
-            march(field, rays, settings.march(), out);
+            image = filled_image<R, MarchOutputs<R>>({rays.count}, [&](const MarchOutputs<R>& out) {
+                if constexpr (std::is_same_v<std::decay_t<decltype(field)>, DenseGrid<float>>)
+                    if (fused) return march_dense(field, rays, settings.march(), out);
+                march(field, rays, settings.march(), out);
+            });
         });
-        return py::make_tuple(color, transmittance, depth);
+        return image;
     });
 }
 
 void march_any_backward(const std::string& name, const py::array& parameters,
-                        const MarchSettings& settings, const py::array& origins,
-                        const py::array& directions, const py::array& t0, const py::array& samples,
-                        py::array color, py::array transmittance, py::array depth,
-                        const py::array& d_color, const py::array& d_transmittance,
-                        const py::array& d_depth, py::array d_parameters,
-                        std::optional<py::array> d_origins, std::optional<py::array> d_directions,
+                        const MarchSettings& settings, const RayArrays& ray_arrays,
+                        const Arrays<3>& outputs, const Arrays<3>& d_outputs,
+                        py::array d_parameters, const std::optional<Arrays<2>>& d_rays,
                         bool fused) {
     dispatch_real("march_backward", "parameters", parameters, [&](auto real) {
         using R = decltype(real);
         ArrayArgs args("march_backward");
-        const RayBatch<R> rays = ray_batch<R>(args, origins, directions, t0, samples);
-        const RayOutputs<R> out{args.out<R>("color", color, "R 3"),
-                                args.out<R>("transmittance", transmittance, "R"),
-                                args.out<R>("depth", depth, "R")};
-        RayAdjoints<R> adjoints{args.in<R>("d_color", d_color, "R 3"),
-                                args.in<R>("d_transmittance", d_transmittance, "R"),
-                                args.in<R>("d_depth", d_depth, "R")};
-        if (d_origins.has_value() != d_directions.has_value())
-            args.range("d_origins, d_directions", "both or neither", "one of them");
-        if (d_origins) {
-            adjoints.d_origins = args.out<R>("d_origins", *d_origins, "R 3");
-            adjoints.d_directions = args.out<R>("d_directions", *d_directions, "R 3");
-        }
+        const RayBatch<R> rays = ray_batch<R>(args, ray_arrays);
+        MarchAdjoint<R> adjoint;
+        const auto out = MarchCotangentArrays{outputs, d_outputs, d_rays}.read<R>(args, adjoint);
         with_field<R>(args, name, parameters, settings, [&](const auto& field, const char* axes) {
             using F = std::decay_t<decltype(field)>;
             R* d = args.out<R>("d_parameters", d_parameters, axes);
             const py::gil_scoped_release release;
             if constexpr (std::is_same_v<F, DenseGrid<float>>)
-                if (fused && !adjoints.d_origins)
-                    return march_dense_backward(field, rays, settings.march(), out, adjoints, d);
+                if (fused && !adjoint.d_origins)
+                    return march_dense_backward(field, rays, settings.march(), out, adjoint, d);
             typename F::Sink sink(field, d);
-            march_backward(field, rays, settings.march(), out, adjoints, sink);
+            march_backward(field, rays, settings.march(), out, adjoint, sink);
         });
     });
 }
@@ -177,21 +155,20 @@ void bind_march(py::module_& m) {
              py::arg("quadrature"), py::arg("border"), py::arg("density_activation"),
              py::arg("color_activation"), py::arg("density_scale"));
     m.attr("fields") = field_names();
-    m.attr("most_samples") = most_samples;
+    m.attr("max_samples") = max_samples;
     m.attr("tiny_network_parameters") = TinyNetwork<float>::parameter_count;
-    m.def("place_samples", &place, py::arg("settings"), py::arg("origins"), py::arg("directions"),
-          py::arg("jitter") = py::none(), "Per ray: t0 (R,) and the number of samples (R,) int32.");
-    m.def("march", &march_any, py::arg("field"), py::arg("parameters"), py::arg("settings"),
-          py::arg("origins"), py::arg("directions"), py::arg("t0"), py::arg("samples"),
-          py::arg("fused") = true,
-          "Colour without background (R, 3), transmittance (R,) and depth (R,).");
+    m.def("place_samples", &place_rays, py::arg("settings"), py::arg("origins"),
+          py::arg("directions"), py::arg("jitter") = py::none(),
+          "Per ray: t0 (R,) and the number of samples (R,) int32.");
+    m.def(
+        "march", &march_any, py::arg("field"), py::arg("parameters"), py::arg("settings"),
+        py::arg("rays"), py::arg("fused") = true,
+        "Color without background (R, 3), transmittance (R,) and depth (R,). rays: origins (R, 3), "
+        "directions (R, 3), t0 (R,), samples (R,) int32.");
     m.def("march_backward", &march_any_backward, py::arg("field"), py::arg("parameters"),
-          py::arg("settings"), py::arg("origins"), py::arg("directions"), py::arg("t0"),
-          py::arg("samples"), py::arg("color"), py::arg("transmittance"), py::arg("depth"),
-          py::arg("d_color"), py::arg("d_transmittance"), py::arg("d_depth"),
-          py::arg("d_parameters"), py::arg("d_origins") = py::none(),
-          py::arg("d_directions") = py::none(), py::arg("fused") = true,
-          "Adds to d_parameters and, where given, to d_origins and d_directions.");
+          py::arg("settings"), py::arg("rays"), py::arg("outputs"), py::arg("d_outputs"),
+          py::arg("d_parameters"), py::arg("d_rays") = py::none(), py::arg("fused") = true,
+          "Adds to d_parameters and, where given, to d_rays: d_origins and d_directions.");
 }
 
 }  // namespace photograd

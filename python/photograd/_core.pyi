@@ -35,7 +35,6 @@ __all__: list[str] = [
     "SplatOptions",
     "TexturePlan",
     "VoxelHash",
-    "sparse_adam",
     "ambient_occlusion",
     "bsdf_beckmann_conductor",
     "bsdf_blinn_phong",
@@ -91,9 +90,9 @@ __all__: list[str] = [
     "march_backward",
     "march_sparse_sh",
     "march_sparse_sh_backward",
+    "max_samples",
     "mip_level",
     "mip_shapes",
-    "most_samples",
     "ops",
     "order_by_depth",
     "phase_cornette_shanks",
@@ -128,9 +127,8 @@ __all__: list[str] = [
     "set_thread_count",
     "sh_colors",
     "sh_colors_backward",
+    "sparse_adam",
     "sparse_sh_weights",
-    "total_variation",
-    "total_variation_backward",
     "square_to_cap",
     "square_to_cosine_hemisphere",
     "square_to_disk",
@@ -138,6 +136,8 @@ __all__: list[str] = [
     "ssim_backward",
     "thread_count",
     "tiny_network_parameters",
+    "total_variation",
+    "total_variation_backward",
     "trace_light",
     "trace_pairs_backward",
     "trace_path",
@@ -3651,32 +3651,20 @@ class PreparedSplats32:
     """
     def backward(
         self,
-        means: numpy.ndarray,
-        log_scales: numpy.ndarray,
-        quats: numpy.ndarray,
-        opacity_logits: numpy.ndarray,
-        sh: numpy.ndarray,
-        color: numpy.ndarray,
-        opacity: numpy.ndarray,
-        depth: numpy.ndarray,
-        d_color: numpy.ndarray,
-        d_opacity: numpy.ndarray,
-        d_depth: numpy.ndarray,
-        d_means: numpy.ndarray,
-        d_log_scales: numpy.ndarray,
-        d_quats: numpy.ndarray,
-        d_opacity_logits: numpy.ndarray,
-        d_sh: numpy.ndarray,
+        gaussians: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(5)"],
+        image: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(3)"],
+        d_image: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(3)"],
+        d_gaussians: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(5)"],
         d_camera_from_world: numpy.ndarray,
         d_background: numpy.ndarray,
         d_screen: numpy.ndarray,
     ) -> None:
         """
-        Adds to the arrays named d_*.
+        Adds to d_gaussians and what follows; image is what render returned.
         """
     def render(self) -> tuple[typing.Any, ...]:
         """
-        Colour (H, W, 3), opacity (H, W), depth (H, W).
+        Color (H, W, 3), opacity (H, W), depth (H, W).
         """
     @property
     def boxes(self) -> numpy.typing.NDArray[numpy.int32]:
@@ -3695,32 +3683,20 @@ class PreparedSplats64:
     """
     def backward(
         self,
-        means: numpy.ndarray,
-        log_scales: numpy.ndarray,
-        quats: numpy.ndarray,
-        opacity_logits: numpy.ndarray,
-        sh: numpy.ndarray,
-        color: numpy.ndarray,
-        opacity: numpy.ndarray,
-        depth: numpy.ndarray,
-        d_color: numpy.ndarray,
-        d_opacity: numpy.ndarray,
-        d_depth: numpy.ndarray,
-        d_means: numpy.ndarray,
-        d_log_scales: numpy.ndarray,
-        d_quats: numpy.ndarray,
-        d_opacity_logits: numpy.ndarray,
-        d_sh: numpy.ndarray,
+        gaussians: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(5)"],
+        image: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(3)"],
+        d_image: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(3)"],
+        d_gaussians: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(5)"],
         d_camera_from_world: numpy.ndarray,
         d_background: numpy.ndarray,
         d_screen: numpy.ndarray,
     ) -> None:
         """
-        Adds to the arrays named d_*.
+        Adds to d_gaussians and what follows; image is what render returned.
         """
     def render(self) -> tuple[typing.Any, ...]:
         """
-        Colour (H, W, 3), opacity (H, W), depth (H, W).
+        Color (H, W, 3), opacity (H, W), depth (H, W).
         """
     @property
     def boxes(self) -> numpy.typing.NDArray[numpy.int32]:
@@ -3751,39 +3727,22 @@ class PreparedRays32:
     """
     def backward(
         self,
-        means: numpy.ndarray,
-        log_scales: numpy.ndarray,
-        quats: numpy.ndarray,
-        opacity_logits: numpy.ndarray,
-        sh: numpy.ndarray,
-        color: numpy.ndarray,
-        opacity: numpy.ndarray,
-        depth: numpy.ndarray,
-        d_color: numpy.ndarray,
-        d_opacity: numpy.ndarray,
-        d_depth: numpy.ndarray,
-        d_means: numpy.ndarray,
-        d_log_scales: numpy.ndarray,
-        d_quats: numpy.ndarray,
-        d_opacity_logits: numpy.ndarray,
-        d_sh: numpy.ndarray,
+        gaussians: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(5)"],
+        image: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(3)"],
+        d_image: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(3)"],
+        d_gaussians: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(5)"],
         d_background: numpy.ndarray,
-        d_origins: typing.Any,
-        d_directions: typing.Any,
+        d_rays: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(2)"]
+        | None = None,
     ) -> None:
         """
-        Adds to the arrays named d_*; those of the rays may both be None.
+        Adds to d_gaussians, d_background and, where given, d_rays: d_origins, d_directions.
         """
     def render(
-        self,
-        means: numpy.ndarray,
-        log_scales: numpy.ndarray,
-        quats: numpy.ndarray,
-        opacity_logits: numpy.ndarray,
-        sh: numpy.ndarray,
+        self, gaussians: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(5)"]
     ) -> tuple[typing.Any, ...]:
         """
-        Colour (R, 3), opacity (R,), depth (R,); the Gaussians are those prepared.
+        Color (R, 3), opacity (R,), depth (R,); the Gaussians are those prepared.
         """
     @property
     def crossings(self) -> numpy.typing.NDArray[numpy.uint32]:
@@ -3797,39 +3756,22 @@ class PreparedRays64:
     """
     def backward(
         self,
-        means: numpy.ndarray,
-        log_scales: numpy.ndarray,
-        quats: numpy.ndarray,
-        opacity_logits: numpy.ndarray,
-        sh: numpy.ndarray,
-        color: numpy.ndarray,
-        opacity: numpy.ndarray,
-        depth: numpy.ndarray,
-        d_color: numpy.ndarray,
-        d_opacity: numpy.ndarray,
-        d_depth: numpy.ndarray,
-        d_means: numpy.ndarray,
-        d_log_scales: numpy.ndarray,
-        d_quats: numpy.ndarray,
-        d_opacity_logits: numpy.ndarray,
-        d_sh: numpy.ndarray,
+        gaussians: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(5)"],
+        image: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(3)"],
+        d_image: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(3)"],
+        d_gaussians: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(5)"],
         d_background: numpy.ndarray,
-        d_origins: typing.Any,
-        d_directions: typing.Any,
+        d_rays: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(2)"]
+        | None = None,
     ) -> None:
         """
-        Adds to the arrays named d_*; those of the rays may both be None.
+        Adds to d_gaussians, d_background and, where given, d_rays: d_origins, d_directions.
         """
     def render(
-        self,
-        means: numpy.ndarray,
-        log_scales: numpy.ndarray,
-        quats: numpy.ndarray,
-        opacity_logits: numpy.ndarray,
-        sh: numpy.ndarray,
+        self, gaussians: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(5)"]
     ) -> tuple[typing.Any, ...]:
         """
-        Colour (R, 3), opacity (R,), depth (R,); the Gaussians are those prepared.
+        Color (R, 3), opacity (R,), depth (R,); the Gaussians are those prepared.
         """
     @property
     def crossings(self) -> numpy.typing.NDArray[numpy.uint32]:
@@ -3853,19 +3795,6 @@ class CellTable:
     def memory(self) -> int: ...
     @property
     def tiles(self) -> int: ...
-
-def sparse_adam(
-    parameter: numpy.ndarray,
-    gradient: numpy.ndarray,
-    mean: numpy.ndarray,
-    mean_square: numpy.ndarray,
-    step: typing.Annotated[
-        collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(4)"
-    ],
-) -> None:
-    """
-    Adam on the rows with a gradient; step is beta_1, beta_2, length, epsilon.
-    """
 
 def ambient_occlusion(
     geometry: PathGeometry,
@@ -3980,83 +3909,55 @@ def march(
     field: str,
     parameters: numpy.ndarray,
     settings: MarchSettings,
-    origins: numpy.ndarray,
-    directions: numpy.ndarray,
-    t0: numpy.ndarray,
-    samples: numpy.ndarray,
+    rays: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(4)"],
     fused: bool = True,
 ) -> tuple[typing.Any, ...]:
     """
-    Colour without background (R, 3), transmittance (R,) and depth (R,).
+    Color without background (R, 3), transmittance (R,) and depth (R,). rays: origins (R, 3), directions (R, 3), t0 (R,), samples (R,) int32.
     """
 
 def march_backward(
     field: str,
     parameters: numpy.ndarray,
     settings: MarchSettings,
-    origins: numpy.ndarray,
-    directions: numpy.ndarray,
-    t0: numpy.ndarray,
-    samples: numpy.ndarray,
-    color: numpy.ndarray,
-    transmittance: numpy.ndarray,
-    depth: numpy.ndarray,
-    d_color: numpy.ndarray,
-    d_transmittance: numpy.ndarray,
-    d_depth: numpy.ndarray,
+    rays: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(4)"],
+    outputs: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(3)"],
+    d_outputs: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(3)"],
     d_parameters: numpy.ndarray,
-    d_origins: numpy.ndarray | None = None,
-    d_directions: numpy.ndarray | None = None,
+    d_rays: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(2)"] | None = None,
     fused: bool = True,
 ) -> None:
     """
-    Adds to d_parameters and, where given, to d_origins and d_directions.
+    Adds to d_parameters and, where given, to d_rays: d_origins and d_directions.
     """
 
 def march_sparse_sh(
     table: CellTable,
-    density: numpy.ndarray,
-    sh: numpy.ndarray,
-    background: numpy.ndarray,
+    parameters: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(3)"],
     settings: MarchSettings,
     color_offset: typing.SupportsFloat | typing.SupportsIndex,
-    origins: numpy.ndarray,
-    directions: numpy.ndarray,
-    t0: numpy.ndarray,
-    samples: numpy.ndarray,
+    rays: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(4)"],
     fused: bool = True,
     skip: bool = True,
 ) -> tuple[typing.Any, ...]:
     """
-    Colour without background (R, 3), transmittance (R,), depth (R,), samples looked up.
+    Color without background (R, 3), transmittance (R,), depth (R,), samples looked up. parameters: density (N,), sh (N, K, 3), background (1 + 3 K,).
     """
 
 def march_sparse_sh_backward(
     table: CellTable,
-    density: numpy.ndarray,
-    sh: numpy.ndarray,
-    background: numpy.ndarray,
+    parameters: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(3)"],
     settings: MarchSettings,
     color_offset: typing.SupportsFloat | typing.SupportsIndex,
-    origins: numpy.ndarray,
-    directions: numpy.ndarray,
-    t0: numpy.ndarray,
-    samples: numpy.ndarray,
-    color: numpy.ndarray,
-    transmittance: numpy.ndarray,
-    depth: numpy.ndarray,
-    d_color: numpy.ndarray,
-    d_transmittance: numpy.ndarray,
-    d_depth: numpy.ndarray,
-    d_density: numpy.ndarray,
-    d_sh: numpy.ndarray,
-    d_background: numpy.ndarray,
-    d_origins: numpy.ndarray | None = None,
-    d_directions: numpy.ndarray | None = None,
+    rays: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(4)"],
+    outputs: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(3)"],
+    d_outputs: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(3)"],
+    d_parameters: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(3)"],
+    d_rays: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(2)"] | None = None,
     fused: bool = True,
 ) -> None:
     """
-    Adds to d_density, d_sh, d_background and, where given, d_origins and d_directions.
+    Adds to d_parameters and, where given, to d_rays: d_origins and d_directions.
     """
 
 def mip_level(
@@ -4111,11 +4012,7 @@ def point_occlusion(
     """
 
 def prepare_splat_rays(
-    means: numpy.ndarray,
-    log_scales: numpy.ndarray,
-    quats: numpy.ndarray,
-    opacity_logits: numpy.ndarray,
-    sh: numpy.ndarray,
+    gaussians: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(5)"],
     options: RayOptions,
     origins: numpy.ndarray,
     directions: numpy.ndarray,
@@ -4126,18 +4023,14 @@ def prepare_splat_rays(
     """
 
 def prepare_splats(
-    means: numpy.ndarray,
-    log_scales: numpy.ndarray,
-    quats: numpy.ndarray,
-    opacity_logits: numpy.ndarray,
-    sh: numpy.ndarray,
+    gaussians: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(5)"],
     image: SplatImage,
     options: SplatOptions,
     camera_from_world: numpy.ndarray,
     background: numpy.ndarray,
 ) -> typing.Any:
     """
-    Projects, sorts and bins; PreparedSplats32 or PreparedSplats64.
+    Projects, sorts and bins; PreparedSplats32 or PreparedSplats64. gaussians: means (N, 3), log_scales (N, 3), quats (N, 4), opacity_logits (N,), sh (N, K, 3).
     """
 
 def principled_values(
@@ -4313,37 +4206,28 @@ def sh_colors_backward(
     Adds the derivatives to d_directions (N, 3) and d_coefficients (N, K, C); with add=False overwrites what stands there, without reading it.
     """
 
+def sparse_adam(
+    parameter: numpy.ndarray,
+    gradient: numpy.ndarray,
+    mean: numpy.ndarray,
+    mean_square: numpy.ndarray,
+    step: typing.Annotated[
+        collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(4)"
+    ],
+) -> None:
+    """
+    Adam on the rows with a gradient; step is beta_1, beta_2, length, epsilon.
+    """
+
 def sparse_sh_weights(
     table: CellTable,
-    density: numpy.ndarray,
-    sh: numpy.ndarray,
-    background: numpy.ndarray,
+    parameters: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(3)"],
     settings: MarchSettings,
-    origins: numpy.ndarray,
-    directions: numpy.ndarray,
-    t0: numpy.ndarray,
-    samples: numpy.ndarray,
-    most: numpy.ndarray,
+    rays: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(4)"],
+    max_weight: numpy.ndarray,
 ) -> None:
     """
-    Raises most (N,) to the greatest weight of each voxel over these rays.
-    """
-
-def total_variation(topology: BrickTopology, values: numpy.ndarray) -> float:
-    """
-    Squared total variation of values (N, C) over pairs of active neighbours.
-    """
-
-def total_variation_backward(
-    topology: BrickTopology,
-    values: numpy.ndarray,
-    d_value: typing.SupportsFloat | typing.SupportsIndex,
-    first: typing.SupportsInt | typing.SupportsIndex,
-    last: typing.SupportsInt | typing.SupportsIndex,
-    d_values: numpy.ndarray,
-) -> None:
-    """
-    Adds to the rows of d_values that belong to bricks first .. last - 1.
+    Raises max_weight (N,) to the largest weight of each voxel over these rays.
     """
 
 def square_to_cap(
@@ -4379,6 +4263,23 @@ def ssim_backward(
     """
 
 def thread_count() -> int: ...
+def total_variation(topology: BrickTopology, values: numpy.ndarray) -> float:
+    """
+    Squared total variation of values (N, C) over pairs of active neighbours.
+    """
+
+def total_variation_backward(
+    topology: BrickTopology,
+    values: numpy.ndarray,
+    d_value: typing.SupportsFloat | typing.SupportsIndex,
+    first: typing.SupportsInt | typing.SupportsIndex,
+    last: typing.SupportsInt | typing.SupportsIndex,
+    d_values: numpy.ndarray,
+) -> None:
+    """
+    Adds to the rows of d_values that belong to bricks first .. last - 1.
+    """
+
 def trace_light(
     geometry: PathGeometry,
     models: collections.abc.Sequence[str],
@@ -4645,7 +4546,7 @@ lights: dict[str, typing.Any] = {
     "sky": sampled_sky,
     "constant": sampled_constant,
 }
-most_samples: int = 262144
+max_samples: int = 262144
 ops: dict[str, typing.Any]
 phases: dict[str, typing.Any] = {
     "henyey_greenstein": phase_henyey_greenstein,

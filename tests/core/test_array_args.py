@@ -19,12 +19,15 @@ from tests.splat import oracle
 def call(**changes: Any) -> Any:
     arguments: dict[str, Any] = {
         "field": "dense_grid", "parameters": np.zeros((4, 4, 4, 4), np.float32),
-        "settings": settings(), "origins": np.zeros((5, 3), np.float32),
-        "directions": np.ones((5, 3), np.float32), "t0": np.zeros(5, np.float32),
-        "samples": np.zeros(5, np.int32),
+        "settings": settings(),
     }  # fmt: skip
-    arguments.update(changes)
-    return _core.march(**arguments)
+    rays = {
+        "origins": np.zeros((5, 3), np.float32), "directions": np.ones((5, 3), np.float32),
+        "t0": np.zeros(5, np.float32), "samples": np.zeros(5, np.int32),
+    }  # fmt: skip
+    for name, value in changes.items():
+        (rays if name in rays else arguments)[name] = value
+    return _core.march(**arguments, rays=list(rays.values()))
 
 
 @pytest.mark.parametrize(
@@ -71,11 +74,12 @@ def test_gradients_are_not_written_into_a_read_only_array() -> None:
     grid = np.zeros((4, 4, 4, 4), np.float32)
     rays = np.zeros((5, 3), np.float32), np.ones((5, 3), np.float32)
     t0, samples = np.zeros(5, np.float32), np.zeros(5, np.int32)
-    out = _core.march("dense_grid", grid, settings(), *rays, t0, samples)
+    batch = (*rays, t0, samples)
+    out = _core.march("dense_grid", grid, settings(), batch)
     d_grid = np.zeros_like(grid)
     d_grid.flags.writeable = False
     with pytest.raises(RangeError, match="d_parameters: expected a writable array"):
-        _core.march_backward("dense_grid", grid, settings(), *rays, t0, samples, *out, *out, d_grid)
+        _core.march_backward("dense_grid", grid, settings(), batch, out, out, d_grid)
 
 
 @pytest.mark.parametrize(
@@ -100,18 +104,15 @@ def test_steps_that_are_too_many_are_refused_where_they_are_placed() -> None:
 
 def test_the_backward_pass_needs_the_counts_of_a_rendering() -> None:
     """The records of crossings were written behind the end of their array."""
-    cloud = oracle.cloud(6, 1, degree=0).arrays()
+    cloud = list(oracle.cloud(6, 1, degree=0).arrays().values())
     rays = np.zeros((40, 3)), np.float64([[0, 0, 1]] * 40)
     options, black = _core.RayOptions(0.0, 1.0, 0.0, 0.01), np.zeros(3)
-    prepared = _core.prepare_splat_rays(
-        **cloud, options=options, origins=rays[0], directions=rays[1], background=black
-    )
-    out = {"color": np.zeros((40, 3)), "opacity": np.zeros(40), "depth": np.zeros(40)}
-    d_out = {f"d_{name}": np.ones_like(array) for name, array in out.items()}
-    d_cloud = {f"d_{name}": np.zeros_like(array) for name, array in cloud.items()}
-    rest = {"d_background": np.zeros(3), "d_origins": None, "d_directions": None}
+    prepared = _core.prepare_splat_rays(cloud, options, *rays, black)
+    image = [np.zeros((40, 3)), np.zeros(40), np.zeros(40)]
+    d_image = [np.ones_like(array) for array in image]
+    d_cloud = [np.zeros_like(array) for array in cloud]
     with pytest.raises(RangeError, match=r"expected rays that were rendered, .*call render first"):
-        prepared.backward(**cloud, **out, **d_out, **d_cloud, **rest)
+        prepared.backward(cloud, image, d_image, d_cloud, np.zeros(3))
 
 
 CAMERA = (4, 3, 5.0, 5.0, 2.0, 1.5, np.eye(4)[:3].tolist())

@@ -1,4 +1,4 @@
-"""Every adjoint of `ops/` and `splat/` is proved: one that `Ops` does not list would only be believed."""
+"""Every adjoint of `ops/` and `splat/` is in `Ops`, and so proved."""
 
 from __future__ import annotations
 

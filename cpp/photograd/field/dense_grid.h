@@ -101,7 +101,8 @@ struct DenseGrid {
 
     /// Adds parameter gradients to `sink` and, where asked, dL/d position to d_position[axis].
     void backward(const SampleBatch<R>& batch, const Cache& cache, const SampleValues<R>& d_out,
-                  Sink& sink, int chunk, std::vector<Lanes<R>>* d_position) const {
+                  Sink& sink, int chunk, std::vector<Lanes<R>>* d_position,
+                  std::vector<R>* /*d_direction*/) const {
         const int extent[3] = {shape.x, shape.y, shape.z};
         const BrickLayout layout = BrickLayout::of(extent);
         for (std::size_t g = 0; g < batch.groups(); ++g) {

@@ -55,16 +55,17 @@ struct FieldOptions {
 
 /// A radiance field: batch calls, never virtual per sample. `Cache` is what backward needs of eval, and
 /// `Sink` collects parameter gradients for a slab of rays; the marcher calls sink.finish() after it.
-/// A field whose colour depends on direction takes one more argument in backward: d_direction[axis],
-/// one number a group, added to.
+/// backward adds to d_position[axis] (a set of lanes a group) and, if the color depends on the direction,
+/// to d_direction[axis] (a number a group), unless they are null.
 template <class F>
 concept Field =
     requires(const F field, const SampleBatch<typename F::Scalar>& batch, typename F::Cache& cache,
              SampleValues<typename F::Scalar>& values, typename F::Sink& sink, int chunk,
-             std::vector<Lanes<typename F::Scalar>>* d) {
+             std::vector<Lanes<typename F::Scalar>>* d_position,
+             std::vector<typename F::Scalar>* d_direction) {
         { F::name } -> std::convertible_to<const char*>;
         field.eval(batch, cache, values);
-        field.backward(batch, cache, values, sink, chunk, d);
+        field.backward(batch, cache, values, sink, chunk, d_position, d_direction);
         sink.begin(int{});
         sink.finish();
     };

@@ -31,7 +31,7 @@ template <Real R>
 struct SparseSh {
     using Scalar = R;
     static constexpr const char* name = "sparse_sh";
-    static constexpr int most_numbers = 3 * sh_count(3);
+    static constexpr int max_numbers = 3 * sh_count(3);
 
     const CellTable* table = nullptr;
     const R* density = nullptr;     // (N,)
@@ -43,8 +43,8 @@ struct SparseSh {
 
     [[nodiscard]] int numbers() const { return 3 * sh_count(degree); }
 
-    /// Fits lo and scale to the box of the options; the rest is set by the caller.
-    void place() {
+    /// Sets density_scale, lo and scale from the options; the rest is set by the caller.
+    void fit_to_box() {
         density_scale = static_cast<R>(options.density_scale);
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const double extent = options.box[1][axis] - options.box[0][axis];
@@ -100,15 +100,15 @@ struct SparseSh {
     }
 
     struct Cache {
-        std::vector<std::array<Lanes<R>, 4>> raw;        // colour with its offset, raw density
-        std::vector<std::array<bool, lane_count>> seen;  // neither vacuum nor cut off
+        std::vector<std::array<Lanes<R>, 4>> raw;           // color with its offset, raw density
+        std::vector<std::array<bool, lane_count>> visible;  // neither vacuum nor cut off
     };
 
     void eval(const SampleBatch<R>& batch, Cache& cache, SampleValues<R>& out) const {
         cache.raw.assign(batch.groups(), {});
-        cache.seen.assign(batch.groups(), {});
+        cache.visible.assign(batch.groups(), {});
         for (std::size_t g = 0; g < batch.groups(); ++g) {
-            R Y3[most_numbers];
+            R Y3[max_numbers];
             basis(batch, g, Y3);
             for (int i = 0; i < lane_count; ++i) {
                 const Lookup found = look_up(batch, g, i);
@@ -118,7 +118,7 @@ struct SparseSh {
                 R color[3];
                 blend_colors(found, Y3, color);
                 const auto lane = static_cast<std::size_t>(i);
-                cache.seen[g][lane] = true;
+                cache.visible[g][lane] = true;
                 cache.raw[g][3][i] = raw;
                 out.sigma_t[g][i] = density_scale * activate(options.density_activation, raw);
                 for (std::size_t c = 0; c < 3; ++c) {
@@ -135,9 +135,9 @@ struct SparseSh {
             : field(its_field), gradients(its_gradients) {}
 
         struct Chunk {
-            std::vector<CellRecord<R>> records;              // `ray` is the number within the chunk
-            std::vector<std::array<R, most_numbers>> basis;  // of each ray
-            std::array<double, 1 + most_numbers> lost{};
+            std::vector<CellRecord<R>> records;             // `ray` is the number within the chunk
+            std::vector<std::array<R, max_numbers>> basis;  // of each ray
+            std::array<double, 1 + max_numbers> d_background{};
         };
         const SparseSh& field;
         SparseShGradients<R> gradients;
@@ -150,17 +150,17 @@ struct SparseSh {
     /// Adds to `sink` and, where asked, to d_position[axis] and d_direction[axis].
     void backward(const SampleBatch<R>& batch, const Cache& cache, const SampleValues<R>& d_out,
                   Sink& sink, int chunk, std::vector<Lanes<R>>* d_position,
-                  std::vector<R>* d_direction = nullptr) const {
+                  std::vector<R>* d_direction) const {
         typename Sink::Chunk& to = sink.chunks[static_cast<std::size_t>(chunk)];
         for (std::size_t g = 0; g < batch.groups(); ++g) {
             const std::size_t ray = batch.ray[g];
             if (to.basis.size() <= ray) to.basis.resize(ray + 1);
             R* Y3 = to.basis[ray].data();
             basis(batch, g, Y3);
-            Lanes<R> lost[4] = {};
+            Lanes<R> d_missing[4] = {};  // of the corners without a row
             R d_Y[sh_count(3)] = {};
             for (int i = 0; i < batch.used[g]; ++i) {
-                if (!cache.seen[g][static_cast<std::size_t>(i)]) continue;
+                if (!cache.visible[g][static_cast<std::size_t>(i)]) continue;
                 R d[4] = {};
                 for (std::size_t c = 0; c < 3; ++c)
                     activate_backward(options.color_activation, cache.raw[g][c][i],
@@ -170,7 +170,7 @@ struct SparseSh {
                 const Lookup found = look_up(batch, g, i);
                 to.records.push_back(
                     {{found.q[0], found.q[1], found.q[2]}, batch.ray[g], {d[0], d[1], d[2], d[3]}});
-                for (int c = 0; c < 4; ++c) lost[c][i] = found.missing * d[c];
+                for (int c = 0; c < 4; ++c) d_missing[c][i] = found.missing * d[c];
                 if (d_position) {
                     R d_q[3] = {};
                     camera_backward(found, Y3, d, d_q, d_Y);
@@ -178,10 +178,10 @@ struct SparseSh {
                         d_position[axis][g][i] += d_q[axis] * scale[axis];
                 }
             }
-            to.lost[0] += double(sum(lost[3]));
+            to.d_background[0] += double(sum(d_missing[3]));
             for (int j = 0; j < numbers(); ++j)
-                to.lost[static_cast<std::size_t>(1 + j)] +=
-                    double(Y3[j]) * double(sum(lost[j % 3]));
+                to.d_background[static_cast<std::size_t>(1 + j)] +=
+                    double(Y3[j]) * double(sum(d_missing[j % 3]));
             if (d_direction) {
                 const R x = batch.direction[0][g], y = batch.direction[1][g],
                         z = batch.direction[2][g];
@@ -214,7 +214,7 @@ private:
             d_q[1] += (n >> 1 & 1 ? along : -along) * (x[n >> 2] * z[n & 1]);
             d_q[2] += (n & 1 ? along : -along) * (x[n >> 2] * y[n >> 1 & 1]);
         }
-        R b[most_numbers];
+        R b[max_numbers];
         blend_corners(found.corner, found.at.w, numbers(), b);
         for (int j = 0; j < numbers(); ++j) d_Y[j / 3] += d[j % 3] * b[j];
     }
@@ -257,7 +257,7 @@ void SparseSh<R>::Sink::finish() {
     });
     for (int j = 0; j < 1 + numbers; ++j) {
         double total = 0.0;
-        for (const Chunk& chunk : chunks) total += chunk.lost[static_cast<std::size_t>(j)];
+        for (const Chunk& chunk : chunks) total += chunk.d_background[static_cast<std::size_t>(j)];
         gradients.d_background[j] += static_cast<R>(total);
     }
 }

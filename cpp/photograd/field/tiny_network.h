@@ -89,7 +89,8 @@ struct TinyNetwork {
     };
 
     void backward(const SampleBatch<R>& batch, const Cache& cache, const SampleValues<R>& d_values,
-                  Sink& sink, int chunk, std::vector<Lanes<R>>* d_position) const {
+                  Sink& sink, int chunk, std::vector<Lanes<R>>* d_position,
+                  std::vector<R>* /*d_direction*/) const {
         double* d = sink.partials[static_cast<std::size_t>(chunk)].data();
         const R *w1 = parameters, *w2 = w1 + at_w2;
         for (std::size_t g = 0; g < batch.groups(); ++g)

@@ -137,12 +137,12 @@ void gather_run(const BrickTopology& topology, std::int32_t brick, const CellRec
     }
 }
 
-/// most[row] = max(most[row], trilinear weight times record.d[0]).
+/// max_weight[row] = max(max_weight[row], trilinear weight times record.d[0]).
 template <class R>
-void gather_greatest(const BrickTopology& topology, std::int32_t brick, const CellRecord<R>& record,
-                     R* most) {
+void gather_max(const BrickTopology& topology, std::int32_t brick, const CellRecord<R>& record,
+                R* max_weight) {
     for_own_corners(topology, brick, record, [&](std::int32_t row, R w) {
-        most[row] = std::max(most[row], w * record.d[0]);
+        max_weight[row] = std::max(max_weight[row], w * record.d[0]);
     });
 }
 

@@ -28,6 +28,7 @@
 
 #include "photograd/core/lanes.h"
 #include "photograd/ops/activation.h"
+#include "photograd/ops/march_data.h"
 
 namespace photograd {
 inline namespace PHOTOGRAD_ISA {
@@ -81,6 +82,14 @@ inline void composite(Quadrature form, const Lanes<R>& sigma_t, const Lanes<R>* 
     totals.tau = block.tau_end;
 }
 
+/// Writes the outputs of a ray whose totals are complete.
+template <class R>
+inline void write_outputs(const RayTotals<R>& total, std::int64_t ray, const MarchOutputs<R>& out) {
+    for (int c = 0; c < 3; ++c) out.color[3 * ray + c] = sum(total.color[c]);
+    out.transmittance[ray] = exp(-total.tau);
+    out.depth[ray] = sum(total.depth);
+}
+
 /// Cotangents of a ray, and what the backward walk still has in front of it.
 template <class R>
 struct RayCotangents {
@@ -90,6 +99,20 @@ struct RayCotangents {
     R remainder;  // sum of w_j v_j over the samples not yet passed
     R tau = R(0);
 };
+
+/// Where the backward walk of a ray starts, from the outputs of the forward pass.
+template <class R>
+inline RayCotangents<R> start_cotangents(const MarchOutputs<R>& out, const MarchAdjoint<R>& adjoint,
+                                         std::int64_t ray) {
+    RayCotangents<R> c;
+    for (int k = 0; k < 3; ++k) c.d_color[k] = adjoint.d_color[3 * ray + k];
+    c.d_depth = adjoint.d_depth[ray];
+    c.end_term = -(adjoint.d_transmittance[ray] * out.transmittance[ray]);
+    c.remainder = ((c.d_color[0] * out.color[3 * ray] + c.d_color[1] * out.color[3 * ray + 1]) +
+                   c.d_color[2] * out.color[3 * ray + 2]) +
+                  c.d_depth * out.depth[ray];
+    return c;
+}
 
 /// Adds d_sigma_t[i] and d_rgb[c][i] of one sub-block, and moves `ray` behind it.
 template <class R>

@@ -72,26 +72,22 @@ inline void blend_tile(const BlendArgs<R>& a, const TilePairs& pairs, int x, int
         for (int i = 0; i < columns; ++i) {
             const R T = tile.row[r].T[i];
             for (int c = 0; c < 3; ++c)
-                a.color[3 * (first + i) + c] = sums[r].color[c][i] + T * a.background[c];
-            a.opacity[first + i] = R(1) - T;
-            a.depth[first + i] = sums[r].depth[i];
+                a.image.color[3 * (first + i) + c] = sums[r].color[c][i] + T * a.background[c];
+            a.image.opacity[first + i] = R(1) - T;
+            a.image.depth[first + i] = sums[r].depth[i];
         }
     }
 }
 
 template <class R>
-inline void start_cotangents(const BlendArgs<R>& a, const BlendBackward<R>& b, int columns,
-                             std::int64_t first, RowCotangents<R>& row) {
+inline void start_row(const BlendArgs<R>& a, const ImageCotangents<R>& d, int columns,
+                      std::int64_t first, RowCotangents<R>& row) {
     row = RowCotangents<R>{};
     for (int i = 0; i < columns; ++i) {
-        const std::int64_t at = first + i;
-        R whole = b.d_depth[at] * a.depth[at] - b.d_opacity[at] * (R(1) - a.opacity[at]);
-        for (int c = 0; c < 3; ++c) {
-            row.d_color[c][i] = b.d_color[3 * at + c];
-            whole = whole + b.d_color[3 * at + c] * a.color[3 * at + c];
-        }
-        row.d_depth[i] = b.d_depth[at];
-        row.remainder[i] = whole;
+        const std::int64_t pixel = first + i;
+        for (int c = 0; c < 3; ++c) row.d_color[c][i] = d.d_color[3 * pixel + c];
+        row.d_depth[i] = d.d_depth[pixel];
+        row.remainder[i] = start_remainder(a.image, d, pixel);
     }
 }
 
@@ -103,8 +99,8 @@ inline void blend_tile_backward(const BlendArgs<R>& a, const BlendBackward<R>& b
     RowCotangents<R> back[tile_size];
     tile.start(x, y, a.width, a.height);
     for (int r = 0; r < tile.rows; ++r)
-        start_cotangents(a, b, smaller(tile_size, a.width - x),
-                         static_cast<std::int64_t>(y + r) * a.width + x, back[r]);
+        start_row(a, b.d_image, smaller(tile_size, a.width - x),
+                  static_cast<std::int64_t>(y + r) * a.width + x, back[r]);
     const TilePair* end = walk_tile(
         a, pairs, y, tile, [&](const TilePair& pair, const ScreenSplat<R>& s, int first, int last) {
             SplatSums<R> sums;

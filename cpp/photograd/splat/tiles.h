@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "photograd/splat/rendered_image.h"
 #include "photograd/splat/screen_splat.h"
 
 namespace photograd {
@@ -27,17 +28,13 @@ struct BlendArgs {
     SplatCutoffs<R> cut;
     R background[3];
     int width, height;
-    R* color;    // (H, W, 3)
-    R* opacity;  // (H, W)
-    R* depth;    // (H, W)
+    RenderedImage<R> image;  // (H, W)
 };
 
 template <class R>
 struct BlendBackward {
-    const R* d_color;    // (H, W, 3)
-    const R* d_opacity;  // (H, W)
-    const R* d_depth;    // (H, W)
-    R* partials;         // (pairs, partial_count), by place: each is written once
+    ImageCotangents<R> d_image;  // (H, W)
+    R* partials;                 // (pairs, partial_count), by slot: each is written once
 };
 
 }  // namespace photograd

@@ -42,9 +42,9 @@ Span<R> clip_to_box(const R* origin, const R* direction, const double (*box)[3])
 }
 
 /// Samples of one ray: what a chunk of rays records of them fits into memory.
-inline constexpr std::int32_t most_samples = 1 << 18;
+inline constexpr std::int32_t max_samples = 1 << 18;
 
-/// `count` is `most_samples` + 1 where there would be more.
+/// `count` is `max_samples` + 1 where there would be more.
 template <Real R>
 struct RaySamples {
     R t0;
@@ -53,7 +53,7 @@ struct RaySamples {
 
 template <Real R>
 std::int32_t sample_count(R samples) {
-    return static_cast<std::int32_t>(std::fmin(std::fmax(samples, R(0)), R(most_samples + 1)));
+    return static_cast<std::int32_t>(std::fmin(std::fmax(samples, R(0)), R(max_samples + 1)));
 }
 
 template <Real R>

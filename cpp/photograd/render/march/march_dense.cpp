@@ -2,6 +2,7 @@
 
 #include "kernels/kernels.h"
 #include "photograd/core/scatter.h"
+#include "photograd/render/march/kernel_args.h"
 
 namespace photograd {
 namespace {
@@ -16,29 +17,14 @@ std::vector<std::int64_t> sample_offsets(const std::int32_t* samples, std::int64
     return offset;
 }
 
-MarchDenseArgs kernel_args(const DenseGrid<float>& grid, const RayBatch<float>& rays,
-                           const MarchOptions& options, const RayOutputs<float>& out) {
-    MarchDenseArgs a{};
+MarchDenseArgs dense_args(const DenseGrid<float>& grid, const RayBatch<float>& rays,
+                          const MarchOptions& options, const MarchOutputs<float>& out) {
+    auto a = kernel_args<MarchDenseArgs>(grid, rays, options, out);
     a.values = grid.values;
     a.shape[0] = grid.shape.x;
     a.shape[1] = grid.shape.y;
     a.shape[2] = grid.shape.z;
-    std::copy_n(grid.lo, 3, a.lo);
-    std::copy_n(grid.scale, 3, a.scale);
     a.border = static_cast<int>(grid.options.border);
-    a.density_activation = static_cast<int>(grid.options.density_activation);
-    a.color_activation = static_cast<int>(grid.options.color_activation);
-    a.density_scale = grid.density_scale;
-    a.quadrature = static_cast<int>(options.quadrature);
-    a.dt = static_cast<float>(options.dt);
-    a.tau_stop = static_cast<float>(options.tau_stop());
-    a.origins = rays.origins;
-    a.directions = rays.directions;
-    a.t0 = rays.t0;
-    a.count = rays.samples;
-    a.color = out.color;
-    a.transmittance = out.transmittance;
-    a.depth = out.depth;
     return a;
 }
 
@@ -62,16 +48,14 @@ void record_slab(const Kernels& kernel, const MarchDenseArgs& args, MarchDenseBa
     back.sample_offset = offset.data();
     back.first_ray = first;
     back.d_raw = slab.d_raw.data();
-    const std::int64_t chunks = (last - first + march_chunk - 1) / march_chunk;
+    const std::int64_t chunks = chunk_count(last - first);
     std::vector<std::int64_t> count(static_cast<std::size_t>(chunks));
     const auto run_begin = [&](std::int64_t chunk) {
         return offset[static_cast<std::size_t>(chunk * march_chunk)];
     };
-    parallel_for(chunks, [&](std::int64_t chunk) {
-        const std::int64_t begin = first + chunk * march_chunk;
-        count[static_cast<std::size_t>(chunk)] =
-            kernel.march_dense_backward(args, back, begin, std::min(begin + march_chunk, last),
-                                        slab.runs.data() + run_begin(chunk));
+    for_chunks(first, last, [&](std::int64_t chunk, std::int64_t begin, std::int64_t end) {
+        count[static_cast<std::size_t>(chunk)] = kernel.march_dense_backward(
+            args, back, begin, end, slab.runs.data() + run_begin(chunk));
     });
     slab.items.clear();
     for (std::int64_t chunk = 0; chunk < chunks; ++chunk)
@@ -105,34 +89,30 @@ void gather_slab(const Kernels& kernel, const MarchDenseArgs& args, const BrickL
 }  // namespace
 
 void march_dense(const DenseGrid<float>& grid, const RayBatch<float>& rays,
-                 const MarchOptions& options, const RayOutputs<float>& out) {
-    const MarchDenseArgs args = kernel_args(grid, rays, options, out);
+                 const MarchOptions& options, const MarchOutputs<float>& out) {
+    const MarchDenseArgs args = dense_args(grid, rays, options, out);
     const Kernels& kernel = kernels();
-    parallel_for((rays.count + march_chunk - 1) / march_chunk, [&](std::int64_t chunk) {
-        const std::int64_t begin = chunk * march_chunk;
-        kernel.march_dense_forward(args, begin, std::min(begin + march_chunk, rays.count));
+    for_chunks(0, rays.count, [&](std::int64_t, std::int64_t begin, std::int64_t end) {
+        kernel.march_dense_forward(args, begin, end);
     });
 }
 
 void march_dense_backward(const DenseGrid<float>& grid, const RayBatch<float>& rays,
-                          const MarchOptions& options, const RayOutputs<float>& out,
-                          const RayAdjoints<float>& adjoints, float* d_values) {
-    const MarchDenseArgs args = kernel_args(grid, rays, options, out);
+                          const MarchOptions& options, const MarchOutputs<float>& out,
+                          const MarchAdjoint<float>& adjoint, float* d_values) {
+    const MarchDenseArgs args = dense_args(grid, rays, options, out);
     const Kernels& kernel = kernels();
     const BrickLayout layout = BrickLayout::of(args.shape);
     MarchDenseBackward back{};
-    back.d_color = adjoints.d_color;
-    back.d_depth = adjoints.d_depth;
-    back.d_transmittance = adjoints.d_transmittance;
+    back.adjoint = adjoint;
     // Kept from call to call: a fit would otherwise clear megabytes of fresh memory every step.
     static thread_local Slab slab;
-    for (std::int64_t first = 0, last; first < rays.count; first = last) {
-        last = detail::slab_end(rays.samples, first, rays.count);
+    for_slabs(rays.samples, rays.count, [&](std::int64_t first, std::int64_t last) {
         const std::vector<std::int64_t> offset = sample_offsets(rays.samples, first, last);
-        if (offset.back() == 0) continue;
+        if (offset.back() == 0) return;
         record_slab(kernel, args, back, offset, first, last, slab);
         gather_slab(kernel, args, layout, slab, d_values);
-    }
+    });
 }
 
 }  // namespace photograd

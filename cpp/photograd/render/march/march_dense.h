@@ -9,11 +9,11 @@
 namespace photograd {
 
 void march_dense(const DenseGrid<float>& grid, const RayBatch<float>& rays,
-                 const MarchOptions& options, const RayOutputs<float>& out);
+                 const MarchOptions& options, const MarchOutputs<float>& out);
 
 /// d_values (X, Y, Z, 4) is added to.
 void march_dense_backward(const DenseGrid<float>& grid, const RayBatch<float>& rays,
-                          const MarchOptions& options, const RayOutputs<float>& out,
-                          const RayAdjoints<float>& adjoints, float* d_values);
+                          const MarchOptions& options, const MarchOutputs<float>& out,
+                          const MarchAdjoint<float>& adjoint, float* d_values);
 
 }  // namespace photograd

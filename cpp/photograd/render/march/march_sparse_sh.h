@@ -10,16 +10,17 @@ namespace photograd {
 
 /// Returns the number of samples whose voxels were looked up. With `skip`, empty space is jumped over.
 std::int64_t march_sparse_sh(const SparseSh<float>& field, const RayBatch<float>& rays,
-                             const MarchOptions& options, const RayOutputs<float>& out, bool skip);
+                             const MarchOptions& options, const MarchOutputs<float>& out,
+                             bool skip);
 
 void march_sparse_sh_backward(const SparseSh<float>& field, const RayBatch<float>& rays,
-                              const MarchOptions& options, const RayOutputs<float>& out,
-                              const RayAdjoints<float>& adjoints,
+                              const MarchOptions& options, const MarchOutputs<float>& out,
+                              const MarchAdjoint<float>& adjoint,
                               const SparseShGradients<float>& gradients);
 
-/// most[row] = the larger of itself and the greatest product of a sample's weight w_k and its trilinear
-/// weight at the voxel, over all samples of these rays: how much of an image a voxel can change.
+/// Raises max_weight[row] to the largest product of a sample's weight w_k and its trilinear weight at the
+/// voxel, over all samples of these rays: how much of a pixel a voxel can change.
 void march_sparse_sh_weights(const SparseSh<float>& field, const RayBatch<float>& rays,
-                             const MarchOptions& options, float* most);
+                             const MarchOptions& options, float* max_weight);
 
 }  // namespace photograd

@@ -1,5 +1,5 @@
-// The records of one slab of rays through a sparse grid, and whom they concern: what stands between the
-// kernel that marches and the one that adds up.
+// The records of one slab of rays through a sparse grid, sorted by the brick that owns them: from the kernel
+// that marches to the one that accumulates.
 #pragma once
 
 #include <utility>
@@ -8,6 +8,7 @@
 #include "kernels/march_sparse_sh.h"
 #include "photograd/core/scatter.h"
 #include "photograd/grid/cell_gather.h"
+#include "photograd/render/march/chunks.h"
 
 namespace photograd {
 
@@ -17,30 +18,29 @@ using RecordKernel = void (*)(const MarchSparseShArgs&, const MarchSparseShBackw
 /// Buffers are kept from slab to slab.
 class SparseSlab {
 public:
-    std::vector<float> basis;  // (rays, sh_basis_stride)
-    std::vector<double> lost;  // (chunks, 1 + 3 K)
+    std::vector<float> basis;          // (rays, sh_basis_stride)
+    std::vector<double> d_background;  // (chunks, 1 + 3 K)
     std::vector<CellRun> runs;
     OwnerBins bins;  // of the runs, by brick
 
-    /// Records rays [first, last), and sorts what they say by brick.
+    /// Records rays [first, last) and sorts the runs by brick.
     void record(RecordKernel kernel, const MarchSparseShArgs& args, MarchSparseShBackward back,
                 std::pair<std::int64_t, std::int64_t> rays, const BrickTopology& topology) {
         const auto [first, last] = rays;
-        const std::int64_t chunks = (last - first + march_chunk - 1) / march_chunk;
+        const std::int64_t chunks = chunk_count(last - first);
         const int numbers = 1 + 3 * sh_count(args.degree);
         if (chunks_.size() < static_cast<std::size_t>(chunks))
             chunks_.resize(static_cast<std::size_t>(chunks));
         const auto basis_size = static_cast<std::size_t>((last - first) * sh_basis_stride);
         if (basis.size() < basis_size) basis.resize(basis_size);
-        lost.assign(static_cast<std::size_t>(chunks * numbers), 0.0);
+        d_background.assign(static_cast<std::size_t>(chunks * numbers), 0.0);
         back.first_ray = first;
         back.basis = basis.data();
-        parallel_for(chunks, [&](std::int64_t chunk) {
-            const std::int64_t begin = first + chunk * march_chunk;
+        for_chunks(first, last, [&](std::int64_t chunk, std::int64_t begin, std::int64_t end) {
             MarchSparseShBackward own = back;
-            own.lost = lost.data() + chunk * numbers;
-            chunks_[static_cast<std::size_t>(chunk)].record(
-                kernel, args, own, {begin, std::min(begin + march_chunk, last)}, topology);
+            own.d_background = d_background.data() + chunk * numbers;
+            chunks_[static_cast<std::size_t>(chunk)].record(kernel, args, own, {begin, end},
+                                                            topology);
         });
         runs.clear();
         owner_.clear();
@@ -52,7 +52,7 @@ public:
         bin_by_owner(owner_, topology.bricks(), bins);
     }
 
-    /// use(brick, numbers of its runs, how many) for every brick that has any.
+    /// use(brick, indices of its runs, their count) in parallel for every brick that has any.
     template <class Use>
     void for_bricks(const BrickTopology& topology, Use&& use) const {
         parallel_for(topology.bricks(), [&](std::int64_t brick) {
@@ -71,14 +71,14 @@ private:
 
         void record(RecordKernel kernel, const MarchSparseShArgs& args, MarchSparseShBackward back,
                     std::pair<std::int64_t, std::int64_t> rays, const BrickTopology& topology) {
-            // The kernel needs room for all samples of all rays; few of them are seen, so that what is
-            // kept is much smaller.
+            // The kernel needs room for all samples of all rays; few of them lie in active cells, so
+            // that what is kept is much smaller.
             static thread_local std::vector<CellRecord<float>> room;
             const auto [begin, end] = rays;
             std::int32_t found[march_chunk];
             std::int64_t samples = 0, kept = 0;
             for (std::int64_t ray = begin; ray < end; ++ray)
-                samples += std::max(args.count[ray], 0);
+                samples += std::max(args.rays.samples[ray], 0);
             if (room.size() < static_cast<std::size_t>(samples))
                 room.resize(static_cast<std::size_t>(samples));
             back.records = room.data();
@@ -99,7 +99,7 @@ private:
                                    owners.push_back(static_cast<std::uint32_t>(brick));
                                    runs.push_back({to + at, length});
                                });
-                from += std::max(args.count[ray], 0);
+                from += std::max(args.rays.samples[ray], 0);
                 to += count;
             }
         }

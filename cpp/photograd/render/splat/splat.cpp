@@ -5,7 +5,7 @@
 
 #include "kernels/kernels.h"
 #include "photograd/core/errors.h"
-#include "photograd/core/scatter.h"
+#include "photograd/render/splat/background.h"
 #include "photograd/splat/cloud_check.h"
 #include "photograd/splat/sort.h"
 #include "photograd/splat/tile_blend.h"
@@ -35,7 +35,7 @@ void blend_one_backward(const BlendArgs<R>& args, const BlendBackward<R>& back,
 }
 
 template <class R>
-BlendArgs<R> blend_args(const SplatFrame<R>& frame, const SplatPicture<R>& picture) {
+BlendArgs<R> blend_args(const SplatFrame<R>& frame, const RenderedImage<R>& image) {
     const SplatOptions& o = frame.view.options;
     BlendArgs<R> args{};
     args.splats = frame.splats.data();
@@ -43,9 +43,7 @@ BlendArgs<R> blend_args(const SplatFrame<R>& frame, const SplatPicture<R>& pictu
     std::copy_n(frame.background, 3, args.background);
     args.width = frame.view.image.width;
     args.height = frame.view.image.height;
-    args.color = picture.color;
-    args.opacity = picture.opacity;
-    args.depth = picture.depth;
+    args.image = image;
     return args;
 }
 
@@ -58,18 +56,6 @@ void for_tiles(const SplatFrame<R>& frame, Visit&& visit) {
         const int y = static_cast<int>(tile / lists.columns) * tile_size;
         visit(lists.of(tile), x, y);
     });
-}
-
-template <class R>
-void background_backward(const BlendArgs<R>& args, const R* d_color, R* d_background) {
-    sum_partials(args.height, std::span<R>(d_background, 3),
-                 [&](std::int64_t row, std::span<double> partial) {
-                     for (std::int64_t i = row * args.width; i < (row + 1) * args.width; ++i)
-                         for (std::size_t c = 0; c < 3; ++c)
-                             partial[c] +=
-                                 static_cast<double>(d_color[3 * i + static_cast<std::int64_t>(c)] *
-                                                     (R(1) - args.opacity[i]));
-                 });
 }
 
 /// Stage 5: each Gaussian adds up its places and differentiates its projection; view and eye in double.
@@ -136,32 +122,32 @@ SplatFrame<R> prepare_splats(const GaussianCloud<R>& cloud, const SplatImage& im
 }
 
 template <class R>
-void blend_splats(const SplatFrame<R>& frame, const SplatPicture<R>& out) {
+void blend_splats(const SplatFrame<R>& frame, const RenderedImage<R>& out) {
     const BlendArgs<R> args = blend_args(frame, out);
     for_tiles(frame, [&](const TilePairs& pairs, int x, int y) { blend_one(args, pairs, x, y); });
 }
 
 template <class R>
 void splats_backward(const GaussianCloud<R>& cloud, const SplatFrame<R>& frame,
-                     const SplatPicture<R>& picture, const SplatPictureAdjoint<R>& adjoint,
+                     const RenderedImage<R>& image, const ImageCotangents<R>& d_image,
                      const GaussianGradients<R>& out, R* d_background) {
-    const BlendArgs<R> args = blend_args(frame, picture);
+    const BlendArgs<R> args = blend_args(frame, image);
     std::vector<R> partials(partial_count * frame.lists.pairs.size());
-    const BlendBackward<R> back{adjoint.d_color, adjoint.d_opacity, adjoint.d_depth,
-                                partials.data()};
+    const BlendBackward<R> back{d_image, partials.data()};
     for_tiles(frame, [&](const TilePairs& pairs, int x, int y) {
         blend_one_backward(args, back, pairs, x, y);
     });
-    background_backward(args, adjoint.d_color, d_background);
+    background_backward(image, d_image.d_color, std::int64_t{args.width} * args.height, args.width,
+                        d_background);
     gather_splats(cloud, frame, partials.data(), out);
 }
 
-#define PHOTOGRAD_INSTANTIATE(R)                                                         \
-    template SplatFrame<R> prepare_splats(const GaussianCloud<R>&, const SplatImage&,    \
-                                          const SplatOptions&, const R*, const R*);      \
-    template void blend_splats(const SplatFrame<R>&, const SplatPicture<R>&);            \
-    template void splats_backward(const GaussianCloud<R>&, const SplatFrame<R>&,         \
-                                  const SplatPicture<R>&, const SplatPictureAdjoint<R>&, \
+#define PHOTOGRAD_INSTANTIATE(R)                                                      \
+    template SplatFrame<R> prepare_splats(const GaussianCloud<R>&, const SplatImage&, \
+                                          const SplatOptions&, const R*, const R*);   \
+    template void blend_splats(const SplatFrame<R>&, const RenderedImage<R>&);        \
+    template void splats_backward(const GaussianCloud<R>&, const SplatFrame<R>&,      \
+                                  const RenderedImage<R>&, const ImageCotangents<R>&, \
                                   const GaussianGradients<R>&, R*);
 PHOTOGRAD_INSTANTIATE(float)
 PHOTOGRAD_INSTANTIATE(double)

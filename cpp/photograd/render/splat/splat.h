@@ -21,17 +21,6 @@ struct SplatFrame {
     TileLists lists;
 };
 
-/// colour with background (H, W, 3), opacity (H, W), depth (H, W): weight times z, in metres.
-template <class R>
-struct SplatPicture {
-    R *color, *opacity, *depth;
-};
-
-template <class R>
-struct SplatPictureAdjoint {
-    const R *d_color, *d_opacity, *d_depth;
-};
-
 /// Refuses parameters that are no numbers; splats, sorts and bins.
 template <class R>
 SplatFrame<R> prepare_splats(const GaussianCloud<R>& cloud, const SplatImage& image,
@@ -39,11 +28,11 @@ SplatFrame<R> prepare_splats(const GaussianCloud<R>& cloud, const SplatImage& im
                              const R* background);
 
 template <class R>
-void blend_splats(const SplatFrame<R>& frame, const SplatPicture<R>& out);
-/// Adds to `out` and to d_background[3]; `picture` is what blend_splats wrote.
+void blend_splats(const SplatFrame<R>& frame, const RenderedImage<R>& out);
+/// Adds to `out` and to d_background[3]; `image` is what blend_splats wrote.
 template <class R>
 void splats_backward(const GaussianCloud<R>& cloud, const SplatFrame<R>& frame,
-                     const SplatPicture<R>& picture, const SplatPictureAdjoint<R>& adjoint,
+                     const RenderedImage<R>& image, const ImageCotangents<R>& d_image,
                      const GaussianGradients<R>& out, R* d_background);
 
 }  // namespace photograd

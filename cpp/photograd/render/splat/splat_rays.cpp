@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "photograd/core/scatter.h"
+#include "photograd/render/splat/background.h"
 #include "photograd/splat/project.h"
 #include "photograd/splat/ray_color.h"
 #include "photograd/splat/ray_walk.h"
@@ -50,7 +50,7 @@ void for_each_in_tasks(std::int64_t count, std::int64_t size, Visit&& visit) {
 
 template <int Degree, class R>
 void blend_ray(const GaussianCloud<R>& cloud, RayFrame<R>& frame, std::int64_t i,
-               const RayPicture<R>& out) {
+               const RenderedImage<R>& out) {
     const auto ray = CastRay<Degree, R>::of(&frame.origins[static_cast<std::size_t>(3 * i)],
                                             &frame.directions[static_cast<std::size_t>(3 * i)]);
     const RayCutoffs<R> cut = frame.cloud.options.template cutoffs<R>();
@@ -70,13 +70,9 @@ void blend_ray(const GaussianCloud<R>& cloud, RayFrame<R>& frame, std::int64_t i
 }
 
 template <class R>
-RayBack<R> start_back(const RayPicture<R>& picture, const RayPictureAdjoint<R>& d, std::int64_t i) {
-    const R *d_color = d.d_color + 3 * i, *color = picture.color + 3 * i;
-    RayBack<R> back{{d_color[0], d_color[1], d_color[2]},
-                    d.d_depth[i],
-                    d.d_depth[i] * picture.depth[i] - d.d_opacity[i] * (R(1) - picture.opacity[i])};
-    for (int c = 0; c < 3; ++c) back.remainder += d_color[c] * color[c];
-    return back;
+RayBack<R> start_back(const RenderedImage<R>& image, const ImageCotangents<R>& d, std::int64_t i) {
+    const R* d_color = d.d_color + 3 * i;
+    return {{d_color[0], d_color[1], d_color[2]}, d.d_depth[i], start_remainder(image, d, i)};
 }
 
 /// Derivatives by a ray, summed while it is walked.
@@ -182,30 +178,15 @@ void gather_row(const GaussianCloud<R>& cloud, const Slab<Degree, R>& slab, cons
     strain_backward(axes, d_strain, out.quats + 4 * row, out.log_scales + 3 * row);
 }
 
-template <class R>
-void background_backward(const RayPicture<R>& picture, const R* d_color, std::int64_t rays,
-                         R* d_background) {
-    constexpr std::int64_t chunk = 4096;
-    sum_partials((rays + chunk - 1) / chunk, std::span<R>(d_background, 3),
-                 [&](std::int64_t task, std::span<double> partial) {
-                     const std::int64_t end = std::min(rays, (task + 1) * chunk);
-                     for (std::int64_t i = task * chunk; i < end; ++i)
-                         for (std::size_t c = 0; c < 3; ++c)
-                             partial[c] +=
-                                 static_cast<double>(d_color[3 * i + static_cast<std::int64_t>(c)] *
-                                                     (R(1) - picture.opacity[i]));
-                 });
-}
-
 template <int Degree, class R>
 void slabs_backward(const GaussianCloud<R>& cloud, const RayFrame<R>& frame,
-                    const RayPicture<R>& picture, const RayPictureAdjoint<R>& adjoint,
+                    const RenderedImage<R>& image, const ImageCotangents<R>& d_image,
                     const RayGradients<R>& out) {
     OwnerBins bins;
     for (std::int64_t begin = 0; begin < frame.rays();) {
         auto slab = Slab<Degree, R>::from(frame, begin);
         for_each_in_tasks(slab.end - begin, rays_per_task, [&](std::int64_t k) {
-            walk_back(cloud, frame, start_back(picture, adjoint, begin + k), slab, k, out);
+            walk_back(cloud, frame, start_back(image, d_image, begin + k), slab, k, out);
         });
         std::vector<std::uint32_t> owner(slab.records.size());
         for (std::size_t k = 0; k < owner.size(); ++k) owner[k] = slab.records[k].row;
@@ -214,7 +195,7 @@ void slabs_backward(const GaussianCloud<R>& cloud, const RayFrame<R>& frame,
             const std::uint32_t* first = bins.begin.data() + row;
             if (first[0] == first[1]) return;
             const std::span<const std::uint32_t> order(bins.order);
-            gather_row(cloud, slab, adjoint.d_color, row,
+            gather_row(cloud, slab, d_image.d_color, row,
                        order.subspan(first[0], first[1] - first[0]), out.gaussians);
         });
         begin = slab.end;
@@ -224,7 +205,7 @@ void slabs_backward(const GaussianCloud<R>& cloud, const RayFrame<R>& frame,
 }  // namespace
 
 template <class R>
-void blend_rays(const GaussianCloud<R>& cloud, RayFrame<R>& frame, const RayPicture<R>& out) {
+void blend_rays(const GaussianCloud<R>& cloud, RayFrame<R>& frame, const RenderedImage<R>& out) {
     with_degree(cloud.degree, [&](auto degree) {
         for_each_in_tasks(frame.rays(), rays_per_task,
                           [&](std::int64_t i) { blend_ray<degree.value>(cloud, frame, i, out); });
@@ -233,18 +214,18 @@ void blend_rays(const GaussianCloud<R>& cloud, RayFrame<R>& frame, const RayPict
 
 template <class R>
 void blend_rays_backward(const GaussianCloud<R>& cloud, const RayFrame<R>& frame,
-                         const RayPicture<R>& picture, const RayPictureAdjoint<R>& adjoint,
+                         const RenderedImage<R>& image, const ImageCotangents<R>& d_image,
                          const RayGradients<R>& out) {
-    background_backward(picture, adjoint.d_color, frame.rays(), out.background);
+    background_backward(image, d_image.d_color, frame.rays(), 4096, out.background);
     with_degree(cloud.degree, [&](auto degree) {
-        slabs_backward<degree.value>(cloud, frame, picture, adjoint, out);
+        slabs_backward<degree.value>(cloud, frame, image, d_image, out);
     });
 }
 
-#define PHOTOGRAD_INSTANTIATE(R)                                                           \
-    template void blend_rays(const GaussianCloud<R>&, RayFrame<R>&, const RayPicture<R>&); \
-    template void blend_rays_backward(const GaussianCloud<R>&, const RayFrame<R>&,         \
-                                      const RayPicture<R>&, const RayPictureAdjoint<R>&,   \
+#define PHOTOGRAD_INSTANTIATE(R)                                                              \
+    template void blend_rays(const GaussianCloud<R>&, RayFrame<R>&, const RenderedImage<R>&); \
+    template void blend_rays_backward(const GaussianCloud<R>&, const RayFrame<R>&,            \
+                                      const RenderedImage<R>&, const ImageCotangents<R>&,     \
                                       const RayGradients<R>&);
 PHOTOGRAD_INSTANTIATE(float)
 PHOTOGRAD_INSTANTIATE(double)

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "photograd/splat/ray_cloud.h"
+#include "photograd/splat/rendered_image.h"
 
 namespace photograd {
 
@@ -26,17 +27,6 @@ struct RayFrame {
     [[nodiscard]] std::int64_t rays() const { return static_cast<std::int64_t>(crossings.size()); }
 };
 
-/// colour with background (R, 3), opacity (R,), depth (R,): weight times distance, in metres.
-template <class R>
-struct RayPicture {
-    R *color, *opacity, *depth;
-};
-
-template <class R>
-struct RayPictureAdjoint {
-    const R *d_color, *d_opacity, *d_depth;
-};
-
 /// Derivatives, added to. Those of the rays are left out where the pointers are null.
 template <class R>
 struct RayGradients {
@@ -47,11 +37,11 @@ struct RayGradients {
 
 /// Draws into `out` and counts the crossings of frame.
 template <class R>
-void blend_rays(const GaussianCloud<R>& cloud, RayFrame<R>& frame, const RayPicture<R>& out);
-/// `picture` is what blend_rays wrote.
+void blend_rays(const GaussianCloud<R>& cloud, RayFrame<R>& frame, const RenderedImage<R>& out);
+/// `image` is what blend_rays wrote.
 template <class R>
 void blend_rays_backward(const GaussianCloud<R>& cloud, const RayFrame<R>& frame,
-                         const RayPicture<R>& picture, const RayPictureAdjoint<R>& adjoint,
+                         const RenderedImage<R>& image, const ImageCotangents<R>& d_image,
                          const RayGradients<R>& out);
 
 }  // namespace photograd
