@@ -1,8 +1,8 @@
-"""How much the pictures pull at each Gaussian: what density control looks at.
+"""Positional gradient statistics (grad2d): the criterion of density control.
 
-A Gaussian that every picture drags across the screen covers something that one Gaussian cannot
-explain. The measure is |dL/d mean| on the screen, averaged over the pictures that show it, in units
-of half the picture's longer side:
+A Gaussian whose mean gets large gradients from every picture covers something that one Gaussian
+cannot explain. The measure is |dL/d mean| on the screen, averaged over the pictures that show it,
+in units of half the picture's longer side:
 
     p_n = mean over pictures of  |dL/d(u, v)_n| max(W, H) / 2          (u, v) in pixels
 
@@ -24,22 +24,24 @@ from photograd.representation import Array
 
 
 @dataclass(eq=False)
-class Pressure:
+class Grad2dStatistics:
     """Sums since the last refinement: total (N,) float64 of p_n, count (N,) int64 of pictures."""
 
     total: Array
     count: NDArray[np.int64]
 
     @classmethod
-    def zero(cls, count: int) -> Pressure:
+    def zero(cls, count: int) -> Grad2dStatistics:
         """Of `count` Gaussians that no picture has shown."""
         return cls(np.zeros(count), np.zeros(count, np.int64))
 
-    def checked(self, count: int) -> Pressure:
+    def checked(self, count: int) -> Grad2dStatistics:
         """Itself. Raises ShapeError unless it belongs to `count` Gaussians."""
         for name, array in (("total", self.total), ("count", self.count)):
             if array.shape != (count,):
-                raise ShapeError(message("Pressure", name, f"shape ({count},)", f"{array.shape}"))
+                raise ShapeError(
+                    message("Grad2dStatistics", name, f"shape ({count},)", f"{array.shape}")
+                )
         return self
 
     def add(self, screen: Array, visible: NDArray[np.bool_], camera: Camera) -> None:
