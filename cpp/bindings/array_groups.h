@@ -13,8 +13,8 @@ namespace photograd {
 template <std::size_t N>
 using Arrays = std::array<py::array, N>;
 
-/// Fresh color (*shape, 3), opacity or transmittance (*shape), depth (*shape), filled without the GIL by
-/// fill(Outputs{color, ..., depth}).
+/// Fresh color (*shape, 3), opacity or transmittance (*shape), depth (*shape), filled without the
+/// GIL by fill(Outputs{color, ..., depth}).
 template <class R, class Outputs, class Fill>
 py::tuple filled_image(const std::vector<py::ssize_t>& shape, Fill&& fill) {
     std::vector<py::ssize_t> color_shape = shape;

@@ -49,10 +49,10 @@ py::tuple build_dense(ArrayArgs& args, const py::array& values, const py::array&
     const char* const axes = D == 3 ? "X Y Z C" : "X Y C";
     const T* data = args.in<T>("values", values, axes);
     const T* behind = args.in<T>("background", background, "C");
-    constexpr std::int64_t most = std::int64_t{1} << SpatialTree<D>::max_depth;
+    constexpr std::int64_t max_cells = std::int64_t{1} << SpatialTree<D>::max_depth;
     Cell<D> shape{};
     for (int a = 0; a < D; ++a) {
-        if (values.shape(a) > most)
+        if (values.shape(a) > max_cells)
             args.range("values", "at most 2^20 cells along each axis",
                        std::to_string(values.shape(a)));
         shape[a] = static_cast<std::int32_t>(values.shape(a));

@@ -29,7 +29,7 @@ SparseSh<R> make_field(ArrayArgs& args, const CellTable& table, const FieldArray
     if (args.size("B") != 1 + field.numbers())
         args.range("background", std::to_string(1 + field.numbers()) + " numbers",
                    std::to_string(args.size("B")));
-    field.options = settings.field();
+    field.options = settings.field;
     field.color_offset = static_cast<R>(color_offset);
     field.fit_to_box();
     return field;
@@ -48,10 +48,10 @@ py::tuple march_field(const CellTable& table, const FieldArrays& parameters,
             filled_image<R, MarchOutputs<R>>({rays.count}, [&](const MarchOutputs<R>& out) {
                 if constexpr (std::is_same_v<R, float>)
                     if (fused) {
-                        looked_up = march_sparse_sh(field, rays, settings.march(), out, skip);
+                        looked_up = march_sparse_sh(field, rays, settings.march, out, skip);
                         return;
                     }
-                march(field, rays, settings.march(), out);
+                march(field, rays, settings.march, out);
             });
         return py::make_tuple(image[0], image[1], image[2], looked_up);
     });
@@ -75,10 +75,10 @@ void march_field_backward(const CellTable& table, const FieldArrays& parameters,
         const py::gil_scoped_release release;
         if constexpr (std::is_same_v<R, float>)
             if (fused && !adjoint.d_origins)
-                return march_sparse_sh_backward(field, rays, settings.march(), out, adjoint,
+                return march_sparse_sh_backward(field, rays, settings.march, out, adjoint,
                                                 gradients);
         typename SparseSh<R>::Sink sink(field, gradients);
-        march_backward(field, rays, settings.march(), out, adjoint, sink);
+        march_backward(field, rays, settings.march, out, adjoint, sink);
     });
 }
 
@@ -89,7 +89,7 @@ void weights(const CellTable& table, const FieldArrays& parameters, const MarchS
     const auto field = make_field<float>(args, table, parameters, settings, 0.0);
     float* to = args.out<float>("max_weight", max_weight, "N");
     const py::gil_scoped_release release;
-    march_sparse_sh_weights(field, rays, settings.march(), to);
+    march_sparse_sh_weights(field, rays, settings.march, to);
 }
 
 template <class Use>
@@ -166,7 +166,7 @@ void bind_sparse_sh(py::module_& m) {
           py::arg("settings"), py::arg("rays"), py::arg("max_weight"),
           "Raises max_weight (N,) to the largest weight of each voxel over these rays.");
     m.def("total_variation", &variation, py::arg("topology"), py::arg("values"),
-          "Squared total variation of values (N, C) over pairs of active neighbours.");
+          "Squared total variation of values (N, C) over pairs of active neighbors.");
     m.def("total_variation_backward", &variation_backward, py::arg("topology"), py::arg("values"),
           py::arg("d_value"), py::arg("first"), py::arg("last"), py::arg("d_values"),
           "Adds to the rows of d_values that belong to bricks first .. last - 1.");

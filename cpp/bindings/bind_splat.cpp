@@ -6,12 +6,6 @@
 namespace photograd {
 namespace {
 
-/// A prepared picture, in the number type of its arrays.
-template <class R>
-struct Prepared {
-    SplatFrame<R> frame;
-};
-
 py::object prepare(const GaussianArrays& gaussians, const SplatImage& image,
                    const SplatOptions& options, const py::array& camera_from_world,
                    const py::array& background) {
@@ -21,29 +15,27 @@ py::object prepare(const GaussianArrays& gaussians, const SplatImage& image,
         const auto cloud = cloud_of<R>(args, gaussians);
         const R* view = args.within<R>("camera_from_world", camera_from_world, "3 4", world_limit);
         const R* behind = args.in<R>("background", background, "3");
-        Prepared<R> out;
+        SplatFrame<R> frame;
         {
             const py::gil_scoped_release release;
-            out.frame = prepare_splats(cloud, image, options, view, behind);
+            frame = prepare_splats(cloud, image, options, view, behind);
         }
-        return py::cast(std::move(out));
+        return py::cast(std::move(frame));
     });
 }
 
 template <class R>
-py::tuple render(const Prepared<R>& prepared) {
-    const SplatImage& size = prepared.frame.view.image;
+py::tuple render(const SplatFrame<R>& frame) {
+    const SplatImage& size = frame.view.image;
     return filled_image<R, RenderedImage<R>>(
-        {size.height, size.width},
-        [&](const RenderedImage<R>& out) { blend_splats(prepared.frame, out); });
+        {size.height, size.width}, [&](const RenderedImage<R>& out) { blend_splats(frame, out); });
 }
 
 template <class R>
-void backward(const Prepared<R>& prepared, const GaussianArrays& gaussians, Arrays<3> image,
+void backward(const SplatFrame<R>& frame, const GaussianArrays& gaussians, Arrays<3> image,
               const Arrays<3>& d_image, GaussianArrays d_gaussians, py::array d_view,
               py::array d_background, py::array d_screen) {
     ArrayArgs args("splat_backward");
-    const SplatFrame<R>& frame = prepared.frame;
     const auto cloud =
         same_cloud<R>(args, gaussians, static_cast<std::int64_t>(frame.splats.size()));
     const SplatImage& size = frame.view.image;
@@ -60,8 +52,8 @@ void backward(const Prepared<R>& prepared, const GaussianArrays& gaussians, Arra
 
 /// The box of pixels of each Gaussian, (N, 4) int32: x0, x1, y0, y1; empty if it is culled.
 template <class R>
-py::array_t<std::int32_t> boxes(const Prepared<R>& prepared) {
-    const auto& splats = prepared.frame.splats;
+py::array_t<std::int32_t> boxes(const SplatFrame<R>& frame) {
+    const auto& splats = frame.splats;
     py::array_t<std::int32_t> out({static_cast<py::ssize_t>(splats.size()), py::ssize_t{4}});
     std::int32_t* to = out.mutable_data();
     for (const ScreenSplat<R>& s : splats) {
@@ -75,7 +67,7 @@ py::array_t<std::int32_t> boxes(const Prepared<R>& prepared) {
 
 template <class R>
 void bind_prepared(py::module_& m, const char* name) {
-    using P = Prepared<R>;
+    using P = SplatFrame<R>;
     py::class_<P>(m, name, "Splats of one view, sorted and in tiles.")
         .def("render", &render<R>, "Color (H, W, 3), opacity (H, W), depth (H, W).")
         .def("backward", &backward<R>, py::arg("gaussians"), py::arg("image"), py::arg("d_image"),
@@ -83,8 +75,7 @@ void bind_prepared(py::module_& m, const char* name) {
              py::arg("d_screen"),
              "Adds to d_gaussians and what follows; image is what render returned.")
         .def_property_readonly(
-            "pairs",
-            [](const P& p) { return static_cast<std::int64_t>(p.frame.lists.pairs.size()); },
+            "pairs", [](const P& p) { return static_cast<std::int64_t>(p.lists.pairs.size()); },
             "Number of pairs of splat and tile.")
         .def_property_readonly("boxes", &boxes<R>,
                                "Pixels [x0, x1) x [y0, y1) of each Gaussian, (N, 4) int32.");

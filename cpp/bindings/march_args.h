@@ -9,27 +9,10 @@
 
 namespace photograd {
 
-using Box = std::array<std::array<double, 3>, 2>;
-
 struct MarchSettings {
-    Box box{{{-1, -1, -1}, {1, 1, 1}}};
-    double dt = 0.01, stop = 0.0;
-    int lattice = 0, quadrature = 0, border = 0, density_activation = 2, color_activation = 4;
-    double density_scale = 1.0;
-
-    [[nodiscard]] FieldOptions field() const {
-        FieldOptions options;
-        for (std::size_t end = 0; end < 2; ++end)
-            std::copy(box[end].begin(), box[end].end(), options.box[end]);
-        options.border = static_cast<Border>(border);
-        options.density_activation = static_cast<Activation>(density_activation);
-        options.color_activation = static_cast<Activation>(color_activation);
-        options.density_scale = density_scale;
-        return options;
-    }
-    [[nodiscard]] MarchOptions march() const {
-        return {dt, stop, static_cast<Quadrature>(quadrature)};
-    }
+    FieldOptions field;
+    MarchOptions march;
+    Lattice lattice = Lattice::origin;
 };
 
 using RayArrays = Arrays<4>;  // origins (R, 3), directions (R, 3), t0 (R,), samples (R,) int32

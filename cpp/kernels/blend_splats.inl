@@ -1,5 +1,6 @@
-// Blending in float: the loops of photograd/splat/tile_blend.h, one row of a tile a set of lanes, compiled
-// for this instruction set. The double twin of the same loops is compiled in photograd/render/splat/splat.cpp.
+// Blending in float: the loops of photograd/splat/tile_blend.h, one row of a tile a set of lanes,
+// compiled for this instruction set. The double twin of the same loops is compiled in
+// photograd/render/splat/splat.cpp.
 #pragma once
 
 #include "photograd/splat/tile_blend.h"

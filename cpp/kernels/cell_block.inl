@@ -1,6 +1,7 @@
-// Sub-blocks of a march through a sparse grid: where the samples lie, what they see, which are jumped over.
-// Positions, cells and densities take lane_count samples of a ray side by side; the colour of a voxel takes
-// its 3 K coefficients side by side, once for all samples of the sub-block that have it as a corner.
+// Sub-blocks of a march through a sparse grid: positions, cells, values, empty-space skipping.
+// Positions, cells and densities take lane_count samples of a ray side by side; the color of a
+// voxel takes its 3 K coefficients side by side, once for all samples of the sub-block that have it
+// as a corner.
 #pragma once
 
 #include "kernels/march_dense.inl"
@@ -28,8 +29,9 @@ struct CellBlock : ShadedBlock {  // raw color with its offset
     Lanes<float> missing;     // weight of the corners without a row
 };
 
-// Number of sub-blocks from sample k0 on that lie in empty space for certain. A ray that starts in an empty
-// brick whose nearest neighbour with rows is D bricks away may run 8 (D - 1) voxels along any axis.
+// Number of sub-blocks from sample k0 on that lie in empty space for certain. A ray that starts in
+// an empty brick whose nearest neighbor with rows is D bricks away may run 8 (D - 1) voxels along
+// any axis.
 static inline int empty_blocks(const MarchSparseShArgs& a, std::int64_t ray, int k0) {
     const float t = a.rays.t0[ray] + (static_cast<float>(k0) + 0.5f) * a.dt;
     int base[3];
@@ -51,8 +53,8 @@ static inline int empty_blocks(const MarchSparseShArgs& a, std::int64_t ray, int
     return static_cast<int>(smaller(samples, 1e6f)) / lane_count;
 }
 
-// Positions, cells and trilinear weights; returns how many of the first `used` lanes lie in a tile. With
-// none the weights are left out.
+// Positions, cells and trilinear weights; returns how many of the first `used` lanes lie in a tile.
+// With none the weights are left out.
 static inline int locate_cells(const MarchSparseShArgs& a, std::int64_t ray, int k0, int used,
                                CellBlock& b) {
     const float t0 = a.rays.t0[ray], dt = a.dt;
@@ -80,7 +82,7 @@ static inline int locate_cells(const MarchSparseShArgs& a, std::int64_t ray, int
             (x >= 0) & (y >= 0) & (z >= 0) & (x < extent[0]) & (y < extent[1]) & (z < extent[2]);
         const int entry = inside ? (x * extent[1] + y) * extent[2] + z : 0;
         const int tile = inside ? larger(a.cells.top[entry], 0) : 0;
-        b.cell[i] = tile * cell_tile_voxels + place_in_tile(base[0][i], base[1][i], base[2][i]);
+        b.cell[i] = tile * cell_tile_voxels + offset_in_tile(base[0][i], base[1][i], base[2][i]);
         b.parity[i] = (base[0][i] & 1) * 4 + (base[1][i] & 1) * 2 + (base[2][i] & 1);
         in_tile += (tile > 0) & (i < used) ? 1 : 0;
     }
@@ -94,10 +96,10 @@ static inline int locate_cells(const MarchSparseShArgs& a, std::int64_t ray, int
     return in_tile;
 }
 
-// Raw densities; false if no lane is seen. Lanes behind the last sample are not.
+// Raw densities; false if no lane is visible. Lanes behind the last sample are not.
 static inline bool look_up_density(const MarchSparseShArgs& a, int used, CellBlock& b) {
-    // Bits of corners, then values, then arithmetic, in loops of their own: what only loads would keep the
-    // rest from becoming lanes.
+    // Bits of corners, then values, then arithmetic, in loops of their own: what only loads would
+    // keep the rest from becoming lanes.
     int corners[lane_count], any = 0;
     for (int i = 0; i < lane_count; ++i) {
         corners[i] = a.cells.active[b.cell[i]];
@@ -136,10 +138,10 @@ struct CornerVoxels {
     alignas(16) float color[8 * lane_count][4];  // that a voxel shows along the ray; three are used
 };
 
-// Gives each voxel a number. The eight corners of a cell differ in the parity of their coordinates, so that
-// eight places, one a parity, hold what the sample before had: along a ray a voxel leaves its place only
-// when no sample to come has it. The coefficients are asked for at once: they are needed when all voxels have
-// their numbers, and to wait for memory is most of what a colour costs.
+// Gives each voxel a number. The eight corners of a cell differ in the parity of their coordinates,
+// so that eight places, one a parity, hold what the sample before had: along a ray a voxel leaves
+// its place only when no sample to come has it. The coefficients are asked for at once: they are
+// needed when all voxels have their numbers, and to wait for memory is most of what a color costs.
 template <int Count>
 static inline void number_corners(const MarchSparseShArgs& a, const CellBlock& b, CornerVoxels& v) {
     int held[8], number[8] = {}, count = 0, last = -1;
@@ -222,9 +224,9 @@ static inline void evaluate_cells(const MarchSparseShArgs& a, const float* Y3, C
         for (int i = 0; i < lane_count; ++i) b.rgb[c][i] = b.visible[i] ? b.rgb[c][i] : 0.0f;
 }
 
-// Rays of a chunk advance together, as in the dense march; sub-blocks in empty space are jumped over, so
-// that those that remain lie where they would lie without. visit(i, block) handles a sub-block in which
-// something is seen and returns the optical depth behind it. Returns the number of samples looked up.
+// Rays of a chunk advance together, as in the dense march; sub-blocks in empty space are skipped
+// without moving the others. visit(i, block) handles a sub-block with visible samples and returns
+// the optical depth behind it. Returns the number of samples looked up.
 template <class Visit>
 static inline std::int64_t walk_cells(const MarchSparseShArgs& a, std::int64_t begin,
                                       std::int64_t end, Visit&& visit) {

@@ -1,5 +1,5 @@
-// What every fused march (float) gets. Plain data only, because every instruction set's translation unit
-// includes it.
+// What every fused march (float) gets. Plain data only, because every instruction set's translation
+// unit includes it.
 #pragma once
 
 #include "photograd/ops/march_data.h"

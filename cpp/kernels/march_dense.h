@@ -1,7 +1,7 @@
 // The fused march through a dense grid (float): what the kernel gets and gives.
 //
-// The staged form, for any field and any Real, is photograd/render/march/march.h; the two are tested to
-// agree bit for bit.
+// The staged form, for any field and any Real, is photograd/render/march/march.h; the two are
+// tested to agree bit for bit.
 #pragma once
 
 #include "kernels/march_args.h"

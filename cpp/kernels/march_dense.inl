@@ -1,6 +1,6 @@
 // The fused march: position, trilinear lookup, activation and compositing of lane_count consecutive
-// samples of one ray at a time. The corners of one sample are loaded as vectors: (z, z + 1) x (r, g, b,
-// sigma) are eight neighbouring floats, so a lookup is four loads.
+// samples of one ray at a time. The corners of one sample are loaded as vectors: (z, z + 1) x (r,
+// g, b, sigma) are eight neighboring floats, so a lookup is four loads.
 #pragma once
 
 #include "kernels/march_dense.h"
@@ -65,7 +65,7 @@ static inline void weigh_block(const MarchDenseArgs& a, SampleBlock& b) {
         b.voxel[i] = (b.base[0][i] * a.shape[1] + b.base[1][i]) * a.shape[2] + b.base[2][i];
 }
 
-// Everything about a sub-block that needs no voxel; asks for the voxels that it will need.
+// Everything about a sub-block that needs no voxel; prefetches the voxels that it will need.
 static inline void locate_block(const MarchDenseArgs& a, std::int64_t ray, int k0, SampleBlock& b) {
     place_block(a, ray, k0, b);
     weigh_block(a, b);
@@ -151,10 +151,10 @@ static inline void evaluate_block(const MarchDenseArgs& a, std::int64_t ray, int
         b.sigma_t[i] = k0 + i < a.rays.samples[ray] ? a.density_scale * b.sigma_t[i] : 0.0f;
 }
 
-// Rays of a chunk advance together, lane_count samples at a time: neighbouring rays read the same voxels, which
-// are then still in the first-level cache. visit(i, k0, block) handles one located sub-block of ray begin + i
-// and returns the optical depth behind it. The next sub-block is located first, so that its voxels are on
-// their way while this one is computed.
+// Rays of a chunk advance together, lane_count samples at a time: neighboring rays read the same
+// voxels, which are then still in the L1 cache. visit(i, k0, block) handles one located
+// sub-block of ray begin + i and returns the optical depth behind it. The next sub-block is located
+// first, so that its voxels are on their way while this one is computed.
 template <class Visit>
 static inline void walk_chunk(const MarchDenseArgs& a, std::int64_t begin, std::int64_t end,
                               Visit&& visit) {
@@ -235,16 +235,17 @@ static std::int64_t march_dense_backward(const MarchDenseArgs& a, const MarchDen
     return next - runs;
 }
 
-// Samples of a brick on their way into its tile. Runs are short and of any length; lining up their samples
-// in a queue keeps all lanes busy. The queue has room for the block in hand and one more run.
+// Samples of a brick to be accumulated. Runs are short and of any length; lining up their
+// samples in a queue keeps all lanes busy. The queue has room for the block in hand and one more
+// run.
 struct SampleQueue {
     int used = 0;
     alignas(64) float p[3][2 * lane_count];
     alignas(64) int source[2 * lane_count];  // number of the sample in d_raw
 };
 
-// Appends samples k, k + 1, ... of a run, at most lane_count of them; lanes beyond `count` are overwritten
-// by whatever comes next.
+// Appends samples k, k + 1, ... of a run, at most lane_count of them; lanes beyond `count` are
+// overwritten by whatever comes next.
 static inline void enqueue(const MarchDenseArgs& a, const BrickRun& run, SampleQueue& q) {
     const std::int64_t ray = run.ray;
     const float t0 = a.rays.t0[ray], dt = a.dt;
@@ -261,20 +262,20 @@ static inline void enqueue(const MarchDenseArgs& a, const BrickRun& run, SampleQ
     q.used += static_cast<int>(run.count);
 }
 
-// Adds the first `count` samples of the queue to a brick's tile.
-static inline void add_to_tile(const MarchDenseArgs& a, const SampleQueue& q, int count,
-                               const int* corner, const float* d_raw, float* tile) {
+// Adds the first `count` samples of the queue to a brick's halo.
+static inline void add_to_halo(const MarchDenseArgs& a, const SampleQueue& q, int count,
+                               const int* corner, const float* d_raw, float* halo) {
     SampleBlock b;
     for (int axis = 0; axis < 3; ++axis)
         for (int i = 0; i < lane_count; ++i) b.p[axis][i] = q.p[axis][i];
     weigh_block(a, b);
-    constexpr int to_y = tile_side * 4, to_x = tile_side * to_y;
+    constexpr int to_y = brick_halo_side * 4, to_x = brick_halo_side * to_y;
     int offset[lane_count];
     for (int i = 0; i < lane_count; ++i)
         offset[i] = (b.base[0][i] - corner[0]) * to_x + (b.base[1][i] - corner[1]) * to_y +
                     (b.base[2][i] - corner[2]) * 4;
     for (int i = 0; i < count; ++i) {
-        float* row = tile + offset[i];
+        float* row = halo + offset[i];
         const Float4 d =
             *reinterpret_cast<const Float4*>(d_raw + 4 * static_cast<std::int64_t>(q.source[i]));
         const Float4 near = d * b.z0[i], far = d * b.z1[i];
@@ -285,10 +286,10 @@ static inline void add_to_tile(const MarchDenseArgs& a, const SampleQueue& q, in
     }
 }
 
-// All runs of one brick, in the order given, into its tile (tile_side^3, 4).
+// All runs of one brick, in the order given, into its halo (brick_halo_side^3, 4).
 static void march_dense_gather(const MarchDenseArgs& a, const BrickRun* runs,
                                const std::uint32_t* order, std::int64_t count, const float* d_raw,
-                               float* tile) {
+                               float* halo) {
     int corner[3];
     BrickLayout::of(a.shape).corner(static_cast<int>(runs[order[0]].brick), corner);
     SampleQueue q = {};
@@ -303,13 +304,13 @@ static void march_dense_gather(const MarchDenseArgs& a, const BrickRun* runs,
         }
         enqueue(a, runs[order[j]], q);
         if (q.used < lane_count) continue;
-        add_to_tile(a, q, lane_count, corner, d_raw, tile);
+        add_to_halo(a, q, lane_count, corner, d_raw, halo);
         q.used -= lane_count;
         for (int axis = 0; axis < 3; ++axis)
             for (int i = 0; i < lane_count; ++i) q.p[axis][i] = q.p[axis][i + lane_count];
         for (int i = 0; i < lane_count; ++i) q.source[i] = q.source[i + lane_count];
     }
-    add_to_tile(a, q, q.used, corner, d_raw, tile);
+    add_to_halo(a, q, q.used, corner, d_raw, halo);
 }
 
 }  // namespace photograd::PHOTOGRAD_ISA

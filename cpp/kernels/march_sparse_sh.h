@@ -1,6 +1,6 @@
-// The fused march through a sparse grid of density and spherical harmonics (float): what the kernel gets
-// and gives. The staged form is photograd/field/sparse_sh.h with photograd/render/march/march.h; the two are
-// tested to agree bit for bit.
+// The fused march through a sparse grid of density and spherical harmonics (float): what the kernel
+// gets and gives. The staged form is photograd/field/sparse_sh.h with
+// photograd/render/march/march.h; the two are tested to agree bit for bit.
 #pragma once
 
 #include "kernels/march_args.h"

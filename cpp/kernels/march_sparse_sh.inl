@@ -91,7 +91,7 @@ static void sparse_sh_backward(const MarchSparseShArgs& a, const MarchSparseShBa
     ends.count(end - begin, back.found);
 }
 
-// Weight of every sample, as d[0] of a record: what pruning asks for. Colours are not needed.
+// Weight of every sample, as d[0] of a record: what pruning asks for. Colors are not needed.
 static void march_sparse_sh_weights(const MarchSparseShArgs& a, const MarchSparseShBackward& back,
                                     std::int64_t begin, std::int64_t end) {
     const Quadrature form = static_cast<Quadrature>(a.quadrature);

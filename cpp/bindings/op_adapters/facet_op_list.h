@@ -92,7 +92,8 @@ struct DielectricOp {
     }
 };
 
-/// A viewer outside, and one inside of glass before total reflection begins; wo need not be of unit length.
+/// A viewer outside, and one inside of glass before total reflection begins; wo need not be of unit
+/// length.
 struct RefractOp {
     static constexpr const char* name = "refract";
     static constexpr std::array<InputGroup, 2> inputs{{{"wo", 6, 0.6, 0.9}, {"e", 1, 1.2, 1.3}}};
@@ -140,7 +141,8 @@ struct ConductorOp {
     }
 };
 
-/// D and V for directions that need not be of unit length: the formulas are defined for others, too.
+/// D and V for directions that need not be of unit length: the formulas are defined for others,
+/// too.
 struct GgxOp {
     static constexpr const char* name = "ggx";
     static constexpr std::array<InputGroup, 4> inputs{
@@ -240,7 +242,8 @@ struct Gtr1Op {
     }
 };
 
-/// A film over a base that is denser than it in every channel, where the phase of the lower boundary does not jump.
+/// A film over a base that is denser than it in every channel, where the phase of the lower
+/// boundary does not jump.
 struct ThinFilmOp {
     static constexpr const char* name = "thin_film";
     static constexpr std::array<InputGroup, 3> inputs{

@@ -1,4 +1,4 @@
-// A named group of differentiable inputs of an op, and where proofs draw them.
+// A named group of differentiable inputs of an op, and the range in which proofs sample them.
 #pragma once
 
 namespace photograd {
@@ -6,7 +6,7 @@ namespace photograd {
 struct InputGroup {
     const char* name;
     int size;
-    double lo, hi;  // proofs draw inputs from here; kinks lie outside
+    double lo, hi;  // sampled range; kinks lie outside
 };
 
 }  // namespace photograd

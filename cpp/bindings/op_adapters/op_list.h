@@ -1,9 +1,9 @@
 // The ops as flat functions R^n -> R^m, for the proofs.
 //
-// An adapter gives an op a fixed, small size, lists its differentiable inputs as named groups, and says
-// where to draw them. Everything in `Ops` is then bound, stubbed and proved (finite differences,
-// Taylor remainder, dot product with dual numbers, accumulation, mutants) without another line. The
-// functions that users call on arrays of any size are in bindings/bind_ops.cpp.
+// An adapter gives an op a fixed, small size, lists its differentiable inputs as named groups, and
+// says where to sample them. Everything in `Ops` is then bound, stubbed and proved (finite
+// differences, Taylor remainder, dot product with dual numbers, accumulation, mutants) without
+// another line. The functions that users call on arrays of any size are in bindings/bind_ops.cpp.
 #pragma once
 
 #include <array>
@@ -44,9 +44,9 @@ struct ActivationOp {
     }
 };
 
-/// Values of a 3 x 4 x 2 grid with 2 channels, and a position in voxels: inside of one cell, or, with the
-/// zero border, half a voxel outside of the grid on every axis. At a cell face the slope jumps, and
-/// differences would be meaningless there.
+/// Values of a 3 x 4 x 2 grid with 2 channels, and a position in voxels: inside of one cell, or,
+/// with the zero border, half a voxel outside of the grid on every axis. At a cell face the slope
+/// jumps, and differences would be meaningless there.
 template <Border Outside>
 struct TrilinearOp {
     static constexpr const char* name =
@@ -86,12 +86,12 @@ struct CellBlendOp {
     static constexpr std::array<InputGroup, 2> inputs{
         {{"corners", values, -1, 1}, {"fraction", 3, 0.1, 0.9}}};
     static constexpr int outputs = channels;
-    static constexpr int place[8] = {5, 0, 3, 7, 1, 6, 2, 4};
+    static constexpr int order[8] = {5, 0, 3, 7, 1, 6, 2, 4};
 
     template <class R>
     static void forward(const R* in, R* out) {
         const R* corner[8];
-        for (int n = 0; n < 8; ++n) corner[n] = in + place[n] * channels;
+        for (int n = 0; n < 8; ++n) corner[n] = in + order[n] * channels;
         cell_blend(corner, CellWeights<R>::of(in + values), channels, out);
     }
     template <class R>
@@ -99,15 +99,15 @@ struct CellBlendOp {
         const CellWeights<R> w = CellWeights<R>::of(in + values);
         const R* corner[8];
         for (int n = 0; n < 8; ++n) {
-            corner[n] = in + place[n] * channels;
-            cell_blend_backward(n, w, channels, d_out, d_in + place[n] * channels);
+            corner[n] = in + order[n] * channels;
+            cell_blend_backward(n, w, channels, d_out, d_in + order[n] * channels);
         }
         cell_blend_fraction_backward(corner, w, channels, d_out, d_in + values);
     }
 };
 
-/// A colour of two channels from a direction and its coefficients, to the highest degree. The direction need
-/// not be of unit length: the polynomials are defined everywhere.
+/// A color of two channels from a direction and its coefficients, to the highest degree. The
+/// direction need not be of unit length: the polynomials are defined everywhere.
 struct ShColorOp {
     static constexpr const char* name = "sh_color";
     static constexpr int degree = sh_max_degree, channels = 2;
@@ -133,7 +133,7 @@ struct ShColorOp {
     }
 };
 
-/// Colours of two points, each with coefficients and a direction of its own.
+/// Colors of two points, each with coefficients and a direction of its own.
 struct ShColorsOp {
     static constexpr const char* name = "sh_colors";
     static constexpr int degree = 2, channels = 3, points = 2;
@@ -153,9 +153,9 @@ struct ShColorsOp {
     }
 };
 
-/// Texels with 2 channels and a point in texture coordinates. Inside: a texture of 3 rows and 4 columns, the
-/// point within one cell. At the left border: 12 rows and 3 columns, the point left of the first centres,
-/// where u is clamped and v is not.
+/// Texels with 2 channels and a point in texture coordinates. Inside: a texture of 3 rows and 4
+/// columns, the point within one cell. At the left border: 12 rows and 3 columns, the point left of
+/// the first centers, where u is clamped and v is not.
 template <bool AtBorder>
 struct BilinearOp {
     static constexpr const char* name = AtBorder ? "bilinear_border" : "bilinear";
@@ -182,7 +182,7 @@ struct BilinearOp {
     }
 };
 
-/// A ray of two sub-blocks over a background; outputs colour, opacity, depth.
+/// A ray of two sub-blocks over a background; outputs color, opacity, depth.
 template <Quadrature Form>
 struct CompositeOp {
     static constexpr const char* name =

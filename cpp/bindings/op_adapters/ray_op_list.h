@@ -10,8 +10,8 @@
 
 namespace photograd {
 
-/// A ray from near the origin along z, neither of unit length nor through the mean, 3 in front; outputs q
-/// and t.
+/// A ray from near the origin along z, neither of unit length nor through the mean, 3 in front;
+/// outputs q and t.
 struct RayGaussianOp {
     static constexpr const char* name = "ray_gaussian";
     static constexpr std::array<InputGroup, 5> inputs{{{"origin", 3, -0.3, 0.3},
@@ -22,12 +22,12 @@ struct RayGaussianOp {
     static constexpr int outputs = 2;
 
     template <class R>
-    struct Place {
+    struct Setup {
         R direction[3], mean[3];
         GaussianAxes<R> axes;
         RayGaussian<R> shape;
         RayPeak<R> peak;
-        explicit Place(const R* in) {
+        explicit Setup(const R* in) {
             for (int i = 0; i < 3; ++i) {
                 direction[i] = in[3 + i] + R(i == 2 ? 1.3 : 0.0);
                 mean[i] = in[6 + i] + R(i == 2 ? 3 : 0);
@@ -39,13 +39,13 @@ struct RayGaussianOp {
     };
     template <class R>
     static void forward(const R* in, R* out) {
-        const Place<R> at(in);
+        const Setup<R> at(in);
         out[0] = at.peak.q;
         out[1] = at.peak.t;
     }
     template <class R>
     static void backward(const R* in, const R* d_out, R* d_in) {
-        const Place<R> at(in);
+        const Setup<R> at(in);
         R d_strain[6] = {};
         ray_peak_backward_ray(at.shape, at.peak, d_out[0], d_out[1], d_in, d_in + 3);
         ray_peak_backward_gaussian(at.shape, at.peak, d_out[0], d_out[1], d_in + 6, d_strain);
@@ -53,7 +53,7 @@ struct RayGaussianOp {
     }
 };
 
-/// A colour of degree 3 in a direction of any length; no channel is held at 0.
+/// A color of degree 3 in a direction of any length; no channel is held at 0.
 struct RayColorOp {
     static constexpr const char* name = "ray_color";
     static constexpr int degree = 3, coefficients = sh_count(degree);
@@ -81,7 +81,7 @@ struct RayColorOp {
     }
 };
 
-/// Three crossings and a background; outputs colour, opacity, depth.
+/// Three crossings and a background; outputs color, opacity, depth.
 struct RayBlendOp {
     static constexpr const char* name = "ray_blend";
     static constexpr int crossings = 3;

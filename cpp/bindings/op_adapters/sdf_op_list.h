@@ -81,7 +81,7 @@ struct SdfBoxOp {
     static constexpr int outputs = 1;
 
     template <class R>
-    static void place(const R* in, Vec3<R>& p, Vec3<R>& half) {
+    static void setup(const R* in, Vec3<R>& p, Vec3<R>& half) {
         p = {in[0], in[1], -in[2]};
         half = vec_at(in + 3);
         if (Inside) half += Vec3<R>(R(0), R(2), R(3));
@@ -89,13 +89,13 @@ struct SdfBoxOp {
     template <class R>
     static void forward(const R* in, R* out) {
         Vec3<R> p, half;
-        place(in, p, half);
+        setup(in, p, half);
         out[0] = sdf_box(p, half);
     }
     template <class R>
     static void backward(const R* in, const R* d_out, R* d_in) {
         Vec3<R> p, half, d_p(R(0)), d_half(R(0));
-        place(in, p, half);
+        setup(in, p, half);
         sdf_box_backward(p, half, d_out[0], d_p, d_half);
         add_vec(Vec3<R>(d_p.x, d_p.y, -d_p.z), d_in);
         add_vec(d_half, d_in + 3);

@@ -30,8 +30,8 @@ struct CovarianceOp {
     }
 };
 
-/// A mean 3 in front of a camera that is turned and moved a little: within the field of view, or held by
-/// both limits, on the right and above.
+/// A mean 3 in front of a camera that is turned and moved a little: within the field of view, or
+/// held by both limits, on the right and above.
 template <bool Held>
 struct ProjectionOp {
     static constexpr const char* name = Held ? "splat_projection_held" : "splat_projection";
@@ -40,10 +40,10 @@ struct ProjectionOp {
     static constexpr int outputs = 6;
 
     template <class R>
-    struct Place {
+    struct Setup {
         SplatLens<R> lens{R(1.5), R(1.25), R(0.3), R(-0.2), {R(-0.5), R(0.5)}, {R(-0.5), R(0.5)}};
         R view[12], mean[3];
-        explicit Place(const R* in) {
+        explicit Setup(const R* in) {
             for (int i = 0; i < 12; ++i) view[i] = in[9 + i] + R(i % 5 == 0 ? 1 : 0);
             view[11] = view[11] + R(3);
             for (int i = 0; i < 3; ++i) mean[i] = in[i];
@@ -53,7 +53,7 @@ struct ProjectionOp {
     };
     template <class R>
     static void forward(const R* in, R* out) {
-        const Place<R> at(in);
+        const Setup<R> at(in);
         const SplatProjection<R> p = project_gaussian(at.lens, at.view, at.mean, in + 3);
         std::copy_n(p.mean2d, 2, out);
         out[2] = p.t[2];
@@ -61,7 +61,7 @@ struct ProjectionOp {
     }
     template <class R>
     static void backward(const R* in, const R* d_out, R* d_in) {
-        const Place<R> at(in);
+        const Setup<R> at(in);
         const SplatProjection<R> p = project_gaussian(at.lens, at.view, at.mean, in + 3);
         project_gaussian_backward(at.lens, at.view, at.mean, in + 3, p, d_out, d_out[2], d_out + 3,
                                   d_in, d_in + 3, d_in + 9);
@@ -94,7 +94,7 @@ struct ConicOp {
     }
 };
 
-/// A colour of degree 3; the mean is at least 1 away from the eye, and no channel is held at 0.
+/// A color of degree 3; the mean is at least 1 away from the eye, and no channel is held at 0.
 struct SplatColorOp {
     static constexpr const char* name = "splat_color";
     static constexpr std::array<InputGroup, 3> inputs{
@@ -113,7 +113,8 @@ struct SplatColorOp {
     }
 };
 
-/// Three splats over two rows of pixels and a background; outputs colour, opacity, depth of each pixel.
+/// Three splats over two rows of pixels and a background; outputs color, opacity, depth of each
+/// pixel.
 struct SplatBlendOp {
     static constexpr const char* name = "splat_blend";
     static constexpr int splats = 3, rows = 2, pixels = rows * lane_count;

@@ -1,4 +1,4 @@
-// Plenoxels: density and spherical-harmonic colour at the active voxels of a sparse grid
+// Plenoxels: density and spherical-harmonic color at the active voxels of a sparse grid
 // [FridovichKeil2022].
 //
 //   q       = (p - lo) / voxel - 1/2                       voxel i has its value at q = i
@@ -6,16 +6,16 @@
 //   color_c = offset + sum_n w_n p_nc,  p_nc = sum_k Y_k(d) sh_nkc
 //   sigma_t = density_scale density_activation(raw),   rgb = color_activation(color)
 //
-// A corner without a row reads the background. A cell without any row is vacuum: sigma_t = 0, whatever
-// the background says, so that a march may skip it without changing a bit.
+// A corner without a row reads the background. A cell without any row is vacuum: sigma_t = 0,
+// whatever the background says, so that a march may skip it without changing a bit.
 //
-//   d_density_n += w_n d_raw,    d_sh_nkc += w_n Y_k d_color_c,    d_background likewise, over corners
+//   d_density_n += w_n d_raw,    d_sh_nkc += w_n Y_k d_color_c
 //   d_q_axis     = sum_n (d w_n / d q_axis) (d_raw density_n + sum_c d_color_c p_nc)
 //   d_Y_k        = sum_c d_color_c sum_n w_n sh_nkc,   and from there d_direction (ops/sh.h)
 //
-// Topology is held constant: what a gradient cannot say about voxels that do not exist reaches
-// d_background, where it can be seen. The colour of a sample whose density relu has cut off is not
-// computed: it has no weight, and its derivatives vanish.
+// Topology is held constant: the gradient of corners without a row goes to d_background. The color
+// of a sample whose density is cut off by relu is not computed: it has no weight, and its
+// derivatives vanish.
 #pragma once
 
 #include <array>
@@ -59,7 +59,7 @@ struct SparseSh {
         const int entry = tile_entry(view, base[0], base[1], base[2]);
         const std::int32_t tile = entry < 0 ? 0 : std::max(view.top[entry], 0);
         const std::int32_t* at = view.rows + std::int64_t(tile) * cell_tile_voxels +
-                                 place_in_tile(base[0], base[1], base[2]);
+                                 offset_in_tile(base[0], base[1], base[2]);
         bool any = false;
         for (int n = 0; n < 8; ++n) {
             row[n] = at[corner_offset(n)];
@@ -71,7 +71,7 @@ struct SparseSh {
     /// Sample i of group g with all that its value needs.
     struct Lookup {
         CellPoint<R> at;
-        R q[3], density[8];
+        R q[3], w[8], density[8];
         const R* corner[8];
         R missing = R(0);  // weight of the corners without a row
         bool any;
@@ -85,9 +85,10 @@ struct SparseSh {
         found.any = rows(found.at.base, row);
         for (int n = 0; n < 8; ++n) {
             const bool here = row[n] >= 0;
+            found.w[n] = found.at.weights.corner(n);
             found.density[n] = here ? density[row[n]] : background[0];
             found.corner[n] = here ? sh + std::int64_t(row[n]) * numbers() : background + 1;
-            found.missing = found.missing + (here ? R(0) : found.at.w[n]);
+            found.missing = found.missing + (here ? R(0) : found.w[n]);
         }
         return found;
     }
@@ -113,7 +114,7 @@ struct SparseSh {
             for (int i = 0; i < lane_count; ++i) {
                 const Lookup found = look_up(batch, g, i);
                 R raw = R(0);
-                for (int n = 0; n < 8; ++n) raw = raw + found.at.w[n] * found.density[n];
+                for (int n = 0; n < 8; ++n) raw = raw + found.w[n] * found.density[n];
                 if (!found.any || is_cut(raw)) continue;  // all values of the batch begin as 0
                 R color[3];
                 blend_colors(found, Y3, color);
@@ -129,7 +130,8 @@ struct SparseSh {
         }
     }
 
-    /// Contributions of a slab, chunk by chunk in the order of the walk; finish() adds them up by owner.
+    /// Contributions of a slab, chunk by chunk in the order of the walk; finish() adds them up by
+    /// owner.
     struct Sink {
         Sink(const SparseSh& its_field, const SparseShGradients<R>& its_gradients)
             : field(its_field), gradients(its_gradients) {}
@@ -195,7 +197,7 @@ struct SparseSh {
 private:
     void blend_colors(const Lookup& found, const R* Y3, R* color) const {
         for (int n = 0; n < 8; ++n) {
-            const R w = found.at.w[n];
+            const R w = found.w[n];
             R p[3];
             fold_color(found.corner[n], Y3, numbers(), p);
             for (int c = 0; c < 3; ++c) color[c] = n == 0 ? w * p[c] : color[c] + w * p[c];
@@ -203,19 +205,15 @@ private:
     }
     /// Adds d_q (3,) and d_Y (K,) of one sample.
     void camera_backward(const Lookup& found, const R* Y3, const R* d, R* d_q, R* d_Y) const {
-        const R* f = found.at.fraction;
-        const R x[2] = {R(1) - f[0], f[0]}, y[2] = {R(1) - f[1], f[1]}, z[2] = {R(1) - f[2], f[2]};
         for (int n = 0; n < 8; ++n) {
             R p[3];
             fold_color(found.corner[n], Y3, numbers(), p);
-            R along = d[3] * found.density[n];
-            for (int c = 0; c < 3; ++c) along += d[c] * p[c];
-            d_q[0] += (n >> 2 ? along : -along) * (y[n >> 1 & 1] * z[n & 1]);
-            d_q[1] += (n >> 1 & 1 ? along : -along) * (x[n >> 2] * z[n & 1]);
-            d_q[2] += (n & 1 ? along : -along) * (x[n >> 2] * y[n >> 1 & 1]);
+            R d_weight = d[3] * found.density[n];
+            for (int c = 0; c < 3; ++c) d_weight += d[c] * p[c];
+            found.at.weights.corner_backward(n, d_weight, d_q);
         }
         R b[max_numbers];
-        blend_corners(found.corner, found.at.w, numbers(), b);
+        blend_corners(found.corner, found.w, numbers(), b);
         for (int j = 0; j < numbers(); ++j) d_Y[j / 3] += d[j % 3] * b[j];
     }
 };

@@ -41,7 +41,7 @@ inline int tile_entry(const CellView& v, int i, int j, int k) {
 }
 
 /// Place of a cell's lowest voxel within a tile.
-constexpr int place_in_tile(int i, int j, int k) {
+constexpr int offset_in_tile(int i, int j, int k) {
     return ((i & 7) * cell_tile_side + (j & 7)) * cell_tile_side + (k & 7);
 }
 

@@ -122,14 +122,14 @@ SparseStatistics SparseGrid::statistics() const {
             s.box[0][axis] = box.min()[static_cast<int>(axis)];
             s.box[1][axis] = box.max()[static_cast<int>(axis)] + 1;
         }
-        s.least = std::numeric_limits<float>::infinity();
-        s.most = -s.least;
+        s.min = std::numeric_limits<float>::infinity();
+        s.max = -s.min;
         for (auto at = tree.cbeginValueOn(); at; ++at) {
             float v[3];
             store(*at, v);
             for (int c = 0; c < channels_of<std::decay_t<decltype(*at)>>; ++c) {
-                s.least = std::min(s.least, v[c]);
-                s.most = std::max(s.most, v[c]);
+                s.min = std::min(s.min, v[c]);
+                s.max = std::max(s.max, v[c]);
             }
         }
         return s;

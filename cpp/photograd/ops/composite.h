@@ -1,29 +1,31 @@
 // Emission-absorption compositing along one ray [Max1995], [Mildenhall2020, Eq. 3].
 //
-// Sample k covers a step dt with extinction sigma_k and colour c_k. With s_k = sigma_k dt,
+// Sample k covers a step dt with extinction sigma_k and color c_k. With s_k = sigma_k dt,
 //
 //   tau_k   = s_0 + ... + s_{k-1}                 optical depth in front of sample k (exclusive!)
 //   T_k     = exp(-tau_k)                         transmittance in front of it
 //   alpha_k = 1 - exp(-s_k)                       opacity of the step, never above 1
 //   w_k     = T_k alpha_k                         alpha form (default)
-//   w_k     = T_k s_k                             Riemann form: first order, may exceed 1; kept for the lesson
+//   w_k     = T_k s_k                             Riemann form: first order, may exceed 1
 //
 //   color = sum_k w_k c_k + T_end background,  opacity = 1 - T_end,  depth = sum_k w_k t_k
 //
-// (depth is weighted by opacity, not divided by it). Adjoint, with v_k = <d_color, c_k> + d_depth t_k:
+// (depth is weighted by opacity, not divided by it). Adjoint, with v_k = <d_color, c_k> + d_depth
+// t_k:
 //
 //   d_c_k   = w_k d_color
 //   alpha:    dw_k/ds_k = T_k (1 - alpha_k) = T_{k+1},   dw_j/ds_k = -w_j for j > k
 //   Riemann:  dw_k/ds_k = T_k,                           dw_j/ds_k = -w_j for j > k
 //   dT_end/ds_k = -T_end
-//   d_sigma_k = dt ( dw_k/ds_k v_k - sum_{j>k} w_j v_j + (d_opacity - <d_color, background>) T_end )
+//   d_sigma_k = dt (dw_k/ds_k v_k - sum_{j>k} w_j v_j + (d_opacity - <d_color, background>) T_end)
 //
-// The sum over later samples needs no memory: the forward pass left sum_j w_j v_j = <d_color, color -
-// T_end background> + d_depth depth, and the backward pass walks front to back again and subtracts what
-// it has passed. Nothing is divided by T or 1 - alpha, so opaque walls are harmless.
+// The sum over later samples needs no memory: the forward pass left sum_j w_j v_j = <d_color, color
+// - T_end background> + d_depth depth, and the backward pass walks front to back again and
+// subtracts what it has passed. Nothing is divided by T or 1 - alpha, so opaque walls are harmless.
 //
-// The ray is walked in sub-blocks of lane_count samples. Both passes call `composite_weights`, so the
-// early stop (after a sub-block that leaves T below a threshold) acts at the same sample in both.
+// The ray is walked in sub-blocks of lane_count samples. Both passes call `composite_weights`, so
+// the early stop (after a sub-block that leaves T below a threshold) acts at the same sample in
+// both.
 #pragma once
 
 #include "photograd/core/lanes.h"
@@ -70,7 +72,8 @@ struct RayTotals {
     Lanes<R> depth = {};
 };
 
-/// Adds one sub-block to the totals. rgb[c][i] and t[i] belong to sample i; unused lanes have sigma_t 0.
+/// Adds one sub-block to the totals. rgb[c][i] and t[i] belong to sample i; unused lanes have
+/// sigma_t 0.
 template <class R>
 inline void composite(Quadrature form, const Lanes<R>& sigma_t, const Lanes<R>* rgb,
                       const Lanes<R>& t, R dt, RayTotals<R>& totals) {

@@ -25,7 +25,8 @@ struct MarchOutputs {
     R* depth;          // (R,) sum of w_k t_k
 };
 
-/// Cotangents of the outputs; d_transmittance includes what reaches it through opacity and background.
+/// Cotangents of the outputs; d_transmittance includes what reaches it through opacity and
+/// background.
 template <class R>
 struct MarchAdjoint {
     const R* d_color;          // (R, 3)

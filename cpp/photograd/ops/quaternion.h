@@ -1,9 +1,10 @@
 // Rotations from quaternions of any length, and the adjoint.
 //
-// With n = q / |q| = (w, x, y, z), R(n) turns counterclockwise, seen against the axis. Dividing by |q| is
-// part of the function, so that an optimizer may move q freely; q and -q give the same rotation.
+// With n = q / |q| = (w, x, y, z), R(n) turns counterclockwise, seen against the axis. Dividing by
+// |q| is part of the function, so that an optimizer may move q freely; q and -q give the same
+// rotation.
 //
-//   dn from dR by R's formula,   dq = (dn - n <n, dn>) / |q|      no part along q: it changes nothing
+//   dn from dR by R's formula,   dq = (dn - n <n, dn>) / |q|      no part along q
 //
 // A zero quaternion has no direction: it stands for no rotation, with derivative zero.
 #pragma once

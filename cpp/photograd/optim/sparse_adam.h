@@ -3,9 +3,9 @@
 //   m <- beta_1 m + (1 - beta_1) g,   v <- beta_2 v + (1 - beta_2) g^2,
 //   p <- p - step_size m / (sqrt(v) + epsilon)
 //
-// step_size and epsilon carry the bias correction (photograd_course.optim.adam). A row whose gradient is
-// zero keeps every bit, moments included: lazy updates, as in sparse optimizers. Most rows of a sparse grid
-// are such rows, and only their gradient is read.
+// step_size and epsilon carry the bias correction (photograd_course.optim.adam). A row whose
+// gradient is zero keeps every bit, moments included: lazy updates, as in sparse optimizers. Most
+// rows of a sparse grid are such rows, and only their gradient is read.
 #pragma once
 
 #include <algorithm>

@@ -1,10 +1,10 @@
 // Squared total variation of values on the active voxels of a sparse grid, and its adjoint.
 //
-//   value = 1 / (N C) sum over pairs of active neighbours a, b and channels of (v_b - v_a)^2
-//   d_v_a += d_value 2 / (N C) sum over active neighbours b of (v_a - v_b)
+//   value = 1 / (N C) sum over pairs of active neighbors a, b and channels of (v_b - v_a)^2
+//   d_v_a += d_value 2 / (N C) sum over active neighbors b of (v_a - v_b)
 //
-// Neighbours are the six voxels that share a face; a pair counts once. Where a neighbour is not active
-// there is no difference: nothing is known about it. N is the number of active voxels.
+// Neighbors are the six voxels that share a face; a pair counts once. Where a neighbor is not
+// active there is no difference: nothing is known about it. N is the number of active voxels.
 #pragma once
 
 #include <algorithm>
@@ -17,9 +17,9 @@ namespace photograd {
 
 namespace detail {
 
-/// visit(row, neighbour's row, axis, +1 or -1) for all active voxels of a brick and their neighbours.
+/// visit(row, neighbor's row, axis, +1 or -1) for all active voxels of a brick and their neighbors.
 template <class Visit>
-void for_neighbours(const BrickTopology& topology, std::int32_t brick, Visit&& visit) {
+void for_neighbors(const BrickTopology& topology, std::int32_t brick, Visit&& visit) {
     const std::int32_t* rows = topology.rows_of(brick);
     const std::int32_t* origin = topology.origins().data() + 3 * std::int64_t(brick);
     std::int32_t beyond[3][2];  // the bricks behind the six faces
@@ -30,7 +30,7 @@ void for_neighbours(const BrickTopology& topology, std::int32_t brick, Visit&& v
             beyond[axis][side] = topology.brick_of(at[0], at[1], at[2]);
         }
     constexpr int stride[3] = {64, 8, 1};
-    for (int v = 0; v < BrickTopology::voxels_a_brick; ++v) {
+    for (int v = 0; v < BrickTopology::voxels_per_brick; ++v) {
         if (rows[v] < 0) continue;
         for (int axis = 0; axis < 3; ++axis)
             for (int side = 0; side < 2; ++side) {
@@ -53,14 +53,14 @@ double total_variation(const BrickTopology& topology, const R* values, int chann
     std::vector<double> part(static_cast<std::size_t>(topology.bricks()), 0.0);
     parallel_for(topology.bricks(), [&](std::int64_t brick) {
         double total = 0.0;
-        detail::for_neighbours(topology, static_cast<std::int32_t>(brick),
-                               [&](std::int32_t row, std::int32_t other, int, int step) {
-                                   if (step < 0) return;
-                                   const R *a = values + std::int64_t(row) * channels,
-                                           *b = values + std::int64_t(other) * channels;
-                                   for (int c = 0; c < channels; ++c)
-                                       total += double(b[c] - a[c]) * double(b[c] - a[c]);
-                               });
+        detail::for_neighbors(topology, static_cast<std::int32_t>(brick),
+                              [&](std::int32_t row, std::int32_t other, int, int step) {
+                                  if (step < 0) return;
+                                  const R *a = values + std::int64_t(row) * channels,
+                                          *b = values + std::int64_t(other) * channels;
+                                  for (int c = 0; c < channels; ++c)
+                                      total += double(b[c] - a[c]) * double(b[c] - a[c]);
+                              });
         part[static_cast<std::size_t>(brick)] = total;
     });
     double total = 0.0;
@@ -73,14 +73,13 @@ void total_variation_backward(const BrickTopology& topology, const R* values, in
                               double d_value, std::int64_t first, std::int64_t last, R* d_values) {
     const R factor = static_cast<R>(2.0 * d_value / (double(topology.voxels()) * channels));
     parallel_for(last - first, [&](std::int64_t i) {
-        detail::for_neighbours(topology, static_cast<std::int32_t>(first + i),
-                               [&](std::int32_t row, std::int32_t other, int, int) {
-                                   const R *a = values + std::int64_t(row) * channels,
-                                           *b = values + std::int64_t(other) * channels;
-                                   R* d = d_values + std::int64_t(row) * channels;
-                                   for (int c = 0; c < channels; ++c)
-                                       d[c] += factor * (a[c] - b[c]);
-                               });
+        detail::for_neighbors(topology, static_cast<std::int32_t>(first + i),
+                              [&](std::int32_t row, std::int32_t other, int, int) {
+                                  const R *a = values + std::int64_t(row) * channels,
+                                          *b = values + std::int64_t(other) * channels;
+                                  R* d = d_values + std::int64_t(row) * channels;
+                                  for (int c = 0; c < channels; ++c) d[c] += factor * (a[c] - b[c]);
+                              });
     });
 }
 

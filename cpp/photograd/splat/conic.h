@@ -2,15 +2,17 @@
 //
 //   blurred = cov2d + l I                          no splat gets thinner than a pixel
 //   det     = det(cov2d) + l trace(cov2d) + l^2
-//   conic   = (yy + l, -xy, xx + l) / det          A, B, C of sigma(d) = (A dx^2 + C dy^2) / 2 + B dx dy
+//   conic   = (yy + l, -xy, xx + l) / det          A, B, C
+//   sigma(d) = (A dx^2 + C dy^2) / 2 + B dx dy
 //   compensation = sqrt(max(det(cov2d) / det, floor))
 //
-// The low-pass spreads a thin splat over more pixels without making it fainter, so it brightens when seen
-// from afar. Multiplying its opacity by `compensation` keeps its total [Yu2024]; that is the
-// antialiased mode. At the floor the square root is held, and its derivative is zero: a flat splat would
-// have an infinite one.
+// The low-pass spreads a thin splat over more pixels without making it fainter, so it brightens
+// when seen from afar. Multiplying its opacity by `compensation` keeps its total [Yu2024]; that is
+// the antialiased mode. At the floor the square root is held, and its derivative is zero: a flat
+// splat would have an infinite one.
 //
-// Adjoint. With Q = conic as a matrix and H its derivative (H_xy = d_B / 2), d(S^-1) = -S^-1 dS S^-1:
+// Adjoint. With Q = conic as a matrix and H its derivative (H_xy = d_B / 2), d(S^-1) = -S^-1 dS
+// S^-1:
 //
 //   d_cov2d = -Q H Q, off-diagonal once for each of its two entries
 //   d ln compensation = (d ln det(cov2d) - d ln det) / 2,   d ln det(S) = <S^-1, dS>

@@ -4,8 +4,8 @@
 //
 //   cov = M M^T, six numbers xx, xy, xz, yy, yz, zz         positive semidefinite by construction
 //
-// Adjoint: an off-diagonal number stands for two equal entries of the matrix, so the matrix of derivatives
-// G has G_ii = d_cov_ii and G_ij = G_ji = d_cov_ij / 2.
+// Adjoint: an off-diagonal number stands for two equal entries of the matrix, so the matrix of
+// derivatives G has G_ii = d_cov_ii and G_ij = G_ji = d_cov_ij / 2.
 //
 //   dM        = 2 G M                  since d(M M^T) = dM M^T + M dM^T, and G is symmetric
 //   d_log_s_j = sum_i dM_ij M_ij       since dM_ij/dlog_s_j = M_ij

@@ -1,6 +1,7 @@
 // A 3D Gaussian seen through a pinhole: mean and covariance on the screen, in pixels [Zwicker2001].
 //
-// The view [W | b] = camera_from_world takes a point p to t = W p + b (+X right, +Y down, +Z forward):
+// The view [W | b] = camera_from_world takes a point p to t = W p + b (+X right, +Y down, +Z
+// forward):
 //
 //   mean2d = (fx u + cx, fy v + cy)  with u = t_x / t_z, v = t_y / t_z;      depth = t_z
 //   cov2d  = A cov A^T, three numbers xx, xy, yy, with A = J W and the projection's Jacobian
@@ -10,7 +11,8 @@
 // u' is u held inside of `limit_u`, the field of view plus a margin [Kerbl2023]: the linear
 // approximation explodes for points that are far off the screen. mean2d is not held.
 //
-// Adjoint. G is the symmetric matrix with G_xx = d_cov2d_xx, G_xy = d_cov2d_xy / 2, G_yy = d_cov2d_yy:
+// Adjoint. G is the symmetric matrix with G_xx = d_cov2d_xx, G_xy = d_cov2d_xy / 2, G_yy =
+// d_cov2d_yy:
 //
 //   d_cov = A^T G A, an off-diagonal number once for each of its two entries
 //   dA    = 2 G A cov,   dJ = dA W^T,   dW = J^T dA + dt p^T,   db = dt,   dp = W^T dt
@@ -18,8 +20,8 @@
 //   J_xz  = -fx u' / t_z:   du'  -= dJ_xz fx / t_z,   dt_z -= dJ_xz J_xz / t_z
 //   u = t_x / t_z:          dt_x += du / t_z,         dt_z -= du u / t_z
 //
-// and likewise in y. Where u is held, du' ends there: only the 1 / t_z of J_xz is left. (Formulas that
-// substitute t_x = u' t_z and differentiate as if t_x moved get dt_z wrong by that term.)
+// and likewise in y. Where u is held, du' ends there: only the 1 / t_z of J_xz is left. (Formulas
+// that substitute t_x = u' t_z and differentiate as if t_x moved get dt_z wrong by that term.)
 #pragma once
 
 #include "photograd/core/dual.h"

@@ -1,4 +1,4 @@
-// Blending what a ray crosses, nearest first [Kerbl2023, Eq. 3; MoenneLoccoz2024].
+// Blending the Gaussians along a ray, nearest first [Kerbl2023, Eq. 3; MoenneLoccoz2024].
 //
 //   raw   = opacity exp(-q / 2),   alpha = min(raw, alpha_max)
 //   T     = product of 1 - alpha_j over the crossings in front (exclusive!),   w = T alpha
@@ -9,10 +9,11 @@
 // d_end = <d_color, background> - d_opacity,
 //
 //   d_c = w d_color,   d_t = w d_depth
-//   d_alpha_k = T_k v_k - (sum_{j>k} w_j v_j + d_end T_end) / (1 - alpha_k),   d_raw = 0 where alpha_max holds
+//   d_alpha_k = T_k v_k - (sum_{j>k} w_j v_j + d_end T_end) / (1 - alpha_k)
+//   d_raw     = d_alpha, or 0 where alpha_max clamps
 //
-// What stands in brackets needs no list of crossings: it begins as <d_color, color> + d_depth depth - d_opacity
-// T_end, from the finished ray, and a second walk from the front subtracts w v of each crossing.
+// The bracket needs no list: it starts as <d_color, color> + d_depth depth - d_opacity T_end, from
+// the finished ray, and a second walk from the front subtracts w v of each crossing.
 #pragma once
 
 #include "photograd/core/dual.h"
@@ -20,7 +21,7 @@
 namespace photograd {
 inline namespace PHOTOGRAD_ISA {
 
-/// Discontinuities of a ray; each can be switched off, or differences would mean nothing.
+/// Discontinuities of a ray; each can be switched off, or finite differences would mean nothing.
 template <class R>
 struct RayCutoffs {
     R alpha_min;  // fainter crossings are dropped; 0: off
@@ -57,7 +58,7 @@ struct RayBack {
     R T = R(1);
 };
 
-/// Derivatives of one crossing; that of its colour is w d_color.
+/// Derivatives of one crossing; that of its color is w d_color.
 template <class R>
 struct CrossingAdjoint {
     R w, d_raw, d_t;

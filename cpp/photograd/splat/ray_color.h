@@ -1,13 +1,13 @@
-// The colour that a ray sees of a Gaussian: spherical harmonics of the ray's own direction, around a middle
-// grey, never negative [MoenneLoccoz2024].
+// View-dependent color of a Gaussian along a ray [MoenneLoccoz2024]: spherical harmonics in the
+// ray's direction, offset by 1/2 and clamped at 0.
 //
 //   n = d / |d|,   Y_k = Y_k(n),   color_c = max(0, 1/2 + sum_k Y_k sh_kc)
 //
-// Splatting takes the direction from the eye to the Gaussian's mean instead (splat/splat_color.h). A ray has
-// one n, so that its Y_k are computed once for all that it crosses.
+// Splatting takes the direction from the eye to the Gaussian's mean instead (splat/splat_color.h).
+// A ray has one n, so that its Y_k are computed once for all that it crosses.
 //
-// Adjoint: zero where the clamp holds, else d_Y_k = sum_c sh_kc d_color_c (the ray's share), d_sh_kc = Y_k
-// d_color_c (the Gaussian's);  d_d from d_n by ops/unit_direction.h.
+// Adjoint: zero where the clamp holds, else d_Y_k = sum_c sh_kc d_color_c (the ray's share),
+// d_sh_kc = Y_k d_color_c (the Gaussian's);  d_d from d_n by ops/unit_direction.h.
 #pragma once
 
 #include "photograd/ops/sh.h"

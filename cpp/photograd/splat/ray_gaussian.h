@@ -1,29 +1,31 @@
-// Where a ray passes a 3D Gaussian best [MoenneLoccoz2024].
+// The peak of a 3D Gaussian along a ray [MoenneLoccoz2024].
 //
-// The whitening W = diag(1/s) R^T makes a Gaussian with rotation R and standard deviations s a unit ball.
-// A ray o + t d becomes a + t b there, and the Gaussian is largest where the ray is nearest to the centre:
+// The whitening W = diag(1/s) R^T makes a Gaussian with rotation R and standard deviations s a unit
+// ball. A ray o + t d becomes a + t b there, and the Gaussian is largest where the ray is nearest
+// to the center:
 //
 //   a = W (o - mean),   b = W d,   u = b / |b|
 //   t = -<a, u> / |b|,   p = a + t b = u x (a x u),   q = |p|^2,   largest value exp(-q / 2)
 //
-// q is the smallest value of (x - mean)^T cov^-1 (x - mean) on the line. p is not computed as a + t b: of a
-// Gaussian as flat as paper both terms are huge and nearly cancel, while the cross products keep their
-// digits.
+// q is the smallest value of (x - mean)^T cov^-1 (x - mean) on the line. p is not computed as a + t
+// b: of a Gaussian as flat as paper both terms are huge and nearly cancel, while the cross products
+// keep their digits.
 //
-// Adjoint. p is orthogonal to u, and moving the nearest point along the ray changes q in second order only:
+// Adjoint. p is orthogonal to u, and moving the nearest point along the ray changes q in second
+// order only:
 //
 //   dq/da = 2 p,           dq/db = 2 t p
 //   dt/da = -u / |b|,      dt/db = -(p / |b| + t u) / |b|
 //
-// The ray's share follows from a and b being linear: d_o = W^T d_a, d_d = W^T d_b. The Gaussian's: d_mean =
-// -W^T d_a, and for W itself ask what a small strain, W to (I + E) W, does. d_strain = d_a a^T + d_b b^T, and
-// with the above
+// The ray's share follows from a and b being linear: d_o = W^T d_a, d_d = W^T d_b. The Gaussian's:
+// d_mean = -W^T d_a, and for W itself ask what a small strain, W to (I + E) W, does. d_strain = d_a
+// a^T + d_b b^T, and with the above
 //
 //   d_strain = 2 d_q p p^T - (d_t / |b|) (u p^T + p u^T)
 //
-// It is symmetric, as it must be: turning the unit ball, E antisymmetric, changes nothing. It takes six
-// numbers, which rays add up, and which become derivatives of rotation and scales once a Gaussian. From
-// dW = -diag(dlog_s) W + diag(1/s) dR^T, E = dW W^-1 and M = R diag(s) = W^-1:
+// It is symmetric, as it must be: turning the unit ball, E antisymmetric, changes nothing. It takes
+// six numbers, which rays add up, and which become derivatives of rotation and scales once a
+// Gaussian. From dW = -diag(dlog_s) W + diag(1/s) dR^T, E = dW W^-1 and M = R diag(s) = W^-1:
 //
 //   d_log_s_i = -d_strain_ii,      dR_ki = (1/s_i) sum_j M_kj d_strain_ij
 #pragma once
@@ -103,8 +105,8 @@ inline void ray_peak_backward_ray(const RayGaussian<R>& g, const RayPeak<R>& pea
         }
     }
 }
-/// The Gaussian's share: adds to d_mean[3] and d_strain[6] = xx, xy, xz, yy, yz, zz. `Sum` may be wider
-/// than R.
+/// The Gaussian's share: adds to d_mean[3] and d_strain[6] = xx, xy, xz, yy, yz, zz. `Sum` may be
+/// wider than R.
 template <class R, class Sum>
 inline void ray_peak_backward_gaussian(const RayGaussian<R>& g, const RayPeak<R>& peak, R d_q,
                                        R d_t, Sum* d_mean, Sum* d_strain) {

@@ -1,5 +1,5 @@
-// What a renderer of Gaussians leaves for each pixel or ray, and the cotangents of it. The data are the same
-// in every instruction set.
+// What a renderer of Gaussians leaves for each pixel or ray, and the cotangents of it. The data are
+// the same in every instruction set.
 #pragma once
 
 #include <cstdint>
@@ -22,8 +22,8 @@ struct ImageCotangents {
 
 inline namespace PHOTOGRAD_ISA {
 
-/// <d_color, color> + d_depth depth - d_opacity T_end: the remainder with which the backward walk of pixel p
-/// starts (row_blend.h, ray_blend.h).
+/// <d_color, color> + d_depth depth - d_opacity T_end: the remainder with which the backward walk
+/// of pixel p starts (row_blend.h, ray_blend.h).
 template <class R>
 inline R start_remainder(const RenderedImage<R>& image, const ImageCotangents<R>& d,
                          std::int64_t p) {

@@ -1,29 +1,27 @@
 // Blending one splat over a row of pixels, front to back [Kerbl2023, Eq. 3].
 //
-// For the pixel with centre (px, py), and d = mean - centre:
+// For the pixel with center (px, py), and d = mean - center:
 //
 //   sigma = (A dx^2 + C dy^2) / 2 + B dx dy,   G = exp(-sigma),   raw = opacity G
 //   alpha = min(raw, alpha_max), dropped below alpha_min and outside of the splat's box
 //   T     = product of 1 - alpha_j over the splats in front (exclusive!),   w = T alpha
 //   color = sum w c + T_end background,   opacity = 1 - T_end,   depth = sum w z
 //
-// A pixel ends before the splat that would leave T below `stop`. Adjoint, with v = <d_color, c> + d_depth z
-// and d_end = <d_color, background> - d_opacity:
+// A pixel ends before the splat that would leave T below `stop`. Adjoint, with v = <d_color, c> +
+// d_depth z and d_end = <d_color, background> - d_opacity:
 //
 //   d_c = w d_color,   d_z = w d_depth
 //   d_alpha_k   = T_k v_k - (sum_{j>k} w_j v_j + d_end T_end) / (1 - alpha_k)
-//   d_opacity   = G d_raw = -d_sigma / opacity,   d_sigma = -raw d_raw,   d_raw = d_alpha, or 0 where alpha_max holds
+//   d_raw       = d_alpha, or 0 where alpha_max clamps
+//   d_opacity   = G d_raw = -d_sigma / opacity,   d_sigma = -raw d_raw
 //   d_A = dx^2 d_sigma / 2,   d_B = dx dy d_sigma,   d_C = dy^2 d_sigma / 2
 //   d_mean = (A dx + B dy, B dx + C dy) d_sigma
 //
-// What stands in brackets needs no memory: it begins as <d_color, color> + d_depth depth - d_opacity T_end,
-// from the forward result, and the backward walk, front to back again, subtracts w v of each splat that
-// it passes. 1 - alpha_max bounds the division.
+// The bracket needs no list: it starts as <d_color, color> + d_depth depth - d_opacity T_end, from
+// the forward result, and the backward loop, front to back again, subtracts w v of each splat.
+// 1 - alpha_max bounds the division.
 //
-// A, B, C are the numbers of the quadratic form, and each has its own derivative. (Code that stores half
-// of d_B, because B stands for two entries of a matrix, must double it again later: correct, and often
-// "fixed" in one place only.)
-//
+// d_B is the full derivative with respect to B, not half of it for each of two matrix entries.
 // Both passes call `splat_weights`, so they drop the same pixels and end at the same splat.
 #pragma once
 
@@ -34,20 +32,21 @@
 namespace photograd {
 inline namespace PHOTOGRAD_ISA {
 
-/// Where a row of lane_count pixels stands while splats pass.
+/// State of a row of lane_count pixels between two splats.
 template <class R>
 struct PixelRow {
     Lanes<R> T;     // behind the splats so far
     Lanes<R> live;  // 1; 0 for pixels that have ended
 };
 
-/// False where the splat is fainter than alpha_min in all pixels of the row: `splat_weights` would drop it
-/// there. The exponent is a parabola in dx, smallest at dx = -B dy / A or at an end of the row.
+/// False where the splat is fainter than alpha_min in all pixels of the row: `splat_weights` would
+/// drop it there. The exponent is a parabola in dx, smallest at dx = -B dy / A or at an end of the
+/// row.
 template <class R>
-inline bool row_may_see(const ScreenSplat<R>& s, int x, int y) {
+inline bool row_may_contribute(const ScreenSplat<R>& s, int x, int y) {
     const R right = s.x - (R(x) + R(0.5)), left = right - R(lane_count - 1);
     const R dy = s.y - (R(y) + R(0.5)), a = s.conic[0], b_dy = s.conic[1] * dy;
-    // a dx at its best place, without a division.
+    // a dx at the minimum, without a division.
     const R a_dx = clamped(-b_dy, a * left, a * right);
     const R twice_a_sigma = a_dx * a_dx + R(2) * b_dy * a_dx + a * (s.conic[2] * (dy * dy));
     return !(twice_a_sigma > R(2) * a * s.sigma_max);
@@ -60,11 +59,11 @@ struct SplatWeights {
     Lanes<R> alpha;  // 0 where dropped
     Lanes<R> front;  // T in front of the splat
     Lanes<R> w;
-    Lanes<R> seen;  // 1 where the splat is in the picture
+    Lanes<R> visible;  // 1 where the splat contributes
     R dy;
 };
 
-/// What splat s does to the pixels with centres (x + i + 1/2, y + 1/2); moves `row` behind it.
+/// Weights of splat s in the pixels with centers (x + i + 1/2, y + 1/2); moves `row` behind it.
 template <class R>
 inline void splat_weights(const ScreenSplat<R>& s, const SplatCutoffs<R>& cut, int x, int y,
                           PixelRow<R>& row, SplatWeights<R>& out) {
@@ -85,19 +84,19 @@ inline void splat_weights(const ScreenSplat<R>& s, const SplatCutoffs<R>& cut, i
     for (int i = 0; i < lane_count; ++i) {
         const R alpha = smaller(out.raw[i], alpha_max);
         const R inside = (i >= first) & (i < end) & (alpha >= alpha_min) ? row.live[i] : R(0);
-        const R seen_alpha = alpha * inside;
-        const R T = row.T[i], next = T * (R(1) - seen_alpha);
-        const R goes_on = next < stop ? R(0) : R(1);
-        out.alpha[i] = seen_alpha;
+        const R visible_alpha = alpha * inside;
+        const R T = row.T[i], next = T * (R(1) - visible_alpha);
+        const R continues = next < stop ? R(0) : R(1);
+        out.alpha[i] = visible_alpha;
         out.front[i] = T;
-        out.seen[i] = inside * goes_on;
-        out.w[i] = T * (seen_alpha * goes_on);
+        out.visible[i] = inside * continues;
+        out.w[i] = T * (visible_alpha * continues);
         row.T[i] = next < stop ? T : next;
-        row.live[i] = row.live[i] * goes_on;
+        row.live[i] = row.live[i] * continues;
     }
 }
 
-/// Colour and depth of a row so far, without background.
+/// Color and depth of a row so far, without background.
 template <class R>
 struct RowSums {
     Lanes<R> color[3];
@@ -116,7 +115,7 @@ inline void blend_row(const ScreenSplat<R>& s, const SplatCutoffs<R>& cut, int x
     for (int i = 0; i < lane_count; ++i) sums.depth[i] = sums.depth[i] + k.w[i] * s.depth;
 }
 
-/// Cotangents of a row, and what the walk still has in front of it.
+/// Cotangents of a row, and the remainder of its sum.
 template <class R>
 struct RowCotangents {
     Lanes<R> d_color[3];
@@ -124,7 +123,7 @@ struct RowCotangents {
     Lanes<R> remainder;  // sum of w_j v_j over the splats not yet passed, + d_end T_end
 };
 
-/// What rows add up for one splat, lane by lane; `splat_partials` makes derivatives of it.
+/// Sums of one splat over rows, lane by lane; `splat_partials` turns them into derivatives.
 template <class R>
 struct SplatSums {
     Lanes<R> s, sx, sy, sxx, sxy, syy;  // of d_sigma, times powers of dx and dy
@@ -167,7 +166,7 @@ inline void blend_row_backward(const ScreenSplat<R>& s, const SplatCutoffs<R>& c
         const R d_alpha = k.front[i] * v - behind / through;
         const R slope = k.raw[i] > alpha_max ? held_slope : R(1);
         back.remainder[i] = behind;
-        d_raw[i] = d_alpha * (k.seen[i] * slope);
+        d_raw[i] = d_alpha * (k.visible[i] * slope);
     }
     for (int i = 0; i < lane_count; ++i) {
         d_sigma[i] = -(k.raw[i] * d_raw[i]);

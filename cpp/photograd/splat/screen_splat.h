@@ -1,4 +1,5 @@
-// A Gaussian as pixels see it, and where it is cut off. Plain data, the same in every instruction set.
+// A Gaussian projected to the screen, and its cut-offs. Plain data, the same in every instruction
+// set.
 #pragma once
 
 namespace photograd {
@@ -11,18 +12,18 @@ struct ScreenSplat {
     R opacity;   // with compensation
     R color[3];
     R depth;
-    int x0, x1, y0, y1;  // pixels [x0, x1) x [y0, y1) may see it; x0 == x1: culled
+    int x0, x1, y0, y1;  // it may be visible in [x0, x1) x [y0, y1); x0 == x1: culled
     R sigma_max;  // where the exponent is larger, alpha is below alpha_min; a little too large
     R unused;
 };
 
-/// Discontinuities of blending. Each can be switched off, or differences would mean nothing.
+/// Discontinuities of blending. Each can be switched off, or finite differences would mean nothing.
 template <class R>
 struct SplatCutoffs {
     R alpha_min;       // fainter contributions are dropped; 0: off
     R alpha_max;       // opacity of one splat in one pixel is held here; 1: off
     R stop;            // a pixel ends before the splat that would leave T below this; 0: off
-    int pass_clamped;  // at alpha_max the derivative is 1 (the original code) instead of 0 (correct)
+    int pass_clamped;  // derivative at alpha_max: 1, as in the original code, instead of 0
 };
 
 /// Derivatives of one splat that one tile sums up, in this order.

@@ -1,11 +1,11 @@
-// The colour of a Gaussian from where it is seen [Kerbl2023]: spherical harmonics of the unit direction
-// from the eye to its mean, around a middle grey, never negative.
+// View-dependent color of a Gaussian [Kerbl2023]: spherical harmonics in the unit direction from
+// the eye to its mean, offset by 1/2 and clamped at 0.
 //
 //   o = mean - eye,  d = o / |o|
 //   color_c = max(0, 1/2 + sum_k Y_k(d) sh_kc)
 //
-// Adjoint: where the clamp holds, everything is zero (such a splat cannot come back by itself). With d_d
-// from the harmonics, d_o = (d_d - d <d, d_d>) / |o|;  d_mean = d_o,  d_eye = -d_o.
+// Adjoint: where the clamp holds, everything is zero (such a splat cannot come back by itself).
+// With d_d from the harmonics, d_o = (d_d - d <d, d_d>) / |o|;  d_mean = d_o,  d_eye = -d_o.
 #pragma once
 
 #include "photograd/ops/sh.h"

@@ -1,8 +1,9 @@
-// Stage 4: a tile of pixels, its splats front to back, and the same walk for the adjoint.
+// Stage 4: a tile of pixels, its splats front to back, and the same loop for the adjoint.
 //
-// Forward keeps five numbers a pixel. Backward starts from the finished picture and walks in the same
-// order (splat/row_blend.h), so it needs no list of what a pixel has seen. What one splat gets from one
-// tile goes to a place of its own; stage 5 adds up the tiles of a splat in their order.
+// The forward pass keeps five numbers per pixel. The backward pass starts from the finished image
+// and runs in the same order (splat/row_blend.h), so it stores no list of contributions. What a
+// splat gets from a tile goes to the slot of that pair; stage 5 sums the slots of a splat in their
+// order.
 #pragma once
 
 #include "photograd/splat/row_blend.h"
@@ -11,17 +12,17 @@
 namespace photograd {
 inline namespace PHOTOGRAD_ISA {
 
-/// Every so many splats it is looked up which rows still have a live pixel.
+/// Number of splats between two checks of which rows still have a live pixel.
 inline constexpr int rows_checked_every = 8;
 
 template <class R>
 struct TileRows {
-    PixelRow<R> row[tile_size];
-    bool alive[tile_size];
+    PixelRow<R> row[splat_tile_size];
+    bool alive[splat_tile_size];
     int rows;  // inside of the picture
 
     void start(int x, int y, int width, int height) {
-        rows = smaller(tile_size, height - y);
+        rows = smaller(splat_tile_size, height - y);
         for (int r = 0; r < rows; ++r) {
             alive[r] = true;
             row[r].T = Lanes<R>::filled(R(1));
@@ -41,8 +42,8 @@ struct TileRows {
     }
 };
 
-/// visit(pair, splat, first row, end of rows) for the tile's splats until no pixel is left; returns where
-/// it ended.
+/// visit(pair, splat, first row, end of rows) for the tile's splats until no pixel is left; returns
+/// where it ended.
 template <class R, class Visit>
 inline const TilePair* walk_tile(const BlendArgs<R>& a, const TilePairs& pairs, int y,
                                  TileRows<R>& tile, Visit&& visit) {
@@ -55,18 +56,18 @@ inline const TilePair* walk_tile(const BlendArgs<R>& a, const TilePairs& pairs, 
     return pairs.end;
 }
 
-/// Pixels (x .. x + tile_size, y .. y + tile_size) of the picture, written once.
+/// Pixels (x .. x + splat_tile_size, y .. y + splat_tile_size) of the picture, written once.
 template <class R>
 inline void blend_tile(const BlendArgs<R>& a, const TilePairs& pairs, int x, int y) {
     TileRows<R> tile;
-    RowSums<R> sums[tile_size] = {};
+    RowSums<R> sums[splat_tile_size] = {};
     tile.start(x, y, a.width, a.height);
     walk_tile(a, pairs, y, tile, [&](const TilePair&, const ScreenSplat<R>& s, int first, int end) {
         for (int r = first; r < end; ++r)
-            if (tile.alive[r] && row_may_see(s, x, y + r))
+            if (tile.alive[r] && row_may_contribute(s, x, y + r))
                 blend_row(s, a.cut, x, y + r, tile.row[r], sums[r]);
     });
-    const int columns = smaller(tile_size, a.width - x);
+    const int columns = smaller(splat_tile_size, a.width - x);
     for (int r = 0; r < tile.rows; ++r) {
         const std::int64_t first = static_cast<std::int64_t>(y + r) * a.width + x;
         for (int i = 0; i < columns; ++i) {
@@ -96,24 +97,24 @@ template <class R>
 inline void blend_tile_backward(const BlendArgs<R>& a, const BlendBackward<R>& b,
                                 const TilePairs& pairs, int x, int y) {
     TileRows<R> tile;
-    RowCotangents<R> back[tile_size];
+    RowCotangents<R> back[splat_tile_size];
     tile.start(x, y, a.width, a.height);
     for (int r = 0; r < tile.rows; ++r)
-        start_row(a, b.d_image, smaller(tile_size, a.width - x),
+        start_row(a, b.d_image, smaller(splat_tile_size, a.width - x),
                   static_cast<std::int64_t>(y + r) * a.width + x, back[r]);
     const TilePair* end = walk_tile(
         a, pairs, y, tile, [&](const TilePair& pair, const ScreenSplat<R>& s, int first, int last) {
             SplatSums<R> sums;
             sums.clear();
             for (int r = first; r < last; ++r)
-                if (tile.alive[r] && row_may_see(s, x, y + r))
+                if (tile.alive[r] && row_may_contribute(s, x, y + r))
                     blend_row_backward(s, a.cut, x, y + r, tile.row[r], back[r], sums);
             splat_partials(s, sums,
-                           b.partials + partial_count * static_cast<std::int64_t>(pair.place));
+                           b.partials + partial_count * static_cast<std::int64_t>(pair.slot));
         });
     for (const TilePair* pair = end; pair != pairs.end; ++pair)
         for (int j = 0; j < partial_count; ++j)
-            b.partials[partial_count * static_cast<std::int64_t>(pair->place) + j] = R(0);
+            b.partials[partial_count * static_cast<std::int64_t>(pair->slot) + j] = R(0);
 }
 
 }  // namespace PHOTOGRAD_ISA

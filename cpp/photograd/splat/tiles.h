@@ -1,4 +1,4 @@
-// What blending a tile needs and gives. Plain data, because every instruction set's translation unit
+// Input and output of blending a tile. Plain data, because every instruction set's translation unit
 // includes it.
 #pragma once
 
@@ -9,12 +9,12 @@
 
 namespace photograd {
 
-/// A tile is tile_size x tile_size pixels: a row of it is one set of lanes.
-inline constexpr int tile_size = 16;
+/// A tile is splat_tile_size x splat_tile_size pixels: a row of it is one set of lanes.
+inline constexpr int splat_tile_size = 16;
 
-/// A splat that a tile must look at, and the place for what the tile has for it.
+/// A splat whose box touches a tile, and the slot for its partial derivatives from that tile.
 struct TilePair {
-    std::uint32_t splat, place;
+    std::uint32_t splat, slot;
 };
 
 /// One tile's pairs, nearest splat first.

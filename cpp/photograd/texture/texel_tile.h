@@ -1,11 +1,11 @@
-// Tiles: squares of 16 x 16 cells, the unit in which gradients of a texture are accumulated.
+// Tiles of 16 x 16 cells: the unit in which gradients of a texture are accumulated.
 //
-// A cell is the square between four texel centres, so a point lies in one cell and its tile is its one
-// owner. The owner works on a private copy of 17 x 17 texels (a cell's far texels may belong to the next
-// tile) that fits into the first-level cache; it is a small texture of its own, and the op in
-// ops/bilinear.h serves both. Tiles overlap by one row and one column, so they are flushed in four
-// colours, by the parity of their coordinates: two tiles of one colour never share a texel, and a texel's
-// additions come in the order of the colours whatever the threads do.
+// A cell is the square between four texel centers; each point lies in one cell, whose tile is its
+// owner. The owner accumulates into a private copy of 17 x 17 texels (a cell's far texels may
+// belong to the next tile), small enough for the L1 cache; the copy is a texture of its own, served
+// by the same op (ops/bilinear.h). Tiles overlap by one row and one column and are flushed in four
+// colors, by the parity of their coordinates: two tiles of one color share no texel, and the
+// additions to a texel come in the order of the colors on any number of threads.
 #pragma once
 
 #include <algorithm>
@@ -16,16 +16,16 @@
 
 namespace photograd {
 
-inline constexpr int tile_cells = 16;
-inline constexpr TextureShape tile_shape{tile_cells + 1, tile_cells + 1};
+inline constexpr int texel_tile_cells = 16;
+inline constexpr TextureShape texel_tile_shape{texel_tile_cells + 1, texel_tile_cells + 1};
 
 /// Scalars from texel to texel in a tile: three channels are padded to four, which are lanes.
 template <int C>
-inline constexpr int tile_stride = C == 3 ? 4 : C;
+inline constexpr int texel_tile_stride = C == 3 ? 4 : C;
 
 template <class R, int C>
 struct alignas(64) TexelTile {
-    R texels[tile_shape.height * tile_shape.width * tile_stride<C>];
+    R texels[texel_tile_shape.height * texel_tile_shape.width * texel_tile_stride<C>];
 };
 
 /// How a texture is covered by tiles.
@@ -35,16 +35,16 @@ struct TextureTiles {
 
     static TextureTiles of(const TextureShape& shape) {
         const auto tiles = [](int texels) {
-            return (std::max(texels - 1, 1) + tile_cells - 1) / tile_cells;
+            return (std::max(texels - 1, 1) + texel_tile_cells - 1) / texel_tile_cells;
         };
         return {shape, tiles(shape.height), tiles(shape.width)};
     }
     [[nodiscard]] int count() const { return rows * columns; }
     [[nodiscard]] int owner(int row, int column) const {
-        return row / tile_cells * columns + column / tile_cells;
+        return row / texel_tile_cells * columns + column / texel_tile_cells;
     }
-    [[nodiscard]] int first_row(int tile) const { return tile / columns * tile_cells; }
-    [[nodiscard]] int first_column(int tile) const { return tile % columns * tile_cells; }
+    [[nodiscard]] int first_row(int tile) const { return tile / columns * texel_tile_cells; }
+    [[nodiscard]] int first_column(int tile) const { return tile % columns * texel_tile_cells; }
     [[nodiscard]] int color(int tile) const {
         return (tile / columns % 2) * 2 + tile % columns % 2;
     }
@@ -53,32 +53,34 @@ struct TextureTiles {
     template <class Visit>
     void for_each_texel(int tile, Visit&& visit) const {
         const int top = first_row(tile), left = first_column(tile);
-        const int height = std::min(tile_shape.height, shape.height - top);
-        const int width = std::min(tile_shape.width, shape.width - left);
+        const int height = std::min(texel_tile_shape.height, shape.height - top);
+        const int width = std::min(texel_tile_shape.width, shape.width - left);
         for (int i = 0; i < height; ++i)
             for (int j = 0; j < width; ++j)
                 visit(static_cast<long long>(top + i) * shape.width + left + j,
-                      i * tile_shape.width + j);
+                      i * texel_tile_shape.width + j);
     }
 };
 
 /// Copies a tile's texels; what lies beyond the texture, and the padding, is left alone.
 template <class R, int C>
-void load_tile(const TextureTiles& tiles, int tile, const R* texels, TexelTile<R, C>& out) {
+void load_texel_tile(const TextureTiles& tiles, int tile, const R* texels, TexelTile<R, C>& out) {
     tiles.for_each_texel(tile, [&](long long from, int to) {
-        for (int c = 0; c < C; ++c) out.texels[to * tile_stride<C> + c] = texels[from * C + c];
+        for (int c = 0; c < C; ++c)
+            out.texels[to * texel_tile_stride<C> + c] = texels[from * C + c];
     });
 }
 
 /// texels (H, W, C) += tile.
 template <class R, int C>
-void flush_tile(const TextureTiles& tiles, int tile, const TexelTile<R, C>& in, R* texels) {
+void flush_texel_tile(const TextureTiles& tiles, int tile, const TexelTile<R, C>& in, R* texels) {
     tiles.for_each_texel(tile, [&](long long to, int from) {
-        for (int c = 0; c < C; ++c) texels[to * C + c] += in.texels[from * tile_stride<C> + c];
+        for (int c = 0; c < C; ++c)
+            texels[to * C + c] += in.texels[from * texel_tile_stride<C> + c];
     });
 }
 
-/// Calls work(tile) once for each tile that owns anything, tiles of one colour in parallel.
+/// Calls work(tile) once for each tile that owns anything, tiles of one color in parallel.
 template <class Work>
 void for_each_owner(const TextureTiles& tiles, const OwnerBins& bins, Work&& work) {
     for (int color = 0; color < 4; ++color) {

@@ -1,5 +1,5 @@
-// How rays are cut into pieces: chunks that one task marches, and slabs whose samples fit into memory. The
-// pieces do not depend on the number of threads.
+// How rays are cut into pieces: chunks that one task marches, and slabs whose samples fit into
+// memory. The pieces do not depend on the number of threads.
 #pragma once
 
 #include <algorithm>
@@ -24,7 +24,8 @@ void for_chunks(std::int64_t first, std::int64_t last, Visit&& visit) {
     });
 }
 
-/// visit(first, last) for slabs of at most march_slab_samples samples, each of at least one chunk of rays.
+/// visit(first, last) for slabs of at most march_slab_samples samples, each of at least one chunk
+/// of rays.
 template <class Visit>
 void for_slabs(const std::int32_t* samples, std::int64_t count, Visit&& visit) {
     for (std::int64_t first = 0, last = 0; first < count; first = last) {

@@ -1,9 +1,9 @@
 // Where a ray is sampled: its span in a box, and the lattice of sample positions in that span.
 //
-// Samples lie at t_k = t0 + (k + 1/2) dt, k = 0 .. count - 1. With Lattice::origin, t0 is a multiple of dt
-// from the ray's origin: the positions do not depend on the box, so that skipping empty space, or another
-// box, leaves the samples it keeps where they were. Lattice::entry starts at the point of entry instead.
-// A jitter u in [0, 1) moves a ray's lattice by (u - 1/2) dt.
+// Samples lie at t_k = t0 + (k + 1/2) dt, k = 0 .. count - 1. With Lattice::origin, t0 is a
+// multiple of dt from the ray's origin: the positions do not depend on the box, so that skipping
+// empty space, or another box, leaves the samples it keeps where they were. Lattice::entry starts
+// at the point of entry instead. A jitter u in [0, 1) moves a ray's lattice by (u - 1/2) dt.
 #pragma once
 
 #include <cmath>
@@ -21,8 +21,9 @@ struct Span {
     R near, far;  // far <= near: the ray misses
 };
 
-/// Clips o + t d, t >= 0, to the box, slab by slab [Kay1986]. A ray parallel to a slab is inside of it,
-/// its faces included, or misses; dividing by its zero would give NaN for a ray that runs in a face.
+/// Clips o + t d, t >= 0, to the box, slab by slab [Kay1986]. A ray parallel to a slab is inside of
+/// it, its faces included, or misses; dividing by its zero would give NaN for a ray that runs in a
+/// face.
 template <Real R>
 Span<R> clip_to_box(const R* origin, const R* direction, const double (*box)[3]) {
     R near = R(0), far = std::numeric_limits<R>::infinity();

@@ -1,13 +1,13 @@
 // The ray marcher: emission and absorption through any field, and its adjoint.
 //
-// Four stages over fixed blocks of rays: the sampler places samples (lattice.h), field.eval looks them
-// up, composite adds them along each ray (ops/composite.h), and the adjoint runs the stages backwards.
-// `walk` is the one loop of both passes, so that positions, early stop and order cannot drift apart.
-// Rays of a chunk advance together, lane_count samples each a batch: a field gets large batches, and a
-// ray that has become opaque drops out.
+// Four stages over fixed blocks of rays: the sampler places samples (lattice.h), field.eval looks
+// them up, composite adds them along each ray (ops/composite.h), and the adjoint runs the stages
+// backwards. `walk` is the one loop of both passes, so that positions, early stop and order cannot
+// drift apart. Rays of a chunk advance together, lane_count samples each a batch: a field gets
+// large batches, and a ray that has become opaque drops out.
 //
-// Memory is O(1) per ray: the backward pass walks front to back again and subtracts from the totals that
-// the forward pass left. march_dense.h and march_sparse_sh.h are fused forms in float.
+// Memory is O(1) per ray: the backward pass walks front to back again and subtracts from the totals
+// that the forward pass left. march_dense.h and march_sparse_sh.h are fused forms in float.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@
 namespace photograd {
 
 struct MarchOptions {
-    double dt = 0.01;   // step in metres
+    double dt = 0.01;   // step in meters
     double stop = 0.0;  // early stop below this transmittance; 0 is off, as gradient proofs need it
     Quadrature quadrature = Quadrature::alpha;
 
@@ -58,8 +58,8 @@ struct SampleBatchState {
     }
 };
 
-/// The one loop. pass.on_group(ray, state, g) composites group g and returns the optical depth behind it;
-/// pass.on_batch(state, cache) then gets the whole batch.
+/// The one loop. pass.on_group(ray, state, g) composites group g and returns the optical depth
+/// behind it; pass.on_batch(state, cache) then gets the whole batch.
 template <Real R, class F, class Pass>
 void walk(const F& field, const RayBatch<R>& rays, const MarchOptions& options, std::int64_t begin,
           std::int64_t end, Pass& pass) {
@@ -169,7 +169,8 @@ void march(const F& field, const RayBatch<R>& rays, const MarchOptions& options,
     });
 }
 
-/// Adds parameter gradients to the sink's buffer, and gradients of the rays where `adjoint` has room.
+/// Adds parameter gradients to the sink's buffer, and gradients of the rays where `adjoint` has
+/// room.
 template <Real R, class F>
 void march_backward(const F& field, const RayBatch<R>& rays, const MarchOptions& options,
                     const MarchOutputs<R>& out, const MarchAdjoint<R>& adjoint,

@@ -36,7 +36,8 @@ struct Slab {
     OwnerBins bins;
 };
 
-/// Runs of all rays of the slab, chunk by chunk: a chunk's runs start at the number of its first sample.
+/// Runs of all rays of the slab, chunk by chunk: a chunk's runs start at the number of its first
+/// sample.
 void record_slab(const Kernels& kernel, const MarchDenseArgs& args, MarchDenseBackward& back,
                  const std::vector<std::int64_t>& offset, std::int64_t first, std::int64_t last,
                  Slab& slab) {
@@ -63,7 +64,7 @@ void record_slab(const Kernels& kernel, const MarchDenseArgs& args, MarchDenseBa
             slab.items.push_back(static_cast<std::uint32_t>(run_begin(chunk) + i));
 }
 
-/// One task per brick adds the brick's runs into a tile, and the tile to the gradient.
+/// One task per brick adds the brick's runs into a halo, and the halo to the gradient.
 void gather_slab(const Kernels& kernel, const MarchDenseArgs& args, const BrickLayout& layout,
                  Slab& slab, float* d_values) {
     bin_by_owner(
@@ -79,10 +80,10 @@ void gather_slab(const Kernels& kernel, const MarchDenseArgs& args, const BrickL
             const int brick = same_color[static_cast<std::size_t>(i)];
             const std::uint32_t begin = slab.bins.begin[static_cast<std::size_t>(brick)];
             const std::uint32_t end = slab.bins.begin[static_cast<std::size_t>(brick) + 1];
-            alignas(64) float tile[tile_voxels * 4] = {};
+            alignas(64) float halo[brick_halo_voxels * 4] = {};
             kernel.march_dense_gather(args, slab.runs.data(), slab.bins.order.data() + begin,
-                                      end - begin, slab.d_raw.data(), tile);
-            flush_tile<float, 4>(layout, brick, tile, d_values);
+                                      end - begin, slab.d_raw.data(), halo);
+            flush_halo<float, 4>(layout, brick, halo, d_values);
         });
 }
 

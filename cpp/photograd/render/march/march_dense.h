@@ -1,6 +1,6 @@
-// The march through a dense grid in float, with its stages fused in a kernel (kernels/march_dense.inl).
-// Bit for bit the same as march() with a DenseGrid<float>, and many times faster; camera adjoints are
-// left to the staged form.
+// The march through a dense grid in float, with its stages fused in a kernel
+// (kernels/march_dense.inl). Bit for bit the same as march() with a DenseGrid<float>, and many
+// times faster; camera adjoints are left to the staged form.
 #pragma once
 
 #include "photograd/field/dense_grid.h"

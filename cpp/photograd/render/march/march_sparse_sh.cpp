@@ -9,8 +9,8 @@
 namespace photograd {
 namespace {
 
-/// Densities where the march looks for them. Kept from call to call, because a fit would otherwise clear
-/// megabytes of fresh memory every step.
+/// Densities where the march looks for them. Kept from call to call, because a fit would otherwise
+/// clear megabytes of fresh memory every step.
 const float* spread_density(const SparseSh<float>& field) {
     static thread_local std::vector<float> spread;
     const auto size = static_cast<std::size_t>((field.table->tiles() + 1) * cell_tile_voxels);

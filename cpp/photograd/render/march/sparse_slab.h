@@ -1,5 +1,5 @@
-// The records of one slab of rays through a sparse grid, sorted by the brick that owns them: from the kernel
-// that marches to the one that accumulates.
+// The records of one slab of rays through a sparse grid, sorted by the brick that owns them: from
+// the kernel that marches to the one that accumulates.
 #pragma once
 
 #include <utility>
@@ -71,8 +71,8 @@ private:
 
         void record(RecordKernel kernel, const MarchSparseShArgs& args, MarchSparseShBackward back,
                     std::pair<std::int64_t, std::int64_t> rays, const BrickTopology& topology) {
-            // The kernel needs room for all samples of all rays; few of them lie in active cells, so
-            // that what is kept is much smaller.
+            // The kernel needs room for all samples of all rays; few of them lie in active cells,
+            // so that what is kept is much smaller.
             static thread_local std::vector<CellRecord<float>> room;
             const auto [begin, end] = rays;
             std::int32_t found[march_chunk];

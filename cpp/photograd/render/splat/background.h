@@ -1,4 +1,5 @@
-// The adjoint of what lies behind the Gaussians: color = sum w c + T_end background, T_end = 1 - opacity.
+// The adjoint of what lies behind the Gaussians: color = sum w c + T_end background, T_end = 1 -
+// opacity.
 #pragma once
 
 #include <algorithm>

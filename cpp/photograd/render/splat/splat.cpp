@@ -52,30 +52,30 @@ template <class R, class Visit>
 void for_tiles(const SplatFrame<R>& frame, Visit&& visit) {
     const TileLists& lists = frame.lists;
     parallel_for(lists.tile_count(), [&](std::int64_t tile) {
-        const int x = static_cast<int>(tile % lists.columns) * tile_size;
-        const int y = static_cast<int>(tile / lists.columns) * tile_size;
+        const int x = static_cast<int>(tile % lists.columns) * splat_tile_size;
+        const int y = static_cast<int>(tile / lists.columns) * splat_tile_size;
         visit(lists.of(tile), x, y);
     });
 }
 
-/// Stage 5: each Gaussian adds up its places and differentiates its projection; view and eye in double.
+/// Stage 5: each Gaussian sums its slots and differentiates its projection; view and eye in double.
 template <class R>
 void gather_splats(const GaussianCloud<R>& cloud, const SplatFrame<R>& frame, const R* partials,
                    const GaussianGradients<R>& out) {
-    const std::vector<std::uint32_t>& places = frame.lists.places;
+    const std::vector<std::uint32_t>& slots = frame.lists.slots;
     std::array<double, 15> shared{};  // d_view[12], d_eye[3]
     const auto add = [&](std::int64_t task, std::span<double> sum) {
         const std::int64_t end = std::min(cloud.count, (task + 1) * splats_per_task);
         for (std::int64_t i = task * splats_per_task; i < end; ++i) {
             const auto row = static_cast<std::size_t>(i);
-            if (places[row] == places[row + 1]) continue;
+            if (slots[row] == slots[row + 1]) continue;
             R d[partial_count] = {}, own[15] = {};
-            for (std::size_t place = places[row]; place < places[row + 1]; ++place)
+            for (std::size_t slot = slots[row]; slot < slots[row + 1]; ++slot)
                 for (std::size_t j = 0; j < partial_count; ++j)
-                    d[j] += partials[partial_count * place + j];
-            with_degree(cloud.degree, [&](auto degree) {
-                project_splat_backward<degree.value>(cloud, frame.view, i, frame.splats[row], d,
-                                                     out, own, own + 12);
+                    d[j] += partials[partial_count * slot + j];
+            with_sh_degree(cloud.degree, [&]<int Degree>() {
+                project_splat_backward<Degree>(cloud, frame.view, i, frame.splats[row], d, out, own,
+                                               own + 12);
             });
             for (std::size_t j = 0; j < 15; ++j) sum[j] += static_cast<double>(own[j]);
         }
@@ -99,12 +99,12 @@ SplatFrame<R> prepare_splats(const GaussianCloud<R>& cloud, const SplatImage& im
     std::vector<char> bad(static_cast<std::size_t>(tasks_for(cloud.count)));
     std::vector<R> depth(frame.splats.size());
     parallel_for(tasks_for(cloud.count), [&](std::int64_t task) {
-        with_degree(cloud.degree, [&](auto degree) {
+        with_sh_degree(cloud.degree, [&]<int Degree>() {
             const std::int64_t end = std::min(cloud.count, (task + 1) * splats_per_task);
             for (std::int64_t i = task * splats_per_task; i < end; ++i) {
                 const auto row = static_cast<std::size_t>(i);
                 if (bad_group(cloud, i)) bad[static_cast<std::size_t>(task)] = 1;
-                frame.splats[row] = project_splat<degree.value>(cloud, frame.view, i);
+                frame.splats[row] = project_splat<Degree>(cloud, frame.view, i);
                 depth[row] = frame.splats[row].depth;
             }
         });
@@ -114,7 +114,7 @@ SplatFrame<R> prepare_splats(const GaussianCloud<R>& cloud, const SplatImage& im
         if (frame.splats[i].x0 < frame.splats[i].x1)
             frame.lists.sorted.push_back(static_cast<std::uint32_t>(i));
     frame.lists.sorted = sort_by_depth(std::move(frame.lists.sorted), depth.data());
-    if (!number_places(frame.splats.data(), frame.splats.size(), frame.lists.places))
+    if (!number_slots(frame.splats.data(), frame.splats.size(), frame.lists.slots))
         fail(ErrorKind::range, "splat", "gaussians", "fewer than 2^31 pairs of splat and tile",
              "more", "render a smaller picture, or fewer Gaussians at a time");
     bin_splats(frame.splats.data(), image.width, image.height, frame.lists);

@@ -1,8 +1,8 @@
 // Gaussian splatting [Kerbl2023]: project, sort, bin, blend; and the adjoint of all of it.
 //
-// Backward is owner-computes: a tile writes what it has for each of its splats to a place of that pair's
-// own, then a splat adds up its pairs in their order. No two threads write one number, and the sums do
-// not depend on the number of threads.
+// The backward pass is owner-computes: a tile writes the partial derivatives of each of its splats
+// to the slot of that pair, then a splat sums its slots in their order. No two threads write one
+// number, and the sums do not depend on the number of threads.
 #pragma once
 
 #include <vector>
@@ -12,7 +12,7 @@
 
 namespace photograd {
 
-/// What both passes share: splats of all Gaussians and the lists of the tiles.
+/// State of both passes: the splats of all Gaussians and the lists of the tiles.
 template <class R>
 struct SplatFrame {
     SplatView<R> view;
@@ -21,7 +21,7 @@ struct SplatFrame {
     TileLists lists;
 };
 
-/// Refuses parameters that are no numbers; splats, sorts and bins.
+/// Projects, sorts and bins; throws RangeError for parameters that are not finite.
 template <class R>
 SplatFrame<R> prepare_splats(const GaussianCloud<R>& cloud, const SplatImage& image,
                              const SplatOptions& options, const R* camera_from_world,

@@ -12,12 +12,12 @@ namespace {
 
 constexpr std::int64_t rays_per_task = 64;
 constexpr std::int64_t gaussians_per_task = 256;
-// A slab of the backward pass ends before the ray that would exceed these; its scratch in float is 20 MB of
-// records, 12 MB to sort them, and 6 MB of rays.
+// A slab of the backward pass ends before the ray that would exceed these; its scratch in float is
+// 20 MB of records, 12 MB to sort them, and 6 MB of rays.
 constexpr std::int64_t rays_per_slab = 1 << 16;
 constexpr std::uint64_t crossings_per_slab = 1 << 20;
 
-/// A ray with what all its Gaussians share.
+/// A ray, normalized, with its spherical-harmonic basis.
 template <int Degree, class R>
 struct CastRay {
     R origin[3], direction[3], Y[sh_count(Degree)];
@@ -32,7 +32,7 @@ struct CastRay {
     }
 };
 
-/// What a ray leaves for a Gaussian that it crosses.
+/// The record of a crossing for the Gaussian.
 template <class R>
 struct RayRecord {
     std::uint32_t row, ray;  // ray: within the slab
@@ -75,7 +75,7 @@ RayBack<R> start_back(const RenderedImage<R>& image, const ImageCotangents<R>& d
     return {{d_color[0], d_color[1], d_color[2]}, d.d_depth[i], start_remainder(image, d, i)};
 }
 
-/// Derivatives by a ray, summed while it is walked.
+/// Derivatives with respect to a ray, summed along its walk.
 template <int Degree, class R>
 struct OwnDerivatives {
     R origin[3] = {}, direction[3] = {}, Y[sh_count(Degree)] = {};
@@ -137,14 +137,14 @@ void walk_back(const GaussianCloud<R>& cloud, const RayFrame<R>& frame, RayBack<
         ray_color<Degree>(ray.Y, sh, color);
         if (!blend_crossing_backward(cut, x.raw, color, x.t, back, d)) return false;
         *record++ = {x.row, static_cast<std::uint32_t>(k), d};
-        if (out.origins) own.add(ray, frame.cloud.seen[x.place], x, sh, color, back, d);
+        if (out.origins) own.add(ray, frame.cloud.gaussians[x.slot], x, sh, color, back, d);
         return true;
     });
     const std::int64_t i = slab.begin + k;
     if (out.origins) own.finish(ray, out.origins + 3 * i, out.directions + 3 * i);
 }
 
-/// Gaussian `row` adds up its records, listed in `own`; sums are in double.
+/// Gaussian `row` sums its records, listed in `own`, in double.
 template <int Degree, class R>
 void gather_row(const GaussianCloud<R>& cloud, const Slab<Degree, R>& slab, const R* d_color,
                 std::int64_t row, std::span<const std::uint32_t> own,
@@ -206,9 +206,9 @@ void slabs_backward(const GaussianCloud<R>& cloud, const RayFrame<R>& frame,
 
 template <class R>
 void blend_rays(const GaussianCloud<R>& cloud, RayFrame<R>& frame, const RenderedImage<R>& out) {
-    with_degree(cloud.degree, [&](auto degree) {
+    with_sh_degree(cloud.degree, [&]<int Degree>() {
         for_each_in_tasks(frame.rays(), rays_per_task,
-                          [&](std::int64_t i) { blend_ray<degree.value>(cloud, frame, i, out); });
+                          [&](std::int64_t i) { blend_ray<Degree>(cloud, frame, i, out); });
     });
 }
 
@@ -217,8 +217,8 @@ void blend_rays_backward(const GaussianCloud<R>& cloud, const RayFrame<R>& frame
                          const RenderedImage<R>& image, const ImageCotangents<R>& d_image,
                          const RayGradients<R>& out) {
     background_backward(image, d_image.d_color, frame.rays(), 4096, out.background);
-    with_degree(cloud.degree, [&](auto degree) {
-        slabs_backward<degree.value>(cloud, frame, image, d_image, out);
+    with_sh_degree(cloud.degree, [&]<int Degree>() {
+        slabs_backward<Degree>(cloud, frame, image, d_image, out);
     });
 }
 

@@ -1,10 +1,10 @@
-// Gaussians along rays of any kind, not only those of a pinhole camera [MoenneLoccoz2024]; and the adjoint.
+// Gaussians along any rays, not only those of a pinhole camera [MoenneLoccoz2024], and the adjoint.
 //
-// Both passes walk a ray with splat/ray_walk.h and keep nothing of it. Backward has two owners. A ray owns
-// the derivatives by where it starts and goes. A Gaussian owns its own: the ray's second walk leaves a
-// record of three numbers for each crossing, the records of a slab of rays are sorted by Gaussian, and each
-// Gaussian adds up its records in the order of the rays. No two threads write one number, and no sum
-// depends on the number of threads.
+// Both passes walk a ray with splat/ray_walk.h and store nothing of it. The backward pass has two
+// owners. A ray owns the derivatives with respect to its origin and direction. A Gaussian owns
+// those with respect to its parameters: the ray's second walk leaves a record of three numbers for
+// each crossing, the records of a slab of rays are sorted by Gaussian, and each Gaussian sums its
+// records in the order of the rays. No sum depends on the number of threads.
 #pragma once
 
 #include <span>
@@ -15,19 +15,19 @@
 
 namespace photograd {
 
-/// What both passes share. Holds copies of rays and shapes, so that the second walk cannot differ from the
-/// first.
+/// State of both passes. Holds copies of rays and shapes, so that the second walk cannot differ
+/// from the first.
 template <class R>
 struct RayFrame {
     RayCloud<R> cloud;
     R background[3];
     std::vector<R> origins, directions;    // (R, 3)
-    std::vector<std::uint32_t> crossings;  // (R,) how many Gaussians each ray blended
+    std::vector<std::uint32_t> crossings;  // (R,) number of Gaussians that each ray blended
 
     [[nodiscard]] std::int64_t rays() const { return static_cast<std::int64_t>(crossings.size()); }
 };
 
-/// Derivatives, added to. Those of the rays are left out where the pointers are null.
+/// Gradients, added to; those of the rays only where the pointers are not null.
 template <class R>
 struct RayGradients {
     GaussianGradients<R> gaussians;  // without view and screen
@@ -35,7 +35,7 @@ struct RayGradients {
     R *origins, *directions;         // (R, 3)
 };
 
-/// Draws into `out` and counts the crossings of frame.
+/// Renders into `out` and counts the crossings of frame.
 template <class R>
 void blend_rays(const GaussianCloud<R>& cloud, RayFrame<R>& frame, const RenderedImage<R>& out);
 /// `image` is what blend_rays wrote.
