@@ -48,12 +48,6 @@ inline R ggx_stretched_length(const Vec3<R>& w, R alpha_x, R alpha_y) {
     return sqrt(x * x + y * y + w.z * w.z);
 }
 
-/// The fraction of the facets turned to w that w sees: 1 / (1 + Lambda).
-template <class R>
-inline R ggx_G1(const Vec3<R>& w, R alpha_x, R alpha_y) {
-    return R(2) * w.z / (w.z + ggx_stretched_length(w, alpha_x, alpha_y));
-}
-
 template <class R>
 inline R ggx_V(const Vec3<R>& wo, const Vec3<R>& wi, R alpha_x, R alpha_y) {
     return R(0.5) / (ggx_stretched_length(wo, alpha_x, alpha_y) * wi.z +

@@ -73,10 +73,6 @@ Vec2<R> cap_to_square(const Vec3<R>& w, R height) {
     const R scale = rest > R(0) ? R(1) / sqrt(rest) : R(0);
     return disk_to_square(Vec2<R>(w.x * scale, w.y * scale));
 }
-template <class R>
-R cap_pdf(const Vec3<R>& w, R height) {
-    return w.z >= R(1) - height ? R(1 / (2 * pi)) / height : R(0);
-}
 
 /// Whether w lies in the cap of this height around `axis`. |w - axis|^2 = 2 (1 - cos) tells apart angles that a float
 /// cosine cannot; a hair more than the cap, so that samples on its rim belong to it after rounding.
@@ -84,12 +80,6 @@ template <class R>
 bool in_cap(const Vec3<R>& w, const Vec3<R>& axis, R height) {
     const Vec3<R> apart = w - axis;
     return dot(apart, apart) <= R(2.0001) * height;
-}
-
-/// Height of a cap of angular radius a: 1 - cos(a) = 2 sin^2(a / 2).
-inline double cap_height(double angular_radius) {
-    const double s = std::sin(0.5 * angular_radius);
-    return 2 * s * s;
 }
 
 }  // namespace photograd
