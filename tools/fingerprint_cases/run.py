@@ -1,0 +1,129 @@
+"""Many cases at once: hashes of all, and arrays kept in files."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from concurrent.futures import ProcessPoolExecutor
+from functools import partial
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from photograd.core import _core
+from photograd_course.cli.progress import Progress
+
+from fingerprint_cases.case import Array, Arrays, Case, computed, fingerprint
+from fingerprint_cases.catalog import all_cases
+
+BEFORE, AFTER = 1000, 2000
+"""First of the seeds whose pictures are kept, and of those that are compared with them."""
+BATCH = 16  # neighbours share the scene
+
+
+def compute_all(
+    cases: Mapping[str, Case], *, jobs: int = 1, threads: int = 0, save: Path | None = None,
+    title: str = "results",
+) -> dict[str, str]:  # fmt: skip
+    """{name: hash} of all cases, in their order.
+
+    Args:
+        cases: what to compute.
+        jobs: processes; 1 stays in this one.
+        threads: of the core in each; 0 takes all.
+        save: folder that keeps the arrays, or None.
+        title: of the progress bar.
+
+    Raises:
+        ZeroResultError: a result that proves nothing.
+    """
+    if save is not None:
+        save.mkdir(parents=True, exist_ok=True)
+    work = partial(_hash_one, save=save)
+    return dict(_mapped(work, cases, jobs, threads, title))
+
+
+def save_seeds(
+    cases: Mapping[str, Case], folder: Path, *, seeds: int, jobs: int = 1, threads: int = 0
+) -> None:
+    """Add to the saved arrays of each picture those of `seeds` other seeds."""
+    pictures = {name: case for name, case in cases.items() if case.estimate}
+    if pictures and seeds > 1:
+        dict(_mapped(partial(_save_one, folder=folder, seeds=seeds), pictures, jobs, threads,
+                     "seeds"))  # fmt: skip
+
+
+def file_of(folder: Path, case: Case) -> Path:
+    """The .npz file that keeps the arrays of a case."""
+    return folder / f"{case.name.replace('/', '__')}.npz"
+
+
+def estimates(case: Case, first: int, count: int) -> Array:
+    """A picture of each of `count` seeds, (count, ...)."""
+    return np.stack([case.run(first + k)[case.estimate] for k in range(count)])
+
+
+def load(path: Path) -> Arrays:
+    """All arrays of a file."""
+    with np.load(path) as kept:
+        return {name: kept[name] for name in kept.files}
+
+
+Work = Callable[[Case], str]
+
+
+def _hash_one(case: Case, save: Path | None) -> str:
+    arrays = computed(case)
+    if save is not None:
+        numbered = {f"{k:03d} {name}": a for k, (name, a) in enumerate(arrays.items())}
+        _keep(file_of(save, case), numbered)
+    return fingerprint(arrays)
+
+
+def _save_one(case: Case, folder: Path, seeds: int) -> str:
+    kept = estimates(case, BEFORE, seeds)
+    _keep(file_of(folder, case).with_suffix(".seeds.npz"), {"seeds": kept})
+    return ""
+
+
+def _keep(path: Path, arrays: dict[str, Any]) -> None:
+    np.savez_compressed(path, **arrays)
+
+
+def _mapped(
+    work: Work, cases: Mapping[str, Case], jobs: int, threads: int, title: str
+) -> Iterator[tuple[str, str]]:
+    """(name, result) of each case; the core's number of threads is put back at the end."""
+    with Progress(title, len(cases)) as bar:
+        results: Iterable[tuple[str, str]]
+        if jobs == 1:
+            before = _core.thread_count()
+            _core.set_thread_count(threads)
+            try:
+                for step, (name, case) in enumerate(cases.items(), 1):
+                    yield name, work(case)
+                    bar.update(step)
+            finally:
+                _core.set_thread_count(0 if threads == 0 else before)
+            return
+        pool = ProcessPoolExecutor(
+            jobs, get_context("spawn"), _core.set_thread_count, (threads or 1,)
+        )
+        with pool:
+            results = pool.map(partial(_by_name, work), cases, chunksize=BATCH)
+            for step, result in enumerate(results, 1):
+                yield result
+                bar.update(step)
+
+
+def _by_name(work: Work, name: str) -> tuple[str, str]:
+    return name, work(_case(name))
+
+
+_known: dict[str, Case] = {}
+
+
+def _case(name: str) -> Case:
+    if not _known:
+        _known.update(all_cases())
+    return _known[name]
