@@ -5,8 +5,8 @@ writes a line "name sha256" for each; `compare` computes them again and lists th
 The hashes are those of one machine: its NumPy makes the inputs.
 
 Where bits are meant to change, `write --save FOLDER` keeps the arrays themselves, and
-`compare --against FOLDER` says by how much they differ. Pictures get a z-test as well, between the
-means of several seeds before and after.
+`compare --against FOLDER` says by how much they differ. Pictures and gradients get a z-test as
+well, between the means of several seeds before and after.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 from fingerprint_cases.catalog import selected
 from fingerprint_cases.compare import compare, describe_difference
-from fingerprint_cases.run import compute_all, save_seeds
+from fingerprint_cases.run import FAILED, compute_all, save_seeds
 
 
 def parser() -> argparse.ArgumentParser:
@@ -46,7 +46,7 @@ def parser() -> argparse.ArgumentParser:
         )
         command.add_argument(
             "--seeds", type=int, default=8, metavar="K",
-            help="pictures of other seeds that --save keeps for the z-test (default: 8)",
+            help="other seeds whose estimates --save keeps for the z-test (default: 8)",
         )  # fmt: skip
     for command in commands.choices.values():
         command.add_argument(
@@ -77,10 +77,7 @@ def main(arguments: list[str] | None = None) -> int:
     if given.save is not None:
         save_seeds(cases, given.save, seeds=given.seeds, jobs=given.jobs, threads=given.threads)
     if given.command == "write":
-        text = "".join(f"{name} {digest}\n" for name, digest in found.items())
-        given.file.write_text(text, encoding="utf-8")
-        print(f"{len(found)} results written to {given.file}")
-        return 0
+        return write(given.file, found)
     wanted = {name: known[name] for name in known if given.only is None or name in cases}
     result = compare(wanted, found)
     print(result)
@@ -88,6 +85,20 @@ def main(arguments: list[str] | None = None) -> int:
         for name in result.different:
             print(describe_difference(cases[name], given.against))
     return 0 if result.equal else 1
+
+
+def write(path: Path, found: dict[str, str]) -> int:
+    """Write a line for each result; returns the exit status, 1 where one has failed."""
+    failed = [name for name, digest in found.items() if digest.startswith(FAILED)]
+    for name in failed:
+        print(f"{name}: {found[name]}", file=sys.stderr)
+    if failed:
+        print(f"{len(failed)} of {len(found)} results failed, nothing written", file=sys.stderr)
+        return 1
+    text = "".join(f"{name} {digest}\n" for name, digest in found.items())
+    path.write_text(text, encoding="utf-8")
+    print(f"{len(found)} results written to {path}")
+    return 0
 
 
 def read_lines(path: Path) -> dict[str, str]:

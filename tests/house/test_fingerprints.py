@@ -238,10 +238,21 @@ def test_two_runs_agree_and_changes_are_reported(
     said = capsys.readouterr().out
     assert f"different: {SMALL}f64/picture" in said
     assert f"new: {lines[0].split()[0]}" in said
-    assert "6 same, 1 different, 0 missing, 1 new" in said
-    assert "radiance: 1 of 576 numbers, at most" in said
-    assert "z-test over 4 seeds" in said
+    assert "6 same, 1 different, 0 failed, 0 missing, 1 new" in said
+    assert "radiance: 1 of 576 numbers differ, by at most" in said
+    assert "means of 4 seeds" in said
     assert main(["compare", str(first), "--only", "nothing of this name"]) == 2
+
+    def broken(self: PathTracer, **_: Any) -> Any:
+        raise ValueError(f"{self.dtype} is broken")
+
+    monkeypatch.setattr(PathTracer, "render", broken)
+    assert main(["compare", str(first), *only]) == 1
+    said = capsys.readouterr().out
+    assert f"failed: {SMALL}f32/picture: ValueError: float32 is broken" in said
+    assert "6 same, 0 different, 2 failed, 0 missing, 0 new" in said
+    assert main(["write", str(tmp_path / "b"), *only]) == 1
+    assert not (tmp_path / "b").exists()
 
 
 def test_zeros_and_shifted_means_are_found(tool: Any) -> None:
@@ -256,8 +267,9 @@ def test_zeros_and_shifted_means_are_found(tool: Any) -> None:
         def draw(seed: int) -> Any:
             return {"a": 1 + shift * (seed >= 2000) + np.random.default_rng(seed).random((30, 3))}
 
-        made = case.Case("c", draw, "a")
-        return str(tool["compare"].z_test(tool["run"].estimates(made, 1000, 8), made))
+        made = case.Case("c", draw, ("a",))
+        before, after = (tool["run"].estimates(made, first, 8)["a"] for first in (1000, 2000))
+        return str(tool["compare"].z_test(before, after))
 
-    z = [abs(float(said(shift).split("z = ")[1].split(";")[0])) for shift in (0.0, 0.3)]
+    z = [abs(float(said(shift).split("z = ")[1].split(",")[0])) for shift in (0.0, 0.3)]
     assert z[0] < 4 < z[1]

@@ -25,13 +25,13 @@ class Case:
     Attributes:
         name: unique, parts joined by "/"; stays the same when the product renames something.
         run: {name: array} for a seed.
-        estimate: name of the array of which another seed gives another estimate of the same mean,
-            so that two versions of the product can be compared by a z-test; "" where none does.
+        estimates: patterns of the arrays of which another seed gives another estimate of the same
+            mean, so that two versions of the product can be compared by a z-test.
     """
 
     name: str
     run: Callable[[int], Mapping[str, Array]]
-    estimate: str = ""
+    estimates: tuple[str, ...] = ()
 
 
 class ZeroResultError(Exception):

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from fingerprint_cases.case import Array, Case, computed
-from fingerprint_cases.run import AFTER, estimates, file_of, load
+from fingerprint_cases.run import AFTER, FAILED, estimates, file_of, load, seeds_file_of
 
 
 @dataclass(frozen=True)
@@ -18,94 +18,90 @@ class Comparison:
 
     same: tuple[str, ...]
     different: tuple[str, ...]
+    failed: tuple[str, ...]  # with a message each
     missing: tuple[str, ...]  # known before, no longer computed
     new: tuple[str, ...]  # computed now, not known before
 
     @property
     def equal(self) -> bool:
         """Whether every result is there in both, with the same hash."""
-        return not (self.different or self.missing or self.new)
+        return not (self.different or self.failed or self.missing or self.new)
 
     def __str__(self) -> str:
-        lines = [
-            f"{word}: {name}"
-            for word in ("different", "missing", "new")
-            for name in getattr(self, word)
-        ]
-        counts = [
-            f"{len(getattr(self, word))} {word}" for word in ("same", "different", "missing", "new")
-        ]
-        return "\n".join([*lines, ", ".join(counts)])
+        found = vars(self)
+        lines = [f"{word}: {name}" for word in found for name in found[word] if word != "same"]
+        return "\n".join([*lines, ", ".join(f"{len(found[word])} {word}" for word in found)])
 
 
 def compare(before: Mapping[str, str], after: Mapping[str, str]) -> Comparison:
     """Two sets of hashes by name."""
-    both = [name for name in before if name in after]
+    failed = {name for name, digest in after.items() if digest.startswith(FAILED)}
+    both = [name for name in before if name in after and name not in failed]
     return Comparison(
-        tuple(name for name in both if before[name] == after[name]),
-        tuple(name for name in both if before[name] != after[name]),
-        tuple(name for name in before if name not in after),
-        tuple(name for name in after if name not in before),
+        same=tuple(name for name in both if before[name] == after[name]),
+        different=tuple(name for name in both if before[name] != after[name]),
+        failed=tuple(f"{name}: {after[name][len(FAILED) :]}" for name in after if name in failed),
+        missing=tuple(name for name in before if name not in after),
+        new=tuple(name for name in after if name not in before and name not in failed),
     )
 
 
 def describe_difference(case: Case, folder: Path) -> str:
-    """Lines on how the arrays of a case differ from those kept in `folder`."""
-    path = file_of(folder, case)
+    """Lines on how the arrays of a case differ from those kept in `folder`.
+
+    z is the difference of the means of an array over its standard error, as other seeds before and
+    after show it: where the expected values agree, it is beyond 4 once in 16,000. "rms" is the root
+    mean square of the same ratio of each number; where they agree it is near 1, with K seeds about
+    sqrt((K - 1) / (K - 2)).
+    """
+    path, seeds = file_of(folder, case), seeds_file_of(folder, case)
     if not path.exists():
         return f"{case.name}\n  no arrays in {folder}"
-    kept = list(load(path).items())
-    now = list(computed(case).items())
+    kept, now = load(path), list(computed(case).items())
     lines = [case.name]
     if len(kept) != len(now):
         lines.append(f"  {len(kept)} arrays before, {len(now)} now")
-    for (key, before), (name, after) in zip(kept, now, strict=False):
-        lines += _array_lines(key[4:], before, name, after)
-    other = path.with_suffix(".seeds.npz")
-    if case.estimate and other.exists():
-        lines.append("  " + z_test(load(other)["seeds"], case))
+    random = load(seeds) if seeds.exists() else []
+    again = estimates(case, AFTER, len(random[0][1])) if random else {}
+    before_seeds = dict(zip(again, (array for _, array in random), strict=False))
+    for (old, before), (name, after) in zip(kept, now, strict=False):
+        found = array_difference(before, after)
+        if not found:
+            continue
+        if name in before_seeds and before_seeds[name].shape == again[name].shape:
+            found += f"; {z_test(before_seeds[name], again[name])}"
+        lines.append(f"  {name if old == name else f'{old} -> {name}'}: {found}")
     return "\n".join(lines)
 
 
-def _array_lines(old: str, before: Array, name: str, after: Array) -> list[str]:
-    label = name if old == name else f"{old} -> {name}"
+def array_difference(before: Array, after: Array) -> str:
+    """How two arrays differ; "" for the same bits."""
     if before.shape != after.shape or before.dtype != after.dtype:
-        return [f"  {label}: {before.dtype} {before.shape} before, {after.dtype} {after.shape} now"]
+        return f"{before.dtype} {before.shape} before, {after.dtype} {after.shape} now"
     if before.tobytes() == after.tobytes():
-        return []
+        return ""
     a, b = before.astype(np.float64), after.astype(np.float64)
-    gap, size = np.abs(b - a), np.abs(a).max()
-    changed = int((a != b).sum())
-    with np.errstate(divide="ignore", invalid="ignore"):
-        ratio = float(gap.max() / size)
-    return [
-        f"  {label}: {changed} of {a.size} numbers, at most {gap.max():.3g} apart, "
-        f"{ratio:.3g} of the largest"
-    ]
+    gap, size = float(np.abs(b - a).max()), float(np.abs(a).max())
+    ratio = f"{gap / size:.3g} of the largest" if size > 0 else "all were 0"
+    return f"{int((a != b).sum())} of {a.size} numbers differ, by at most {gap:.3g} ({ratio})"
 
 
-def z_test(before: Array, case: Case) -> str:
-    """Whether the means of two versions agree, from pictures (K, ...) of K seeds each.
-
-    z is that of the whole picture's mean: of means that agree it is beyond 4 once in 16,000. The
-    root mean square over pixels of the same ratio is about sqrt((K - 1) / (K - 2)) where they
-    agree.
-    """
-    count = len(before)
-    after = estimates(case, AFTER, count)
-    means = [rows.reshape(count, -1).mean(axis=1) for rows in (before, after)]
-    z = _ratio(means[0], means[1])
+def z_test(before: Array, after: Array) -> str:
+    """Whether the means of two versions agree, of estimates (K, ...) of K seeds each."""
+    means = [rows.reshape(len(rows), -1).mean(axis=1) for rows in (before, after)]
+    z = float(_ratio(means[0], means[1]))
     each = _ratio(before, after)
-    spread = float(np.sqrt(np.nanmean(each**2)))
+    known = each[np.isfinite(each)]
+    rms = f"{np.sqrt(np.mean(known**2)):.2f}" if known.size else "none"
     return (
-        f"z-test over {count} seeds: mean {means[0].mean():.6g} before, {means[1].mean():.6g} now, "
-        f"z = {float(z):.2f}; pixels: rms {spread:.2f}, largest {np.nanmax(np.abs(each)):.1f}"
+        f"means of {len(before)} seeds {means[0].mean():.6g} and {means[1].mean():.6g}, "
+        f"z = {z:.2f}, rms {rms}"
     )
 
 
 def _ratio(before: Array, after: Array) -> Array:
     """Difference of means over its standard error; not a number where nothing varies."""
-    error = np.sqrt(before.var(axis=0, ddof=1) + after.var(axis=0, ddof=1)) / np.sqrt(len(before))
-    gap = after.mean(axis=0) - before.mean(axis=0)
+    a, b = before.astype(np.float64), after.astype(np.float64)
+    error = np.sqrt((a.var(axis=0, ddof=1) + b.var(axis=0, ddof=1)) / len(a))
     with np.errstate(divide="ignore", invalid="ignore"):
-        return np.asarray(np.where(error > 0, gap / error, np.nan))
+        return np.asarray(np.where(error > 0, (b.mean(axis=0) - a.mean(axis=0)) / error, np.nan))

@@ -235,4 +235,4 @@ def splat_cases() -> Iterator[Case]:
                     yield Case(f"splat-rays/{name}/degree-{degree}/{key}", cast)
     for name in described_scenes():
         for key, dtype in PRECISIONS.items():
-            yield Case(f"direct/{name}/{key}", partial(direct_light, name, dtype), "radiance")
+            yield Case(f"direct/{name}/{key}", partial(direct_light, name, dtype), ("radiance",))

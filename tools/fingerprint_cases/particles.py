@@ -92,7 +92,7 @@ def particle_cases() -> Iterator[Case]:
         for name, options in OPTIONS.items():
             if name == "default" or scene in ("stage", "lights-all", "opacity-textured", "nested"):
                 run = partial(irradiance, scene, options)
-                yield Case(f"irradiance/{scene}/{name}", run, "radiance")
+                yield Case(f"irradiance/{scene}/{name}", run, ("radiance",))
     for scene in SURFACES:
         for name, options in OPTIONS.items():
             for direct in (True, False) if name == "default" else (True,):
@@ -100,11 +100,11 @@ def particle_cases() -> Iterator[Case]:
                     continue
                 kept = "all" if direct else "indirect"
                 run = partial(photons, scene, options, direct)
-                yield Case(f"photons/{scene}/{name}-{kept}", run, "radiance")
+                yield Case(f"photons/{scene}/{name}-{kept}", run, ("radiance",))
     for scene in ("stage", "instances", "signed-distances", "opacity", "fog"):
         for name, radius in (("far", np.inf), ("near", 0.6)):
             run = partial(occlusion, scene, radius)
-            yield Case(f"occlusion/{scene}/{name}", run, "free")
+            yield Case(f"occlusion/{scene}/{name}", run, ("free",))
     for name, radius in (("far", np.inf), ("near", 0.6)):
         run = partial(baked, "stage", "floor", radius)
-        yield Case(f"occlusion-baked/stage/{name}", run, "values")
+        yield Case(f"occlusion-baked/stage/{name}", run, ("values",))

@@ -112,14 +112,15 @@ def vertices(scene: str, precision: str, options: PathOptions, seed: int) -> Arr
 
 
 Compute = Callable[[str, str, PathOptions, int], Arrays]
-KINDS: dict[str, tuple[Compute, tuple[str, ...], str]] = {
-    "picture": (picture, ("f32", "f64"), "radiance"),
-    "backward": (backward, ("f32", "f64"), ""),
-    "dual": (dual, ("f32", "f64"), ""),
-    "tangent": (tangent, ("f64",), "radiance"),
-    "vertices": (vertices, ("f64",), ""),
+BOTH, PICTURE, GRADIENTS = ("f32", "f64"), ("radiance",), ("*",)
+KINDS: dict[str, tuple[Compute, tuple[str, ...], tuple[str, ...]]] = {
+    "picture": (picture, BOTH, PICTURE),
+    "backward": (backward, BOTH, GRADIENTS),
+    "dual": (dual, BOTH, ()),
+    "tangent": (tangent, ("f64",), ("d_radiance",)),
+    "vertices": (vertices, ("f64",), ()),
 }
-"""What is computed: how, in which precisions, and which array estimates a picture."""
+"""What is computed: how, in which precisions, and which of its arrays are estimates."""
 PATHS_OF = (
     "stage", "model-glass", "model-rough_dielectric", "opacity-textured", "lights-all",
     "emitting-shapes", "fog", "nested-smoke", "veiled-smoke", "haze", "moving-opacity",
@@ -131,10 +132,10 @@ PATHS_OF = (
 def rows(scene: str, name: str, options: PathOptions, *kinds: str) -> Iterator[Case]:
     """The cases of a scene under some options."""
     for kind in kinds:
-        compute, precisions, estimate = KINDS[kind]
+        compute, precisions, estimates = KINDS[kind]
         for precision in precisions:
             run = partial(compute, scene, precision, options)
-            yield Case(f"path/{scene}/{name}/{precision}/{kind}", run, estimate)
+            yield Case(f"path/{scene}/{name}/{precision}/{kind}", run, estimates)
 
 
 def path_cases() -> Iterator[Case]:
@@ -208,24 +209,23 @@ def first_hits(scene: str, precision: str, seed: int) -> Arrays:
 
 
 Call = Callable[[str, str, int], Arrays]
-CALLS: tuple[tuple[str, Call, str, tuple[str, ...]], ...] = (
-    ("ranges", ranges, "radiance", ("stage", "fog", "moving", "lens", "shutter")),
-    ("other-sampling", other_sampling, "radiance",
+CALLS: tuple[tuple[str, Call, tuple[str, ...], tuple[str, ...]], ...] = (
+    ("ranges", ranges, PICTURE, ("stage", "fog", "moving", "lens", "shutter")),
+    ("other-sampling", other_sampling, PICTURE,
      ("model-gltf", "model-glass", "texture-mirror-mip", "opacity-textured", "nested-smoke")),
-    ("spread", spread, "", ("stage", "lights-all", "opacity-textured", "nested-smoke")),
-    ("spread-dual", spread_dual, "", ("stage", "lights-all", "opacity-textured", "nested-smoke")),
-    ("incomplete", incomplete, "",
-     ("model-glass", "model-dispersive_glass", "mask", "veiled-fog")),
-    ("chosen-lights", chosen_lights, "", ("lights-all", "emitting-shapes")),
-    ("first-hits", first_hits, "", ("instances", "signed-distances", "fog")),
+    ("spread", spread, GRADIENTS, ("stage", "lights-all", "opacity-textured", "nested-smoke")),
+    ("spread-dual", spread_dual, (), ("stage", "lights-all", "opacity-textured", "nested-smoke")),
+    ("incomplete", incomplete, (), ("model-glass", "model-dispersive_glass", "mask", "veiled-fog")),
+    ("chosen-lights", chosen_lights, (), ("lights-all", "emitting-shapes")),
+    ("first-hits", first_hits, (), ("instances", "signed-distances", "fog")),
 )  # fmt: skip
-"""(name, how it is computed, its estimate, scenes)."""
+"""(name, how it is computed, its estimates, scenes)."""
 
 
 def call_cases() -> Iterator[Case]:
     """Calls with arguments of their own."""
-    for name, call, estimate, scenes in CALLS:
+    for name, call, estimates, scenes in CALLS:
         for scene in scenes:
             for precision in PRECISIONS:
                 run = partial(call, scene, precision)
-                yield Case(f"call/{name}/{scene}/{precision}", run, estimate)
+                yield Case(f"call/{name}/{scene}/{precision}", run, estimates)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from concurrent.futures import ProcessPoolExecutor
+from fnmatch import fnmatchcase
 from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
@@ -17,7 +18,7 @@ from fingerprint_cases.case import Array, Arrays, Case, computed, fingerprint
 from fingerprint_cases.catalog import all_cases
 
 BEFORE, AFTER = 1000, 2000
-"""First of the seeds whose pictures are kept, and of those that are compared with them."""
+"""First of the seeds whose estimates are kept, and of those that are compared with them."""
 BATCH = 16  # neighbours share the scene
 
 
@@ -25,7 +26,7 @@ def compute_all(
     cases: Mapping[str, Case], *, jobs: int = 1, threads: int = 0, save: Path | None = None,
     title: str = "results",
 ) -> dict[str, str]:  # fmt: skip
-    """{name: hash} of all cases, in their order.
+    """{name: hash, or `FAILED` and a message} of all cases, in their order.
 
     Args:
         cases: what to compute.
@@ -33,9 +34,6 @@ def compute_all(
         threads: of the core in each; 0 takes all.
         save: folder that keeps the arrays, or None.
         title: of the progress bar.
-
-    Raises:
-        ZeroResultError: a result that proves nothing.
     """
     if save is not None:
         save.mkdir(parents=True, exist_ok=True)
@@ -46,11 +44,11 @@ def compute_all(
 def save_seeds(
     cases: Mapping[str, Case], folder: Path, *, seeds: int, jobs: int = 1, threads: int = 0
 ) -> None:
-    """Add to the saved arrays of each picture those of `seeds` other seeds."""
-    pictures = {name: case for name, case in cases.items() if case.estimate}
-    if pictures and seeds > 1:
-        dict(_mapped(partial(_save_one, folder=folder, seeds=seeds), pictures, jobs, threads,
-                     "seeds"))  # fmt: skip
+    """Keep beside the saved arrays what `seeds` other seeds estimate."""
+    random = {name: case for name, case in cases.items() if case.estimates}
+    if random and seeds > 1:
+        work = partial(_save_one, folder=folder, seeds=seeds)
+        dict(_mapped(work, random, jobs, threads, "seeds"))
 
 
 def file_of(folder: Path, case: Case) -> Path:
@@ -58,36 +56,46 @@ def file_of(folder: Path, case: Case) -> Path:
     return folder / f"{case.name.replace('/', '__')}.npz"
 
 
-def estimates(case: Case, first: int, count: int) -> Array:
-    """A picture of each of `count` seeds, (count, ...)."""
-    return np.stack([case.run(first + k)[case.estimate] for k in range(count)])
+def seeds_file_of(folder: Path, case: Case) -> Path:
+    """The .npz file that keeps what other seeds estimate."""
+    return file_of(folder, case).with_suffix(".seeds.npz")
 
 
-def load(path: Path) -> Arrays:
-    """All arrays of a file."""
+def estimates(case: Case, first: int, count: int) -> Arrays:
+    """{name: (count, ...)} of the arrays that estimate a mean, of `count` seeds."""
+    runs = [case.run(first + k) for k in range(count)]
+    names = [n for n in runs[0] if any(fnmatchcase(n, pattern) for pattern in case.estimates)]
+    return {name: np.stack([run[name] for run in runs]) for name in names}
+
+
+def load(path: Path) -> list[tuple[str, Array]]:
+    """All (name, array) of a file that `_keep` wrote, in their order."""
     with np.load(path) as kept:
-        return {name: kept[name] for name in kept.files}
+        return [(name[4:], kept[name]) for name in kept.files]
+
+
+def _keep(path: Path, arrays: Arrays) -> None:
+    numbered: dict[str, Any] = {f"{k:03d} {name}": arrays[name] for k, name in enumerate(arrays)}
+    np.savez_compressed(path, **numbered)
 
 
 Work = Callable[[Case], str]
+FAILED = "failed: "
 
 
 def _hash_one(case: Case, save: Path | None) -> str:
-    arrays = computed(case)
+    try:
+        arrays = computed(case)
+    except Exception as failure:  # the other results still count
+        return f"{FAILED}{type(failure).__name__}: {failure}"
     if save is not None:
-        numbered = {f"{k:03d} {name}": a for k, (name, a) in enumerate(arrays.items())}
-        _keep(file_of(save, case), numbered)
+        _keep(file_of(save, case), arrays)
     return fingerprint(arrays)
 
 
 def _save_one(case: Case, folder: Path, seeds: int) -> str:
-    kept = estimates(case, BEFORE, seeds)
-    _keep(file_of(folder, case).with_suffix(".seeds.npz"), {"seeds": kept})
+    _keep(seeds_file_of(folder, case), estimates(case, BEFORE, seeds))
     return ""
-
-
-def _keep(path: Path, arrays: dict[str, Any]) -> None:
-    np.savez_compressed(path, **arrays)
 
 
 def _mapped(

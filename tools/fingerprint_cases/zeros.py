@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+DELTA = ("point", "spot", "directional")
 ZEROS: tuple[tuple[str, str], ...] = (
     ("*", "materials.mask.alpha"),  # where a mask ends has no derivative
     ("path/mask*", "materials.card.alpha"),
     ("path/mask*", "textures.opacity"),
-    ("call/incomplete/*", "materials.mask.alpha"),
     # Paths of one segment see lights alone; of two, what a light reflects is not lit.
     ("path/*/depth-1/*", "materials.*"),
     ("path/*/depth-1/*", "textures.*"),
@@ -18,15 +18,7 @@ ZEROS: tuple[tuple[str, str], ...] = (
     ("path/haze-lights-at-infinity/*", "environment"),
     ("path/haze-lights-at-infinity/*", "lights.*.irradiance"),
     # Delta lights are not met.
-    ("light/point/*", "L"),
-    ("light/spot/*", "L"),
-    ("light/directional/*", "L"),
-    ("light/point/*", "pdf-of"),
-    ("light/spot/*", "pdf-of"),
-    ("light/directional/*", "pdf-of"),
-    ("light/point/*", "d_L-*"),
-    ("light/spot/*", "d_L-*"),
-    ("light/directional/*", "d_L-*"),
+    *((f"light/{name}/*", a) for name in DELTA for a in ("L", "pdf-of", "d_L-*")),
     # The directions of these lobes depend on no parameter.
     ("delta/mirror/*", "tangent-0"),
     ("delta/thin_glass/*", "tangent-0"),
