@@ -12,8 +12,10 @@ import numpy as np
 import photograd
 from photograd import sh, splat, splat_rays
 from photograd.core import _core
+from photograd.fields import SparseSh
 from photograd.fields.active_voxels import ActiveVoxels
 from photograd.fields.march import MarchPolicy, march, march_backward
+from photograd.mesh import Bvh, Instance, Mesh
 from photograd.representation import Outputs, RayBatch, RenderOptions, dense_gradient
 from photograd.scenes.registry import scene as described_scene
 from photograd.scenes.registry import scenes as described_scenes
@@ -107,6 +109,31 @@ def marched_sparse(
     adjoint(*field, *out[:3], *d, *gradients, fused=fused)
     found = dict(zip(("color", "transmittance", "depth"), out[:3], strict=True))
     return {**found, **{f"d_{n}": a for n, a in zip(names, gradients, strict=True)}}
+
+
+def greatest_weights(seed: int) -> Arrays:
+    """How much of any ray each voxel of sparse spherical harmonics is."""
+    field = photograd.representations()["sparse_sh"].example(seed=1, dtype=np.float32)
+    assert isinstance(field, SparseSh)
+    return {"weights": field.greatest_weights([field.example_batch(seed=seed)])}
+
+
+def traced(dtype: Any, seed: int) -> Arrays:
+    """Rays at the triangles of two instances: nearest hits, any hits, points on surfaces."""
+    g = np.random.default_rng(seed)
+    corners = g.uniform(-1, 1, (60, 3)).astype(np.float32)
+    mesh = Mesh(corners, np.arange(60).reshape(20, 3), corners[:, :2].copy())
+    bvh = Bvh([mesh], [Instance(0), Instance(0, np.hstack([0.5 * np.eye(3), [[0.5], [0], [0]]]))])
+    batch = rays(seed, dtype)
+    hits = bvh.trace(batch.origins, batch.directions)
+    points = bvh.surface_points(batch.origins, batch.directions, hits)
+    occluded = bvh.occluded(batch.origins, batch.directions, t_max=np.full(RAYS, 3.0, dtype))
+    arrays = [*vars(hits).values(), *vars(points).values(), occluded]
+    found = [np.asarray(a) for a in arrays if a is not None]
+    return {
+        f"{k:02d}": np.nan_to_num(a, nan=-1.0, posinf=-1.0) if a.dtype.kind == "f" else a
+        for k, a in enumerate(found)
+    }
 
 
 def represented(name: str, dtype: Any, options: RenderOptions, seed: int) -> Arrays:
@@ -215,6 +242,7 @@ def march_cases() -> Iterator[Case]:
             form = f"{'fused' if fused else 'staged'}{'-skip' if skip else ''}"
             run = partial(marched_sparse, dtype, policy, degree, fused, skip)
             yield Case(f"march/sparse_sh/{policy}/degree-{degree}/{form}/{key}", run)
+    yield Case("march/sparse_sh/greatest-weights", greatest_weights)
     for name, (key, dtype) in product(photograd.representations(), PRECISIONS.items()):
         for way, options in ways.items():
             run = partial(represented, name, dtype, options)
@@ -233,6 +261,8 @@ def splat_cases() -> Iterator[Case]:
                 if degree == 2 or name == "default":
                     cast = partial(splatted_rays, degree, dtype, casting)
                     yield Case(f"splat-rays/{name}/degree-{degree}/{key}", cast)
+    for key, dtype in PRECISIONS.items():
+        yield Case(f"rays/triangles/{key}", partial(traced, dtype))
     for name in described_scenes():
         for key, dtype in PRECISIONS.items():
             yield Case(f"direct/{name}/{key}", partial(direct_light, name, dtype), ("radiance",))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from concurrent.futures import ProcessPoolExecutor
 from fnmatch import fnmatchcase
@@ -11,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from photograd import bsdf
 from photograd.core import _core
 from photograd_course.cli.progress import Progress
 
@@ -20,6 +22,16 @@ from fingerprint_cases.catalog import all_cases
 BEFORE, AFTER = 1000, 2000
 """First of the seeds whose estimates are kept, and of those that are compared with them."""
 BATCH = 16  # neighbours share the scene
+
+
+def prime() -> bool:
+    """Run a parallel loop before any scene is built, and say whether it keeps tiny numbers.
+
+    The loops of a process keep the floating-point mode that its first one began with. If Embree
+    comes first, that mode takes numbers below 2e-308 for 0.
+    """
+    row, up = np.full((1, 3), 1e-308), np.tile([0.0, 0.0, 1.0], (64, 1))
+    return bool(bsdf.registry()["lambert"].core.f(row, up, up).all())
 
 
 def compute_all(
@@ -37,6 +49,8 @@ def compute_all(
     """
     if save is not None:
         save.mkdir(parents=True, exist_ok=True)
+    if not prime():
+        print("note: this process takes numbers below 2e-308 for 0", file=sys.stderr)
     work = partial(_hash_one, save=save)
     return dict(_mapped(work, cases, jobs, threads, title))
 
@@ -114,14 +128,17 @@ def _mapped(
             finally:
                 _core.set_thread_count(0 if threads == 0 else before)
             return
-        pool = ProcessPoolExecutor(
-            jobs, get_context("spawn"), _core.set_thread_count, (threads or 1,)
-        )
+        pool = ProcessPoolExecutor(jobs, get_context("spawn"), _begin, (threads or 1,))
         with pool:
             results = pool.map(partial(_by_name, work), cases, chunksize=BATCH)
             for step, result in enumerate(results, 1):
                 yield result
                 bar.update(step)
+
+
+def _begin(threads: int) -> None:
+    _core.set_thread_count(threads)
+    prime()
 
 
 def _by_name(work: Work, name: str) -> tuple[str, str]:

@@ -123,6 +123,9 @@ MEDIA: Scenes = {
     "fog-absorbing": lambda: fog_box(INK),
     "fog-lights": lambda: fog_box(FOG, lights=tuple(make() for make in LIGHTS.values())),
     "smoke": lambda: fog_box(smoke()),
+    "smoke-from-above": lambda: fog_box(
+        smoke(), lights=(DirectionalLight([0.0, 1.0, 0.0], [2.0, 1.5, 1.0]),)
+    ),
     "smoke-majorant": lambda: fog_box(smoke(majorant=1.7)),
     "smoke-absorbing": lambda: fog_box(smoke(albedo=None)),
     "nested": nested,

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from photograd.transport import (
     Material,
+    MeshShape,
     NormalMap,
     Scene,
     Texture,
@@ -72,6 +73,34 @@ def textured(wrap: str, kind: str, *, bent: bool = True) -> Scene:
     return replace(scene, shapes=(floor, *scene.shapes[1:]))
 
 
+def channels(kind: str) -> Scene:
+    """Domes under textures of one, two and three channels."""
+    uses = {
+        "one": {"roughness": TextureUse("one")},
+        "two": {"metalness": TextureUse("two", 1), "roughness": TextureUse("two")},
+        "three": {"base_color": TextureUse("three")},
+    }
+    domes = [
+        dome(name, name=name, at=(x, 0.05, 0.4), scale=0.4)
+        for name, x in zip(uses, (-0.8, 0.0, 0.8), strict=True)
+    ]
+    return stage(
+        *domes, materials={name: replace(GLOSS, textures=use) for name, use in uses.items()},
+        textures={
+            name: Texture(texels(k), filter=kind) for k, name in enumerate(uses, 1)
+        },
+    )  # fmt: skip
+
+
+def many_layers(count: int = 260) -> Scene:
+    """More sheets, one above the other, than a shadow ray looks through."""
+    corners = np.array([[-1, 0, -1], [0.2, 0, -1], [0.2, 0, 1], [-1, 0, 1.0]])
+    heights = np.linspace(0.3, 1.2, count)[:, None, None] * [0, 1, 0]
+    faces = 4 * np.arange(count)[:, None, None] + np.array([[0, 1, 2], [0, 2, 3]])
+    sheets = MeshShape("sheets", (corners + heights).reshape(-1, 3), faces.reshape(-1, 3), "sheet")
+    return stage(sheets, materials={"sheet": card(0.004)})
+
+
 def card(alpha: float, **more: Any) -> Material:
     """A colored sheet of some opacity."""
     return Material("lambert", {"albedo": [0.3, 0.4, 0.5], "alpha": alpha}, **more)
@@ -120,6 +149,9 @@ SURFACES: Scenes = {
         for kind in ("bilinear", "mip")
     },
     "texture-without-normal-map": lambda: textured("repeat", "mip", bent=False),
+    "texture-channels-bilinear": lambda: channels("bilinear"),
+    "texture-channels-mip": lambda: channels("mip"),
+    "opacity-many-layers": many_layers,
     "opacity": lambda: shaded(card(0.7)),
     "opacity-textured": lambda: shaded(card(0.8, textures=OPACITY)),
     "opacity-mip": lambda: shaded(card(0.8, textures=OPACITY), kind="mip"),
