@@ -35,7 +35,7 @@ SURFACES = (
 )  # fmt: skip
 MEDIA = (
     "fog", "fog-lights", "fog-absorbing", "smoke", "smoke-majorant", "nested", "nested-smoke",
-    "haze", "haze-lights-at-infinity", "signed-distances", "veiled-fog", "veiled-smoke",
+    "haze", "haze-lights-at-infinity", "signed-distances", "opacity-fog", "opacity-smoke",
     "boundary-alone",
 )  # fmt: skip
 

@@ -28,7 +28,7 @@ ESTIMATORS = {
     "mis-power": PathOptions("mis", "power", max_depth=6),
 }
 SAMPLERS = {"independent": "independent", "sobol": "even"}
-CROSSED = ("large-surfaces", "lights-all", "opacity-textured", "fog-lights", "veiled-smoke")
+CROSSED = ("large-surfaces", "lights-all", "opacity-textured", "fog-lights", "opacity-smoke")
 """Scenes for which all estimators, samplers and ends of paths are tried."""
 ENDS = {
     "depth-1": PathOptions(max_depth=1),
@@ -123,7 +123,7 @@ KINDS: dict[str, tuple[Compute, tuple[str, ...], tuple[str, ...]]] = {
 """What is computed: how, in which precisions, and which of its arrays are estimates."""
 PATHS_OF = (
     "stage", "model-glass", "model-rough_dielectric", "opacity-textured", "lights-all",
-    "emitting-shapes", "fog", "nested-smoke", "veiled-smoke", "haze", "moving-opacity",
+    "emitting-shapes", "fog", "nested-smoke", "opacity-smoke", "haze", "moving-opacity",
     "signed-distances",
 )  # fmt: skip
 """Scenes whose vertices are looked at one by one."""
@@ -215,7 +215,8 @@ CALLS: tuple[tuple[str, Call, tuple[str, ...], tuple[str, ...]], ...] = (
      ("model-gltf", "model-glass", "texture-mirror-mip", "opacity-textured", "nested-smoke")),
     ("spread", spread, GRADIENTS, ("stage", "lights-all", "opacity-textured", "nested-smoke")),
     ("spread-dual", spread_dual, (), ("stage", "lights-all", "opacity-textured", "nested-smoke")),
-    ("incomplete", incomplete, (), ("model-glass", "model-dispersive_glass", "mask", "veiled-fog")),
+    ("incomplete", incomplete, (),
+     ("model-glass", "model-dispersive_glass", "mask", "opacity-fog")),
     ("chosen-lights", chosen_lights, (), ("lights-all", "emitting-shapes")),
     ("first-hits", first_hits, (), ("instances", "signed-distances", "fog")),
 )  # fmt: skip

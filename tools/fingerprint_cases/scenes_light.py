@@ -80,12 +80,12 @@ def all_lights() -> Scene:
     return lit_by(*(make() for make in LIGHTS.values()))
 
 
-def shining_shapes() -> Scene:
+def emitting_shapes() -> Scene:
     """A ball, a box of instances and a textured panel that emit."""
     values = np.random.default_rng(3).uniform(0.1, 1.0, (4, 6, 4))
     corner, u, v = PANEL
     screen = replace(
-        rectangle("screen", corner, u, v, "black", [4.0, 3.5, 3.0]), glow=TextureUse("glow", 1)
+        rectangle("screen", corner, u, v, "black", [4.0, 3.5, 3.0]), glow=TextureUse("image", 1)
     )
     rows = np.eye(4), np.eye(4)
     rows[0][:3, 3], rows[1][:3, 3] = [-0.9, 0.1, 0.3], [0.9, 0.2, 0.0]
@@ -97,8 +97,8 @@ def shining_shapes() -> Scene:
     globe = ball("black", (0.0, 0.3, 0.6), 0.2, emission=np.array([1.0, 1.5, 2.0]))
     shapes = (rectangle("floor", *FLOOR, "gloss"), screen, small, globe, dome("gray", scale=0.3))
     materials = {"gray": GRAY, "black": BLACK, "gloss": GLOSS}
-    textures = {"glow": Texture(values, ("mirror", "clamp"))}
-    return Scene("shining", shapes, materials, view(), textures=textures)
+    textures = {"image": Texture(values, ("mirror", "clamp"))}
+    return Scene("emitting", shapes, materials, view(), textures=textures)
 
 
 def _lit(name: str) -> Callable[[], Scene]:
@@ -112,5 +112,5 @@ LIT: Scenes = {
         ball(), materials={"ball": GLOSS},
         lights=tuple(LIGHTS[name]() for name in ("map", "sun", "sky", "constant", "directional")),
     ),
-    "emitting-shapes": shining_shapes,
+    "emitting-shapes": emitting_shapes,
 }  # fmt: skip

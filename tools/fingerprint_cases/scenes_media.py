@@ -70,7 +70,7 @@ def haze(medium: Medium = FOG, **more: Any) -> Scene:
     return stage(*shapes, materials={"glass": GLASS}, media={"haze": medium}, world="haze", **given)
 
 
-def veiled(medium: Medium, **more: Any) -> Scene:
+def with_opacity(medium: Medium, **more: Any) -> Scene:
     """Fog whose box lets light through a painted card, a mask and a sheet in and beside it."""
     opacity = Texture(np.random.default_rng(5).uniform(0.1, 0.9, (6, 4, 1)))
     shapes = (
@@ -137,9 +137,9 @@ MEDIA: Scenes = {
     "haze-lights-at-infinity": lambda: haze(
         FOG, environment=SKY, lights=(POINT, DirectionalLight([0.5, 1, 0.4], [2.0, 1.5, 1.0])),
     ),
-    "veiled-fog": lambda: veiled(FOG),
-    "veiled-smoke": lambda: veiled(smoke()),
-    "veiled-haze": lambda: replace(veiled(FOG), world="fog", environment=None),
+    "opacity-fog": lambda: with_opacity(FOG),
+    "opacity-smoke": lambda: with_opacity(smoke()),
+    "opacity-haze": lambda: replace(with_opacity(FOG), world="fog", environment=None),
     "camera-inside": lambda: camera_inside(FOG),
     "camera-inside-smoke": lambda: camera_inside(smoke()),
     "camera-leaves": lambda: camera_inside(FOG, moving=True),

@@ -28,12 +28,12 @@ PLACES = place(-0.6, 0.0, 0.3, [1, 1, 1]), place(0.5, -0.3, 1.2, [0.7, 1.6, 1.0]
 CLOSING = place(-0.3, 0.2, 0.8, [1.1, 0.9, 1]), place(0.6, 0.1, 0.9, [0.8, 1.2, 1.0])
 
 
-def instances(*, moving: bool = False, sheer: bool = False, **more: Any) -> Scene:
+def instances(*, moving: bool = False, transparent: bool = False, **more: Any) -> Scene:
     """Two textured domes of one mesh and a ball; they may move."""
     tilt = NormalMap(np.broadcast_to([0.2, 0.1, 1.0], (2, 2, 3)).copy())
     domes = dome("gloss", places=PLACES, closing_places=CLOSING if moving else ())
     end = np.array([0.5, 0.7, -0.2]) if moving else None
-    flying = ball("card" if sheer else "glass", (0.2, 0.3, 0.6), 0.25, closing=end)
+    flying = ball("card" if transparent else "glass", (0.2, 0.3, 0.6), 0.25, closing=end)
     return stage(
         domes, flying,
         materials={
@@ -69,7 +69,7 @@ def bodies() -> Scene:
 MOTION: Scenes = {
     "instances": instances,
     "moving": lambda: instances(moving=True),
-    "moving-opacity": lambda: instances(moving=True, sheer=True),
+    "moving-opacity": lambda: instances(moving=True, transparent=True),
     "shutter": lambda: with_shutter(instances()),
     "shutter-moving": lambda: with_shutter(instances(moving=True)),
     "shutter-fog": lambda: with_shutter(fog_box(FOG)),

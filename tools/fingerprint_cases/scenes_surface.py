@@ -126,8 +126,10 @@ def transparent_models() -> Scene:
     names = ("mirror", "glass", "rough_dielectric", "disney", "gltf")
     places = [(-1.0 + 0.5 * k, 0.3, 0.2 * (k % 2)) for k in range(len(names))]
     shapes = [ball(name, place, 0.28, name=name) for name, place in zip(names, places, strict=True)]
-    sheer = {name: of_model(name, values={"alpha": 0.3 + 0.1 * k}) for k, name in enumerate(names)}
-    return stage(*shapes, materials=sheer)
+    transparent = {
+        name: of_model(name, values={"alpha": 0.3 + 0.1 * k}) for k, name in enumerate(names)
+    }
+    return stage(*shapes, materials=transparent)
 
 
 OPACITY = {"alpha": TextureUse("opacity")}

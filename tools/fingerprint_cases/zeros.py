@@ -17,7 +17,7 @@ ZEROS: tuple[tuple[str, str], ...] = (
     # A medium around everything has no end: what is at infinity is not seen through it.
     ("path/haze-lights-at-infinity/*", "environment"),
     ("path/haze-lights-at-infinity/*", "lights.*.irradiance"),
-    # Delta lights are not met.
+    # No ray hits a delta light.
     *((f"light/{name}/*", a) for name in DELTA for a in ("L", "pdf-of", "d_L-*")),
     # The directions of these lobes depend on no parameter.
     ("delta/mirror/*", "tangent-0"),
