@@ -99,14 +99,14 @@ def marched_sparse(
     batch = rays(2, dtype)
     ends = batch.origins, batch.directions
     placed = _core.place_samples(settings, *ends)
-    field: Any = (active.table, *given, settings, 0.5, *ends, *placed)
+    field: Any = (active.table, given, settings, 0.5, (*ends, *placed))
     forward: Any = _core.march_sparse_sh
     adjoint: Any = _core.march_sparse_sh_backward
     out = forward(*field, fused=fused, skip=skip)
     d = [g.uniform(-1, 1, value.shape).astype(dtype) for value in out[:3]]
     names = ("density", "sh", "background", "origins", "directions")
     gradients = [np.zeros_like(value) for value in (*given, *ends)]
-    adjoint(*field, *out[:3], *d, *gradients, fused=fused)
+    adjoint(*field, out[:3], d, gradients[:3], gradients[3:], fused=fused)
     found = dict(zip(("color", "transmittance", "depth"), out[:3], strict=True))
     return {**found, **{f"d_{n}": a for n, a in zip(names, gradients, strict=True)}}
 
