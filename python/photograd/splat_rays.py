@@ -153,7 +153,7 @@ def render(
     policies = options or RayOptions()
     arrays = list(gaussians.arrays().values())
     core_options = _core.RayOptions(**vars(policies))
-    prepared = _core.prepare_splat_rays(arrays, core_options, *rays, behind)
+    prepared = _core.prepare_splat_rays(arrays, core_options, rays[0], rays[1], behind)
     picture = RayPicture(*prepared.render(arrays))
     require_finite("splat_rays.render", vars(picture), lambda at: f"ray {at[0]}")
     return picture, RayContext(gaussians, picture, prepared)
