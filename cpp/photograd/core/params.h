@@ -33,6 +33,12 @@ constexpr std::tuple<P...> describe(P... parameters) {
     return {parameters...};
 }
 
+/// Calls visit(parameter) for each parameter of the model.
+template <class Model, class Visit>
+constexpr void for_each_parameter(Visit&& visit) {
+    std::apply([&](const auto&... parameter) { (visit(parameter), ...); }, Model::params);
+}
+
 /// Number of scalars in a parameter's value: 1, or 3 for a colour or vector.
 template <class Value>
 constexpr int scalar_count() {
