@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "photograd/render/sample_numbers.h"
+#include "photograd/sampling/mis.h"
 
 namespace photograd {
 
@@ -11,17 +12,6 @@ namespace photograd {
 /// where no light can be asked (seen by the camera, or through a smooth surface); `bsdf` counts what it meets, and
 /// asks only delta lights, which cannot be met; `mis` does both and shares out the weight [Veach1995].
 enum class Strategy : int { light = 0, bsdf = 1, mis = 2 };
-
-/// Weight of a sample of density p that the other strategy would have drawn with density q: p / (p + q), or
-/// p^2 / (p^2 + q^2), which trusts the better one more [Veach1995, Sec. 3.4].
-enum class Heuristic : int { balance = 0, power = 1 };
-
-template <class R>
-R mis_weight(Heuristic heuristic, R p, R q) {
-    if (!(p > R(0))) return R(0);
-    const R r = q / p;  // p^2 would overflow a float long before p does
-    return R(1) / (R(1) + (heuristic == Heuristic::balance ? r : r * r));
-}
 
 struct PathOptions {
     Strategy strategy = Strategy::mis;
