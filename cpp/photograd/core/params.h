@@ -7,6 +7,7 @@
 // type, so a new parameter gets its slot for a derivative without another line.
 #pragma once
 
+#include <array>
 #include <tuple>
 #include <type_traits>
 
@@ -31,12 +32,6 @@ constexpr Parameter<Model, Value> p(const char* name, Value Model::* member, dou
 template <class... P>
 constexpr std::tuple<P...> describe(P... parameters) {
     return {parameters...};
-}
-
-/// Calls visit(parameter) for each parameter of the model.
-template <class Model, class Visit>
-constexpr void for_each_parameter(Visit&& visit) {
-    std::apply([&](const auto&... parameter) { (visit(parameter), ...); }, Model::params);
 }
 
 /// Number of scalars in a parameter's value: 1, or 3 for a colour or vector.
@@ -105,6 +100,44 @@ constexpr void for_each_scalar(Visit&& visit, Model& model, Models&... models) {
 template <class Model>
 constexpr int parameter_count() {
     return scalars_in(Model::params);
+}
+
+/// A described parameter without its type, for those who do not see the model.
+struct ParameterInfo {
+    const char* name;
+    int scalars;
+    double lo, hi;
+    const char* unit;
+};
+
+template <class... Q>
+constexpr std::array<ParameterInfo, sizeof...(Q)> parameter_infos(
+    const std::tuple<Q...>& description) {
+    return std::apply(
+        [](const auto&... q) {
+            return std::array<ParameterInfo, sizeof...(Q)>{
+                ParameterInfo{q.name, value_scalars(q), q.lo, q.hi, q.unit}...};
+        },
+        description);
+}
+
+/// A model with parameters from a flat row, and the way back.
+template <class Model, class R>
+Model from_row(const R* row) {
+    Model model;
+    for_each_scalar([&](R& x) { x = *row++; }, model);
+    return model;
+}
+template <class Model, class R>
+void to_row(const Model& model, R* row) {
+    for_each_scalar([&](const R& x) { *row++ = x; }, model);
+}
+/// A model on dual numbers: parameters from `row`, their tangents from `v`.
+template <class Model, class R>
+Model dual_from_rows(const R* row, const R* v) {
+    Model model;
+    for_each_scalar([&](Dual<R>& x) { x = Dual<R>(*row++, *v++); }, model);
+    return model;
 }
 
 }  // namespace photograd

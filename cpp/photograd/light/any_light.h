@@ -42,8 +42,7 @@ struct AnyLightGradient {
 
 template <class R>
 bool is_delta(const AnyLight<R>& any) {
-    return std::visit([](const auto& light) { return requires { light.at(Vec3<R>()); }; },
-                      any.model);
+    return std::visit([]<class L>(const L&) { return is_delta(L::kind); }, any.model);
 }
 
 /// The gradient of this light, 0.
@@ -51,7 +50,7 @@ template <class R>
 AnyLightGradient<R> zero_gradient(const AnyLight<R>& any) {
     return std::visit(
         []<class L>(const L&) -> AnyLightGradient<R> {
-            if constexpr (requires { L::params; }) {
+            if constexpr (L::kind != LightKind::environment) {
                 L light;
                 for_each_scalar([](R& x) { x = R(0); }, light);
                 return {light};
@@ -66,9 +65,9 @@ AnyLightGradient<R> zero_gradient(const AnyLight<R>& any) {
 template <class R>
 Background<R> background(const AnyLight<R>& any, const Vec3<R>& w) {
     return std::visit(
-        [&](const auto& light) -> Background<R> {
-            if constexpr (requires { light.look(w); })
-                return light.look(w);
+        [&]<class L>(const L& light) -> Background<R> {
+            if constexpr (L::kind == LightKind::environment)
+                return light.L_and_pdf(w);
             else
                 return {light_radiance(light, Vec3<R>(R(0)), w),
                         light_pdf(light, Vec3<R>(R(0)), w)};
@@ -81,7 +80,7 @@ void background_backward(const AnyLight<R>& any, const Vec3<R>& w, const Vec3<R>
                          AnyLightGradient<R>& d_any) {
     std::visit(
         [&]<class L>(const L& light) {
-            if constexpr (requires { L::params; }) {
+            if constexpr (L::kind != LightKind::environment) {
                 light_radiance_backward(light, Vec3<R>(R(0)), w, d_L, std::get<L>(d_any.model));
             } else {
                 auto& seen = std::get<SeenDirections<R>>(d_any.model);
@@ -104,7 +103,7 @@ void delta_backward(const AnyLight<R>& any, const Vec3<R>& point, const Vec3<R>&
                     AnyLightGradient<R>& d_any) {
     std::visit(
         [&]<class L>(const L& light) {
-            if constexpr (requires { light.at(point); })
+            if constexpr (is_delta(L::kind))
                 light.at_backward(point, d_radiance, std::get<L>(d_any.model));
         },
         any.model);

@@ -13,6 +13,7 @@ struct ConstantLight {
     Vec3<R> radiance{R(1)};
 
     static constexpr const char* name = "constant";
+    static constexpr LightKind kind = LightKind::infinite;
     static constexpr auto params =
         describe(p("radiance", &ConstantLight::radiance, 0.0, 10.0, "W/(m^2 sr)"));
     static constexpr auto constants = describe();

@@ -16,6 +16,7 @@ struct DirectionalLight {
     Vec3<R> direction{R(0), R(1), R(0)};  // unit, towards the light
 
     static constexpr const char* name = "directional";
+    static constexpr LightKind kind = LightKind::directional;
     static constexpr auto params =
         describe(p("irradiance", &DirectionalLight::irradiance, 0.0, 10.0, "W/m^2"));
     static constexpr auto constants =

@@ -40,6 +40,7 @@ struct Environment {
     const EnvironmentSampler* sampler;
 
     static constexpr const char* name = "environment";
+    static constexpr LightKind kind = LightKind::environment;
 
     [[nodiscard]] EnvironmentTaps<R> taps(const Vec3<R>& w) const {
         const Vec2<double> uv = lat_long_from_direction(map_from_world(w));
@@ -60,7 +61,7 @@ struct Environment {
     R pdf(const Vec3<R>& w) const { return R(sampler->pdf(lat_long_of(map_from_world(w)))); }
 
     /// `sample` with its radiance and density: its place in the map is known, but for the angle to the zenith.
-    [[nodiscard]] LightSample<R> draw(const Vec2<R>& u2) const {
+    [[nodiscard]] LightSample<R> sample_with_radiance(const Vec2<R>& u2) const {
         const DrawnDirection drawn = sampler->sample({double(u2.x), double(u2.y)});
         const Vec3<double>& w = drawn.w;
         const double v = polar_angle(sqrt(w.x * w.x + w.z * w.z), w.y) / pi;
@@ -68,7 +69,7 @@ struct Environment {
                 look_up(environment_taps<R>(drawn.u, v, height)), R(drawn.pdf), false};
     }
     /// L and pdf of a direction by one lookup of its place.
-    [[nodiscard]] Background<R> look(const Vec3<R>& w) const {
+    [[nodiscard]] Background<R> L_and_pdf(const Vec3<R>& w) const {
         const LatLong place = lat_long_of(map_from_world(w));
         return {look_up(environment_taps<R>(place.u, place.v, height)), R(sampler->pdf(place))};
     }

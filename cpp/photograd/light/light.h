@@ -1,10 +1,13 @@
-// What every light says about itself. There are three kinds:
+// What every light says about itself. There are three families:
 //
 //   at infinity   Light       sky, sun, environment map: radiance depends on the direction alone
-//   delta         DeltaLight  point, spot, directional: reaches a place from one direction; no ray ever hits it
-//   area          AreaLight   rectangle, sphere, triangle, mesh: a surface that glows on the side of its normal
+//   delta         DeltaLight  point, spot, directional: reaches a point from one direction, and no
+//                             ray ever hits it
+//   area          AreaLight   rectangle, sphere, triangle: a surface that emits on the side of its
+//                             normal
 //
-// sample_light.h gives all of them one interface. Points and directions are of the world; w leaves the lit point.
+// sample_light.h gives all of them one interface. Points and directions are of the world; w leaves
+// the lit point.
 #pragma once
 
 #include <concepts>
@@ -14,6 +17,13 @@
 #include "photograd/core/real.h"
 
 namespace photograd {
+
+enum class LightKind : int { infinite, environment, point, spot, directional, area };
+
+/// One direction at each point: a light that no ray hits, of weight 1 in multiple importance sampling.
+constexpr bool is_delta(LightKind kind) {
+    return kind == LightKind::point || kind == LightKind::spot || kind == LightKind::directional;
+}
 
 /// What a light sends to a point along one direction, drawn with density `pdf`. Nothing is known of what stands between.
 /// An estimate of reflected light is f(wo, wi) cos radiance / pdf; pdf = 0 says that nothing arrives.
@@ -58,6 +68,7 @@ constexpr R infinitely_far() {
 template <class T, class R>
 concept LightValue = requires(const T& light, T& d_light, const Vec3<R>& w) {
     { T::name } -> std::convertible_to<const char*>;
+    { T::kind } -> std::convertible_to<LightKind>;
     T::params;
     T::constants;
     { light.L(w) } -> std::same_as<Vec3<R>>;
@@ -79,6 +90,7 @@ concept Light = LightValue<M<double>, double> && LightValue<M<Dual<double>>, Dua
 template <class T, class R>
 concept DeltaLightValue = requires(const T& light, T& d_light, const Vec3<R>& v) {
     { T::name } -> std::convertible_to<const char*>;
+    { T::kind } -> std::convertible_to<LightKind>;
     T::params;
     T::constants;
     { light.fault() } -> std::same_as<LightFault>;
@@ -91,6 +103,7 @@ concept DeltaLightValue = requires(const T& light, T& d_light, const Vec3<R>& v)
 template <class T, class R>
 concept AreaLightValue = requires(const T& light, T& d_light, const Vec3<R>& v) {
     { T::name } -> std::convertible_to<const char*>;
+    { T::kind } -> std::convertible_to<LightKind>;
     T::params;
     { light.radiance } -> std::convertible_to<Vec3<R>>;
     { light.fault() } -> std::same_as<LightFault>;

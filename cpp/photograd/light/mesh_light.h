@@ -20,6 +20,7 @@ struct MeshLight {
     const EmittingMesh* mesh = nullptr;
 
     static constexpr const char* name = "mesh";
+    static constexpr LightKind kind = LightKind::area;
     static constexpr auto params =
         describe(p("radiance", &MeshLight::radiance, 0.0, 10.0, "W/(m^2 sr)"));
 

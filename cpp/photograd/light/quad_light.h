@@ -18,6 +18,7 @@ struct QuadLight {
     Vec3<R> corner{R(-0.5), R(0), R(-0.5)}, edge_x{R(1), R(0), R(0)}, edge_y{R(0), R(0), R(1)};
 
     static constexpr const char* name = "quad";
+    static constexpr LightKind kind = LightKind::area;
     static constexpr auto params =
         describe(p("radiance", &QuadLight::radiance, 0.0, 10.0, "W/(m^2 sr)"));
     static constexpr auto constants = describe(p("corner", &QuadLight::corner, -1.0, 1.0, "m"),

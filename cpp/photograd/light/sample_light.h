@@ -12,12 +12,12 @@ namespace photograd {
 
 template <class R, class L>
 LightSample<R> sample_light(const L& light, const Vec3<R>& point, const Vec2<R>& u2) {
-    if constexpr (requires { light.at(point); }) {
+    if constexpr (is_delta(L::kind)) {
         return light.at(point);
-    } else if constexpr (requires { light.sample(point, u2); }) {
+    } else if constexpr (L::kind == LightKind::area) {
         return light.sample(point, u2);
-    } else if constexpr (requires { light.draw(u2); }) {
-        return light.draw(u2);
+    } else if constexpr (L::kind == LightKind::environment) {
+        return light.sample_with_radiance(u2);
     } else {
         const Vec3<R> w = light.sample(u2);
         return {w, infinitely_far<R>(), light.L(w), light.pdf(w), false};
@@ -29,9 +29,9 @@ LightSample<R> sample_light(const L& light, const Vec3<R>& point, const Vec2<R>&
 template <class R, class L, class D>
 void sample_light_backward(const L& light, const Vec3<R>& point, const Vec3<R>& direction,
                            const Vec3<R>& d_radiance, D&& d_light) {
-    if constexpr (requires { light.at(point); })
+    if constexpr (is_delta(L::kind))
         light.at_backward(point, d_radiance, d_light);
-    else if constexpr (requires { light.L(point, direction); })
+    else if constexpr (L::kind == LightKind::area)
         d_light.radiance += d_radiance;  // the sample lies on the light, whatever rounding says
     else
         light.L_backward(direction, d_radiance, d_light);
@@ -40,9 +40,9 @@ void sample_light_backward(const L& light, const Vec3<R>& point, const Vec3<R>& 
 /// Radiance that arrives from w; 0 from delta lights, which no direction meets.
 template <class R, class L>
 Vec3<R> light_radiance(const L& light, const Vec3<R>& point, const Vec3<R>& w) {
-    if constexpr (requires { light.at(point); })
+    if constexpr (is_delta(L::kind))
         return Vec3<R>(R(0));
-    else if constexpr (requires { light.L(point, w); })
+    else if constexpr (L::kind == LightKind::area)
         return light.L(point, w);
     else
         return light.L(w);
@@ -50,9 +50,9 @@ Vec3<R> light_radiance(const L& light, const Vec3<R>& point, const Vec3<R>& w) {
 template <class R, class L, class D>
 void light_radiance_backward(const L& light, const Vec3<R>& point, const Vec3<R>& w,
                              const Vec3<R>& d_radiance, D&& d_light) {
-    if constexpr (requires { light.at(point); })
+    if constexpr (is_delta(L::kind))
         return;
-    else if constexpr (requires { light.L(point, w); })
+    else if constexpr (L::kind == LightKind::area)
         light.L_backward(point, w, d_radiance, d_light);
     else
         light.L_backward(w, d_radiance, d_light);
@@ -61,9 +61,9 @@ void light_radiance_backward(const L& light, const Vec3<R>& point, const Vec3<R>
 /// Density over solid angle with which `sample_light` draws w; 0 for delta lights.
 template <class R, class L>
 R light_pdf(const L& light, const Vec3<R>& point, const Vec3<R>& w) {
-    if constexpr (requires { light.at(point); })
+    if constexpr (is_delta(L::kind))
         return R(0);
-    else if constexpr (requires { light.L(point, w); })
+    else if constexpr (L::kind == LightKind::area)
         return light.pdf(point, w);
     else
         return light.pdf(w);

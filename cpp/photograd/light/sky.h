@@ -14,6 +14,7 @@ struct Sky {
     Vec3<R> zenith{R(1)}, horizon{R(1)}, ground{R(1)};
 
     static constexpr const char* name = "sky";
+    static constexpr LightKind kind = LightKind::infinite;
     static constexpr auto params = describe(p("zenith", &Sky::zenith, 0.0, 10.0, "W/(m^2 sr)"),
                                             p("horizon", &Sky::horizon, 0.0, 10.0, "W/(m^2 sr)"),
                                             p("ground", &Sky::ground, 0.0, 10.0, "W/(m^2 sr)"));

@@ -21,6 +21,7 @@ struct SphereLight {
     R radius{R(1)};
 
     static constexpr const char* name = "sphere";
+    static constexpr LightKind kind = LightKind::area;
     static constexpr auto params =
         describe(p("radiance", &SphereLight::radiance, 0.0, 10.0, "W/(m^2 sr)"));
     static constexpr auto constants = describe(p("center", &SphereLight::center, -1.0, 1.0, "m"),

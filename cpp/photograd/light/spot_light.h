@@ -26,6 +26,7 @@ struct SpotLight {
     Vec3<R> axis{R(0), R(-1), R(0)};  // unit, the way the light shines
 
     static constexpr const char* name = "spot";
+    static constexpr LightKind kind = LightKind::spot;
     static constexpr auto params =
         describe(p("intensity", &SpotLight::intensity, 0.0, 10.0, "W/sr"),
                  p("cos_outer", &SpotLight::cos_outer, -0.9, 0.95),

@@ -18,6 +18,7 @@ struct Sun {
     R height{R(1.08e-5)};                 // 1 - cos(angular radius) of the disc
 
     static constexpr const char* name = "sun";
+    static constexpr LightKind kind = LightKind::infinite;
     static constexpr auto params =
         describe(p("radiance", &Sun::radiance, 0.0, 100.0, "W/(m^2 sr)"));
     static constexpr auto constants =

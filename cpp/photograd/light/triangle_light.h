@@ -15,6 +15,7 @@ struct TriangleLight {
     Vec3<R> a{R(0)}, b{R(1), R(0), R(0)}, c{R(0), R(0), R(1)};
 
     static constexpr const char* name = "triangle";
+    static constexpr LightKind kind = LightKind::area;
     static constexpr auto params =
         describe(p("radiance", &TriangleLight::radiance, 0.0, 10.0, "W/(m^2 sr)"));
     static constexpr auto constants = describe(p("a", &TriangleLight::a, -1.0, 1.0, "m"),

@@ -47,17 +47,22 @@ struct AnyPhase {
         return std::visit([](const auto& m) { return scalars_in(m.params); }, model);
     }
 
-    /// Density of a turn, 1/sr, and its derivative, added to d_self: a phase function of the same kind.
+    /// Density of a turn, 1/sr, and its derivatives, added to d_self, a phase function of the same
+    /// kind, and to d_cos_theta.
     [[nodiscard]] R p(R cos_theta) const {
         return std::visit([&](const auto& m) { return m.p(cos_theta); }, model);
     }
-    void p_backward(R cos_theta, R d_p, AnyPhase& d_self) const {
-        R fixed = R(0);  // the direction was drawn, and is held
+    void p_backward(R cos_theta, R d_p, AnyPhase& d_self, R& d_cos_theta) const {
         std::visit(
             [&]<class M>(const M& m) {
-                m.p_backward(cos_theta, d_p, std::get<M>(d_self.model), fixed);
+                m.p_backward(cos_theta, d_p, std::get<M>(d_self.model), d_cos_theta);
             },
             model);
+    }
+    /// The same of a sampled direction, which is held.
+    void p_backward(R cos_theta, R d_p, AnyPhase& d_self) const {
+        R held = R(0);
+        p_backward(cos_theta, d_p, d_self, held);
     }
     /// The lobe by which directions are drawn (phase_lobe.h).
     [[nodiscard]] Vec3<R> sample(const Vec3<R>& direction, const Vec2<R>& u2) const {

@@ -61,7 +61,7 @@ bool goes_straight_on(const PathScene<R>& scene, std::size_t number, const Mater
 template <Real R>
 bool any_sheer(const PathScene<R>& scene) {
     return std::any_of(scene.materials.begin(), scene.materials.end(),
-                       [](const Material<R>& m) { return m.sheer; });
+                       [](const Material<R>& m) { return m.has_opacity; });
 }
 
 template <class R>
@@ -80,7 +80,7 @@ bool leaves_light(const PathScene<R>& scene, bool stop_when_black, const Surface
                   LightVertex<R>& light) {
     const std::int32_t m = scene.geometry->material[static_cast<std::size_t>(hit.shape)];
     const auto number = static_cast<std::size_t>(m);
-    if (!scene.materials[number].sheer) return false;
+    if (!scene.materials[number].has_opacity) return false;
     const SurfaceTextures& textures = scene.geometry->textures;
     const auto alpha_of = [&](std::span<const Material<R>> from, std::span<const R* const> texels) {
         const std::span<const TextureUse> uses = textures.of(number);

@@ -152,7 +152,7 @@ protected:  // what a walk through media shares
         const Material<double>& material = material_of(lane);
         const Vec3<double> back = -lane.ray.direction;
         const SurfaceSide<double> side(*lane.hit, back, material.transmits());
-        if (material.sheer && passes(lane, material, side, depth)) return;
+        if (material.has_opacity && passes(lane, material, side, depth)) return;
         const Philox4 words = random_block(lane.key, 2 + static_cast<std::uint32_t>(depth));
         const Vec2<double> u2(uniform_from<double>(words[0]), uniform_from<double>(words[1]));
         Vec3<double> out;
@@ -193,7 +193,7 @@ protected:  // what a walk through media shares
                                       const SurfaceHit<double>& hit,
                                       const SurfaceSide<double>& side, const Vec2<double>& u2,
                                       double u, Vec3<double>& out) {
-        const bool bent = !material.is_delta() && side.frame.normal != side.normal;
+        const bool bent = !material.is_specular() && side.frame.normal != side.normal;
         SurfaceHit<double> level = hit;
         level.shading = hit.outside;
         const SurfaceSide<double> flat =

@@ -135,7 +135,7 @@ protected:  // what a walk through media (volume_walk.h) shares
         const Material<R>& material = sampling_of(lane);
         lane.side = SurfaceSide<R>(lane.hit, -v.direction, material.transmits());
         v.wo = lane.side.wo;
-        if (material.sheer && cover(lane)) return;
+        if (material.has_opacity && cover(lane)) return;
         const R cosine = -dot(lane.hit.outside, v.direction);
         if (!(cosine > R(0))) return;  // the back of a light is dark
         if (geometry.textures.glows(static_cast<std::size_t>(v.shape))) v.uv = lane.hit.uv;
@@ -195,7 +195,7 @@ protected:  // what a walk through media (volume_walk.h) shares
         for (int k = 0; k < width; ++k) {
             Lane& lane = lanes_[k];
             packet.active[k] = false;
-            lane.shadow = lane.alive && !sampling_of(lane).is_delta() && choose_light(lane, depth);
+            lane.shadow = lane.alive && !sampling_of(lane).is_specular() && choose_light(lane, depth);
             if (!lane.shadow) continue;
             const Vec3<R> start = lane.side.start(
                 lane.hit.position, lane.path.back().light.direction, scene_.geometry->offset);
@@ -216,7 +216,7 @@ protected:  // what a walk through media (volume_walk.h) shares
         ShadowRay<R> shadows[width];
         for (int k = 0; k < width; ++k) {
             Lane& lane = lanes_[k];
-            lane.shadow = lane.alive && !lane.path.back().passed && !sampling_of(lane).is_delta() &&
+            lane.shadow = lane.alive && !lane.path.back().passed && !sampling_of(lane).is_specular() &&
                           choose_light(lane, depth);
             if (!lane.shadow) continue;
             LightVertex<R>& light = lane.path.back().light;

@@ -25,7 +25,7 @@ PhotonMap::PhotonMap(const PathScene<double>& scene, const ParticleOptions& opti
         for (std::uint64_t n = begin; n < end; n += walk_width)
             walk.follow(n, static_cast<int>(std::min<std::uint64_t>(walk_width, end - n)),
                         [&](const Flight& flight) {
-                            if (!flight.hit || flight.material->is_delta()) return;
+                            if (!flight.hit || flight.material->is_specular()) return;
                             const bool first = flight.depth == 0;
                             if (first && !direct) return;
                             const Vec3<double> back = -flight.ray.direction;

@@ -60,9 +60,9 @@ private:
         const Material<double>& material = uses.empty() ? scene_.materials[m] : own;
         const Vec3<double> back = -view.ray.direction;
         const SurfaceSide<double> side(hit, back, material.transmits());
-        if (material.sheer && passes(view, depth, m, material, hit, side)) return;
+        if (material.has_opacity && passes(view, depth, m, material, hit, side)) return;
         if (dot(hit.outside, back) > 0) view.L += view.beta * scene_.emitted(hit.shape, hit.uv);
-        if (material.is_delta())
+        if (material.is_specular())
             go_on(view, depth, material, hit, side);
         else
             view.L += view.beta * reflected(material, hit, side);

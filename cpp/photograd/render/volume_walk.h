@@ -174,7 +174,7 @@ private:
     bool find_light(Lane& lane, const Extra& extra) {
         const int depth = vertex_of(lane);
         if (lane.hit.shape >= 0)
-            return !lane.path.back().passed && !Base::sampling_of(lane).is_delta() &&
+            return !lane.path.back().passed && !Base::sampling_of(lane).is_specular() &&
                    Base::choose_light(lane, depth);
         Base::find_light(lane, depth);
         PathVertex<R>& v = lane.path.back();

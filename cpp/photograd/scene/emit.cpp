@@ -49,9 +49,9 @@ Particle from_listed(const AnyLight<double>& any, const BoundingSphere& around,
                      const Vec2<double>& place, const Vec2<double>& way) {
     return std::visit(
         [&]<class L>(const L& light) -> Particle {
-            if constexpr (requires { light.cos_outer; }) {
+            if constexpr (L::kind == LightKind::spot) {
                 return from_point(light, light.axis, 1 - light.cos_outer, way);
-            } else if constexpr (requires { light.intensity; }) {
+            } else if constexpr (L::kind == LightKind::point) {
                 return from_point(light, Vec3<double>(0, 0, 1), 2.0, way);
             } else {
                 const LightSample<double> s = sample_light(light, around.center, way);

@@ -4,31 +4,7 @@ namespace photograd {
 
 Vec3<double> value_tangent(const Material<double>& material, const Material<double>& along,
                            const Vec3<double>& wo, const Vec3<double>& wi, int lobe) {
-    using D = Dual<double>;
-    double value[max_parameters], tangent[max_parameters];
-    material.get(value);
-    along.get(tangent);
-    const Vec3<D> fixed_o(D(wo.x), D(wo.y), D(wo.z)), fixed_i(D(wi.x), D(wi.y), D(wi.z));
-    Vec3<D> out(D(0.0));
-    const auto look = [&]<template <class> class M>() {
-        if (!std::holds_alternative<M<double>>(material.model)) return;
-        M<D> model;
-        std::size_t i = 0;
-        for_each_scalar(
-            [&](D& x) {
-                x = D(value[i], tangent[i]);
-                ++i;
-            },
-            model);
-        if constexpr (requires { M<D>::lobe_count; }) {
-            if (lobe >= 0) out = model.lobes(fixed_o)[static_cast<std::size_t>(lobe)].weight;
-        } else {
-            out = model.f(fixed_o, fixed_i);
-        }
-    };
-    Bsdfs::for_each(look);
-    DeltaBsdfs::for_each(look);
-    return {out.x.tangent, out.y.tangent, out.z.tangent};
+    return bsdf_tangents[material.model].value(material.parameter, along.parameter, wo, wi, lobe);
 }
 
 Material<double> textured_tangent(const Material<double>& base, const Material<double>& along,
