@@ -1,5 +1,5 @@
-// Reflectance models as functions on arrays, through the table of bsdf/bsdf_table.h: {name: Bsdf} as
-// _core.bsdfs and, of specular ones, {name: DeltaBsdf} as _core.delta_bsdfs.
+// Reflectance models as functions on arrays, through the table of bsdf/bsdf_table.h: {name: Bsdf}
+// as _core.bsdfs and, of specular ones, {name: DeltaBsdf} as _core.delta_bsdfs.
 #include "model_args.h"
 #include "module.h"
 #include "photograd/bsdf/bsdf_table.h"

@@ -1,5 +1,5 @@
-// Every light of light/registry.h behind the one interface of light/sample_light.h: {name: SampledLight}
-// as _core.sampled_lights; those at infinity alone as _core.lights.
+// Every light of light/registry.h behind the one interface of light/sample_light.h: {name:
+// SampledLight} as _core.sampled_lights; those at infinity alone as _core.lights.
 #include <variant>
 
 #include "light_calls.h"

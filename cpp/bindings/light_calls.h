@@ -1,4 +1,5 @@
-// Lights as functions on arrays of points and directions, whatever the light: light/sample_light.h, row by row.
+// Lights as functions on arrays of points and directions, whatever the light: light/sample_light.h,
+// row by row.
 #pragma once
 
 #include <cmath>
@@ -22,7 +23,8 @@ T light_of(ArrayArgs& args, const py::array& parameters, const py::array& consta
     return light;
 }
 
-/// Refuses colours that are negative, numbers that are not finite, and what the light itself finds wrong.
+/// Refuses colours that are negative, numbers that are not finite, and what the light itself finds
+/// wrong.
 template <class R, class T>
 void check_light(const ArrayArgs& args, const T& light) {
     const auto check = [&](const char* name, const auto& value, bool color) {

@@ -1,4 +1,5 @@
-// Models of a registry as flat functions on arrays: parameters (N, P) or (1, P), one row of P scalars a model.
+// Models of a registry as flat functions on arrays: parameters (N, P) or (1, P), one row of P
+// scalars a model.
 #pragma once
 
 #include <pybind11/stl.h>
@@ -71,9 +72,9 @@ void for_each_row(std::int64_t count, Body&& body) {
 
 inline constexpr int max_row = 64;  // numbers of one model
 
-/// Adds derivatives to d_parameters, `size` numbers a row: derivative(i, d) adds those of evaluation i
-/// to zeros d. Row by row, or, where one row of parameters served all, into it, as partial sums of
-/// fixed blocks in fixed order.
+/// Adds derivatives to d_parameters, `size` numbers a row: derivative(i, d) adds those of
+/// evaluation i to zeros d. Row by row, or, where one row of parameters served all, into it, as
+/// partial sums of fixed blocks in fixed order.
 template <class R, class Derivative>
 void add_parameter_rows(int size, std::int64_t count, bool shared, R* d_parameters,
                         Derivative&& derivative) {

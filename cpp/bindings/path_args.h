@@ -64,7 +64,8 @@ struct SceneNumbers {
             read(args, rows.models, "sampling_parameters", *other.parameters, sampling);
         const R* e =
             args.in<R>("emission", rows.emission, std::to_string(geometry.shape_count()) + " 3");
-        const std::size_t count = static_cast<std::size_t>(geometry.lights.listed_count());
+        const std::size_t count =
+            static_cast<std::size_t>(geometry.lights.infinite_and_delta_count());
         if (lights.size() != count)
             args.range("lights", std::to_string(count) + ", as when the scene was built",
                        std::to_string(lights.size()));

@@ -11,15 +11,18 @@ import typing
 
 __all__: list[str] = [
     "BrickTopology",
+    "Bsdf",
     "BspTree",
     "Bvh",
     "CellTable",
+    "DeltaBsdf",
     "EmittingMesh",
     "EnvironmentSampler",
     "MarchSettings",
     "Octree",
     "Op",
     "PathGeometry",
+    "PhaseFunction",
     "PhotonMap",
     "PreparedRays32",
     "PreparedRays64",
@@ -28,6 +31,7 @@ __all__: list[str] = [
     "Quadtree",
     "RayOptions",
     "ReferenceBvh",
+    "SampledLight",
     "Sdf",
     "SparseGrid",
     "SparseStatistics",
@@ -37,49 +41,15 @@ __all__: list[str] = [
     "VoxelHash",
     "adam_rows",
     "ambient_occlusion",
-    "bsdf_beckmann_conductor",
-    "bsdf_blinn_phong",
-    "bsdf_blinn_phong_fitted",
-    "bsdf_burley_diffuse",
-    "bsdf_clearcoat",
-    "bsdf_cook_torrance",
-    "bsdf_disney",
-    "bsdf_dispersive_dielectric",
-    "bsdf_ggx_anisotropic",
-    "bsdf_ggx_conductor",
-    "bsdf_ggx_metal",
-    "bsdf_ggx_metal_compensated",
-    "bsdf_ggx_metal_fast",
-    "bsdf_gltf",
-    "bsdf_gltf_iridescence",
-    "bsdf_gltf_refraction",
-    "bsdf_gltf_sheen",
-    "bsdf_gltf_specular",
-    "bsdf_gltf_transmission",
-    "bsdf_lambert",
-    "bsdf_oren_nayar_energy_preserving",
-    "bsdf_oren_nayar_full",
-    "bsdf_oren_nayar_qualitative",
-    "bsdf_phong",
-    "bsdf_phong_reciprocal",
-    "bsdf_principled",
-    "bsdf_rough_dielectric",
-    "bsdf_sheen",
-    "bsdf_standard",
     "bsdfs",
     "build_mips",
     "build_mips_backward",
     "cap_to_square",
     "cosine_hemisphere_to_square",
     "cover_texels",
-    "delta_bsdf_dispersive_glass",
-    "delta_bsdf_glass",
-    "delta_bsdf_mirror",
-    "delta_bsdf_thin_glass",
     "delta_bsdfs",
     "disk_to_square",
     "emit_particles",
-    "even_words",
     "exp",
     "expm1",
     "fields",
@@ -96,8 +66,6 @@ __all__: list[str] = [
     "most_samples",
     "ops",
     "order_by_depth",
-    "phase_cornette_shanks",
-    "phase_henyey_greenstein",
     "phases",
     "philox4x32",
     "place_samples",
@@ -115,19 +83,11 @@ __all__: list[str] = [
     "sample_bricks_backward",
     "sample_mips",
     "sample_mips_backward",
-    "sampled_constant",
-    "sampled_directional",
     "sampled_lights",
-    "sampled_point",
-    "sampled_quad",
-    "sampled_sky",
-    "sampled_sphere",
-    "sampled_spot",
-    "sampled_sun",
-    "sampled_triangle",
     "set_thread_count",
     "sh_colors",
     "sh_colors_backward",
+    "sobol_words",
     "sparse_sh_weights",
     "sparse_variation",
     "sparse_variation_backward",
@@ -391,22 +351,21 @@ class Sdf:
     @property
     def number_count(self) -> int: ...
 
-class bsdf_lambert:
+class Bsdf:
     """
     A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
     """
-    @staticmethod
-    def energy() -> tuple[str, float]:
+    def __repr__(self) -> str: ...
+    def energy(self) -> tuple[str, float]:
         """
         What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
         """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+    def f(self, parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
         """
         Value without the cosine, (N, 3).
         """
-    @staticmethod
     def f_backward(
+        self,
         parameters: numpy.ndarray,
         wo: numpy.ndarray,
         wi: numpy.ndarray,
@@ -416,1831 +375,60 @@ class bsdf_lambert:
         """
         Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
         """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
+    def index_inside(self, parameters: numpy.ndarray) -> numpy.ndarray:
         """
         Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
         """
-    @staticmethod
     def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
+        self, parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
     ) -> numpy.ndarray:
         """
         Exact derivative of f along v, (N, 3), float64.
         """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
+    def parameters(self) -> list[tuple[str, int, float, float, str]]:
         """
         (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
         """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+    def pdf(self, parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
         """
         Density of `sample` over solid angle, (N,).
         """
-    @staticmethod
-    def reciprocal() -> bool:
+    def reciprocal(self) -> bool:
         """
         Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
         """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
+    def sample(
+        self, parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray
+    ) -> numpy.ndarray:
         """
         wi (N, 3) from uniform u2 (N, 2).
         """
-    @staticmethod
-    def transmits() -> bool:
+    def transmits(self) -> bool:
         """
         Whether light may pass the surface.
         """
 
-class bsdf_phong:
+class DeltaBsdf:
     """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
+    A specular surface. Parameters (N, P), or (1, P) for all rows; wo (N, 3) in the shading frame, normal +Z, on either side.
     """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
+    def __repr__(self) -> str: ...
     def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class bsdf_phong_reciprocal:
-    """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
-    """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class bsdf_blinn_phong:
-    """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
-    """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class bsdf_blinn_phong_fitted:
-    """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
-    """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class bsdf_oren_nayar_qualitative:
-    """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
-    """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class bsdf_oren_nayar_full:
-    """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
-    """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class bsdf_oren_nayar_energy_preserving:
-    """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
-    """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class bsdf_burley_diffuse:
-    """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
-    """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class bsdf_cook_torrance:
-    """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
-    """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class bsdf_ggx_metal:
-    """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
-    """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class bsdf_ggx_metal_compensated:
-    """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
-    """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class bsdf_ggx_metal_fast:
-    """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
-    """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class bsdf_ggx_conductor:
-    """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
-    """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class bsdf_beckmann_conductor:
-    """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
-    """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class bsdf_ggx_anisotropic:
-    """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
-    """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class bsdf_standard:
-    """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
-    """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class bsdf_gltf:
-    """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
-    """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class bsdf_gltf_iridescence:
-    """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
-    """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class bsdf_gltf_sheen:
-    """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
-    """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class bsdf_gltf_specular:
-    """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
-    """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class bsdf_clearcoat:
-    """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
-    """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class bsdf_sheen:
-    """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
-    """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class bsdf_disney:
-    """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
-    """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class bsdf_rough_dielectric:
-    """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
-    """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class bsdf_dispersive_dielectric:
-    """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
-    """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class bsdf_gltf_transmission:
-    """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
-    """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class bsdf_gltf_refraction:
-    """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
-    """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class bsdf_principled:
-    """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
-    """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class delta_bsdf_mirror:
-    """
-    A perfectly smooth surface. Parameters (N, P), or (1, P) for all rows; wo (N, 3) in the shading frame, normal +Z, on either side.
-    """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray
+        self, parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray
     ) -> tuple[typing.Any, ...]:
         """
         Exact derivatives of (wi, weight) along v, float64.
         """
-    @staticmethod
-    def lobe_count() -> int:
+    def lobe_count(self) -> int:
         """
         L.
         """
-    @staticmethod
-    def lobes(parameters: numpy.ndarray, wo: numpy.ndarray) -> tuple[typing.Any, ...]:
+    def lobes(self, parameters: numpy.ndarray, wo: numpy.ndarray) -> tuple[typing.Any, ...]:
         """
         (wi, weight), (N, L, 3) each: L(wo) is the sum of weight L(wi).
         """
-    @staticmethod
     def lobes_backward(
+        self,
         parameters: numpy.ndarray,
         wo: numpy.ndarray,
         d_wi: numpy.ndarray,
@@ -2250,137 +438,22 @@ class delta_bsdf_mirror:
         """
         Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
         """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
+    def parameters(self) -> list[tuple[str, int, float, float, str]]:
         """
         (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
         """
 
-class delta_bsdf_glass:
-    """
-    A perfectly smooth surface. Parameters (N, P), or (1, P) for all rows; wo (N, 3) in the shading frame, normal +Z, on either side.
-    """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray
-    ) -> tuple[typing.Any, ...]:
-        """
-        Exact derivatives of (wi, weight) along v, float64.
-        """
-    @staticmethod
-    def lobe_count() -> int:
-        """
-        L.
-        """
-    @staticmethod
-    def lobes(parameters: numpy.ndarray, wo: numpy.ndarray) -> tuple[typing.Any, ...]:
-        """
-        (wi, weight), (N, L, 3) each: L(wo) is the sum of weight L(wi).
-        """
-    @staticmethod
-    def lobes_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        d_wi: numpy.ndarray,
-        d_weight: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-
-class delta_bsdf_thin_glass:
-    """
-    A perfectly smooth surface. Parameters (N, P), or (1, P) for all rows; wo (N, 3) in the shading frame, normal +Z, on either side.
-    """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray
-    ) -> tuple[typing.Any, ...]:
-        """
-        Exact derivatives of (wi, weight) along v, float64.
-        """
-    @staticmethod
-    def lobe_count() -> int:
-        """
-        L.
-        """
-    @staticmethod
-    def lobes(parameters: numpy.ndarray, wo: numpy.ndarray) -> tuple[typing.Any, ...]:
-        """
-        (wi, weight), (N, L, 3) each: L(wo) is the sum of weight L(wi).
-        """
-    @staticmethod
-    def lobes_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        d_wi: numpy.ndarray,
-        d_weight: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-
-class delta_bsdf_dispersive_glass:
-    """
-    A perfectly smooth surface. Parameters (N, P), or (1, P) for all rows; wo (N, 3) in the shading frame, normal +Z, on either side.
-    """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray
-    ) -> tuple[typing.Any, ...]:
-        """
-        Exact derivatives of (wi, weight) along v, float64.
-        """
-    @staticmethod
-    def lobe_count() -> int:
-        """
-        L.
-        """
-    @staticmethod
-    def lobes(parameters: numpy.ndarray, wo: numpy.ndarray) -> tuple[typing.Any, ...]:
-        """
-        (wi, weight), (N, L, 3) each: L(wo) is the sum of weight L(wi).
-        """
-    @staticmethod
-    def lobes_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        d_wi: numpy.ndarray,
-        d_weight: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-
-class sampled_sun:
+class SampledLight:
     """
     A light. parameters (P,), constants (C,); points (N, 3) in the world, directions w (N, 3) of unit length, from the points.
     """
-    @staticmethod
-    def constants() -> list[tuple[str, int, float, float, str]]:
+    def __repr__(self) -> str: ...
+    def constants(self) -> list[tuple[str, int, float, float, str]]:
         """
         The same of what is not differentiated.
         """
-    @staticmethod
     def jvp(
+        self,
         parameters: numpy.ndarray,
         constants: numpy.ndarray,
         v: numpy.ndarray,
@@ -2390,27 +463,32 @@ class sampled_sun:
         """
         Exact derivative of samples' radiance along v (P,), (N, 3), float64.
         """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
+    def parameters(self) -> list[tuple[str, int, float, float, str]]:
         """
         (name, scalars, lo, hi, unit) of each differentiated parameter.
         """
-    @staticmethod
     def pdf(
-        parameters: numpy.ndarray, constants: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
+        self,
+        parameters: numpy.ndarray,
+        constants: numpy.ndarray,
+        points: numpy.ndarray,
+        w: numpy.ndarray,
     ) -> numpy.ndarray:
         """
         Density of `sample` over solid angle, (N,); 0 of delta lights.
         """
-    @staticmethod
     def radiance(
-        parameters: numpy.ndarray, constants: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
+        self,
+        parameters: numpy.ndarray,
+        constants: numpy.ndarray,
+        points: numpy.ndarray,
+        w: numpy.ndarray,
     ) -> numpy.ndarray:
         """
         What arrives at the points from w, (N, 3); 0 of delta lights.
         """
-    @staticmethod
     def radiance_backward(
+        self,
         parameters: numpy.ndarray,
         constants: numpy.ndarray,
         points: numpy.ndarray,
@@ -2421,8 +499,8 @@ class sampled_sun:
         """
         Adds dL/dparameters to d_parameters (P,) and returns it.
         """
-    @staticmethod
     def sample(
+        self,
         parameters: numpy.ndarray,
         constants: numpy.ndarray,
         points: numpy.ndarray,
@@ -2431,8 +509,8 @@ class sampled_sun:
         """
         (direction (N, 3), distance (N,), radiance (N, 3), pdf (N,)).
         """
-    @staticmethod
     def sample_backward(
+        self,
         parameters: numpy.ndarray,
         constants: numpy.ndarray,
         points: numpy.ndarray,
@@ -2441,599 +519,7 @@ class sampled_sun:
         d_parameters: numpy.ndarray,
     ) -> numpy.ndarray:
         """
-        The same for the radiance of samples whose directions are w.
-        """
-
-class sampled_sky:
-    """
-    A light. parameters (P,), constants (C,); points (N, 3) in the world, directions w (N, 3) of unit length, from the points.
-    """
-    @staticmethod
-    def constants() -> list[tuple[str, int, float, float, str]]:
-        """
-        The same of what is not differentiated.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        v: numpy.ndarray,
-        points: numpy.ndarray,
-        w: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of samples' radiance along v (P,), (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each differentiated parameter.
-        """
-    @staticmethod
-    def pdf(
-        parameters: numpy.ndarray, constants: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,); 0 of delta lights.
-        """
-    @staticmethod
-    def radiance(
-        parameters: numpy.ndarray, constants: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        What arrives at the points from w, (N, 3); 0 of delta lights.
-        """
-    @staticmethod
-    def radiance_backward(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        points: numpy.ndarray,
-        w: numpy.ndarray,
-        d_radiance: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters (P,) and returns it.
-        """
-    @staticmethod
-    def sample(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        points: numpy.ndarray,
-        u2: numpy.ndarray,
-    ) -> tuple[typing.Any, ...]:
-        """
-        (direction (N, 3), distance (N,), radiance (N, 3), pdf (N,)).
-        """
-    @staticmethod
-    def sample_backward(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        points: numpy.ndarray,
-        w: numpy.ndarray,
-        d_radiance: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        The same for the radiance of samples whose directions are w.
-        """
-
-class sampled_constant:
-    """
-    A light. parameters (P,), constants (C,); points (N, 3) in the world, directions w (N, 3) of unit length, from the points.
-    """
-    @staticmethod
-    def constants() -> list[tuple[str, int, float, float, str]]:
-        """
-        The same of what is not differentiated.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        v: numpy.ndarray,
-        points: numpy.ndarray,
-        w: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of samples' radiance along v (P,), (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each differentiated parameter.
-        """
-    @staticmethod
-    def pdf(
-        parameters: numpy.ndarray, constants: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,); 0 of delta lights.
-        """
-    @staticmethod
-    def radiance(
-        parameters: numpy.ndarray, constants: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        What arrives at the points from w, (N, 3); 0 of delta lights.
-        """
-    @staticmethod
-    def radiance_backward(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        points: numpy.ndarray,
-        w: numpy.ndarray,
-        d_radiance: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters (P,) and returns it.
-        """
-    @staticmethod
-    def sample(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        points: numpy.ndarray,
-        u2: numpy.ndarray,
-    ) -> tuple[typing.Any, ...]:
-        """
-        (direction (N, 3), distance (N,), radiance (N, 3), pdf (N,)).
-        """
-    @staticmethod
-    def sample_backward(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        points: numpy.ndarray,
-        w: numpy.ndarray,
-        d_radiance: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        The same for the radiance of samples whose directions are w.
-        """
-
-class sampled_point:
-    """
-    A light. parameters (P,), constants (C,); points (N, 3) in the world, directions w (N, 3) of unit length, from the points.
-    """
-    @staticmethod
-    def constants() -> list[tuple[str, int, float, float, str]]:
-        """
-        The same of what is not differentiated.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        v: numpy.ndarray,
-        points: numpy.ndarray,
-        w: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of samples' radiance along v (P,), (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each differentiated parameter.
-        """
-    @staticmethod
-    def pdf(
-        parameters: numpy.ndarray, constants: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,); 0 of delta lights.
-        """
-    @staticmethod
-    def radiance(
-        parameters: numpy.ndarray, constants: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        What arrives at the points from w, (N, 3); 0 of delta lights.
-        """
-    @staticmethod
-    def radiance_backward(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        points: numpy.ndarray,
-        w: numpy.ndarray,
-        d_radiance: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters (P,) and returns it.
-        """
-    @staticmethod
-    def sample(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        points: numpy.ndarray,
-        u2: numpy.ndarray,
-    ) -> tuple[typing.Any, ...]:
-        """
-        (direction (N, 3), distance (N,), radiance (N, 3), pdf (N,)).
-        """
-    @staticmethod
-    def sample_backward(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        points: numpy.ndarray,
-        w: numpy.ndarray,
-        d_radiance: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        The same for the radiance of samples whose directions are w.
-        """
-
-class sampled_directional:
-    """
-    A light. parameters (P,), constants (C,); points (N, 3) in the world, directions w (N, 3) of unit length, from the points.
-    """
-    @staticmethod
-    def constants() -> list[tuple[str, int, float, float, str]]:
-        """
-        The same of what is not differentiated.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        v: numpy.ndarray,
-        points: numpy.ndarray,
-        w: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of samples' radiance along v (P,), (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each differentiated parameter.
-        """
-    @staticmethod
-    def pdf(
-        parameters: numpy.ndarray, constants: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,); 0 of delta lights.
-        """
-    @staticmethod
-    def radiance(
-        parameters: numpy.ndarray, constants: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        What arrives at the points from w, (N, 3); 0 of delta lights.
-        """
-    @staticmethod
-    def radiance_backward(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        points: numpy.ndarray,
-        w: numpy.ndarray,
-        d_radiance: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters (P,) and returns it.
-        """
-    @staticmethod
-    def sample(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        points: numpy.ndarray,
-        u2: numpy.ndarray,
-    ) -> tuple[typing.Any, ...]:
-        """
-        (direction (N, 3), distance (N,), radiance (N, 3), pdf (N,)).
-        """
-    @staticmethod
-    def sample_backward(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        points: numpy.ndarray,
-        w: numpy.ndarray,
-        d_radiance: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        The same for the radiance of samples whose directions are w.
-        """
-
-class sampled_spot:
-    """
-    A light. parameters (P,), constants (C,); points (N, 3) in the world, directions w (N, 3) of unit length, from the points.
-    """
-    @staticmethod
-    def constants() -> list[tuple[str, int, float, float, str]]:
-        """
-        The same of what is not differentiated.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        v: numpy.ndarray,
-        points: numpy.ndarray,
-        w: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of samples' radiance along v (P,), (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each differentiated parameter.
-        """
-    @staticmethod
-    def pdf(
-        parameters: numpy.ndarray, constants: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,); 0 of delta lights.
-        """
-    @staticmethod
-    def radiance(
-        parameters: numpy.ndarray, constants: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        What arrives at the points from w, (N, 3); 0 of delta lights.
-        """
-    @staticmethod
-    def radiance_backward(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        points: numpy.ndarray,
-        w: numpy.ndarray,
-        d_radiance: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters (P,) and returns it.
-        """
-    @staticmethod
-    def sample(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        points: numpy.ndarray,
-        u2: numpy.ndarray,
-    ) -> tuple[typing.Any, ...]:
-        """
-        (direction (N, 3), distance (N,), radiance (N, 3), pdf (N,)).
-        """
-    @staticmethod
-    def sample_backward(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        points: numpy.ndarray,
-        w: numpy.ndarray,
-        d_radiance: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        The same for the radiance of samples whose directions are w.
-        """
-
-class sampled_quad:
-    """
-    A light. parameters (P,), constants (C,); points (N, 3) in the world, directions w (N, 3) of unit length, from the points.
-    """
-    @staticmethod
-    def constants() -> list[tuple[str, int, float, float, str]]:
-        """
-        The same of what is not differentiated.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        v: numpy.ndarray,
-        points: numpy.ndarray,
-        w: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of samples' radiance along v (P,), (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each differentiated parameter.
-        """
-    @staticmethod
-    def pdf(
-        parameters: numpy.ndarray, constants: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,); 0 of delta lights.
-        """
-    @staticmethod
-    def radiance(
-        parameters: numpy.ndarray, constants: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        What arrives at the points from w, (N, 3); 0 of delta lights.
-        """
-    @staticmethod
-    def radiance_backward(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        points: numpy.ndarray,
-        w: numpy.ndarray,
-        d_radiance: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters (P,) and returns it.
-        """
-    @staticmethod
-    def sample(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        points: numpy.ndarray,
-        u2: numpy.ndarray,
-    ) -> tuple[typing.Any, ...]:
-        """
-        (direction (N, 3), distance (N,), radiance (N, 3), pdf (N,)).
-        """
-    @staticmethod
-    def sample_backward(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        points: numpy.ndarray,
-        w: numpy.ndarray,
-        d_radiance: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        The same for the radiance of samples whose directions are w.
-        """
-
-class sampled_sphere:
-    """
-    A light. parameters (P,), constants (C,); points (N, 3) in the world, directions w (N, 3) of unit length, from the points.
-    """
-    @staticmethod
-    def constants() -> list[tuple[str, int, float, float, str]]:
-        """
-        The same of what is not differentiated.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        v: numpy.ndarray,
-        points: numpy.ndarray,
-        w: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of samples' radiance along v (P,), (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each differentiated parameter.
-        """
-    @staticmethod
-    def pdf(
-        parameters: numpy.ndarray, constants: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,); 0 of delta lights.
-        """
-    @staticmethod
-    def radiance(
-        parameters: numpy.ndarray, constants: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        What arrives at the points from w, (N, 3); 0 of delta lights.
-        """
-    @staticmethod
-    def radiance_backward(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        points: numpy.ndarray,
-        w: numpy.ndarray,
-        d_radiance: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters (P,) and returns it.
-        """
-    @staticmethod
-    def sample(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        points: numpy.ndarray,
-        u2: numpy.ndarray,
-    ) -> tuple[typing.Any, ...]:
-        """
-        (direction (N, 3), distance (N,), radiance (N, 3), pdf (N,)).
-        """
-    @staticmethod
-    def sample_backward(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        points: numpy.ndarray,
-        w: numpy.ndarray,
-        d_radiance: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        The same for the radiance of samples whose directions are w.
-        """
-
-class sampled_triangle:
-    """
-    A light. parameters (P,), constants (C,); points (N, 3) in the world, directions w (N, 3) of unit length, from the points.
-    """
-    @staticmethod
-    def constants() -> list[tuple[str, int, float, float, str]]:
-        """
-        The same of what is not differentiated.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        v: numpy.ndarray,
-        points: numpy.ndarray,
-        w: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of samples' radiance along v (P,), (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each differentiated parameter.
-        """
-    @staticmethod
-    def pdf(
-        parameters: numpy.ndarray, constants: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,); 0 of delta lights.
-        """
-    @staticmethod
-    def radiance(
-        parameters: numpy.ndarray, constants: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        What arrives at the points from w, (N, 3); 0 of delta lights.
-        """
-    @staticmethod
-    def radiance_backward(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        points: numpy.ndarray,
-        w: numpy.ndarray,
-        d_radiance: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters (P,) and returns it.
-        """
-    @staticmethod
-    def sample(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        points: numpy.ndarray,
-        u2: numpy.ndarray,
-    ) -> tuple[typing.Any, ...]:
-        """
-        (direction (N, 3), distance (N,), radiance (N, 3), pdf (N,)).
-        """
-    @staticmethod
-    def sample_backward(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        points: numpy.ndarray,
-        w: numpy.ndarray,
-        d_radiance: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        The same for the radiance of samples whose directions are w.
+        As radiance_backward, of the radiance of samples whose directions are w.
         """
 
 class EmittingMesh:
@@ -3092,7 +578,7 @@ class EmittingMesh:
 
 class EnvironmentSampler:
     """
-    Draws directions towards the bright parts of a map.
+    Samples directions towards the bright parts of a map.
     """
     def __init__(
         self, texels: numpy.ndarray, uniform_share: typing.SupportsFloat | typing.SupportsIndex
@@ -3155,12 +641,13 @@ class EnvironmentSampler:
         The same for the radiance of samples whose directions are w.
         """
 
-class phase_henyey_greenstein:
+class PhaseFunction:
     """
     A phase function. parameters (P,); cos_theta (N,) of the angle by which light turns.
     """
-    @staticmethod
+    def __repr__(self) -> str: ...
     def jvp(
+        self,
         parameters: numpy.ndarray,
         cos_theta: numpy.ndarray,
         v_parameters: numpy.ndarray,
@@ -3169,13 +656,12 @@ class phase_henyey_greenstein:
         """
         Exact derivative of p along v_parameters (P,) and v_cos_theta (N,).
         """
-    @staticmethod
-    def p(parameters: numpy.ndarray, cos_theta: numpy.ndarray) -> numpy.ndarray:
+    def p(self, parameters: numpy.ndarray, cos_theta: numpy.ndarray) -> numpy.ndarray:
         """
         Density over solid angle, (N,) in 1/sr.
         """
-    @staticmethod
     def p_backward(
+        self,
         parameters: numpy.ndarray,
         cos_theta: numpy.ndarray,
         d_p: numpy.ndarray,
@@ -3185,44 +671,7 @@ class phase_henyey_greenstein:
         """
         Adds the derivatives to d_parameters (P,) and d_cos_theta (N,).
         """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter.
-        """
-
-class phase_cornette_shanks:
-    """
-    A phase function. parameters (P,); cos_theta (N,) of the angle by which light turns.
-    """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray,
-        cos_theta: numpy.ndarray,
-        v_parameters: numpy.ndarray,
-        v_cos_theta: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of p along v_parameters (P,) and v_cos_theta (N,).
-        """
-    @staticmethod
-    def p(parameters: numpy.ndarray, cos_theta: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density over solid angle, (N,) in 1/sr.
-        """
-    @staticmethod
-    def p_backward(
-        parameters: numpy.ndarray,
-        cos_theta: numpy.ndarray,
-        d_p: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-        d_cos_theta: numpy.ndarray,
-    ) -> None:
-        """
-        Adds the derivatives to d_parameters (P,) and d_cos_theta (N,).
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
+    def parameters(self) -> list[tuple[str, int, float, float, str]]:
         """
         (name, scalars, lo, hi, unit) of each parameter.
         """
@@ -3937,18 +1386,6 @@ def emit_particles(
     as they leave their lights.
     """
 
-def even_words(
-    seed: typing.SupportsInt | typing.SupportsIndex,
-    step: typing.SupportsInt | typing.SupportsIndex,
-    block: typing.SupportsInt | typing.SupportsIndex,
-    pixel: numpy.ndarray,
-    first: typing.SupportsInt | typing.SupportsIndex,
-    count: typing.SupportsInt | typing.SupportsIndex,
-) -> numpy.typing.NDArray[numpy.uint32]:
-    """
-    Words (N, count, 4) uint32 of scrambled Sobol' points first, first + 1, ... of pixels (N,).
-    """
-
 def exp(x: numpy.ndarray) -> numpy.ndarray:
     """
     The portable exp on a flat array.
@@ -4313,6 +1750,18 @@ def sh_colors_backward(
     Adds the derivatives to d_directions (N, 3) and d_coefficients (N, K, C); with add=False overwrites what stands there, without reading it.
     """
 
+def sobol_words(
+    seed: typing.SupportsInt | typing.SupportsIndex,
+    step: typing.SupportsInt | typing.SupportsIndex,
+    block: typing.SupportsInt | typing.SupportsIndex,
+    pixel: numpy.ndarray,
+    first: typing.SupportsInt | typing.SupportsIndex,
+    count: typing.SupportsInt | typing.SupportsIndex,
+) -> numpy.typing.NDArray[numpy.uint32]:
+    """
+    Words (N, count, 4) uint32 of scrambled Sobol' points first, first + 1, ... of pixels (N,).
+    """
+
 def sparse_sh_weights(
     table: CellTable,
     density: numpy.ndarray,
@@ -4602,64 +2051,12 @@ def write_vdb(
 ) -> None: ...
 
 __version__: str = "0.1.0"
-bsdfs: dict[str, typing.Any] = {
-    "lambert": bsdf_lambert,
-    "phong": bsdf_phong,
-    "phong_reciprocal": bsdf_phong_reciprocal,
-    "blinn_phong": bsdf_blinn_phong,
-    "blinn_phong_fitted": bsdf_blinn_phong_fitted,
-    "oren_nayar_qualitative": bsdf_oren_nayar_qualitative,
-    "oren_nayar_full": bsdf_oren_nayar_full,
-    "oren_nayar_energy_preserving": bsdf_oren_nayar_energy_preserving,
-    "burley_diffuse": bsdf_burley_diffuse,
-    "cook_torrance": bsdf_cook_torrance,
-    "ggx_metal": bsdf_ggx_metal,
-    "ggx_metal_compensated": bsdf_ggx_metal_compensated,
-    "ggx_metal_fast": bsdf_ggx_metal_fast,
-    "ggx_conductor": bsdf_ggx_conductor,
-    "beckmann_conductor": bsdf_beckmann_conductor,
-    "ggx_anisotropic": bsdf_ggx_anisotropic,
-    "standard": bsdf_standard,
-    "gltf": bsdf_gltf,
-    "gltf_iridescence": bsdf_gltf_iridescence,
-    "gltf_sheen": bsdf_gltf_sheen,
-    "gltf_specular": bsdf_gltf_specular,
-    "clearcoat": bsdf_clearcoat,
-    "sheen": bsdf_sheen,
-    "disney": bsdf_disney,
-    "rough_dielectric": bsdf_rough_dielectric,
-    "dispersive_dielectric": bsdf_dispersive_dielectric,
-    "gltf_transmission": bsdf_gltf_transmission,
-    "gltf_refraction": bsdf_gltf_refraction,
-    "principled": bsdf_principled,
-}
-delta_bsdfs: dict[str, typing.Any] = {
-    "mirror": delta_bsdf_mirror,
-    "glass": delta_bsdf_glass,
-    "thin_glass": delta_bsdf_thin_glass,
-    "dispersive_glass": delta_bsdf_dispersive_glass,
-}
+bsdfs: dict[str, typing.Any]
+delta_bsdfs: dict[str, typing.Any]
 fields: tuple[typing.Any, ...] = ("dense_grid", "tiny_network")
-lights: dict[str, typing.Any] = {
-    "sun": sampled_sun,
-    "sky": sampled_sky,
-    "constant": sampled_constant,
-}
+lights: dict[str, typing.Any]
 most_samples: int = 262144
 ops: dict[str, typing.Any]
-phases: dict[str, typing.Any] = {
-    "henyey_greenstein": phase_henyey_greenstein,
-    "cornette_shanks": phase_cornette_shanks,
-}
-sampled_lights: dict[str, typing.Any] = {
-    "sun": sampled_sun,
-    "sky": sampled_sky,
-    "constant": sampled_constant,
-    "point": sampled_point,
-    "directional": sampled_directional,
-    "spot": sampled_spot,
-    "quad": sampled_quad,
-    "sphere": sampled_sphere,
-    "triangle": sampled_triangle,
-}
+phases: dict[str, typing.Any]
+sampled_lights: dict[str, typing.Any]
 tiny_network_parameters: int = 132

@@ -168,5 +168,5 @@ def test_textures_are_where_the_core_looks_them_up(
 def test_numbers_of_samples_and_threads_are_checked() -> None:
     with pytest.raises(RangeError, match="set_thread_count: threads: expected 0 to 4096, got -1"):
         _core.set_thread_count(-1)
-    with pytest.raises(RangeError, match=r"even_words: count: expected at most 2\^26 points"):
-        _core.even_words(1, 0, 0, np.zeros(3, np.uint32), 0, 2**31)
+    with pytest.raises(RangeError, match=r"sobol_words: count: expected at most 2\^26 points"):
+        _core.sobol_words(1, 0, 0, np.zeros(3, np.uint32), 0, 2**31)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 from pathlib import Path
 
+from support.cpp_functions import functions
 from support.tree import CPP_SUFFIXES, ROOT, relative, walk
 
 CAPS = {"cpp": 400, "python": 400, "tools": 400, "bench": 400, "tests": 300, "cpp/tests": 300}
@@ -49,6 +50,31 @@ def test_python_functions_stay_below_sixty_lines() -> None:
         for line in long_functions(relative(path), path.read_text(encoding="utf-8"))
     ]
     assert found == []
+
+
+# Waiting for the renderer's bindings to be rewritten.
+LONG_IN_CPP = {"cpp/bindings/bind_path.cpp build"}
+
+
+def test_cpp_functions_stay_below_sixty_lines() -> None:
+    texts = {
+        relative(path): path.read_text("utf-8") for path in sources() if path.suffix in CPP_SUFFIXES
+    }
+    lengths = [(path, function) for path, text in texts.items() for function in functions(text)]
+    assert len(lengths) > 1500, "the functions are not found any more"
+    found = {f"{path} {f.name}": f for path, f in lengths if f.lines >= FUNCTION_CAP}
+    assert {name: f for name, f in found.items() if name not in LONG_IN_CPP} == {}
+
+
+def test_a_long_cpp_function_is_seen() -> None:
+    body = "    if (x) { y(); }  // }\n" * 58
+    text = (
+        "namespace a {\nstruct S {\n    int x{1};\n};\n"
+        "template <class T>\n    requires (sizeof(T) > 1)\n"
+        f'T f(const char* c = "{{") {{\n{body}}}\nint g() {{ return 1; }}\n}}\n'
+    )
+    assert [tuple(f)[1:] for f in functions(text)] == [(5, 62), (67, 1)]
+    assert functions("int a[] = {1, 2};\nenum class B { c };\n") == []
 
 
 def test_a_long_function_is_seen_and_its_docstring_forgiven() -> None:

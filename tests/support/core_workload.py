@@ -91,7 +91,7 @@ def numbers() -> None:
                 op.jvp(x, x)
     _core.philox4x32(np.zeros((3, 4), np.uint32), np.zeros((3, 2), np.uint32))
     _core.uniform(1, 2, np.arange(4, dtype=np.uint32), 3, 4)
-    _core.even_words(1, 2, 3, np.arange(4, dtype=np.uint32), 0, 4)
+    _core.sobol_words(1, 2, 3, np.arange(4, dtype=np.uint32), 0, 4)
     _core.set_thread_count(_core.thread_count())
     _core.instruction_set()
 

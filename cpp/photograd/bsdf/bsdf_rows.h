@@ -1,5 +1,5 @@
-// How a model becomes a row of the table (bsdf_table.h). Included by the tables alone: it brings all
-// models.
+// How a model becomes a row of the table (bsdf_table.h). Included by the tables alone: it brings
+// all models.
 #pragma once
 
 #include <algorithm>
@@ -22,8 +22,8 @@ R largest(const Vec3<R>& v) {
     return std::max({v.x, v.y, v.z});
 }
 
-/// A lobe in proportion to its weight, mixed with a small uniform share: a lobe of weight 0 is never
-/// followed otherwise, and its derivative, which need not be 0, would be lost.
+/// A lobe in proportion to its weight, mixed with a small uniform share: a lobe of weight 0 is
+/// never followed otherwise, and its derivative, which need not be 0, would be lost.
 template <class R, std::size_t count>
 ScatterSample<R> choose_lobe(const std::array<DeltaLobe<R>, count>& lobes, R u,
                              const Vec3<R>& beta) {

@@ -18,8 +18,8 @@ inline constexpr int max_bsdf_parameters = 16;
 inline constexpr int max_lobes = 4;  // of a specular model
 
 /// Where a path goes on. Models with a density have lobe -1, pdf over solid angle, and value f.
-/// Specular ones name the lobe that was chosen; pdf is then the probability of that choice and value
-/// the lobe's weight, cosine included.
+/// Specular ones name the lobe that was chosen; pdf is then the probability of that choice and
+/// value the lobe's weight, cosine included.
 template <class R>
 struct ScatterSample {
     Vec3<R> wi{R(0)}, value{R(0)};
@@ -62,7 +62,8 @@ struct BsdfFunctions {
     ScatterSample<R> (*sample)(const R* row, const Vec3<R>& wo, const Vec2<R>& u2, R u,
                                const Vec3<R>& beta);
     Vec3<R> (*index_inside)(const R* row);
-    /// All lobe_count lobes, and the derivatives with respect to the parameters; null without lobes.
+    /// All lobe_count lobes, and the derivatives with respect to the parameters; null without
+    /// lobes.
     void (*lobes)(const R* row, const Vec3<R>& wo, DeltaLobe<R>* out);
     void (*lobes_backward)(const R* row, const Vec3<R>& wo, const DeltaLobe<R>* d_lobes, R* d_row);
 };

@@ -1,10 +1,11 @@
-// What lies under the highlights of Burley's principled model [Burley2012, Sec. 5.3 and its code]: a diffuse reflection, one
-// that looks like light from inside of a material, and the hue of a colour.
+// What lies under the highlights of Burley's principled model [Burley2012, Sec. 5.3 and its code]:
+// a diffuse reflection, one that looks like light from inside of a material, and the hue of a
+// colour.
 //
 //   e = 1 + <wo, wi> = 2 <wi, wh>^2,   m(c) = (1 - c)^5
 //   s(c, f90) = 1 + (f90 - 1) m(c),   P(f90) = s(o_z, f90) s(i_z, f90)
 //   a = P(1/2 + roughness e)                                              diffuse
-//   b = 1.25 (P(roughness e / 2) (1 / (o_z + i_z) - 1/2) + 1/2)            as if from inside [Hanrahan1993]
+//   b = 1.25 (P(roughness e / 2) (1 / (o_z + i_z) - 1/2) + 1/2)    as if from inside [Hanrahan1993]
 //   diffuse = (1 - subsurface) a + subsurface b                           times base_color / pi
 //
 //   dP/df90 = m(o_z) s(i_z) + s(o_z) m(i_z)        ddiffuse/dsubsurface = b - a

@@ -1,22 +1,26 @@
-// Oren and Nayar's rough plaster with all its terms [Oren1994, Eqs. 40 and 41]: besides what one facet sends (the
-// qualitative form keeps two of its three terms), light that goes from one facet to its neighbour and then out.
+// Oren and Nayar's rough plaster with all its terms [Oren1994, Eqs. 40 and 41]: besides what one
+// facet sends (the qualitative form keeps two of its three terms), light that goes from one facet
+// to its neighbour and then out.
 //
 //   f = albedo / pi (S + albedo M N)
 //   S = A + B T,   A = 1 - sigma^2 / (2 (sigma^2 + 0.33)),   B = sigma^2 / (sigma^2 + 0.09),
-//   T = 0.45 c (sin(alpha) - [c < 0] (2 beta / pi)^3) tan(beta) + 0.125 (1 - |c|) (4 alpha beta / pi^2)^2
+//   T = 0.45 c (sin(alpha) - [c < 0] (2 beta / pi)^3) tan(beta)
+//       + 0.125 (1 - |c|) (4 alpha beta / pi^2)^2
 //       tan((alpha + beta) / 2)
 //   M = 0.17 sigma^2 / (sigma^2 + 0.13),   N = 1 - c (2 beta / pi)^2
 //
 // with c = cos(phi_o - phi_i), and alpha and beta the larger and smaller angle to the normal. Then
-// tan((alpha + beta) / 2) = (sin(alpha) + sin(beta)) / (cos(alpha) + cos(beta)). T and N do not depend on parameters:
+// tan((alpha + beta) / 2) = (sin(alpha) + sin(beta)) / (cos(alpha) + cos(beta)). T and N do not
+// depend on parameters:
 //
 //   df/dalbedo = (S + 2 albedo M N) / pi
-//   dA/dsigma = -0.33 sigma / (sigma^2 + 0.33)^2          dB/dsigma = 0.18 sigma / (sigma^2 + 0.09)^2
+//   dA/dsigma = -0.33 sigma / (sigma^2 + 0.33)^2        dB/dsigma = 0.18 sigma / (sigma^2 + 0.09)^2
 //   dM/dsigma = 0.0442 sigma / (sigma^2 + 0.13)^2
 //
-// A fit to simulated facets: white plaster returns up to 5 % more than came (sigma 0.3, at the horizon), and at sigma 1
-// loses 23 % straight on, where the qualitative form loses 38 %. Towards the horizon on the far side of the normal
-// S falls below 0, to -0.16; what is below 0 is 0 here, and has no derivative.
+// A fit to simulated facets: white plaster returns up to 5 % more than came (sigma 0.3, at the
+// horizon), and at sigma 1 loses 23 % straight on, where the qualitative form loses 38 %. Towards
+// the horizon on the far side of the normal S falls below 0, to -0.16; what is below 0 is 0 here,
+// and has no derivative.
 #pragma once
 
 #include "photograd/bsdf/half_vector.h"

@@ -3,8 +3,8 @@
 // A model lists its continuous parameters in one line,
 //     static constexpr auto params = describe(p("roughness", &Ggx::roughness, 0.01, 1, "1"));
 // and everything that must visit parameters (constructor and properties in Python, gradient proof,
-// benchmark row, gallery picture) iterates over that tuple. The adjoint of a model has the model's own
-// type, so a new parameter gets its slot for a derivative without another line.
+// benchmark row, gallery picture) iterates over that tuple. The adjoint of a model has the model's
+// own type, so a new parameter gets its slot for a derivative without another line.
 #pragma once
 
 #include <array>
@@ -77,7 +77,8 @@ constexpr int scalars_in(const std::tuple<Q...>& description) {
     return std::apply([](const auto&... q) { return (0 + ... + value_scalars(q)); }, description);
 }
 
-/// Calls visit(scalar of a, scalar of b, ...) for every scalar of every described member, in their order.
+/// Calls visit(scalar of a, scalar of b, ...) for every scalar of every described member, in their
+/// order.
 template <class... Q, class Visit, class... Models>
 constexpr void for_each_scalar(const std::tuple<Q...>& description, Visit&& visit,
                                Models&... models) {

@@ -1,8 +1,8 @@
 // Any light without a surface, for lists of lights of different kinds.
 //
-// The set is closed (registry.h and the environment map), so an entry is a variant over it, not a base class. What it
-// is asked is what sample_light.h asks of each; lights with a surface are shapes of the scene that emit instead, since
-// rays have to hit them.
+// The set is closed (registry.h and the environment map), so an entry is a variant over it, not a
+// base class. What it is asked is what sample_light.h asks of each; lights with a surface are
+// shapes of the scene that emit instead, since rays have to hit them.
 #pragma once
 
 #include <variant>
@@ -14,8 +14,8 @@
 
 namespace photograd {
 
-/// Derivatives by a map's texels, not yet added up: texels are many and a path meets few of them, so that they are
-/// scattered by their owners later (environment_gradient.h).
+/// Derivatives by a map's texels, not yet added up: texels are many and a path meets few of them,
+/// so that they are scattered by their owners later (environment_gradient.h).
 template <class R>
 struct SeenDirections {
     std::vector<R> w, d_L;  // (N, 3) each

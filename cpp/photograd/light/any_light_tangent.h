@@ -1,6 +1,6 @@
-// How what a light sends changes along a direction of its parameters: forward mode, the transpose of
-// background_backward and delta_backward. `along` is a light of the same kind, which holds the change of each
-// parameter; a map's holds that of each texel.
+// How what a light sends changes along a direction of its parameters: forward mode, the transpose
+// of background_backward and delta_backward. `along` is a light of the same kind, which holds the
+// change of each parameter; a map's holds that of each texel.
 #pragma once
 
 #include "photograd/light/any_light.h"

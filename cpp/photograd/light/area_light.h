@@ -1,4 +1,4 @@
-// What glowing surfaces share: radiance `radiance` on the side of the normal, nothing on the other.
+// What area lights share: radiance `radiance` on the side of the normal, nothing on the other.
 #pragma once
 
 #include "photograd/light/light.h"
@@ -6,10 +6,11 @@
 
 namespace photograd {
 
-/// The sample at `to` = (place on the light) - (lit point), drawn with `area_pdf` over area (1/m^2).
+/// The sample at `to` = (point on the light) - (lit point), of density `area_pdf` over area
+/// (1/m^2).
 template <class R>
-LightSample<R> glow_sample(const Vec3<R>& to, const Vec3<R>& normal, R area_pdf,
-                           const Vec3<R>& radiance) {
+LightSample<R> sample_area_light(const Vec3<R>& to, const Vec3<R>& normal, R area_pdf,
+                                 const Vec3<R>& radiance) {
     const R r2 = dot(to, to);
     if (!(r2 > R(0))) return {};
     const R r = sqrt(r2);

@@ -2,8 +2,8 @@
 //
 //   irradiance of what faces it = irradiance,    d/dirradiance = 1
 //
-// A surface at an angle gets cos times that; the cosine is the surface's business. `direction` moves shadows: no
-// derivative is given.
+// A surface at an angle gets cos times that; the cosine is the surface's business. `direction`
+// moves shadows: no derivative is given.
 #pragma once
 
 #include "photograd/light/light.h"

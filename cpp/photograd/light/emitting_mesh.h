@@ -13,8 +13,9 @@ namespace photograd {
 
 class EmittingMesh {
 public:
-    /// Vertices (V, 3) in the world, faces (F, 3). Refuses (SceneError) a mesh without faces, corners that name no
-    /// vertex, vertices that are not finite and faces without area: a light of none cannot be drawn from.
+    /// Vertices (V, 3) in the world, faces (F, 3). Refuses (SceneError) a mesh without faces,
+    /// corners that name no vertex, vertices that are not finite and faces without area: a light of
+    /// none cannot be drawn from.
     EmittingMesh(std::span<const double> vertices, std::span<const std::uint32_t> faces);
 
     struct Face {
@@ -39,7 +40,8 @@ public:
         return static_cast<std::int64_t>(faces_.size());
     }
     [[nodiscard]] double area() const { return choice_.total(); }
-    /// Tries all faces, one after another: for proofs and small lamps. A renderer has its own tracer.
+    /// Tries all faces, one after another: for proofs and small lamps. A renderer has its own
+    /// tracer.
     [[nodiscard]] Meeting meet(const Vec3<double>& point, const Vec3<double>& w) const;
 
 private:

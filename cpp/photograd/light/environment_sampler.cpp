@@ -69,8 +69,8 @@ EnvironmentSampler::EnvironmentSampler(std::span<const R> texels, int height, do
 template EnvironmentSampler::EnvironmentSampler(std::span<const float>, int, double);
 template EnvironmentSampler::EnvironmentSampler(std::span<const double>, int, double);
 
-/// Column k of a band reaches from the centre of texel k to that of its right neighbour; band k lies between the
-/// rows k - 1 and k, where they exist.
+/// Column k of a band reaches from the centre of texel k to that of its right neighbour; band k
+/// lies between the rows k - 1 and k, where they exist.
 BilinearPatch<double> EnvironmentSampler::corners(std::int64_t band, std::int64_t column) const {
     const std::int64_t width = 2 * static_cast<std::int64_t>(height_);
     const std::int64_t upper = std::max<std::int64_t>(band - 1, 0) * width;
@@ -82,7 +82,7 @@ BilinearPatch<double> EnvironmentSampler::corners(std::int64_t band, std::int64_
     return {at(upper + column), at(upper + right), at(lower + column), at(lower + right)};
 }
 
-DrawnDirection EnvironmentSampler::sample(const Vec2<double>& u2) const {
+SampledDirection EnvironmentSampler::sample(const Vec2<double>& u2) const {
     const CellChoice cell = cells_.sample(u2.y, u2.x);
     const BilinearPatch<double> patch = corners(cell.row, cell.column);
     const Vec2<double> in = patch.sample(cell.rest_column, cell.rest_row);

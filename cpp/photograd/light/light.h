@@ -20,13 +20,14 @@ namespace photograd {
 
 enum class LightKind : int { infinite, environment, point, spot, directional, area };
 
-/// One direction at each point: a light that no ray hits, of weight 1 in multiple importance sampling.
+/// One direction at each point: a light that no ray hits, of weight 1 in multiple importance
+/// sampling.
 constexpr bool is_delta(LightKind kind) {
     return kind == LightKind::point || kind == LightKind::spot || kind == LightKind::directional;
 }
 
-/// What a light sends to a point along one direction, drawn with density `pdf`. Nothing is known of what stands between.
-/// An estimate of reflected light is f(wo, wi) cos radiance / pdf; pdf = 0 says that nothing arrives.
+/// What a light sends to a point along one direction, of density `pdf`. Occlusion is not known. An
+/// estimate of reflected light is f(wo, wi) cos radiance / pdf; pdf = 0 says that nothing arrives.
 template <class R>
 struct LightSample {
     Vec3<R> direction{R(0)};  // unit, towards the light
@@ -38,7 +39,7 @@ struct LightSample {
         false;  // no other strategy finds this light: weight 1 in multiple importance sampling
 };
 
-/// What lights at infinity send from one direction, and how densely samples of them are drawn there, 1/sr.
+/// What lights at infinity send from one direction, and their density among samples, 1/sr.
 template <class R>
 struct Background {
     Vec3<R> radiance{R(0)};
@@ -63,8 +64,9 @@ constexpr R infinitely_far() {
     return R(std::numeric_limits<double>::infinity());
 }
 
-/// A light at infinity T = M<R>. `L(w)` is the radiance seen when looking along w (towards the light); `L_backward` adds
-/// dL/dparameter to its last argument. `constants` are described like parameters but not differentiated.
+/// A light at infinity T = M<R>. `L(w)` is the radiance seen when looking along w (towards the
+/// light); `L_backward` adds dL/dparameter to its last argument. `constants` are described like
+/// parameters but not differentiated.
 template <class T, class R>
 concept LightValue = requires(const T& light, T& d_light, const Vec3<R>& w) {
     { T::name } -> std::convertible_to<const char*>;
@@ -98,8 +100,8 @@ concept DeltaLightValue = requires(const T& light, T& d_light, const Vec3<R>& v)
     { light.at_backward(v, v, d_light) } -> std::same_as<void>;
 };
 
-/// `L(point, w)` is what arrives at a point from w, if nothing else is in between; `radiance` is what the surface
-/// emits, the same everywhere.
+/// `L(point, w)` is what arrives at a point from w, if nothing else is in between; `radiance` is
+/// what the surface emits, the same everywhere.
 template <class T, class R>
 concept AreaLightValue = requires(const T& light, T& d_light, const Vec3<R>& v) {
     { T::name } -> std::convertible_to<const char*>;

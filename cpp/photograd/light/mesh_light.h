@@ -1,15 +1,16 @@
-// A glowing mesh: one triangle is drawn in proportion to its area, then a point of it, so that all points of the mesh
-// are alike.
+// A glowing mesh: one triangle is drawn in proportion to its area, then a point of it, so that all
+// points of the mesh are alike.
 //
 //   L(point, w) = radiance where w meets a front first;   dL/dradiance = 1 there
 //   density = (1 / area of all) r^2 / cos
 //
-// The density is that of a point, seen or not: where the mesh hides a part of itself, samples of that part are blocked
-// like those behind any other thing, and the tracer says so. What a ray meets first has the density of `hit_pdf`.
+// The density is that of a point, seen or not: where the mesh hides a part of itself, samples of
+// that part are blocked like those behind any other thing, and the tracer says so. What a ray meets
+// first has the density of `hit_pdf`.
 #pragma once
 
+#include "photograd/light/area_light.h"
 #include "photograd/light/emitting_mesh.h"
-#include "photograd/light/glow.h"
 
 namespace photograd {
 
@@ -39,7 +40,7 @@ struct MeshLight {
         const auto place = mesh->sample({double(u2.x), double(u2.y)});
         const Vec3<double> to = place.position - Vec3<double>(point),
                            n = mesh->face(place.face).normal;
-        return glow_sample(Vec3<R>(to), Vec3<R>(n), R(1 / mesh->area()), radiance);
+        return sample_area_light(Vec3<R>(to), Vec3<R>(n), R(1 / mesh->area()), radiance);
     }
     R pdf(const Vec3<R>& point, const Vec3<R>& w) const {
         const auto at = meet(point, w);

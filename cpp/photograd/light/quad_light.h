@@ -1,13 +1,13 @@
-// A glowing rectangle, sampled by the solid angle that it fills: all its light arrives with one weight, and what is left
-// of the noise is the receiving surface's cosine and shadows.
+// A rectangle that emits, sampled by the solid angle that it fills: all its light arrives with one
+// weight, and what is left of the noise is the receiving surface's cosine and shadows.
 //
 //   L(point, w) = radiance where w meets the rectangle's front,    dL/dradiance = 1 there
 //
-// The front is the side of edge_x x edge_y. Where the rectangle fills less than 1e-6 sr, its solid angle is not known
-// well enough and points are drawn evenly over its area instead.
+// The front is the side of edge_x x edge_y. Where the rectangle fills less than 1e-6 sr, its solid
+// angle is not known well enough and points are sampled uniformly over its area instead.
 #pragma once
 
-#include "photograd/light/glow.h"
+#include "photograd/light/area_light.h"
 #include "photograd/sampling/spherical_rectangle.h"
 
 namespace photograd {
@@ -42,15 +42,15 @@ struct QuadLight {
     LightSample<R> sample(const Vec3<R>& point, const Vec2<R>& u2) const {
         return sample(point, u2, axes());
     }
-    /// The same for who has kept `axes()`, which no point changes.
+    /// With `axes()` kept, which no point changes.
     LightSample<R> sample(const Vec3<R>& point, const Vec2<R>& u2,
                           const RectangleAxes& known) const {
         const Vec3<R> normal = cross(edge_x, edge_y), from = corner - point;
         if (!(dot(from, normal) < R(0))) return {};
         const SphericalRectangle seen = seen_from(point, known);
         if (seen.solid_angle < smallest)
-            return glow_sample(from + u2.x * edge_x + u2.y * edge_y, normalize(normal),
-                               R(1) / length(normal), radiance);
+            return sample_area_light(from + u2.x * edge_x + u2.y * edge_y, normalize(normal),
+                                     R(1) / length(normal), radiance);
         const Vec3<double> to = seen.sample({double(u2.x), double(u2.y)});
         const double r = length(to);
         const Vec3<double> w = to * (1 / r);
@@ -100,7 +100,7 @@ private:
 
 static_assert(AreaLight<QuadLight>);
 
-/// A rectangle that stays where it is, for who asks it often.
+/// A rectangle with what no lit point changes.
 template <class R>
 struct PlacedQuad {
     QuadLight<R> light;

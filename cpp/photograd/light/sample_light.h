@@ -1,9 +1,12 @@
-// One interface for lights of all kinds (light.h). A path tracer calls `sample_light` where light may arrive, and
-// `light_radiance` and `light_pdf` where a ray that a surface has sent out arrives at the light, or at nothing.
+// One interface for lights of all kinds (light.h). A path tracer calls `sample_light` where light
+// may arrive, and `light_radiance` and `light_pdf` where a ray that a surface has sent out arrives
+// at the light, or at nothing.
 //
-//   reflected += f(wo, s.direction) cos s.radiance / s.pdf          if nothing stands between the point and s.distance
+//   reflected += f(wo, s.direction) cos s.radiance / s.pdf
+//       if nothing stands between the point and s.distance
 //
-// Samples are detached: the adjoint knows the radiance that was found, not how its direction was chosen.
+// Samples are detached: the adjoint knows the radiance that was found, not how its direction was
+// chosen.
 #pragma once
 
 #include "photograd/light/light.h"
@@ -24,8 +27,8 @@ LightSample<R> sample_light(const L& light, const Vec3<R>& point, const Vec2<R>&
     }
 }
 
-/// Adds dL/dparameter for dL/d(radiance of the sample). `d_light` is what the light's own adjoint adds to: a light of
-/// the same type, or the texels' derivatives.
+/// Adds dL/dparameter for dL/d(radiance of the sample). `d_light` is what the light's own adjoint
+/// adds to: a light of the same type, or the texels' derivatives.
 template <class R, class L, class D>
 void sample_light_backward(const L& light, const Vec3<R>& point, const Vec3<R>& direction,
                            const Vec3<R>& d_radiance, D&& d_light) {
@@ -58,7 +61,7 @@ void light_radiance_backward(const L& light, const Vec3<R>& point, const Vec3<R>
         light.L_backward(w, d_radiance, d_light);
 }
 
-/// Density over solid angle with which `sample_light` draws w; 0 for delta lights.
+/// Density over solid angle with which `sample_light` samples w; 0 for delta lights.
 template <class R, class L>
 R light_pdf(const L& light, const Vec3<R>& point, const Vec3<R>& w) {
     if constexpr (is_delta(L::kind))

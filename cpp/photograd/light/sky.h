@@ -1,4 +1,5 @@
-// A dome whose radiance depends on the height h = w.y of a direction alone; three equal colours make it constant.
+// A dome whose radiance depends on the height h = w.y of a direction alone; three equal colours
+// make it constant.
 //
 //   L(w) = (1 - h) horizon + h zenith     above the horizon
 //   L(w) = (1 + h) horizon - h ground     below

@@ -1,12 +1,13 @@
 // A light without size in a shade: full along its axis, dark outside of a cone, smooth in between.
 //
 //   irradiance of what faces it = intensity s(t) / r^2
-//   c = <axis, from the light to the point>,   t = (c - cos_outer) / (softness (1 - cos_outer)),   in [0, 1]
+//   c = <axis, from the light to the point>,   t = (c - cos_outer) / (softness (1 - cos_outer)),
+//       in [0, 1]
 //   s(t) = t^2 (3 - 2 t)
 //
-// softness is the part of the cone over which light fades: close to 0 an edge, at 1 all the way from the axis. Light
-// fades with s' = 0 at both ends, so the derivatives by the shape of the cone have no jumps; as long as shadows do not
-// move they are the whole derivative.
+// softness is the part of the cone over which light fades: close to 0 an edge, at 1 all the way
+// from the axis. Light fades with s' = 0 at both ends, so the derivatives by the shape of the cone
+// have no jumps; as long as shadows do not move they are the whole derivative.
 //
 //   s'(t) = 6 t (1 - t)
 //   dt/dcos_outer = (c - 1) / (softness (1 - cos_outer)^2),    dt/dsoftness = -t / softness

@@ -1,6 +1,6 @@
 // The sun: a disc of equal radiance at infinity. Its size makes shadows soft.
 //
-//   L(w) = radiance  where the angle between w and the direction of the sun is at most the angular radius
+//   L(w) = radiance  where w is within the angular radius of the sun's direction
 //   dL/dradiance = 1 there, 0 elsewhere
 // Direction and size move an edge of the integrand; L has no derivative there and none is given.
 #pragma once

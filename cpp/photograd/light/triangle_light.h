@@ -1,11 +1,13 @@
-// A glowing triangle, sampled evenly over its area.
+// A triangle that emits, sampled uniformly over its area.
 //
-//   L(point, w) = radiance where w meets the front, from which a, b, c turn counterclockwise;  dL/dradiance = 1 there
-//   density = (1 / area) r^2 / cos        cos at the triangle, between its normal and the way back to the point
+//   L(point, w) = radiance where w hits the front, from which a, b, c turn counterclockwise;
+//   dL/dradiance = 1 there
+//   density = (1 / area) r^2 / cos
+//       cos at the triangle, between its normal and the way back to the point
 #pragma once
 
 #include "photograd/geometry/triangle.h"
-#include "photograd/light/glow.h"
+#include "photograd/light/area_light.h"
 
 namespace photograd {
 
@@ -36,8 +38,8 @@ struct TriangleLight {
 
     LightSample<R> sample(const Vec3<R>& point, const Vec2<R>& u2) const {
         const Vec2<R> q = square_to_triangle(u2);
-        return glow_sample((a - point) + q.x * (b - a) + q.y * (c - a), normal(), R(1) / area(),
-                           radiance);
+        return sample_area_light((a - point) + q.x * (b - a) + q.y * (c - a), normal(),
+                                 R(1) / area(), radiance);
     }
     R pdf(const Vec3<R>& point, const Vec3<R>& w) const { return density(point, w); }
     /// The same for a tracer that knows the distance and the cosine at the front that it has hit.

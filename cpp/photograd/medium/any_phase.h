@@ -1,4 +1,5 @@
-// One phase function of the registry, with its parameters, as a value: a scene has media with different ones.
+// One phase function of the registry, with its parameters, as a value: a scene has media with
+// different ones.
 #pragma once
 
 #include <string>
@@ -6,7 +7,6 @@
 #include <variant>
 
 #include "photograd/core/errors.h"
-#include "photograd/medium/phase_lobe.h"
 #include "photograd/medium/registry.h"
 
 namespace photograd {
@@ -64,11 +64,11 @@ struct AnyPhase {
         R held = R(0);
         p_backward(cos_theta, d_p, d_self, held);
     }
-    /// The lobe by which directions are drawn (phase_lobe.h).
+    /// All are sampled as Henyey and Greenstein's (henyey_greenstein.h).
     [[nodiscard]] Vec3<R> sample(const Vec3<R>& direction, const Vec2<R>& u2) const {
-        return sample_lobe(lobe(), direction, u2);
+        return sample_henyey_greenstein(lobe(), direction, u2);
     }
-    [[nodiscard]] R pdf(R cos_theta) const { return lobe_pdf(lobe(), cos_theta); }
+    [[nodiscard]] R pdf(R cos_theta) const { return henyey_greenstein_pdf(lobe(), cos_theta); }
 
 private:
     [[nodiscard]] R lobe() const {

@@ -1,5 +1,6 @@
-// How a phase function changes along a direction of its parameters: forward mode, the transpose of p_backward.
-// `along` is a phase function of the same kind, which holds the change of each parameter.
+// How a phase function changes along a direction of its parameters: forward mode, the transpose of
+// p_backward. `along` is a phase function of the same kind, which holds the change of each
+// parameter.
 #pragma once
 
 #include "photograd/core/dual.h"

@@ -1,8 +1,8 @@
 // Derivatives of many lookups of a density grid, added up by the owners of voxels.
 //
-// A lookup between the layers x = i and i + 1 of voxels belongs to owner i, who adds his in their order. Neighbouring
-// owners share a layer, so that all with even i go first, then all with odd: no voxel is ever written by two at once,
-// and the order of each voxel's sum is fixed.
+// A lookup between the layers x = i and i + 1 of voxels belongs to owner i, who adds his in their
+// order. Neighbouring owners share a layer, so that all with even i go first, then all with odd: no
+// voxel is ever written by two at once, and the order of each voxel's sum is fixed.
 #pragma once
 
 #include "photograd/core/scatter.h"

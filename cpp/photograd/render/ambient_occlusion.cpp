@@ -4,7 +4,7 @@
 
 #include "photograd/core/parallel.h"
 #include "photograd/render/ray_lanes.h"
-#include "photograd/sampling/even_points.h"
+#include "photograd/sampling/sobol.h"
 #include "photograd/sampling/warp.h"
 
 namespace photograd {
@@ -61,7 +61,7 @@ int free_directions(const PathGeometry& scene, const Vec3<double>& position,
                     const SampleRange& samples) {
     const auto frame = Frame<double>::from_normal(normal);
     const Vec3<double> start = position + normal * scene.offset;
-    const EvenPoints numbers(key, 0);
+    const SobolSampler numbers(key, 0);
     int open = 0;
     for (std::uint32_t first = 0; first < samples.count; first += width) {
         RayPacket packet{};

@@ -25,7 +25,7 @@ struct SurfacePoints {
 };
 
 /// Adds to sums (N,) how many of the samples over each point are free. Directions are spread evenly
-/// (sampling/even_points.h); point i has the random numbers of pixel i.
+/// (sampling/sobol.h); point i has the random numbers of pixel i.
 void add_point_occlusion(const PathGeometry& scene, const SurfacePoints& points, double radius,
                          std::uint64_t seed, const SampleRange& samples, double* sums);
 

@@ -195,7 +195,8 @@ protected:  // what a walk through media (volume_walk.h) shares
         for (int k = 0; k < width; ++k) {
             Lane& lane = lanes_[k];
             packet.active[k] = false;
-            lane.shadow = lane.alive && !sampling_of(lane).is_specular() && choose_light(lane, depth);
+            lane.shadow =
+                lane.alive && !sampling_of(lane).is_specular() && choose_light(lane, depth);
             if (!lane.shadow) continue;
             const Vec3<R> start = lane.side.start(
                 lane.hit.position, lane.path.back().light.direction, scene_.geometry->offset);
@@ -216,8 +217,8 @@ protected:  // what a walk through media (volume_walk.h) shares
         ShadowRay<R> shadows[width];
         for (int k = 0; k < width; ++k) {
             Lane& lane = lanes_[k];
-            lane.shadow = lane.alive && !lane.path.back().passed && !sampling_of(lane).is_specular() &&
-                          choose_light(lane, depth);
+            lane.shadow = lane.alive && !lane.path.back().passed &&
+                          !sampling_of(lane).is_specular() && choose_light(lane, depth);
             if (!lane.shadow) continue;
             LightVertex<R>& light = lane.path.back().light;
             const Vec3<R> start =
@@ -246,18 +247,19 @@ protected:  // what a walk through media (volume_walk.h) shares
         const Choice choice = deltas_alone ? lights.choose_delta(u) : lights.choose(u);
         LightVertex<R>& light = lane.path.back().light;
         light.point = lane.hit.position;
-        if (choice.index >= lights.listed_count())
+        if (choice.index >= lights.infinite_and_delta_count())
             ask_piece(lane, light, choice, u2);
         else
             ask_listed(lane, light, choice, u2);
     }
     void ask_piece(Lane& lane, LightVertex<R>& light, const Choice& choice, const Vec2<R>& u2) {
         const PathGeometry& geometry = *scene_.geometry;
-        const LightPiece& piece = geometry.lights.piece(choice.index);
+        const EmissivePrimitive& piece = geometry.lights.primitive(choice.index);
         light.shape = piece.shape;
         // A ball never lights itself; rounding could see it from a point on it.
         if (piece.shape == lane.hit.shape && piece.shape >= geometry.bvh.sphere_instance()) return;
-        const PieceSample<R> found = geometry.lights.sample(geometry.bvh, piece, light.point, u2);
+        const EmissiveSample<R> found =
+            geometry.lights.sample(geometry.bvh, piece, light.point, u2);
         if (geometry.textures.glows(static_cast<std::size_t>(piece.shape)))
             light.uv = piece_uv(geometry.bvh, piece,
                                 light.point + found.light.direction * found.light.distance);

@@ -1,14 +1,14 @@
 // The random numbers of a path: independent ones, or points that are spread evenly over the samples of a pixel.
 #pragma once
 
-#include "photograd/sampling/even_points.h"
+#include "photograd/sampling/sobol.h"
 
 namespace photograd {
 
-/// `independent`: words of Philox. `even`: scrambled Sobol' points (sampling/even_points.h): every number is
+/// `independent`: words of Philox. `sobol`: scrambled Sobol' points (sampling/sobol.h): every number is
 /// uniform as well, but the samples of a pixel are no longer independent of one another, and their mean errs less than
 /// their spread says.
-enum class Sampler : int { independent = 0, even = 1 };
+enum class Sampler : int { independent = 0, sobol = 1 };
 
 /// Words of a block of four dimensions. Keeps the scrambling of the last pixel and block: paths that are traced side
 /// by side are mostly of one pixel. Seed and step must not change between calls.
@@ -20,7 +20,7 @@ public:
     Philox4 operator()(const RandomKey& key, std::uint32_t block) {
         if (sampler_ == Sampler::independent) return random_block(key, block);
         if (!known_ || key.pixel != pixel_ || block != block_) {
-            points_ = EvenPoints(key, block);
+            points_ = SobolSampler(key, block);
             pixel_ = key.pixel;
             block_ = block;
             known_ = true;
@@ -32,7 +32,7 @@ private:
     Sampler sampler_ = Sampler::independent;
     bool known_ = false;
     std::uint32_t pixel_ = 0, block_ = 0;
-    EvenPoints points_;
+    SobolSampler points_;
 };
 
 }  // namespace photograd

@@ -4,8 +4,8 @@
 //   balance    w(p, q) = p / (p + q)
 //   power      w(p, q) = p^2 / (p^2 + q^2)           lower variance where one strategy is good
 //
-// p is the density of the strategy that drew the sample, q that of the other, over the same measure;
-// w(p, q) + w(q, p) = 1. Weights are detached: adjoints hold them constant.
+// p is the density of the strategy that drew the sample, q that of the other, over the same
+// measure; w(p, q) + w(q, p) = 1. Weights are detached: adjoints hold them constant.
 #pragma once
 
 #include "photograd/core/real.h"

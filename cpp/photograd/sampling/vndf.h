@@ -1,7 +1,9 @@
-// Facets of a rough surface, drawn at random; each sampler stands beside its density over solid angle.
+// Sampling of the normals of microfacets, all or visible ones (VNDF); each sampler stands beside
+// its density over solid angle.
 //
-// A mirror at facet wh sends wo to wi = 2 <wo, wh> wh - wo. Turning wh by an angle turns wi by two, and the density of wi
-// is that of wh times dwh/dwi = 1 / (4 <wo, wh>) [Walter2007, Eq. 14]. The densities here are those of wh.
+// A mirror at facet wh sends wo to wi = 2 <wo, wh> wh - wo. Turning wh by an angle turns wi by two,
+// and the density of wi is that of wh times dwh/dwi = 1 / (4 <wo, wh>) [Walter2007, Eq. 14]. The
+// densities here are those of wh.
 #pragma once
 
 #include "photograd/core/log.h"
@@ -12,16 +14,16 @@
 
 namespace photograd {
 
-/// Only facets that wo sees, in proportion to the area it sees of each [Dupuy2023]. Squeezing by alpha turns the
-/// surface into a hemisphere; what v sees of that reflects v into the cap z >= -v_z, and evenly. So: an even
-/// point of the cap, the facet halfway to v, and back by the inverse transpose.
+/// Visible normals of GGX [Dupuy2023]. Scaling by alpha turns the surface into a hemisphere; its
+/// visible part reflects v uniformly into the cap z >= -v_z. So: a uniform point of the cap, the
+/// half vector with v, and back by the inverse transpose.
 template <Real R>
 Vec3<R> sample_ggx_visible(const Vec3<R>& wo, R alpha_x, R alpha_y, const Vec2<R>& u2) {
     const Vec3<R> v = normalize(Vec3<R>(alpha_x * wo.x, alpha_y * wo.y, wo.z));
     const Vec3<R> h = square_to_cap(u2, R(1) + v.z) + v;
     return normalize(Vec3<R>(alpha_x * h.x, alpha_y * h.y, larger(h.z, R(1e-9))));
 }
-/// G1 D <wo, wh> / o_z [Heitz2018, Eq. 1]; zero for facets that wo sees from behind.
+/// G1 D <wo, wh> / o_z [Heitz2018, Eq. 1]; zero for normals that face away from wo.
 template <class R>
 R ggx_visible_pdf(const Vec3<R>& wo, const Vec3<R>& wh, R alpha_x, R alpha_y) {
     const R seen = dot(wo, wh);
@@ -30,7 +32,8 @@ R ggx_visible_pdf(const Vec3<R>& wo, const Vec3<R>& wh, R alpha_x, R alpha_y) {
     return over_z * ggx_D(wh, alpha_x, alpha_y) * seen;
 }
 
-/// All facets, seen or not, with density D h_z: the squared tangent is exponential, -alpha^2 ln(1 - r^2).
+/// All normals, visible or not, with density D h_z: the squared tangent is exponential, -alpha^2
+/// ln(1 - r^2).
 template <Real R>
 Vec3<R> sample_beckmann(R alpha, const Vec2<R>& u2) {
     const Vec2<R> p = square_to_disk(u2);
@@ -44,7 +47,7 @@ R beckmann_pdf(const Vec3<R>& wh, R alpha) {
     return beckmann_D(wh, alpha) * wh.z;
 }
 
-/// All facets of GTR1, with density D h_z: sin^2 = q (q^(-r^2) - 1) / (1 - q), q = alpha^2.
+/// All normals of GTR1, with density D h_z: sin^2 = q (q^(-r^2) - 1) / (1 - q), q = alpha^2.
 template <Real R>
 Vec3<R> sample_gtr1(R alpha, const Vec2<R>& u2) {
     const Vec2<R> p = square_to_disk(u2);
@@ -74,8 +77,8 @@ R cosine_power_pdf(R n, R cos_theta) {
     return cos_theta > R(0) ? (n + R(1)) * R(0.5 / pi) * pow(cos_theta, n) : R(0);
 }
 
-/// Chooses between two samplers, the first with probability `share`, and gives the number used for it back, stretched
-/// over [0, 1] again.
+/// Chooses between two samplers, the first with probability `share`, and gives the number used for
+/// it back, stretched over [0, 1] again.
 template <Real R>
 bool take_first(R share, Vec2<R>& u2) {
     const bool first = u2.x < share;

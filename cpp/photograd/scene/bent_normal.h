@@ -2,12 +2,13 @@
 //
 // With corners p0, p1, p2 of a triangle and (b, c) the steps of (u, v) along its two edges e1, e2,
 //
-//   dp/du ~ c_v e1 - b_v e2,   dp/dv ~ b_u e2 - c_u e1         both over b_u c_v - c_u b_v, whose sign alone counts
+//   dp/du ~ c_v e1 - b_v e2,   dp/dv ~ b_u e2 - c_u e1
+//       both over b_u c_v - c_u b_v, whose sign alone counts
 //
-// x is dp/du made perpendicular to the shading normal n, y its perpendicular against growing v. A normal (t_x, t_y, t_z)
-// of the map is x t_x + y t_y + n t_z, of unit length. A path sees the bent surface as any other with a shading
-// normal of its own (SurfaceSide): no light passes, and no more leaves than the model returns. The map is geometry and
-// has no derivative.
+// x is dp/du made perpendicular to the shading normal n, y its perpendicular against growing v. A
+// normal (t_x, t_y, t_z) of the map is x t_x + y t_y + n t_z, of unit length. A path sees the bent
+// surface as any other with a shading normal of its own (SurfaceSide): no light passes, and no more
+// leaves than the model returns. The map is geometry and has no derivative.
 #pragma once
 
 #include "photograd/geometry/bvh.h"
@@ -50,7 +51,8 @@ struct TextureAxes {
     }
 };
 
-/// Bends `normal`, which lies on the side of `outside`; a map that would turn it away from there does nothing.
+/// Bends `normal`, which lies on the side of `outside`; a map that would turn it away from there
+/// does nothing.
 template <class R>
 void bend_normal(const Bvh& bvh, const NormalMap& map, std::int32_t instance,
                  std::int32_t primitive, const Vec2<R>& uv, const Vec3<R>& outside, Vec3<R>& normal,

@@ -60,8 +60,8 @@ struct Material {
     [[nodiscard]] Vec3<R> value(const Vec3<R>& wo, const Vec3<R>& wi, int lobe) const {
         return functions().value(parameter, wo, wi, lobe);
     }
-    /// Adds dL/dparameter to d_self, a material of the same model. The direction is held fixed, that
-    /// of a refracted lobe as well.
+    /// Adds dL/dparameter to d_self, a material of the same model. The direction is held fixed,
+    /// that of a refracted lobe as well.
     void value_backward(const Vec3<R>& wo, const Vec3<R>& wi, int lobe, const Vec3<R>& d_value,
                         Material& d_self) const {
         functions().value_backward(parameter, wo, wi, lobe, d_value, d_self.parameter);

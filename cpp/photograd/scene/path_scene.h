@@ -140,7 +140,7 @@ void shade(const PathGeometry& scene, std::int32_t instance, std::int32_t primit
 
 /// Texture coordinates of a point of a light's piece.
 template <class R>
-Vec2<R> piece_uv(const Bvh& bvh, const LightPiece& piece, const Vec3<R>& position) {
+Vec2<R> piece_uv(const Bvh& bvh, const EmissivePrimitive& piece, const Vec3<R>& position) {
     if (piece.shape >= bvh.sphere_instance()) return Vec2<R>(R(0));
     R u = R(0), v = R(0);
     const std::int32_t last = piece.rectangle >= 0 ? 1 : piece.primitive;

@@ -22,7 +22,7 @@ ONES = 0xFFFFFFFF
 
 def words(pixels: int, count: int, *, seed: int = 1, block: int = 0, first: int = 0) -> Array:
     pixel = np.arange(pixels, dtype=np.uint32)
-    return _core.even_words(seed, 0, block, pixel, first, count)
+    return _core.sobol_words(seed, 0, block, pixel, first, count)
 
 
 def directions(polynomial: Any) -> list[int]:
@@ -67,7 +67,7 @@ def test_points_are_what_the_definition_says() -> None:
             for k in range(32):
                 x ^= v[k] * ((index >> k) & 1)
             expected.append(turned(flips(turned(x), key)))
-        found = _core.even_words(seed, 0, block, np.array([pixel], np.uint32), sample, 1)
+        found = _core.sobol_words(seed, 0, block, np.array([pixel], np.uint32), sample, 1)
         assert found[0, 0].tolist() == expected
 
 
