@@ -1,5 +1,6 @@
 // Reflectance models as functions on arrays, through the table of bsdf/bsdf_table.h: {name: Bsdf}
 // as _core.bsdfs and, of specular ones, {name: DeltaBsdf} as _core.delta_bsdfs.
+#include "method.h"
 #include "model_args.h"
 #include "module.h"
 #include "photograd/bsdf/bsdf_table.h"
@@ -21,7 +22,9 @@ struct BoundBsdf {
     [[nodiscard]] ModelRows<R> read(ArrayArgs& args, const py::array& parameters) const {
         return ModelRows<R>::read(args, parameters, parameter_count());
     }
-    [[nodiscard]] std::string repr() const { return "<" + std::string(info().name) + ">"; }
+    [[nodiscard]] std::string repr() const {
+        return std::string("<").append(info().name).append(">");
+    }
 
     py::array f(const py::array& parameters, const py::array& wo, const py::array& wi) const;
     py::array f_backward(const py::array& parameters, const py::array& wo, const py::array& wi,
@@ -230,49 +233,50 @@ void bind_densities(py::module_& m) {
         m, "Bsdf", py::module_local(),
         "A reflectance model. Parameters (N, P), or (1, P) for all rows; directions "
         "(N, 3) in the shading frame, normal +Z.")
-        .def("f", &BoundBsdf::f, py::arg("parameters"), py::arg("wo"), py::arg("wi"),
-             "Value without the cosine, (N, 3).")
-        .def("f_backward", &BoundBsdf::f_backward, py::arg("parameters"), py::arg("wo"),
-             py::arg("wi"), py::arg("d_f"), py::arg("d_parameters"),
+        .def("f", method<BoundBsdf>(&BoundBsdf::f), py::arg("parameters"), py::arg("wo"),
+             py::arg("wi"), "Value without the cosine, (N, 3).")
+        .def("f_backward", method<BoundBsdf>(&BoundBsdf::f_backward), py::arg("parameters"),
+             py::arg("wo"), py::arg("wi"), py::arg("d_f"), py::arg("d_parameters"),
              "Adds dL/dparameters to d_parameters, shaped like parameters; returns it.")
-        .def("jvp", &BoundBsdf::jvp, py::arg("parameters"), py::arg("v"), py::arg("wo"),
-             py::arg("wi"), "Exact derivative of f along v, (N, 3), float64.")
-        .def("sample", &BoundBsdf::sample, py::arg("parameters"), py::arg("wo"), py::arg("u2"),
-             "wi (N, 3) from uniform u2 (N, 2).")
-        .def("pdf", &BoundBsdf::pdf, py::arg("parameters"), py::arg("wo"), py::arg("wi"),
-             "Density of `sample` over solid angle, (N,).")
-        .def("parameters", &BoundBsdf::parameters,
+        .def("jvp", method<BoundBsdf>(&BoundBsdf::jvp), py::arg("parameters"), py::arg("v"),
+             py::arg("wo"), py::arg("wi"), "Exact derivative of f along v, (N, 3), float64.")
+        .def("sample", method<BoundBsdf>(&BoundBsdf::sample), py::arg("parameters"), py::arg("wo"),
+             py::arg("u2"), "wi (N, 3) from uniform u2 (N, 2).")
+        .def("pdf", method<BoundBsdf>(&BoundBsdf::pdf), py::arg("parameters"), py::arg("wo"),
+             py::arg("wi"), "Density of `sample` over solid angle, (N,).")
+        .def("parameters", method<BoundBsdf>(&BoundBsdf::parameters),
              "(name, scalars, lo, hi, unit) of each parameter, in the order of a row.")
-        .def("energy", &BoundBsdf::energy,
+        .def("energy", method<BoundBsdf>(&BoundBsdf::energy),
              "What is claimed of the directional albedo: (conserving, lossy or gains; its bound).")
         .def(
             "reciprocal", [](const BoundBsdf& model) { return model.info().reciprocal; },
             "Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.")
-        .def("index_inside", &BoundBsdf::index_inside, py::arg("parameters"),
+        .def("index_inside", method<BoundBsdf>(&BoundBsdf::index_inside), py::arg("parameters"),
              "Refractive index below the surface over that above, per channel (N, 3), of "
              "parameters (N, P) float64.")
         .def(
             "transmits", [](const BoundBsdf& model) { return model.info().transmits; },
             "Whether light may pass the surface.")
-        .def("__repr__", &BoundBsdf::repr);
+        .def("__repr__", method<BoundBsdf>(&BoundBsdf::repr));
 }
 
 void bind_deltas(py::module_& m) {
     py::class_<BoundDelta>(m, "DeltaBsdf", py::module_local(),
                            "A specular surface. Parameters (N, P), or (1, P) for all rows; wo "
                            "(N, 3) in the shading frame, normal +Z, on either side.")
-        .def("lobes", &BoundDelta::lobes, py::arg("parameters"), py::arg("wo"),
+        .def("lobes", method<BoundDelta>(&BoundDelta::lobes), py::arg("parameters"), py::arg("wo"),
              "(wi, weight), (N, L, 3) each: L(wo) is the sum of weight L(wi).")
-        .def("lobes_backward", &BoundDelta::lobes_backward, py::arg("parameters"), py::arg("wo"),
-             py::arg("d_wi"), py::arg("d_weight"), py::arg("d_parameters"),
+        .def("lobes_backward", method<BoundDelta>(&BoundDelta::lobes_backward),
+             py::arg("parameters"), py::arg("wo"), py::arg("d_wi"), py::arg("d_weight"),
+             py::arg("d_parameters"),
              "Adds dL/dparameters to d_parameters, shaped like parameters; returns it.")
-        .def("jvp", &BoundDelta::jvp, py::arg("parameters"), py::arg("v"), py::arg("wo"),
-             "Exact derivatives of (wi, weight) along v, float64.")
-        .def("lobe_count", &BoundDelta::lobe_count, "L.")
+        .def("jvp", method<BoundDelta>(&BoundDelta::jvp), py::arg("parameters"), py::arg("v"),
+             py::arg("wo"), "Exact derivatives of (wi, weight) along v, float64.")
+        .def("lobe_count", method<BoundDelta>(&BoundDelta::lobe_count), "L.")
         .def(
             "parameters", [](const BoundDelta& model) { return model.parameters(); },
             "(name, scalars, lo, hi, unit) of each parameter, in the order of a row.")
-        .def("__repr__", &BoundDelta::repr);
+        .def("__repr__", method<BoundDelta>(&BoundDelta::repr));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <variant>
 
 #include "light_calls.h"
+#include "method.h"
 #include "module.h"
 #include "photograd/light/registry.h"
 
@@ -180,20 +181,20 @@ void bind_sampled_light(py::module_& m) {
         m, "SampledLight",
         "A light. parameters (P,), constants (C,); points (N, 3) in the world, directions w "
         "(N, 3) of unit length, from the points.")
-        .def("sample", &SampledLight::sample, p, c, py::arg("points"), py::arg("u2"),
-             "(direction (N, 3), distance (N,), radiance (N, 3), pdf (N,)).")
-        .def("radiance", &SampledLight::radiance, p, c, py::arg("points"), py::arg("w"),
-             "What arrives at the points from w, (N, 3); 0 of delta lights.")
-        .def("pdf", &SampledLight::pdf, p, c, py::arg("points"), py::arg("w"),
+        .def("sample", method<SampledLight>(&SampledLight::sample), p, c, py::arg("points"),
+             py::arg("u2"), "(direction (N, 3), distance (N,), radiance (N, 3), pdf (N,)).")
+        .def("radiance", method<SampledLight>(&SampledLight::radiance), p, c, py::arg("points"),
+             py::arg("w"), "What arrives at the points from w, (N, 3); 0 of delta lights.")
+        .def("pdf", method<SampledLight>(&SampledLight::pdf), p, c, py::arg("points"), py::arg("w"),
              "Density of `sample` over solid angle, (N,); 0 of delta lights.")
-        .def("radiance_backward", &SampledLight::backward<false>, p, c, py::arg("points"),
-             py::arg("w"), py::arg("d_radiance"), py::arg("d_parameters"),
+        .def("radiance_backward", method<SampledLight>(&SampledLight::backward<false>), p, c,
+             py::arg("points"), py::arg("w"), py::arg("d_radiance"), py::arg("d_parameters"),
              "Adds dL/dparameters to d_parameters (P,) and returns it.")
-        .def("sample_backward", &SampledLight::backward<true>, p, c, py::arg("points"),
-             py::arg("w"), py::arg("d_radiance"), py::arg("d_parameters"),
+        .def("sample_backward", method<SampledLight>(&SampledLight::backward<true>), p, c,
+             py::arg("points"), py::arg("w"), py::arg("d_radiance"), py::arg("d_parameters"),
              "As radiance_backward, of the radiance of samples whose directions are w.")
-        .def("jvp", &SampledLight::jvp, p, c, py::arg("v"), py::arg("points"), py::arg("w"),
-             "Exact derivative of samples' radiance along v (P,), (N, 3), float64.")
+        .def("jvp", method<SampledLight>(&SampledLight::jvp), p, c, py::arg("v"), py::arg("points"),
+             py::arg("w"), "Exact derivative of samples' radiance along v (P,), (N, 3), float64.")
         .def(
             "parameters", [](const SampledLight& light) { return light.described; },
             "(name, scalars, lo, hi, unit) of each differentiated parameter.")

@@ -1,4 +1,5 @@
 // Every phase function of medium/registry.h on arrays: {name: PhaseFunction} as _core.phases.
+#include "method.h"
 #include "model_args.h"
 #include "module.h"
 #include "photograd/medium/any_phase_tangent.h"
@@ -80,13 +81,13 @@ void bind_phase(py::module_& m) {
     py::class_<PhaseFunction>(
         m, "PhaseFunction",
         "A phase function. parameters (P,); cos_theta (N,) of the angle by which light turns.")
-        .def("p", &PhaseFunction::p, py::arg("parameters"), py::arg("cos_theta"),
-             "Density over solid angle, (N,) in 1/sr.")
-        .def("p_backward", &PhaseFunction::p_backward, py::arg("parameters"), py::arg("cos_theta"),
-             py::arg("d_p"), py::arg("d_parameters"), py::arg("d_cos_theta"),
+        .def("p", method<PhaseFunction>(&PhaseFunction::p), py::arg("parameters"),
+             py::arg("cos_theta"), "Density over solid angle, (N,) in 1/sr.")
+        .def("p_backward", method<PhaseFunction>(&PhaseFunction::p_backward), py::arg("parameters"),
+             py::arg("cos_theta"), py::arg("d_p"), py::arg("d_parameters"), py::arg("d_cos_theta"),
              "Adds the derivatives to d_parameters (P,) and d_cos_theta (N,).")
-        .def("jvp", &PhaseFunction::jvp, py::arg("parameters"), py::arg("cos_theta"),
-             py::arg("v_parameters"), py::arg("v_cos_theta"),
+        .def("jvp", method<PhaseFunction>(&PhaseFunction::jvp), py::arg("parameters"),
+             py::arg("cos_theta"), py::arg("v_parameters"), py::arg("v_cos_theta"),
              "Exact derivative of p along v_parameters (P,) and v_cos_theta (N,).")
         .def(
             "parameters", [](const PhaseFunction& function) { return function.described; },

@@ -23,7 +23,7 @@ T light_of(ArrayArgs& args, const py::array& parameters, const py::array& consta
     return light;
 }
 
-/// Refuses colours that are negative, numbers that are not finite, and what the light itself finds
+/// Refuses colors that are negative, numbers that are not finite, and what the light itself finds
 /// wrong.
 template <class R, class T>
 void check_light(const ArrayArgs& args, const T& light) {

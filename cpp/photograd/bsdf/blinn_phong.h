@@ -4,12 +4,11 @@
 //   c = h_z,  f = diffuse / pi + specular N c^n
 //
 //   exact     N = (n + 2) (n + 4) / (8 pi (2^(-n/2) + n))
-//       makes the highlight's albedo `specular` for a view
-//                                       along the normal; see below
+//       makes the highlight's albedo `specular` for a view along the normal; see below
 //   fitted    N = (n + 8) / (8 pi)      shorter, up to 7.6 % too bright [AkenineMoeller2008, Ch. 7]
 //
-// The integral for a view along the normal: with t = h_z, i_z = 2 t^2 - 1 and dwi = 4 t dwh = 8 pi
-// t dt,
+// The integral for a view along the normal: with t = h_z, i_z = 2 t^2 - 1 and
+// dwi = 4 t dwh = 8 pi t dt,
 //
 //   1/N = 8 pi int_{1/sqrt 2}^1 t^n (2 t^2 - 1) t dt = 8 pi (n + 2^(-n/2)) / ((n + 2) (n + 4))
 //

@@ -1,4 +1,4 @@
-// What a perfectly smooth surface says about itself. Its f is a delta function: no density, nothing
+// What a specular surface says about itself. Its f is a delta function: no density, nothing
 // to evaluate for a given wi, and a weight of 1 in multiple importance sampling. Instead it names
 // the few directions that matter:
 //

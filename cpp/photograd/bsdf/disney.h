@@ -1,4 +1,4 @@
-// Burley's principled model of 2012 [Burley2012, Sec. 5 and its code]: a base colour and ten
+// Burley's principled model of 2012 [Burley2012, Sec. 5 and its code]: a base color and ten
 // sliders from 0 to 1, none of them physical, all of them plausible.
 //
 //   f = (1 - metalness) (f_base + S(f0) L) + metalness S(base_color) L + f_coat

@@ -1,6 +1,6 @@
 // What lies under the highlights of Burley's principled model [Burley2012, Sec. 5.3 and its code]:
 // a diffuse reflection, one that looks like light from inside of a material, and the hue of a
-// colour.
+// color.
 //
 //   e = 1 + <wo, wi> = 2 <wi, wh>^2,   m(c) = (1 - c)^5
 //   s(c, f90) = 1 + (f90 - 1) m(c),   P(f90) = s(o_z, f90) s(i_z, f90)

@@ -1,4 +1,4 @@
-// Frosted glass that spreads colours: rough_dielectric.h with an index of its own for each channel
+// Frosted glass that spreads colors: rough_dielectric.h with an index of its own for each channel
 // (ops/dispersion.h).
 //
 //   f_c = f(index_c, roughness)            df_c/dindex_c, df_c/droughness: rough_dielectric.h

@@ -1,4 +1,4 @@
-// A smooth boundary of glass that spreads colours: a mirrored ray of all of them, and a refracted
+// A specular boundary of glass that spreads colors: a mirrored ray of all of them, and a refracted
 // one for each.
 //
 //   mirrored      weight_c = F(e_c, |o_z|)

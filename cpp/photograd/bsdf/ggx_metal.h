@@ -1,4 +1,4 @@
-// A rough metal whose reflectance is one colour, f0: GGX facets, Smith's masking, Schlick's Fresnel
+// A rough metal whose reflectance is one color, f0: GGX facets, Smith's masking, Schlick's Fresnel
 // [Walter2007; Heitz2014; Schlick1994].
 //
 //   f = F D V,   F = f0 + (1 - f0) (1 - <wo, wh>)^5

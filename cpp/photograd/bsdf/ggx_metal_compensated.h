@@ -1,5 +1,5 @@
 // A metal of GGX facets that gets back what ggx_metal.h loses: light that meets more facets leaves
-// as a diffuse lobe [Kulla2017], by Schlick's colour.
+// as a diffuse lobe [Kulla2017], by Schlick's color.
 //
 //   f = F L + M g,   L = D V and F = f0 + (1 - f0) ramp as in ggx_metal.h
 //   g = loss(o_z) loss(i_z) / (pi average)          loss, average by roughness: ops/ggx_loss.h

@@ -1,4 +1,4 @@
-// A smooth boundary of a clear medium: a mirrored ray, and a refracted one through a tint.
+// A specular boundary of a clear medium: a reflected ray, and a refracted one through a tint.
 //
 // eta is the index inside over outside; e = eta for a viewer outside (o_z > 0) and 1 / eta inside.
 //

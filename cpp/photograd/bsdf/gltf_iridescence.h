@@ -1,25 +1,25 @@
-// Soap, oil and tempered steel: the metallic-roughness model whose reflections pass a thin film,
-// after KHR_materials_iridescence [Khronos2022].
+// Thin-film iridescence: the metallic-roughness model under a film, after
+// KHR_materials_iridescence [Khronos2022].
 //
 //   L = D V,   alpha_ggx = roughness^2                       as in gltf.h
 //   F(f0) = S(f0) + w (film(f0) - S(f0)),   S Schlick's ramp, film: ops/thin_film.h
 //   w = iridescence_factor x^2 (3 - 2 x),   x = min(iridescence_thickness / 0.03 nm, 1)
 //   f = (1 - metalness) f_d + metalness f_m
 //   f_d = (1 - max(F_d)) base_color / pi + F_d L,   F_d = F(0.04)
-//       max over the channels: coloured light must not
-//   f_m = F_m L,   F_m = F(base_color)                       leave its complement in the base layer
+//       max over the channels: colored light must not leave its complement in the base layer
+//   f_m = F_m L,   F_m = F(base_color)
 //
 // Without a film (factor or thickness 0) this is gltf.h to the bit. The extension lets the film's
 // index go to 1 over those 0.03 nm, a tenth of an atom; its approximations do not cancel there, so
-// here the film itself goes. Colours of the spectrum are more than red, green and blue can hold: F
+// here the film itself goes. Colors of the spectrum are more than red, green and blue can hold: F
 // reaches 1.28 (index 1.55, 310 nm, f0 0.8, c 0.07), and with what the base layer keeps at the
 // horizon (gltf.h: 0.933) no view returns more than 2.22.
 //
 //   df/dbase_color = (1 - metalness) (1 - max(F_d)) / pi + metalness dF_m/df0 L
 //   df_d/dF_d = L, and -base_color / pi of the largest channel
 //       (a kink where two channels are equally large)
-//   dF/df0 = (1 - w) (1 - ramp) + w dfilm/df0     dF/dw = film - S
-//       dw/dthickness = iridescence_factor 6 x (1 - x) / 0.03
+//   dF/df0 = (1 - w) (1 - ramp) + w dfilm/df0
+//   dF/dw = film - S,   dw/dthickness = iridescence_factor 6 x (1 - x) / 0.03
 #pragma once
 
 #include "photograd/bsdf/ggx_lobe.h"

@@ -1,4 +1,4 @@
-// Bodies of coloured or frosted glass, and of what is glass in part: the metallic-roughness model
+// Bodies of colored or frosted glass, and of what is glass in part: the metallic-roughness model
 // with KHR_materials_transmission and a volume [Khronos2022]. Light bends where it enters.
 //
 //   f = (1 - metalness) ((1 - transmission) f_d + transmission f_t) + metalness f_m

@@ -1,17 +1,17 @@
 // The metallic-roughness model with KHR_materials_specular and KHR_materials_ior [Khronos2022]: a
-// coating of any index, whose reflection is weakened and coloured by hand.
+// coating of any index, whose reflection is weakened and colored by hand.
 //
 //   L = D V                                               GGX as in gltf.h, alpha_ggx = roughness^2
 //   ramp = (1 - <wo, wh>)^5,   s = ((eta - 1) / (eta + 1))^2
 //   f0 = min(s specular_color_factor, 1)                  of each channel
 //   F = specular_factor (f0 + (1 - f0) ramp)
-//       at grazing angles specular_factor, whatever the colour
+//       at grazing angles specular_factor, whatever the color
 //   F_m = base_color + (1 - base_color) ramp
 //   f = (1 - metalness) f_d + metalness F_m L
 //   f_d = (1 - max F) base_color / pi + F L               the largest of the three channels
 //
-// The base layer of all channels loses what the strongest one reflects: a coloured coating would
-// else leave light of the complementary colour. With factors 1 and eta 1.5 this is gltf.h; with
+// The base layer of all channels loses what the strongest one reflects: a colored coating would
+// else leave light of the complementary color. With factors 1 and eta 1.5 this is gltf.h; with
 // specular_factor 0 the dielectric is Lambert's. Metals are as they were. White returns at most
 // 0.972 + 1: smooth, eta 1, seen from the horizon.
 //

@@ -1,6 +1,5 @@
-// Oren and Nayar's plaster that gives all light back [Portsmouth2025]: Fujii's form of what one
-// facet sends, and an even glow in place of what went from facet to facet. roughness runs from 0
-// (Lambert) to 1.
+// Energy-preserving Oren-Nayar [Portsmouth2025]: Fujii's form of single scattering between facets,
+// and a lobe for multiple scattering. roughness runs from 0 (Lambert) to 1.
 //
 //   f = albedo / pi A (1 + roughness t) + K / pi A roughness g(o_z) g(i_z) / (k1 - k2)
 //   A = 1 / (1 + k1 roughness),   k1 = 1/2 - 2 / (3 pi),   k2 = 2/3 - 28 / (15 pi)
@@ -13,9 +12,9 @@
 //   G(c) = s (acos(c) - s c) + 2/3 (s / c (1 - s^3) - s),   s = sqrt(1 - c^2)
 //
 // so that the second part, light that bounced at least twice, returns just this to white: the
-// albedo is 1 for every view and roughness. In [Portsmouth2025] it is (1 - E(wo)) (1 - E(wi)) / (1
-// - E), 0 / 0 on a smooth surface; dividing A roughness out of it leaves g, which no parameter
-// moves.
+// albedo is 1 for every view and roughness. In [Portsmouth2025] it is
+// (1 - E(wo)) (1 - E(wi)) / (1 - E), 0 / 0 at roughness 0; dividing A roughness out of it leaves g,
+// which depends on no parameter.
 //
 //   dA/droughness = -k1 A^2      dE/droughness = (k2 - k1) A^2
 //   dK/dalbedo = albedo E (2 - albedo (1 - E)) / q^2      dK/dE = albedo^2 (1 - albedo) / q^2,

@@ -1,4 +1,4 @@
-// Burley's principled model, the part that most programs share: base colour, metalness and
+// Burley's principled model, the part that most programs share: base color, metalness and
 // roughness [Burley2012].
 //
 //   f = base_color P + Q

@@ -54,7 +54,7 @@ struct Standard {
         d_self.base_color += d_f * (rest * R(1 / pi));
         schlick_backward(o_dot_h, d_f * (metalness * lobe), d_self.base_color);
         d_self.metalness += dot(d_f, F_m * lobe - dielectric(o_dot_h, lobe));
-        const R all = d_f.x + d_f.y + d_f.z;  // the dielectric's lobe has no colour
+        const R all = d_f.x + d_f.y + d_f.z;  // the dielectric's lobe has no color
         d_self.reflectance +=
             all * rest * R(0.32) * reflectance * (R(1) - schlick_ramp(o_dot_h)) * lobe;
         const R d_lobe = all * rest * fresnel(o_dot_h) + metalness * dot(d_f, F_m);

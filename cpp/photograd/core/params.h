@@ -34,7 +34,7 @@ constexpr std::tuple<P...> describe(P... parameters) {
     return {parameters...};
 }
 
-/// Number of scalars in a parameter's value: 1, or 3 for a colour or vector.
+/// Number of scalars in a parameter's value: 1, or 3 for a color or vector.
 template <class Value>
 constexpr int scalar_count() {
     if constexpr (std::is_class_v<Value> && !std::is_same_v<Value, Dual<double>>)
@@ -122,7 +122,7 @@ constexpr std::array<ParameterInfo, sizeof...(Q)> parameter_infos(
         description);
 }
 
-/// A model with parameters from a flat row, and the way back.
+/// A model with parameters from a flat row, and a row from a model.
 template <class Model, class R>
 Model from_row(const R* row) {
     Model model;

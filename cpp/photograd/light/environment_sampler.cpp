@@ -24,7 +24,7 @@ void check_texels(std::span<const R> texels, std::int64_t width) {
              "repair the picture, for example with numpy.nan_to_num and numpy.maximum");
 }
 
-/// 1 - cos(theta) = 2 sin^2(theta / 2) at the rows' centres, between those of the poles.
+/// 1 - cos(theta) = 2 sin^2(theta / 2) at the rows' centers, between those of the poles.
 std::vector<double> band_edges(int height) {
     std::vector<double> drop(static_cast<std::size_t>(height) + 2);
     for (int row = 0; row < height; ++row) {
@@ -69,7 +69,7 @@ EnvironmentSampler::EnvironmentSampler(std::span<const R> texels, int height, do
 template EnvironmentSampler::EnvironmentSampler(std::span<const float>, int, double);
 template EnvironmentSampler::EnvironmentSampler(std::span<const double>, int, double);
 
-/// Column k of a band reaches from the centre of texel k to that of its right neighbour; band k
+/// Column k of a band reaches from the center of texel k to that of its right neighbour; band k
 /// lies between the rows k - 1 and k, where they exist.
 BilinearPatch<double> EnvironmentSampler::corners(std::int64_t band, std::int64_t column) const {
     const std::int64_t width = 2 * static_cast<std::int64_t>(height_);

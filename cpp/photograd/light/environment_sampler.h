@@ -1,7 +1,7 @@
 // Directions sampled towards the bright parts of an environment map.
 //
-// Between texel centres the map is cut into cells: bands between the heights of neighbouring rows
-// of centres, each as long as the map is wide, and two half bands at the poles. The density over
+// Between texel centers the map is cut into cells: bands between the heights of neighbouring rows
+// of centers, each as long as the map is wide, and two half bands at the poles. The density over
 // solid angle is
 //
 //   pdf(w) = b(x, s) / integral of b over the sphere
@@ -10,7 +10,7 @@
 // the cell's solid angle above w (on a sphere, equal heights are equal areas: s is linear in w.y).
 // The map itself is bilinear in the angle instead of the height. Both agree at the corners and are
 // zero in the same places, so their ratio stays bounded: between 2/3 and 2 at the poles, close to 1
-// elsewhere, exactly 1 for a map of one colour. Nothing is divided by the sine of theta.
+// elsewhere, exactly 1 for a map of one color. Nothing is divided by the sine of theta.
 #pragma once
 
 #include <span>

@@ -1,4 +1,4 @@
-// How bright a colour looks, by which lights and directions are chosen.
+// How bright a color looks, by which lights and directions are chosen.
 #pragma once
 
 namespace photograd {

@@ -1,4 +1,4 @@
-// A dome whose radiance depends on the height h = w.y of a direction alone; three equal colours
+// A dome whose radiance depends on the height h = w.y of a direction alone; three equal colors
 // make it constant.
 //
 //   L(w) = (1 - h) horizon + h zenith     above the horizon

@@ -3,7 +3,7 @@
 //   L(point, w) = radiance where w hits the front, from which a, b, c turn counterclockwise;
 //   dL/dradiance = 1 there
 //   density = (1 / area) r^2 / cos
-//       cos at the triangle, between its normal and the way back to the point
+//       cos at the triangle, between its normal and the direction to the point
 #pragma once
 
 #include "photograd/geometry/triangle.h"

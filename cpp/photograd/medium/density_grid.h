@@ -1,9 +1,9 @@
-// A density that varies from place to place: values (X, Y, Z) at the voxels' centres of a box in
+// A density that varies from place to place: values (X, Y, Z) at the voxels' centers of a box in
 // the world.
 //
-// grid_from_world takes the box to [0, 1]^3; voxel i of n sits at (i + 1/2) / n. Between centres
-// the density is trilinear (ops/trilinear.h), from the outermost centres to the box's sides it
-// stays, and outside it is 0. By the values it is linear; the weights are those of the lookup.
+// box_from_world takes the box to [0, 1]^3; voxel i of n sits at (i + 1/2) / n. Between centers the
+// density is trilinear (ops/trilinear.h), from the outermost centers to the box's sides it stays,
+// and outside it is 0. It is linear in the values, whose derivatives are the weights of the lookup.
 #pragma once
 
 #include <array>

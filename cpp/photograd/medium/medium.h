@@ -1,6 +1,6 @@
 // What fills a volume: particles that absorb light and, if it has a phase function, scatter it.
 //
-//   sigma_t   extinction: what a metre takes out of a beam, 1/m      sigma_t = sigma_a + sigma_s
+//   sigma_t   extinction: what a meter takes out of a beam, 1/m      sigma_t = sigma_a + sigma_s
 //   albedo    sigma_s / sigma_t: how much of that goes on elsewhere, 0 to 1
 //
 // each for three channels. Along a straight line through an even medium [Chandrasekhar1960]

@@ -40,7 +40,7 @@ Particle from_point(const L& light, const Vec3<double>& axis, double height,
     Particle out;
     out.origin = light.position;
     out.direction = Frame<double>::from_normal(axis).to_world(square_to_cap(u_direction, height));
-    // The irradiance a metre away is what one steradian gets.
+    // The irradiance a meter away is what one steradian gets.
     out.flux = light.at(out.origin + out.direction).radiance * (2 * pi * height);
     return out;
 }
