@@ -91,7 +91,7 @@ void trace(const PathGeometry& geometry, const Models& models, const py::array& 
            const std::optional<Arrays>& sampling_textures, const MediumTuples& media,
            const std::optional<MediumTuples>& sampling_media, const py::tuple& camera_numbers,
            const Options& given, std::uint32_t first, std::uint32_t count, py::array radiance,
-           py::array squares) {
+           py::array squares, std::optional<py::array> hits) {
     dispatch_real("trace_paths", "parameters", parameters, [&](auto real) {
         using R = decltype(real);
         ArrayArgs args("trace_paths");
@@ -103,10 +103,14 @@ void trace(const PathGeometry& geometry, const Models& models, const py::array& 
                 args.range("sampling_media", "the same phase functions as media", "others");
         const ThinLens camera = thin_lens(camera_numbers);
         const PathSums sums = path_sums(args, camera, radiance, squares);
+        double* counts = nullptr;
+        if (hits)
+            counts = args.out<double>(
+                "hits", *hits, std::to_string(camera.height) + " " + std::to_string(camera.width));
         const PathOptions options = options_of(args, given);
         check_samples(args, first, count);
         const py::gil_scoped_release release;
-        trace_paths(numbers.scene, camera, options, {first, count}, sums);
+        trace_paths(numbers.scene, camera, options, {first, count}, sums, counts);
     });
 }
 
@@ -173,15 +177,23 @@ void bind_path(py::module_& m) {
              py::arg("grids"),
              "interior (S,) int32: the number of a medium, -1 for nothing, -2 for what is around; "
              "boundary (S,) bool;\nworld: the number of a medium or -1; for each medium "
-             "((X, Y, Z), box_from_world (3, 4) float64) or None.");
+             "((X, Y, Z), box_from_world (3, 4) float64) or None.")
+        .def_property_readonly(
+            "bvh",
+            [](std::shared_ptr<PathGeometry> self) {
+                return std::shared_ptr<Bvh>(self, &self->bvh);
+            },
+            "The hierarchy of all shapes, to be traced.");
     m.def("trace_paths", &trace, py::arg("geometry"), py::arg("models"), py::arg("parameters"),
           py::arg("sampling_parameters"), py::arg("emission"), py::arg("lights"),
           py::arg("textures"), py::arg("sampling_textures"), py::arg("media"),
           py::arg("sampling_media"), py::arg("camera"), py::arg("options"), py::arg("first"),
-          py::arg("count"), py::arg("radiance"), py::arg("squares"),
+          py::arg("count"), py::arg("radiance"), py::arg("squares"), py::arg("hits") = py::none(),
           "Adds samples to radiance (H, W, 3) and squares (H, W, 3), float64. options: (strategy, "
           "heuristic, max_depth, roulette_from, sampler, seed).\nmedia: (phase function or \"\", "
-          "parameters (P,), densities (X, Y, Z) or None, sigma_maj).");
+          "parameters (P,), densities (X, Y, Z) or None, sigma_maj). hits: None, or (H, W) "
+          "float64,\nto which the number of samples is added that see more than the background; "
+          "the others then add nothing.");
     bind_adjoints(m);
     with_scene_names([&](auto... scene) {
         m.def("trace_path", of_scene(&path_rows), scene..., py::arg("camera"), py::arg("options"),

@@ -356,7 +356,8 @@ void Bvh::trace(const RaySpan<R>& rays, const RayInterval<R>& interval,
                             out.barycentrics[2 * i] = R(hits.u[k]);
                             out.barycentrics[2 * i + 1] = R(hits.v[k]);
                             if constexpr (std::same_as<R, double>) {
-                                if (hits.primitive[k] < 0) continue;
+                                if (hits.primitive[k] < 0 || hits.instance[k] >= sphere_instance())
+                                    continue;
                                 const auto p =
                                     surface_point(rays.ray(i), hits.instance[k], hits.primitive[k]);
                                 out.t[i] = p.t;

@@ -81,6 +81,7 @@ public:
 
     /// Nearest hits of a batch, in the order of the input. Rays that run side by side are traced in
     /// packets; others are reordered first (ray_order.h). The same bits for any number of threads.
+    /// Where a ray meets a triangle is recalculated in R; t of spheres and bodies is Embree's, a float.
     /// RangeError, with a count, for rays without direction or with numbers Embree does not take.
     template <Real R>
     void trace(const RaySpan<R>& rays, const RayInterval<R>& interval,

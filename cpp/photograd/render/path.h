@@ -46,9 +46,11 @@ struct PathSums {
     double *radiance, *squares;
 };
 
+/// With `hits` (H, W) what a camera ray sees of the background is left out, as alpha asks: `hits` counts
+/// the samples that meet anything else, and those that do not add nothing to the sums.
 template <Real R>
 void trace_paths(const PathScene<R>& scene, const ThinLens& camera, const PathOptions& options,
-                 const SampleRange& samples, const PathSums& sums);
+                 const SampleRange& samples, const PathSums& sums, double* hits = nullptr);
 
 /// Where derivatives are added: parameters of all materials one after another; emission (S, 3); for each light of the
 /// list its parameters, or the texels (H, 2 H, 3) of a map; texels (H, W, C) of each texture; the parameters of each

@@ -184,8 +184,7 @@ class PathTracer:
         """A picture of `spp` samples a pixel; the same seed gives the same bits on any threads.
 
         Args:
-            spp: samples a pixel.
-            seed: of all random numbers.
+            spp, seed: samples a pixel, and the seed of all random numbers.
             options: how light is looked for.
             camera: None takes the scene's.
 
@@ -201,18 +200,20 @@ class PathTracer:
     def add_samples(
         self, sums: Accumulation, spp: int, *, seed: int, options: PathOptions = DEFAULTS,
         camera: Camera | None = None, sampling_params: dict[str, Array] | None = None,
+        hits: Array | None = None,
     ) -> None:  # fmt: skip
         """Add the next `spp` samples to `sums`, in place.
 
         Args:
             sums: of the same seed, options and camera, or empty.
             spp, seed, options, camera: as for `render`.
-            sampling_params: what decides where paths go, if not `params`: a difference of two
-                pictures with different `params` and the same sampling is what `render_backward`
-                differentiates.
+            sampling_params: what decides where paths go, if not `params`: `render_backward` is the
+                derivative of pictures whose `params` change while these do not.
+            hits: (H, W) float64, or None. If given, camera rays that see the background alone add
+                nothing to `sums`, and `hits` counts the others: `hits / sums.count` is alpha.
 
         Raises:
-            As `render`; ShapeError: sums of another size.
+            As `render`; ShapeError: sums or hits of another size.
         """
         view = self.scene.camera if camera is None else camera
         sums.check_call("add_samples", (view.height, view.width), spp)
@@ -222,7 +223,7 @@ class PathTracer:
         _core.trace_paths(
             **self._arguments(view), sampling_parameters=other, sampling_textures=texels,
             sampling_media=media, options=options.numbers(seed),
-            first=sums.count, count=spp, radiance=sums.radiance, squares=sums.squares,
+            first=sums.count, count=spp, radiance=sums.radiance, squares=sums.squares, hits=hits,
         )  # fmt: skip
         sums.count += spp
         sums.check_finite("PathTracer.render")
