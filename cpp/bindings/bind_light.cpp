@@ -131,7 +131,6 @@ void bind_light(py::module_& m) {
     DeltaLights::for_each(add);
     AreaLights::for_each(add);
     m.attr("sampled_lights") = all;
-    bind_mesh_light(m);
     bind_environment(m);
 }
 

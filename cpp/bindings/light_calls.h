@@ -8,7 +8,6 @@
 
 namespace photograd {
 
-void bind_mesh_light(py::module_& m);
 void bind_environment(py::module_& m);
 
 /// A light from its flat parameters and constants.

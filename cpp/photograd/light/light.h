@@ -2,7 +2,7 @@
 //
 //   at infinity   Light       sky, sun, environment map: radiance depends on the direction alone
 //   delta         DeltaLight  point, spot, directional: reaches a place from one direction; no ray ever hits it
-//   area          AreaLight   rectangle, sphere, triangle, mesh: a surface that glows on the side of its normal
+//   area          AreaLight   rectangle, sphere, triangle: a surface that glows on the side of its normal
 //
 // sample_light.h gives all of them one interface. Points and directions are of the world; w leaves the lit point.
 #pragma once
