@@ -1,4 +1,4 @@
-// Hierarchies, partitions and distances that are written to be read, and single rays to look at.
+// Hierarchies, partitions and distances that are written to be read.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -7,6 +7,5 @@ namespace photograd {
 
 void bind_reference(pybind11::module_& m);
 void bind_sdf(pybind11::module_& m);
-void bind_first_hits(pybind11::module_& m);
 
 }  // namespace photograd
