@@ -18,9 +18,7 @@ PYBIND11_MODULE(_core, m) {
     photograd::bind_principled(m);
     photograd::bind_light(m);
     photograd::bind_phase(m);
-    photograd::bind_direct(m);
     photograd::bind_path(m);
-    photograd::bind_first_hits(m);
     photograd::bind_path_tangent(m);
     photograd::bind_particles(m);
     photograd::bind_sampling(m);

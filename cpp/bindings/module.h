@@ -15,7 +15,6 @@ void bind_geometry(py::module_& m);
 void bind_bsdf(py::module_& m);
 void bind_light(py::module_& m);
 void bind_phase(py::module_& m);
-void bind_direct(py::module_& m);
 void bind_path(py::module_& m);
 void bind_sampling(py::module_& m);
 void bind_sh(py::module_& m);

@@ -14,7 +14,6 @@ __all__: list[str] = [
     "BspTree",
     "Bvh",
     "CellTable",
-    "EmittingMesh",
     "EnvironmentSampler",
     "MarchSettings",
     "Octree",
@@ -83,7 +82,6 @@ __all__: list[str] = [
     "exp",
     "expm1",
     "fields",
-    "first_hits",
     "instruction_set",
     "lights",
     "log1p_unit",
@@ -107,8 +105,6 @@ __all__: list[str] = [
     "principled_values",
     "principled_values_backward",
     "read_vdb",
-    "render_direct",
-    "render_direct_backward",
     "sample",
     "sample_backward",
     "sample_bricks",
@@ -3036,60 +3032,6 @@ class sampled_triangle:
         The same for the radiance of samples whose directions are w.
         """
 
-class EmittingMesh:
-    """
-    Triangles that glow on their front sides.
-    """
-    def __init__(self, vertices: numpy.ndarray, faces: numpy.ndarray) -> None:
-        """
-        Vertices (V, 3) float64 in the world, faces (F, 3) uint32.
-        """
-    def pdf(
-        self, radiance: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Density over solid angle with which `sample` draws what w meets first, (N,).
-        """
-    def radiance(
-        self, radiance: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        What arrives at the points from w, (N, 3).
-        """
-    def radiance_backward(
-        self,
-        radiance: numpy.ndarray,
-        points: numpy.ndarray,
-        w: numpy.ndarray,
-        d_radiance: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dradiance to d_parameters (3,) and returns it.
-        """
-    def sample(
-        self, radiance: numpy.ndarray, points: numpy.ndarray, u2: numpy.ndarray
-    ) -> tuple[typing.Any, ...]:
-        """
-        (direction (N, 3), distance (N,), radiance (N, 3), pdf (N,)).
-        """
-    def sample_backward(
-        self,
-        radiance: numpy.ndarray,
-        points: numpy.ndarray,
-        w: numpy.ndarray,
-        d_radiance: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        The same for the radiance of samples whose directions are w.
-        """
-    @property
-    def area(self) -> float:
-        """
-        Sum of all faces, m^2.
-        """
-
 class EnvironmentSampler:
     """
     Draws directions towards the bright parts of a map.
@@ -3323,6 +3265,11 @@ class PathGeometry:
         count, lo, hi), and a normal map (values (H, W, 3) float32, wrap_u, wrap_v) or None;
         directed (M,), whether its frame follows u; cutoffs (M,), of masks, others below 0; emission,
         for each shape (texture or -1, first of its three channels).
+        """
+    @property
+    def bvh(self) -> Bvh:
+        """
+        The hierarchy of all shapes, to be traced.
         """
 
 class PhotonMap:
@@ -3959,13 +3906,6 @@ def expm1(x: numpy.ndarray) -> numpy.ndarray:
     The portable exp(x) - 1 on a flat array.
     """
 
-def first_hits(
-    geometry: PathGeometry, origins: numpy.ndarray, directions: numpy.ndarray
-) -> tuple[typing.Any, ...]:
-    """
-    Number of the shape (R,) int32 or -1, t (R,) in metres, position and normal (R, 3) of what rays (R, 3) meet first; the normal is that of the surface, out of it.
-    """
-
 def instruction_set() -> str:
     """
     Name of the kernels in use: baseline, v3 or v4.
@@ -4168,57 +4108,6 @@ def read_vdb(
 ) -> tuple[list[SparseGrid], dict[str, bool | int | float | str]]:
     """
     The grids of a file and its metadata.
-    """
-
-def render_direct(
-    bvh: Bvh,
-    layouts: collections.abc.Sequence[
-        tuple[
-            typing.SupportsInt | typing.SupportsIndex,
-            typing.SupportsInt | typing.SupportsIndex,
-            typing.SupportsInt | typing.SupportsIndex,
-            typing.SupportsInt | typing.SupportsIndex,
-        ]
-    ],
-    albedo: numpy.ndarray,
-    lights: numpy.ndarray,
-    sun_direction: typing.Annotated[
-        collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(3)"
-    ],
-    sun_radius: typing.SupportsFloat | typing.SupportsIndex,
-    camera: tuple[typing.Any, ...],
-    spp: typing.SupportsInt | typing.SupportsIndex,
-    seed: typing.SupportsInt | typing.SupportsIndex,
-) -> tuple[typing.Any, ...]:
-    """
-    Radiance (H, W, 3) premultiplied, alpha (H, W), depth (H, W).
-    """
-
-def render_direct_backward(
-    bvh: Bvh,
-    layouts: collections.abc.Sequence[
-        tuple[
-            typing.SupportsInt | typing.SupportsIndex,
-            typing.SupportsInt | typing.SupportsIndex,
-            typing.SupportsInt | typing.SupportsIndex,
-            typing.SupportsInt | typing.SupportsIndex,
-        ]
-    ],
-    albedo: numpy.ndarray,
-    lights: numpy.ndarray,
-    sun_direction: typing.Annotated[
-        collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(3)"
-    ],
-    sun_radius: typing.SupportsFloat | typing.SupportsIndex,
-    camera: tuple[typing.Any, ...],
-    spp: typing.SupportsInt | typing.SupportsIndex,
-    seed: typing.SupportsInt | typing.SupportsIndex,
-    d_radiance: numpy.ndarray,
-    d_albedo: numpy.ndarray,
-    d_lights: numpy.ndarray,
-) -> None:
-    """
-    Adds to d_albedo (A, 3) and d_lights (4, 3).
     """
 
 def sample(texture: numpy.ndarray, uv: numpy.ndarray, out: numpy.ndarray) -> None:
@@ -4498,10 +4387,12 @@ def trace_paths(
     count: typing.SupportsInt | typing.SupportsIndex,
     radiance: numpy.ndarray,
     squares: numpy.ndarray,
+    hits: numpy.ndarray | None = None,
 ) -> None:
     """
     Adds samples to radiance (H, W, 3) and squares (H, W, 3), float64. options: (strategy, heuristic, max_depth, roulette_from, sampler, seed).
-    media: (phase function or "", parameters (P,), densities (X, Y, Z) or None, sigma_maj).
+    media: (phase function or "", parameters (P,), densities (X, Y, Z) or None, sigma_maj). hits: None, or (H, W) float64,
+    to which the number of samples is added that see more than the background; the others then add nothing.
     """
 
 def trace_paths_backward(

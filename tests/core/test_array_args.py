@@ -114,6 +114,14 @@ def test_the_backward_pass_needs_the_counts_of_a_rendering() -> None:
         prepared.backward(**cloud, **out, **d_out, **d_cloud, **rest)
 
 
+def ball() -> Any:
+    """A scene of one sphere of 1 m around the origin."""
+    sphere, none = np.float32([[0, 0, 0, 1]]), np.zeros(0, np.int32)
+    return _core.PathGeometry(
+        [], none, np.zeros((0, 3, 4)), sphere, np.zeros(1, np.int32), np.zeros((1, 3)), []
+    )
+
+
 CAMERA = (4, 3, 5.0, 5.0, 2.0, 1.5, np.eye(4)[:3].tolist())
 
 
@@ -133,13 +141,11 @@ CAMERA = (4, 3, 5.0, 5.0, 2.0, 1.5, np.eye(4)[:3].tolist())
 def test_cameras_are_checked(place: Any, value: Any, text: str) -> None:
     camera: list[Any] = list(CAMERA)
     camera[place] = value
-    mesh = np.eye(3, dtype=np.float32), np.array([[0, 1, 2]], np.uint32), None
-    bvh = _core.Bvh([mesh], np.zeros(1, np.int32), np.eye(4)[None, :3].copy())
-    layouts, colors = [(0, 0, 1, 1)], np.ones((1, 3))
+    free = np.zeros((3, 4))
     with pytest.raises((DtypeError, RangeError, ShapeError), match=f"camera: {text}"):
-        _core.render_direct(bvh, layouts, colors, np.ones((4, 3)), [0, 1, 0], 0.1,
-                            tuple(camera), 1, 1)  # fmt: skip
-    assert _core.render_direct(bvh, layouts, colors, np.ones((4, 3)), [0, 1, 0], 0.1, CAMERA, 1, 1)
+        _core.ambient_occlusion(ball(), tuple(camera), 1e-3, 1, 0, 1, free)
+    _core.ambient_occlusion(ball(), CAMERA, 1e-3, 1, 0, 1, free)
+    assert free.all()  # nothing stands within 1 mm of the ball around the camera
 
 
 @pytest.mark.parametrize(
@@ -156,10 +162,7 @@ def test_textures_are_where_the_core_looks_them_up(
     uses: list[Any], emission: tuple[int, int], text: str
 ) -> None:
     """A sphere has no triangle whose corners a mip map's footprint could be taken from."""
-    ball, none = np.float32([[0, 0, 0, 1]]), np.zeros(0, np.int32)
-    geometry = _core.PathGeometry(
-        [], none, np.zeros((0, 3, 4)), ball, np.zeros(1, np.int32), np.zeros((1, 3)), []
-    )
+    geometry = ball()
     layouts = [(4, 4, 3, 0, 0, True)]
     with pytest.raises(RangeError, match=text):
         geometry.set_textures(layouts, [uses], [None], [False], [-1.0], [emission])

@@ -8,13 +8,13 @@
 
 namespace photograd {
 
-/// The shapes with an interior around a point, at a time from 0 to 1: those that a ray to the outside leaves once more
-/// than it enters them.
+/// The shapes with an interior around a point, at a time from 0 to 1: those that a ray to the outside
+/// leaves once more than it enters them.
 Surroundings surroundings_of(const PathGeometry& geometry, const Vec3<double>& point,
                              float time = 0);
 
-/// Of every sample. Where a camera moves past a surface while its shutter is open, or a surface may move past the
-/// camera, each moment is asked anew.
+/// The same for every sample of a picture. Where the camera moves past a surface while its shutter is
+/// open, or a surface may move past the camera, each sample has a time of its own.
 class CameraSurroundings {
 public:
     CameraSurroundings(const PathGeometry& geometry, const ThinLens& camera, Sampler sampler);
