@@ -88,6 +88,7 @@ def _drawable(name: str, mesh: SceneMesh) -> tuple[MeshShape, Material, Texture 
     vertices, faces, uv, texels = mesh.vertices, mesh.faces, mesh.uv, mesh.albedo
     if mesh.albedo_kind == "vertices":
         uv, texels = vertex_color_texture(faces, mesh.albedo)
-        vertices, faces = vertices[faces].reshape(-1, 3), np.arange(faces.size).reshape(-1, 3)
+        vertices = vertices[faces].reshape(-1, 3)
+        faces = np.arange(len(vertices), dtype=np.uint32).reshape(-1, 3)
     white = Material("lambert", {"albedo": np.ones(3)}, {"albedo": TextureUse(name)})
     return MeshShape(name, vertices, faces, name, uv=uv), white, Texture(texels, ("clamp", "clamp"))
