@@ -56,7 +56,7 @@ class Volume:
 
     def march(self, grid: Array, rays: tuple[Array, ...]) -> tuple[Array, Array, Array]:
         """Colour (R, 3), transmittance (R,), depth (R,)."""
-        return _core.march("dense_grid", grid, self.settings, *rays)
+        return _core.march("dense_grid", grid, self.settings, rays)
 
     def forward(self) -> Array:
         return self.march(self.grid, self.rays())[0]
@@ -70,9 +70,14 @@ class Volume:
     def backward(self, rays: tuple[Array, ...], outputs: tuple[Array, ...], d_color: Array) -> None:
         """Adds dL/d grid to the gradient."""
         _core.march_backward(
-            "dense_grid", self.grid, self.settings, *rays, *outputs,
-            d_color, self.nothing, self.nothing, self.gradient,
-        )  # fmt: skip
+            "dense_grid",
+            self.grid,
+            self.settings,
+            rays,
+            outputs,
+            (d_color, self.nothing, self.nothing),
+            self.gradient,
+        )
 
     def forward_backward(self) -> float:
         rays = self.rays()

@@ -63,7 +63,7 @@ class Plenoxel:
     def march(self, values: tuple[Array, Array]) -> tuple[Any, ...]:
         """Colour (R, 3), transmittance (R,), depth (R,), number of samples looked up."""
         return _core.march_sparse_sh(
-            self.active.table, *values, self.background, self.settings, 0.5, *self.rays
+            self.active.table, (*values, self.background), self.settings, 0.5, self.rays
         )
 
     def forward(self) -> tuple[Any, ...]:
@@ -75,11 +75,17 @@ class Plenoxel:
         loss = float(np.square(difference).mean(dtype=np.float64))
         for array in self.gradient:
             array.fill(0)
+        d_color = difference * np.float32(2 / difference.size)
         _core.march_sparse_sh_backward(
-            self.active.table, *self.values, self.background, self.settings, 0.5, *self.rays,
-            *outputs[:3], difference * np.float32(2 / difference.size), self.nothing, self.nothing,
-            *self.gradient,
-        )  # fmt: skip
+            self.active.table,
+            (*self.values, self.background),
+            self.settings,
+            0.5,
+            self.rays,
+            outputs[:3],
+            (d_color, self.nothing, self.nothing),
+            self.gradient,
+        )
         return loss
 
 

@@ -23,7 +23,7 @@ from photograd.fit_options import options_for
 from photograd.splat import Gaussians, render
 from photograd.splats.clone_split_prune import CloneSplitPrune
 from photograd.splats.drawings import draw_arrows, draw_gaussian_gradients, draw_picture
-from photograd.splats.view_gradients import ViewGradients, pressure_picture, view_gradients
+from photograd.splats.view_gradients import ViewGradients, grad2d_picture, view_gradients
 from photograd.training_views import TrainingViews
 from photograd_course.viz import save_figure, style, write_gif
 
@@ -88,7 +88,7 @@ def main(folder: Path = IMAGES) -> None:
             found = view_gradients(scene, views, VIEW)
             if fit.step_number in SHOWN:
                 rows[fit.step_number] = (
-                    found, pressure_picture(scene.gaussians, found.pressure, camera),
+                    found, grad2d_picture(scene.gaussians, found.grad2d, camera),
                 )  # fmt: skip
             frames.append(frame(fit.step_number, found, blobs(scene.gaussians, camera)))
         if fit.step_number == STEPS:

@@ -17,11 +17,12 @@ from numpy.typing import NDArray
 from photograd.lights import (
     EnvironmentMap,
     Light,
-    MeshLight,
+    LightSamples,
     PointLight,
     QuadLight,
     SphereLight,
     SpotLight,
+    TriangleLight,
 )
 from photograd_course.color import srgb_encode
 from photograd_course.random import uniform
@@ -38,6 +39,28 @@ SPOT = SpotLight([-0.7, 0.8, 0.0], [0.9, -1.0, 0.0], 2.4 * WARM, 0.8, 0.4)
 HEIGHT = 64
 
 
+class ByArea:
+    """The rectangle again, two triangles: points evenly over its area."""
+
+    halves = tuple(
+        TriangleLight(*CORNERS[list(corners)], 3.0 * WARM) for corners in ((0, 1, 2), (0, 2, 3))
+    )
+
+    def sample(self, points: Array, u2: Array) -> LightSamples:
+        """One of the triangles, by the first number, and a point of it."""
+        u2 = np.array(u2) * [2.0, 1.0]
+        second = u2[:, :1] >= 1.0
+        a, b = (half.sample(points, u2 % 1.0) for half in self.halves)
+        pick = [np.where(second, y, x) for x, y in zip(_rows(a), _rows(b), strict=True)]
+        direction, distance, radiance, pdf = pick
+        return LightSamples(direction, distance[:, 0], radiance, 0.5 * pdf[:, 0], False)
+
+
+def _rows(samples: LightSamples) -> tuple[Array, ...]:
+    s = samples
+    return s.direction, s.distance[:, None], s.radiance, s.pdf[:, None]
+
+
 def floor_points() -> Array:
     """Points (SIZE^2, 3) of a floor of 2 m x 2 m, row 0 far away at -Z."""
     line = (np.arange(SIZE) + 0.5) / SIZE * 2.0 - 1.0
@@ -45,7 +68,7 @@ def floor_points() -> Array:
     return np.stack([x, np.zeros_like(x), z], axis=-1).reshape(-1, 3)
 
 
-def lit(light: Light, points: Array, normals: Array, samples: int) -> Array:
+def lit(light: Light | ByArea, points: Array, normals: Array, samples: int) -> Array:
     """Radiance (N, 3) that white matte points send out, from this many samples each."""
     total = np.zeros((len(points), 3))
     for number in range(samples):
@@ -57,7 +80,7 @@ def lit(light: Light, points: Array, normals: Array, samples: int) -> Array:
     return total / (np.pi * samples)
 
 
-def floor(light: Light, samples: int = 64) -> Array:
+def floor(light: Light | ByArea, samples: int = 64) -> Array:
     """Picture (SIZE, SIZE, 3) of the floor from above."""
     points = floor_points()
     return lit(light, points, np.broadcast_to(UP, points.shape), samples).reshape(SIZE, SIZE, 3)
@@ -143,12 +166,11 @@ def lights_figure() -> Figure:
     """Five floors above; the map, a ball in it and two derivatives below."""
     light = EnvironmentMap(sky(), uniform_share=0.2)
     by_solid_angle = QuadLight(CORNER, EDGE_X, EDGE_Y, 3.0 * WARM)
-    by_area = MeshLight(CORNERS, np.array([[0, 1, 2], [0, 2, 3]]), 3.0 * WARM)
-    floors: tuple[tuple[str, Light, int], ...] = (
+    floors: tuple[tuple[str, Light | ByArea, int], ...] = (
         ("point", PointLight([0.0, 0.4, 0.0], 0.35 * WARM), 1),
         ("spot", SPOT, 1),
         ("sphere", SphereLight([0.3, 0.35, 0.2], 0.25, 2.5 * WARM), 16),
-        ("1 sample by area", by_area, 1),
+        ("1 sample by area", ByArea(), 1),
         ("by solid angle", by_solid_angle, 1),
     )
     side, gap, left = 1.5, 0.16, 0.2

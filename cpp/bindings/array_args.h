@@ -1,10 +1,11 @@
 // NumPy arrays in, checked. The only place that looks at dtype, contiguity, rank and axis sizes.
 //
 //   ArrayArgs args("composite_backward");
-//   const float* sigma_t = args.in<float>("sigma_t", a, "R S");      // the first array to name an axis
-//   float* d_sigma_t = args.out<float>("d_sigma_t", b, "R S");       // fixes its size for the others
+//   const float* sigma_t = args.in<float>("sigma_t", a, "R S");  // the first array to name an axis
+//   float* d_sigma_t = args.out<float>("d_sigma_t", b, "R S");   // fixes its size for the others
 //
-// A number in the list is a fixed size: "N 3". Nothing is converted: the Python faces do that, visibly.
+// A number in the list is a fixed size: "N 3". Nothing is converted: the Python faces do that,
+// visibly.
 #pragma once
 
 #include <pybind11/numpy.h>
@@ -39,7 +40,7 @@ public:
         return static_cast<const T*>(array.data());
     }
 
-    /// The same, and every number lies within [-most, most]; most alone refuses what is not finite.
+    /// `in`, and throws RangeError unless every number lies within [-most, most].
     template <class T>
     const T* within(const char* name, const py::array& array, std::string_view axes, double most) {
         const T* values = in<T>(name, array, axes);
@@ -103,7 +104,8 @@ inline void check_samples(const ArrayArgs& args, std::uint32_t first, std::uint3
                    std::to_string(first) + " + " + std::to_string(count));
 }
 
-/// Calls visit(float{}) or visit(double{}) according to the dtype of `array`; refuses others by name.
+/// Calls visit(float{}) or visit(double{}) according to the dtype of `array`; refuses others by
+/// name.
 template <class Visit>
 decltype(auto) dispatch_real(const char* function, const char* argument, const py::array& array,
                              Visit&& visit) {

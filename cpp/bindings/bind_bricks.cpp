@@ -32,8 +32,8 @@ struct Call {
     }
 };
 
-void sample(const BrickTopology& topology, const py::array& values, const py::array& background,
-            const py::array& points, py::array out) {
+void bricks_sample(const BrickTopology& topology, const py::array& values,
+                   const py::array& background, const py::array& points, py::array out) {
     dispatch_real("sample_bricks", "values", values, [&](auto real) {
         using R = decltype(real);
         ArrayArgs args("sample_bricks");
@@ -68,8 +68,9 @@ void bind_bricks(py::module_& m) {
         .def_property_readonly("bricks", &BrickTopology::bricks)
         .def_property_readonly("voxels", &BrickTopology::voxels)
         .def_property_readonly("memory", &BrickTopology::memory);
-    m.def("sample_bricks", &sample, py::arg("topology"), py::arg("values"), py::arg("background"),
-          py::arg("points"), py::arg("out"), "Writes the values at index-space points (P, 3).");
+    m.def("sample_bricks", &bricks_sample, py::arg("topology"), py::arg("values"),
+          py::arg("background"), py::arg("points"), py::arg("out"),
+          "Writes the values at index-space points (P, 3).");
     m.def("sample_bricks_backward", &backward, py::arg("topology"), py::arg("values"),
           py::arg("background"), py::arg("points"), py::arg("d_out"), py::arg("d_values"),
           py::arg("d_background"), py::arg("d_points"), "Adds the derivatives to the last three.");

@@ -1,4 +1,5 @@
-// Environment maps: texels are arrays of the caller; the table by which directions are drawn is kept between calls.
+// Environment maps: texels are arrays of the caller; the table by which directions are sampled is
+// kept between calls.
 #include "environment_args.h"
 #include "light_calls.h"
 #include "photograd/light/environment_gradient.h"
@@ -44,7 +45,7 @@ void bind_environment(py::module_& m) {
     const auto t = py::arg("texels");
     const auto r = py::arg("world_from_map");
     py::class_<EnvironmentSampler>(m, "EnvironmentSampler",
-                                   "Draws directions towards the bright parts of a map.")
+                                   "Samples directions towards the bright parts of a map.")
         .def(py::init(&make_sampler), t, py::arg("uniform_share"),
              "Texels (H, 2 H, 3); uniform_share of the samples go everywhere alike.")
         .def(

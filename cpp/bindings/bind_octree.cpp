@@ -49,10 +49,10 @@ py::tuple build_dense(ArrayArgs& args, const py::array& values, const py::array&
     const char* const axes = D == 3 ? "X Y Z C" : "X Y C";
     const T* data = args.in<T>("values", values, axes);
     const T* behind = args.in<T>("background", background, "C");
-    constexpr std::int64_t most = std::int64_t{1} << SpatialTree<D>::max_depth;
+    constexpr std::int64_t max_cells = std::int64_t{1} << SpatialTree<D>::max_depth;
     Cell<D> shape{};
     for (int a = 0; a < D; ++a) {
-        if (values.shape(a) > most)
+        if (values.shape(a) > max_cells)
             args.range("values", "at most 2^20 cells along each axis",
                        std::to_string(values.shape(a)));
         shape[a] = static_cast<std::int32_t>(values.shape(a));
@@ -69,7 +69,8 @@ py::tuple build_dense(ArrayArgs& args, const py::array& values, const py::array&
 }
 
 template <int D>
-py::tuple from_dense(const py::array& values, const py::array& background, double tolerance) {
+py::tuple octree_from_dense(const py::array& values, const py::array& background,
+                            double tolerance) {
     ArrayArgs args("Octree.from_dense");
     if (values.ndim() != D + 1)
         fail(ErrorKind::shape, "Octree.from_dense", "values",
@@ -157,7 +158,7 @@ template <int D>
 void bind_tree(py::module_& m, const char* name, const char* help) {
     using Tree = SpatialTree<D>;
     py::class_<Tree, std::shared_ptr<Tree>>(m, name, help)
-        .def_static("from_dense", &from_dense<D>, py::arg("values"), py::arg("background"),
+        .def_static("from_dense", &octree_from_dense<D>, py::arg("values"), py::arg("background"),
                     py::arg("tolerance"), "The tree of an array, and its payloads (L, C).")
         .def_static("from_function", &from_function<D>, py::arg("depth"), py::arg("classify"),
                     py::arg("channels"),

@@ -1,10 +1,11 @@
-// The op list, for the proofs: photograd._core.ops is {name: Op}, each with flat forward, backward, jvp.
+// The op list, for the proofs: photograd._core.ops is {name: Op}, each with flat forward, backward,
+// jvp.
 #include <pybind11/stl.h>
 
 #include "array_args.h"
+#include "bindings/op_adapters/op_list.h"
 #include "module.h"
 #include "photograd/core/real.h"
-#include "photograd/ops/op_list.h"
 
 namespace photograd {
 namespace {

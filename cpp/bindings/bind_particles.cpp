@@ -1,11 +1,13 @@
-// Particles from lights: emission, irradiance of a rectangle, photon maps. And textures that are baked.
-#include "bind_particles.h"
+// Particles from lights: emission, irradiance of a rectangle, photon maps. And textures that are
+// baked.
+#include "module.h"
 
 #include <memory>
 
 #include "bake_calls.h"
 #include "camera_args.h"
-#include "photograd/render/photon_map.h"
+#include "photograd/render/light/irradiance_sensor.h"
+#include "photograd/render/light/photon_map.h"
 #include "scene_calls.h"
 
 namespace photograd {
@@ -57,9 +59,9 @@ py::tuple emit_rows(const SceneRows& scene, std::uint64_t seed, std::uint64_t fi
     return py::make_tuple(origins, directions, flux, entries);
 }
 
-void land(const SceneRows& scene, const ParticleNumbers& given, std::uint64_t first,
-          std::uint64_t count, const py::array& rectangle, py::array irradiance,
-          py::array squares) {
+void sense(const SceneRows& scene, const ParticleNumbers& given, std::uint64_t first,
+           std::uint64_t count, const py::array& rectangle, py::array irradiance,
+           py::array squares) {
     ArrayArgs args("trace_light");
     const SceneNumbers<double> at(args, scene);
     const ParticleOptions options = particles_of(args, scene.geometry, given);
@@ -67,20 +69,16 @@ void land(const SceneRows& scene, const ParticleNumbers& given, std::uint64_t fi
     const PathSums sums{args.out<double>("irradiance", irradiance, "H W 3"),
                         args.out<double>("squares", squares, "H W 3")};
     const auto row = [r](int k) { return Vec3<double>(r[3 * k], r[3 * k + 1], r[3 * k + 2]); };
-    const Receiver receiver{row(0), row(1), row(2), args.size("H"), args.size("W")};
+    const IrradianceSensor sensor{row(0), row(1), row(2), args.size("H"), args.size("W")};
     const py::gil_scoped_release release;
-    trace_light(at.scene, options, {first, count}, receiver, sums);
+    trace_irradiance(at.scene, options, {first, count}, sensor, sums);
 }
 
-std::unique_ptr<PhotonMap> gather_photons(const PathGeometry& geometry, const Models& models,
-                                          const py::array& parameters, const py::array& emission,
-                                          const LightTuples& lights, const Arrays& textures,
-                                          const ParticleNumbers& given, std::uint64_t count,
-                                          double radius, bool direct) {
+std::unique_ptr<PhotonMap> gather_photons(const SceneRows& scene, const ParticleNumbers& given,
+                                          std::uint64_t count, double radius, bool direct) {
     ArrayArgs args("PhotonMap");
-    const SceneNumbers<double> at(args,
-                                  {geometry, models, parameters, emission, lights, textures, {}});
-    const ParticleOptions options = particles_of(args, geometry, given);
+    const SceneNumbers<double> at(args, scene);
+    const ParticleOptions options = particles_of(args, scene.geometry, given);
     check_count(args, count);
     if (!(radius >= 1 / world_limit && radius <= world_limit))
         args.range("radius", "above 0 m, and finite", number_text(radius));
@@ -105,19 +103,28 @@ py::array irradiance_rows(const PhotonMap& map, const py::array& points, const p
     return out;
 }
 
-void picture(const PhotonMap& map, const PathGeometry& geometry, const Models& models,
-             const py::array& parameters, const py::array& emission, const LightTuples& lights,
-             const Arrays& textures, const py::tuple& camera_numbers, const Options& given,
-             std::uint32_t first, std::uint32_t count, py::array radiance, py::array squares) {
+void picture(const PhotonMap& map, const SceneRows& scene, const py::tuple& camera_numbers,
+             const Options& given, std::uint32_t first, std::uint32_t count, py::array radiance,
+             py::array squares) {
     ArrayArgs args("trace_photons");
-    const SceneNumbers<double> at(args,
-                                  {geometry, models, parameters, emission, lights, textures, {}});
+    const SceneNumbers<double> at(args, scene);
     const ThinLens camera = thin_lens(camera_numbers);
     const PathSums sums = path_sums(args, camera, radiance, squares);
     const PathOptions options = options_of(args, given);
     check_samples(args, first, count);
     const py::gil_scoped_release release;
     trace_photons(at.scene, map, camera, options, {first, count}, sums);
+}
+
+/// `of_scene` for a method of the map.
+template <class... More>
+auto of_map_and_scene(void (*call)(const PhotonMap&, const SceneRows&, More...)) {
+    return [call](const PhotonMap& map, const PathGeometry& geometry, const Models& models,
+                  const py::array& parameters, const py::array& emission, const LightTuples& lights,
+                  const Arrays& textures, const MediumTuples& media, More... more) {
+        call(map, {geometry, models, parameters, emission, lights, textures, media},
+             std::forward<More>(more)...);
+    };
 }
 
 }  // namespace
@@ -129,26 +136,22 @@ void bind_particles(py::module_& m) {
               py::arg("count"),
               "(origins (N, 3), directions (N, 3), flux (N, 3) W, entries (N,) of the table of "
               "lights) of particles\nas they leave their lights.");
-        m.def("trace_light", of_scene(&land), scene..., py::arg("options"), py::arg("first"),
+        m.def("trace_light", of_scene(&sense), scene..., py::arg("options"), py::arg("first"),
               py::arg("count"), py::arg("rectangle"), py::arg("irradiance"), py::arg("squares"),
               "Adds what particles bring to a rectangle (corner, edge_x, edge_y) (3, 3) to "
               "irradiance (H, W, 3),\nand its squares, float64. options: (max_depth, "
               "roulette_from, seed).");
     });
-    const auto scene = [](auto&& define) {
-        define(py::arg("geometry"), py::arg("models"), py::arg("parameters"), py::arg("emission"),
-               py::arg("lights"), py::arg("textures"));
-    };
-    scene([&](auto... of) {
-        py::class_<PhotonMap>(m, "PhotonMap", "Particles where they have landed.")
-            .def(py::init(&gather_photons), of..., py::arg("options"), py::arg("count"),
-                 py::arg("radius"), py::arg("direct"))
+    with_scene_names([&](auto... scene) {
+        py::class_<PhotonMap>(m, "PhotonMap", "Particles where they have hit surfaces.")
+            .def(py::init(of_scene(&gather_photons)), scene..., py::arg("options"),
+                 py::arg("count"), py::arg("radius"), py::arg("direct"))
             .def("__len__", [](const PhotonMap& map) { return map.photons().size(); })
             .def("irradiance", &irradiance_rows, py::arg("points"), py::arg("normals"),
                  "(N, 3) W/m^2 at points (N, 3) with geometric normals (N, 3), float64.")
-            .def("trace", &picture, of..., py::arg("camera"), py::arg("options"), py::arg("first"),
-                 py::arg("count"), py::arg("radiance"), py::arg("squares"),
-                 "Adds samples of a picture, as trace_paths does.");
+            .def("trace", of_map_and_scene(&picture), scene..., py::arg("camera"),
+                 py::arg("options"), py::arg("first"), py::arg("count"), py::arg("radiance"),
+                 py::arg("squares"), "Adds samples of a picture, as trace_paths does.");
     });
 }
 

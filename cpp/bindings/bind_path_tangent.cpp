@@ -1,17 +1,18 @@
-// Derivative pictures (render/path_tangent.h).
-#include "bind_particles.h"
+// Derivative pictures (render/path/tangent.h).
 #include "camera_args.h"
-#include "photograd/render/path_tangent.h"
+#include "module.h"
+#include "photograd/render/path/tangent.h"
 #include "scene_calls.h"
 
 namespace photograd {
 namespace {
 
-void trace(const SceneRows& rows, const py::array& v_parameters, const py::array& v_emission,
-           const LightTuples& v_lights, const Arrays& v_textures, const MediumTuples& v_media,
-           const py::tuple& camera_numbers, const Options& given, std::uint32_t first,
-           std::uint32_t count, py::array radiance, py::array squares, py::array d_radiance,
-           py::array d_squares) {
+void trace_tangent(const SceneRows& rows, const py::array& v_parameters,
+                   const py::array& v_emission, const LightTuples& v_lights,
+                   const Arrays& v_textures, const MediumTuples& v_media,
+                   const py::tuple& camera_numbers, const Options& given, std::uint32_t first,
+                   std::uint32_t count, py::array radiance, py::array squares, py::array d_radiance,
+                   py::array d_squares) {
     ArrayArgs args("trace_paths_tangent");
     const SceneNumbers<double> at(args, rows);
     const SceneNumbers<double> along(args, {rows.geometry, rows.models, v_parameters, v_emission,
@@ -36,7 +37,7 @@ void trace(const SceneRows& rows, const py::array& v_parameters, const py::array
 void bind_path_tangent(py::module_& m) {
     with_scene_names([&](auto... scene) {
         m.def(
-            "trace_paths_tangent", of_scene(&trace), scene..., py::arg("v_parameters"),
+            "trace_paths_tangent", of_scene(&trace_tangent), scene..., py::arg("v_parameters"),
             py::arg("v_emission"), py::arg("v_lights"), py::arg("v_textures"), py::arg("v_media"),
             py::arg("camera"), py::arg("options"), py::arg("first"), py::arg("count"),
             py::arg("radiance"), py::arg("squares"), py::arg("d_radiance"), py::arg("d_squares"),

@@ -1,5 +1,5 @@
 // Many evaluations of the principled surface at once; photograd.principled is the typed face.
-#include "bind_principled.h"
+#include "module.h"
 
 #include "array_args.h"
 #include "kernels/kernels.h"
@@ -73,11 +73,10 @@ void values_backward(const py::array& parameters, const py::array& wo, const py:
 }  // namespace
 
 void bind_principled(py::module_& m) {
-    m.def(
-        "principled_values", &values, py::arg("parameters"), py::arg("wo"), py::arg("wi"),
-        py::arg("cosine"), py::arg("values"),
-        "Writes values (N, 3), times the cosine of wi on request. parameters (T, 5): base colour, "
-        "metalness, roughness; evaluation n takes row n mod T. float32.");
+    m.def("principled_values", &values, py::arg("parameters"), py::arg("wo"), py::arg("wi"),
+          py::arg("cosine"), py::arg("values"),
+          "Writes values (N, 3), times the cosine of wi on request. parameters (T, 5): base color, "
+          "metalness, roughness; evaluation n takes row n mod T. float32.");
     m.def("principled_values_backward", &values_backward, py::arg("parameters"), py::arg("wo"),
           py::arg("wi"), py::arg("cosine"), py::arg("d_values"), py::arg("d_parameters"),
           "Adds to d_parameters (T, 5) for d_values (N, 3).");

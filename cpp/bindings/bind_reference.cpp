@@ -1,5 +1,5 @@
 // The reference hierarchy, the binary space partition, and the order by depth that splats use.
-#include "bind_reference.h"
+#include "module.h"
 
 #include <numeric>
 
@@ -23,7 +23,7 @@ void for_each_ray(std::int64_t count, Body&& body) {
     });
 }
 
-Mesh mesh_of(const char* function, const py::array& vertices, const py::array& faces) {
+Mesh reference_mesh(const char* function, const py::array& vertices, const py::array& faces) {
     ArrayArgs args(function);
     const float* v = args.in<float>("vertices", vertices, "V 3");
     const std::uint32_t* f = args.in<std::uint32_t>("faces", faces, "F 3");
@@ -68,9 +68,9 @@ struct TracedRays {
     }
 };
 
-void trace(const ReferenceBvh& bvh, const py::array& origins, const py::array& directions,
-           double t_min, double t_max, bool any, py::array t, py::array primitive,
-           py::array barycentrics, py::array visits) {
+void trace_reference(const ReferenceBvh& bvh, const py::array& origins, const py::array& directions,
+                     double t_min, double t_max, bool any, py::array t, py::array primitive,
+                     py::array barycentrics, py::array visits) {
     const TracedRays out("trace", origins, directions, t_min, t_max, t, primitive, barycentrics,
                          visits);
     const py::gil_scoped_release release;
@@ -128,7 +128,8 @@ py::array_t<std::uint32_t> back_to_front(const BspTree& tree, const py::array& e
     return order;
 }
 
-/// Points (Q, 3) of all polygons one after another; where each begins (P + 1,); their triangles (P,).
+/// Points (Q, 3) of all polygons one after another; where each begins (P + 1,); their triangles
+/// (P,).
 py::tuple polygons(const BspTree& tree) {
     const auto count = static_cast<py::ssize_t>(tree.polygon_count());
     py::array_t<std::int64_t> begin(count + 1);
@@ -175,7 +176,8 @@ py::array_t<std::uint32_t> order_by_depth(const py::array& depth, bool far_first
                        number_text(key[i]) + " in row " + std::to_string(i));
     std::vector<std::uint32_t> rows(static_cast<std::size_t>(count));
     std::iota(rows.begin(), rows.end(), 0u);
-    // Farthest first is nearest first read backwards; rows go in backwards too, so that equals do not swap.
+    // Farthest first is nearest first read backwards; rows go in backwards too, so that equals do
+    // not swap.
     if (far_first) std::reverse(rows.begin(), rows.end());
     rows = sort_by_depth(std::move(rows), key);
     if (far_first) std::reverse(rows.begin(), rows.end());
@@ -190,13 +192,13 @@ void bind_reference(py::module_& m) {
     py::class_<ReferenceBvh>(m, "ReferenceBvh", "A hierarchy of boxes, written to be read.")
         .def(py::init([](const py::array& vertices, const py::array& faces, int leaf_size, int bins,
                          int max_depth) {
-                 Mesh mesh = mesh_of("ReferenceBvh", vertices, faces);
+                 Mesh mesh = reference_mesh("ReferenceBvh", vertices, faces);
                  BvhTree tree = build_bvh(mesh, {leaf_size, bins, max_depth});
                  return ReferenceBvh{std::move(mesh), std::move(tree)};
              }),
              py::arg("vertices"), py::arg("faces"), py::arg("leaf_size"), py::arg("bins"),
              py::arg("max_depth"))
-        .def("trace", &trace, py::arg("origins"), py::arg("directions"), py::arg("t_min"),
+        .def("trace", &trace_reference, py::arg("origins"), py::arg("directions"), py::arg("t_min"),
              py::arg("t_max"), py::arg("any"), py::arg("t"), py::arg("primitive"),
              py::arg("barycentrics"), py::arg("visits"),
              "Fills t (R,), primitive (R,) int32, barycentrics (R, 2) and visits (2, R) int32.")
@@ -208,7 +210,8 @@ void bind_reference(py::module_& m) {
     py::class_<BspTree>(m, "BspTree", "A binary space partition of triangles.")
         .def(py::init([](const py::array& vertices, const py::array& faces, int candidates,
                          int max_polygons) {
-                 return BspTree(mesh_of("BspTree", vertices, faces), {candidates, max_polygons});
+                 return BspTree(reference_mesh("BspTree", vertices, faces),
+                                {candidates, max_polygons});
              }),
              py::arg("vertices"), py::arg("faces"), py::arg("candidates"), py::arg("max_polygons"))
         .def("back_to_front", &back_to_front, py::arg("eyes"),

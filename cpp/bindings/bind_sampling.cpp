@@ -1,7 +1,7 @@
 // The maps of sampling/warp.h on arrays, for lessons and proofs.
 #include "model_args.h"
 #include "module.h"
-#include "photograd/sampling/even_points.h"
+#include "photograd/sampling/sobol.h"
 #include "photograd/sampling/warp.h"
 
 namespace photograd {
@@ -26,10 +26,10 @@ py::array map_rows(const char* function, const char* argument, const py::array& 
     });
 }
 
-py::array_t<std::uint32_t> even_words(std::uint64_t seed, std::uint32_t step, std::uint32_t block,
-                                      const py::array& pixel, std::uint32_t first,
-                                      std::uint32_t count) {
-    ArrayArgs args("even_words");
+py::array_t<std::uint32_t> sobol_words(std::uint64_t seed, std::uint32_t step, std::uint32_t block,
+                                       const py::array& pixel, std::uint32_t first,
+                                       std::uint32_t count) {
+    ArrayArgs args("sobol_words");
     const std::uint32_t* pixels = args.in<std::uint32_t>("pixel", pixel, "N");
     constexpr std::int64_t most = 1 << 26;
     if (count > most / std::max<std::int64_t>(args.size("N"), 1))
@@ -38,7 +38,7 @@ py::array_t<std::uint32_t> even_words(std::uint64_t seed, std::uint32_t step, st
     py::array_t<std::uint32_t> words({args.size("N"), std::int64_t(count), std::int64_t(4)});
     std::uint32_t* out = words.mutable_data();
     for (std::int64_t i = 0; i < args.size("N"); ++i) {
-        const EvenPoints points({seed, step, pixels[i], 0}, block);
+        const SobolSampler points({seed, step, pixels[i], 0}, block);
         for (std::uint32_t k = 0; k < count; ++k, out += 4) {
             const Philox4 w = points.words(first + k);
             std::copy(w.begin(), w.end(), out);
@@ -50,7 +50,7 @@ py::array_t<std::uint32_t> even_words(std::uint64_t seed, std::uint32_t step, st
 }  // namespace
 
 void bind_sampling(py::module_& m) {
-    m.def("even_words", &even_words, py::arg("seed"), py::arg("step"), py::arg("block"),
+    m.def("sobol_words", &sobol_words, py::arg("seed"), py::arg("step"), py::arg("block"),
           py::arg("pixel"), py::arg("first"), py::arg("count"),
           "Words (N, count, 4) uint32 of scrambled Sobol' points first, first + 1, ... of pixels "
           "(N,).");

@@ -1,6 +1,6 @@
-// Bodies of signed distances: values, derivatives, and where rays meet them. float64 only.
+// Signed distance fields (SDFs): values, derivatives, and where rays hit them. float64 only.
 #include "array_args.h"
-#include "bind_reference.h"
+#include "module.h"
 #include "photograd/core/parallel.h"
 #include "photograd/geometry/reference/sphere_trace.h"
 #include "photograd/geometry/sdf_solid.h"
@@ -12,7 +12,7 @@ namespace {
 static_assert(sizeof(SdfNode) == 4 * sizeof(std::int32_t));
 static_assert(sizeof(SdfEnd) == 1);
 
-Sdf build(const py::array& nodes) {
+Sdf build_sdf(const py::array& nodes) {
     ArrayArgs args("Sdf");
     const auto* rows = args.in<std::int32_t>("nodes", nodes, "N 4");
     std::vector<SdfNode> list;
@@ -88,8 +88,8 @@ RaySpan<double> rays_of(ArrayArgs& args, const py::array& origins, const py::arr
     return {o, d, args.size("R")};
 }
 
-py::tuple trace(const Sdf& body, const py::array& numbers, const py::array& origins,
-                const py::array& directions, const MarchArgs& march) {
+py::tuple sdf_trace(const Sdf& body, const py::array& numbers, const py::array& origins,
+                    const py::array& directions, const MarchArgs& march) {
     ArrayArgs args("trace");
     const double* x = checked_numbers(args, body, numbers);
     const RaySpan<double> rays = rays_of(args, origins, directions);
@@ -128,7 +128,7 @@ void trace_backward(const Sdf& body, const py::array& numbers, const py::array& 
 
 void bind_sdf(py::module_& m) {
     py::class_<Sdf>(m, "Sdf", "A body as a tree of signed distances.")
-        .def(py::init(&build), py::arg("nodes"),
+        .def(py::init(&build_sdf), py::arg("nodes"),
              "Nodes (N, 4) int32: kind, two children or -1, where its numbers begin.")
         .def_property_readonly("number_count", &Sdf::number_count)
         .def("bounds", &bounds, py::arg("numbers"),
@@ -138,7 +138,7 @@ void bind_sdf(py::module_& m) {
         .def("distance_backward", &distance_backward, py::arg("numbers"), py::arg("points"),
              py::arg("d_f"), py::arg("d_points"), py::arg("d_numbers"),
              "Adds the derivatives to d_points (N, 3) and d_numbers (P,).")
-        .def("trace", &trace, py::arg("numbers"), py::arg("origins"), py::arg("directions"),
+        .def("trace", &sdf_trace, py::arg("numbers"), py::arg("origins"), py::arg("directions"),
              py::arg("march"), "t (R,), steps (R,) int32, end (R,) int8: missed, hit, gave up.")
         .def("trace_backward", &trace_backward, py::arg("numbers"), py::arg("origins"),
              py::arg("directions"), py::arg("march"), py::arg("t"), py::arg("end"), py::arg("d_t"),

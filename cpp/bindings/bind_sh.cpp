@@ -38,8 +38,8 @@ ShRows<R> rows_of(ArrayArgs& args, const py::array& directions, const py::array&
     return rows;
 }
 
-/// Whether the kernel computes this: floats in three channels, of degree 1 at least. It agrees with the
-/// scalar form of ops/sh_batch.h bit for bit.
+/// Whether the kernel computes this: floats in three channels, of degree 1 at least. It agrees with
+/// the scalar form of ops/sh_batch.h bit for bit.
 template <class R>
 constexpr bool has_kernel(int degree, int channels) {
     return std::is_same_v<R, float> && degree > 0 && channels == 3;

@@ -155,9 +155,9 @@ void prune(SparseGrid& grid, float tolerance) {
 }
 
 void dilate(SparseGrid& grid, int steps) {
-    constexpr int most = 1000;
-    if (steps < 0 || steps > most)
-        fail(ErrorKind::range, "SparseGrid.dilate", "steps", "0 to " + std::to_string(most),
+    constexpr int max_steps = 1000;
+    if (steps < 0 || steps > max_steps)
+        fail(ErrorKind::range, "SparseGrid.dilate", "steps", "0 to " + std::to_string(max_steps),
              std::to_string(steps));
     grid.dilate(steps);
 }
@@ -171,8 +171,8 @@ void bind_sparse(py::module_& m) {
         .def_readonly("leaves", &SparseStatistics::leaves)
         .def_readonly("memory", &SparseStatistics::memory)
         .def_readonly("box", &SparseStatistics::box)
-        .def_readonly("least", &SparseStatistics::least)
-        .def_readonly("most", &SparseStatistics::most);
+        .def_readonly("min", &SparseStatistics::min)
+        .def_readonly("max", &SparseStatistics::max);
     py::class_<SparseGrid>(m, "SparseGrid", "A grid of OpenVDB, float or vec3s.")
         .def_static("from_dense", &from_dense, py::arg("values"), py::arg("origin"),
                     py::arg("background"), py::arg("tolerance"))

@@ -1,88 +1,59 @@
 // Gaussian splatting; photograd.splat is the typed face.
-#include <optional>
-
 #include "module.h"
-#include "photograd/render/splat.h"
+#include "photograd/render/splat/splat.h"
 #include "splat_args.h"
 
 namespace photograd {
 namespace {
 
-/// A prepared picture, in the number type of its arrays.
-template <class R>
-struct Prepared {
-    SplatFrame<R> frame;
-};
-
-py::object prepare(const py::array& means, const py::array& log_scales, const py::array& quats,
-                   const py::array& opacity_logits, const py::array& sh, const SplatImage& image,
+py::object prepare(const GaussianArrays& gaussians, const SplatImage& image,
                    const SplatOptions& options, const py::array& camera_from_world,
                    const py::array& background) {
-    return dispatch_real("splat", "means", means, [&](auto real) -> py::object {
+    return dispatch_real("splat", "means", gaussians[0], [&](auto real) -> py::object {
         using R = decltype(real);
         ArrayArgs args("splat");
-        const auto cloud = cloud_of<R>(args, means, log_scales, quats, opacity_logits, sh);
+        const auto cloud = cloud_of<R>(args, gaussians);
         const R* view = args.within<R>("camera_from_world", camera_from_world, "3 4", world_limit);
         const R* behind = args.in<R>("background", background, "3");
-        Prepared<R> out;
+        SplatFrame<R> frame;
         {
             const py::gil_scoped_release release;
-            out.frame = prepare_splats(cloud, image, options, view, behind);
+            frame = prepare_splats(cloud, image, options, view, behind);
         }
-        return py::cast(std::move(out));
+        return py::cast(std::move(frame));
     });
 }
 
 template <class R>
-py::tuple render(const Prepared<R>& prepared) {
-    const SplatImage& image = prepared.frame.view.image;
-    py::array_t<R> color({image.height, image.width, 3}), opacity({image.height, image.width}),
-        depth({image.height, image.width});
-    const SplatPicture<R> out{color.mutable_data(), opacity.mutable_data(), depth.mutable_data()};
-    {
-        const py::gil_scoped_release release;
-        blend_splats(prepared.frame, out);
-    }
-    return py::make_tuple(color, opacity, depth);
+py::tuple render(const SplatFrame<R>& frame) {
+    const SplatImage& size = frame.view.image;
+    return filled_image<R, RenderedImage<R>>(
+        {size.height, size.width}, [&](const RenderedImage<R>& out) { blend_splats(frame, out); });
 }
 
 template <class R>
-void backward(const Prepared<R>& prepared, const py::array& means, const py::array& log_scales,
-              const py::array& quats, const py::array& opacity_logits, const py::array& sh,
-              py::array color, py::array opacity, py::array depth, const py::array& d_color,
-              const py::array& d_opacity, const py::array& d_depth, py::array d_means,
-              py::array d_log_scales, py::array d_quats, py::array d_opacity_logits, py::array d_sh,
-              py::array d_view, py::array d_background, py::array d_screen) {
+void backward(const SplatFrame<R>& frame, const GaussianArrays& gaussians, Arrays<3> image,
+              const Arrays<3>& d_image, GaussianArrays d_gaussians, py::array d_view,
+              py::array d_background, py::array d_screen) {
     ArrayArgs args("splat_backward");
-    const auto cloud = cloud_of<R>(args, means, log_scales, quats, opacity_logits, sh);
-    const SplatFrame<R>& frame = prepared.frame;
-    const auto picture_axes =
-        std::to_string(frame.view.image.height) + " " + std::to_string(frame.view.image.width);
-    if (cloud.count != static_cast<std::int64_t>(frame.splats.size()))
-        args.range("means", std::to_string(frame.splats.size()) + " rows, as were rendered",
-                   std::to_string(cloud.count));
-    const SplatPicture<R> picture{args.out<R>("color", color, picture_axes + " 3"),
-                                  args.out<R>("opacity", opacity, picture_axes),
-                                  args.out<R>("depth", depth, picture_axes)};
-    const SplatPictureAdjoint<R> adjoint{args.in<R>("d_color", d_color, picture_axes + " 3"),
-                                         args.in<R>("d_opacity", d_opacity, picture_axes),
-                                         args.in<R>("d_depth", d_depth, picture_axes)};
-    const GaussianGradients<R> out{args.out<R>("d_means", d_means, "N 3"),
-                                   args.out<R>("d_log_scales", d_log_scales, "N 3"),
-                                   args.out<R>("d_quats", d_quats, "N 4"),
-                                   args.out<R>("d_opacity_logits", d_opacity_logits, "N"),
-                                   args.out<R>("d_sh", d_sh, "N K 3"),
-                                   args.out<R>("d_camera_from_world", d_view, "3 4"),
-                                   args.out<R>("d_screen", d_screen, "N 2")};
+    const auto cloud =
+        same_cloud<R>(args, gaussians, static_cast<std::int64_t>(frame.splats.size()));
+    const SplatImage& size = frame.view.image;
+    const std::string axes = std::to_string(size.height) + " " + std::to_string(size.width);
+    const auto out = image_from<R, RenderedImage<R>>(args, image, "opacity", axes);
+    const auto d_out = cotangents_from<R, ImageCotangents<R>>(args, d_image, "d_opacity", axes);
+    GaussianGradients<R> gradients = gradients_of<R>(args, d_gaussians);
+    gradients.view = args.out<R>("d_camera_from_world", d_view, "3 4");
+    gradients.screen = args.out<R>("d_screen", d_screen, "N 2");
     R* d_behind = args.out<R>("d_background", d_background, "3");
     const py::gil_scoped_release release;
-    splats_backward(cloud, frame, picture, adjoint, out, d_behind);
+    splats_backward(cloud, frame, out, d_out, gradients, d_behind);
 }
 
 /// The box of pixels of each Gaussian, (N, 4) int32: x0, x1, y0, y1; empty if it is culled.
 template <class R>
-py::array_t<std::int32_t> boxes(const Prepared<R>& prepared) {
-    const auto& splats = prepared.frame.splats;
+py::array_t<std::int32_t> boxes(const SplatFrame<R>& frame) {
+    const auto& splats = frame.splats;
     py::array_t<std::int32_t> out({static_cast<py::ssize_t>(splats.size()), py::ssize_t{4}});
     std::int32_t* to = out.mutable_data();
     for (const ScreenSplat<R>& s : splats) {
@@ -96,18 +67,15 @@ py::array_t<std::int32_t> boxes(const Prepared<R>& prepared) {
 
 template <class R>
 void bind_prepared(py::module_& m, const char* name) {
-    using P = Prepared<R>;
+    using P = SplatFrame<R>;
     py::class_<P>(m, name, "Splats of one view, sorted and in tiles.")
-        .def("render", &render<R>, "Colour (H, W, 3), opacity (H, W), depth (H, W).")
-        .def("backward", &backward<R>, py::arg("means"), py::arg("log_scales"), py::arg("quats"),
-             py::arg("opacity_logits"), py::arg("sh"), py::arg("color"), py::arg("opacity"),
-             py::arg("depth"), py::arg("d_color"), py::arg("d_opacity"), py::arg("d_depth"),
-             py::arg("d_means"), py::arg("d_log_scales"), py::arg("d_quats"),
-             py::arg("d_opacity_logits"), py::arg("d_sh"), py::arg("d_camera_from_world"),
-             py::arg("d_background"), py::arg("d_screen"), "Adds to the arrays named d_*.")
+        .def("render", &render<R>, "Color (H, W, 3), opacity (H, W), depth (H, W).")
+        .def("backward", &backward<R>, py::arg("gaussians"), py::arg("image"), py::arg("d_image"),
+             py::arg("d_gaussians"), py::arg("d_camera_from_world"), py::arg("d_background"),
+             py::arg("d_screen"),
+             "Adds to d_gaussians and what follows; image is what render returned.")
         .def_property_readonly(
-            "pairs",
-            [](const P& p) { return static_cast<std::int64_t>(p.frame.lists.pairs.size()); },
+            "pairs", [](const P& p) { return static_cast<std::int64_t>(p.lists.pairs.size()); },
             "Number of pairs of splat and tile.")
         .def_property_readonly("boxes", &boxes<R>,
                                "Pixels [x0, x1) x [y0, y1) of each Gaussian, (N, 4) int32.");
@@ -145,9 +113,9 @@ void bind_splat(py::module_& m) {
                      {"stop", stop, 1},
                      {"near", near, world_limit},
                      {"frustum_margin", frustum_margin, 1e12}};
-                 for (const auto& [name, x, most] : numbers)
-                     if (!(x >= 0 && x <= most))
-                         fail(ErrorKind::range, "SplatOptions", name, "0 to " + number_text(most),
+                 for (const auto& [name, x, max] : numbers)
+                     if (!(x >= 0 && x <= max))
+                         fail(ErrorKind::range, "SplatOptions", name, "0 to " + number_text(max),
                               number_text(x));
                  return SplatOptions{low_pass,  antialiased,  alpha_min,
                                      alpha_max, pass_clamped, extent_sigmas,
@@ -158,10 +126,11 @@ void bind_splat(py::module_& m) {
              py::arg("stop"), py::arg("near"), py::arg("frustum_margin"));
     bind_prepared<float>(m, "PreparedSplats32");
     bind_prepared<double>(m, "PreparedSplats64");
-    m.def("prepare_splats", &prepare, py::arg("means"), py::arg("log_scales"), py::arg("quats"),
-          py::arg("opacity_logits"), py::arg("sh"), py::arg("image"), py::arg("options"),
-          py::arg("camera_from_world"), py::arg("background"),
-          "Projects, sorts and bins; PreparedSplats32 or PreparedSplats64.");
+    m.def(
+        "prepare_splats", &prepare, py::arg("gaussians"), py::arg("image"), py::arg("options"),
+        py::arg("camera_from_world"), py::arg("background"),
+        "Projects, sorts and bins; PreparedSplats32 or PreparedSplats64. gaussians: means (N, 3), "
+        "log_scales (N, 3), quats (N, 4), opacity_logits (N,), sh (N, K, 3).");
     bind_splat_rays(m);
 }
 

@@ -1,5 +1,5 @@
-// Texture lookups, mip maps and the plan of a texture's recovery. Results are added to, or written into,
-// arrays that the Python face (photograd.texture) makes.
+// Texture lookups, mip maps and the plan of a texture's recovery. Results are added to, or written
+// into, arrays that the Python face (photograd.texture) makes.
 #include <pybind11/stl.h>
 
 #include <atomic>
@@ -288,7 +288,7 @@ double ssim_any_backward(const py::array& x, const py::array& y, double d_value,
 
 void bind_texture(py::module_& m) {
     m.def("sample", &sample_any, py::arg("texture"), py::arg("uv"), py::arg("out"),
-          "Writes the colours (N, C) of a texture (H, W, C) at uv (N, 2) to out.");
+          "Writes the colors (N, C) of a texture (H, W, C) at uv (N, 2) to out.");
     m.def("sample_backward", &sample_any_backward, py::arg("texture"), py::arg("uv"),
           py::arg("d_color"), py::arg("d_texture") = py::none(), py::arg("d_uv") = py::none(),
           "Adds to d_texture (H, W, C) and d_uv (N, 2), where given.");
@@ -308,7 +308,7 @@ void bind_texture(py::module_& m) {
     m.def("mip_level", &level_of, py::arg("height"), py::arg("width"), py::arg("footprint"),
           "Level (N,) of footprints (N, 2, 2): du/dx, dv/dx; du/dy, dv/dy.");
     m.def("sample_mips", &sample_mips_any, py::arg("mips"), py::arg("uv"), py::arg("level"),
-          py::arg("out"), "Writes the colours (N, C) at uv (N, 2) and level (N,) to out.");
+          py::arg("out"), "Writes the colors (N, C) at uv (N, 2) and level (N,) to out.");
     m.def("sample_mips_backward", &sample_mips_any_backward, py::arg("mips"), py::arg("uv"),
           py::arg("level"), py::arg("d_color"), py::arg("d_mips"), py::arg("d_uv"),
           py::arg("d_level"), "Adds to all levels of d_mips, d_uv (N, 2) and d_level (N,).");
@@ -316,7 +316,7 @@ void bind_texture(py::module_& m) {
           "Mean structural similarity of two pictures (H, W, C) in 0 .. 1.");
     m.def("ssim_backward", &ssim_any_backward, py::arg("x"), py::arg("y"), py::arg("d_value"),
           py::arg("d_x"), "Adds d_value times its derivative to d_x (H, W, C); returns the value.");
-    py::class_<BoundPlan>(m, "TexturePlan", "Points sorted by tile, with their colours.")
+    py::class_<BoundPlan>(m, "TexturePlan", "Points sorted by tile, with their colors.")
         .def(py::init(&make_plan), py::arg("height"), py::arg("width"), py::arg("uv"),
              py::arg("colors"))
         .def(

@@ -1,5 +1,6 @@
-// Cameras as Python hands them over: (width, height, fx, fy, cx, cy, rows of world_from_camera), and for a lens its
-// radius and the distance of the plane in focus behind them; while it moves, also by how far and how it turns.
+// Cameras as Python hands them over: (width, height, fx, fy, cx, cy, rows of world_from_camera),
+// and for a lens its radius and the distance of the plane in focus behind them; while it moves,
+// also by how far and how it turns.
 #pragma once
 
 #include <pybind11/stl.h>
@@ -21,13 +22,13 @@ public:
     }
     [[nodiscard]] std::size_t size() const { return numbers_.size(); }
     template <class T>
-    [[nodiscard]] T at(std::size_t place, const char* name) const {
-        return entry_as<T>("camera", name, "numbers", numbers_[place]);
+    [[nodiscard]] T at(std::size_t slot, const char* name) const {
+        return entry_as<T>("camera", name, "numbers", numbers_[slot]);
     }
     /// A number, or an array of them, all within `world_limit`.
     template <class T = double>
-    [[nodiscard]] T within(std::size_t place, const char* name) const {
-        const T value = at<T>(place, name);
+    [[nodiscard]] T within(std::size_t slot, const char* name) const {
+        const T value = at<T>(slot, name);
         const auto check = [&](double x) {
             if (!(std::abs(x) <= world_limit))
                 fail(ErrorKind::range, "camera", name,

@@ -1,4 +1,5 @@
-// Lights as functions on arrays of points and directions, whatever the light: light/sample_light.h, row by row.
+// Lights as functions on arrays of points and directions, whatever the light: light/sample_light.h,
+// row by row.
 #pragma once
 
 #include <cmath>
@@ -8,7 +9,6 @@
 
 namespace photograd {
 
-void bind_mesh_light(py::module_& m);
 void bind_environment(py::module_& m);
 
 /// A light from its flat parameters and constants.
@@ -22,7 +22,8 @@ T light_of(ArrayArgs& args, const py::array& parameters, const py::array& consta
     return light;
 }
 
-/// Refuses colours that are negative, numbers that are not finite, and what the light itself finds wrong.
+/// Refuses colors that are negative, numbers that are not finite, and what the light itself finds
+/// wrong.
 template <class R, class T>
 void check_light(const ArrayArgs& args, const T& light) {
     const auto check = [&](const char* name, const auto& value, bool color) {
@@ -97,21 +98,34 @@ py::array pdf_rows(ArrayArgs& args, const L& light, const py::array& points, con
     return out;
 }
 
-/// Adds dL/dparameters to d_parameters (P,); `of_sample`: w are directions that `sample` gave.
+/// Adds the derivative of one row to d_row, zeros at first; `of_sample`: w is a direction that
+/// `sample` gave.
+template <class R, class L>
+void add_light_row(const L& light, bool of_sample, const Vec3<R>& point, const Vec3<R>& w,
+                   const Vec3<R>& d_radiance, R* d_row) {
+    L d_light;
+    for_each_scalar([](R& x) { x = R(0); }, d_light);
+    if (of_sample)
+        sample_light_backward(light, point, w, d_radiance, d_light);
+    else
+        light_radiance_backward(light, point, w, d_radiance, d_light);
+    to_row(d_light, d_row);
+}
+template <class L>
+int light_parameters(const L&) {
+    return parameter_count<L>();
+}
+
+/// Adds dL/dparameters to d_parameters (P,).
 template <class R, class L>
 void add_light_rows(ArrayArgs& args, const L& light, bool of_sample, const py::array& points,
                     const py::array& w, const py::array& d_radiance, py::array& d_parameters) {
     const R *x = args.in<R>("points", points, "N 3"), *in = args.in<R>("w", w, "N 3");
     const R* d = args.in<R>("d_radiance", d_radiance, "N 3");
-    R* out = args.out<R>("d_parameters", d_parameters, std::to_string(parameter_count<L>()));
-    add_parameter_rows<R, L>(args.size("N"), true, out, [&](std::int64_t n) {
-        L d_light = zero_model<L, R>();
-        const Vec3<R> point = vec3_at(x, n), direction = vec3_at(in, n), d_out = vec3_at(d, n);
-        if (of_sample)
-            sample_light_backward(light, point, direction, d_out, d_light);
-        else
-            light_radiance_backward(light, point, direction, d_out, d_light);
-        return d_light;
+    const int size = light_parameters(light);
+    R* out = args.out<R>("d_parameters", d_parameters, std::to_string(size));
+    add_parameter_rows<R>(size, args.size("N"), true, out, [&](std::int64_t n, R* d_row) {
+        add_light_row(light, of_sample, vec3_at(x, n), vec3_at(in, n), vec3_at(d, n), d_row);
     });
 }
 

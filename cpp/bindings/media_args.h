@@ -1,4 +1,5 @@
-// Media of a scene as Python gives them: where they are, once, and their numbers, for each rendering.
+// Media of a scene as Python gives them: where they are, once, and their numbers, for each
+// rendering.
 //
 //   (name of the phase function or "", parameters (P,), densities (X, Y, Z) or None, sigma_maj)
 #pragma once
@@ -15,7 +16,7 @@ namespace photograd {
 
 using MediumTuple = std::tuple<std::string, py::array, std::optional<py::array>, double>;
 /// (X, Y, Z) and box_from_world (3, 4), or None.
-using GridPlaces = std::vector<std::optional<std::tuple<std::array<int, 3>, py::array>>>;
+using GridTransforms = std::vector<std::optional<std::tuple<std::array<int, 3>, py::array>>>;
 
 inline constexpr double most_mean_free_paths = 1e6;
 
@@ -36,7 +37,7 @@ inline double longest_way(const DensityLayout& layout) {
 }
 
 inline void set_media(PathGeometry& geometry, const py::array& interior, const py::array& boundary,
-                      std::int32_t world, const GridPlaces& grids) {
+                      std::int32_t world, const GridTransforms& grids) {
     ArrayArgs args("PathTracer");
     const std::string axes = std::to_string(geometry.shape_count());
     const std::int32_t* inside = args.in<std::int32_t>("interior", interior, axes);
@@ -52,10 +53,10 @@ inline void set_media(PathGeometry& geometry, const py::array& interior, const p
     if (world < MediaGeometry::vacuum || world >= count)
         args.range("world", "the number of a medium or -1", std::to_string(world));
     out.world = world;
-    for (const auto& place : grids) {
+    for (const auto& transform : grids) {
         DensityLayout layout;
-        if (place) {
-            const auto& [shape, matrix] = *place;
+        if (transform) {
+            const auto& [shape, matrix] = *transform;
             if (shape[0] < 2 || shape[1] < 2 || shape[2] < 2)
                 args.range("density", "at least two voxels along each axis", "fewer");
             layout.shape = {shape[0], shape[1], shape[2]};
@@ -115,29 +116,5 @@ bool same_phase(const Medium<R>& a, const Medium<R>& b) {
     return a.phase.has_value() == b.phase.has_value() &&
            (!a.phase || a.phase->model.index() == b.phase->model.index());
 }
-
-/// Where derivatives by media go: rows like their parameters, and arrays like their grids or None.
-template <class R>
-struct MediaOutputs {
-    std::vector<R*> rows, densities;
-
-    MediaOutputs(const PathGeometry& geometry, const std::vector<Medium<R>>& media,
-                 std::vector<py::array>& d_media,
-                 std::vector<std::optional<py::array>>& d_densities) {
-        ArrayArgs args("trace_paths_backward");
-        if (d_media.size() != media.size() || d_densities.size() != media.size())
-            args.range("d_media", std::to_string(media.size()) + " rows and grids", "others");
-        for (std::size_t m = 0; m < media.size(); ++m) {
-            ArrayArgs own("trace_paths_backward");
-            rows.push_back(
-                own.out<R>("d_media", d_media[m], std::to_string(media[m].parameter_count())));
-            densities.push_back(nullptr);
-            if (!media[m].density) continue;
-            if (!d_densities[m]) args.range("d_densities", "an array for each grid", "None");
-            densities.back() =
-                own.out<R>("d_densities", *d_densities[m], axes_of(geometry.media.grids[m].shape));
-        }
-    }
-};
 
 }  // namespace photograd

@@ -1,7 +1,11 @@
-// Models of a registry as flat functions on arrays: parameters (N, P) or (1, P), one row of P scalars a model.
+// Models of a registry as flat functions on arrays: parameters (N, P) or (1, P), one row of P
+// scalars a model.
 #pragma once
 
 #include <pybind11/stl.h>
+
+#include <algorithm>
+#include <span>
 
 #include "array_args.h"
 #include "photograd/core/parallel.h"
@@ -14,46 +18,36 @@ namespace photograd {
 /// (name, scalars, lo, hi, unit) of each described parameter.
 using ParameterRows = std::vector<std::tuple<std::string, int, double, double, std::string>>;
 
-template <class Description>
-ParameterRows parameter_rows(const Description& description) {
+inline ParameterRows parameter_rows(std::span<const ParameterInfo> infos) {
     ParameterRows rows;
-    std::apply(
-        [&](const auto&... q) {
-            (rows.emplace_back(q.name, value_scalars(q), q.lo, q.hi, q.unit), ...);
-        },
-        description);
+    for (const ParameterInfo& q : infos) rows.emplace_back(q.name, q.scalars, q.lo, q.hi, q.unit);
     return rows;
 }
 
-/// Rows of parameters for N evaluations; one row serves all.
+inline int scalars_in(std::span<const ParameterInfo> infos) {
+    int count = 0;
+    for (const ParameterInfo& q : infos) count += q.scalars;
+    return count;
+}
+
+/// Rows of `count` parameters for N evaluations; one row serves all.
 template <class R>
 struct ModelRows {
     const R* data;
-    std::int64_t step;  // scalars from one row to the next: P, or 0
+    std::int64_t step;  // scalars from one row to the next: count, or 0
 
-    template <class Model>
-    static ModelRows read(ArrayArgs& args, const py::array& parameters) {
-        constexpr int count = parameter_count<Model>();
+    static ModelRows read(ArrayArgs& args, const py::array& parameters, int count) {
         const bool single = parameters.ndim() == 2 && parameters.shape(0) == 1;
         const std::string axes = (single ? "1 " : "N ") + std::to_string(count);
         return {args.in<R>("parameters", parameters, axes), single ? 0 : count};
     }
+    [[nodiscard]] const R* at(std::int64_t n) const { return data + n * step; }
+    [[nodiscard]] bool shared() const { return step == 0; }
+    /// Axes of an array that takes the derivatives of all rows.
+    [[nodiscard]] std::string axes(int count) const {
+        return (shared() ? "1 " : "N ") + std::to_string(count);
+    }
 };
-
-/// A model with parameters from a flat row, its constants taken from `start`.
-template <class Model, class R>
-Model model_at(const Model& start, const R* row) {
-    Model model = start;
-    for_each_scalar([&](auto& x) { x = *row++; }, model);
-    return model;
-}
-
-template <class Model, class R>
-Model zero_model() {
-    Model model;
-    for_each_scalar([](auto& x) { x = R(0); }, model);
-    return model;
-}
 
 template <class R>
 Vec3<R> vec3_at(const R* p, std::int64_t i) {
@@ -76,20 +70,26 @@ void for_each_row(std::int64_t count, Body&& body) {
     });
 }
 
-/// Adds each row's derivative to d_parameters: row by row, or, where one row of parameters served all, into
-/// it, as partial sums of fixed blocks in fixed order.
-template <class R, class Model, class Derivative>
-void add_parameter_rows(std::int64_t count, bool shared, R* d_parameters, Derivative&& derivative) {
-    constexpr int size = parameter_count<Model>();
+inline constexpr int max_row = 64;  // numbers of one model
+
+/// Adds derivatives to d_parameters, `size` numbers a row: derivative(i, d) adds those of
+/// evaluation i to zeros d. Row by row, or, where one row of parameters served all, into it, as
+/// partial sums of fixed blocks in fixed order.
+template <class R, class Derivative>
+void add_parameter_rows(int size, std::int64_t count, bool shared, R* d_parameters,
+                        Derivative&& derivative) {
     constexpr std::int64_t block_size = 4096;
     const auto row_of = [&](std::int64_t i, auto* out) {
-        Model d = derivative(i);
-        for_each_scalar([&](auto& x) { *out++ += x; }, d);
+        R d[max_row];
+        std::fill_n(d, size, R(0));
+        derivative(i, d);
+        for (int k = 0; k < size; ++k) out[k] += d[k];
     };
     if (!shared)
         return for_each_row(count, [&](std::int64_t i) { row_of(i, d_parameters + i * size); });
     const py::gil_scoped_release release;
-    sum_partials<R>((count + block_size - 1) / block_size, std::span<R>(d_parameters, size),
+    sum_partials<R>((count + block_size - 1) / block_size,
+                    std::span<R>(d_parameters, static_cast<std::size_t>(size)),
                     [&](std::int64_t block, std::span<double> partial) {
                         const std::int64_t end = std::min(count, (block + 1) * block_size);
                         for (std::int64_t i = block * block_size; i < end; ++i)

@@ -1,9 +1,5 @@
 #include "module.h"
 
-#include "bind_particles.h"
-#include "bind_principled.h"
-#include "bind_reference.h"
-
 PYBIND11_MODULE(_core, m) {
     m.doc() = "photograd's C++ core. Use the typed faces in the package photograd instead.";
     m.attr("__version__") = PHOTOGRAD_VERSION;
@@ -18,9 +14,8 @@ PYBIND11_MODULE(_core, m) {
     photograd::bind_principled(m);
     photograd::bind_light(m);
     photograd::bind_phase(m);
-    photograd::bind_direct(m);
+    photograd::bind_scene(m);
     photograd::bind_path(m);
-    photograd::bind_first_hits(m);
     photograd::bind_path_tangent(m);
     photograd::bind_particles(m);
     photograd::bind_sampling(m);

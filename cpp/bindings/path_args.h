@@ -3,11 +3,10 @@
 
 #include <optional>
 
-#include "listed_lights.h"
+#include "light_list.h"
 #include "media_args.h"
 #include "photograd/camera/pinhole.h"
-#include "photograd/render/path.h"
-#include "photograd/render/path_options.h"
+#include "photograd/render/path/path.h"
 #include "photograd/scene/path_scene.h"
 
 namespace photograd {
@@ -30,7 +29,7 @@ struct SceneRows {
     const MediumTuples& media;
 };
 
-/// What decides where paths go, as far as that is not the scene that they find.
+/// What is sampled, where it differs from what is evaluated (scene/path_scene.h).
 struct SamplingRows {
     std::optional<py::array> parameters;
     std::optional<Arrays> textures;
@@ -45,7 +44,7 @@ inline std::string axes_of(const TextureLayout& layout) {
 /// Checked numbers of a scene, and the materials that they describe.
 template <class R>
 struct SceneNumbers {
-    std::vector<Material<R>> drawn, sampling;
+    std::vector<Material<R>> materials, sampling;
     std::vector<const R*> texels, sampling_texels;
     std::vector<std::vector<R>> mips;  // all levels of textures that have them
     std::vector<AnyLight<R>> lights;
@@ -53,22 +52,24 @@ struct SceneNumbers {
     PathScene<R> scene;
 
     SceneNumbers(ArrayArgs& args, const SceneRows& rows, const SamplingRows& other = {})
-        : lights(listed_lights<R>(rows.lights)), media(media_of<R>(rows.geometry, rows.media)) {
+        : lights(infinite_and_delta<R>(rows.lights)),
+          media(media_of<R>(rows.geometry, rows.media)) {
         const PathGeometry& geometry = rows.geometry;
         for (const std::int32_t m : geometry.material)
             if (m < 0 || m >= static_cast<std::int32_t>(rows.models.size()))
                 args.range("material", "numbers below " + std::to_string(rows.models.size()),
                            std::to_string(m));
-        read(args, rows.models, "parameters", rows.parameters, drawn);
+        read(args, rows.models, "parameters", rows.parameters, materials);
         if (other.parameters)
             read(args, rows.models, "sampling_parameters", *other.parameters, sampling);
         const R* e =
             args.in<R>("emission", rows.emission, std::to_string(geometry.shape_count()) + " 3");
-        const std::size_t count = static_cast<std::size_t>(geometry.lights.listed_count());
+        const std::size_t count =
+            static_cast<std::size_t>(geometry.lights.infinite_and_delta_count());
         if (lights.size() != count)
             args.range("lights", std::to_string(count) + ", as when the scene was built",
                        std::to_string(lights.size()));
-        scene = {&geometry, drawn, other.parameters ? sampling : drawn, e, lights};
+        scene = {&geometry, materials, other.parameters ? sampling : materials, e, lights};
         texels = texels_of(args, geometry, "textures", rows.textures);
         if (other.textures)
             sampling_texels = texels_of(args, geometry, "textures", *other.textures);
@@ -77,9 +78,9 @@ struct SceneNumbers {
         scene.sampling_media = other.media ? sampling_media : media;
         scene.texels = texels;
         scene.sampling_texels = other.textures ? sampling_texels : texels;
-        for (std::size_t m = 0; m < drawn.size(); ++m)
+        for (std::size_t m = 0; m < materials.size(); ++m)
             for (const TextureUse& use : geometry.textures.of(m))
-                if (use.first + use.count > drawn[m].parameter_count())
+                if (use.first + use.count > materials[m].parameter_count())
                     args.range("uses", "parameters of the material", "others");
     }
 

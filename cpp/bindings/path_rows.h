@@ -2,7 +2,7 @@
 #pragma once
 
 #include "camera_args.h"
-#include "photograd/render/volume_path.h"
+#include "photograd/render/path/path.h"
 #include "scene_calls.h"
 
 namespace photograd {
@@ -13,45 +13,55 @@ inline py::list colors(const Vec3<double>& v) {
     return out;
 }
 
-inline py::dict vertex_row(const PathVertex<double>& v) {
+/// (medium, kind, length, position, value) of each event of a product.
+inline py::list event_rows(const Path<double>& path, const Range& events) {
+    py::list out;
+    for (std::int32_t i = events.first; i < events.last; ++i) {
+        const MediumEvent<double>& event = path.events[static_cast<std::size_t>(i)];
+        out.append(py::make_tuple(event.medium, static_cast<int>(event.kind), event.length,
+                                  colors(event.position), colors(event.value)));
+    }
+    return out;
+}
+
+inline void put_emitter(const EmitterSample<double>& nee, py::dict& row) {
+    row["nee_shape"] = nee.shape;
+    row["nee_light"] = nee.light;
+    row["nee_direction"] = colors(nee.direction);
+    row["nee_f"] = colors(nee.f);
+    row["nee_Le"] = colors(nee.weight > 0 ? nee.Le : Vec3<double>(0));
+    row["nee_weight"] = nee.weight;
+    row["nee_cosine"] = std::abs(nee.wi.z);
+    row["nee_pdf"] = nee.pdf;
+    row["nee_bsdf_pdf"] = nee.bsdf_pdf;
+}
+
+inline py::dict vertex_row(const Path<double>& path, const PathVertex<double>& v, bool media) {
     py::dict row;
     row["shape"] = v.shape;
     row["direction"] = colors(v.direction);
-    row["emitted"] = colors(v.emitted);
+    row["Le"] = colors(v.Le);
     row["emission_weight"] = v.emission_weight;
     row["pdf"] = v.pdf;
-    row["light_pdf"] = v.light_pdf;
-    row["light_shape"] = v.light.shape;
-    row["light_listed"] = v.light.listed;
-    row["light_direction"] = colors(v.light.direction);
-    row["light_f"] = colors(v.light.f);
-    row["light_emitted"] = colors(v.light.weight > 0 ? v.light.sent : Vec3<double>(0));
-    row["light_weight"] = v.light.weight;
-    row["light_cosine"] = std::abs(v.light.wi.z);
-    row["light_chosen_pdf"] = v.light.pdf;
-    row["light_scatter_pdf"] = v.light.scatter_pdf;
+    row["emitter_pdf"] = v.emitter_pdf;
+    put_emitter(v.nee, row);
     row["wo"] = colors(v.wo);
     row["wi"] = colors(v.wi);
-    row["value"] = colors(v.value);
+    row["f"] = colors(v.f);
     row["lobe"] = v.lobe;
-    row["passed"] = v.passed;
-    row["coverage"] = v.coverage;
-    row["coverage_slope"] = v.coverage_slope;
-    row["light_through"] = v.light.through;
+    row["is_null"] = v.kind == VertexKind::null_surface;
+    row["opacity_weight"] = v.opacity_weight;
+    row["d_opacity"] = v.d_opacity;
+    row["nee_alpha_transmittance"] = v.nee.alpha_transmittance;
     row["weight"] = v.weight;
     row["survival"] = v.survival;
+    if (!media) return row;
+    row["medium"] = v.medium;
+    row["pdf_channels"] = colors(v.arrival.pdf);
+    row["segment_weight"] = v.arrival.weight;
+    row["events"] = event_rows(path, v.arrival.product.events);
+    row["nee_events"] = event_rows(path, v.nee.shadow.events);
     return row;
-}
-
-/// (medium, kind, length, position, value) of each step of a product.
-inline py::list step_rows(const MediaTrail<double>& trail, const StepProduct<double>& product) {
-    py::list out;
-    for (std::int32_t i = product.first; i < product.last; ++i) {
-        const MediumStep<double>& step = trail.steps[static_cast<std::size_t>(i)];
-        out.append(py::make_tuple(step.medium, static_cast<int>(step.kind), step.length,
-                                  colors(step.position), colors(step.value)));
-    }
-    return out;
 }
 
 /// In double precision.
@@ -64,23 +74,10 @@ inline py::list path_rows(const SceneRows& rows, const py::tuple& camera_numbers
     const std::int64_t pixels = std::int64_t{camera.width} * camera.height;
     if (pixel >= pixels)
         args.range("pixel", "below " + std::to_string(pixels), std::to_string(pixel));
+    const Path<double> path = trace_path(numbers.scene, camera, options, pixel, sample);
     py::list out;
-    if (!rows.geometry.media.any()) {
-        for (const auto& v : trace_path(numbers.scene, camera, options, pixel, sample))
-            out.append(vertex_row(v));
-        return out;
-    }
-    const auto found = trace_volume_path(numbers.scene, camera, options, pixel, sample);
-    for (std::size_t k = 0; k < found.path.size(); ++k) {
-        const MediumVertex<double>& m = found.trail.vertices[k];
-        py::dict row = vertex_row(found.path[k]);
-        row["medium"] = m.medium;
-        row["chance"] = colors(m.chance);
-        row["segment_weight"] = m.weight;
-        row["steps"] = step_rows(found.trail, m.arrival);
-        row["shadow_steps"] = step_rows(found.trail, m.shadow);
-        out.append(row);
-    }
+    for (const PathVertex<double>& v : path.vertices)
+        out.append(vertex_row(path, v, rows.geometry.media.any()));
     return out;
 }
 

@@ -1,5 +1,5 @@
-// How functions are bound that begin with a scene: each is written with one SceneRows, and Python calls it with the
-// seven arguments that this is made of, by their names.
+// How functions are bound that begin with a scene: each is written with one SceneRows, and Python
+// calls it with the seven arguments that this is made of, by their names.
 #pragma once
 
 #include "path_args.h"

@@ -1,4 +1,4 @@
-// Bodies of signed distances, as Python hands them over.
+// Signed distance fields (SDFs) as Python hands them over.
 #pragma once
 
 #include <string>

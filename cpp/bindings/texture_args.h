@@ -1,4 +1,4 @@
-// What a scene knows of textures, as Python gives it.
+// The textures of a scene, as Python passes them.
 #pragma once
 
 #include <optional>
@@ -32,7 +32,7 @@ inline void check_coordinates(const ArrayArgs& args, const PathGeometry& geometr
                               const SurfaceTextures& textures) {
     for (std::size_t s = geometry.bvh.instances().size(); s < geometry.shape_count(); ++s) {
         const auto m = static_cast<std::size_t>(geometry.material[s]);
-        if (!textures.of(m).empty() || textures.bends(m) || textures.glows(s))
+        if (!textures.of(m).empty() || textures.bends(m) || textures.emission_texture(s))
             args.range("uses", "textures on meshes alone", "one on shape " + std::to_string(s),
                        "spheres and bodies have no texture coordinates");
     }

@@ -1,8 +1,9 @@
-// Blending in float: the loops of photograd/splat/blend.h, one row of a tile a set of lanes, compiled
-// for this instruction set. The double twin of the same loops is compiled in photograd/render/splat.cpp.
+// Blending in float: the loops of photograd/splat/tile_blend.h, one row of a tile a set of lanes,
+// compiled for this instruction set. The double twin of the same loops is compiled in
+// photograd/render/splat/splat.cpp.
 #pragma once
 
-#include "photograd/splat/blend.h"
+#include "photograd/splat/tile_blend.h"
 
 namespace photograd::PHOTOGRAD_ISA {
 

@@ -1,6 +1,7 @@
-// Sub-blocks of a march through a sparse grid: where the samples lie, what they see, which are jumped over.
-// Positions, cells and densities take lane_count samples of a ray side by side; the colour of a voxel takes
-// its 3 K coefficients side by side, once for all samples of the sub-block that have it as a corner.
+// Sub-blocks of a march through a sparse grid: positions, cells, values, empty-space skipping.
+// Positions, cells and densities take lane_count samples of a ray side by side; the color of a
+// voxel takes its 3 K coefficients side by side, once for all samples of the sub-block that have it
+// as a corner.
 #pragma once
 
 #include "kernels/march_dense.inl"
@@ -19,26 +20,26 @@ inline constexpr int vector_floats = 4;
 #endif
 using FloatWide = float __attribute__((vector_size(4 * vector_floats), aligned(4), may_alias));
 
-struct CellBlock {
-    Lanes<float> t, q[3];
+struct CellBlock : ShadedBlock {  // raw color with its offset
+    Lanes<float> q[3];
     Lanes<float> w[8];
-    int cell[lane_count];    // of the lowest voxel, in the rows of all tiles
-    int parity[lane_count];  // of the lowest voxel's coordinates, as the number of a corner
-    int seen[lane_count];    // neither vacuum nor cut off
-    Lanes<float> missing;    // weight of the corners without a row
-    Lanes<float> raw[4];     // colour with its offset, density before activation
-    Lanes<float> sigma_t, rgb[3];
+    int cell[lane_count];     // of the lowest voxel, in the rows of all tiles
+    int parity[lane_count];   // of the lowest voxel's coordinates, as the number of a corner
+    int visible[lane_count];  // neither vacuum nor cut off
+    Lanes<float> missing;     // weight of the corners without a row
 };
 
-// Number of sub-blocks from sample k0 on that lie in empty space for certain. A ray that starts in an empty
-// brick whose nearest neighbour with rows is D bricks away may run 8 (D - 1) voxels along any axis.
+// Number of sub-blocks from sample k0 on that lie in empty space for certain. A ray that starts in
+// an empty brick whose nearest neighbor with rows is D bricks away may run 8 (D - 1) voxels along
+// any axis.
 static inline int empty_blocks(const MarchSparseShArgs& a, std::int64_t ray, int k0) {
-    const float t = a.t0[ray] + (static_cast<float>(k0) + 0.5f) * a.dt;
+    const float t = a.rays.t0[ray] + (static_cast<float>(k0) + 0.5f) * a.dt;
     int base[3];
     float step = 1e-6f;  // voxels a sample, along the axis that changes most
     for (int axis = 0; axis < 3; ++axis) {
-        const float d = a.directions[3 * ray + axis];
-        const float q = ((a.origins[3 * ray + axis] + t * d) - a.lo[axis]) * a.scale[axis] - 0.5f;
+        const float d = a.rays.directions[3 * ray + axis];
+        const float q =
+            ((a.rays.origins[3 * ray + axis] + t * d) - a.lo[axis]) * a.scale[axis] - 0.5f;
         base[axis] = static_cast<int>(q + 8.0f) - 8;
         const float change = d * a.dt * a.scale[axis];
         step = larger(step, larger(change, -change));
@@ -52,16 +53,16 @@ static inline int empty_blocks(const MarchSparseShArgs& a, std::int64_t ray, int
     return static_cast<int>(smaller(samples, 1e6f)) / lane_count;
 }
 
-// Positions, cells and trilinear weights; returns how many of the first `used` lanes lie in a tile. With
-// none the weights are left out.
+// Positions, cells and trilinear weights; returns how many of the first `used` lanes lie in a tile.
+// With none the weights are left out.
 static inline int locate_cells(const MarchSparseShArgs& a, std::int64_t ray, int k0, int used,
                                CellBlock& b) {
-    const float t0 = a.t0[ray], dt = a.dt;
+    const float t0 = a.rays.t0[ray], dt = a.dt;
     Lanes<float> one[3], zero[3];  // weights of the upper and the lower end of each axis
     int base[3][lane_count];
     for (int i = 0; i < lane_count; ++i) b.t[i] = t0 + (static_cast<float>(k0 + i) + 0.5f) * dt;
     for (int axis = 0; axis < 3; ++axis) {
-        const float o = a.origins[3 * ray + axis], d = a.directions[3 * ray + axis];
+        const float o = a.rays.origins[3 * ray + axis], d = a.rays.directions[3 * ray + axis];
         const float lo = a.lo[axis], scale = a.scale[axis];
         for (int i = 0; i < lane_count; ++i) {
             const float q = ((o + b.t[i] * d) - lo) * scale - 0.5f;
@@ -81,7 +82,7 @@ static inline int locate_cells(const MarchSparseShArgs& a, std::int64_t ray, int
             (x >= 0) & (y >= 0) & (z >= 0) & (x < extent[0]) & (y < extent[1]) & (z < extent[2]);
         const int entry = inside ? (x * extent[1] + y) * extent[2] + z : 0;
         const int tile = inside ? larger(a.cells.top[entry], 0) : 0;
-        b.cell[i] = tile * cell_tile_voxels + place_in_tile(base[0][i], base[1][i], base[2][i]);
+        b.cell[i] = tile * cell_tile_voxels + offset_in_tile(base[0][i], base[1][i], base[2][i]);
         b.parity[i] = (base[0][i] & 1) * 4 + (base[1][i] & 1) * 2 + (base[2][i] & 1);
         in_tile += (tile > 0) & (i < used) ? 1 : 0;
     }
@@ -95,10 +96,10 @@ static inline int locate_cells(const MarchSparseShArgs& a, std::int64_t ray, int
     return in_tile;
 }
 
-// Raw densities; false if no lane is seen. Lanes behind the last sample are not.
+// Raw densities; false if no lane is visible. Lanes behind the last sample are not.
 static inline bool look_up_density(const MarchSparseShArgs& a, int used, CellBlock& b) {
-    // Bits of corners, then values, then arithmetic, in loops of their own: what only loads would keep the
-    // rest from becoming lanes.
+    // Bits of corners, then values, then arithmetic, in loops of their own: what only loads would
+    // keep the rest from becoming lanes.
     int corners[lane_count], any = 0;
     for (int i = 0; i < lane_count; ++i) {
         corners[i] = a.cells.active[b.cell[i]];
@@ -121,8 +122,8 @@ static inline bool look_up_density(const MarchSparseShArgs& a, int used, CellBlo
     int count = 0;
     for (int i = 0; i < lane_count; ++i) {
         const bool cut = cuts & (raw[i] <= 0.0f);
-        b.seen[i] = (corners[i] != 0) & !cut & (i < used) ? 1 : 0;
-        count += b.seen[i];
+        b.visible[i] = (corners[i] != 0) & !cut & (i < used) ? 1 : 0;
+        count += b.visible[i];
     }
     b.raw[3] = raw;
     b.missing = missing;
@@ -137,16 +138,16 @@ struct CornerVoxels {
     alignas(16) float color[8 * lane_count][4];  // that a voxel shows along the ray; three are used
 };
 
-// Gives each voxel a number. The eight corners of a cell differ in the parity of their coordinates, so that
-// eight places, one a parity, hold what the sample before had: along a ray a voxel leaves its place only
-// when no sample to come has it. The coefficients are asked for at once: they are needed when all voxels have
-// their numbers, and to wait for memory is most of what a colour costs.
+// Gives each voxel a number. The eight corners of a cell differ in the parity of their coordinates,
+// so that eight places, one a parity, hold what the sample before had: along a ray a voxel leaves
+// its place only when no sample to come has it. The coefficients are asked for at once: they are
+// needed when all voxels have their numbers, and to wait for memory is most of what a color costs.
 template <int Count>
 static inline void number_corners(const MarchSparseShArgs& a, const CellBlock& b, CornerVoxels& v) {
     int held[8], number[8] = {}, count = 0, last = -1;
     for (int s = 0; s < 8; ++s) held[s] = -2;  // no voxel, and not the background either
     for (int i = 0; i < lane_count; ++i) {
-        if (!b.seen[i]) continue;
+        if (!b.visible[i]) continue;
         const int parity = b.parity[i];
         for (int n = 0; n < 8 && b.cell[i] != last; ++n) {
             const int s = n ^ parity, row = a.cells.rows[b.cell[i] + corner_offset(n)];
@@ -205,7 +206,7 @@ static inline void look_up_color(const MarchSparseShArgs& a, const float* Y3, Ce
     color_corners<Count>(a, Y3, voxels);
     for (int c = 0; c < 3; ++c) b.raw[c] = {};
     for (int i = 0; i < lane_count; ++i) {
-        if (!b.seen[i]) continue;
+        if (!b.visible[i]) continue;
         const int* number = voxels.number[i];
         Float4 color = b.w[0][i] * float4_at(voxels.color[number[0]]);
         for (int n = 1; n < 8; ++n) color = color + b.w[n][i] * float4_at(voxels.color[number[n]]);
@@ -216,18 +217,16 @@ static inline void look_up_color(const MarchSparseShArgs& a, const float* Y3, Ce
 template <int Degree>
 static inline void evaluate_cells(const MarchSparseShArgs& a, const float* Y3, CellBlock& b) {
     look_up_color<3 * sh_count(Degree)>(a, Y3, b);
-    activate_lanes(static_cast<Activation>(a.density_activation), b.raw[3], b.sigma_t);
-    for (int c = 0; c < 3; ++c)
-        activate_lanes(static_cast<Activation>(a.color_activation), b.raw[c], b.rgb[c]);
+    activate_block(a, b);
     for (int i = 0; i < lane_count; ++i)
-        b.sigma_t[i] = b.seen[i] ? a.density_scale * b.sigma_t[i] : 0.0f;
+        b.sigma_t[i] = b.visible[i] ? a.density_scale * b.sigma_t[i] : 0.0f;
     for (int c = 0; c < 3; ++c)
-        for (int i = 0; i < lane_count; ++i) b.rgb[c][i] = b.seen[i] ? b.rgb[c][i] : 0.0f;
+        for (int i = 0; i < lane_count; ++i) b.rgb[c][i] = b.visible[i] ? b.rgb[c][i] : 0.0f;
 }
 
-// Rays of a chunk advance together, as in the dense march; sub-blocks in empty space are jumped over, so
-// that those that remain lie where they would lie without. visit(i, block) handles a sub-block in which
-// something is seen and returns the optical depth behind it. Returns the number of samples looked up.
+// Rays of a chunk advance together, as in the dense march; sub-blocks in empty space are skipped
+// without moving the others. visit(i, block) handles a sub-block with visible samples and returns
+// the optical depth behind it. Returns the number of samples looked up.
 template <class Visit>
 static inline std::int64_t walk_cells(const MarchSparseShArgs& a, std::int64_t begin,
                                       std::int64_t end, Visit&& visit) {
@@ -236,7 +235,7 @@ static inline std::int64_t walk_cells(const MarchSparseShArgs& a, std::int64_t b
     int count = 0;
     std::int64_t looked_up = 0;
     for (int i = 0; i < static_cast<int>(end - begin); ++i)
-        if (a.count[begin + i] > 0) alive[count++] = i;
+        if (a.rays.samples[begin + i] > 0) alive[count++] = i;
     CellBlock block;
     for (int k0 = 0; count > 0; k0 += lane_count) {
         int left = 0;
@@ -246,12 +245,12 @@ static inline std::int64_t walk_cells(const MarchSparseShArgs& a, std::int64_t b
             if (k0 >= next[i]) {
                 const int empty = a.skip ? empty_blocks(a, ray, k0) : 0;
                 next[i] = k0 + lane_count * larger(empty, 1);
-                const int used = smaller(lane_count, a.count[ray] - k0);
+                const int used = smaller(lane_count, a.rays.samples[ray] - k0);
                 const int in_tile = empty ? 0 : locate_cells(a, ray, k0, used, block);
                 looked_up += a.skip ? in_tile : used;
                 if (in_tile && look_up_density(a, used, block)) tau[i] = visit(i, block);
             }
-            if (a.count[ray] > next[i] && tau[i] <= a.tau_stop) alive[left++] = i;
+            if (a.rays.samples[ray] > next[i] && tau[i] <= a.tau_stop) alive[left++] = i;
         }
         count = left;
     }

@@ -1,15 +1,15 @@
-// Sums of a sparse grid's gradient, brick by brick. A ray is done in two steps: first, for every voxel, the
-// sum over the ray's samples of trilinear weight times cotangent, four numbers in a table that stays in the
-// first-level cache; then, once a voxel, that sum times the harmonics of the ray's direction. The scalar form
-// is gather_run of grid/cell_gather.h.
+// Sums of a sparse grid's gradient, brick by brick. A ray is done in two steps: first, for every
+// voxel, the sum over the ray's samples of trilinear weight times cotangent, four numbers in a
+// table that stays in the L1 cache; then, once a voxel, that sum times the harmonics of
+// the ray's direction. The scalar form is gather_run of grid/cell_gather.h.
 #pragma once
 
 #include "kernels/cell_block.inl"
 
 namespace photograd::PHOTOGRAD_ISA {
 
-// The voxels of a brick with one more on every side, because cells of its samples may reach over: nobody
-// reads what is added up there.
+// The voxels of a brick with one more on every side, because cells of its samples may reach over:
+// nobody reads what is added up there.
 inline constexpr int share_side = 10;
 
 struct RayShare {
@@ -76,15 +76,15 @@ static inline void deliver_ray(const SparseShGather& g, const float* Y3, RayShar
             share.touched[x][y] = 0;
             for (; bits != 0; bits &= bits - 1) {
                 const int z = __builtin_ctz(static_cast<unsigned>(bits));
-                const int place = (x * share_side + y) * share_side + z;
+                const int slot = (x * share_side + y) * share_side + z;
                 const bool own = (((x - 1) | (y - 1) | (z - 1)) & ~7) == 0;
                 const int row = own ? g.rows[((x - 1) * 8 + y - 1) * 8 + z - 1] : -1;
                 if (row < 0) {
-                    *reinterpret_cast<Float4*>(share.d[place]) = Float4{};
+                    *reinterpret_cast<Float4*>(share.d[slot]) = Float4{};
                     continue;
                 }
                 rows[count] = row;
-                from[count++] = place;
+                from[count++] = slot;
                 for (int j = 0; j < Count; j += 16)
                     __builtin_prefetch(g.d_sh + static_cast<long long>(row) * Count + j, 1);
             }

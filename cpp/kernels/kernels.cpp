@@ -1,5 +1,5 @@
-// Compiled once per instruction set (see cpp/CMakeLists.txt): this file and all it includes live in the
-// namespace that PHOTOGRAD_ISA names.
+// Compiled once per instruction set (see cpp/CMakeLists.txt): this file and all it includes live in
+// the namespace that PHOTOGRAD_ISA names.
 #include "kernels/kernels.h"
 
 #include "kernels/blend_splats.inl"

@@ -1,5 +1,5 @@
-// The table of hot loops. One set is chosen when it is first asked for: the widest instruction set that
-// the processor has, or the one that the environment variable PHOTOGRAD_ISA names.
+// The table of hot loops. One set is chosen when it is first asked for: the widest instruction set
+// that the processor has, or the one that the environment variable PHOTOGRAD_ISA names.
 #pragma once
 
 #include "kernels/march_dense.h"
@@ -34,8 +34,8 @@ struct Kernels {
     void (*march_sparse_sh_weights)(const MarchSparseShArgs&, const MarchSparseShBackward&,
                                     std::int64_t begin, std::int64_t end);
     void (*march_sparse_sh_gather)(const SparseShGather&);
-    /// Of the rows [begin, end); of the evaluations, where there is one row, whose derivative is added to
-    /// d_parameters (5,) then.
+    /// Of the rows [begin, end); of the evaluations, where there is one row, whose derivative is
+    /// added to d_parameters (5,) then.
     void (*principled_values)(const PrincipledArgs&, std::int64_t begin, std::int64_t end,
                               float* values);
     void (*principled_values_backward)(const PrincipledArgs&, const float* d_values,

@@ -1,6 +1,6 @@
 // The fused march: position, trilinear lookup, activation and compositing of lane_count consecutive
-// samples of one ray at a time. The corners of one sample are loaded as vectors: (z, z + 1) x (r, g, b,
-// sigma) are eight neighbouring floats, so a lookup is four loads.
+// samples of one ray at a time. The corners of one sample are loaded as vectors: (z, z + 1) x (r,
+// g, b, sigma) are eight neighboring floats, so a lookup is four loads.
 #pragma once
 
 #include "kernels/march_dense.h"
@@ -14,10 +14,15 @@ namespace photograd::PHOTOGRAD_ISA {
 using Float4 = float __attribute__((vector_size(16), aligned(4), may_alias));
 using Float8 = float __attribute__((vector_size(32), aligned(4), may_alias));
 
-struct SampleBlock {
-    Lanes<float> t, p[3];
+// lane_count samples of one ray as they are composited.
+struct ShadedBlock {
+    Lanes<float> t;
     Lanes<float> raw[4];  // r, g, b, density before activation
     Lanes<float> sigma_t, rgb[3];
+};
+
+struct SampleBlock : ShadedBlock {
+    Lanes<float> p[3];
     int base[3][lane_count];
     int voxel[lane_count];  // number of the base voxel
     Lanes<float> row[4];    // weights of the four rows (x, y): 00 01 10 11
@@ -26,10 +31,10 @@ struct SampleBlock {
 
 // Positions of samples k0, k0 + 1, ... and their cells and weights.
 static inline void place_block(const MarchDenseArgs& a, std::int64_t ray, int k0, SampleBlock& b) {
-    const float t0 = a.t0[ray], dt = a.dt;
+    const float t0 = a.rays.t0[ray], dt = a.dt;
     for (int i = 0; i < lane_count; ++i) b.t[i] = t0 + (static_cast<float>(k0 + i) + 0.5f) * dt;
     for (int axis = 0; axis < 3; ++axis) {
-        const float o = a.origins[3 * ray + axis], d = a.directions[3 * ray + axis];
+        const float o = a.rays.origins[3 * ray + axis], d = a.rays.directions[3 * ray + axis];
         for (int i = 0; i < lane_count; ++i) b.p[axis][i] = o + b.t[i] * d;
     }
 }
@@ -60,7 +65,7 @@ static inline void weigh_block(const MarchDenseArgs& a, SampleBlock& b) {
         b.voxel[i] = (b.base[0][i] * a.shape[1] + b.base[1][i]) * a.shape[2] + b.base[2][i];
 }
 
-// Everything about a sub-block that needs no voxel; asks for the voxels that it will need.
+// Everything about a sub-block that needs no voxel; prefetches the voxels that it will need.
 static inline void locate_block(const MarchDenseArgs& a, std::int64_t ray, int k0, SampleBlock& b) {
     place_block(a, ray, k0, b);
     weigh_block(a, b);
@@ -130,28 +135,33 @@ static inline void activate_lanes_backward(Activation kind, const Lanes<float>& 
     }
 }
 
-static inline void evaluate_block(const MarchDenseArgs& a, std::int64_t ray, int k0,
-                                  SampleBlock& b) {
-    look_up_block(a, b);
+// sigma_t is still without density_scale.
+static inline void activate_block(const MarchArgs& a, ShadedBlock& b) {
     activate_lanes(static_cast<Activation>(a.density_activation), b.raw[3], b.sigma_t);
     for (int c = 0; c < 3; ++c)
         activate_lanes(static_cast<Activation>(a.color_activation), b.raw[c], b.rgb[c]);
-    // Lanes behind the last sample take part in every loop, with no extinction.
-    for (int i = 0; i < lane_count; ++i)
-        b.sigma_t[i] = k0 + i < a.count[ray] ? a.density_scale * b.sigma_t[i] : 0.0f;
 }
 
-// Rays of a chunk advance together, lane_count samples a wave: neighbouring rays read the same voxels, which
-// are then still in the first-level cache. visit(i, k0, block) handles one located sub-block of ray begin + i
-// and returns the optical depth behind it. The next sub-block is located first, so that its voxels are on
-// their way while this one is computed.
+static inline void evaluate_block(const MarchDenseArgs& a, std::int64_t ray, int k0,
+                                  SampleBlock& b) {
+    look_up_block(a, b);
+    activate_block(a, b);
+    // Lanes behind the last sample take part in every loop, with no extinction.
+    for (int i = 0; i < lane_count; ++i)
+        b.sigma_t[i] = k0 + i < a.rays.samples[ray] ? a.density_scale * b.sigma_t[i] : 0.0f;
+}
+
+// Rays of a chunk advance together, lane_count samples at a time: neighboring rays read the same
+// voxels, which are then still in the L1 cache. visit(i, k0, block) handles one located
+// sub-block of ray begin + i and returns the optical depth behind it. The next sub-block is located
+// first, so that its voxels are on their way while this one is computed.
 template <class Visit>
 static inline void walk_chunk(const MarchDenseArgs& a, std::int64_t begin, std::int64_t end,
                               Visit&& visit) {
     int alive[march_chunk];
     int count = 0;
     for (int i = 0; i < static_cast<int>(end - begin); ++i)
-        if (a.count[begin + i] > 0) alive[count++] = i;
+        if (a.rays.samples[begin + i] > 0) alive[count++] = i;
     SampleBlock blocks[2];
     for (int k0 = 0; count > 0; k0 += lane_count) {
         int left = 0;
@@ -160,7 +170,7 @@ static inline void walk_chunk(const MarchDenseArgs& a, std::int64_t begin, std::
             const int i = alive[j];
             if (j + 1 < count) locate_block(a, begin + alive[j + 1], k0, blocks[(j + 1) % 2]);
             const float tau = visit(i, k0, blocks[j % 2]);
-            if (a.count[begin + i] > k0 + lane_count && tau <= a.tau_stop) alive[left++] = i;
+            if (a.rays.samples[begin + i] > k0 + lane_count && tau <= a.tau_stop) alive[left++] = i;
         }
         count = left;
     }
@@ -174,29 +184,11 @@ static void march_dense_forward(const MarchDenseArgs& a, std::int64_t begin, std
         composite(form, b.sigma_t, b.rgb, b.t, a.dt, totals[i]);
         return totals[i].tau;
     });
-    for (std::int64_t ray = begin; ray < end; ++ray) {
-        const RayTotals<float>& total = totals[ray - begin];
-        for (int c = 0; c < 3; ++c) a.color[3 * ray + c] = sum(total.color[c]);
-        a.transmittance[ray] = exp(-total.tau);
-        a.depth[ray] = sum(total.depth);
-    }
-}
-
-static inline RayCotangents<float> start_cotangents(const MarchDenseArgs& a,
-                                                    const MarchDenseBackward& back,
-                                                    std::int64_t ray) {
-    RayCotangents<float> c;
-    for (int k = 0; k < 3; ++k) c.d_color[k] = back.d_color[3 * ray + k];
-    c.d_depth = back.d_depth[ray];
-    c.end_term = -(back.d_transmittance[ray] * a.transmittance[ray]);
-    c.remainder = ((c.d_color[0] * a.color[3 * ray] + c.d_color[1] * a.color[3 * ray + 1]) +
-                   c.d_color[2] * a.color[3 * ray + 2]) +
-                  c.d_depth * a.depth[ray];
-    return c;
+    for (std::int64_t ray = begin; ray < end; ++ray) write_outputs(totals[ray - begin], ray, a.out);
 }
 
 // d_raw[c][i]: adjoint of the raw values of one sub-block.
-static inline void differentiate_block(const MarchDenseArgs& a, const SampleBlock& b,
+static inline void differentiate_block(const MarchArgs& a, const ShadedBlock& b,
                                        RayCotangents<float>& ray, Lanes<float>* d_raw) {
     Lanes<float> d_sigma_t = {}, d_rgb[3] = {};
     composite_backward(static_cast<Quadrature>(a.quadrature), b.sigma_t, b.rgb, b.t, a.dt, ray,
@@ -215,7 +207,7 @@ static std::int64_t march_dense_backward(const MarchDenseArgs& a, const MarchDen
     const BrickLayout layout = BrickLayout::of(a.shape);
     RayCotangents<float> cotangents[march_chunk];
     for (std::int64_t ray = begin; ray < end; ++ray)
-        cotangents[ray - begin] = start_cotangents(a, back, ray);
+        cotangents[ray - begin] = start_cotangents(a.out, back.adjoint, ray);
     BrickRun* next = runs;
     walk_chunk(a, begin, end, [&](int i, int k0, SampleBlock& b) {
         const std::int64_t ray = begin + i;
@@ -225,7 +217,7 @@ static std::int64_t march_dense_backward(const MarchDenseArgs& a, const MarchDen
         int brick[lane_count];
         for (int j = 0; j < lane_count; ++j)
             brick[j] = layout.owner(b.base[0][j], b.base[1][j], b.base[2][j]);
-        const int used = smaller(lane_count, a.count[ray] - k0);
+        const int used = smaller(lane_count, a.rays.samples[ray] - k0);
         const std::int64_t first = back.sample_offset[ray - back.first_ray] + k0;
         float* out = back.d_raw + 4 * first;
         for (int j = 0; j < used; ++j)
@@ -243,24 +235,25 @@ static std::int64_t march_dense_backward(const MarchDenseArgs& a, const MarchDen
     return next - runs;
 }
 
-// Samples of a brick on their way into its tile. Runs are short and of any length; lining up their samples
-// in a queue keeps all lanes busy. The queue has room for the block in hand and one more run.
+// Samples of a brick to be accumulated. Runs are short and of any length; lining up their
+// samples in a queue keeps all lanes busy. The queue has room for the block in hand and one more
+// run.
 struct SampleQueue {
     int used = 0;
     alignas(64) float p[3][2 * lane_count];
     alignas(64) int source[2 * lane_count];  // number of the sample in d_raw
 };
 
-// Appends samples k, k + 1, ... of a run, at most lane_count of them; lanes beyond `count` are overwritten
-// by whatever comes next.
+// Appends samples k, k + 1, ... of a run, at most lane_count of them; lanes beyond `count` are
+// overwritten by whatever comes next.
 static inline void enqueue(const MarchDenseArgs& a, const BrickRun& run, SampleQueue& q) {
     const std::int64_t ray = run.ray;
-    const float t0 = a.t0[ray], dt = a.dt;
+    const float t0 = a.rays.t0[ray], dt = a.dt;
     float t[lane_count];
     for (int i = 0; i < lane_count; ++i)
         t[i] = t0 + (static_cast<float>(static_cast<int>(run.k) + i) + 0.5f) * dt;
     for (int axis = 0; axis < 3; ++axis) {
-        const float o = a.origins[3 * ray + axis], d = a.directions[3 * ray + axis];
+        const float o = a.rays.origins[3 * ray + axis], d = a.rays.directions[3 * ray + axis];
         float* p = q.p[axis] + q.used;
         for (int i = 0; i < lane_count; ++i) p[i] = o + t[i] * d;
     }
@@ -269,20 +262,20 @@ static inline void enqueue(const MarchDenseArgs& a, const BrickRun& run, SampleQ
     q.used += static_cast<int>(run.count);
 }
 
-// Adds the first `count` samples of the queue to a brick's tile.
-static inline void add_to_tile(const MarchDenseArgs& a, const SampleQueue& q, int count,
-                               const int* corner, const float* d_raw, float* tile) {
+// Adds the first `count` samples of the queue to a brick's halo.
+static inline void add_to_halo(const MarchDenseArgs& a, const SampleQueue& q, int count,
+                               const int* corner, const float* d_raw, float* halo) {
     SampleBlock b;
     for (int axis = 0; axis < 3; ++axis)
         for (int i = 0; i < lane_count; ++i) b.p[axis][i] = q.p[axis][i];
     weigh_block(a, b);
-    constexpr int to_y = tile_side * 4, to_x = tile_side * to_y;
+    constexpr int to_y = brick_halo_side * 4, to_x = brick_halo_side * to_y;
     int offset[lane_count];
     for (int i = 0; i < lane_count; ++i)
         offset[i] = (b.base[0][i] - corner[0]) * to_x + (b.base[1][i] - corner[1]) * to_y +
                     (b.base[2][i] - corner[2]) * 4;
     for (int i = 0; i < count; ++i) {
-        float* row = tile + offset[i];
+        float* row = halo + offset[i];
         const Float4 d =
             *reinterpret_cast<const Float4*>(d_raw + 4 * static_cast<std::int64_t>(q.source[i]));
         const Float4 near = d * b.z0[i], far = d * b.z1[i];
@@ -293,10 +286,10 @@ static inline void add_to_tile(const MarchDenseArgs& a, const SampleQueue& q, in
     }
 }
 
-// All runs of one brick, in the order given, into its tile (tile_side^3, 4).
+// All runs of one brick, in the order given, into its halo (brick_halo_side^3, 4).
 static void march_dense_gather(const MarchDenseArgs& a, const BrickRun* runs,
                                const std::uint32_t* order, std::int64_t count, const float* d_raw,
-                               float* tile) {
+                               float* halo) {
     int corner[3];
     BrickLayout::of(a.shape).corner(static_cast<int>(runs[order[0]].brick), corner);
     SampleQueue q = {};
@@ -311,13 +304,13 @@ static void march_dense_gather(const MarchDenseArgs& a, const BrickRun* runs,
         }
         enqueue(a, runs[order[j]], q);
         if (q.used < lane_count) continue;
-        add_to_tile(a, q, lane_count, corner, d_raw, tile);
+        add_to_halo(a, q, lane_count, corner, d_raw, halo);
         q.used -= lane_count;
         for (int axis = 0; axis < 3; ++axis)
             for (int i = 0; i < lane_count; ++i) q.p[axis][i] = q.p[axis][i + lane_count];
         for (int i = 0; i < lane_count; ++i) q.source[i] = q.source[i + lane_count];
     }
-    add_to_tile(a, q, q.used, corner, d_raw, tile);
+    add_to_halo(a, q, q.used, corner, d_raw, halo);
 }
 
 }  // namespace photograd::PHOTOGRAD_ISA

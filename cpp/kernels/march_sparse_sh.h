@@ -1,9 +1,9 @@
-// The fused march through a sparse grid of density and spherical harmonics (float): what the kernel gets
-// and gives. The staged form is photograd/field/sparse_sh.h with photograd/render/march.h; the two are
-// tested to agree bit for bit.
+// The fused march through a sparse grid of density and spherical harmonics (float): what the kernel
+// gets and gives. The staged form is photograd/field/sparse_sh.h with
+// photograd/render/march/march.h; the two are tested to agree bit for bit.
 #pragma once
 
-#include "kernels/march_dense.h"
+#include "kernels/march_args.h"
 #include "photograd/grid/cell_view.h"
 
 namespace photograd {
@@ -11,36 +11,23 @@ namespace photograd {
 /// Floats of a ray's basis in memory: Y of degree 3, three times each.
 inline constexpr int sh_basis_stride = 48;
 
-struct MarchSparseShArgs {
+struct MarchSparseShArgs : MarchArgs {
     CellView cells;
     const float* density;     // (T, 9, 9, 9) of the tiles' voxels, the background's where none is
     const float* sh;          // (N, K, 3)
     const float* background;  // (1 + 3 K,)
     int degree;
-    float lo[3], scale[3];  // voxel coordinate q = (p - lo) * scale - 0.5
-    int density_activation, color_activation, quadrature;
-    float density_scale, color_offset;
-    float dt;
-    float tau_stop;
-    int skip;                   // 0 places every sample, also where no voxel is near
-    const float* origins;       // (R, 3)
-    const float* directions;    // (R, 3)
-    const float* t0;            // (R,)
-    const std::int32_t* count;  // (R,)
-    float* color;               // (R, 3) without background
-    float* transmittance;       // (R,)
-    float* depth;               // (R,)
+    float color_offset;
+    int skip;  // 0 places every sample, also where no voxel is near
 };
 
 struct MarchSparseShBackward {
-    const float* d_color;          // (R, 3)
-    const float* d_depth;          // (R,)
-    const float* d_transmittance;  // (R,)
-    std::int64_t first_ray;        // of the slab: records count rays from here
-    float* basis;                  // (rays of the slab, sh_basis_stride), written
-    CellRecord<float>* records;    // of this chunk: room for all samples of each ray, ray by ray
-    std::int32_t* found;           // (rays of the chunk,) how many records a ray has got, written
-    double* lost;                  // (1 + 3 K,) what reaches corners without a row, added to
+    MarchAdjoint<float> adjoint;
+    std::int64_t first_ray;      // of the slab: records count rays from here
+    float* basis;                // (rays of the slab, sh_basis_stride), written
+    CellRecord<float>* records;  // of this chunk: room for all samples of each ray, ray by ray
+    std::int32_t* found;         // (rays of the chunk,) how many records a ray has got, written
+    double* d_background;        // (1 + 3 K,) from corners without a row, added to
 };
 
 /// Consecutive records of one ray that have corners in one brick.

@@ -12,61 +12,35 @@ static std::int64_t sparse_sh_forward(const MarchSparseShArgs& a, std::int64_t b
     RayTotals<float> totals[march_chunk];
     alignas(64) float basis[march_chunk][sh_basis_stride];
     for (std::int64_t ray = begin; ray < end; ++ray)
-        sh_basis_by_channel<Degree>(a.directions + 3 * ray, basis[ray - begin]);
+        sh_basis_by_channel<Degree>(a.rays.directions + 3 * ray, basis[ray - begin]);
     const std::int64_t looked_up = walk_cells(a, begin, end, [&](int i, CellBlock& b) {
         evaluate_cells<Degree>(a, basis[i], b);
         composite(form, b.sigma_t, b.rgb, b.t, a.dt, totals[i]);
         return totals[i].tau;
     });
-    for (std::int64_t ray = begin; ray < end; ++ray) {
-        const RayTotals<float>& total = totals[ray - begin];
-        for (int c = 0; c < 3; ++c) a.color[3 * ray + c] = sum(total.color[c]);
-        a.transmittance[ray] = exp(-total.tau);
-        a.depth[ray] = sum(total.depth);
-    }
+    for (std::int64_t ray = begin; ray < end; ++ray) write_outputs(totals[ray - begin], ray, a.out);
     return looked_up;
 }
 
-static inline RayCotangents<float> start_sparse(const MarchSparseShArgs& a,
-                                                const MarchSparseShBackward& back,
-                                                std::int64_t ray) {
-    RayCotangents<float> c;
-    for (int k = 0; k < 3; ++k) c.d_color[k] = back.d_color[3 * ray + k];
-    c.d_depth = back.d_depth[ray];
-    c.end_term = -(back.d_transmittance[ray] * a.transmittance[ray]);
-    c.remainder = ((c.d_color[0] * a.color[3 * ray] + c.d_color[1] * a.color[3 * ray + 1]) +
-                   c.d_color[2] * a.color[3 * ray + 2]) +
-                  c.d_depth * a.depth[ray];
-    return c;
-}
-
-// d[c][i]: adjoint of raw colour and raw density, zero where nothing is seen.
+// d[c][i]: adjoint of raw color and raw density, zero where nothing is visible.
 static inline void differentiate_cells(const MarchSparseShArgs& a, const CellBlock& b,
                                        RayCotangents<float>& ray, Lanes<float>* d) {
-    Lanes<float> d_sigma_t = {}, d_rgb[3] = {};
-    composite_backward(static_cast<Quadrature>(a.quadrature), b.sigma_t, b.rgb, b.t, a.dt, ray,
-                       d_sigma_t, d_rgb);
-    for (int c = 0; c < 3; ++c)
-        activate_lanes_backward(static_cast<Activation>(a.color_activation), b.raw[c], d_rgb[c],
-                                d[c]);
-    for (int i = 0; i < lane_count; ++i) d_sigma_t[i] = a.density_scale * d_sigma_t[i];
-    activate_lanes_backward(static_cast<Activation>(a.density_activation), b.raw[3], d_sigma_t,
-                            d[3]);
+    differentiate_block(a, b, ray, d);
     for (int c = 0; c < 4; ++c)
-        for (int i = 0; i < lane_count; ++i) d[c][i] = b.seen[i] ? d[c][i] : 0.0f;
+        for (int i = 0; i < lane_count; ++i) d[c][i] = b.visible[i] ? d[c][i] : 0.0f;
 }
 
-static inline void add_lost(const CellBlock& b, const Lanes<float>* d, const float* Y3, int count,
-                            double* lost) {
+static inline void background_backward(const CellBlock& b, const Lanes<float>* d, const float* Y3,
+                                       int count, double* d_background) {
     float total[4];
     for (int c = 0; c < 4; ++c) {
         Lanes<float> part;
         for (int i = 0; i < lane_count; ++i) part[i] = b.missing[i] * d[c][i];
         total[c] = sum(part);
     }
-    lost[0] += static_cast<double>(total[3]);
+    d_background[0] += static_cast<double>(total[3]);
     for (int j = 0; j < count; ++j)
-        lost[1 + j] += static_cast<double>(Y3[j]) * static_cast<double>(total[j % 3]);
+        d_background[1 + j] += static_cast<double>(Y3[j]) * static_cast<double>(total[j % 3]);
 }
 
 // Where the next record of each ray goes: rays advance together, but each has its room to itself.
@@ -78,7 +52,7 @@ struct RecordEnds {
                std::int64_t end) {
         for (std::int64_t ray = begin; ray < end; ++ray) {
             first[ray - begin] = next[ray - begin] = records;
-            records += larger(a.count[ray], 0);
+            records += larger(a.rays.samples[ray], 0);
         }
     }
     void count(std::int64_t rays, std::int32_t* found) const {
@@ -93,8 +67,8 @@ static void sparse_sh_backward(const MarchSparseShArgs& a, const MarchSparseShBa
     RayCotangents<float> cotangents[march_chunk];
     float* basis = back.basis + (begin - back.first_ray) * sh_basis_stride;
     for (std::int64_t ray = begin; ray < end; ++ray) {
-        cotangents[ray - begin] = start_sparse(a, back, ray);
-        sh_basis_by_channel<Degree>(a.directions + 3 * ray,
+        cotangents[ray - begin] = start_cotangents(a.out, back.adjoint, ray);
+        sh_basis_by_channel<Degree>(a.rays.directions + 3 * ray,
                                     basis + (ray - begin) * sh_basis_stride);
     }
     RecordEnds ends(a, back.records, begin, end);
@@ -105,19 +79,19 @@ static void sparse_sh_backward(const MarchSparseShArgs& a, const MarchSparseShBa
         differentiate_cells(a, b, cotangents[i], d);
         bool lacks = false;
         for (int j = 0; j < lane_count; ++j) {
-            lacks |= b.seen[j] && b.missing[j] > 0.0f;
-            if (!b.seen[j]) continue;
+            lacks |= b.visible[j] && b.missing[j] > 0.0f;
+            if (!b.visible[j]) continue;
             *ends.next[i]++ = {{b.q[0][j], b.q[1][j], b.q[2][j]},
                                static_cast<std::uint32_t>(begin - back.first_ray + i),
                                {d[0][j], d[1][j], d[2][j], d[3][j]}};
         }
-        if (lacks) add_lost(b, d, Y3, 3 * sh_count(Degree), back.lost);
+        if (lacks) background_backward(b, d, Y3, 3 * sh_count(Degree), back.d_background);
         return cotangents[i].tau;
     });
     ends.count(end - begin, back.found);
 }
 
-// Weight of every sample, as d[0] of a record: what pruning asks for. Colours are not needed.
+// Weight of every sample, as d[0] of a record: what pruning asks for. Colors are not needed.
 static void march_sparse_sh_weights(const MarchSparseShArgs& a, const MarchSparseShBackward& back,
                                     std::int64_t begin, std::int64_t end) {
     const Quadrature form = static_cast<Quadrature>(a.quadrature);
@@ -126,10 +100,10 @@ static void march_sparse_sh_weights(const MarchSparseShArgs& a, const MarchSpars
     walk_cells(a, begin, end, [&](int i, CellBlock& b) {
         activate_lanes(static_cast<Activation>(a.density_activation), b.raw[3], b.sigma_t);
         for (int j = 0; j < lane_count; ++j)
-            b.sigma_t[j] = b.seen[j] ? a.density_scale * b.sigma_t[j] : 0.0f;
+            b.sigma_t[j] = b.visible[j] ? a.density_scale * b.sigma_t[j] : 0.0f;
         const SampleWeights<float> found = composite_weights(form, tau[i], b.sigma_t, a.dt);
         for (int j = 0; j < lane_count; ++j)
-            if (b.seen[j])
+            if (b.visible[j])
                 *ends.next[i]++ = {
                     {b.q[0][j], b.q[1][j], b.q[2][j]}, 0, {found.w[j], 0.0f, 0.0f, 0.0f}};
         tau[i] = found.tau_end;

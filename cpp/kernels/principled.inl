@@ -1,9 +1,10 @@
-// Values of the principled surface and their derivatives, sixteen pairs of directions at a time, one pair a lane.
+// Values of the principled surface and their derivatives, sixteen pairs of directions at a time,
+// one pair a lane.
 //
-// Directions lie in memory as x y z x y z ...: triples are dealt out to lanes, and values dealt back. Where
-// there are many rows of parameters, sixteen rows are loaded once for all evaluations that take them, and their
-// derivatives are written once: no two evaluations that run at the same time share a row, so nothing is sorted or
-// locked, and the order of every sum is fixed.
+// Directions lie in memory as x y z x y z ...: triples are dealt out to lanes, and values dealt
+// back. Where there are many rows of parameters, sixteen rows are loaded once for all evaluations
+// that take them, and their derivatives are written once: no two evaluations that run at the same
+// time share a row, so nothing is sorted or locked, and the order of every sum is fixed.
 #pragma once
 
 #include "kernels/principled.h"
@@ -81,7 +82,8 @@ static inline void load_rows(const PrincipledArgs& a, std::int64_t row, int n, P
     }
 }
 
-// Pairs of directions; one that is not above the surface is replaced by straight up, and its `above` is 0.
+// Pairs of directions; one that is not above the surface is replaced by straight up, and its
+// `above` is 0.
 struct PrincipledPairs {
     Lanes<float> o[3], i[3], above, cosine;
 };
@@ -143,8 +145,9 @@ static inline void principled_block_backward(const PrincipledArgs& a, const Prin
     }
 }
 
-// Calls visit(parameters, first evaluation, number of them) for the rows [begin, end), or, with one row in all, the
-// evaluations [begin, end); done(row, number of rows) when sixteen rows have had all of theirs.
+// Calls visit(parameters, first evaluation, number of them) for the rows [begin, end), or, with one
+// row in all, the evaluations [begin, end); done(row, number of rows) when sixteen rows have had
+// all of theirs.
 template <class Visit, class Done>
 static inline void for_principled_blocks(const PrincipledArgs& a, std::int64_t begin,
                                          std::int64_t end, PrincipledLanes& p, Visit&& visit,

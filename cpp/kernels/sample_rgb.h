@@ -1,6 +1,6 @@
-// Bilinear lookups in a picture of three floats a texel: what the kernel gets. Plain data only, because
-// every instruction set's translation unit includes it. The scalar form is in ops/bilinear.h; the two
-// are tested to agree bit for bit.
+// Bilinear lookups in a picture of three floats a texel: what the kernel gets. Plain data only,
+// because every instruction set's translation unit includes it. The scalar form is in
+// ops/bilinear.h; the two are tested to agree bit for bit.
 #pragma once
 
 #include <cstdint>

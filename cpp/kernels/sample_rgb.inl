@@ -1,6 +1,6 @@
-// A block of points goes through three passes: are all of them numbers, where do they lie, what is
-// there. The texels of a block are asked for while those of the block before are at work: a texture that
-// does not fit into the second-level cache arrives in time.
+// A block of points goes through three passes: a check that all are finite, positions, lookups. The
+// texels of a block are prefetched while the block before is computed, for textures that do not fit
+// into the second-level cache.
 #pragma once
 
 #include "kernels/sample_rgb.h"
@@ -15,8 +15,8 @@ struct LocatedPoints {
     float w00[sample_block], w01[sample_block], w10[sample_block], w11[sample_block];
 };
 
-// True if none of 2 n bit patterns is that of an infinity or a NaN. Compared as integers: this file is
-// compiled for finite numbers only, and would hide the others.
+// True if none of 2 n bit patterns is that of an infinity or a NaN. Compared as integers: this file
+// is compiled for finite numbers only, and would hide the others.
 static inline bool all_finite(const float* numbers, int n) {
     std::uint32_t found = 0;
     for (int i = 0; i < n; ++i) {
@@ -55,8 +55,8 @@ static inline void prefetch_points(const SampleRgbArgs& a, long long down, int n
 
 using Rgb4 = float __attribute__((vector_size(16), aligned(4), may_alias));
 
-// The two texels of a row are six neighbouring floats: two vectors of four that overlap, the second one
-// turned. The fourth lane holds no meaning.
+// The two texels of a row are six neighboring floats: two vectors of four that overlap, the second
+// one turned. The fourth lane holds no meaning.
 static inline Rgb4 look_up_rgb(const float* above, const float* below, const LocatedPoints& at,
                                int i) {
     const auto load = [](const float* p) { return *reinterpret_cast<const Rgb4*>(p); };
@@ -69,7 +69,8 @@ static inline Rgb4 look_up_rgb(const float* above, const float* below, const Loc
     return ((at.w00[i] * t00 + at.w01[i] * t01) + at.w10[i] * t10) + at.w11[i] * t11;
 }
 
-// Colours of points [begin, end); false, with some of them not written, if a coordinate is not finite.
+// Colors of points [begin, end); false, with some of them not written, if a coordinate is not
+// finite.
 static bool sample_rgb(const SampleRgbArgs& a, std::int64_t begin, std::int64_t end) {
     LocatedPoints blocks[2];
     const long long down = a.height > 1 ? 3LL * a.width : 0;

@@ -1,5 +1,5 @@
-// Spherical-harmonic colours of many points, three channels of float: what the kernel gets. Plain data
-// only, because every instruction set's translation unit includes it. The scalar form is in
+// Spherical-harmonic colors of many points, three channels of float: what the kernel gets. Plain
+// data only, because every instruction set's translation unit includes it. The scalar form is in
 // ops/sh_batch.h; the two are tested to agree bit for bit.
 #pragma once
 

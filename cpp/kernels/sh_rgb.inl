@@ -1,10 +1,11 @@
-// Spherical-harmonic colours and their derivatives, sixteen points at a time. Functions of direction alone
-// (the basis and its derivative) run with one point a lane. What touches coefficients runs point by point
-// with the three channels of a coefficient as a vector: they lie side by side in memory, 12 K bytes a
-// point, and reading and writing those once is what takes the time.
+// Spherical-harmonic colors and their derivatives, sixteen points at a time. Functions of direction
+// alone (the basis and its derivative) run with one point a lane. What touches coefficients runs
+// point by point with the three channels of a coefficient as a vector: they lie side by side in
+// memory, 12 K bytes a point, and reading and writing those once is what takes the time.
 //
-// Vectors are four wide, so the fourth float belongs to the next coefficient and is dropped; the last
-// coefficient of a point is read one float early instead, so that nothing behind the array is touched.
+// Vectors are four wide, so the fourth float belongs to the next coefficient and is dropped; the
+// last coefficient of a point is read one float early instead, so that nothing behind the array is
+// touched.
 #pragma once
 
 #include "kernels/sh_rgb.h"

@@ -6,21 +6,21 @@
 
 using namespace photograd;
 
-TEST_CASE("bricks of one colour never share a voxel") {
+TEST_CASE("bricks of one color never share a voxel") {
     const int shape[3] = {20, 17, 33};
     const BrickLayout layout = BrickLayout::of(shape);
     REQUIRE(layout.count() == 3 * 3 * 5);
     for (int color = 0; color < brick_colors; ++color) {
         std::vector<float> touched(20 * 17 * 33, 0.0f);
-        const std::vector<float> tile(tile_voxels, 1.0f);
+        const std::vector<float> halo(brick_halo_voxels, 1.0f);
         for (int brick = 0; brick < layout.count(); ++brick)
             if (layout.color(brick) == color)
-                flush_tile<float, 1>(layout, brick, tile.data(), touched.data());
+                flush_halo<float, 1>(layout, brick, halo.data(), touched.data());
         for (const float count : touched) CHECK(count <= 1.0f);
     }
 }
 
-TEST_CASE("every cell has the owner whose tile holds its eight corners") {
+TEST_CASE("every cell has the owner whose halo holds its eight corners") {
     const int shape[3] = {20, 17, 33};
     const BrickLayout layout = BrickLayout::of(shape);
     for (int i = 0; i + 1 < shape[0]; ++i)
@@ -31,7 +31,7 @@ TEST_CASE("every cell has the owner whose tile holds its eight corners") {
                 const int at[3] = {i, j, k};
                 for (int axis = 0; axis < 3; ++axis) {
                     CHECK(at[axis] >= corner[axis]);
-                    CHECK(at[axis] + 1 < corner[axis] + tile_side);
+                    CHECK(at[axis] + 1 < corner[axis] + brick_halo_side);
                 }
             }
 }

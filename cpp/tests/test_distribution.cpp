@@ -23,7 +23,7 @@ TEST_CASE("a choice has the probability of its weight and gives its number back"
     CHECK(choice.sample(0.6875).rest == 0.5);
 }
 
-TEST_CASE("empty bins at either end are never drawn") {
+TEST_CASE("empty bins at either end are never sampled") {
     const std::array<double, 5> weights{0.0, 1.0, 1.0, 0.0, 0.0};
     const Distribution1D choice(weights);
     CHECK(choice.sample(0.0).index == 1);
@@ -38,22 +38,22 @@ TEST_CASE("numbers that are none, and weights that are none, stay inside of the 
     CHECK(Distribution1D(none).sample(0.5).index == 2);
 }
 
-TEST_CASE("cells of a table are drawn by their share of the whole") {
+TEST_CASE("cells of a table are sampled by their share of the whole") {
     const double table[2][3] = {{0.0, 1.0, 3.0}, {4.0, 0.0, 0.0}};
     const Distribution2D cells(2, 3, [&](std::int64_t r, std::int64_t c) { return table[r][c]; });
     CHECK(cells.total() == 8.0);
     double mass = 0.0;
-    std::array<int, 6> drawn{};
+    std::array<int, 6> counts{};
     constexpr int strata = 64;
     for (int i = 0; i < strata; ++i)
         for (int j = 0; j < strata; ++j) {
             const CellChoice cell = cells.sample((i + 0.5) / strata, (j + 0.5) / strata);
-            ++drawn[static_cast<std::size_t>(3 * cell.row + cell.column)];
+            ++counts[static_cast<std::size_t>(3 * cell.row + cell.column)];
             CHECK(cell.pmf == doctest::Approx(table[cell.row][cell.column] / 8.0));
             CHECK(cell.rest_row >= 0.0);
             CHECK(cell.rest_row < 1.0);
             mass += 1.0;
         }
     for (std::size_t k = 0; k < 6; ++k)
-        CHECK(drawn[k] / mass == doctest::Approx(table[k / 3][k % 3] / 8.0));
+        CHECK(counts[k] / mass == doctest::Approx(table[k / 3][k % 3] / 8.0));
 }

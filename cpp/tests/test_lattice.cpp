@@ -3,7 +3,7 @@
 #include <initializer_list>
 #include <utility>
 
-#include "photograd/render/lattice.h"
+#include "photograd/render/march/lattice.h"
 
 using namespace photograd;
 

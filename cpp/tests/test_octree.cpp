@@ -67,8 +67,8 @@ std::int64_t brute_force_leaves(const std::vector<Coefficients<float>>& values,
 }  // namespace
 
 TEST_CASE("a quadtree worked by hand") {
-    // Rows are x. The quarter x < 4, y < 4 is empty but for the cell (3, 3); the quarter x >= 4, y < 4
-    // is full; of the two with y >= 4 the first is empty and the second is full in its half x < 6.
+    // Rows are x. The quarter x < 4, y < 4 is empty but for the cell (3, 3); the quarter x >= 4,
+    // y < 4 is full; of the two with y >= 4 the first is empty and the second is full where x < 6.
     std::vector<Occupancy> cells(64, Occupancy{0});
     for (std::size_t x = 0; x < 8; ++x)
         for (std::size_t y = 0; y < 8; ++y)
@@ -76,7 +76,7 @@ TEST_CASE("a quadtree worked by hand") {
                 cells[x * 8 + y] = Occupancy{1};
     const Quadtree<Occupancy> q = tree_from_dense<Occupancy, 2>(cells.data(), {8, 8}, {0}, 0.0);
     const TreeStatistics s = q.tree.statistics();
-    // Level 1: two whole quarters. Level 2: 3 of the first quarter, 4 of the last. Level 3: 4 cells.
+    // Level 1: two whole quarters. Level 2: 3 of the first, 4 of the last. Level 3: 4 cells.
     CHECK(s.leaves_per_level == std::vector<std::int64_t>{0, 2, 7, 4});
     CHECK(s.leaves == 13);
     CHECK(s.nodes == 13 + 4);  // root, two quarters, one block of 2 x 2

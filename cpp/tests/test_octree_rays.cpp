@@ -1,5 +1,5 @@
-// A ray visits the leaves, and only the leaves, whose own interval has positive length: against a test of
-// every leaf, on rays made to be awkward.
+// A ray visits the leaves, and only the leaves, whose own interval has positive length: against a
+// test of every leaf, on rays made to be awkward.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -45,8 +45,9 @@ bool meets(const AwkwardRay<R>& ray, const LeafBox<3>& box, R& t0, R& t1) {
     return t0 < t1;
 }
 
-/// Kinds of rays: anywhere; along one axis; along two; on the lattice of cell corners, where it grazes
-/// faces, edges and corners; nearly parallel to an axis; with the interval cut on both sides.
+/// Kinds of rays: anywhere; along one axis; along two; on the lattice of cell corners, where it
+/// grazes faces, edges and corners; nearly parallel to an axis; with the interval cut on both
+/// sides.
 template <class R>
 AwkwardRay<R> awkward(std::uint32_t row) {
     const auto u = [&](std::uint32_t d) { return uniform<R>({.seed = 3, .pixel = row}, d); };

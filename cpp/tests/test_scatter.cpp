@@ -17,7 +17,8 @@ TEST_CASE("bin_by_owner keeps the order of contributions within each owner") {
 }
 
 TEST_CASE("bin_by_owner on threads gives what it gives on one") {
-    // More than two pieces of 2^16, an owner without anything, and more owners than a piece is long.
+    // More than two pieces of 2^16, an owner without contributions, and more owners than a piece
+    // is long.
     for (const int owners : {1, 7, 100000}) {
         std::vector<std::uint32_t> owner(150000), items(owner.size());
         for (std::size_t i = 0; i < owner.size(); ++i) {

@@ -117,6 +117,8 @@ TEST_CASE("a ray marches to the surface from either side, and its hit is polishe
             CHECK(solid.distance(ray.at(t * k / 50)) * before > 0);
         const SdfPoint p = solid.point(ray, t);
         CHECK(std::abs(solid.distance(p.position)) < 1e-14);
+        CHECK(length(p.position - ray.at(p.t)) < 1e-14);
+        CHECK(length(p.normal - normalize(solid.gradient(p.position))) < 1e-14);
         CHECK(length(p.position - ray.at(t)) < 1e-3);
         CHECK(std::abs(length(p.normal) - 1) < 1e-14);
     }

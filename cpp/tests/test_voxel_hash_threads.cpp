@@ -1,4 +1,4 @@
-// Several threads at one table. Run this with the thread sanitizer (preset tsan) to see races as well.
+// Several threads at one table. The thread sanitizer (preset tsan) shows races as well.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::uint32_t threads = 4, rounds = 30'000;
 
-/// Voxels of a box of 32 x 32 x 32, drawn by all threads: most are inserted more than once.
+/// Voxels of a box of 32 x 32 x 32, inserted by all threads: most are inserted more than once.
 Voxel shared_voxel(std::uint32_t thread, std::uint32_t i) {
     const std::uint32_t w = random_block({.seed = 2, .pixel = i, .sample = thread}, 0)[0];
     return {static_cast<std::int32_t>(w % 32) - 16, static_cast<std::int32_t>(w / 32 % 32) - 16,

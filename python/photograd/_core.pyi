@@ -11,15 +11,17 @@ import typing
 
 __all__: list[str] = [
     "BrickTopology",
+    "Bsdf",
     "BspTree",
     "Bvh",
     "CellTable",
-    "EmittingMesh",
+    "DeltaBsdf",
     "EnvironmentSampler",
     "MarchSettings",
     "Octree",
     "Op",
     "PathGeometry",
+    "PhaseFunction",
     "PhotonMap",
     "PreparedRays32",
     "PreparedRays64",
@@ -28,6 +30,7 @@ __all__: list[str] = [
     "Quadtree",
     "RayOptions",
     "ReferenceBvh",
+    "SampledLight",
     "Sdf",
     "SparseGrid",
     "SparseStatistics",
@@ -35,55 +38,20 @@ __all__: list[str] = [
     "SplatOptions",
     "TexturePlan",
     "VoxelHash",
-    "adam_rows",
     "ambient_occlusion",
-    "bsdf_beckmann_conductor",
-    "bsdf_blinn_phong",
-    "bsdf_blinn_phong_fitted",
-    "bsdf_burley_diffuse",
-    "bsdf_clearcoat",
-    "bsdf_cook_torrance",
-    "bsdf_disney",
-    "bsdf_dispersive_dielectric",
-    "bsdf_ggx_anisotropic",
-    "bsdf_ggx_conductor",
-    "bsdf_ggx_metal",
-    "bsdf_ggx_metal_compensated",
-    "bsdf_ggx_metal_fast",
-    "bsdf_gltf",
-    "bsdf_gltf_iridescence",
-    "bsdf_gltf_refraction",
-    "bsdf_gltf_sheen",
-    "bsdf_gltf_specular",
-    "bsdf_gltf_transmission",
-    "bsdf_lambert",
-    "bsdf_oren_nayar_energy_preserving",
-    "bsdf_oren_nayar_full",
-    "bsdf_oren_nayar_qualitative",
-    "bsdf_phong",
-    "bsdf_phong_reciprocal",
-    "bsdf_principled",
-    "bsdf_rough_dielectric",
-    "bsdf_sheen",
-    "bsdf_standard",
     "bsdfs",
     "build_mips",
     "build_mips_backward",
     "cap_to_square",
     "cosine_hemisphere_to_square",
     "cover_texels",
-    "delta_bsdf_dispersive_glass",
-    "delta_bsdf_glass",
-    "delta_bsdf_mirror",
-    "delta_bsdf_thin_glass",
     "delta_bsdfs",
     "disk_to_square",
+    "dual_buffer_backward",
     "emit_particles",
-    "even_words",
     "exp",
     "expm1",
     "fields",
-    "first_hits",
     "instruction_set",
     "lights",
     "log1p_unit",
@@ -91,13 +59,11 @@ __all__: list[str] = [
     "march_backward",
     "march_sparse_sh",
     "march_sparse_sh_backward",
+    "max_samples",
     "mip_level",
     "mip_shapes",
-    "most_samples",
     "ops",
     "order_by_depth",
-    "phase_cornette_shanks",
-    "phase_henyey_greenstein",
     "phases",
     "philox4x32",
     "place_samples",
@@ -107,30 +73,19 @@ __all__: list[str] = [
     "principled_values",
     "principled_values_backward",
     "read_vdb",
-    "render_direct",
-    "render_direct_backward",
     "sample",
     "sample_backward",
     "sample_bricks",
     "sample_bricks_backward",
     "sample_mips",
     "sample_mips_backward",
-    "sampled_constant",
-    "sampled_directional",
     "sampled_lights",
-    "sampled_point",
-    "sampled_quad",
-    "sampled_sky",
-    "sampled_sphere",
-    "sampled_spot",
-    "sampled_sun",
-    "sampled_triangle",
     "set_thread_count",
     "sh_colors",
     "sh_colors_backward",
+    "sobol_words",
+    "sparse_adam",
     "sparse_sh_weights",
-    "sparse_variation",
-    "sparse_variation_backward",
     "square_to_cap",
     "square_to_cosine_hemisphere",
     "square_to_disk",
@@ -138,12 +93,14 @@ __all__: list[str] = [
     "ssim_backward",
     "thread_count",
     "tiny_network_parameters",
+    "total_variation",
+    "total_variation_backward",
     "trace_light",
-    "trace_pairs_backward",
     "trace_path",
     "trace_paths",
     "trace_paths_backward",
     "trace_paths_tangent",
+    "trace_reference",
     "uniform",
     "write_vdb",
 ]
@@ -391,22 +348,21 @@ class Sdf:
     @property
     def number_count(self) -> int: ...
 
-class bsdf_lambert:
+class Bsdf:
     """
     A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
     """
-    @staticmethod
-    def energy() -> tuple[str, float]:
+    def __repr__(self) -> str: ...
+    def energy(self) -> tuple[str, float]:
         """
         What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
         """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+    def f(self, parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
         """
         Value without the cosine, (N, 3).
         """
-    @staticmethod
     def f_backward(
+        self,
         parameters: numpy.ndarray,
         wo: numpy.ndarray,
         wi: numpy.ndarray,
@@ -416,1831 +372,60 @@ class bsdf_lambert:
         """
         Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
         """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
+    def index_inside(self, parameters: numpy.ndarray) -> numpy.ndarray:
         """
         Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
         """
-    @staticmethod
     def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
+        self, parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
     ) -> numpy.ndarray:
         """
         Exact derivative of f along v, (N, 3), float64.
         """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
+    def parameters(self) -> list[tuple[str, int, float, float, str]]:
         """
         (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
         """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
+    def pdf(self, parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
         """
         Density of `sample` over solid angle, (N,).
         """
-    @staticmethod
-    def reciprocal() -> bool:
+    def reciprocal(self) -> bool:
         """
         Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
         """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
+    def sample(
+        self, parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray
+    ) -> numpy.ndarray:
         """
         wi (N, 3) from uniform u2 (N, 2).
         """
-    @staticmethod
-    def transmits() -> bool:
+    def transmits(self) -> bool:
         """
         Whether light may pass the surface.
         """
 
-class bsdf_phong:
+class DeltaBsdf:
     """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
+    A specular surface. Parameters (N, P), or (1, P) for all rows; wo (N, 3) in the shading frame, normal +Z, on either side.
     """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
+    def __repr__(self) -> str: ...
     def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class bsdf_phong_reciprocal:
-    """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
-    """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class bsdf_blinn_phong:
-    """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
-    """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class bsdf_blinn_phong_fitted:
-    """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
-    """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class bsdf_oren_nayar_qualitative:
-    """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
-    """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class bsdf_oren_nayar_full:
-    """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
-    """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class bsdf_oren_nayar_energy_preserving:
-    """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
-    """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class bsdf_burley_diffuse:
-    """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
-    """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class bsdf_cook_torrance:
-    """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
-    """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class bsdf_ggx_metal:
-    """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
-    """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class bsdf_ggx_metal_compensated:
-    """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
-    """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class bsdf_ggx_metal_fast:
-    """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
-    """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class bsdf_ggx_conductor:
-    """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
-    """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class bsdf_beckmann_conductor:
-    """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
-    """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class bsdf_ggx_anisotropic:
-    """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
-    """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class bsdf_standard:
-    """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
-    """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class bsdf_gltf:
-    """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
-    """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class bsdf_gltf_iridescence:
-    """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
-    """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class bsdf_gltf_sheen:
-    """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
-    """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class bsdf_gltf_specular:
-    """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
-    """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class bsdf_clearcoat:
-    """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
-    """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class bsdf_sheen:
-    """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
-    """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class bsdf_disney:
-    """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
-    """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class bsdf_rough_dielectric:
-    """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
-    """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class bsdf_dispersive_dielectric:
-    """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
-    """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class bsdf_gltf_transmission:
-    """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
-    """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class bsdf_gltf_refraction:
-    """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
-    """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class bsdf_principled:
-    """
-    A reflectance model. Parameters (N, P), or (1, P) for all rows; directions (N, 3) in the shading frame, normal +Z.
-    """
-    @staticmethod
-    def energy() -> tuple[str, float]:
-        """
-        What is claimed of the directional albedo: (conserving, lossy or gains; its bound).
-        """
-    @staticmethod
-    def f(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Value without the cosine, (N, 3).
-        """
-    @staticmethod
-    def f_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        wi: numpy.ndarray,
-        d_f: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def index_inside(parameters: numpy.ndarray) -> numpy.ndarray:
-        """
-        Refractive index below the surface over that above, per channel (N, 3), of parameters (N, P) float64.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of f along v, (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-    @staticmethod
-    def pdf(parameters: numpy.ndarray, wo: numpy.ndarray, wi: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,).
-        """
-    @staticmethod
-    def reciprocal() -> bool:
-        """
-        Whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; outside the index is 1.
-        """
-    @staticmethod
-    def sample(parameters: numpy.ndarray, wo: numpy.ndarray, u2: numpy.ndarray) -> numpy.ndarray:
-        """
-        wi (N, 3) from uniform u2 (N, 2).
-        """
-    @staticmethod
-    def transmits() -> bool:
-        """
-        Whether light may pass the surface.
-        """
-
-class delta_bsdf_mirror:
-    """
-    A perfectly smooth surface. Parameters (N, P), or (1, P) for all rows; wo (N, 3) in the shading frame, normal +Z, on either side.
-    """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray
+        self, parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray
     ) -> tuple[typing.Any, ...]:
         """
         Exact derivatives of (wi, weight) along v, float64.
         """
-    @staticmethod
-    def lobe_count() -> int:
+    def lobe_count(self) -> int:
         """
         L.
         """
-    @staticmethod
-    def lobes(parameters: numpy.ndarray, wo: numpy.ndarray) -> tuple[typing.Any, ...]:
+    def lobes(self, parameters: numpy.ndarray, wo: numpy.ndarray) -> tuple[typing.Any, ...]:
         """
         (wi, weight), (N, L, 3) each: L(wo) is the sum of weight L(wi).
         """
-    @staticmethod
     def lobes_backward(
+        self,
         parameters: numpy.ndarray,
         wo: numpy.ndarray,
         d_wi: numpy.ndarray,
@@ -2250,137 +435,22 @@ class delta_bsdf_mirror:
         """
         Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
         """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
+    def parameters(self) -> list[tuple[str, int, float, float, str]]:
         """
         (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
         """
 
-class delta_bsdf_glass:
-    """
-    A perfectly smooth surface. Parameters (N, P), or (1, P) for all rows; wo (N, 3) in the shading frame, normal +Z, on either side.
-    """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray
-    ) -> tuple[typing.Any, ...]:
-        """
-        Exact derivatives of (wi, weight) along v, float64.
-        """
-    @staticmethod
-    def lobe_count() -> int:
-        """
-        L.
-        """
-    @staticmethod
-    def lobes(parameters: numpy.ndarray, wo: numpy.ndarray) -> tuple[typing.Any, ...]:
-        """
-        (wi, weight), (N, L, 3) each: L(wo) is the sum of weight L(wi).
-        """
-    @staticmethod
-    def lobes_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        d_wi: numpy.ndarray,
-        d_weight: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-
-class delta_bsdf_thin_glass:
-    """
-    A perfectly smooth surface. Parameters (N, P), or (1, P) for all rows; wo (N, 3) in the shading frame, normal +Z, on either side.
-    """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray
-    ) -> tuple[typing.Any, ...]:
-        """
-        Exact derivatives of (wi, weight) along v, float64.
-        """
-    @staticmethod
-    def lobe_count() -> int:
-        """
-        L.
-        """
-    @staticmethod
-    def lobes(parameters: numpy.ndarray, wo: numpy.ndarray) -> tuple[typing.Any, ...]:
-        """
-        (wi, weight), (N, L, 3) each: L(wo) is the sum of weight L(wi).
-        """
-    @staticmethod
-    def lobes_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        d_wi: numpy.ndarray,
-        d_weight: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-
-class delta_bsdf_dispersive_glass:
-    """
-    A perfectly smooth surface. Parameters (N, P), or (1, P) for all rows; wo (N, 3) in the shading frame, normal +Z, on either side.
-    """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray, v: numpy.ndarray, wo: numpy.ndarray
-    ) -> tuple[typing.Any, ...]:
-        """
-        Exact derivatives of (wi, weight) along v, float64.
-        """
-    @staticmethod
-    def lobe_count() -> int:
-        """
-        L.
-        """
-    @staticmethod
-    def lobes(parameters: numpy.ndarray, wo: numpy.ndarray) -> tuple[typing.Any, ...]:
-        """
-        (wi, weight), (N, L, 3) each: L(wo) is the sum of weight L(wi).
-        """
-    @staticmethod
-    def lobes_backward(
-        parameters: numpy.ndarray,
-        wo: numpy.ndarray,
-        d_wi: numpy.ndarray,
-        d_weight: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters, shaped like parameters; returns it.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter, in the order of a row.
-        """
-
-class sampled_sun:
+class SampledLight:
     """
     A light. parameters (P,), constants (C,); points (N, 3) in the world, directions w (N, 3) of unit length, from the points.
     """
-    @staticmethod
-    def constants() -> list[tuple[str, int, float, float, str]]:
+    def __repr__(self) -> str: ...
+    def constants(self) -> list[tuple[str, int, float, float, str]]:
         """
         The same of what is not differentiated.
         """
-    @staticmethod
     def jvp(
+        self,
         parameters: numpy.ndarray,
         constants: numpy.ndarray,
         v: numpy.ndarray,
@@ -2390,709 +460,68 @@ class sampled_sun:
         """
         Exact derivative of samples' radiance along v (P,), (N, 3), float64.
         """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
+    def parameters(self) -> list[tuple[str, int, float, float, str]]:
         """
         (name, scalars, lo, hi, unit) of each differentiated parameter.
         """
-    @staticmethod
     def pdf(
-        parameters: numpy.ndarray, constants: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
+        self,
+        parameters: numpy.ndarray,
+        constants: numpy.ndarray,
+        points: numpy.ndarray,
+        w: numpy.ndarray,
     ) -> numpy.ndarray:
         """
         Density of `sample` over solid angle, (N,); 0 of delta lights.
         """
-    @staticmethod
     def radiance(
-        parameters: numpy.ndarray, constants: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
+        self,
+        parameters: numpy.ndarray,
+        constants: numpy.ndarray,
+        points: numpy.ndarray,
+        w: numpy.ndarray,
     ) -> numpy.ndarray:
         """
         What arrives at the points from w, (N, 3); 0 of delta lights.
-        """
-    @staticmethod
-    def radiance_backward(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        points: numpy.ndarray,
-        w: numpy.ndarray,
-        d_radiance: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters (P,) and returns it.
-        """
-    @staticmethod
-    def sample(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        points: numpy.ndarray,
-        u2: numpy.ndarray,
-    ) -> tuple[typing.Any, ...]:
-        """
-        (direction (N, 3), distance (N,), radiance (N, 3), pdf (N,)).
-        """
-    @staticmethod
-    def sample_backward(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        points: numpy.ndarray,
-        w: numpy.ndarray,
-        d_radiance: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        The same for the radiance of samples whose directions are w.
-        """
-
-class sampled_sky:
-    """
-    A light. parameters (P,), constants (C,); points (N, 3) in the world, directions w (N, 3) of unit length, from the points.
-    """
-    @staticmethod
-    def constants() -> list[tuple[str, int, float, float, str]]:
-        """
-        The same of what is not differentiated.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        v: numpy.ndarray,
-        points: numpy.ndarray,
-        w: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of samples' radiance along v (P,), (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each differentiated parameter.
-        """
-    @staticmethod
-    def pdf(
-        parameters: numpy.ndarray, constants: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,); 0 of delta lights.
-        """
-    @staticmethod
-    def radiance(
-        parameters: numpy.ndarray, constants: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        What arrives at the points from w, (N, 3); 0 of delta lights.
-        """
-    @staticmethod
-    def radiance_backward(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        points: numpy.ndarray,
-        w: numpy.ndarray,
-        d_radiance: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters (P,) and returns it.
-        """
-    @staticmethod
-    def sample(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        points: numpy.ndarray,
-        u2: numpy.ndarray,
-    ) -> tuple[typing.Any, ...]:
-        """
-        (direction (N, 3), distance (N,), radiance (N, 3), pdf (N,)).
-        """
-    @staticmethod
-    def sample_backward(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        points: numpy.ndarray,
-        w: numpy.ndarray,
-        d_radiance: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        The same for the radiance of samples whose directions are w.
-        """
-
-class sampled_constant:
-    """
-    A light. parameters (P,), constants (C,); points (N, 3) in the world, directions w (N, 3) of unit length, from the points.
-    """
-    @staticmethod
-    def constants() -> list[tuple[str, int, float, float, str]]:
-        """
-        The same of what is not differentiated.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        v: numpy.ndarray,
-        points: numpy.ndarray,
-        w: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of samples' radiance along v (P,), (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each differentiated parameter.
-        """
-    @staticmethod
-    def pdf(
-        parameters: numpy.ndarray, constants: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,); 0 of delta lights.
-        """
-    @staticmethod
-    def radiance(
-        parameters: numpy.ndarray, constants: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        What arrives at the points from w, (N, 3); 0 of delta lights.
-        """
-    @staticmethod
-    def radiance_backward(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        points: numpy.ndarray,
-        w: numpy.ndarray,
-        d_radiance: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters (P,) and returns it.
-        """
-    @staticmethod
-    def sample(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        points: numpy.ndarray,
-        u2: numpy.ndarray,
-    ) -> tuple[typing.Any, ...]:
-        """
-        (direction (N, 3), distance (N,), radiance (N, 3), pdf (N,)).
-        """
-    @staticmethod
-    def sample_backward(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        points: numpy.ndarray,
-        w: numpy.ndarray,
-        d_radiance: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        The same for the radiance of samples whose directions are w.
-        """
-
-class sampled_point:
-    """
-    A light. parameters (P,), constants (C,); points (N, 3) in the world, directions w (N, 3) of unit length, from the points.
-    """
-    @staticmethod
-    def constants() -> list[tuple[str, int, float, float, str]]:
-        """
-        The same of what is not differentiated.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        v: numpy.ndarray,
-        points: numpy.ndarray,
-        w: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of samples' radiance along v (P,), (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each differentiated parameter.
-        """
-    @staticmethod
-    def pdf(
-        parameters: numpy.ndarray, constants: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,); 0 of delta lights.
-        """
-    @staticmethod
-    def radiance(
-        parameters: numpy.ndarray, constants: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        What arrives at the points from w, (N, 3); 0 of delta lights.
-        """
-    @staticmethod
-    def radiance_backward(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        points: numpy.ndarray,
-        w: numpy.ndarray,
-        d_radiance: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters (P,) and returns it.
-        """
-    @staticmethod
-    def sample(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        points: numpy.ndarray,
-        u2: numpy.ndarray,
-    ) -> tuple[typing.Any, ...]:
-        """
-        (direction (N, 3), distance (N,), radiance (N, 3), pdf (N,)).
-        """
-    @staticmethod
-    def sample_backward(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        points: numpy.ndarray,
-        w: numpy.ndarray,
-        d_radiance: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        The same for the radiance of samples whose directions are w.
-        """
-
-class sampled_directional:
-    """
-    A light. parameters (P,), constants (C,); points (N, 3) in the world, directions w (N, 3) of unit length, from the points.
-    """
-    @staticmethod
-    def constants() -> list[tuple[str, int, float, float, str]]:
-        """
-        The same of what is not differentiated.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        v: numpy.ndarray,
-        points: numpy.ndarray,
-        w: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of samples' radiance along v (P,), (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each differentiated parameter.
-        """
-    @staticmethod
-    def pdf(
-        parameters: numpy.ndarray, constants: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,); 0 of delta lights.
-        """
-    @staticmethod
-    def radiance(
-        parameters: numpy.ndarray, constants: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        What arrives at the points from w, (N, 3); 0 of delta lights.
-        """
-    @staticmethod
-    def radiance_backward(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        points: numpy.ndarray,
-        w: numpy.ndarray,
-        d_radiance: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters (P,) and returns it.
-        """
-    @staticmethod
-    def sample(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        points: numpy.ndarray,
-        u2: numpy.ndarray,
-    ) -> tuple[typing.Any, ...]:
-        """
-        (direction (N, 3), distance (N,), radiance (N, 3), pdf (N,)).
-        """
-    @staticmethod
-    def sample_backward(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        points: numpy.ndarray,
-        w: numpy.ndarray,
-        d_radiance: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        The same for the radiance of samples whose directions are w.
-        """
-
-class sampled_spot:
-    """
-    A light. parameters (P,), constants (C,); points (N, 3) in the world, directions w (N, 3) of unit length, from the points.
-    """
-    @staticmethod
-    def constants() -> list[tuple[str, int, float, float, str]]:
-        """
-        The same of what is not differentiated.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        v: numpy.ndarray,
-        points: numpy.ndarray,
-        w: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of samples' radiance along v (P,), (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each differentiated parameter.
-        """
-    @staticmethod
-    def pdf(
-        parameters: numpy.ndarray, constants: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,); 0 of delta lights.
-        """
-    @staticmethod
-    def radiance(
-        parameters: numpy.ndarray, constants: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        What arrives at the points from w, (N, 3); 0 of delta lights.
-        """
-    @staticmethod
-    def radiance_backward(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        points: numpy.ndarray,
-        w: numpy.ndarray,
-        d_radiance: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters (P,) and returns it.
-        """
-    @staticmethod
-    def sample(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        points: numpy.ndarray,
-        u2: numpy.ndarray,
-    ) -> tuple[typing.Any, ...]:
-        """
-        (direction (N, 3), distance (N,), radiance (N, 3), pdf (N,)).
-        """
-    @staticmethod
-    def sample_backward(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        points: numpy.ndarray,
-        w: numpy.ndarray,
-        d_radiance: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        The same for the radiance of samples whose directions are w.
-        """
-
-class sampled_quad:
-    """
-    A light. parameters (P,), constants (C,); points (N, 3) in the world, directions w (N, 3) of unit length, from the points.
-    """
-    @staticmethod
-    def constants() -> list[tuple[str, int, float, float, str]]:
-        """
-        The same of what is not differentiated.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        v: numpy.ndarray,
-        points: numpy.ndarray,
-        w: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of samples' radiance along v (P,), (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each differentiated parameter.
-        """
-    @staticmethod
-    def pdf(
-        parameters: numpy.ndarray, constants: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,); 0 of delta lights.
-        """
-    @staticmethod
-    def radiance(
-        parameters: numpy.ndarray, constants: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        What arrives at the points from w, (N, 3); 0 of delta lights.
-        """
-    @staticmethod
-    def radiance_backward(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        points: numpy.ndarray,
-        w: numpy.ndarray,
-        d_radiance: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters (P,) and returns it.
-        """
-    @staticmethod
-    def sample(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        points: numpy.ndarray,
-        u2: numpy.ndarray,
-    ) -> tuple[typing.Any, ...]:
-        """
-        (direction (N, 3), distance (N,), radiance (N, 3), pdf (N,)).
-        """
-    @staticmethod
-    def sample_backward(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        points: numpy.ndarray,
-        w: numpy.ndarray,
-        d_radiance: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        The same for the radiance of samples whose directions are w.
-        """
-
-class sampled_sphere:
-    """
-    A light. parameters (P,), constants (C,); points (N, 3) in the world, directions w (N, 3) of unit length, from the points.
-    """
-    @staticmethod
-    def constants() -> list[tuple[str, int, float, float, str]]:
-        """
-        The same of what is not differentiated.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        v: numpy.ndarray,
-        points: numpy.ndarray,
-        w: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of samples' radiance along v (P,), (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each differentiated parameter.
-        """
-    @staticmethod
-    def pdf(
-        parameters: numpy.ndarray, constants: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,); 0 of delta lights.
-        """
-    @staticmethod
-    def radiance(
-        parameters: numpy.ndarray, constants: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        What arrives at the points from w, (N, 3); 0 of delta lights.
-        """
-    @staticmethod
-    def radiance_backward(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        points: numpy.ndarray,
-        w: numpy.ndarray,
-        d_radiance: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters (P,) and returns it.
-        """
-    @staticmethod
-    def sample(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        points: numpy.ndarray,
-        u2: numpy.ndarray,
-    ) -> tuple[typing.Any, ...]:
-        """
-        (direction (N, 3), distance (N,), radiance (N, 3), pdf (N,)).
-        """
-    @staticmethod
-    def sample_backward(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        points: numpy.ndarray,
-        w: numpy.ndarray,
-        d_radiance: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        The same for the radiance of samples whose directions are w.
-        """
-
-class sampled_triangle:
-    """
-    A light. parameters (P,), constants (C,); points (N, 3) in the world, directions w (N, 3) of unit length, from the points.
-    """
-    @staticmethod
-    def constants() -> list[tuple[str, int, float, float, str]]:
-        """
-        The same of what is not differentiated.
-        """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        v: numpy.ndarray,
-        points: numpy.ndarray,
-        w: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of samples' radiance along v (P,), (N, 3), float64.
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each differentiated parameter.
-        """
-    @staticmethod
-    def pdf(
-        parameters: numpy.ndarray, constants: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Density of `sample` over solid angle, (N,); 0 of delta lights.
-        """
-    @staticmethod
-    def radiance(
-        parameters: numpy.ndarray, constants: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        What arrives at the points from w, (N, 3); 0 of delta lights.
-        """
-    @staticmethod
-    def radiance_backward(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        points: numpy.ndarray,
-        w: numpy.ndarray,
-        d_radiance: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Adds dL/dparameters to d_parameters (P,) and returns it.
-        """
-    @staticmethod
-    def sample(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        points: numpy.ndarray,
-        u2: numpy.ndarray,
-    ) -> tuple[typing.Any, ...]:
-        """
-        (direction (N, 3), distance (N,), radiance (N, 3), pdf (N,)).
-        """
-    @staticmethod
-    def sample_backward(
-        parameters: numpy.ndarray,
-        constants: numpy.ndarray,
-        points: numpy.ndarray,
-        w: numpy.ndarray,
-        d_radiance: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        The same for the radiance of samples whose directions are w.
-        """
-
-class EmittingMesh:
-    """
-    Triangles that glow on their front sides.
-    """
-    def __init__(self, vertices: numpy.ndarray, faces: numpy.ndarray) -> None:
-        """
-        Vertices (V, 3) float64 in the world, faces (F, 3) uint32.
-        """
-    def pdf(
-        self, radiance: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        Density over solid angle with which `sample` draws what w meets first, (N,).
-        """
-    def radiance(
-        self, radiance: numpy.ndarray, points: numpy.ndarray, w: numpy.ndarray
-    ) -> numpy.ndarray:
-        """
-        What arrives at the points from w, (N, 3).
         """
     def radiance_backward(
         self,
-        radiance: numpy.ndarray,
+        parameters: numpy.ndarray,
+        constants: numpy.ndarray,
         points: numpy.ndarray,
         w: numpy.ndarray,
         d_radiance: numpy.ndarray,
         d_parameters: numpy.ndarray,
     ) -> numpy.ndarray:
         """
-        Adds dL/dradiance to d_parameters (3,) and returns it.
+        Adds dL/dparameters to d_parameters (P,) and returns it.
         """
     def sample(
-        self, radiance: numpy.ndarray, points: numpy.ndarray, u2: numpy.ndarray
+        self,
+        parameters: numpy.ndarray,
+        constants: numpy.ndarray,
+        points: numpy.ndarray,
+        u2: numpy.ndarray,
     ) -> tuple[typing.Any, ...]:
         """
         (direction (N, 3), distance (N,), radiance (N, 3), pdf (N,)).
         """
     def sample_backward(
         self,
-        radiance: numpy.ndarray,
+        parameters: numpy.ndarray,
+        constants: numpy.ndarray,
         points: numpy.ndarray,
         w: numpy.ndarray,
         d_radiance: numpy.ndarray,
         d_parameters: numpy.ndarray,
     ) -> numpy.ndarray:
         """
-        The same for the radiance of samples whose directions are w.
-        """
-    @property
-    def area(self) -> float:
-        """
-        Sum of all faces, m^2.
+        As radiance_backward, of the radiance of samples whose directions are w.
         """
 
 class EnvironmentSampler:
     """
-    Draws directions towards the bright parts of a map.
+    Samples directions towards the bright parts of a map.
     """
     def __init__(
         self, texels: numpy.ndarray, uniform_share: typing.SupportsFloat | typing.SupportsIndex
@@ -3155,12 +584,13 @@ class EnvironmentSampler:
         The same for the radiance of samples whose directions are w.
         """
 
-class phase_henyey_greenstein:
+class PhaseFunction:
     """
     A phase function. parameters (P,); cos_theta (N,) of the angle by which light turns.
     """
-    @staticmethod
+    def __repr__(self) -> str: ...
     def jvp(
+        self,
         parameters: numpy.ndarray,
         cos_theta: numpy.ndarray,
         v_parameters: numpy.ndarray,
@@ -3169,13 +599,12 @@ class phase_henyey_greenstein:
         """
         Exact derivative of p along v_parameters (P,) and v_cos_theta (N,).
         """
-    @staticmethod
-    def p(parameters: numpy.ndarray, cos_theta: numpy.ndarray) -> numpy.ndarray:
+    def p(self, parameters: numpy.ndarray, cos_theta: numpy.ndarray) -> numpy.ndarray:
         """
         Density over solid angle, (N,) in 1/sr.
         """
-    @staticmethod
     def p_backward(
+        self,
         parameters: numpy.ndarray,
         cos_theta: numpy.ndarray,
         d_p: numpy.ndarray,
@@ -3185,51 +614,14 @@ class phase_henyey_greenstein:
         """
         Adds the derivatives to d_parameters (P,) and d_cos_theta (N,).
         """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
-        """
-        (name, scalars, lo, hi, unit) of each parameter.
-        """
-
-class phase_cornette_shanks:
-    """
-    A phase function. parameters (P,); cos_theta (N,) of the angle by which light turns.
-    """
-    @staticmethod
-    def jvp(
-        parameters: numpy.ndarray,
-        cos_theta: numpy.ndarray,
-        v_parameters: numpy.ndarray,
-        v_cos_theta: numpy.ndarray,
-    ) -> numpy.ndarray:
-        """
-        Exact derivative of p along v_parameters (P,) and v_cos_theta (N,).
-        """
-    @staticmethod
-    def p(parameters: numpy.ndarray, cos_theta: numpy.ndarray) -> numpy.ndarray:
-        """
-        Density over solid angle, (N,) in 1/sr.
-        """
-    @staticmethod
-    def p_backward(
-        parameters: numpy.ndarray,
-        cos_theta: numpy.ndarray,
-        d_p: numpy.ndarray,
-        d_parameters: numpy.ndarray,
-        d_cos_theta: numpy.ndarray,
-    ) -> None:
-        """
-        Adds the derivatives to d_parameters (P,) and d_cos_theta (N,).
-        """
-    @staticmethod
-    def parameters() -> list[tuple[str, int, float, float, str]]:
+    def parameters(self) -> list[tuple[str, int, float, float, str]]:
         """
         (name, scalars, lo, hi, unit) of each parameter.
         """
 
 class PathGeometry:
     """
-    Shapes of a scene: instances of meshes first, then spheres, then bodies of signed distances.
+    Shapes of a scene: instances of meshes first, then spheres, then signed distance fields.
     """
     def __init__(
         self,
@@ -3324,10 +716,15 @@ class PathGeometry:
         directed (M,), whether its frame follows u; cutoffs (M,), of masks, others below 0; emission,
         for each shape (texture or -1, first of its three channels).
         """
+    @property
+    def bvh(self) -> Bvh:
+        """
+        The hierarchy of all shapes, to be traced.
+        """
 
 class PhotonMap:
     """
-    Particles where they have landed.
+    Particles where they have hit surfaces.
     """
     def __init__(
         self,
@@ -3337,6 +734,14 @@ class PhotonMap:
         emission: numpy.ndarray,
         lights: collections.abc.Sequence[tuple[typing.Any, ...]],
         textures: collections.abc.Sequence[numpy.ndarray],
+        media: collections.abc.Sequence[
+            tuple[
+                str,
+                numpy.ndarray,
+                numpy.ndarray | None,
+                typing.SupportsFloat | typing.SupportsIndex,
+            ]
+        ],
         options: tuple[
             typing.SupportsInt | typing.SupportsIndex,
             typing.SupportsInt | typing.SupportsIndex,
@@ -3359,6 +764,14 @@ class PhotonMap:
         emission: numpy.ndarray,
         lights: collections.abc.Sequence[tuple[typing.Any, ...]],
         textures: collections.abc.Sequence[numpy.ndarray],
+        media: collections.abc.Sequence[
+            tuple[
+                str,
+                numpy.ndarray,
+                numpy.ndarray | None,
+                typing.SupportsFloat | typing.SupportsIndex,
+            ]
+        ],
         camera: tuple[typing.Any, ...],
         options: tuple[
             typing.SupportsInt | typing.SupportsIndex,
@@ -3379,7 +792,7 @@ class PhotonMap:
 
 class TexturePlan:
     """
-    Points sorted by tile, with their colours.
+    Points sorted by tile, with their colors.
     """
     def __init__(
         self,
@@ -3532,13 +945,13 @@ class SparseStatistics:
         self,
     ) -> typing.Annotated[list[typing.Annotated[list[int], "FixedSize(3)"]], "FixedSize(2)"]: ...
     @property
-    def least(self) -> float: ...
-    @property
     def leaves(self) -> int: ...
+    @property
+    def max(self) -> float: ...
     @property
     def memory(self) -> int: ...
     @property
-    def most(self) -> float: ...
+    def min(self) -> float: ...
 
 class SparseGrid:
     """
@@ -3651,32 +1064,20 @@ class PreparedSplats32:
     """
     def backward(
         self,
-        means: numpy.ndarray,
-        log_scales: numpy.ndarray,
-        quats: numpy.ndarray,
-        opacity_logits: numpy.ndarray,
-        sh: numpy.ndarray,
-        color: numpy.ndarray,
-        opacity: numpy.ndarray,
-        depth: numpy.ndarray,
-        d_color: numpy.ndarray,
-        d_opacity: numpy.ndarray,
-        d_depth: numpy.ndarray,
-        d_means: numpy.ndarray,
-        d_log_scales: numpy.ndarray,
-        d_quats: numpy.ndarray,
-        d_opacity_logits: numpy.ndarray,
-        d_sh: numpy.ndarray,
+        gaussians: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(5)"],
+        image: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(3)"],
+        d_image: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(3)"],
+        d_gaussians: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(5)"],
         d_camera_from_world: numpy.ndarray,
         d_background: numpy.ndarray,
         d_screen: numpy.ndarray,
     ) -> None:
         """
-        Adds to the arrays named d_*.
+        Adds to d_gaussians and what follows; image is what render returned.
         """
     def render(self) -> tuple[typing.Any, ...]:
         """
-        Colour (H, W, 3), opacity (H, W), depth (H, W).
+        Color (H, W, 3), opacity (H, W), depth (H, W).
         """
     @property
     def boxes(self) -> numpy.typing.NDArray[numpy.int32]:
@@ -3695,32 +1096,20 @@ class PreparedSplats64:
     """
     def backward(
         self,
-        means: numpy.ndarray,
-        log_scales: numpy.ndarray,
-        quats: numpy.ndarray,
-        opacity_logits: numpy.ndarray,
-        sh: numpy.ndarray,
-        color: numpy.ndarray,
-        opacity: numpy.ndarray,
-        depth: numpy.ndarray,
-        d_color: numpy.ndarray,
-        d_opacity: numpy.ndarray,
-        d_depth: numpy.ndarray,
-        d_means: numpy.ndarray,
-        d_log_scales: numpy.ndarray,
-        d_quats: numpy.ndarray,
-        d_opacity_logits: numpy.ndarray,
-        d_sh: numpy.ndarray,
+        gaussians: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(5)"],
+        image: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(3)"],
+        d_image: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(3)"],
+        d_gaussians: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(5)"],
         d_camera_from_world: numpy.ndarray,
         d_background: numpy.ndarray,
         d_screen: numpy.ndarray,
     ) -> None:
         """
-        Adds to the arrays named d_*.
+        Adds to d_gaussians and what follows; image is what render returned.
         """
     def render(self) -> tuple[typing.Any, ...]:
         """
-        Colour (H, W, 3), opacity (H, W), depth (H, W).
+        Color (H, W, 3), opacity (H, W), depth (H, W).
         """
     @property
     def boxes(self) -> numpy.typing.NDArray[numpy.int32]:
@@ -3751,39 +1140,22 @@ class PreparedRays32:
     """
     def backward(
         self,
-        means: numpy.ndarray,
-        log_scales: numpy.ndarray,
-        quats: numpy.ndarray,
-        opacity_logits: numpy.ndarray,
-        sh: numpy.ndarray,
-        color: numpy.ndarray,
-        opacity: numpy.ndarray,
-        depth: numpy.ndarray,
-        d_color: numpy.ndarray,
-        d_opacity: numpy.ndarray,
-        d_depth: numpy.ndarray,
-        d_means: numpy.ndarray,
-        d_log_scales: numpy.ndarray,
-        d_quats: numpy.ndarray,
-        d_opacity_logits: numpy.ndarray,
-        d_sh: numpy.ndarray,
+        gaussians: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(5)"],
+        image: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(3)"],
+        d_image: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(3)"],
+        d_gaussians: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(5)"],
         d_background: numpy.ndarray,
-        d_origins: typing.Any,
-        d_directions: typing.Any,
+        d_rays: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(2)"]
+        | None = None,
     ) -> None:
         """
-        Adds to the arrays named d_*; those of the rays may both be None.
+        Adds to d_gaussians, d_background and, where given, d_rays: d_origins, d_directions.
         """
     def render(
-        self,
-        means: numpy.ndarray,
-        log_scales: numpy.ndarray,
-        quats: numpy.ndarray,
-        opacity_logits: numpy.ndarray,
-        sh: numpy.ndarray,
+        self, gaussians: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(5)"]
     ) -> tuple[typing.Any, ...]:
         """
-        Colour (R, 3), opacity (R,), depth (R,); the Gaussians are those prepared.
+        Color (R, 3), opacity (R,), depth (R,); the Gaussians are those prepared.
         """
     @property
     def crossings(self) -> numpy.typing.NDArray[numpy.uint32]:
@@ -3797,39 +1169,22 @@ class PreparedRays64:
     """
     def backward(
         self,
-        means: numpy.ndarray,
-        log_scales: numpy.ndarray,
-        quats: numpy.ndarray,
-        opacity_logits: numpy.ndarray,
-        sh: numpy.ndarray,
-        color: numpy.ndarray,
-        opacity: numpy.ndarray,
-        depth: numpy.ndarray,
-        d_color: numpy.ndarray,
-        d_opacity: numpy.ndarray,
-        d_depth: numpy.ndarray,
-        d_means: numpy.ndarray,
-        d_log_scales: numpy.ndarray,
-        d_quats: numpy.ndarray,
-        d_opacity_logits: numpy.ndarray,
-        d_sh: numpy.ndarray,
+        gaussians: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(5)"],
+        image: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(3)"],
+        d_image: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(3)"],
+        d_gaussians: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(5)"],
         d_background: numpy.ndarray,
-        d_origins: typing.Any,
-        d_directions: typing.Any,
+        d_rays: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(2)"]
+        | None = None,
     ) -> None:
         """
-        Adds to the arrays named d_*; those of the rays may both be None.
+        Adds to d_gaussians, d_background and, where given, d_rays: d_origins, d_directions.
         """
     def render(
-        self,
-        means: numpy.ndarray,
-        log_scales: numpy.ndarray,
-        quats: numpy.ndarray,
-        opacity_logits: numpy.ndarray,
-        sh: numpy.ndarray,
+        self, gaussians: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(5)"]
     ) -> tuple[typing.Any, ...]:
         """
-        Colour (R, 3), opacity (R,), depth (R,); the Gaussians are those prepared.
+        Color (R, 3), opacity (R,), depth (R,); the Gaussians are those prepared.
         """
     @property
     def crossings(self) -> numpy.typing.NDArray[numpy.uint32]:
@@ -3853,19 +1208,6 @@ class CellTable:
     def memory(self) -> int: ...
     @property
     def tiles(self) -> int: ...
-
-def adam_rows(
-    parameter: numpy.ndarray,
-    gradient: numpy.ndarray,
-    mean: numpy.ndarray,
-    mean_square: numpy.ndarray,
-    step: typing.Annotated[
-        collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(4)"
-    ],
-) -> None:
-    """
-    Adam on the rows with a gradient; step is beta_1, beta_2, length, epsilon.
-    """
 
 def ambient_occlusion(
     geometry: PathGeometry,
@@ -3918,6 +1260,39 @@ def disk_to_square(p: numpy.ndarray) -> numpy.ndarray:
     The inverse of square_to_disk.
     """
 
+def dual_buffer_backward(
+    geometry: PathGeometry,
+    models: collections.abc.Sequence[str],
+    parameters: numpy.ndarray,
+    emission: numpy.ndarray,
+    lights: collections.abc.Sequence[tuple[typing.Any, ...]],
+    textures: collections.abc.Sequence[numpy.ndarray],
+    media: collections.abc.Sequence[
+        tuple[str, numpy.ndarray, numpy.ndarray | None, typing.SupportsFloat | typing.SupportsIndex]
+    ],
+    camera: tuple[typing.Any, ...],
+    options: tuple[
+        typing.SupportsInt | typing.SupportsIndex,
+        typing.SupportsInt | typing.SupportsIndex,
+        typing.SupportsInt | typing.SupportsIndex,
+        typing.SupportsInt | typing.SupportsIndex,
+        typing.SupportsInt | typing.SupportsIndex,
+        typing.SupportsInt | typing.SupportsIndex,
+    ],
+    other_seed: typing.SupportsInt | typing.SupportsIndex,
+    spp: typing.SupportsInt | typing.SupportsIndex,
+    counts: numpy.ndarray | None,
+    target: numpy.ndarray,
+    weight: numpy.ndarray,
+    pictures: numpy.ndarray,
+    gradient: collections.abc.Mapping[str, numpy.ndarray],
+) -> None:
+    """
+    As trace_paths_backward, for the loss sum weight (mean radiance - target)^2, both (H, W, 3) float64,
+    by two pictures with independent paths, of the seed in options and of other_seed, written to
+    pictures (2, H, W, 3) float64.
+    """
+
 def emit_particles(
     geometry: PathGeometry,
     models: collections.abc.Sequence[str],
@@ -3937,18 +1312,6 @@ def emit_particles(
     as they leave their lights.
     """
 
-def even_words(
-    seed: typing.SupportsInt | typing.SupportsIndex,
-    step: typing.SupportsInt | typing.SupportsIndex,
-    block: typing.SupportsInt | typing.SupportsIndex,
-    pixel: numpy.ndarray,
-    first: typing.SupportsInt | typing.SupportsIndex,
-    count: typing.SupportsInt | typing.SupportsIndex,
-) -> numpy.typing.NDArray[numpy.uint32]:
-    """
-    Words (N, count, 4) uint32 of scrambled Sobol' points first, first + 1, ... of pixels (N,).
-    """
-
 def exp(x: numpy.ndarray) -> numpy.ndarray:
     """
     The portable exp on a flat array.
@@ -3957,13 +1320,6 @@ def exp(x: numpy.ndarray) -> numpy.ndarray:
 def expm1(x: numpy.ndarray) -> numpy.ndarray:
     """
     The portable exp(x) - 1 on a flat array.
-    """
-
-def first_hits(
-    geometry: PathGeometry, origins: numpy.ndarray, directions: numpy.ndarray
-) -> tuple[typing.Any, ...]:
-    """
-    Number of the shape (R,) int32 or -1, t (R,) in metres, position and normal (R, 3) of what rays (R, 3) meet first; the normal is that of the surface, out of it.
     """
 
 def instruction_set() -> str:
@@ -3980,83 +1336,55 @@ def march(
     field: str,
     parameters: numpy.ndarray,
     settings: MarchSettings,
-    origins: numpy.ndarray,
-    directions: numpy.ndarray,
-    t0: numpy.ndarray,
-    samples: numpy.ndarray,
+    rays: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(4)"],
     fused: bool = True,
 ) -> tuple[typing.Any, ...]:
     """
-    Colour without background (R, 3), transmittance (R,) and depth (R,).
+    Color without background (R, 3), transmittance (R,) and depth (R,). rays: origins (R, 3), directions (R, 3), t0 (R,), samples (R,) int32.
     """
 
 def march_backward(
     field: str,
     parameters: numpy.ndarray,
     settings: MarchSettings,
-    origins: numpy.ndarray,
-    directions: numpy.ndarray,
-    t0: numpy.ndarray,
-    samples: numpy.ndarray,
-    color: numpy.ndarray,
-    transmittance: numpy.ndarray,
-    depth: numpy.ndarray,
-    d_color: numpy.ndarray,
-    d_transmittance: numpy.ndarray,
-    d_depth: numpy.ndarray,
+    rays: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(4)"],
+    outputs: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(3)"],
+    d_outputs: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(3)"],
     d_parameters: numpy.ndarray,
-    d_origins: numpy.ndarray | None = None,
-    d_directions: numpy.ndarray | None = None,
+    d_rays: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(2)"] | None = None,
     fused: bool = True,
 ) -> None:
     """
-    Adds to d_parameters and, where given, to d_origins and d_directions.
+    Adds to d_parameters and, where given, to d_rays: d_origins and d_directions.
     """
 
 def march_sparse_sh(
     table: CellTable,
-    density: numpy.ndarray,
-    sh: numpy.ndarray,
-    background: numpy.ndarray,
+    parameters: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(3)"],
     settings: MarchSettings,
     color_offset: typing.SupportsFloat | typing.SupportsIndex,
-    origins: numpy.ndarray,
-    directions: numpy.ndarray,
-    t0: numpy.ndarray,
-    samples: numpy.ndarray,
+    rays: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(4)"],
     fused: bool = True,
     skip: bool = True,
 ) -> tuple[typing.Any, ...]:
     """
-    Colour without background (R, 3), transmittance (R,), depth (R,), samples looked up.
+    Color without background (R, 3), transmittance (R,), depth (R,), samples looked up. parameters: density (N,), sh (N, K, 3), background (1 + 3 K,).
     """
 
 def march_sparse_sh_backward(
     table: CellTable,
-    density: numpy.ndarray,
-    sh: numpy.ndarray,
-    background: numpy.ndarray,
+    parameters: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(3)"],
     settings: MarchSettings,
     color_offset: typing.SupportsFloat | typing.SupportsIndex,
-    origins: numpy.ndarray,
-    directions: numpy.ndarray,
-    t0: numpy.ndarray,
-    samples: numpy.ndarray,
-    color: numpy.ndarray,
-    transmittance: numpy.ndarray,
-    depth: numpy.ndarray,
-    d_color: numpy.ndarray,
-    d_transmittance: numpy.ndarray,
-    d_depth: numpy.ndarray,
-    d_density: numpy.ndarray,
-    d_sh: numpy.ndarray,
-    d_background: numpy.ndarray,
-    d_origins: numpy.ndarray | None = None,
-    d_directions: numpy.ndarray | None = None,
+    rays: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(4)"],
+    outputs: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(3)"],
+    d_outputs: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(3)"],
+    d_parameters: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(3)"],
+    d_rays: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(2)"] | None = None,
     fused: bool = True,
 ) -> None:
     """
-    Adds to d_density, d_sh, d_background and, where given, d_origins and d_directions.
+    Adds to d_parameters and, where given, to d_rays: d_origins and d_directions.
     """
 
 def mip_level(
@@ -4111,11 +1439,7 @@ def point_occlusion(
     """
 
 def prepare_splat_rays(
-    means: numpy.ndarray,
-    log_scales: numpy.ndarray,
-    quats: numpy.ndarray,
-    opacity_logits: numpy.ndarray,
-    sh: numpy.ndarray,
+    gaussians: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(5)"],
     options: RayOptions,
     origins: numpy.ndarray,
     directions: numpy.ndarray,
@@ -4126,18 +1450,14 @@ def prepare_splat_rays(
     """
 
 def prepare_splats(
-    means: numpy.ndarray,
-    log_scales: numpy.ndarray,
-    quats: numpy.ndarray,
-    opacity_logits: numpy.ndarray,
-    sh: numpy.ndarray,
+    gaussians: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(5)"],
     image: SplatImage,
     options: SplatOptions,
     camera_from_world: numpy.ndarray,
     background: numpy.ndarray,
 ) -> typing.Any:
     """
-    Projects, sorts and bins; PreparedSplats32 or PreparedSplats64.
+    Projects, sorts and bins; PreparedSplats32 or PreparedSplats64. gaussians: means (N, 3), log_scales (N, 3), quats (N, 4), opacity_logits (N,), sh (N, K, 3).
     """
 
 def principled_values(
@@ -4148,7 +1468,7 @@ def principled_values(
     values: numpy.ndarray,
 ) -> None:
     """
-    Writes values (N, 3), times the cosine of wi on request. parameters (T, 5): base colour, metalness, roughness; evaluation n takes row n mod T. float32.
+    Writes values (N, 3), times the cosine of wi on request. parameters (T, 5): base color, metalness, roughness; evaluation n takes row n mod T. float32.
     """
 
 def principled_values_backward(
@@ -4170,60 +1490,9 @@ def read_vdb(
     The grids of a file and its metadata.
     """
 
-def render_direct(
-    bvh: Bvh,
-    layouts: collections.abc.Sequence[
-        tuple[
-            typing.SupportsInt | typing.SupportsIndex,
-            typing.SupportsInt | typing.SupportsIndex,
-            typing.SupportsInt | typing.SupportsIndex,
-            typing.SupportsInt | typing.SupportsIndex,
-        ]
-    ],
-    albedo: numpy.ndarray,
-    lights: numpy.ndarray,
-    sun_direction: typing.Annotated[
-        collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(3)"
-    ],
-    sun_radius: typing.SupportsFloat | typing.SupportsIndex,
-    camera: tuple[typing.Any, ...],
-    spp: typing.SupportsInt | typing.SupportsIndex,
-    seed: typing.SupportsInt | typing.SupportsIndex,
-) -> tuple[typing.Any, ...]:
-    """
-    Radiance (H, W, 3) premultiplied, alpha (H, W), depth (H, W).
-    """
-
-def render_direct_backward(
-    bvh: Bvh,
-    layouts: collections.abc.Sequence[
-        tuple[
-            typing.SupportsInt | typing.SupportsIndex,
-            typing.SupportsInt | typing.SupportsIndex,
-            typing.SupportsInt | typing.SupportsIndex,
-            typing.SupportsInt | typing.SupportsIndex,
-        ]
-    ],
-    albedo: numpy.ndarray,
-    lights: numpy.ndarray,
-    sun_direction: typing.Annotated[
-        collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(3)"
-    ],
-    sun_radius: typing.SupportsFloat | typing.SupportsIndex,
-    camera: tuple[typing.Any, ...],
-    spp: typing.SupportsInt | typing.SupportsIndex,
-    seed: typing.SupportsInt | typing.SupportsIndex,
-    d_radiance: numpy.ndarray,
-    d_albedo: numpy.ndarray,
-    d_lights: numpy.ndarray,
-) -> None:
-    """
-    Adds to d_albedo (A, 3) and d_lights (4, 3).
-    """
-
 def sample(texture: numpy.ndarray, uv: numpy.ndarray, out: numpy.ndarray) -> None:
     """
-    Writes the colours (N, C) of a texture (H, W, C) at uv (N, 2) to out.
+    Writes the colors (N, C) of a texture (H, W, C) at uv (N, 2) to out.
     """
 
 def sample_backward(
@@ -4269,7 +1538,7 @@ def sample_mips(
     out: numpy.ndarray,
 ) -> None:
     """
-    Writes the colours (N, C) at uv (N, 2) and level (N,) to out.
+    Writes the colors (N, C) at uv (N, 2) and level (N,) to out.
     """
 
 def sample_mips_backward(
@@ -4313,37 +1582,40 @@ def sh_colors_backward(
     Adds the derivatives to d_directions (N, 3) and d_coefficients (N, K, C); with add=False overwrites what stands there, without reading it.
     """
 
+def sobol_words(
+    seed: typing.SupportsInt | typing.SupportsIndex,
+    step: typing.SupportsInt | typing.SupportsIndex,
+    block: typing.SupportsInt | typing.SupportsIndex,
+    pixel: numpy.ndarray,
+    first: typing.SupportsInt | typing.SupportsIndex,
+    count: typing.SupportsInt | typing.SupportsIndex,
+) -> numpy.typing.NDArray[numpy.uint32]:
+    """
+    Words (N, count, 4) uint32 of scrambled Sobol' points first, first + 1, ... of pixels (N,).
+    """
+
+def sparse_adam(
+    parameter: numpy.ndarray,
+    gradient: numpy.ndarray,
+    mean: numpy.ndarray,
+    mean_square: numpy.ndarray,
+    step: typing.Annotated[
+        collections.abc.Sequence[typing.SupportsFloat | typing.SupportsIndex], "FixedSize(4)"
+    ],
+) -> None:
+    """
+    Adam on the rows with a gradient; step is beta_1, beta_2, length, epsilon.
+    """
+
 def sparse_sh_weights(
     table: CellTable,
-    density: numpy.ndarray,
-    sh: numpy.ndarray,
-    background: numpy.ndarray,
+    parameters: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(3)"],
     settings: MarchSettings,
-    origins: numpy.ndarray,
-    directions: numpy.ndarray,
-    t0: numpy.ndarray,
-    samples: numpy.ndarray,
-    most: numpy.ndarray,
+    rays: typing.Annotated[collections.abc.Sequence[numpy.ndarray], "FixedSize(4)"],
+    max_weight: numpy.ndarray,
 ) -> None:
     """
-    Raises most (N,) to the greatest weight of each voxel over these rays.
-    """
-
-def sparse_variation(topology: BrickTopology, values: numpy.ndarray) -> float:
-    """
-    Squared total variation of values (N, C) over pairs of active neighbours.
-    """
-
-def sparse_variation_backward(
-    topology: BrickTopology,
-    values: numpy.ndarray,
-    d_value: typing.SupportsFloat | typing.SupportsIndex,
-    first: typing.SupportsInt | typing.SupportsIndex,
-    last: typing.SupportsInt | typing.SupportsIndex,
-    d_values: numpy.ndarray,
-) -> None:
-    """
-    Adds to the rows of d_values that belong to bricks first .. last - 1.
+    Raises max_weight (N,) to the largest weight of each voxel over these rays.
     """
 
 def square_to_cap(
@@ -4379,6 +1651,23 @@ def ssim_backward(
     """
 
 def thread_count() -> int: ...
+def total_variation(topology: BrickTopology, values: numpy.ndarray) -> float:
+    """
+    Squared total variation of values (N, C) over pairs of active neighbors.
+    """
+
+def total_variation_backward(
+    topology: BrickTopology,
+    values: numpy.ndarray,
+    d_value: typing.SupportsFloat | typing.SupportsIndex,
+    first: typing.SupportsInt | typing.SupportsIndex,
+    last: typing.SupportsInt | typing.SupportsIndex,
+    d_values: numpy.ndarray,
+) -> None:
+    """
+    Adds to the rows of d_values that belong to bricks first .. last - 1.
+    """
+
 def trace_light(
     geometry: PathGeometry,
     models: collections.abc.Sequence[str],
@@ -4403,44 +1692,6 @@ def trace_light(
     """
     Adds what particles bring to a rectangle (corner, edge_x, edge_y) (3, 3) to irradiance (H, W, 3),
     and its squares, float64. options: (max_depth, roulette_from, seed).
-    """
-
-def trace_pairs_backward(
-    geometry: PathGeometry,
-    models: collections.abc.Sequence[str],
-    parameters: numpy.ndarray,
-    emission: numpy.ndarray,
-    lights: collections.abc.Sequence[tuple[typing.Any, ...]],
-    textures: collections.abc.Sequence[numpy.ndarray],
-    media: collections.abc.Sequence[
-        tuple[str, numpy.ndarray, numpy.ndarray | None, typing.SupportsFloat | typing.SupportsIndex]
-    ],
-    camera: tuple[typing.Any, ...],
-    options: tuple[
-        typing.SupportsInt | typing.SupportsIndex,
-        typing.SupportsInt | typing.SupportsIndex,
-        typing.SupportsInt | typing.SupportsIndex,
-        typing.SupportsInt | typing.SupportsIndex,
-        typing.SupportsInt | typing.SupportsIndex,
-        typing.SupportsInt | typing.SupportsIndex,
-    ],
-    other_seed: typing.SupportsInt | typing.SupportsIndex,
-    spp: typing.SupportsInt | typing.SupportsIndex,
-    counts: numpy.ndarray | None,
-    target: numpy.ndarray,
-    weight: numpy.ndarray,
-    pictures: numpy.ndarray,
-    d_parameters: numpy.ndarray,
-    d_emission: numpy.ndarray,
-    d_lights: collections.abc.Sequence[numpy.ndarray],
-    d_textures: collections.abc.Sequence[numpy.ndarray],
-    d_media: collections.abc.Sequence[numpy.ndarray],
-    d_densities: collections.abc.Sequence[numpy.ndarray | None],
-) -> None:
-    """
-    As trace_paths_backward, for the loss sum weight (mean radiance - target)^2, both (H, W, 3) float64, by two
-    pictures with paths of their own, of the seed in options and of other_seed, written to pictures
-    (2, H, W, 3) float64.
     """
 
 def trace_path(
@@ -4498,10 +1749,12 @@ def trace_paths(
     count: typing.SupportsInt | typing.SupportsIndex,
     radiance: numpy.ndarray,
     squares: numpy.ndarray,
+    hits: numpy.ndarray | None = None,
 ) -> None:
     """
     Adds samples to radiance (H, W, 3) and squares (H, W, 3), float64. options: (strategy, heuristic, max_depth, roulette_from, sampler, seed).
-    media: (phase function or "", parameters (P,), densities (X, Y, Z) or None, sigma_maj).
+    media: (phase function or "", parameters (P,), densities (X, Y, Z) or None, sigma_maj). hits: None, or (H, W) float64,
+    to which the number of samples is added that see more than the background; the others then add nothing.
     """
 
 def trace_paths_backward(
@@ -4526,15 +1779,12 @@ def trace_paths_backward(
     spp: typing.SupportsInt | typing.SupportsIndex,
     counts: numpy.ndarray | None,
     d_image: numpy.ndarray,
-    d_parameters: numpy.ndarray,
-    d_emission: numpy.ndarray,
-    d_lights: collections.abc.Sequence[numpy.ndarray],
-    d_textures: collections.abc.Sequence[numpy.ndarray],
-    d_media: collections.abc.Sequence[numpy.ndarray],
-    d_densities: collections.abc.Sequence[numpy.ndarray | None],
+    gradient: collections.abc.Mapping[str, numpy.ndarray],
 ) -> None:
     """
-    Adds to d_parameters (P,), d_emission (S, 3), d_lights, an array like the first of each light, d_textures, d_media (rows) and d_densities (grids or None) for dL/d(mean radiance). counts (H, W) uint32, or None: spp samples of each pixel.
+    Adds derivatives for dL/d(mean radiance) to the arrays of gradient, {name: array}: parameters (P,),
+    emission (S, 3), lights.I and textures.I, arrays like those of the scene, media.I (rows), densities.I
+    (X, Y, Z) of media with a grid. counts (H, W) uint32, or None: spp samples of each pixel.
     """
 
 def trace_paths_tangent(
@@ -4575,6 +1825,34 @@ def trace_paths_tangent(
     which has the shapes of what it moves. float64.
     """
 
+def trace_reference(
+    geometry: PathGeometry,
+    models: collections.abc.Sequence[str],
+    parameters: numpy.ndarray,
+    emission: numpy.ndarray,
+    lights: collections.abc.Sequence[tuple[typing.Any, ...]],
+    textures: collections.abc.Sequence[numpy.ndarray],
+    media: collections.abc.Sequence[
+        tuple[str, numpy.ndarray, numpy.ndarray | None, typing.SupportsFloat | typing.SupportsIndex]
+    ],
+    camera: tuple[typing.Any, ...],
+    options: tuple[
+        typing.SupportsInt | typing.SupportsIndex,
+        typing.SupportsInt | typing.SupportsIndex,
+        typing.SupportsInt | typing.SupportsIndex,
+        typing.SupportsInt | typing.SupportsIndex,
+        typing.SupportsInt | typing.SupportsIndex,
+        typing.SupportsInt | typing.SupportsIndex,
+    ],
+    first: typing.SupportsInt | typing.SupportsIndex,
+    count: typing.SupportsInt | typing.SupportsIndex,
+    radiance: numpy.ndarray,
+    squares: numpy.ndarray,
+) -> None:
+    """
+    As trace_paths, by a scalar tracer that is written to be read; float64.
+    """
+
 def uniform(
     seed: typing.SupportsInt | typing.SupportsIndex,
     step: typing.SupportsInt | typing.SupportsIndex,
@@ -4602,64 +1880,12 @@ def write_vdb(
 ) -> None: ...
 
 __version__: str = "0.1.0"
-bsdfs: dict[str, typing.Any] = {
-    "lambert": bsdf_lambert,
-    "phong": bsdf_phong,
-    "phong_reciprocal": bsdf_phong_reciprocal,
-    "blinn_phong": bsdf_blinn_phong,
-    "blinn_phong_fitted": bsdf_blinn_phong_fitted,
-    "oren_nayar_qualitative": bsdf_oren_nayar_qualitative,
-    "oren_nayar_full": bsdf_oren_nayar_full,
-    "oren_nayar_energy_preserving": bsdf_oren_nayar_energy_preserving,
-    "burley_diffuse": bsdf_burley_diffuse,
-    "cook_torrance": bsdf_cook_torrance,
-    "ggx_metal": bsdf_ggx_metal,
-    "ggx_metal_compensated": bsdf_ggx_metal_compensated,
-    "ggx_metal_fast": bsdf_ggx_metal_fast,
-    "ggx_conductor": bsdf_ggx_conductor,
-    "beckmann_conductor": bsdf_beckmann_conductor,
-    "ggx_anisotropic": bsdf_ggx_anisotropic,
-    "standard": bsdf_standard,
-    "gltf": bsdf_gltf,
-    "gltf_iridescence": bsdf_gltf_iridescence,
-    "gltf_sheen": bsdf_gltf_sheen,
-    "gltf_specular": bsdf_gltf_specular,
-    "clearcoat": bsdf_clearcoat,
-    "sheen": bsdf_sheen,
-    "disney": bsdf_disney,
-    "rough_dielectric": bsdf_rough_dielectric,
-    "dispersive_dielectric": bsdf_dispersive_dielectric,
-    "gltf_transmission": bsdf_gltf_transmission,
-    "gltf_refraction": bsdf_gltf_refraction,
-    "principled": bsdf_principled,
-}
-delta_bsdfs: dict[str, typing.Any] = {
-    "mirror": delta_bsdf_mirror,
-    "glass": delta_bsdf_glass,
-    "thin_glass": delta_bsdf_thin_glass,
-    "dispersive_glass": delta_bsdf_dispersive_glass,
-}
+bsdfs: dict[str, typing.Any]
+delta_bsdfs: dict[str, typing.Any]
 fields: tuple[typing.Any, ...] = ("dense_grid", "tiny_network")
-lights: dict[str, typing.Any] = {
-    "sun": sampled_sun,
-    "sky": sampled_sky,
-    "constant": sampled_constant,
-}
-most_samples: int = 262144
+lights: dict[str, typing.Any]
+max_samples: int = 262144
 ops: dict[str, typing.Any]
-phases: dict[str, typing.Any] = {
-    "henyey_greenstein": phase_henyey_greenstein,
-    "cornette_shanks": phase_cornette_shanks,
-}
-sampled_lights: dict[str, typing.Any] = {
-    "sun": sampled_sun,
-    "sky": sampled_sky,
-    "constant": sampled_constant,
-    "point": sampled_point,
-    "directional": sampled_directional,
-    "spot": sampled_spot,
-    "quad": sampled_quad,
-    "sphere": sampled_sphere,
-    "triangle": sampled_triangle,
-}
+phases: dict[str, typing.Any]
+sampled_lights: dict[str, typing.Any]
 tiny_network_parameters: int = 132

@@ -53,7 +53,7 @@ class BsdfModel:
         reciprocal: whether f(wo, wi) / index(wo)^2 = f(wi, wo) / index(wi)^2; the index is 1
             above the surface, and `index_inside` below it.
         transmits: whether light may pass; wo and wi may then lie on either side.
-        core: the core's class of static functions.
+        core: its functions on arrays, in the core.
     """
 
     name: str

@@ -1,4 +1,4 @@
-"""Perfectly smooth surfaces: mirrors and panes, whose reflectance is a delta function.
+"""Specular surfaces: mirrors and panes, whose reflectance is a delta function.
 
 They have no value for a given wi and no density, so they are not among `photograd.bsdf`'s models.
 Each names the few directions it sends light from, and their weights; a path follows one of them
@@ -28,13 +28,13 @@ from photograd.errors import ShapeError, message
 
 @dataclass(frozen=True)
 class DeltaModel:
-    """One registered smooth surface.
+    """One registered specular surface.
 
     Attributes:
         name: in the registry.
         parameters: in the order in which the core packs them.
         lobe_count: L, the directions it may send light from.
-        core: the core's class of static functions.
+        core: its functions on arrays, in the core.
     """
 
     name: str
@@ -76,7 +76,7 @@ class DeltaModel:
 
 
 def registry(core: ModuleType | Any = _core) -> dict[str, DeltaModel]:
-    """All smooth surfaces of a compiled module, by name."""
+    """All specular surfaces of a compiled module, by name."""
     return {
         name: DeltaModel(
             name,

@@ -41,7 +41,7 @@ def view_slope(
     """Loss of one view and its gradients, priors of the density control included.
 
     `raw_background` (3,) is the parameter of a learned background, `kind` one of "random", "white",
-    "black", "learned". Adds to the scene's pressure.
+    "black", "learned". Adds to the scene's positional gradient statistics.
     """
     behind = display_background(raw_background, kind, seed=options.seed, step=step)
     outputs, context = scene.render(

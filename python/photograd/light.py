@@ -30,7 +30,7 @@ class LightModel:
         name: in the registry.
         parameters: differentiated, in the core's order.
         constants: not differentiated: they move edges, where no derivative exists.
-        core: the core's class of static functions.
+        core: its functions on arrays, in the core.
     """
 
     name: str

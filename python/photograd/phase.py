@@ -28,7 +28,7 @@ class PhaseModel:
     Attributes:
         name: in the registry.
         parameters: in the order in which arrays (P,) hold them.
-        core: the core's class of static functions.
+        core: its functions on arrays, in the core.
     """
 
     name: str

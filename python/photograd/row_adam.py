@@ -39,4 +39,4 @@ class RowAdam(Adam):
             )
         )
         numbers = [self.beta_1, self.beta_2, length, self.epsilon * root]
-        _core.adam_rows(p, g, mean, mean_square, numbers)
+        _core.sparse_adam(p, g, mean, mean_square, numbers)

@@ -179,7 +179,7 @@ class SparseGrid:
         s = self.core.statistics()
         return SparseStatistics(
             s.active_voxels, s.active_tiles, s.leaves, s.memory,
-            np.array(s.box, np.int64), s.least, s.most,
+            np.array(s.box, np.int64), s.min, s.max,
         )  # fmt: skip
 
     def sample(self, points: Array) -> Array:

@@ -11,6 +11,7 @@ for comparisons with finite differences.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Any, Literal
 
@@ -237,9 +238,12 @@ def render(
         camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy
     )
     prepared = _core.prepare_splats(
-        **gaussians.arrays(), image=image, options=(options or SplatOptions())._core(),
-        camera_from_world=view, background=behind,
-    )  # fmt: skip
+        list(gaussians.arrays().values()),
+        image=image,
+        options=(options or SplatOptions())._core(),
+        camera_from_world=view,
+        background=behind,
+    )
     picture = SplatPicture(*prepared.render())
     require_finite("splat.render", vars(picture), lambda at: f"pixel ({at[1]}, {at[0]})")
     return picture, SplatContext(gaussians, picture, prepared, view)
@@ -259,14 +263,8 @@ def render_backward(
     Raises:
         DtypeError, ShapeError: a cotangent of another kind than its output.
     """
-    outputs, parameters = context.picture, context.gaussians.arrays()
-    dtype = context.gaussians.means.dtype
-    cotangents = {
-        f"d_{name}": np.zeros_like(array) if given is None else np.ascontiguousarray(given)
-        for (name, array), given in zip(
-            vars(outputs).items(), (d_color, d_opacity, d_depth), strict=True
-        )
-    }
+    parameters, dtype = context.gaussians.arrays(), context.gaussians.means.dtype
+    image = list(vars(context.picture).values())
     gradients = {name: np.zeros_like(array) for name, array in parameters.items()}
     rest = {
         "camera_from_world": np.zeros((3, 4), dtype),
@@ -274,10 +272,21 @@ def render_backward(
         "screen": np.zeros((len(context.gaussians), 2), dtype),
     }
     context.prepared.backward(
-        **parameters, **vars(outputs), **cotangents,
-        **{f"d_{name}": array for name, array in {**gradients, **rest}.items()},
-    )  # fmt: skip
+        list(parameters.values()),
+        image,
+        filled_cotangents(image, (d_color, d_opacity, d_depth)),
+        list(gradients.values()),
+        **{f"d_{name}": array for name, array in rest.items()},
+    )
     return SplatGradients(gradients, **rest)
+
+
+def filled_cotangents(image: list[Array], given: Sequence[Array | None]) -> list[Array]:
+    """The cotangents of an image as the core takes them; None is zero."""
+    return [
+        np.zeros_like(array) if d is None else np.ascontiguousarray(d)
+        for array, d in zip(image, given, strict=True)
+    ]
 
 
 def twist_gradient(d_camera_from_world: Array, camera_from_world: ArrayLike) -> Array:

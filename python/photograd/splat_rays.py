@@ -27,7 +27,7 @@ from numpy.typing import ArrayLike, NDArray
 from photograd.core import _core
 from photograd.errors import RangeError, ShapeError, message
 from photograd.finite import require_finite
-from photograd.splat import Gaussians
+from photograd.splat import Gaussians, filled_cotangents
 
 Array = NDArray[Any]
 
@@ -151,11 +151,10 @@ def render(
     if not np.isfinite(behind).all():
         raise RangeError(message("splat_rays.render", "background", "finite numbers", "others"))
     policies = options or RayOptions()
-    prepared = _core.prepare_splat_rays(
-        **gaussians.arrays(), origins=rays[0], directions=rays[1], background=behind,
-        options=_core.RayOptions(**vars(policies)),
-    )  # fmt: skip
-    picture = RayPicture(*prepared.render(**gaussians.arrays()))
+    arrays = list(gaussians.arrays().values())
+    core_options = _core.RayOptions(**vars(policies))
+    prepared = _core.prepare_splat_rays(arrays, core_options, rays[0], rays[1], behind)
+    picture = RayPicture(*prepared.render(arrays))
     require_finite("splat_rays.render", vars(picture), lambda at: f"ray {at[0]}")
     return picture, RayContext(gaussians, picture, prepared)
 
@@ -194,17 +193,17 @@ def render_backward(
     Raises:
         DtypeError, ShapeError: a cotangent of another kind than its output.
     """
-    outputs, parameters = vars(context.picture), context.gaussians.arrays()
-    cotangents = {
-        f"d_{name}": np.zeros_like(array) if given is None else np.ascontiguousarray(given)
-        for (name, array), given in zip(outputs.items(), (d_color, d_opacity, d_depth), strict=True)
-    }
+    image = list(vars(context.picture).values())
+    parameters = context.gaussians.arrays()
     gradients = {name: np.zeros_like(array) for name, array in parameters.items()}
     background = np.zeros(3, context.gaussians.means.dtype)
-    ends = [np.zeros_like(context.picture.color) if rays else None for _ in range(2)]
+    d_rays = [np.zeros_like(context.picture.color) for _ in range(2)] if rays else None
     context.prepared.backward(
-        **parameters, **outputs, **cotangents,
-        **{f"d_{name}": array for name, array in gradients.items()},
-        d_background=background, d_origins=ends[0], d_directions=ends[1],
-    )  # fmt: skip
-    return RayGradients(gradients, background, *ends)
+        list(parameters.values()),
+        image,
+        filled_cotangents(image, (d_color, d_opacity, d_depth)),
+        list(gradients.values()),
+        background,
+        d_rays,
+    )
+    return RayGradients(gradients, background, *(d_rays or (None, None)))

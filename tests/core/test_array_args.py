@@ -19,12 +19,15 @@ from tests.splat import oracle
 def call(**changes: Any) -> Any:
     arguments: dict[str, Any] = {
         "field": "dense_grid", "parameters": np.zeros((4, 4, 4, 4), np.float32),
-        "settings": settings(), "origins": np.zeros((5, 3), np.float32),
-        "directions": np.ones((5, 3), np.float32), "t0": np.zeros(5, np.float32),
-        "samples": np.zeros(5, np.int32),
+        "settings": settings(),
     }  # fmt: skip
-    arguments.update(changes)
-    return _core.march(**arguments)
+    rays = {
+        "origins": np.zeros((5, 3), np.float32), "directions": np.ones((5, 3), np.float32),
+        "t0": np.zeros(5, np.float32), "samples": np.zeros(5, np.int32),
+    }  # fmt: skip
+    for name, value in changes.items():
+        (rays if name in rays else arguments)[name] = value
+    return _core.march(**arguments, rays=list(rays.values()))
 
 
 @pytest.mark.parametrize(
@@ -71,11 +74,12 @@ def test_gradients_are_not_written_into_a_read_only_array() -> None:
     grid = np.zeros((4, 4, 4, 4), np.float32)
     rays = np.zeros((5, 3), np.float32), np.ones((5, 3), np.float32)
     t0, samples = np.zeros(5, np.float32), np.zeros(5, np.int32)
-    out = _core.march("dense_grid", grid, settings(), *rays, t0, samples)
+    batch = (*rays, t0, samples)
+    out = _core.march("dense_grid", grid, settings(), batch)
     d_grid = np.zeros_like(grid)
     d_grid.flags.writeable = False
     with pytest.raises(RangeError, match="d_parameters: expected a writable array"):
-        _core.march_backward("dense_grid", grid, settings(), *rays, t0, samples, *out, *out, d_grid)
+        _core.march_backward("dense_grid", grid, settings(), batch, out, out, d_grid)
 
 
 @pytest.mark.parametrize(
@@ -100,18 +104,23 @@ def test_steps_that_are_too_many_are_refused_where_they_are_placed() -> None:
 
 def test_the_backward_pass_needs_the_counts_of_a_rendering() -> None:
     """The records of crossings were written behind the end of their array."""
-    cloud = oracle.cloud(6, 1, degree=0).arrays()
+    cloud = list(oracle.cloud(6, 1, degree=0).arrays().values())
     rays = np.zeros((40, 3)), np.float64([[0, 0, 1]] * 40)
     options, black = _core.RayOptions(0.0, 1.0, 0.0, 0.01), np.zeros(3)
-    prepared = _core.prepare_splat_rays(
-        **cloud, options=options, origins=rays[0], directions=rays[1], background=black
-    )
-    out = {"color": np.zeros((40, 3)), "opacity": np.zeros(40), "depth": np.zeros(40)}
-    d_out = {f"d_{name}": np.ones_like(array) for name, array in out.items()}
-    d_cloud = {f"d_{name}": np.zeros_like(array) for name, array in cloud.items()}
-    rest = {"d_background": np.zeros(3), "d_origins": None, "d_directions": None}
+    prepared = _core.prepare_splat_rays(cloud, options, *rays, black)
+    image = [np.zeros((40, 3)), np.zeros(40), np.zeros(40)]
+    d_image = [np.ones_like(array) for array in image]
+    d_cloud = [np.zeros_like(array) for array in cloud]
     with pytest.raises(RangeError, match=r"expected rays that were rendered, .*call render first"):
-        prepared.backward(**cloud, **out, **d_out, **d_cloud, **rest)
+        prepared.backward(cloud, image, d_image, d_cloud, np.zeros(3))
+
+
+def ball() -> Any:
+    """A scene of one sphere of 1 m around the origin."""
+    sphere, none = np.float32([[0, 0, 0, 1]]), np.zeros(0, np.int32)
+    return _core.PathGeometry(
+        [], none, np.zeros((0, 3, 4)), sphere, np.zeros(1, np.int32), np.zeros((1, 3)), []
+    )
 
 
 CAMERA = (4, 3, 5.0, 5.0, 2.0, 1.5, np.eye(4)[:3].tolist())
@@ -133,13 +142,11 @@ CAMERA = (4, 3, 5.0, 5.0, 2.0, 1.5, np.eye(4)[:3].tolist())
 def test_cameras_are_checked(place: Any, value: Any, text: str) -> None:
     camera: list[Any] = list(CAMERA)
     camera[place] = value
-    mesh = np.eye(3, dtype=np.float32), np.array([[0, 1, 2]], np.uint32), None
-    bvh = _core.Bvh([mesh], np.zeros(1, np.int32), np.eye(4)[None, :3].copy())
-    layouts, colors = [(0, 0, 1, 1)], np.ones((1, 3))
+    free = np.zeros((3, 4))
     with pytest.raises((DtypeError, RangeError, ShapeError), match=f"camera: {text}"):
-        _core.render_direct(bvh, layouts, colors, np.ones((4, 3)), [0, 1, 0], 0.1,
-                            tuple(camera), 1, 1)  # fmt: skip
-    assert _core.render_direct(bvh, layouts, colors, np.ones((4, 3)), [0, 1, 0], 0.1, CAMERA, 1, 1)
+        _core.ambient_occlusion(ball(), tuple(camera), 1e-3, 1, 0, 1, free)
+    _core.ambient_occlusion(ball(), CAMERA, 1e-3, 1, 0, 1, free)
+    assert free.all()  # nothing stands within 1 mm of the ball around the camera
 
 
 @pytest.mark.parametrize(
@@ -156,10 +163,7 @@ def test_textures_are_where_the_core_looks_them_up(
     uses: list[Any], emission: tuple[int, int], text: str
 ) -> None:
     """A sphere has no triangle whose corners a mip map's footprint could be taken from."""
-    ball, none = np.float32([[0, 0, 0, 1]]), np.zeros(0, np.int32)
-    geometry = _core.PathGeometry(
-        [], none, np.zeros((0, 3, 4)), ball, np.zeros(1, np.int32), np.zeros((1, 3)), []
-    )
+    geometry = ball()
     layouts = [(4, 4, 3, 0, 0, True)]
     with pytest.raises(RangeError, match=text):
         geometry.set_textures(layouts, [uses], [None], [False], [-1.0], [emission])
@@ -168,5 +172,5 @@ def test_textures_are_where_the_core_looks_them_up(
 def test_numbers_of_samples_and_threads_are_checked() -> None:
     with pytest.raises(RangeError, match="set_thread_count: threads: expected 0 to 4096, got -1"):
         _core.set_thread_count(-1)
-    with pytest.raises(RangeError, match=r"even_words: count: expected at most 2\^26 points"):
-        _core.even_words(1, 0, 0, np.zeros(3, np.uint32), 0, 2**31)
+    with pytest.raises(RangeError, match=r"sobol_words: count: expected at most 2\^26 points"):
+        _core.sobol_words(1, 0, 0, np.zeros(3, np.uint32), 0, 2**31)

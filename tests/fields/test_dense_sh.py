@@ -73,12 +73,12 @@ def test_dense_is_sparse_on_the_active_set_bit_for_bit(
     for name in ("origins", "directions") if camera else ():
         assert np.abs(d_sparse[name]).max() > 1e-3
         assert np.array_equal(d_sparse[name], d_dense[name])
-    # What the sparse grid reports as lost is what the dense one tells its other voxels.
+    # The gradient of the background is what the dense grid tells its other voxels.
     others = np.setdiff1d(np.arange(len(dense.active)), rows)
     elsewhere = [d_dense["density"][others].sum(), *d_dense["sh"][others].sum(axis=0).ravel()]
-    assert np.abs(sparse.lost).max() > 1e-3
-    np.testing.assert_allclose(sparse.lost, elsewhere, rtol=1e-4, atol=1e-5)
-    assert not dense.lost.any()
+    assert np.abs(sparse.background_gradient).max() > 1e-3
+    np.testing.assert_allclose(sparse.background_gradient, elsewhere, rtol=1e-4, atol=1e-5)
+    assert not dense.background_gradient.any()
 
 
 def test_nothing_is_pruned_and_nothing_may_be_missing() -> None:

@@ -46,9 +46,8 @@ KINDS = (
     DensityGrid, Environment, Lens, Shutter,
 )  # fmt: skip
 FUNCTIONS = (
-    "trace_paths", "trace_paths_backward", "trace_pairs_backward", "trace_paths_tangent",
+    "trace_paths", "trace_paths_backward", "dual_buffer_backward", "trace_paths_tangent",
     "trace_path", "emit_particles", "trace_light", "ambient_occlusion", "point_occlusion",
-    "first_hits",
 )  # fmt: skip
 
 
@@ -120,7 +119,7 @@ GROUPS = ("path", "call", "irradiance", "emitted", "photons", "occlusion", "occl
 CALLED = (*FUNCTIONS, *METHODS)
 ONE = np.ones(1)
 RETURNED = {
-    "trace_path": [], "emit_particles": [ONE] * 4, "first_hits": [ONE] * 4,
+    "trace_path": [], "emit_particles": [ONE] * 4,
     "PathGeometry.choose_lights": [ONE] * 2,
 }  # fmt: skip
 

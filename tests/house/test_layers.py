@@ -64,7 +64,7 @@ def test_python_imports_what_it_declares_and_the_course_knows_no_core() -> None:
     [
         ("photograd/core/real.h", '"photograd/ops/sh.h"'),  # upwards
         ("photograd/bsdf/ggx.h", '"photograd/medium/hg.h"'),  # sideways
-        ("photograd/render/march.cpp", '"bindings/module.h"'),
+        ("photograd/render/march/march.cpp", '"bindings/module.h"'),
         ("photograd/field/dense.cpp", '"kernels/march_dense.h"'),
         ("kernels/march_dense.inl", '"photograd/field/samples.h"'),
         ("photograd/ops/sh.h", "<glm/vec3.hpp>"),  # beside the door
@@ -83,7 +83,7 @@ def test_a_breach_is_seen(path: str, include: str) -> None:
 @pytest.mark.parametrize(
     ("path", "include"),
     [
-        ("photograd/render/march.cpp", '"kernels/kernels.h"'),
+        ("photograd/render/march/march.cpp", '"kernels/kernels.h"'),
         ("photograd/field/dense.h", '"photograd/grid/brick.h"'),
         ("photograd/geometry/bvh.cpp", "<embree3/rtcore.h>"),
         ("bindings/bind_ops.cpp", '"module.h"'),

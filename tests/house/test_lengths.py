@@ -1,14 +1,19 @@
-"""A file holds one idea: 400 lines at most, 300 for a test, and functions of less than 60."""
+"""A file holds one idea: 400 lines at most, 300 for a test, and functions of less than 60.
+
+Lines of C++ end at column 100, comments too; ruff sees to those of Python.
+"""
 
 from __future__ import annotations
 
 import ast
 from pathlib import Path
 
+from support.cpp_functions import functions
 from support.tree import CPP_SUFFIXES, ROOT, relative, walk
 
 CAPS = {"cpp": 400, "python": 400, "tools": 400, "bench": 400, "tests": 300, "cpp/tests": 300}
 FUNCTION_CAP = 60
+COLUMNS = 100
 
 
 def cap_of(path: str) -> int:
@@ -35,6 +40,15 @@ def long_functions(path: str, text: str) -> list[str]:
     return found
 
 
+def wide_lines(path: str, text: str) -> list[str]:
+    """Lines that end beyond column 100."""
+    return [
+        f"{path}:{number}: {len(line)} columns"
+        for number, line in enumerate(text.splitlines(), start=1)
+        if len(line) > COLUMNS
+    ]
+
+
 def test_files_stay_below_their_cap() -> None:
     lengths = {relative(path): len(path.read_text("utf-8").splitlines()) for path in sources()}
     assert len(lengths) > 50
@@ -49,6 +63,38 @@ def test_python_functions_stay_below_sixty_lines() -> None:
         for line in long_functions(relative(path), path.read_text(encoding="utf-8"))
     ]
     assert found == []
+
+
+def test_cpp_functions_stay_below_sixty_lines() -> None:
+    texts = {
+        relative(path): path.read_text("utf-8") for path in sources() if path.suffix in CPP_SUFFIXES
+    }
+    lengths = [(path, function) for path, text in texts.items() for function in functions(text)]
+    assert len(lengths) > 1500, "the functions are not found any more"
+    found = {f"{path} {f.name}": f for path, f in lengths if f.lines >= FUNCTION_CAP}
+    assert found == {}
+
+
+def test_cpp_lines_end_at_column_100() -> None:
+    paths = [*walk(ROOT / "cpp", CPP_SUFFIXES | {".py"}), ROOT / "cpp" / "CMakeLists.txt"]
+    texts = {relative(path): path.read_text(encoding="utf-8") for path in paths}
+    assert len(texts) > 300, "the sources are not found any more"
+    assert [line for path, text in texts.items() for line in wide_lines(path, text)] == []
+
+
+def test_a_wide_line_is_seen_in_columns_not_in_bytes() -> None:
+    assert wide_lines("a.h", "\u00e9" * 100 + "\n// " + "x" * 98) == ["a.h:2: 101 columns"]
+
+
+def test_a_long_cpp_function_is_seen() -> None:
+    body = "    if (x) { y(); }  // }\n" * 58
+    text = (
+        "namespace a {\nstruct S {\n    int x{1};\n};\n"
+        "template <class T>\n    requires (sizeof(T) > 1)\n"
+        f'T f(const char* c = "{{") {{\n{body}}}\nint g() {{ return 1; }}\n}}\n'
+    )
+    assert [tuple(f)[1:] for f in functions(text)] == [(5, 62), (67, 1)]
+    assert functions("int a[] = {1, 2};\nenum class B { c };\n") == []
 
 
 def test_a_long_function_is_seen_and_its_docstring_forgiven() -> None:

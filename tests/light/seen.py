@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 from photograd.lights import (
     EnvironmentMap,
-    MeshLight,
     QuadLight,
     SphereLight,
     TriangleLight,
@@ -44,28 +43,6 @@ def triangle() -> Seen:
     light = TriangleLight(*TRIANGLE, COLOR)
     known = COLOR * polygon_irradiance(TRIANGLE, POINT, UP)
     return Seen(light, POINT, UP, Triangles(POINT, TRIANGLE[None]), known)
-
-
-def fronts() -> Any:
-    """Corners (K, 3, 3) of the octahedron's faces that POINT sees."""
-    corners = OCTAHEDRON[FACES]
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    return corners[((POINT - corners[:, 0]) * normals).sum(axis=1) > 0]
-
-
-def mesh() -> Seen:
-    light = MeshLight(OCTAHEDRON, FACES, COLOR)
-    known = COLOR * sum(polygon_irradiance(face, POINT, UP) for face in fronts())
-    return Seen(light, POINT, UP, Triangles(POINT, fronts()), known)
-
-
-def hidden_share() -> float:
-    """The part of the mesh's area that faces away from POINT: samples there are lost."""
-    areas = [
-        np.linalg.norm(np.cross(f[:, 1] - f[:, 0], f[:, 2] - f[:, 0]), axis=1).sum()
-        for f in (fronts(), OCTAHEDRON[FACES])
-    ]
-    return float(1.0 - areas[0] / areas[1])
 
 
 def sphere() -> Seen:
@@ -114,6 +91,4 @@ def environment_irradiance(light: EnvironmentMap, rows: int = 512) -> Any:
     return (value * cosine).sum(axis=0) * (4.0 * np.pi / len(w))
 
 
-SEEN = {
-    "quad": quad, "triangle": triangle, "mesh": mesh, "sphere": sphere, "environment": environment,
-}  # fmt: skip
+SEEN = {"quad": quad, "triangle": triangle, "sphere": sphere, "environment": environment}

@@ -6,31 +6,28 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.lights import EnvironmentMap, MeshLight, about_y
+from photograd.lights import EnvironmentMap, about_y
 from photograd_course.gradcheck import check_accumulation, check_gradient, dot_product_error
 from photograd_course.mutants import check_mutants, check_overwriting_mutants
 from photograd_course.random import uniform
 
-from light.seen import COLOR, FACES, OCTAHEDRON, POINT, UP, texels
+from light.seen import POINT, UP, texels
 from support.light_proofs import square
 
 COUNT = 300
-LIGHTS: dict[str, Any] = {
-    "environment": EnvironmentMap(texels(4), about_y(0.7), 0.3),
-    "mesh": MeshLight(OCTAHEDRON, FACES, COLOR),
-}
+LIGHT = EnvironmentMap(texels(4), about_y(0.7), 0.3)
 
 
 class Proof:
-    """Radiance of fixed directions as a function of what the light emits."""
+    """Radiance of fixed directions as a function of the texels."""
 
-    def __init__(self, light: Any, function: str) -> None:
-        self.core, (emission, *self.rest) = light.core_call(np.float64)
-        (self.name,) = light.named(emission)
+    def __init__(self, function: str) -> None:
+        self.core, (emission, *self.rest) = LIGHT.core_call(np.float64)
+        (self.name,) = LIGHT.named(emission)
         self.place = {self.name: emission}
         self.function = function
         self.points = np.tile(POINT, (COUNT, 1))
-        samples = light.sample(self.points, square(COUNT, seed=51))
+        samples = LIGHT.sample(self.points, square(COUNT, seed=51))
         keep = samples.pdf > 0
         self.points, self.w = self.points[keep], samples.direction[keep]
         self.d = 0.5 + uniform(52, pixel=np.arange(keep.sum())[:, None], dimension=np.arange(3))
@@ -57,9 +54,8 @@ class Proof:
 
 
 @pytest.mark.parametrize("function", ["radiance_backward", "sample_backward"])
-@pytest.mark.parametrize("name", sorted(LIGHTS))
-def test_gradients(name: str, function: str) -> None:
-    proof = Proof(LIGHTS[name], function)
+def test_gradients(function: str) -> None:
+    proof = Proof(function)
     report: Any = check_gradient(proof.forward, proof.backward, proof.place, seed=1)
     assert report, str(report)
     report = dot_product_error(proof.jvp, proof.backward, proof.place, seed=1)
@@ -79,7 +75,7 @@ def test_gradients(name: str, function: str) -> None:
 
 
 def test_a_shifted_or_unwrapped_adjoint_is_seen() -> None:
-    proof = Proof(LIGHTS["environment"], "radiance_backward")
+    proof = Proof("radiance_backward")
 
     def shifted(groups: Any, d: Any) -> Any:
         return {"texels": np.roll(proof.backward(groups, d)["texels"], 1, axis=1)}

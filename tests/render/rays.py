@@ -50,7 +50,7 @@ def along_x(origin: float = -3.0) -> tuple[Any, Any]:
 
 def march(grid: Any, s: Any, rays: tuple[Any, Any], *, fused: bool = True) -> tuple[Any, ...]:
     t0, samples = _core.place_samples(s, *rays)
-    return (*_core.march("dense_grid", grid, s, *rays, t0, samples, fused), t0, samples)
+    return (*_core.march("dense_grid", grid, s, (*rays, t0, samples), fused), t0, samples)
 
 
 def march_backward(
@@ -59,8 +59,8 @@ def march_backward(
 ) -> Any:  # fmt: skip
     color, transmittance, depth, t0, samples = out
     d_grid = np.zeros_like(grid)
+    outputs = color, transmittance, depth
     _core.march_backward(
-        "dense_grid", grid, s, *rays, t0, samples, color, transmittance, depth, *d, d_grid,
-        fused=fused,
-    )  # fmt: skip
+        "dense_grid", grid, s, (*rays, t0, samples), outputs, d, d_grid, fused=fused
+    )
     return d_grid

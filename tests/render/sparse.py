@@ -58,9 +58,14 @@ def scene(
 def march(s: Scene, place: dict[str, Any], *, fused: bool = True, skip: bool = True) -> Any:
     """Colour, transmittance, depth, and the number of samples looked up."""
     return _core.march_sparse_sh(
-        s.active.table, *(place[g] for g in GROUPS), s.settings, s.offset, *s.rays, *s.samples(),
-        fused=fused, skip=skip,
-    )  # fmt: skip
+        s.active.table,
+        [place[g] for g in GROUPS],
+        s.settings,
+        s.offset,
+        (*s.rays, *s.samples()),
+        fused=fused,
+        skip=skip,
+    )
 
 
 def march_backward(
@@ -71,9 +76,17 @@ def march_backward(
     out = march(s, place, fused=fused)[:3]
     gradients = into or {g: np.zeros_like(place[g]) for g in GROUPS}
     _core.march_sparse_sh_backward(
-        s.active.table, *(place[g] for g in GROUPS), s.settings, s.offset, *s.rays, *s.samples(),
-        *out, *d, *(gradients[g] for g in GROUPS), *(camera or (None, None)), fused=fused,
-    )  # fmt: skip
+        s.active.table,
+        [place[g] for g in GROUPS],
+        s.settings,
+        s.offset,
+        (*s.rays, *s.samples()),
+        out,
+        d,
+        [gradients[g] for g in GROUPS],
+        camera,
+        fused=fused,
+    )
     return gradients
 
 

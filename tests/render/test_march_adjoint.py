@@ -100,7 +100,9 @@ def test_camera_gradient(field: str) -> None:
     t0, samples = _core.place_samples(s, origins, directions)
 
     def forward(p: dict[str, Any]) -> Any:
-        return _core.march(field, parameters, s, p["origins"], p["directions"], t0, samples, False)
+        return _core.march(
+            field, parameters, s, (p["origins"], p["directions"], t0, samples), False
+        )
 
     def function(p: dict[str, Any]) -> dict[str, Any]:
         return dict(zip(("color", "transmittance", "depth"), forward(p), strict=True))
@@ -108,10 +110,16 @@ def test_camera_gradient(field: str) -> None:
     def backward(p: dict[str, Any], d: dict[str, Any]) -> dict[str, Any]:
         d_rays = {name: np.zeros_like(value) for name, value in p.items()}
         _core.march_backward(
-            field, parameters, s, p["origins"], p["directions"], t0, samples, *forward(p),
-            d["color"], d["transmittance"], d["depth"], np.zeros_like(parameters),
-            d_rays["origins"], d_rays["directions"], False,
-        )  # fmt: skip
+            field,
+            parameters,
+            s,
+            (p["origins"], p["directions"], t0, samples),
+            forward(p),
+            (d["color"], d["transmittance"], d["depth"]),
+            np.zeros_like(parameters),
+            (d_rays["origins"], d_rays["directions"]),
+            False,
+        )
         return d_rays
 
     # Trilinear lookups have kinks at cell faces, which a difference of directions crosses for the
@@ -142,10 +150,16 @@ def test_samples_that_hang_on_the_point_of_entry_move_with_the_camera(lattice: s
     *out, t0, samples = march(grid, s, (origins, directions), fused=False)
     d_origins, d_directions = np.zeros_like(origins), np.zeros_like(directions)
     _core.march_backward(
-        "dense_grid", grid, s, origins, directions, t0, samples, *out,
-        np.ones((64, 3)), np.zeros(64), np.zeros(64), np.zeros_like(grid),
-        d_origins, d_directions, False,
-    )  # fmt: skip
+        "dense_grid",
+        grid,
+        s,
+        (origins, directions, t0, samples),
+        out,
+        (np.ones((64, 3)), np.zeros(64), np.zeros(64)),
+        np.zeros_like(grid),
+        (d_origins, d_directions),
+        False,
+    )
     error = abs(float((d_origins * v).sum()) / difference - 1)
     assert abs(difference) > 0.1
     assert (error < 1e-6) == (lattice == "origin")
@@ -172,6 +186,6 @@ def test_backward_twice_adds_twice() -> None:
     once = march_backward(grid, s, rays, out, d)
     twice = np.zeros_like(grid)
     for _ in range(2):
-        _core.march_backward("dense_grid", grid, s, *rays, *out[3:], *out[:3], *d, twice)
+        _core.march_backward("dense_grid", grid, s, (*rays, *out[3:]), out[:3], d, twice)
     assert np.abs(once).max() > 0
     np.testing.assert_allclose(twice, 2 * once, rtol=1e-14)

@@ -90,7 +90,7 @@ def test_order_of_convergence(quadrature: str, order: float) -> None:
         s = settings(dt=1.6 / steps, quadrature=quadrature)
         count = np.array([steps], np.int32)
         t0 = np.zeros(1)
-        return _core.march("dense_grid", grid, s, origins, directions, t0, count)[0][0]
+        return _core.march("dense_grid", grid, s, (origins, directions, t0, count))[0][0]
 
     reference = run(40960)
     errors = [np.abs(run(steps) - reference).max() for steps in (40, 80, 160)]

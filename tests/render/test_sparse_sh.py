@@ -238,9 +238,8 @@ def test_sparse_is_dense_on_the_active_set_and_the_rest_is_reported() -> None:
 def test_greatest_weights_are_those_of_all_samples() -> None:
     s = scene(12, dtype=np.float32, count=300, density_scale=4.0)
     most = np.zeros(len(s.active), np.float32)
-    _core.sparse_sh_weights(
-        s.active.table, *(s.place[g] for g in GROUPS), s.settings, *s.rays, *s.samples(), most
-    )
+    parameters, rays = [s.place[g] for g in GROUPS], (*s.rays, *s.samples())
+    _core.sparse_sh_weights(s.active.table, parameters, s.settings, rays, most)
     # A voxel's gradient by its own density under L = sum of w says nothing of the greatest, so ask
     # the samples: raise one colour at a time and see which samples it reaches.
     t0, samples = s.samples()

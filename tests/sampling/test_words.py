@@ -31,7 +31,7 @@ def numbers(sampler: str) -> Array:
     found = []
     for block in range(BLOCKS):
         if sampler == "even":
-            found += list(_core.even_words(SEED, 0, block, pixel, SAMPLE, 1)[:, 0].T / 2.0**32)
+            found += list(_core.sobol_words(SEED, 0, block, pixel, SAMPLE, 1)[:, 0].T / 2.0**32)
         else:
             found += [_core.uniform(SEED, 0, pixel, SAMPLE, 4 * block + k) for k in range(4)]
     return np.array(found)

@@ -65,13 +65,12 @@ def test_float_agrees_with_double(name: str) -> None:
 def test_backward_twice_gives_twice() -> None:
     g, camera = oracle.cloud(30, 1), oracle.camera()
     picture, context = render(g, camera)
-    parameters = g.arrays()
-    names = {f"d_{k}": np.zeros_like(v) for k, v in parameters.items()}
-    names |= {"d_camera_from_world": np.zeros((3, 4)), "d_background": np.zeros(3)}
-    names |= {"d_screen": np.zeros((30, 2))}
-    d = {f"d_{k}": np.ones_like(v) for k, v in vars(picture).items()}
-    context.prepared.backward(**parameters, **vars(picture), **d, **names)
-    once = {k: v.copy() for k, v in names.items()}
-    context.prepared.backward(**parameters, **vars(picture), **d, **names)
-    for k, v in names.items():
-        np.testing.assert_allclose(v, 2 * once[k], rtol=1e-12, atol=1e-12)
+    parameters, image = list(g.arrays().values()), list(vars(picture).values())
+    d_image = [np.ones_like(v) for v in image]
+    gradients = [np.zeros_like(v) for v in parameters]
+    rest = [np.zeros((3, 4)), np.zeros(3), np.zeros((30, 2))]
+    context.prepared.backward(parameters, image, d_image, gradients, *rest)
+    once = [v.copy() for v in (*gradients, *rest)]
+    context.prepared.backward(parameters, image, d_image, gradients, *rest)
+    for twice, v in zip((*gradients, *rest), once, strict=True):
+        np.testing.assert_allclose(twice, 2 * v, rtol=1e-12, atol=1e-12)

@@ -89,13 +89,12 @@ def test_float_agrees_with_double(name: str) -> None:
 def test_backward_twice_gives_twice() -> None:
     g, (origins, directions) = oracle.cloud(30, 1), ray_oracle.rays(50, 1)
     picture, context = render(g, origins, directions)
-    parameters = g.arrays()
-    names = {f"d_{k}": np.zeros_like(v) for k, v in parameters.items()}
-    names |= {"d_background": np.zeros(3)}
-    names |= {"d_origins": np.zeros((50, 3)), "d_directions": np.zeros((50, 3))}
-    d = {f"d_{k}": np.ones_like(v) for k, v in vars(picture).items()}
-    context.prepared.backward(**parameters, **vars(picture), **d, **names)
-    once = {k: v.copy() for k, v in names.items()}
-    context.prepared.backward(**parameters, **vars(picture), **d, **names)
-    for k, v in names.items():
-        np.testing.assert_allclose(v, 2 * once[k], rtol=1e-12, atol=1e-12)
+    parameters, image = list(g.arrays().values()), list(vars(picture).values())
+    d_image = [np.ones_like(v) for v in image]
+    gradients, background = [np.zeros_like(v) for v in parameters], np.zeros(3)
+    rays = [np.zeros((50, 3)), np.zeros((50, 3))]
+    context.prepared.backward(parameters, image, d_image, gradients, background, rays)
+    once = [v.copy() for v in (*gradients, background, *rays)]
+    context.prepared.backward(parameters, image, d_image, gradients, background, rays)
+    for twice, v in zip((*gradients, background, *rays), once, strict=True):
+        np.testing.assert_allclose(twice, 2 * v, rtol=1e-12, atol=1e-12)

@@ -13,8 +13,8 @@ from photograd.row_adam import RowAdam
 from photograd.splat import Gaussians, SplatOptions, render
 from photograd.splats.clone_split_prune import CloneSplitPrune
 from photograd.splats.density import Schedule, opacities
+from photograd.splats.grad2d import Grad2dStatistics
 from photograd.splats.markov_chain import MarkovChain, _coverage
-from photograd.splats.pressure import Pressure
 from photograd_course.metrics import psnr
 from photograd_course.row_map import FRESH
 
@@ -51,8 +51,8 @@ def change_in_db(field: GaussianScene, step: int = 10) -> tuple[float, Any]:
 
 def press(field: GaussianScene, rows: Any) -> None:
     """As if pictures had pulled at these rows, the later the harder."""
-    field.pressure.total[rows] = np.linspace(1, 2, len(rows))
-    field.pressure.count[:] = 1
+    field.grad2d.total[rows] = np.linspace(1, 2, len(rows))
+    field.grad2d.count[:] = 1
 
 
 def test_clones_all_but_keep_the_picture() -> None:
@@ -213,7 +213,7 @@ def test_the_wish_for_few_and_small_ones_is_a_gradient() -> None:
         assert abs(slope) > 1e-5
 
 
-def test_pressure_means_the_same_at_every_resolution() -> None:
+def test_grad2d_means_the_same_at_every_resolution() -> None:
     """The same scene and loss at 96 and at 192 pixels: less than a tenth is chosen otherwise.
 
     Gradients by a pixel halve: a threshold on those would choose other Gaussians.
@@ -233,8 +233,8 @@ def test_pressure_means_the_same_at_every_resolution() -> None:
             field.render_backward(context, Outputs(np.ascontiguousarray(d_color)))
             field.observe(context)
             raw.append(np.abs(context.screen).mean())
-        chosen.append(field.pressure.mean() > np.median(field.pressure.mean()) * 1.5)
-        middle = np.median(field.pressure.mean())
+        chosen.append(field.grad2d.mean() > np.median(field.grad2d.mean()) * 1.5)
+        middle = np.median(field.grad2d.mean())
         raw.append(middle)
     one, two = chosen
     assert 50 < one.sum() < 550
@@ -244,10 +244,10 @@ def test_pressure_means_the_same_at_every_resolution() -> None:
     assert raw[0] == pytest.approx(2 * raw[4], rel=0.02)  # the gradient with respect to pixels
 
 
-def test_pressure_is_a_mean_over_the_pictures_that_show_a_gaussian() -> None:
+def test_grad2d_is_a_mean_over_the_pictures_that_show_a_gaussian() -> None:
     (camera,) = orbit_cameras(BOX, 1, size=20)
-    pressure = Pressure.zero(3)
+    grad2d = Grad2dStatistics.zero(3)
     screen = np.array([[3.0, 4.0], [0, 0], [1, 0]])
-    pressure.add(screen, np.array([True, False, True]), camera)
-    pressure.add(screen, np.array([True, False, False]), camera)
-    np.testing.assert_allclose(pressure.mean(), [50, 0, 20])
+    grad2d.add(screen, np.array([True, False, True]), camera)
+    grad2d.add(screen, np.array([True, False, False]), camera)
+    np.testing.assert_allclose(grad2d.mean(), [50, 0, 20])

@@ -13,7 +13,7 @@ from photograd.fit_options import options_for
 from photograd.splat import Gaussians, SplatOptions, render
 from photograd.splats.drawings import draw_gaussian_gradients
 from photograd.splats.view_gradients import (
-    pressure_picture,
+    grad2d_picture,
     screen_covariances,
     view_gradients,
 )
@@ -67,14 +67,14 @@ def test_one_splat_has_the_moments_of_its_ellipse() -> None:
     np.testing.assert_allclose(screen_covariances(g, camera)[0], measured, rtol=0.01, atol=0.02)
 
 
-def test_pressure_is_seen_where_it_is(scene: GaussianScene) -> None:
+def test_grad2d_is_drawn_where_it_is(scene: GaussianScene) -> None:
     views = TrainingViews(cloud_capture().train)
     camera = views.views[3].camera
-    pressure = np.zeros(scene.resolution)
+    grad2d = np.zeros(scene.resolution)
     pixels, _ = camera.project(scene.params["means"].astype(np.float64))
     middle = int(np.argmin(np.abs(pixels - [20, 20]).sum(axis=1)))
-    pressure[middle] = 0.5
-    drawn = pressure_picture(scene.gaussians, pressure, camera)
+    grad2d[middle] = 0.5
+    drawn = grad2d_picture(scene.gaussians, grad2d, camera)
     row, column = np.unravel_index(drawn.argmax(), drawn.shape)
     assert np.hypot(column + 0.5 - pixels[middle, 0], row + 0.5 - pixels[middle, 1]) < 3
     assert 0 < drawn.max() <= 0.5
@@ -83,6 +83,6 @@ def test_pressure_is_seen_where_it_is(scene: GaussianScene) -> None:
 def test_a_figure_is_drawn_also_of_nothing(scene: GaussianScene) -> None:
     views = TrainingViews(cloud_capture().train)
     found = view_gradients(scene, views, 0)
-    pressure = pressure_picture(scene.gaussians, found.pressure, views.views[0].camera)
-    figure = draw_gaussian_gradients({0: (found, pressure), 9: (found, 0 * pressure)}, threshold=1)
+    grad2d = grad2d_picture(scene.gaussians, found.grad2d, views.views[0].camera)
+    figure = draw_gaussian_gradients({0: (found, grad2d), 9: (found, 0 * grad2d)}, threshold=1)
     assert len(figure.axes) == 2 * (3 + 2)

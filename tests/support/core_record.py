@@ -68,11 +68,8 @@ def members() -> Iterator[tuple[Any, str, bool]]:
 
 
 def member_name(owner: Any, name: str) -> str:
-    """`march`, `Bvh.trace`; registered models under the name of their kind, `bsdf.f`."""
-    if owner is _core:
-        return name
-    kind = re.match(r"(bsdf|delta_bsdf|phase|sampled)_", owner.__name__)
-    return f"{kind[1] if kind else owner.__name__}.{name}"
+    """`march`, `Bvh.trace`."""
+    return name if owner is _core else f"{owner.__name__}.{name}"
 
 
 @contextmanager

@@ -17,7 +17,6 @@ from photograd.delta_bsdf import registry as delta_registry
 from photograd.geometry import Body, BspTree, ReferenceBvh
 from photograd.geometry.sdf_shapes import box, placed, smooth_union, sphere
 from photograd.geometry.sorting import order_by_distance
-from photograd.lights import MeshLight
 from photograd.mesh import Bvh, Instance, Mesh
 from photograd.octree import Octree, Quadtree
 from photograd.principled import evaluate, evaluate_backward
@@ -35,7 +34,6 @@ from photograd.texture import (
     sample_mips,
     sample_mips_backward,
 )
-from photograd.tracer import TracedScene
 from photograd.transport import (
     Accumulation,
     NormalMap,
@@ -57,12 +55,9 @@ from photograd.transport.recovery.cross_loss import loss_and_gradients
 from photograd.vdb import read_vdb, write_vdb
 from photograd.voxel_hash import VoxelHash
 
-from tests.light.seen import FACES, OCTAHEDRON
-from tests.render.test_direct import scene as direct_scene
-from tests.render.test_direct import square
 from tests.splat import oracle
 from tests.transport import light_scenes, media_scenes
-from tests.transport.scenes import any_material, bent_floor, stage, view
+from tests.transport.scenes import any_material, bent_floor, stage
 
 G = np.random.default_rng(1)
 BOTH: tuple[Any, ...] = (np.float32, np.float64)
@@ -91,7 +86,7 @@ def numbers() -> None:
                 op.jvp(x, x)
     _core.philox4x32(np.zeros((3, 4), np.uint32), np.zeros((3, 2), np.uint32))
     _core.uniform(1, 2, np.arange(4, dtype=np.uint32), 3, 4)
-    _core.even_words(1, 2, 3, np.arange(4, dtype=np.uint32), 0, 4)
+    _core.sobol_words(1, 2, 3, np.arange(4, dtype=np.uint32), 0, 4)
     _core.set_thread_count(_core.thread_count())
     _core.instruction_set()
 
@@ -153,7 +148,7 @@ def models() -> None:
     surface = np.full((2, 5), 0.5, np.float32)
     wo, wi = np.abs(rays(4, np.float32)[1]), np.abs(rays(4, np.float32)[1])
     evaluate_backward(surface, wo, wi, evaluate(surface, wo, wi))
-    light_scenes.environment_map(share=0.1), MeshLight(OCTAHEDRON, FACES, [1.0] * 3)
+    light_scenes.environment_map(share=0.1)
 
 
 def geometry() -> None:
@@ -273,8 +268,15 @@ def paths() -> None:
         tracer.path(5, 0, seed=1, options=PATHS)
         loss_and_gradients(tracer, image, np.ones_like(image), spp=1, seeds=(1, 2), options=PATHS)
         tracer._geometry.choose_lights(G.random(3))
+        sums = Accumulation.empty(*image.shape[:2])
+        _core.trace_reference(
+            **tracer.wide_arguments(), options=PATHS.numbers(1), first=0, count=1,
+            radiance=sums.radiance, squares=sums.squares,
+        )  # fmt: skip
     tracer = PathTracer(scenes[0])
-    _core.first_hits(tracer._geometry, *rays(5, np.float64))
+    interval = np.zeros(1), np.full(1, np.inf)
+    tracer._geometry.bvh.occluded(*rays(5, np.float64), *interval)
+    tracer.add_samples(Accumulation.empty(4, 4), 1, seed=1, hits=np.zeros((4, 4)))
     tracer.add_occlusion(Accumulation.empty(4, 4), 1, radius=1.0, seed=1)
     photons = PhotonMap(tracer, particles=50, radius=0.2, seed=1)
     photons.render(spp=1, seed=1), photons.irradiance(*rays(5, np.float64)), len(photons)
@@ -284,14 +286,6 @@ def paths() -> None:
     bake_ambient_occlusion(textured(), "floor", 4, spp=1, seed=1)
 
 
-def direct() -> None:
-    flat = [square(0.0, 1.0, [0.5] * 3), square(-1.0, 2.0, G.random((2, 2, 3)), uv=True)]
-    for dtype in BOTH:
-        tracer = TracedScene(direct_scene(*flat, sun=np.ones(3)), dtype=dtype)
-        image = tracer.render(view(4), spp=2, seed=1)
-        tracer.render_backward(view(4), image.radiance, spp=2, seed=1)
-
-
 PARTS = (
-    numbers, representations, models, geometry, grids, textures, gaussians, paths, direct,
+    numbers, representations, models, geometry, grids, textures, gaussians, paths,
 )  # fmt: skip

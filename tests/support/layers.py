@@ -13,7 +13,7 @@ ORDER: tuple[tuple[str, ...], ...] = (
     ("ops",),
     ("geometry", "grid", "texture", "camera", "sampling"),
     ("bsdf", "medium"),
-    ("light", "field", "splat", "raster", "vector"),
+    ("light", "field", "splat", "optim", "raster", "vector"),
     ("scene",),
     ("render",),
     ("bindings",),

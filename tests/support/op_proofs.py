@@ -1,4 +1,4 @@
-"""Which adjoints of `ops/` the proofs reach, as functions from texts that can be tested."""
+"""Which adjoints the proofs reach, as functions from texts that can be tested."""
 
 from __future__ import annotations
 

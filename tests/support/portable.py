@@ -14,7 +14,7 @@ PROMISED = (
     *(CORE + name for name in ("picture_loss.py", "pixels.py", "quaternions.py", "row_adam.py")),
     *(CORE + name for name in ("fit_rays.py", "fit_views.py", "structural.py", "texture/")),
     *(CORE + "splats/" + name for name in ("clone_split_prune.py", "density.py", "first_scene.py")),
-    *(CORE + "splats/" + name for name in ("markov_chain.py", "pressure.py", "start.py")),
+    *(CORE + "splats/" + name for name in ("markov_chain.py", "grad2d.py", "start.py")),
     *(CORE + "splats/" + name for name in ("surface_points.py",)),
     *(CORE + "data/" + name for name in ("assemble.py", "bounds.py", "camera.py", "convention.py")),
     *(CORE + "data/" + name for name in ("frames.py", "hull.py", "view.py", "visibility.py")),

@@ -11,7 +11,7 @@ from photograd.transport import PathTracer, derivative_image
 from tests.transport.difference_rows import OTHERS, Case
 from tests.transport.light_scenes import LIGHTS, lit_by
 
-MORE = {"map": ("world_from_map",), "mesh": ("vertices",)}
+MORE = {"map": ("world_from_map",)}
 
 
 def said(tracer: PathTracer, key: str) -> str:

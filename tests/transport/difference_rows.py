@@ -37,7 +37,7 @@ VEILED = ("lambert", "gltf_refraction", "mirror", "glass")
 """Coverage does not know what it covers: rough and smooth, with and without what lies behind."""
 GRAZING = ("sheen", "sheen_tint")
 """What is hardly seen from above."""
-OTHERS = {"map": "environment map", "mesh": "mesh light"}
+OTHERS = {"map": "environment map"}
 """Lights whose number of parameters is not fixed: in no registry."""
 
 
@@ -129,11 +129,10 @@ def lights() -> Iterator[Case]:
                 for at in places
             ]
         else:
-            registered = isinstance(light, RegisteredLight)
-            names = [p.name for p in light.parameters()] if registered else ["radiance"]
+            assert isinstance(light, RegisteredLight)
             rows = [
                 row
-                for key in names
+                for key in (p.name for p in light.parameters())
                 for row in rows_of(thing, key, f"lights.0.{key}", getattr(light, key), 0.0, np.inf)
             ]
         yield Case("light", thing, lambda one=light: replace(lit_by(one), camera=near), tuple(rows))

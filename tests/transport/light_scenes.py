@@ -10,7 +10,6 @@ from photograd.lights import (
     DirectionalLight,
     EnvironmentMap,
     Light,
-    MeshLight,
     PointLight,
     QuadLight,
     SkyLight,
@@ -23,7 +22,6 @@ from photograd.lights import (
 from photograd.transport import Material, Scene, SphereShape
 from photograd.transport.shapes import rectangle
 
-from tests.light.seen import FACES, OCTAHEDRON
 from tests.transport.scenes import FLOOR, GREY, any_material, view
 
 TILT = about_y(0.7) @ np.array([[1.0, 0, 0], [0, 0.6, -0.8], [0, 0.8, 0.6]])
@@ -52,7 +50,6 @@ LIGHTS: dict[str, tuple[Light, ...]] = {
     ),
     "sphere": (SphereLight([0.7, 1.3, 0.5], 0.3, [6.0, 5.0, 4.0]),),
     "triangle": (TriangleLight([-0.7, 1.5, -0.4], [0.8, 1.4, -0.5], [0.1, 1.6, 0.9], [5, 4, 3]),),
-    "mesh": (MeshLight(OCTAHEDRON + np.array([0.3, 0.0, 0.2]), FACES, [4.0, 3.0, 2.0]),),
     "map": (environment_map(),),
     "turned map": (environment_map(turn=TILT),),
 }

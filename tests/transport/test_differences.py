@@ -59,7 +59,7 @@ def test_every_parameter_of_every_registry_has_a_row() -> None:
     rows = [row.name for case in cases() for row in case.rows]
     assert len(rows) == len(set(rows))
     assert registered(MODELS, CLASSES, phase.registry()) <= set(rows)
-    for other in ("environment map.texels", "mesh light.radiance", "grid.density", "veil.texels"):
+    for other in ("environment map.texels", "grid.density", "veil.texels"):
         assert any(name.startswith(other) for name in rows)
     assert list(KNOWN) == rows  # else: python docs/results_differences.py
     for case in cases():

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 from photograd.errors import RangeError
-from photograd.transport import Emitted, PathTracer, emit_particles
+from photograd.transport import Emitted, MeshShape, PathTracer, emit_particles
 
 from support.statistics import chi_square_p, sidak, sphere_cell_masses, sphere_counts
 from tests.light.seen import FACES, OCTAHEDRON
@@ -23,6 +25,7 @@ CENTER, RADIUS = np.array([0.0, 0.5, 0.0]), float(np.sqrt(4 + 0.25 + 4))
 
 
 def emitted(name: str, count: int = COUNT) -> tuple[Any, Emitted]:
+    """A light of `LIGHTS` and particles of it."""
     tracer = PathTracer(lit_by(*LIGHTS[name], gloss=GREY), dtype=np.float64)
     return LIGHTS[name][0], emit_particles(tracer, count, seed=5)
 
@@ -176,13 +179,24 @@ def test_rectangle_and_ball() -> None:
     np.testing.assert_allclose(found.flux, np.broadcast_to(power, (COUNT, 3)), rtol=1e-6)
 
 
-@pytest.mark.parametrize("name", ["triangle", "mesh"])
-def test_triangles(name: str) -> None:
-    light, found = emitted(name)
-    if name == "triangle":
-        corners = np.array([[light.a, light.b, light.c]], float)
-    else:
-        corners = (OCTAHEDRON + np.array([0.3, 0.0, 0.2]))[FACES]
+def triangle() -> tuple[Any, Any, Emitted]:
+    """Corners (1, 3, 3), radiance, and particles of a light."""
+    light, found = emitted("triangle")
+    return np.array([[light.a, light.b, light.c]], float), light.radiance, found
+
+
+def mesh() -> tuple[Any, Any, Emitted]:
+    """The same of a shape with eight faces."""
+    vertices, radiance = OCTAHEDRON + np.array([0.3, 0.0, 0.2]), np.array([4.0, 3.0, 2.0])
+    scene = lit_by(gloss=GREY)
+    shape = MeshShape("octahedron", vertices, FACES, "floor", radiance)
+    tracer = PathTracer(replace(scene, shapes=(*scene.shapes, shape)), dtype=np.float64)
+    return vertices[FACES], radiance, emit_particles(tracer, COUNT, seed=5)
+
+
+@pytest.mark.parametrize("light", [triangle, mesh])
+def test_triangles(light: Callable[[], tuple[Any, Any, Emitted]]) -> None:
+    corners, radiance, found = light()
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     areas = 0.5 * np.linalg.norm(normals, axis=1)
     normals /= 2 * areas[:, None]
@@ -191,7 +205,7 @@ def test_triangles(name: str) -> None:
         assert chi_square_p(counts, areas / areas.sum()) > sidak(LEVEL, TESTS)
     place = in_triangle(found.origins, corners[found.entries])
     assert_even([*place, *by_cosine(found.directions, normals[found.entries])])
-    power = np.pi * areas.sum() * np.asarray(light.radiance)
+    power = np.pi * areas.sum() * np.asarray(radiance)
     np.testing.assert_allclose(found.flux, np.broadcast_to(power, (COUNT, 3)), rtol=1e-5)
 
 

@@ -161,7 +161,7 @@ def test_each_entry_refuses_with_a_reason_and_a_remedy(
         assert name not in found
         with pytest.raises(RangeError, match=f"^{function}: gradient: {says}"):
             found[name]
-    for trace in ("trace_paths_tangent", "trace_pairs_backward"):  # before any path is traced
+    for trace in ("trace_paths_tangent", "dual_buffer_backward"):  # before any path is traced
         monkeypatch.setattr(_core, trace, None)
     step = {name: np.ones_like(tracer.params[name])}
     for along in (name, step):

@@ -51,7 +51,7 @@ def paths() -> list[list[dict[str, Any]]]:
     ]
     for path in found:
         for v in path:
-            for name in ("emitted", "light_f", "light_emitted", "value"):
+            for name in ("Le", "nee_f", "nee_Le", "f"):
                 v[name] = np.array(v[name])
     return found
 
@@ -83,34 +83,34 @@ def power(p: float, q: float) -> float:
 
 def met(v: dict[str, Any], wrong: str | None) -> Any:
     """Emission of a vertex, weighed."""
-    p, q, shape = v["pdf"], v["light_pdf"], v["shape"]
+    p, q, shape = v["pdf"], v["emitter_pdf"], v["shape"]
     if wrong == "map met never" and shape == BACKGROUND and p > 0:
         return 0.0
     if p == 0 or q == 0:
-        return v["emitted"] * v["emission_weight"]
+        return v["Le"] * v["emission_weight"]
     if (wrong == "map met in full" and shape == BACKGROUND) or (
         wrong == "lamp met in full" and shape >= 0
     ):
-        return v["emitted"]
-    return v["emitted"] * power(p, wrong_density(q, shape, v["direction"], wrong))
+        return v["Le"]
+    return v["Le"] * power(p, wrong_density(q, shape, v["direction"], wrong))
 
 
 def asked(v: dict[str, Any], wrong: str | None) -> Any:
     """What a light's sample adds."""
-    if v["light_weight"] == 0:
+    if v["nee_weight"] == 0:
         return 0.0
-    shape = v["light_shape"]
-    p = wrong_density(v["light_chosen_pdf"], shape, v["light_direction"], wrong)
+    shape = v["nee_shape"]
+    p = wrong_density(v["nee_pdf"], shape, v["nee_direction"], wrong)
     whole = shape == DELTA and wrong != "point light weighed"
-    share = 1.0 if whole else power(p, v["light_scatter_pdf"])
-    return v["light_f"] * v["light_emitted"] * (share * v["light_cosine"] / p)
+    share = 1.0 if whole else power(p, v["nee_bsdf_pdf"])
+    return v["nee_f"] * v["nee_Le"] * (share * v["nee_cosine"] / p)
 
 
 def radiance(path: list[dict[str, Any]], wrong: str | None = None) -> Any:
     L, beta = np.zeros(3), np.ones(3)
     for v in path:
         L = L + beta * (met(v, wrong) + asked(v, wrong))
-        beta = beta * v["value"] * v["weight"]
+        beta = beta * v["f"] * v["weight"]
     return L
 
 
@@ -122,7 +122,7 @@ def right() -> Any:
 def test_the_twin_agrees_with_the_core() -> None:
     core = tracer().render(spp=SPP, seed=SEED, options=OPTIONS).mean.reshape(-1, 3)
     np.testing.assert_allclose(right().reshape(-1, SPP, 3).mean(axis=1), core, rtol=1e-12)
-    kinds = {v["light_shape"] for path in paths() for v in path if v["light_weight"] > 0}
+    kinds = {v["nee_shape"] for path in paths() for v in path if v["nee_weight"] > 0}
     assert kinds == {BACKGROUND, DELTA, 1}  # the lamp is the second mesh
 
 

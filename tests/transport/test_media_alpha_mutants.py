@@ -71,17 +71,17 @@ def walked(path: list[dict[str, Any]], card: int, wrong: str | None = None) -> t
     """Radiance (3,) of a path, and its derivative by the card's alpha."""
     L, d_L, beta, d = np.zeros(3), np.zeros(3), np.ones(3), np.zeros(3)
     for v in path:
-        arrival = product(v["steps"]) / np.mean(v["chance"])
+        arrival = product(v["events"]) / np.mean(v["pdf_channels"])
         beta, d = beta * arrival, d * arrival
         if v["shape"] == card:
-            weight, slope = cover(v["passed"], wrong)
+            weight, slope = cover(v["is_null"], wrong)
             beta, d = beta * weight, d * weight + beta * slope
-        met = np.array(v["emitted"]) * v["emission_weight"]
+        met = np.array(v["Le"]) * v["emission_weight"]
         L, d_L = L + beta * met, d_L + d * met
-        if v["light_weight"] > 0:
-            through = v["light_through"]
+        if v["nee_weight"] > 0:
+            through = v["nee_alpha_transmittance"]
             veils = round(np.log(through) / np.log(1 - ALPHA))
-            T = product(v["shadow_steps"])
+            T = product(v["nee_events"])
             if wrong == "clear behind veils" and veils:
                 T = np.ones(3)
             if wrong == "veils let all through":
@@ -91,9 +91,9 @@ def walked(path: list[dict[str, Any]], card: int, wrong: str | None = None) -> t
             by_veils = -veils * (1 - ALPHA) ** (veils - 1)
             if wrong == "veils held":
                 by_veils = 0.0
-            sent = np.array(v["light_f"]) * v["light_emitted"] * v["light_weight"] * T
+            sent = np.array(v["nee_f"]) * v["nee_Le"] * v["nee_weight"] * T
             L, d_L = L + beta * sent * through, d_L + (d * through + beta * by_veils) * sent
-        onward = np.array(v["value"]) * v["weight"]
+        onward = np.array(v["f"]) * v["weight"]
         beta, d = beta * onward, d * onward
     return L, d_L
 
@@ -108,7 +108,9 @@ def summed(name: str, wrong: str | None = None) -> Any:
 
 @pytest.mark.parametrize("name", MEDIA)
 def test_the_twin_agrees_with_the_core(name: str) -> None:
-    seen = {v["light_through"] for path in paths(name) for v in path if v["light_weight"] > 0}
+    seen = {
+        v["nee_alpha_transmittance"] for path in paths(name) for v in path if v["nee_weight"] > 0
+    }
     assert len(seen) >= 2  # lights without a veil, and behind one
     twin = summed(name)
     picture = tracer(name).render(spp=SPP, seed=SEED, options=OPTIONS).mean.reshape(-1, 3)

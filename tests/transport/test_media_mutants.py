@@ -60,10 +60,10 @@ def paths(name: str) -> list[list[dict[str, Any]]]:
     ]
     for path in found:
         for v in path:
-            for key in ("emitted", "light_f", "light_emitted", "value", "chance", "direction",
-                        "wi", "light_direction"):  # fmt: skip
+            for key in ("Le", "nee_f", "nee_Le", "f", "pdf_channels", "direction",
+                        "wi", "nee_direction"):  # fmt: skip
                 v[key] = np.array(v[key])
-            for key in ("steps", "shadow_steps"):
+            for key in ("events", "nee_events"):
                 v[key] = [(kind, length, np.array(value)) for _, kind, length, _, value in v[key]]
     return found
 
@@ -113,8 +113,8 @@ def product(steps: Any, name: str, wrong: str | None, *, shadow: bool) -> tuple[
 
 def segment_weight(v: dict[str, Any], shares: Any, wrong: str | None) -> Any:
     if wrong == "one channel's density":
-        return shares[0] / v["chance"][0]
-    return 1 / v["chance"].mean()
+        return shares[0] / v["pdf_channels"][0]
+    return 1 / v["pdf_channels"].mean()
 
 
 def walked(path: list[dict[str, Any]], name: str, wrong: str | None = None) -> tuple[Any, Any, Any]:
@@ -123,30 +123,30 @@ def walked(path: list[dict[str, Any]], name: str, wrong: str | None = None) -> t
     L, d_sigma, d_g = np.zeros(3), np.zeros(3), np.zeros(3)
     beta, by_sigma, by_g, shares = np.ones(3), np.zeros(3), np.zeros(3), np.ones(3)
     for v in path:
-        value, slope = product(v["steps"], name, wrong, shadow=False)
+        value, slope = product(v["events"], name, wrong, shadow=False)
         weight = segment_weight(v, shares, wrong)
-        shares = v["chance"] / v["chance"].mean()
+        shares = v["pdf_channels"] / v["pdf_channels"].mean()
         if wrong == "sampling differentiated":
-            slope = slope + value * sum(np.mean(x[1]) for x in v["steps"] if x[0] == THROUGH) / 3
+            slope = slope + value * sum(np.mean(x[1]) for x in v["events"] if x[0] == THROUGH) / 3
         by_sigma = (by_sigma * value + beta * slope) * weight
         beta, by_g = beta * value * weight, by_g * value * weight
-        met = v["emitted"] * v["emission_weight"]
+        met = v["Le"] * v["emission_weight"]
         L, d_sigma, d_g = L + beta * met, d_sigma + by_sigma * met, d_g + by_g * met
-        f, d_f, d_value = v["light_f"], 0.0, 0.0
+        f, d_f, d_value = v["nee_f"], 0.0, 0.0
         if v["medium"] >= 0:
-            c = float(v["direction"] @ v["light_direction"])
+            c = float(v["direction"] @ v["nee_direction"])
             f = phase(-c, g) if wrong == "phase turned round" else f
             d_f = 0.0 if wrong == "light's phase held" else d_phase(c, g)
             held = wrong == "onward phase held"
             d_value = 0.0 if held else d_phase(float(v["direction"] @ v["wi"]), g)
-        if v["light_weight"] > 0:
-            value, slope = product(v["shadow_steps"], name, wrong, shadow=True)
-            sent = v["light_emitted"] * v["light_weight"]
+        if v["nee_weight"] > 0:
+            value, slope = product(v["nee_events"], name, wrong, shadow=True)
+            sent = v["nee_Le"] * v["nee_weight"]
             L = L + beta * f * value * sent
             d_sigma = d_sigma + (by_sigma * value + beta * slope) * f * sent
             d_g = d_g + (by_g * f + beta * d_f) * value * sent
-        by_g = (by_g * v["value"] + beta * d_value) * v["weight"]
-        by_sigma, beta = by_sigma * v["value"] * v["weight"], beta * v["value"] * v["weight"]
+        by_g = (by_g * v["f"] + beta * d_value) * v["weight"]
+        by_sigma, beta = by_sigma * v["f"] * v["weight"], beta * v["f"] * v["weight"]
     return L, d_sigma, d_g
 
 

@@ -8,14 +8,16 @@ from typing import Any
 import numpy as np
 import pytest
 from photograd.core import _core
-from photograd.errors import SceneError
 from photograd.lights import DirectionalLight, PointLight, SpotLight
 from photograd.transport import (
     BOUNDARY,
+    Accumulation,
+    DensityGrid,
     Environment,
     Material,
     Medium,
     ParticleOptions,
+    PathOptions,
     PathTracer,
     PhotonMap,
     Receiver,
@@ -32,6 +34,7 @@ from tests.transport.media_scenes import (
     INK,
     WAX,
     fog_box,
+    placed,
     smoke,
     with_interior,
 )
@@ -41,6 +44,8 @@ from tests.transport.test_strategies import assert_same_mean
 
 SIGMA = np.array(INK.sigma_t)
 LIGHT = PointLight([0.3, 1.2, 0.2], [3.0, 2.5, 2.0])
+SPOT = SpotLight([0, 1, 0], [0, -1, 0], [3.0] * 3, 0.8, 1.0)
+SUN = DirectionalLight([0.2, 1, 0.1], [2.0, 1.5, 1.0])
 CLEAR = Medium([2.0, 3.0, 4.0], 1.0, values={"g": 0.5})
 
 
@@ -172,12 +177,23 @@ def test_light_from_infinity_ends_in_a_world_of_fog() -> None:
     same = trace_light(alone, patch(2), 1 << 14, seed=1)
     assert same.mean.min() > 0
     assert_same_mean(found, same, 2, 1.0)
-    cloudy = replace(scene, media={"fog": smoke()})
-    with pytest.raises(SceneError, match=r"scene\.world: expected no grid of densities"):
-        trace_light(PathTracer(cloudy), patch(2), 1, seed=1)
-    for lamps in (LIGHT, SpotLight([0, 1, 0], [0, -1, 0], [1.0] * 3, 0.3, 0.5)):
-        near = PathTracer(replace(cloudy, lights=(lamps,)))
-        assert trace_light(near, patch(2), 4096, seed=1).mean.max() > 0
+
+
+@pytest.mark.parametrize("light", [SUN, SPOT], ids=["sun", "spot"])
+def test_both_ends_agree_in_a_world_with_a_grid(light: Any) -> None:
+    # The cloud reaches beyond the disk from which particles of the sun start.
+    tall = DensityGrid(
+        np.linspace(0.2, 1.0, 60).reshape(3, 4, 5), placed([-2.5, -0.1, -2.5], [5, 2, 5])
+    )
+    cloud = Medium([0.8, 1.2, 1.6], 0.8, values={"g": 0.3}, density=tall)
+    shapes = (rectangle("floor", *FLOOR, "floor"),)
+    scene = Scene("w", shapes, {"floor": GREY}, view(2), None, (light,),
+                  media={"cloud": cloud}, world="cloud")  # fmt: skip
+    tracer = PathTracer(scene, dtype=np.float64)
+    seen = seen_irradiance(tracer, below(1e-3, 2, 0.5), 0.5, 4096)
+    landed = trace_light(tracer, patch(2), 4 * PARTICLES, seed=4, options=AS_SEEN)
+    assert seen.mean.min() > 0.02
+    assert_same_mean(seen, landed, 3, 0.15)
 
 
 def test_emission_is_that_without_media() -> None:
@@ -189,13 +205,39 @@ def test_emission_is_that_without_media() -> None:
     assert a.flux.shape == b.flux.shape == (64, 3)
 
 
-def test_photon_maps_are_refused_with_a_reason() -> None:
-    with pytest.raises(SceneError, match=r"PhotonMap: scene\.media: .*on surfaces alone"):
-        PhotonMap(PathTracer(under(FOG)), 16, radius=0.1, seed=1)
+@pytest.mark.parametrize("name", ["fog and a lamp", "smoke in a grid", "fog behind a veil"])
+def test_a_photon_map_sees_what_paths_see(name: str) -> None:
+    # From above, through the fog, to the middle of the floor: light that the fog scatters, and
+    # light that reaches the floor through it, direct and not.
+    scene = replace(SCENES[name](), camera=below(1.4, 2, 0.3))
+    tracer = PathTracer(scene, dtype=np.float64)
+    options = PathOptions(sampler="independent")
+    photons = PhotonMap(tracer, 1 << 17, radius=0.08, seed=1)
+    read = photons.render(spp=1024, seed=2, options=options)
+    seen = tracer.render(spp=4096, seed=3, options=options)
+
+    def pooled(sums: Accumulation) -> tuple[Any, Any]:
+        """(3,) mean of the picture, and its variance."""
+        return sums.mean.mean(axis=(0, 1)), (sums.standard_error**2).mean(axis=(0, 1)) / 4
+
+    (a, a_variance), (b, b_variance) = pooled(read), pooled(seen)
+    error = np.sqrt(a_variance + b_variance)
+    assert (error < 0.05 * b).all()
+    # The blur of the map, and its noise, which all samples share.
+    assert (np.abs(a - b) < 3 * error + 0.03 * b).all()
+    alone = replace(scene, media={}, shapes=tuple(s for s in scene.shapes if s.interior is None))
+    clear = PathTracer(alone).render(spp=256, seed=1).mean.mean(axis=(0, 1))
+    assert (np.abs(b / clear - 1) > 0.1).any()
+
+
+def test_photons_pass_boundaries() -> None:
     walls = (box("walls", [0, 1, 0], [4, 4, 4], BOUNDARY), rectangle("floor", *FLOOR, "floor"))
     scene = Scene("b", walls, {"floor": GREY}, view(2), Environment.constant(1.0))
-    with pytest.raises(SceneError, match="got boundaries"):
-        PhotonMap(PathTracer(scene), 16, radius=0.1, seed=1)
+    bare = replace(scene, shapes=walls[1:])
+    for one in (scene, bare):
+        photons = PhotonMap(PathTracer(one), 1 << 18, radius=0.4, seed=1)
+        found = photons.irradiance(np.zeros((1, 3)), np.array([[0.0, 1, 0]]))
+        np.testing.assert_allclose(found, np.pi, rtol=0.1)  # some 2000 photons
 
 
 def test_the_same_bits_and_parts() -> None:

@@ -43,7 +43,7 @@ def test_every_sample_has_its_own_moment() -> None:
     lengths = []
     for sample in range(64):
         (vertex,) = tracer.path(0, sample, seed=1)
-        lengths.append(sum(step[2] for step in vertex["steps"]))
+        lengths.append(sum(step[2] for step in vertex["events"]))
     outside = np.isclose(lengths, 1.0)
     assert 0.55 < outside.mean() < 0.75
     assert np.ptp(np.array(lengths)[~outside]) > 0.4

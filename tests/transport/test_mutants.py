@@ -75,14 +75,14 @@ def paths() -> list[list[dict[str, Any]]]:
     ]
     for path in found:
         for v in path:
-            for name in ("emitted", "light_f", "light_emitted", "value"):
+            for name in ("Le", "nee_f", "nee_Le", "f"):
                 v[name] = np.array(v[name])
     return found
 
 
 def emission_weight(path: list[dict[str, Any]], k: int, wrong: str | None) -> float:
     v = path[k]
-    p, q = v["pdf"], v["light_pdf"]
+    p, q = v["pdf"], v["emitter_pdf"]
     if wrong == "smooth lobe with a density" and k > 0 and p == 0:
         p = 1.0
     if p == 0 or q == 0 or wrong in ("both counted", "lamp seen in full"):
@@ -93,25 +93,25 @@ def emission_weight(path: list[dict[str, Any]], k: int, wrong: str | None) -> fl
 
 
 def light_weight(v: dict[str, Any], wrong: str | None) -> float:
-    if v["light_weight"] == 0:
+    if v["nee_weight"] == 0:
         return 0.0
-    p, q = v["light_chosen_pdf"], v["light_scatter_pdf"]
+    p, q = v["nee_pdf"], v["nee_bsdf_pdf"]
     share = power(p, q)
     if wrong in ("both counted", "one side only"):
         share = 1.0
     if wrong == "one heuristic each":
         share = balance(p, q)
-    cosine = 1.0 if wrong == "cosine forgotten" else v["light_cosine"]
+    cosine = 1.0 if wrong == "cosine forgotten" else v["nee_cosine"]
     return float(share * cosine / p)
 
 
 def radiance(path: list[dict[str, Any]], wrong: str | None = None) -> Any:
     L, beta = np.zeros(3), np.ones(3)
     for k, v in enumerate(path):
-        L = L + beta * v["emitted"] * emission_weight(path, k, wrong)
-        L = L + beta * v["light_f"] * v["light_emitted"] * light_weight(v, wrong)
+        L = L + beta * v["Le"] * emission_weight(path, k, wrong)
+        L = L + beta * v["nee_f"] * v["nee_Le"] * light_weight(v, wrong)
         paid = v["survival"] if wrong == "roulette not paid" else 1.0
-        beta = beta * v["value"] * v["weight"] * paid
+        beta = beta * v["f"] * v["weight"] * paid
     return L
 
 
@@ -122,15 +122,15 @@ def albedo_gradient(path: list[dict[str, Any]], shape: int, wrong: str | None = 
         rest = path[k + 1 :]
         ahead = radiance(rest) if rest else np.zeros(3)
         if wrong == "emission ahead forgotten" and rest:
-            ahead = ahead - rest[0]["emitted"] * emission_weight(path, k + 1, None)
-        after = beta * v["value"] * v["weight"]
+            ahead = ahead - rest[0]["Le"] * emission_weight(path, k + 1, None)
+        after = beta * v["f"] * v["weight"]
         if v["shape"] == shape:
             own = after if wrong == "weight of the next vertex" else beta
-            light = v["light_emitted"] * light_weight(v, None)
+            light = v["nee_Le"] * light_weight(v, None)
             onward = ahead * v["weight"]
             onward = onward * (v["survival"] if wrong == "roulette forgotten" else 1.0)
             if wrong == "division by f":
-                onward = np.where(v["value"] > 0, onward, 0.0)
+                onward = np.where(v["f"] > 0, onward, 0.0)
             total = total + own / np.pi * (
                 (0 if wrong == "light sample forgotten" else light)
                 + (0 if wrong == "continuation forgotten" else onward)

@@ -8,19 +8,12 @@ from typing import Any
 import numpy as np
 import pytest
 from photograd.data.camera import Camera
-from photograd.scenes.description import (
-    SceneDescription,
-    SceneMesh,
-    SkyDescription,
-    SunDescription,
-)
-from photograd.tracer import TracedScene
-from photograd.transport import Accumulation, Environment, Material, PathOptions, PathTracer, Scene
+from photograd.transport import Accumulation, Material, PathOptions, PathTracer, Scene
 from photograd.transport.builtin import cornell_box
 from photograd.transport.shapes import box, rectangle
 
 from support.statistics import sidak
-from tests.transport.scenes import FLOOR, GREY, STRATEGY_SCENES, any_material, stage, view
+from tests.transport.scenes import GREY, STRATEGY_SCENES, any_material, stage, view
 
 LEVEL = 1e-3  # all z-tests of one parametrised test together raise a false alarm this often
 
@@ -103,29 +96,6 @@ def test_roulette_keeps_the_mean(start: int) -> None:
     without = tracer.render(spp=512, seed=1, options=PathOptions(max_depth=30, roulette_from=None))
     played = tracer.render(spp=1024, seed=2, options=PathOptions(max_depth=30, roulette_from=start))
     assert_same_mean(without, played, 3, 0.06)
-
-
-def test_two_segments_are_the_direct_renderer() -> None:
-    # The project's other renderer of direct light, written for sun and sky on Lambertian meshes.
-    floor, block = rectangle("floor", *FLOOR, "grey"), box("b", [0, 0.4, 0], [1, 0.8, 1], "grey")
-    sky = [np.array(x, float) for x in ([1.0, 0.9, 0.8], [0.5, 0.6, 0.7], [0.3, 0.2, 0.1])]
-    scene = Scene("d", (floor, block), {"grey": GREY}, view(8), Environment(*sky))
-    mine = PathTracer(scene).render(spp=1024, seed=1, options=PathOptions(max_depth=2))
-    meshes = tuple(
-        SceneMesh(shape.vertices, shape.faces, np.full(3, 0.5, np.float32))
-        for shape in (floor, block)
-    )
-    sun = SunDescription(np.array([0.0, 1.0, 0.0]), np.zeros(3), 0.1)
-    bounds = np.array([[-2.0, 0.0, -2.0], [2.0, 1.0, 2.0]])
-    description = SceneDescription("d", meshes, sun, SkyDescription(*sky), bounds)
-    other = TracedScene(description).render(scene.camera, spp=1024, seed=2)
-    covered = other.alpha == 1  # it leaves out the sky itself
-    assert covered.sum() > 20
-    difference = (mine.mean - other.radiance)[covered].mean(axis=0)
-    # The other renderer is stratified, so its spread is below that of independent samples.
-    spread = np.sqrt(2) * np.sqrt((mine.standard_error[covered] ** 2).sum(axis=0)) / covered.sum()
-    assert (np.abs(difference) < 4 * spread).all()
-    assert (4 * spread < 0.02 * other.radiance[covered].mean(axis=0)).all()
 
 
 def test_more_samples_may_come_later() -> None:

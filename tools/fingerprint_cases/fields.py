@@ -17,9 +17,9 @@ from photograd.fields.active_voxels import ActiveVoxels
 from photograd.fields.march import MarchPolicy, march, march_backward
 from photograd.mesh import Bvh, Instance, Mesh
 from photograd.representation import Outputs, RayBatch, RenderOptions, dense_gradient
+from photograd.scenes.direct_light import DirectLight
 from photograd.scenes.registry import scene as described_scene
 from photograd.scenes.registry import scenes as described_scenes
-from photograd.tracer import TracedScene
 from photograd.transport.camera_place import camera_at
 
 from fingerprint_cases.case import PRECISIONS, Array, Arrays, Case, unit_rows
@@ -99,14 +99,14 @@ def marched_sparse(
     batch = rays(2, dtype)
     ends = batch.origins, batch.directions
     placed = _core.place_samples(settings, *ends)
-    field: Any = (active.table, *given, settings, 0.5, *ends, *placed)
+    field: Any = (active.table, given, settings, 0.5, (*ends, *placed))
     forward: Any = _core.march_sparse_sh
     adjoint: Any = _core.march_sparse_sh_backward
     out = forward(*field, fused=fused, skip=skip)
     d = [g.uniform(-1, 1, value.shape).astype(dtype) for value in out[:3]]
     names = ("density", "sh", "background", "origins", "directions")
     gradients = [np.zeros_like(value) for value in (*given, *ends)]
-    adjoint(*field, *out[:3], *d, *gradients, fused=fused)
+    adjoint(*field, out[:3], d, gradients[:3], gradients[3:], fused=fused)
     found = dict(zip(("color", "transmittance", "depth"), out[:3], strict=True))
     return {**found, **{f"d_{n}": a for n, a in zip(names, gradients, strict=True)}}
 
@@ -204,23 +204,14 @@ def splatted_rays(degree: int, dtype: Any, options: splat_rays.RayOptions, seed:
     }  # fmt: skip
 
 
-@lru_cache(maxsize=1)
-def described(name: str) -> Any:
-    """A scene of captures by name."""
-    return described_scene(name, seed=1)
-
-
-def direct_light(name: str, dtype: Any, seed: int) -> Arrays:
-    """Direct light as captures show it, and its adjoint."""
-    scene = described(name)
+def direct_light(name: str, seed: int) -> Arrays:
+    """Direct light as captures show it."""
+    scene = described_scene(name, seed=1)
     low, high = scene.bounds
     middle, size = (low + high) / 2, float(np.linalg.norm(high - low))
     camera = camera_at(middle + size * np.array([0.4, 0.45, 0.6]), middle, 45.0, 12, 9)
-    tracer = TracedScene(scene, dtype=dtype)
-    out = tracer.render(camera, spp=4, seed=seed)
-    d = np.random.default_rng(5).uniform(-1, 1, out.radiance.shape)
-    found = tracer.render_backward(camera, d, spp=4, seed=seed)
-    return {**vars(out), **{f"d_{name}": value for name, value in found.items()}}
+    radiance, alpha = DirectLight(scene).render_view(camera, 4, seed)
+    return {"radiance": radiance, "alpha": alpha}
 
 
 def march_cases() -> Iterator[Case]:
@@ -264,5 +255,4 @@ def splat_cases() -> Iterator[Case]:
     for key, dtype in PRECISIONS.items():
         yield Case(f"rays/triangles/{key}", partial(traced, dtype))
     for name in described_scenes():
-        for key, dtype in PRECISIONS.items():
-            yield Case(f"direct/{name}/{key}", partial(direct_light, name, dtype), ("radiance",))
+        yield Case(f"direct/{name}", partial(direct_light, name), ("radiance",))

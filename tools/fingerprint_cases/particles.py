@@ -35,8 +35,8 @@ SURFACES = (
 )  # fmt: skip
 MEDIA = (
     "fog", "fog-lights", "fog-absorbing", "smoke", "smoke-majorant", "nested", "nested-smoke",
-    "haze", "haze-lights-at-infinity", "signed-distances", "opacity-fog", "opacity-smoke",
-    "boundary-alone",
+    "haze", "haze-lights-at-infinity", "haze-smoke", "signed-distances", "opacity-fog",
+    "opacity-smoke", "boundary-alone",
 )  # fmt: skip
 
 
@@ -93,6 +93,9 @@ def particle_cases() -> Iterator[Case]:
             if name == "default" or scene in ("stage", "lights-all", "opacity-textured", "nested"):
                 run = partial(irradiance, scene, options)
                 yield Case(f"irradiance/{scene}/{name}", run, ("radiance",))
+    for scene in ("fog", "fog-lights", "smoke", "nested", "haze-smoke", "opacity-fog"):
+        run = partial(photons, scene, OPTIONS["default"], True)
+        yield Case(f"photons/{scene}/default-all", run, ("radiance",))
     for scene in SURFACES:
         for name, options in OPTIONS.items():
             for direct in (True, False) if name == "default" else (True,):

@@ -7,11 +7,10 @@ from functools import lru_cache, partial
 from typing import Any
 
 import numpy as np
-from photograd.core import _core
 from photograd.transport import Accumulation, PathOptions, PathTracer, derivative_image
 from photograd.transport.recovery.cross_loss import loss_and_gradients
 
-from fingerprint_cases.case import PRECISIONS, Array, Arrays, Case, numbers_of, unit_rows
+from fingerprint_cases.case import PRECISIONS, Array, Arrays, Case, numbers_of
 from fingerprint_cases.scenes import BASIC, Scenes, view, without_unused
 from fingerprint_cases.scenes_light import LIT
 from fingerprint_cases.scenes_media import MEDIA
@@ -170,6 +169,14 @@ def other_sampling(scene: str, precision: str, seed: int) -> Arrays:
     return sums_of(sums)
 
 
+def no_background(scene: str, precision: str, seed: int) -> Arrays:
+    """A picture without what lies behind everything, and alpha as a number of samples."""
+    tracer, camera = tracer_of(scene, precision), view((0.4, 0.9, 2.0), width=10, height=8)
+    sums, hits = Accumulation.empty(8, 10), np.zeros((8, 10))
+    tracer.add_samples(sums, SPP, seed=seed, camera=camera, hits=hits)
+    return {**sums_of(sums), "hits": hits}
+
+
 def spread(scene: str, precision: str, seed: int) -> Arrays:
     """Gradients with more paths where the cotangent is large."""
     tracer = tracer_of(scene, precision)
@@ -197,17 +204,6 @@ def chosen_lights(scene: str, precision: str, seed: int) -> Arrays:
     return {"entries": entries, "pmf": pmf}
 
 
-def first_hits(scene: str, precision: str, seed: int) -> Arrays:
-    """What rays meet first."""
-    directions = unit_rows(300, seed)
-    origins = np.array([0.0, 0.6, 0.0]) - 3 * directions
-    names = ("shape", "t", "position", "normal")
-    tracer = tracer_of(scene, precision)
-    found = _core.first_hits(tracer._geometry, origins, directions)
-    arrays = [np.nan_to_num(a, posinf=-1.0) for a in found]
-    return dict(zip(names, arrays, strict=True))
-
-
 Call = Callable[[str, str, int], Arrays]
 CALLS: tuple[tuple[str, Call, tuple[str, ...], tuple[str, ...]], ...] = (
     ("ranges", ranges, PICTURE, ("stage", "fog", "moving", "lens", "shutter")),
@@ -218,7 +214,7 @@ CALLS: tuple[tuple[str, Call, tuple[str, ...], tuple[str, ...]], ...] = (
     ("incomplete", incomplete, (),
      ("model-glass", "model-dispersive_glass", "mask", "opacity-fog")),
     ("chosen-lights", chosen_lights, (), ("lights-all", "emitting-shapes")),
-    ("first-hits", first_hits, (), ("instances", "signed-distances", "fog")),
+    ("no-background", no_background, PICTURE, ("stage", "opacity-textured", "fog")),
 )  # fmt: skip
 """(name, how it is computed, its estimates, scenes)."""
 

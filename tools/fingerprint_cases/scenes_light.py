@@ -12,7 +12,6 @@ from photograd.lights import (
     DirectionalLight,
     EnvironmentMap,
     Light,
-    MeshLight,
     PointLight,
     QuadLight,
     SkyLight,
@@ -63,7 +62,6 @@ LIGHTS: dict[str, Callable[[], Light]] = {
     "triangle": lambda: TriangleLight(
         [-0.7, 1.5, -0.4], [0.8, 1.4, -0.5], [0.1, 1.6, 0.9], [5.0, 4.0, 3.0]
     ),
-    "mesh": lambda: MeshLight(OCTAHEDRON, SIDES, [4.0, 3.0, 2.0]),
     "map": environment_map,
     "map-turned": lambda: environment_map(TILT, 0.2),
 }

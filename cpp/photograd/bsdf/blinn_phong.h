@@ -1,17 +1,19 @@
-// Blinn's highlight: a power of the cosine between normal and half vector, over a diffuse ground [Blinn1977].
+// Blinn-Phong: a power of the cosine between normal and half vector, over a diffuse base
+// layer [Blinn1977].
 //
 //   c = h_z,  f = diffuse / pi + specular N c^n
 //
-//   exact     N = (n + 2) (n + 4) / (8 pi (2^(-n/2) + n))     makes the highlight's albedo `specular` for a view
-//                                                             along the normal; see below
-//   fitted    N = (n + 8) / (8 pi)                            shorter, up to 7.6 % too bright [AkenineMoeller2008, Ch. 7]
+//   exact     N = (n + 2) (n + 4) / (8 pi (2^(-n/2) + n))
+//       makes the highlight's albedo `specular` for a view along the normal; see below
+//   fitted    N = (n + 8) / (8 pi)      shorter, up to 7.6 % too bright [AkenineMoeller2008, Ch. 7]
 //
-// The integral for a view along the normal: with t = h_z, i_z = 2 t^2 - 1 and dwi = 4 t dwh = 8 pi t dt,
+// The integral for a view along the normal: with t = h_z, i_z = 2 t^2 - 1 and
+// dwi = 4 t dwh = 8 pi t dt,
 //
 //   1/N = 8 pi int_{1/sqrt 2}^1 t^n (2 t^2 - 1) t dt = 8 pi (n + 2^(-n/2)) / ((n + 2) (n + 4))
 //
-// To look as wide as a highlight of Phong's, n must be about four times his: the half vector turns half as far.
-// Nothing keeps diffuse + specular below 1: the sum can double light.
+// To look as wide as a highlight of Phong's, n must be about four times his: the half vector turns
+// half as far. Nothing keeps diffuse + specular below 1: the sum can double light.
 //
 //   df/dn = specular N c^n (ln c + dlnN/dn)
 //   exact     dlnN/dn = 1 / (n + 2) + 1 / (n + 4) - (1 - (ln2 / 2) 2^(-n/2)) / (2^(-n/2) + n)
@@ -19,7 +21,7 @@
 #pragma once
 
 #include "photograd/bsdf/half_vector.h"
-#include "photograd/sampling/facets.h"
+#include "photograd/sampling/vndf.h"
 
 namespace photograd {
 
@@ -52,7 +54,7 @@ struct BlinnPhongModel {
         d_self.exponent += dot(d_f, specular) * value * (log(wh.z) + log_norm_slope());
     }
 
-    /// Half of the samples for the ground, half for the highlight.
+    /// Half of the samples for the base layer, half for the highlight.
     Vec3<R> sample(const Vec3<R>& wo, Vec2<R> u2) const {
         if (take_first(R(0.5), u2)) return square_to_cosine_hemisphere(u2);
         return reflect(wo, sample_cosine_power(exponent, u2));

@@ -1,5 +1,5 @@
-// What every reflectance model says about itself. Shading frame: the normal is +Z, wo points to the viewer
-// and wi to the light, both away from the surface; f(wo, wi) does not contain the cosine.
+// The interface of reflectance models (BSDFs). Shading frame: the normal is +Z, wo points to the
+// viewer and wi to the light, both away from the surface; f(wo, wi) does not contain the cosine.
 #pragma once
 
 #include <concepts>
@@ -9,8 +9,9 @@
 
 namespace photograd {
 
-/// The part of the light that a surface gives back, for the whole range of parameters:
-/// `conserving`  at most 1, and 1 is reached;  `lossy`  stays below 1;  `gains`  up to `most`, as some models do.
+/// Bound on the directional albedo over the whole range of parameters:
+/// `conserving` at most 1, and 1 is reached; `lossy` stays below 1; `gains` up to `most`, where a
+/// model is not energy-conserving.
 enum class Energy : int { conserving = 0, lossy = 1, gains = 2 };
 
 struct EnergyClaim {
@@ -29,9 +30,9 @@ concept BsdfValue = requires(const T& model, T& d_model, const Vec3<R>& w) {
     { model.f_backward(w, w, w, d_model) } -> std::same_as<void>;
 };
 
-/// Models that let light through say `transmits`, and by `index_inside()` the refractive index inside over outside of each
-/// channel, 1 for a sheet with the same on both sides: their wo and wi may lie on either side. All others are 0 unless both
-/// are above.
+/// Models that let light through say `transmits`, and by `index_inside()` the refractive index
+/// inside over outside of each channel, 1 for a sheet with the same on both sides: their wo and wi
+/// may lie on either side. All others are 0 unless both are above.
 template <class T>
 constexpr bool transmits() {
     if constexpr (requires { T::transmits; })

@@ -1,16 +1,19 @@
-// Burley's diffuse reflection, fitted to measured materials [Burley2012, Sec. 5.3]: smooth ones darken at grazing
-// angles, rough ones light up there.
+// Burley's diffuse reflection, fitted to measured materials [Burley2012, Sec. 5.3]: smooth ones
+// darken at grazing angles, rough ones light up there.
 //
 //   d = <wi, wh>,   f90 = 0.5 + 2 roughness d^2,   m(c) = (1 - c)^5
 //   f = albedo / pi  s(o_z) s(i_z),   s(c) = 1 + (f90 - 1) m(c)
 //
 //   df/droughness = albedo / pi (m(o_z) s(i_z) + s(o_z) m(i_z)) 2 d^2
 //
-// It is a fit, not a balance: at roughness 1 it returns 1.46 times the light at o_z = 0.05 and, at the horizon,
+// It is a fit, not a balance: at roughness 1 it returns 1.46 times the light at o_z = 0.05 and, at
+// the horizon,
 //
-//   int_0^1 2 c (3/2 + (1 - c)^5 (3/4 + (1 - c^2) / 2)) dc = 3/2 + 1/28 + 1/56 + 1/252 = 1.5575 times
+//   int_0^1 2 c (3/2 + (1 - c)^5 (3/4 + (1 - c^2) / 2)) dc
+//       = 3/2 + 1/28 + 1/56 + 1/252 = 1.5575 times
 //
-// (f90 = 3/2 + s cos(phi) there, with s the sine of wi, and its mean square over phi is 9/4 + s^2 / 2).
+// (f90 = 3/2 + s cos(phi) there, with s the sine of wi, and its mean square over phi is 9/4 + s^2 /
+// 2).
 #pragma once
 
 #include "photograd/bsdf/half_vector.h"

@@ -1,10 +1,11 @@
 // A clear coat over the metallic-roughness model, after [Khronos2022, KHR_materials_clearcoat].
 //
-//   t(c) = 1 - coat S(c),   S(c) = 0.04 + 0.96 (1 - c)^5       what one passage through the coat leaves
-//   f = t(o_z) t(i_z) f_base + coat S(<wo, wh>) D V            D V of coat_roughness
+//   t(c) = 1 - coat S(c),   S(c) = 0.04 + 0.96 (1 - c)^5   what one passage through the coat leaves
+//   f = t(o_z) t(i_z) f_base + coat S(<wo, wh>) D V        D V of coat_roughness
 //
-// Light passes the coat twice, in and out. The extension takes off S(o_z) alone, which is brighter and not reciprocal;
-// here both passages count, f(wo, wi) = f(wi, wo) holds, and coat = 0 is the base, with what that gains.
+// Light passes the coat twice, in and out. The extension takes off S(o_z) alone, which is brighter
+// and not reciprocal; here both passages count, f(wo, wi) = f(wi, wo) holds, and coat = 0 is the
+// base, with what that gains.
 //
 //   df/dbase parameters = t(o_z) t(i_z) df_base/d...
 //   df/dcoat = -(S(o_z) t(i_z) + t(o_z) S(i_z)) f_base + S(<wo, wh>) D V
@@ -49,7 +50,8 @@ struct Clearcoat {
         ggx_lobe_backward(wo, wi, coat_roughness, all * coat * F, d_self.coat_roughness);
     }
 
-    /// A full coat takes half of the samples; it is much fainter than the base, but may be much sharper.
+    /// A full coat takes half of the samples; it is much fainter than the base, but may be much
+    /// sharper.
     Vec3<R> sample(const Vec3<R>& wo, Vec2<R> u2) const {
         if (take_first(R(0.5) * coat, u2)) return sample_ggx_lobe(wo, coat_roughness, u2);
         return base().sample(wo, u2);

@@ -1,8 +1,10 @@
-// Rough metals with the measured complex index eta + i k, for the three channels, and Fresnel's exact formula.
+// Rough metals with the measured complex index eta + i k, for the three channels, and Fresnel's
+// exact formula.
 //
-//   f = F(eta, k, <wo, wh>) D V        with the facets of GGX or of Beckmann [Walter2007; Heitz2014]
+//   f = F(eta, k, <wo, wh>) D V       with the facets of GGX or of Beckmann [Walter2007; Heitz2014]
 //
-// Schlick's ramp misses what real metals do near grazing angles (aluminium dips before it turns white).
+// Schlick's ramp misses what real metals do near grazing angles (aluminium dips before it turns
+// white).
 #pragma once
 
 #include "photograd/bsdf/ggx_lobe.h"

@@ -3,17 +3,19 @@
 //   f = F D G / (4 o_z i_z)
 //   D   Beckmann's, of root mean square slope `slope`; its integral times h_z is 1
 //   F   Schlick's ramp from f0
-//   G = min(1, 2 h_z o_z / <wo, wh>, 2 h_z i_z / <wo, wh>)     the two walls of a groove hide each other
+//   G = min(1, 2 h_z o_z / <wo, wh>, 2 h_z i_z / <wo, wh>)
+//       the two walls of a groove hide each other
 //
-// The paper prints D without the pi and the denominator pi instead of 4. Both are errors: a mirror (F = 1) of slope
-// 0.2 then returns four times the light. With the constants above it returns 0.999 of it, seen from o_z = 0.9.
+// The paper prints D without the pi and the denominator pi instead of 4. Both are errors: a mirror
+// (F = 1) of slope 0.2 then returns four times the light. With the constants above it returns 0.999
+// of it, seen from o_z = 0.9.
 //
 //   dD/dslope   ops/beckmann.h                       G has no parameter
 #pragma once
 
 #include "photograd/bsdf/half_vector.h"
 #include "photograd/ops/fresnel_schlick.h"
-#include "photograd/sampling/facets.h"
+#include "photograd/sampling/vndf.h"
 
 namespace photograd {
 

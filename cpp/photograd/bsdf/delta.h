@@ -1,5 +1,6 @@
-// What a perfectly smooth surface says about itself. Its f is a delta function: no density, nothing to evaluate for a
-// given wi, and a weight of 1 in multiple importance sampling. Instead it names the few directions that matter:
+// The interface of specular BSDFs. f is a delta function: no density, nothing to evaluate for a
+// given wi, and a weight of 1 in multiple importance sampling. The model lists its directions
+// instead:
 //
 //   L(wo) = sum_k weight_k L(wi_k)        the cosine and the delta function are in the weight
 //
@@ -20,7 +21,8 @@ struct DeltaLobe {
     Vec3<R> wi{R(0)}, weight{R(0)};
 };
 
-/// A model T = M<R>. `lobes_backward` takes dL/dwi and dL/dweight and adds dL/dparameter to its last argument.
+/// A model T = M<R>. `lobes_backward` takes dL/dwi and dL/dweight and adds dL/dparameter to its
+/// last argument.
 template <class T, class R>
 concept DeltaValue = requires(const T& model, T& d_model, const Vec3<R>& wo,
                               const std::array<DeltaLobe<R>, T::lobe_count>& d_lobes) {

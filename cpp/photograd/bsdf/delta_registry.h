@@ -1,4 +1,4 @@
-// All perfectly smooth surfaces. A new one: its header, and its name here.
+// All specular surfaces. A new one: its header, and its name here.
 #pragma once
 
 #include "photograd/bsdf/dispersive_glass.h"

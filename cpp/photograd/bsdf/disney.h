@@ -1,21 +1,24 @@
-// Burley's principled model of 2012 [Burley2012, Sec. 5 and its code]: a base colour and ten sliders from 0 to 1, none
-// of them physical, all of them plausible.
+// Burley's principled model of 2012 [Burley2012, Sec. 5 and its code]: a base color and ten
+// sliders from 0 to 1, none of them physical, all of them plausible.
 //
-//   f = (1 - metalness) (f_ground + S(f0) L) + metalness S(base_color) L + f_coat
-//   f_ground = base_color / pi diffuse + sheen ramp tinted(sheen_tint)           diffuse, hue: disney_ground.h
+//   f = (1 - metalness) (f_base + S(f0) L) + metalness S(base_color) L + f_coat
+//   f_base = base_color / pi diffuse + sheen ramp tinted(sheen_tint)    diffuse, hue: disney_base.h
 //   f0 = 0.08 specular tinted(specular_tint),   tinted(x) = 1 + x (hue - 1)
 //   ramp = (1 - <wo, wh>)^5,   S(f0) = f0 + (1 - f0) ramp
-//   L = D v(o_z) v(i_z)         D: GGX with alpha_x = roughness^2 / aspect, alpha_y = roughness^2 aspect,
-//                               aspect = sqrt(1 - 0.9 anisotropic)
-//   v(c) = 1 / (c + k(c)),  k(c) = sqrt(u + (1 - u) c^2)       Smith's masking, u = (1/2 + roughness / 2)^4
-//   f_coat = clearcoat / 4 S(0.04) D_1 v_1(o_z) v_1(i_z)       D_1: ops/gtr1.h, alpha = 0.1 - 0.099 clearcoat_gloss;
+//   L = D v(o_z) v(i_z)   D: GGX with alpha_x = roughness^2 / aspect, alpha_y = roughness^2 aspect,
+//                         aspect = sqrt(1 - 0.9 anisotropic)
+//   v(c) = 1 / (c + k(c)),  k(c) = sqrt(u + (1 - u) c^2)
+//       Smith's masking, u = (1/2 + roughness / 2)^4
+//   f_coat = clearcoat / 4 S(0.04) D_1 v_1(o_z) v_1(i_z)
+//       D_1: ops/gtr1.h, alpha = 0.1 - 0.099 clearcoat_gloss;
 //                                                              v_1: u = 1/16
 //
-// The paper mixes the f0 of both by metalness into one lobe (its `metallic`); Schlick's ramp is linear in f0 and nothing else
-// depends on it, so that this is the blend of the finished lobes which stands here. Its masking is not that of D, and not
-// correlated by height. Nothing takes from the ground what the highlights reflect, and sheen and coat come on top: white
-// returns up to 1.83 of the light. A hue is up to 10, that of pure blue, which makes f0 0.8: blue with all sliders up
-// returns 3.80 times the light at the horizon.
+// The paper mixes the f0 of both by metalness into one lobe (its `metallic`); Schlick's ramp is
+// linear in f0 and nothing else depends on it, so that this is the blend of the finished lobes
+// which stands here. Its masking is not that of D, and not correlated by height. Nothing takes from
+// the base layer what the highlights reflect, and sheen and coat come on top: white returns up to
+// 1.83 of the light. A hue is up to 10, that of pure blue, which makes f0 0.8: blue with all
+// sliders up returns 3.80 times the light at the horizon.
 //
 //   dv/du = -v^2 (1 - c^2) / (2 k)      du/droughness = 2 (1/2 + roughness / 2)^3
 //   dalpha_x/droughness = 2 roughness / aspect            dalpha_y/droughness = 2 roughness aspect
@@ -25,7 +28,7 @@
 
 #include <initializer_list>
 
-#include "photograd/bsdf/disney_ground.h"
+#include "photograd/bsdf/disney_base.h"
 #include "photograd/bsdf/ggx_lobe.h"
 #include "photograd/ops/gtr1.h"
 
@@ -76,18 +79,19 @@ struct Disney {
         d_self.clearcoat_gloss -= R(0.099) * d_alpha;
     }
 
-    /// Some to the coat; of the others, half to the ground where there is one, and the rest to the highlight.
+    /// Some to the coat; of the others, half to the base layer where there is one, and the rest to
+    /// the highlight.
     Vec3<R> sample(const Vec3<R>& wo, Vec2<R> u2) const {
         if (take_first(coat_share(), u2)) return reflect(wo, sample_gtr1(coat_alpha(), u2));
-        if (take_first(ground_share(), u2)) return square_to_cosine_hemisphere(u2);
+        if (take_first(diffuse_probability(), u2)) return square_to_cosine_hemisphere(u2);
         return reflect(wo, sample_ggx_visible(wo, alpha_x(), alpha_y(), u2));
     }
     R pdf(const Vec3<R>& wo, const Vec3<R>& wi) const {
         if (!both_above(wo, wi)) return R(0);
         const Vec3<R> wh = half_vector(wo, wi);
         const R facet = ggx_visible_pdf(wo, wh, alpha_x(), alpha_y());
-        const R uncoated = ground_share() * cosine_hemisphere_pdf(wi) +
-                           (R(1) - ground_share()) * reflected_pdf(wo, wh, facet);
+        const R uncoated = diffuse_probability() * cosine_hemisphere_pdf(wi) +
+                           (R(1) - diffuse_probability()) * reflected_pdf(wo, wh, facet);
         const R coated = reflected_pdf(wo, wh, gtr1_pdf(wh, coat_alpha()));
         return coat_share() * coated + (R(1) - coat_share()) * uncoated;
     }
@@ -98,7 +102,7 @@ private:
     [[nodiscard]] R alpha_y() const { return roughness * roughness * aspect(); }
     [[nodiscard]] R coat_alpha() const { return R(0.1) - R(0.099) * clearcoat_gloss; }
     [[nodiscard]] R coat_share() const { return clearcoat / (R(4) + clearcoat); }
-    [[nodiscard]] R ground_share() const { return R(0.5) * (R(1) - metalness); }
+    [[nodiscard]] R diffuse_probability() const { return R(0.5) * (R(1) - metalness); }
     Vec3<R> tinted(R x) const {
         return Vec3<R>(R(1)) + x * (disney::hue(base_color) - Vec3<R>(R(1)));
     }

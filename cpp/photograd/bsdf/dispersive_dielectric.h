@@ -1,10 +1,11 @@
-// Frosted glass that spreads colours: rough_dielectric.h with an index of its own for each channel (ops/dispersion.h).
+// Rough dielectric with dispersion: rough_dielectric.h with an index of its own for each channel
+// (ops/dispersion.h).
 //
 //   f_c = f(index_c, roughness)            df_c/dindex_c, df_c/droughness: rough_dielectric.h
 //
-// A sample follows the lobe of one channel, each as often; its density is the mean of the three. So all channels get
-// all samples, weighed by their own f: where the lobes overlap little, of roughness 0.1 and strong dispersion, a third of
-// the samples serve a channel.
+// A sample follows the lobe of one channel, each as often; its density is the mean of the three. So
+// all channels get all samples, weighed by their own f: where the lobes overlap little, of
+// roughness 0.1 and strong dispersion, a third of the samples serve a channel.
 #pragma once
 
 #include "photograd/bsdf/rough_dielectric.h"

@@ -1,11 +1,13 @@
-// A smooth boundary of glass that spreads colours: a mirrored ray of all of them, and a refracted one for each.
+// Smooth dielectric with dispersion: one reflected ray for all channels and a refracted ray for
+// each.
 //
 //   mirrored      weight_c = F(e_c, |o_z|)
 //   refracted c   weight = (1 - F) tint_c / e^2 in channel c, 0 in the others; wi by Snell
 //
-// e_c = index_c for a viewer outside and 1 / index_c inside: glass.h for each channel, with its derivatives, and the
-// indices of ops/dispersion.h. A path that refracts follows one channel and is black in the others from there on. Under total
-// reflection of blue alone, red and green still refract.
+// e_c = index_c for a viewer outside and 1 / index_c inside: glass.h for each channel, with its
+// derivatives, and the indices of ops/dispersion.h. A path that refracts follows one channel and is
+// black in the others from there on. Under total reflection of blue alone, red and green still
+// refract.
 #pragma once
 
 #include "photograd/bsdf/glass.h"

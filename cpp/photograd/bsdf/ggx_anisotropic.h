@@ -1,7 +1,10 @@
-// Brushed metal: GGX facets that are rougher along one tangent direction than across it [Heitz2014].
+// Brushed metal: GGX facets that are rougher along one tangent direction than across it
+// [Heitz2014].
 //
-//   alpha_y = roughness^2,   alpha_x = alpha_y + (1 - alpha_y) anisotropy^2      KHR_materials_anisotropy [Khronos2022]
-//   x' = cos(r) x + sin(r) y,  y' = -sin(r) x + cos(r) y       directions seen from the tangent turned by r = rotation
+//   alpha_y = roughness^2,   alpha_x = alpha_y + (1 - alpha_y) anisotropy^2
+//       KHR_materials_anisotropy [Khronos2022]
+//   x' = cos(r) x + sin(r) y,  y' = -sin(r) x + cos(r) y
+//       directions seen from the tangent turned by r = rotation
 //   f = F D V of the turned directions,   F = f0 + (1 - f0) (1 - <wo, wh>)^5
 //
 //   dalpha_y/droughness = 2 roughness      dalpha_x/droughness = 2 roughness (1 - anisotropy^2)

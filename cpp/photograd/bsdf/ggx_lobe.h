@@ -1,12 +1,13 @@
-// What all GGX models share: the reflected lobe without Fresnel's factor, its sampling and its density.
+// Common to all GGX models: the reflected lobe without Fresnel's factor, its sampling and its
+// density.
 //
-//   lobe = D(wh) V(wo, wi),   roughness^2 = alpha_ggx      as users set it and as the formulas want it
+//   lobe = D(wh) V(wo, wi),   roughness^2 = alpha_ggx   of the user and of the formulas
 //
 // Samples are the facets that wo sees, so that f cos / pdf = F G2 / G1(wo) is never above F.
 #pragma once
 
 #include "photograd/bsdf/half_vector.h"
-#include "photograd/sampling/facets.h"
+#include "photograd/sampling/vndf.h"
 
 namespace photograd {
 
@@ -46,21 +47,21 @@ R ggx_lobe_pdf(const Vec3<R>& wo, const Vec3<R>& wi, R roughness) {
     return reflected_pdf(wo, wh, ggx_visible_pdf(wo, wh, alpha, alpha));
 }
 
-/// The lobe over a diffuse ground, which gets `ground_share` of the samples.
+/// The lobe over a diffuse base layer, which gets `diffuse_probability` of the samples.
 template <Real R>
-Vec3<R> sample_ground_and_lobe(const Vec3<R>& wo, R ground_share, R roughness, Vec2<R> u2) {
-    if (take_first(ground_share, u2)) return square_to_cosine_hemisphere(u2);
+Vec3<R> sample_base_and_lobe(const Vec3<R>& wo, R diffuse_probability, R roughness, Vec2<R> u2) {
+    if (take_first(diffuse_probability, u2)) return square_to_cosine_hemisphere(u2);
     return sample_ggx_lobe(wo, roughness, u2);
 }
 template <class R>
-R ground_and_lobe_pdf(const Vec3<R>& wo, const Vec3<R>& wi, R ground_share, R roughness) {
+R base_and_lobe_pdf(const Vec3<R>& wo, const Vec3<R>& wi, R diffuse_probability, R roughness) {
     if (!both_above(wo, wi)) return R(0);
-    return ground_share * cosine_hemisphere_pdf(wi) +
-           (R(1) - ground_share) * ggx_lobe_pdf(wo, wi, roughness);
+    return diffuse_probability * cosine_hemisphere_pdf(wi) +
+           (R(1) - diffuse_probability) * ggx_lobe_pdf(wo, wi, roughness);
 }
-/// Half of a dielectric's samples; a metal has no ground.
+/// Half of a dielectric's samples; a metal has no base layer.
 template <class R>
-R dielectric_ground_share(R metalness) {
+R dielectric_diffuse_probability(R metalness) {
     return R(0.5) * (R(1) - metalness);
 }
 

@@ -1,11 +1,11 @@
-// A rough metal whose reflectance is one colour, f0: GGX facets, Smith's masking, Schlick's Fresnel
+// A rough metal whose reflectance is one color, f0: GGX facets, Smith's masking, Schlick's Fresnel
 // [Walter2007; Heitz2014; Schlick1994].
 //
 //   f = F D V,   F = f0 + (1 - f0) (1 - <wo, wh>)^5
 //
-// With f0 = 1 every facet is a perfect mirror and what is missing to an albedo of 1 is light that met a second facet,
-// which the model drops: nothing on a polished surface, 69 % for a view along the normal at roughness 1
-// (the albedo is 1 - ln 2 there).
+// With f0 = 1 every facet is a perfect mirror and what is missing to an albedo of 1 is light that
+// met a second facet, which the model drops: nothing on a polished surface, 69 % for a view along
+// the normal at roughness 1 (the albedo is 1 - ln 2 there).
 #pragma once
 
 #include "photograd/bsdf/ggx_lobe.h"

@@ -1,16 +1,17 @@
-// A metal of GGX facets that gets back what ggx_metal.h loses: light that meets more facets leaves as an even glow
-// [Kulla2017], by Schlick's colour.
+// ggx_metal.h with compensation for multiple scattering between facets, a diffuse lobe [Kulla2017]
+// with Schlick's color.
 //
 //   f = F L + M g,   L = D V and F = f0 + (1 - f0) ramp as in ggx_metal.h
 //   g = loss(o_z) loss(i_z) / (pi average)          loss, average by roughness: ops/ggx_loss.h
 //   M = A^2 E / (1 - A (1 - E)),   A = (20 f0 + 1) / 21 = 2 int F c dc,   E = 1 - average
 //
-// For f0 = 1, M is 1 and int g i_z = loss(o_z): all light comes back, but for the error of the fit. Each bounce takes A and
-// E of what is left leaves, so the glow is A^2 E + A^3 E (1 - E) + ...; the first bounce is F L. It is reciprocal, which
-// scaling L by what it lacks [Turquin2019] is not.
+// For f0 = 1, M is 1 and int g i_z = loss(o_z): all light comes back, but for the error of the fit.
+// Each bounce takes A and E of what is left leaves, so that lobe is A^2 E + A^3 E (1 - E) + ...;
+// the first bounce is F L. It is reciprocal, which scaling L by what it lacks [Turquin2019] is not.
 //
-//   dM/dA = A E (2 - A (1 - E)) / q^2,   dM/dE = A^2 (1 - A) / q^2,   q = 1 - A (1 - E)      dA/df0 = 20 / 21
-//   dln(g)/droughness = dln(loss(o_z)) + dln(loss(i_z)) - dln(average)                 of smooth fits: exact
+//   dM/dA = A E (2 - A (1 - E)) / q^2,   dM/dE = A^2 (1 - A) / q^2,   q = 1 - A (1 - E)
+//       dA/df0 = 20 / 21
+//   dln(g)/droughness = dln(loss(o_z)) + dln(loss(i_z)) - dln(average)        of smooth fits: exact
 #pragma once
 
 #include "photograd/bsdf/ggx_lobe.h"
@@ -33,7 +34,7 @@ struct GgxMetalCompensated {
 
     Vec3<R> f(const Vec3<R>& wo, const Vec3<R>& wi) const {
         if (!both_above(wo, wi)) return Vec3<R>(R(0));
-        const R average = ggx_average_loss(roughness).value, g = glow(wo, wi).value;
+        const R average = ggx_average_loss(roughness).value, g = multiple_scattering(wo, wi).value;
         const Vec3<R> once =
             schlick(f0, dot(wo, half_vector(wo, wi))) * ggx_lobe(wo, wi, roughness);
         return once + g * Vec3<R>(Bounces::of(f0.x, average).M, Bounces::of(f0.y, average).M,
@@ -45,7 +46,7 @@ struct GgxMetalCompensated {
         const R o_dot_h = dot(wo, half_vector(wo, wi));
         schlick_backward(o_dot_h, d_f * ggx_lobe(wo, wi, roughness), d_self.f0);
         ggx_lobe_backward(wo, wi, roughness, dot(d_f, schlick(f0, o_dot_h)), d_self.roughness);
-        const Loss<R> average = ggx_average_loss(roughness), g = glow(wo, wi);
+        const Loss<R> average = ggx_average_loss(roughness), g = multiple_scattering(wo, wi);
         for (int c = 0; c < 3; ++c) {
             const Bounces of = Bounces::of(f0[c], average.value);
             d_self.f0[c] += d_f[c] * g.value * of.by_A * R(20.0 / 21);
@@ -53,14 +54,14 @@ struct GgxMetalCompensated {
         }
     }
 
-    /// To the glow as often as a white mirror would need it.
+    /// To that lobe as often as a white mirror would need it.
     Vec3<R> sample(const Vec3<R>& wo, Vec2<R> u2) const {
-        if (take_first(glow_share(wo), u2)) return square_to_cosine_hemisphere(u2);
+        if (take_first(compensation_probability(wo), u2)) return square_to_cosine_hemisphere(u2);
         return sample_ggx_lobe(wo, roughness, u2);
     }
     R pdf(const Vec3<R>& wo, const Vec3<R>& wi) const {
         if (!both_above(wo, wi)) return R(0);
-        const R share = glow_share(wo);
+        const R share = compensation_probability(wo);
         return share * cosine_hemisphere_pdf(wi) + (R(1) - share) * ggx_lobe_pdf(wo, wi, roughness);
     }
 
@@ -75,15 +76,15 @@ private:
                     A * A * (R(1) - A) / (q * q)};
         }
     };
-    /// g and its derivative by roughness.
-    Loss<R> glow(const Vec3<R>& wo, const Vec3<R>& wi) const {
+    /// g and its derivative with respect to roughness.
+    Loss<R> multiple_scattering(const Vec3<R>& wo, const Vec3<R>& wi) const {
         const Loss<R> out = ggx_loss(wo.z, roughness), in = ggx_loss(wi.z, roughness);
         const Loss<R> average = ggx_average_loss(roughness);
         const R g = R(1 / pi) * out.value * in.value / average.value;
         return {g, R(1 / pi) * (out.slope * in.value + out.value * in.slope) / average.value -
                        g * average.slope / average.value};
     }
-    R glow_share(const Vec3<R>& wo) const { return ggx_loss(wo.z, roughness).value; }
+    R compensation_probability(const Vec3<R>& wo) const { return ggx_loss(wo.z, roughness).value; }
 };
 
 static_assert(Bsdf<GgxMetalCompensated>);

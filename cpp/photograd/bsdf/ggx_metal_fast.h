@@ -1,4 +1,5 @@
-// ggx_metal.h with the masking that renderers for phones take, without roots (ops/ggx_fast.h), to see what it costs:
+// ggx_metal.h with the masking that renderers for phones take, without roots (ops/ggx_fast.h), to
+// see what it costs:
 //
 //   f = F D V_fast,   F = f0 + (1 - f0) (1 - <wo, wh>)^5        by each parameter as in ggx_metal.h
 //

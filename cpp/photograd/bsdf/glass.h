@@ -1,14 +1,16 @@
-// A smooth boundary of a clear medium: a mirrored ray, and a refracted one through a tint.
+// A specular boundary of a clear medium: a reflected ray, and a refracted one through a tint.
 //
 // eta is the index inside over outside; e = eta for a viewer outside (o_z > 0) and 1 / eta inside.
 //
 //   mirrored    weight = F(e, |o_z|)                        Fresnel
 //   refracted   weight = (1 - F) tint / e^2                  wi by Snell
 //
-// The 1 / e^2: radiance is per solid angle, and a cone of rays widens by e^2 where it enters the rarer medium. What a
-// boundary keeps is L / index^2 [Born1999]; there and back again the factors cancel.
+// The 1 / e^2: radiance is per solid angle, and a cone of rays widens by e^2 where it enters the
+// rarer medium. What a boundary keeps is L / index^2 [Born1999]; there and back again the factors
+// cancel.
 //
-//   dF/deta: ops/fresnel_dielectric.h      dwi/deta: ops/refract.h      de/deta = 1, or -1 / eta^2 from inside
+//   dF/deta: ops/fresnel_dielectric.h      dwi/deta: ops/refract.h
+//       de/deta = 1, or -1 / eta^2 from inside
 //   dweight/dtint = (1 - F) / e^2          dweight/de = -dF/de tint / e^2 - 2 (1 - F) tint / e^3
 #pragma once
 

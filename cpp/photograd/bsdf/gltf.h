@@ -1,19 +1,22 @@
-// The metallic-roughness core of glTF 2.0 [Khronos2021, App. B]: a varnished diffuse ground, a metal, a blend of both.
+// The metallic-roughness core of glTF 2.0 [Khronos2021, App. B]: a coated diffuse base layer, a
+// metal, a blend of both.
 //
-//   L = D V                                              GGX with height-correlated masking, alpha_ggx = roughness^2
+//   L = D V                             GGX with height-correlated masking, alpha_ggx = roughness^2
 //   ramp = (1 - <wo, wh>)^5
-//   F_d = 0.04 + 0.96 ramp                               a boundary of index 1.5
+//   F_d = 0.04 + 0.96 ramp              a boundary of index 1.5
 //   F_m = base_color + (1 - base_color) ramp
 //   f = (1 - metalness) f_d + metalness f_m
-//   f_d = (1 - F_d) base_color / pi + F_d L              what the varnish does not reflect reaches the ground
+//   f_d = (1 - F_d) base_color / pi + F_d L
+//       what the coating does not reflect reaches the base layer
 //   f_m = F_m L
 //
-// The finished lobes are blended, not their f0. Putting f0 = (1 - metalness) 0.04 + metalness base_color into one lobe
-// also weakens the ground by 1 - F of the mixture: a white surface of roughness 0.5 and metalness 0.5, seen from
-// o_z = 0.6, then returns 0.698, less than its two ends (1.002 and 0.872). Blended, it returns 0.937, between them.
-// 1 - F_d is that of the one wh of wo and wi, not of all that the varnish reflects: towards grazing views the ground
-// keeps its light while the varnish becomes a mirror. White of roughness 0.3, seen from o_z = 0.1, returns 1.28 of the
-// light; smooth and seen from the horizon 0.933 + 1.
+// The finished lobes are blended, not their f0. Putting f0 = (1 - metalness) 0.04 + metalness
+// base_color into one lobe also weakens the base layer by 1 - F of the mixture: a white surface of
+// roughness 0.5 and metalness 0.5, seen from o_z = 0.6, then returns 0.698, less than its two ends
+// (1.002 and 0.872). Blended, it returns 0.937, between them. 1 - F_d is that of the one wh of wo
+// and wi, not of all that the coating reflects: towards grazing views the base layer keeps its
+// light while the coating becomes a mirror. White of roughness 0.3, seen from o_z = 0.1, returns
+// 1.28 of the light; smooth and seen from the horizon 0.933 + 1.
 //
 //   df/dbase_color = (1 - metalness) (1 - F_d) / pi + metalness (1 - ramp) L
 //   df/dmetalness = f_m - f_d
@@ -57,10 +60,10 @@ struct Gltf {
     }
 
     Vec3<R> sample(const Vec3<R>& wo, const Vec2<R>& u2) const {
-        return sample_ground_and_lobe(wo, dielectric_ground_share(metalness), roughness, u2);
+        return sample_base_and_lobe(wo, dielectric_diffuse_probability(metalness), roughness, u2);
     }
     R pdf(const Vec3<R>& wo, const Vec3<R>& wi) const {
-        return ground_and_lobe_pdf(wo, wi, dielectric_ground_share(metalness), roughness);
+        return base_and_lobe_pdf(wo, wi, dielectric_diffuse_probability(metalness), roughness);
     }
 
 private:

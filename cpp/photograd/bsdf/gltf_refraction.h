@@ -1,16 +1,18 @@
-// Bodies of coloured or frosted glass, and of what is glass in part: the metallic-roughness model with
-// KHR_materials_transmission and a volume [Khronos2022]. Light bends where it enters.
+// The metallic-roughness model with KHR_materials_transmission and KHR_materials_volume
+// [Khronos2022]: closed bodies of clear, colored or frosted glass that refract.
 //
 //   f = (1 - metalness) ((1 - transmission) f_d + transmission f_t) + metalness f_m
-//   f_d, f_m of gltf.h, with f0 = ((eta - 1) / (eta + 1))^2 for its 0.04     0 unless both directions are outside
+//   f_d, f_m of gltf.h, with f0 = ((eta - 1) / (eta + 1))^2 for its 0.04
+//       0 unless both directions are outside
 //   f_t = G where it mirrors, base_color G where it refracts                 G: rough_dielectric.h
 //
-// Finished lobes are blended, as in gltf.h. f_t has Fresnel's exact reflectance, f_d Schlick's: inside of the body there is
-// total reflection, which Schlick's ramp knows nothing of. What the body swallows on the way is not part of its surface.
+// Finished lobes are blended, as in gltf.h. f_t has Fresnel's exact reflectance, f_d Schlick's:
+// inside of the body there is total internal reflection, which Schlick's ramp lacks. Absorption in
+// the body belongs to its medium, not to the surface.
 //
 //   df/dtransmission = (1 - metalness) (f_t - f_d)
 //   df/dmetalness = f_m - (1 - transmission) f_d - transmission f_t
-//   df/deta: by G, and by F_d with dF_d/df0 = 1 - ramp           the others: gltf.h, rough_dielectric.h
+//   df/deta: by G, and by F_d with dF_d/df0 = 1 - ramp       the others: gltf.h, rough_dielectric.h
 #pragma once
 
 #include "photograd/bsdf/rough_dielectric.h"
@@ -55,17 +57,17 @@ struct GltfRefraction {
         if (both_above(wo, wi)) opaque_backward(wo, wi, d_f, d_self);
     }
 
-    /// What lies outside is asked both ways; a viewer inside sees glass alone. A facet that sends light to where the
-    /// opaque part has none loses it: a direction in the horizon, of no density.
+    /// Outside both lobes are sampled, inside only glass. A facet that reflects the opaque lobe
+    /// below the surface gives an invalid sample: a direction in the horizon, of no density.
     Vec3<R> sample(const Vec3<R>& wo, Vec2<R> u2) const {
         if (!(wo.z > R(0)) || take_first(glass_share(wo), u2)) return glass().sample(wo, u2);
-        const Vec3<R> wi = sample_ground_and_lobe(wo, ground_share(), roughness, u2);
+        const Vec3<R> wi = sample_base_and_lobe(wo, diffuse_probability(), roughness, u2);
         return wi.z > R(0) ? wi : Vec3<R>(R(1), R(0), R(0));
     }
     R pdf(const Vec3<R>& wo, const Vec3<R>& wi) const {
         const R share = glass_share(wo);
         return share * glass().pdf(wo, wi) +
-               (R(1) - share) * ground_and_lobe_pdf(wo, wi, ground_share(), roughness);
+               (R(1) - share) * base_and_lobe_pdf(wo, wi, diffuse_probability(), roughness);
     }
     Vec3<R> index_inside() const { return Vec3<R>(eta); }
 
@@ -102,7 +104,7 @@ private:
         if (!(wo.z > R(0))) return R(1);
         return R(0.1) + R(0.8) * (R(1) - metalness) * transmission;
     }
-    [[nodiscard]] R ground_share() const { return R(0.1) + R(0.4) * (R(1) - metalness); }
+    [[nodiscard]] R diffuse_probability() const { return R(0.1) + R(0.4) * (R(1) - metalness); }
 };
 
 static_assert(Bsdf<GltfRefraction>);

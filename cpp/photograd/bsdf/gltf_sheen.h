@@ -1,14 +1,17 @@
-// Cloth: Charlie's sheen over the metallic-roughness model, after KHR_materials_sheen [Khronos2022]. The base gets what
-// the sheen leaves [Estevez2017].
+// Charlie sheen over the metallic-roughness model, after KHR_materials_sheen
+// [Khronos2022]. The base gets what the sheen leaves [Estevez2017].
 //
 //   f = color D V + (1 - max(color) E) f_base
 //   D V of sheen_roughness_factor: sheen.h        color = sheen_color_factor
-//   E = max(E(o_z), E(i_z)), E the albedo of white sheen: ops/charlie_albedo.h        max keeps f reciprocal
+//   E = max(E(o_z), E(i_z)), E the albedo of white sheen: ops/charlie_albedo.h
+//       max keeps f reciprocal
 //
 // So nothing is gained beyond what the base gains. Black sheen is the base.
 //
-//   df/dcolor = D V, and -E f_base for the largest channel         (a kink where two channels are equally large)
-//   df/dsheen_roughness = color d(D V) - max(color) dE f_base      df/dbase parameters = (1 - max(color) E) df_base/d...
+//   df/dcolor = D V, and -E f_base for the largest channel
+//       (a kink where two channels are equally large)
+//   df/dsheen_roughness = color d(D V) - max(color) dE f_base
+//       df/dbase parameters = (1 - max(color) E) df_base/d...
 #pragma once
 
 #include "photograd/bsdf/gltf.h"

@@ -1,23 +1,28 @@
-// Panes, foil and lampshades: the metallic-roughness model with KHR_materials_transmission [Khronos2022] and no volume.
-// The two boundaries of such a sheet are so close together that light goes straight on, scattered by its roughness.
+// The metallic-roughness model with KHR_materials_transmission and no volume [Khronos2022]: thin
+// sheets. Their two boundaries are so close together that light is not displaced or refracted, only
+// scattered by the roughness.
 //
-//   L = D V of wo and, for what passes, of wi mirrored to wo's side         GGX as in gltf.h, alpha_ggx = roughness^2
+//   L = D V of wo and, for what passes, of wi mirrored to wo's side
+//       GGX as in gltf.h, alpha_ggx = roughness^2
 //   ramp = (1 - <wo, wh>)^5,   F_d = f0 + (1 - f0) ramp,   f0 = ((eta - 1) / (eta + 1))^2
 //   F_m = base_color + (1 - base_color) ramp
 //
-//   mirrored  f = (1 - metalness) (F_d L + (1 - transmission) (1 - F_d) base_color / pi) + metalness F_m L
+//   mirrored  f = (1 - metalness) (F_d L + (1 - transmission) (1 - F_d) base_color / pi)
+//                 + metalness F_m L
 //   through   f = (1 - metalness) transmission (1 - F_d) base_color L
 //
-// Of what the varnish leaves, `transmission` passes and the rest reaches the diffuse ground. With transmission 0 and eta
-// 1.5 the front is gltf.h; both sides are alike. A metal lets nothing through. White returns at most F_d + (1 - F_d) of L,
-// and with a ground what gltf.h says: at the horizon, for eta 1, 0.972 + 1.
+// Of what the coating leaves, `transmission` passes and the rest reaches the diffuse base layer.
+// With transmission 0 and eta 1.5 the front is gltf.h; both sides are alike. A metal lets nothing
+// through. White returns at most F_d + (1 - F_d) of L, and with a base layer what gltf.h says: at
+// the horizon, for eta 1, 0.972 + 1.
 //
 // By each parameter, with w = 1 - metalness, on either side of | :
 //
-//   df/dbase_color = w (1 - transmission) (1 - F_d) / pi + metalness (1 - ramp) L   | w transmission (1 - F_d) L
-//   df/dtransmission = -w (1 - F_d) base_color / pi                                 | w (1 - F_d) base_color L
-//   df/dF_d = w (L - (1 - transmission) base_color / pi)                            | -w transmission base_color L
-//   df/dL = w F_d + metalness F_m                                                   | w transmission (1 - F_d) base_color
+//   df/dbase_color = w (1 - transmission) (1 - F_d) / pi + metalness (1 - ramp) L
+//       | w transmission (1 - F_d) L
+//   df/dtransmission = -w (1 - F_d) base_color / pi           | w (1 - F_d) base_color L
+//   df/dF_d = w (L - (1 - transmission) base_color / pi)      | -w transmission base_color L
+//   df/dL = w F_d + metalness F_m                             | w transmission (1 - F_d) base_color
 #pragma once
 
 #include "photograd/bsdf/ggx_lobe.h"
@@ -54,13 +59,13 @@ struct GltfTransmission {
         const R rest = R(1) - metalness, left = R(1) - s.F, colored = dot(d_f, base_color);
         R d_F = R(0), d_lobe = R(0), fixed_f90 = R(0), fixed_cosine = R(0), d_f0 = R(0);
         if (s.mirrored) {
-            const R all = d_f.x + d_f.y + d_f.z, ground = (R(1) - transmission) * R(1 / pi);
+            const R all = d_f.x + d_f.y + d_f.z, diffuse = (R(1) - transmission) * R(1 / pi);
             const Vec3<R> F_m = schlick(base_color, s.cosine);
-            d_self.base_color += d_f * (rest * ground * left);
+            d_self.base_color += d_f * (rest * diffuse * left);
             schlick_backward(s.cosine, d_f * (metalness * s.lobe), d_self.base_color);
             d_self.metalness += dot(d_f, F_m * s.lobe - dielectric(s));
             d_self.transmission -= rest * left * colored * R(1 / pi);
-            d_F = rest * (all * s.lobe - ground * colored);
+            d_F = rest * (all * s.lobe - diffuse * colored);
             d_lobe = rest * s.F * all + metalness * dot(d_f, F_m);
         } else {
             d_self.base_color += d_f * (rest * transmission * left * s.lobe);
@@ -74,14 +79,14 @@ struct GltfTransmission {
         ggx_lobe_backward(s.o, s.i, roughness, d_lobe, d_self.roughness);
     }
 
-    /// Each of the three ways gets some samples, since the derivatives need all of them. A facet that sends light into
-    /// the wrong half loses it: a direction in the horizon, of no density.
+    /// Each of the three ways gets some samples, since the derivatives need all of them. A facet
+    /// that sends light into the wrong half loses it: a direction in the horizon, of no density.
     Vec3<R> sample(const Vec3<R>& wo, Vec2<R> u2) const {
         const R side = wo.z > R(0) ? R(1) : R(-1);
         const Vec3<R> o(wo.x, wo.y, wo.z * side);
         const bool through = take_first(through_share(), u2);
-        const R ground = through ? R(0) : ground_share() / (R(1) - through_share());
-        const Vec3<R> i = sample_ground_and_lobe(o, ground, roughness, u2);
+        const R to_base = through ? R(0) : diffuse_probability() / (R(1) - through_share());
+        const Vec3<R> i = sample_base_and_lobe(o, to_base, roughness, u2);
         if (!(i.z > R(0))) return {R(1), R(0), R(0)};
         return {i.x, i.y, through ? -side * i.z : side * i.z};
     }
@@ -90,14 +95,14 @@ struct GltfTransmission {
         const Vec3<R> o(wo.x, wo.y, absolute(wo.z)), i(wi.x, wi.y, absolute(wi.z));
         const R lobe = ggx_lobe_pdf(o, i, roughness);
         if (!(wo.z * wi.z > R(0))) return through_share() * lobe;
-        return ground_share() * cosine_hemisphere_pdf(i) +
-               (R(1) - through_share() - ground_share()) * lobe;
+        return diffuse_probability() * cosine_hemisphere_pdf(i) +
+               (R(1) - through_share() - diffuse_probability()) * lobe;
     }
     Vec3<R> index_inside() const { return Vec3<R>(R(1)); }
 
 private:
     static R absolute(R x) { return x < R(0) ? -x : x; }
-    /// Both directions brought above the sheet, and what the formulas want to know of them.
+    /// Both directions mirrored above the sheet, and the terms that they determine.
     struct Sheet {
         Vec3<R> o, i;
         R cosine{R(0)}, lobe{R(0)}, F{R(0)};
@@ -121,7 +126,7 @@ private:
     [[nodiscard]] R through_share() const {
         return R(0.1) + R(0.6) * (R(1) - metalness) * transmission;
     }
-    [[nodiscard]] R ground_share() const {
+    [[nodiscard]] R diffuse_probability() const {
         return R(0.1) + R(0.4) * (R(1) - metalness) * (R(1) - transmission);
     }
 };

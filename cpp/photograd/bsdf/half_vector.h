@@ -1,4 +1,5 @@
-// The geometry that glossy models share. A facet that mirrors wi into wo has the half vector as its normal.
+// The geometry that glossy models share. A facet that mirrors wi into wo has the half vector as its
+// normal.
 #pragma once
 
 #include "photograd/bsdf/bsdf.h"
@@ -21,7 +22,7 @@ Vec3<R> reflect(const Vec3<R>& wo, const Vec3<R>& wh) {
     return R(2) * dot(wo, wh) * wh - wo;
 }
 
-/// Density of wi for a half vector drawn with density pdf_h [Walter2007, Eq. 14].
+/// Density of wi for a half vector of density pdf_h [Walter2007, Eq. 14].
 template <class R>
 R reflected_pdf(const Vec3<R>& wo, const Vec3<R>& wh, R pdf_h) {
     return pdf_h / (R(4) * dot(wo, wh));

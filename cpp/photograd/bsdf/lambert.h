@@ -1,4 +1,4 @@
-// Lambert's diffuse reflection: equally bright from everywhere.
+// Lambert's diffuse reflection: equal radiance in all directions.
 //
 //   f = albedo / pi             the integral of f cos over the hemisphere is albedo
 //   df/dalbedo = 1 / pi         each channel on its own

@@ -1,4 +1,4 @@
-// A perfect mirror: one direction, dimmed by a colour.
+// A perfect mirror: one direction, scaled by a color.
 //
 //   wi = (-o_x, -o_y, o_z),   weight = reflectance        dweight/dreflectance = 1
 #pragma once

@@ -1,17 +1,19 @@
-// Oren and Nayar's rough plaster, in their qualitative form [Oren1994]: facets that are Lambertian
-// themselves, whose slopes deviate by the angle sigma. It flattens: the rim of a ball is as bright as its middle.
+// Oren-Nayar diffuse reflection, the qualitative model [Oren1994]: Lambertian facets whose slopes
+// deviate by the angle sigma. A sphere looks flat: its rim is as bright as its middle.
 //
 //   f = albedo / pi (A + B t)
 //   A = 1 - sigma^2 / (2 (sigma^2 + 0.33))           B = 0.45 sigma^2 / (sigma^2 + 0.09)
-//   t = max(cos(phi_o - phi_i), 0) sin(alpha) tan(beta),   alpha and beta the larger and smaller angle to the normal
+//   t = max(cos(phi_o - phi_i), 0) sin(alpha) tan(beta),
+//       alpha and beta the larger and smaller angle to the normal
 //
-// Without angles: sin(alpha) sin(beta) cos(phi_o - phi_i) = o_x i_x + o_y i_y =: s, and cos(beta) = max(o_z, i_z), so
-// t = max(s, 0) / max(o_z, i_z), smooth where the textbook's form is not.
+// Without angles: sin(alpha) sin(beta) cos(phi_o - phi_i) = o_x i_x + o_y i_y =: s, and cos(beta) =
+// max(o_z, i_z), so t = max(s, 0) / max(o_z, i_z), smooth where the textbook's form is not.
 //
 //   dA/dsigma = -0.33 sigma / (sigma^2 + 0.33)^2     dB/dsigma = 0.081 sigma / (sigma^2 + 0.09)^2
 //
-// What light reflected from facet to facet adds is left out: white plaster of sigma 1, seen straight on, loses 38 %.
-// The form is a fit, and at grazing angles returns up to 1.5 % more than came (sigma 0.2).
+// What light reflected from facet to facet adds is left out: white plaster of sigma 1, seen
+// straight on, loses 38 %. The form is a fit, and at grazing angles returns up to 1.5 % more than
+// came (sigma 0.2).
 #pragma once
 
 #include "photograd/bsdf/half_vector.h"
@@ -46,7 +48,8 @@ struct OrenNayarQualitative {
             dot(d_f, albedo) * R(1 / pi) * sigma * (R(0.081) * t / (b * b) - R(0.33) / (a * a));
     }
 
-    /// In proportion to the cosine; the weights stay between 0.7 and 1.1 of the albedo but at grazing angles.
+    /// In proportion to the cosine; the weights stay between 0.7 and 1.1 of the albedo but at
+    /// grazing angles.
     Vec3<R> sample(const Vec3<R>&, const Vec2<R>& u2) const {
         return square_to_cosine_hemisphere(u2);
     }

@@ -1,5 +1,5 @@
-// Oren and Nayar's plaster that gives all light back [Portsmouth2025]: Fujii's form of what one facet sends, and an even
-// glow in place of what went from facet to facet. roughness runs from 0 (Lambert) to 1.
+// Energy-preserving Oren-Nayar [Portsmouth2025]: Fujii's form of single scattering between facets,
+// and a lobe for multiple scattering. roughness runs from 0 (Lambert) to 1.
 //
 //   f = albedo / pi A (1 + roughness t) + K / pi A roughness g(o_z) g(i_z) / (k1 - k2)
 //   A = 1 / (1 + k1 roughness),   k1 = 1/2 - 2 / (3 pi),   k2 = 2/3 - 28 / (15 pi)
@@ -11,12 +11,14 @@
 //   1 - A (1 + roughness G(c) / pi) = A roughness g(c),   g = k1 - G / pi
 //   G(c) = s (acos(c) - s c) + 2/3 (s / c (1 - s^3) - s),   s = sqrt(1 - c^2)
 //
-// so that the second part, light that bounced at least twice, returns just this to white: the albedo is 1 for every view
-// and roughness. In [Portsmouth2025] it is (1 - E(wo)) (1 - E(wi)) / (1 - E), 0 / 0 on a smooth surface; dividing A
-// roughness out of it leaves g, which no parameter moves.
+// so that the second part, light that bounced at least twice, returns just this to white: the
+// albedo is 1 for every view and roughness. In [Portsmouth2025] it is
+// (1 - E(wo)) (1 - E(wi)) / (1 - E), 0 / 0 at roughness 0; dividing A roughness out of it leaves g,
+// which depends on no parameter.
 //
 //   dA/droughness = -k1 A^2      dE/droughness = (k2 - k1) A^2
-//   dK/dalbedo = albedo E (2 - albedo (1 - E)) / q^2      dK/dE = albedo^2 (1 - albedo) / q^2,   q = 1 - albedo (1 - E)
+//   dK/dalbedo = albedo E (2 - albedo (1 - E)) / q^2      dK/dE = albedo^2 (1 - albedo) / q^2,
+//       q = 1 - albedo (1 - E)
 //   d(A roughness)/droughness = A^2      d(A (1 + roughness t))/droughness = (t - k1) A^2
 #pragma once
 
@@ -42,7 +44,7 @@ struct OrenNayarEnergyPreserving {
         if (!both_above(wo, wi)) return Vec3<R>(R(0));
         const R A = R(1) / (R(1) + R(k1) * roughness), E = A * (R(1) + R(k2) * roughness);
         const R once = A * (R(1) + roughness * sine_tangent(wo, wi));
-        const R more = A * roughness * glow(wo, wi);
+        const R more = A * roughness * multiple_scattering(wo, wi);
         Vec3<R> value;
         for (int c = 0; c < 3; ++c) {
             const R x = albedo[c], K = x * x * E / (R(1) - x * (R(1) - E));
@@ -54,7 +56,7 @@ struct OrenNayarEnergyPreserving {
                     OrenNayarEnergyPreserving& d_self) const {
         if (!both_above(wo, wi)) return;
         const R A = R(1) / (R(1) + R(k1) * roughness), E = A * (R(1) + R(k2) * roughness);
-        const R t = sine_tangent(wo, wi), g = glow(wo, wi);
+        const R t = sine_tangent(wo, wi), g = multiple_scattering(wo, wi);
         const R once = A * (R(1) + roughness * t), more = A * roughness * g;
         for (int c = 0; c < 3; ++c) {
             const R x = albedo[c], q = R(1) - x * (R(1) - E), d = d_f[c] * R(1 / pi);
@@ -81,10 +83,11 @@ private:
         return s > R(0) ? s / larger(wo.z, wi.z) : s;
     }
     /// g(o_z) g(i_z) / (k1 - k2)
-    static R glow(const Vec3<R>& wo, const Vec3<R>& wi) {
+    static R multiple_scattering(const Vec3<R>& wo, const Vec3<R>& wi) {
         return loss(wo) * loss(wi) * R(1 / (k1 - k2));
     }
-    /// g, where (1 - s^3) / c^2 = (1 + s + s^2) / (1 + s): near the horizon the quotient in G would lose its digits.
+    /// g, where (1 - s^3) / c^2 = (1 + s + s^2) / (1 + s): near the horizon the quotient in G would
+    /// lose its digits.
     static R loss(const Vec3<R>& w) {
         const R c = w.z, s = sqrt(larger(w.x * w.x + w.y * w.y, R(0)));
         const R G = s * (polar_angle(s, c) - s * c) +

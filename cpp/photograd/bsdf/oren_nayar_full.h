@@ -1,22 +1,26 @@
-// Oren and Nayar's rough plaster with all its terms [Oren1994, Eqs. 40 and 41]: besides what one facet sends (the
-// qualitative form keeps two of its three terms), light that goes from one facet to its neighbour and then out.
+// Oren-Nayar diffuse reflection with all its terms [Oren1994, Eqs. 40 and 41]: besides what one
+// facet sends (the qualitative form keeps two of its three terms), light that goes from one facet
+// to its neighbor and then out.
 //
 //   f = albedo / pi (S + albedo M N)
 //   S = A + B T,   A = 1 - sigma^2 / (2 (sigma^2 + 0.33)),   B = sigma^2 / (sigma^2 + 0.09),
-//   T = 0.45 c (sin(alpha) - [c < 0] (2 beta / pi)^3) tan(beta) + 0.125 (1 - |c|) (4 alpha beta / pi^2)^2
+//   T = 0.45 c (sin(alpha) - [c < 0] (2 beta / pi)^3) tan(beta)
+//       + 0.125 (1 - |c|) (4 alpha beta / pi^2)^2
 //       tan((alpha + beta) / 2)
 //   M = 0.17 sigma^2 / (sigma^2 + 0.13),   N = 1 - c (2 beta / pi)^2
 //
 // with c = cos(phi_o - phi_i), and alpha and beta the larger and smaller angle to the normal. Then
-// tan((alpha + beta) / 2) = (sin(alpha) + sin(beta)) / (cos(alpha) + cos(beta)). T and N do not depend on parameters:
+// tan((alpha + beta) / 2) = (sin(alpha) + sin(beta)) / (cos(alpha) + cos(beta)). T and N do not
+// depend on parameters:
 //
 //   df/dalbedo = (S + 2 albedo M N) / pi
-//   dA/dsigma = -0.33 sigma / (sigma^2 + 0.33)^2          dB/dsigma = 0.18 sigma / (sigma^2 + 0.09)^2
+//   dA/dsigma = -0.33 sigma / (sigma^2 + 0.33)^2        dB/dsigma = 0.18 sigma / (sigma^2 + 0.09)^2
 //   dM/dsigma = 0.0442 sigma / (sigma^2 + 0.13)^2
 //
-// A fit to simulated facets: white plaster returns up to 5 % more than came (sigma 0.3, at the horizon), and at sigma 1
-// loses 23 % straight on, where the qualitative form loses 38 %. Towards the horizon on the far side of the normal
-// S falls below 0, to -0.16; what is below 0 is 0 here, and has no derivative.
+// A fit to simulated facets: white plaster returns up to 5 % more than came (sigma 0.3, at the
+// horizon), and at sigma 1 loses 23 % straight on, where the qualitative form loses 38 %. Towards
+// the horizon on the far side of the normal S falls below 0, to -0.16; what is below 0 is 0 here,
+// and has no derivative.
 #pragma once
 
 #include "photograd/bsdf/half_vector.h"
@@ -81,10 +85,10 @@ private:
         const R sin_beta = o_is_lower ? sin_i : sin_o, cos_beta = o_is_lower ? wi.z : wo.z;
         const R x = R(2 / pi) * polar_angle(sin_alpha, cos_alpha);
         const R y = R(2 / pi) * polar_angle(sin_beta, cos_beta);
-        const R seen = c < R(0) ? sin_alpha - y * y * y : sin_alpha;
+        const R sin_term = c < R(0) ? sin_alpha - y * y * y : sin_alpha;
         const R across = R(1) - (c < R(0) ? -c : c);
         const R tan_half = (sin_alpha + sin_beta) / (cos_alpha + cos_beta);
-        return {R(0.45) * c * seen * sin_beta / cos_beta +
+        return {R(0.45) * c * sin_term * sin_beta / cos_beta +
                     R(0.125) * across * (x * x * y * y) * tan_half,
                 R(1) - c * y * y};
     }

@@ -1,14 +1,16 @@
-// Phong's highlight: a power of the cosine to the mirrored view, over a diffuse ground.
+// Phong: a power of the cosine to the mirrored view, over a diffuse base layer.
 //
 //   r = (-o_x, -o_y, o_z)       wo, mirrored at the normal
 //   c = max(<r, wi>, 0)
 //   f = diffuse / pi + specular N c^n / m
 //
-//   cosine cancelled   N = (n + 1) / (2 pi), m = i_z      the light's cosine does not dim the highlight [Phong1975]
+//   cosine cancelled   N = (n + 1) / (2 pi), m = i_z
+//       the light's cosine does not dim the highlight [Phong1975]
 //   reciprocal         N = (n + 2) / (2 pi), m = 1        "modified Phong" [Lafortune1994, Sec. 3]
 //
-// Either N makes the highlight's albedo `specular` for a view along the normal, and less from the side, where part
-// of the lobe lies below the surface. Nothing keeps diffuse + specular below 1: the sum can double light.
+// Either N makes the highlight's albedo `specular` for a view along the normal, and less from the
+// side, where part of the lobe lies below the surface. Nothing keeps diffuse + specular below 1:
+// the model is not energy-conserving.
 //
 //   df/ddiffuse = 1 / pi        df/dspecular = N c^n / m
 //   df/dn = specular c^n / m (dN/dn + N ln c),      dN/dn = 1 / (2 pi)
@@ -16,7 +18,7 @@
 
 #include "photograd/bsdf/half_vector.h"
 #include "photograd/core/frame.h"
-#include "photograd/sampling/facets.h"
+#include "photograd/sampling/vndf.h"
 
 namespace photograd {
 
@@ -49,7 +51,7 @@ struct PhongModel {
                                (log(c) + R(1) / (exponent + R(reciprocal ? 2 : 1)));
     }
 
-    /// Half of the samples for the ground, half for the highlight.
+    /// Half of the samples for the base layer, half for the highlight.
     Vec3<R> sample(const Vec3<R>& wo, Vec2<R> u2) const {
         if (take_first(R(0.5), u2)) return square_to_cosine_hemisphere(u2);
         const Frame<R> around = Frame<R>::from_normal({-wo.x, -wo.y, wo.z});

@@ -1,11 +1,14 @@
-// Burley's principled model, the part that most programs share: base colour, metalness and roughness [Burley2012].
+// Burley's principled model, its most common parameters: base color, metalness and
+// roughness [Burley2012].
 //
-//   f = base_color P + Q               ops/principled.h: Burley's diffuse ground under a varnish of index 1.5, or metal
+//   f = base_color P + Q
+//       ops/principled.h: Burley's diffuse base layer under a coating of index 1.5, or metal
 //
-//   df/dbase_color = P                 each channel on its own; dL/dP = <d_f, base_color>, dL/dQ = sum of d_f
+//   df/dbase_color = P       each channel on its own; dL/dP = <d_f, base_color>, dL/dQ = sum of d_f
 //
-// It differs from standard.h in three ways: the ground is Burley's, not Lambert's; the varnish has Fresnel's exact
-// reflectance; masking and shadowing are independent. As there, the ground does not lose what the varnish reflects.
+// It differs from standard.h in three ways: the base layer is Burley's, not Lambert's; the coating
+// has Fresnel's exact reflectance; masking and shadowing are independent. As there, the base layer
+// does not lose what the coating reflects.
 #pragma once
 
 #include "photograd/bsdf/ggx_lobe.h"
@@ -41,23 +44,24 @@ struct Principled {
     }
 
     Vec3<R> sample(const Vec3<R>& wo, const Vec2<R>& u2) const {
-        return sample_ground_and_lobe(wo, ground_share(), roughness, u2);
+        return sample_base_and_lobe(wo, diffuse_probability(), roughness, u2);
     }
     R pdf(const Vec3<R>& wo, const Vec3<R>& wi) const {
-        return ground_and_lobe_pdf(wo, wi, ground_share(), roughness);
+        return base_and_lobe_pdf(wo, wi, diffuse_probability(), roughness);
     }
 
 private:
     static PrincipledAngles<R> angles(const Vec3<R>& wo, const Vec3<R>& wi) {
         return PrincipledAngles<R>::of(wo.x, wo.y, wo.z, wi.x, wi.y, wi.z);
     }
-    /// Of the samples, in proportion to the light that the ground and the lobe give back, roughly; both get
-    /// some, since the derivative by metalness needs the other one as well.
-    [[nodiscard]] R ground_share() const {
-        const R base = (base_color.x + base_color.y + base_color.z) * R(1.0 / 3);
-        const R ground = (R(1) - metalness) * base;
-        const R lobe = metalness * base + (R(1) - metalness) * R(0.06);
-        return R(0.1) + R(0.8) * ground / (ground + lobe + R(1e-6));
+    /// Of the samples, in proportion to the light that the base layer and the lobe give back,
+    /// roughly; both get some, since the derivative with respect to metalness needs the other one
+    /// as well.
+    [[nodiscard]] R diffuse_probability() const {
+        const R albedo = (base_color.x + base_color.y + base_color.z) * R(1.0 / 3);
+        const R diffuse = (R(1) - metalness) * albedo;
+        const R lobe = metalness * albedo + (R(1) - metalness) * R(0.06);
+        return R(0.1) + R(0.8) * diffuse / (diffuse + lobe + R(1e-6));
     }
 };
 

@@ -1,5 +1,5 @@
-// All reflectance models. A new one: its header, and its name here. Bindings, stubs, proofs, benchmark rows
-// and gallery pictures follow.
+// All reflectance models. A new one: its header, and its name here. Bindings, stubs, proofs,
+// benchmark rows and gallery pictures follow.
 #pragma once
 
 #include "photograd/bsdf/blinn_phong.h"

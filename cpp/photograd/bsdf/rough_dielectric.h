@@ -1,16 +1,19 @@
-// Frosted glass: GGX facets that mirror and refract [Walter2007].
+// Rough dielectric, frosted glass: GGX facets that reflect and refract [Walter2007].
 //
-// eta is the index inside over outside. Seen from wo's side, e is the far index over the near one: eta for a viewer
-// outside (o_z > 0), 1 / eta inside; there all z are flipped first, so that o_z > 0 below.
+// eta is the index inside over outside. Seen from wo's side, e is the far index over the near one:
+// eta for a viewer outside (o_z > 0), 1 / eta inside; there all z are flipped first, so that o_z >
+// 0 below.
 //
 //   mirrored    wh ~ wo + wi            f = F D V
-//   refracted   g = wo + e wi, wh = +-g / |g| with h_z > 0                                      [Walter2007, Eq. 16]
-//               f = K (1 - F) D V,   K = 4 a (-b) / s2,   a = <wo, wh> > 0,  b = <wi, wh> < 0   [Walter2007, Eq. 21]
+//   refracted   g = wo + e wi, wh = +-g / |g| with h_z > 0                     [Walter2007, Eq. 16]
+//               f = K (1 - F) D V,   K = 4 a (-b) / s2,   a = <wo, wh> > 0,  b = <wi, wh> < 0
+//                   [Walter2007, Eq. 21]
 //               s2 = (a + e b)^2 = |g|^2 = 1 + e^2 + 2 e <wo, wi>
 //
-// F = F(e, a) is exact, V = G2 / (4 o_z |i_z|). f is for radiance, which grows by e^2 where light enters the denser
-// medium: f(wo, wi) n_i^2 = f(wi, wo) n_o^2 is its reciprocity, and what passes is f |i_z| e^2. Light that meets a
-// second facet is dropped, as in all models of one facet. What is smoother, or hardly bends light, is glass.h.
+// F = F(e, a) is exact, V = G2 / (4 o_z |i_z|). f is for radiance, which grows by e^2 where light
+// enters the denser medium: f(wo, wi) n_i^2 = f(wi, wo) n_o^2 is its reciprocity, and what passes
+// is f |i_z| e^2. Light that meets a second facet is dropped, as in all models of one facet. What
+// is smoother, or hardly bends light, is glass.h.
 //
 //   dK/da = K / a      dK/db = K / b      dK/ds2 = -K / s2,   ds2/de = 2 e + 2 <wo, wi>
 //   da = <wo, dwh>,  db = <wi, dwh>       dwh/de = +-(wi - wh <wh, wi>) / |g|
@@ -64,18 +67,19 @@ struct RoughDielectric {
         d_self.eta += wo.z > R(0) ? d_e : -d_e * (w.e * w.e);
     }
 
-    /// A visible facet; light is mirrored there with a probability near to what a flat boundary reflects.
-    /// Where a facet cannot send it, the sample is lost: a direction in the horizon, of no density.
+    /// A visible facet; light is mirrored there with a probability near to what a flat boundary
+    /// reflects. Where a facet cannot send it, the sample is lost: a direction in the horizon, of
+    /// no density.
     Vec3<R> sample(const Vec3<R>& wo, Vec2<R> u2) const {
         const R side = wo.z > R(0) ? R(1) : R(-1), e = wo.z > R(0) ? eta : R(1) / eta;
-        const Vec3<R> o(wo.x, wo.y, wo.z * side), lost(R(1), R(0), R(0));
+        const Vec3<R> o(wo.x, wo.y, wo.z * side), invalid(R(1), R(0), R(0));
         const bool mirrored = take_first(mirrored_share(e, o.z), u2);
         const R alpha = roughness * roughness;
         const Vec3<R> h = sample_ggx_visible(o, alpha, alpha, u2);
         const R a = dot(o, h), t2 = refracted_cos_squared(e, a);
-        if (!mirrored && !(t2 > R(0))) return lost;
+        if (!mirrored && !(t2 > R(0))) return invalid;
         const Vec3<R> i = mirrored ? reflect(o, h) : h * (a / e - sqrt(t2)) - o * (R(1) / e);
-        if (mirrored ? !(i.z > R(0)) : !(i.z < R(0))) return lost;
+        if (mirrored ? !(i.z > R(0)) : !(i.z < R(0))) return invalid;
         return {i.x, i.y, i.z * side};
     }
     R pdf(const Vec3<R>& wo, const Vec3<R>& wi) const {

@@ -1,12 +1,13 @@
-// Sheen of cloth: light caught by fibres that stand up, seen at the rim [Estevez2017].
+// Charlie sheen: scattering by the fibers of cloth, brightest at the rim [Estevez2017].
 //
 //   f = color D V,   alpha = roughness^2        D, V: ops/charlie.h
 //
 //   df/dcolor = D V        df/droughness = color 2 roughness (dD/dalpha V + D dV/dalpha)
 //
-// The masking is the fitted one. Near the horizon, below roughness 0.25, the fit returns more light than came; the
-// range ends before that. The shorter V = 1 / (4 (o_z + i_z - o_z i_z)) in its place returns up to 1.29 of the light at
-// roughness 0.2. Alone it is the nap of velvet; over a ground, the ground must lose what the sheen returns.
+// The masking is the fitted one. Near the horizon, below roughness 0.25, the fit returns more light
+// than came; the range ends before that. The shorter V = 1 / (4 (o_z + i_z - o_z i_z)) in its place
+// returns up to 1.29 of the light at roughness 0.2. Alone it is the nap of velvet; over a base
+// layer, the base layer must lose what the sheen returns.
 #pragma once
 
 #include "photograd/bsdf/half_vector.h"
@@ -42,7 +43,8 @@ struct Sheen {
         d_self.roughness += R(2) * roughness * d_alpha;
     }
 
-    /// Evenly over the hemisphere: the lobe is wide, and brightest at the horizon, where a cosine would not look.
+    /// Evenly over the hemisphere: the lobe is wide, and brightest at the horizon, where a cosine
+    /// would not look.
     Vec3<R> sample(const Vec3<R>&, const Vec2<R>& u2) const { return square_to_cap(u2, R(1)); }
     R pdf(const Vec3<R>& wo, const Vec3<R>& wi) const {
         return both_above(wo, wi) ? R(0.5 / pi) : R(0);

@@ -1,16 +1,19 @@
-// Filament's standard model [Guy2018, Sec. 4]: Lambert under a GGX lobe for dielectrics, the lobe alone for metals.
+// Filament's standard model [Guy2018, Sec. 4]: Lambert under a GGX lobe for dielectrics, the lobe
+// alone for metals.
 //
-//   L = D V                                              GGX with height-correlated masking, alpha_ggx = roughness^2
+//   L = D V                             GGX with height-correlated masking, alpha_ggx = roughness^2
 //   ramp = (1 - <wo, wh>)^5,   f0 = 0.16 reflectance^2   reflectance 0.5 is an index of 1.5
 //   f = (1 - metalness) f_d + metalness f_m
 //   f_d = base_color / pi + (f0 + (1 - f0) ramp) L
 //   f_m = (base_color + (1 - base_color) ramp) L
 //
-// Filament mixes f0 and base_color to one f0 and has a single lobe. Here that is the same as blending the finished
-// lobes: Schlick's F is linear in f0 and multiplies nothing else. In gltf.h it multiplies the ground as well, and is not.
-// Blending is what carries over, so it stands here too.
+// Filament mixes f0 and base_color to one f0 and has a single lobe. Here that is the same as
+// blending the finished lobes: Schlick's F is linear in f0 and multiplies nothing else. In gltf.h
+// it multiplies the base layer as well, and is not. Blending is what carries over, so it stands
+// here too.
 //
-// The ground does not lose what the lobe reflects: a white dielectric returns up to twice the light at grazing angles.
+// The base layer does not lose what the lobe reflects: a white dielectric returns up to twice the
+// light at grazing angles.
 //
 //   df/dbase_color = (1 - metalness) / pi + metalness (1 - ramp) L        df/dmetalness = f_m - f_d
 //   df/dreflectance = (1 - metalness) 0.32 reflectance (1 - ramp) L
@@ -51,7 +54,7 @@ struct Standard {
         d_self.base_color += d_f * (rest * R(1 / pi));
         schlick_backward(o_dot_h, d_f * (metalness * lobe), d_self.base_color);
         d_self.metalness += dot(d_f, F_m * lobe - dielectric(o_dot_h, lobe));
-        const R all = d_f.x + d_f.y + d_f.z;  // the dielectric's lobe has no colour
+        const R all = d_f.x + d_f.y + d_f.z;  // the dielectric's lobe has no color
         d_self.reflectance +=
             all * rest * R(0.32) * reflectance * (R(1) - schlick_ramp(o_dot_h)) * lobe;
         const R d_lobe = all * rest * fresnel(o_dot_h) + metalness * dot(d_f, F_m);
@@ -59,10 +62,10 @@ struct Standard {
     }
 
     Vec3<R> sample(const Vec3<R>& wo, const Vec2<R>& u2) const {
-        return sample_ground_and_lobe(wo, dielectric_ground_share(metalness), roughness, u2);
+        return sample_base_and_lobe(wo, dielectric_diffuse_probability(metalness), roughness, u2);
     }
     R pdf(const Vec3<R>& wo, const Vec3<R>& wi) const {
-        return ground_and_lobe_pdf(wo, wi, dielectric_ground_share(metalness), roughness);
+        return base_and_lobe_pdf(wo, wi, dielectric_diffuse_probability(metalness), roughness);
     }
 
 private:

@@ -1,10 +1,11 @@
-// A pane: two boundaries so close together that rays come out where they went in, and go straight on.
+// Thin glass, a pane: two boundaries so close together that rays are neither displaced nor
+// refracted.
 //
-// r = F(eta, |o_z|) at each boundary, t what one passage of the glass leaves (tint). Light that bounces n times inside
-// adds a geometric series [Born1999, Sec. 7.6]:
+// r = F(eta, |o_z|) at each boundary, t what one passage of the glass leaves (tint). Light that
+// bounces n times inside adds a geometric series [Born1999, Sec. 7.6]:
 //
 //   through  T = (1 - r)^2 t sum_n (r t)^(2n) = (1 - r)^2 t / q,   q = 1 - r^2 t^2
-//   back     B = r + r t T                                         for t = 1: 2 r / (1 + r), and T + B = 1
+//   back     B = r + r t T                                  for t = 1: 2 r / (1 + r), and T + B = 1
 //
 //   dT/dr = 2 (1 - r) t (r t^2 (1 - r) - q) / q^2      dT/dt = (1 - r)^2 (1 + r^2 t^2) / q^2
 //   dB/dr = 1 + t T + r t dT/dr                        dB/dt = r T + r t dT/dt

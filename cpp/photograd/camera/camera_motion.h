@@ -3,7 +3,8 @@
 //   position(s) = position + s shift
 //   axis(s) = cos(s w) axis + sin(s w) a x axis + (1 - cos(s w)) a <a, axis>,    turn = w a
 //
-// the straight way, and a turn about one axis: that of slerp [Shoemake1985] between two rotations, by Rodrigues' formula.
+// a straight line, and a rotation about one axis: that of slerp [Shoemake1985] between two
+// rotations, by Rodrigues' formula.
 #pragma once
 
 #include "photograd/core/sincos.h"
@@ -13,7 +14,7 @@ namespace photograd {
 
 struct CameraMotion {
     Vec3<double> shift{0.0},
-        turn{0.0};  // metres; radians about an axis of the world, below half a turn
+        turn{0.0};  // meters; radians about an axis of the world, below half a turn
     bool moves = false;
 
     /// Moves a pose, rows of world_from_camera, to where it is at a time from 0 to 1.

@@ -1,4 +1,4 @@
-// A pinhole camera: +X right, +Y down, +Z forward; the centre of the top left pixel is (0.5, 0.5).
+// A pinhole camera: +X right, +Y down, +Z forward; the center of the top left pixel is (0.5, 0.5).
 #pragma once
 
 #include "photograd/core/ray.h"

@@ -1,14 +1,15 @@
-// A camera with a lens: sharp in one plane, blurred in front of it and behind.
+// A thin lens camera: depth of field, sharp in one plane.
 //
-// The rays through a point (x, y) of the image meet in one point of the plane z = focus, wherever they pass the lens:
+// All rays through a point (x, y) of the image meet in one point of the plane z = focus:
 //
-//   origin = radius (l_x, l_y, 0),   target = focus ((x - cx) / fx, (y - cy) / fy, 1),   direction ~ target - origin
+//   origin = radius (l_x, l_y, 0)
+//   target = focus ((x - cx) / fx, (y - cy) / fy, 1),   direction ~ target - origin
 //
 // with l in the unit disc. A point on the axis at depth z is then seen by all image points within
 //
-//   f radius |1 / focus - 1 / z|                                                    pixels, the circle of confusion
+//   f radius |1 / focus - 1 / z|                        pixels, the circle of confusion
 //
-// of the centre [Cook1984]. With radius 0 it is the pinhole.
+// of the center [Cook1984]. With radius 0 it is the pinhole.
 #pragma once
 
 #include "photograd/camera/camera_motion.h"
@@ -17,7 +18,7 @@
 namespace photograd {
 
 struct ThinLens : Pinhole {
-    double radius = 0, focus = 1;  // metres
+    double radius = 0, focus = 1;  // meters
     CameraMotion motion;           // while the shutter is open
 
     using Pinhole::ray;

@@ -1,12 +1,13 @@
-// The angle of a point in the plane, with the same bits on every processor (libm picks its variant by processor).
+// atan2 with the same bits on every processor (libm picks its variant by processor).
 #pragma once
 
 #include "photograd/core/dual.h"
 
 namespace photograd {
 
-/// atan on [0, 1]. Halving the angle twice, tan(a / 2) = tan(a) / (1 + sqrt(1 + tan(a)^2)), leaves at most
-/// t = tan(pi / 16) = 0.2, where the series t - t^3 / 3 + t^5 / 5 - ... ends after t^23 with a remainder below 1e-18.
+/// atan on [0, 1]. Halving the angle twice, tan(a / 2) = tan(a) / (1 + sqrt(1 + tan(a)^2)), leaves
+/// at most t = tan(pi / 16) = 0.2, where the series t - t^3 / 3 + t^5 / 5 - ... ends after t^23
+/// with a remainder below 1e-18.
 template <class R>
 R atan_unit(R t) {
     for (int half = 0; half < 2; ++half) t = t / (R(1) + sqrt(R(1) + t * t));

@@ -1,8 +1,9 @@
 // Dual numbers: forward-mode derivatives that are exact to rounding.
 //
-// A Dual carries a value and its derivative along one direction v. Running an op on Duals gives J v in
-// one pass, which the dot-product test <J v, w> = <v, J^T w> compares with the hand-written backward
-// (J^T w). Arithmetic follows the rules of calculus: (a + e a')(b + e b') = ab + e (a' b + a b').
+// A Dual carries a value and its derivative along one direction v. Running an op on Duals gives J v
+// in one pass, which the dot-product test <J v, w> = <v, J^T w> compares with the hand-written
+// backward (J^T w). Arithmetic follows the rules of calculus:
+// (a + e a')(b + e b') = ab + e (a' b + a b').
 #pragma once
 
 #include <compare>

@@ -1,5 +1,5 @@
-// Typed errors. The Python classes are defined once, in photograd_course.errors; bindings/errors.cpp
-// raises the class that `kind` names. Core code throws these and never prints or exits.
+// Typed errors. The Python classes are defined once, in photograd_course.errors, and
+// bindings/errors.cpp raises the one that `kind` names. Core code throws; it never prints or exits.
 #pragma once
 
 #include <stdexcept>

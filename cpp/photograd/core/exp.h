@@ -1,12 +1,13 @@
 // exp, expm1 and log1p that give the same bits on every processor.
 //
 // libm picks a different expf for processors with fused multiply-add, so its results are not
-// portable bit for bit, and a call into it cannot be vectorised. These are straight-line code that a
-// compiler turns into lanes.
+// portable bit for bit, and a call into it cannot be vectorized. These are straight-line code that
+// a compiler turns into lanes.
 //
-// Range reduction: x = n ln2 + r with |r| <= ln2 / 2, exp(x) = 2^n (1 + q(r)), where q(r) = exp(r) - 1
-// is a Taylor polynomial: to r^7 for float (remainder 5e-9), to r^13 for double (remainder 4e-18).
-// Keeping q apart from the 1 gives expm1 without cancellation: expm1(x) = (2^n - 1) + 2^n q(r).
+// Range reduction: x = n ln2 + r with |r| <= ln2 / 2 and exp(x) = 2^n (1 + q(r)). Here
+// q(r) = exp(r) - 1 is a Taylor polynomial: to r^7 for float (remainder 5e-9), to r^13 for double
+// (remainder 4e-18). Keeping q apart from the 1 gives expm1 without cancellation:
+// expm1(x) = (2^n - 1) + 2^n q(r).
 #pragma once
 
 #include "photograd/core/isa.h"

@@ -1,9 +1,9 @@
-// Lanes: W numbers that are treated alike, written as plain loops that the compiler vectorises.
+// Lanes: W numbers that are treated alike, written as plain loops that the compiler vectorizes.
 //
-// The order of every operation is fixed by this file, not by the compiler, so that a loop over lanes
-// compiled for SSE2, AVX2 or AVX-512, and a scalar program that follows the same order, agree bit for
-// bit. That is why sums across lanes go through `sum` (a fixed tree) and never through a plain loop
-// that one compiler might reassociate and another not.
+// The order of every operation is fixed by this file, not by the compiler, so that a loop over
+// lanes compiled for SSE2, AVX2 or AVX-512, and a scalar program that follows the same order, agree
+// bit for bit. That is why sums across lanes go through `sum` (a fixed tree) and never through a
+// plain loop that one compiler might reassociate and another not.
 #pragma once
 
 #include "photograd/core/isa.h"

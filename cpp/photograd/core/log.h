@@ -1,10 +1,11 @@
-// Natural logarithm and real powers with the same bits on every processor, as exp.h has the exponential.
+// Natural logarithm and real powers with the same bits on every processor, like exp.h.
 //
 //   x = 2^n m,  sqrt(1/2) <= m < sqrt(2)
 //   ln x = n ln2 + 2 atanh(s),   s = (m - 1) / (m + 1),  |s| <= 0.172
 //
-// The series s + s^3/3 + s^5/5 + ... is cut where the rest is below rounding: at s^11 for float (4e-10), at
-// s^23 for double (2e-20). Near x = 1 n is 0 and s exact, so ln x keeps its relative accuracy there.
+// The series s + s^3/3 + s^5/5 + ... is cut where the rest is below rounding: at s^11 for float
+// (4e-10), at s^23 for double (2e-20). Near x = 1 n is 0 and s exact, so ln x keeps its relative
+// accuracy there.
 #pragma once
 
 #include <bit>
@@ -15,8 +16,8 @@
 namespace photograd {
 inline namespace PHOTOGRAD_ISA {
 
-/// ln x for x > 0, relative error below 3e-7 (float) and 5e-16 (double). 0 gives about -88 and -709, where
-/// exp saturates as well.
+/// ln x for x > 0, relative error below 3e-7 (float) and 5e-16 (double). 0 gives about -88 and
+/// -709, where exp saturates as well.
 inline float log(float x) {
     const auto bits = std::bit_cast<std::int32_t>(x);
     const std::int32_t n = (bits - 0x3f3504f3) >> 23;  // subtracts sqrt(1/2), keeps the exponent
@@ -44,7 +45,8 @@ inline Dual<T> log(Dual<T> x) {
     return {log(x.value), x.tangent / x.value};
 }
 
-/// x^y for x > 0, by y ln x: relative error grows with |y ln x|, to 1e-13 (double) and 5e-5 (float) at 700.
+/// x^y for x > 0, by y ln x: relative error grows with |y ln x|, to 1e-13 (double) and 5e-5 (float)
+/// at 700.
 template <class R>
 inline R pow(R x, R y) {
     return exp(y * log(x));

@@ -18,7 +18,7 @@ void detail::parallel_for_erased(std::int64_t count, LoopBody body, void* contex
     std::exception_ptr failure;
     std::mutex failure_lock;
     auto work = [&] {
-        // Relaxed: an acquire/release counter would order the bodies and hide races from the sanitizer.
+        // Relaxed: acquire/release would order the bodies and hide races from the sanitizer.
         for (std::int64_t i; (i = next.fetch_add(1, std::memory_order_relaxed)) < count;) {
             try {
                 body(context, i);
@@ -60,12 +60,17 @@ std::mutex limit_lock;
 }  // namespace
 
 void detail::parallel_for_erased(std::int64_t count, LoopBody body, void* context) {
+    // Tasks run in the floating-point mode of their caller. By default it would be that of whatever
+    // used TBB first in the process, and Embree's builders flush denormal numbers to zero.
+    tbb::task_group_context mode(
+        tbb::task_group_context::bound,
+        tbb::task_group_context::default_traits | tbb::task_group_context::fp_settings);
     tbb::parallel_for(
         tbb::blocked_range<std::int64_t>(0, count, 1),
         [=](const tbb::blocked_range<std::int64_t>& range) {
             for (std::int64_t i = range.begin(); i != range.end(); ++i) body(context, i);
         },
-        tbb::simple_partitioner());
+        tbb::simple_partitioner(), mode);
 }
 
 void set_thread_count(int threads) {

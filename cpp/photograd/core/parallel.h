@@ -1,8 +1,9 @@
 // Threads. The only door to TBB (parallel.cpp includes it, nothing else does).
 //
 // Work is cut into pieces that do not depend on the number of threads; a piece writes only what it
-// owns. Results are therefore the same bits for any thread count. With PHOTOGRAD_STD_THREADS the same
-// interface runs on std::thread, for the thread sanitizer, which cannot see into an uninstrumented TBB.
+// owns. Results are therefore the same bits for any thread count. With PHOTOGRAD_STD_THREADS the
+// same interface runs on std::thread, for the thread sanitizer, which cannot see into an
+// uninstrumented TBB.
 #pragma once
 
 #include <cstdint>

@@ -1,12 +1,13 @@
-// Parameter descriptions: what a model says about itself, once.
+// Parameter descriptions of models.
 //
 // A model lists its continuous parameters in one line,
 //     static constexpr auto params = describe(p("roughness", &Ggx::roughness, 0.01, 1, "1"));
 // and everything that must visit parameters (constructor and properties in Python, gradient proof,
-// benchmark row, gallery picture) iterates over that tuple. The adjoint of a model has the model's own
-// type, so a new parameter gets its slot for a derivative without another line.
+// benchmark row, gallery picture) iterates over that tuple. The adjoint of a model has the model's
+// own type, so a new parameter gets its slot for a derivative without another line.
 #pragma once
 
+#include <array>
 #include <tuple>
 #include <type_traits>
 
@@ -39,7 +40,7 @@ constexpr void for_each_parameter(Visit&& visit) {
     std::apply([&](const auto&... parameter) { (visit(parameter), ...); }, Model::params);
 }
 
-/// Number of scalars in a parameter's value: 1, or 3 for a colour or vector.
+/// Number of scalars in a parameter's value: 1, or 3 for a color or vector.
 template <class Value>
 constexpr int scalar_count() {
     if constexpr (std::is_class_v<Value> && !std::is_same_v<Value, Dual<double>>)
@@ -82,7 +83,8 @@ constexpr int scalars_in(const std::tuple<Q...>& description) {
     return std::apply([](const auto&... q) { return (0 + ... + value_scalars(q)); }, description);
 }
 
-/// Calls visit(scalar of a, scalar of b, ...) for every scalar of every described member, in their order.
+/// Calls visit(scalar of a, scalar of b, ...) for every scalar of every described member, in their
+/// order.
 template <class... Q, class Visit, class... Models>
 constexpr void for_each_scalar(const std::tuple<Q...>& description, Visit&& visit,
                                Models&... models) {
@@ -95,7 +97,7 @@ constexpr void for_each_scalar(const std::tuple<Q...>& description, Visit&& visi
     std::apply([&](const auto&... q) { (one(q), ...); }, description);
 }
 
-/// The same for a model's parameters.
+/// for_each_scalar over the parameters that a model describes.
 template <class Visit, class Model, class... Models>
     requires requires { std::remove_const_t<Model>::params; }
 constexpr void for_each_scalar(Visit&& visit, Model& model, Models&... models) {
@@ -105,6 +107,44 @@ constexpr void for_each_scalar(Visit&& visit, Model& model, Models&... models) {
 template <class Model>
 constexpr int parameter_count() {
     return scalars_in(Model::params);
+}
+
+/// A described parameter without its type, for code that does not know the model.
+struct ParameterInfo {
+    const char* name;
+    int scalars;
+    double lo, hi;
+    const char* unit;
+};
+
+template <class... Q>
+constexpr std::array<ParameterInfo, sizeof...(Q)> parameter_infos(
+    const std::tuple<Q...>& description) {
+    return std::apply(
+        [](const auto&... q) {
+            return std::array<ParameterInfo, sizeof...(Q)>{
+                ParameterInfo{q.name, value_scalars(q), q.lo, q.hi, q.unit}...};
+        },
+        description);
+}
+
+/// A model with parameters from a flat row, and a row from a model.
+template <class Model, class R>
+Model from_row(const R* row) {
+    Model model;
+    for_each_scalar([&](R& x) { x = *row++; }, model);
+    return model;
+}
+template <class Model, class R>
+void to_row(const Model& model, R* row) {
+    for_each_scalar([&](const R& x) { *row++ = x; }, model);
+}
+/// A model on dual numbers: parameters from `row`, their tangents from `v`.
+template <class Model, class R>
+Model dual_from_rows(const R* row, const R* v) {
+    Model model;
+    for_each_scalar([&](Dual<R>& x) { x = Dual<R>(*row++, *v++); }, model);
+    return model;
 }
 
 }  // namespace photograd

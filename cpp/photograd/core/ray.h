@@ -1,4 +1,4 @@
-// A ray o + t d. Directions handed to renderers have unit length, so t is in metres.
+// A ray o + t d. Directions handed to renderers have unit length, so t is in meters.
 #pragma once
 
 #include "photograd/core/vec.h"

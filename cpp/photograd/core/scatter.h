@@ -1,11 +1,11 @@
-// Accumulation into shared gradients, the only way it is done. No atomics: an atomic float sum depends
-// on who comes first. Three schemes, all with the same bits for any number of threads:
+// Accumulation into shared gradients, the only way it is done. No atomics: an atomic float sum
+// depends on who comes first. Three schemes, all with the same bits for any number of threads:
 //
-//   bin_by_owner   contributions are sorted by the owner of their target (a brick, a texel, a Gaussian)
-//                  in a stable order; one task per owner adds its own in that order
+//   bin_by_owner   contributions are sorted by the owner of their target (a brick, a texel, a
+//                  Gaussian) in a stable order; one task per owner adds its own in that order
 //   one table per task  (a hash level): the caller's loop, nothing to share
-//   sum_partials   parameters that every ray touches (network weights, pose, background): a fixed number
-//                  of chunks each sum in double, and the chunks are added in order
+//   sum_partials   parameters that every ray touches (network weights, pose, background): a fixed
+//                  number of chunks each sum in double, and the chunks are added in order
 #pragma once
 
 #include <algorithm>
@@ -38,8 +38,8 @@ void bin_by_owner(std::span<const std::uint32_t> items, int owners, OwnerOf&& ow
     bins.begin.pop_back();
 }
 
-/// The same for all contributions 0, 1, ... of which owner[i] is given, on all threads: pieces of fixed
-/// size count, and then place, their own.
+/// bin_by_owner of all contributions 0, 1, ..., with owner[i] of each, on all threads: pieces of
+/// fixed size count their contributions and then write them to their slots.
 inline void bin_by_owner(std::span<const std::uint32_t> owner, int owners, OwnerBins& bins) {
     const std::size_t kinds = static_cast<std::size_t>(owners), n = owner.size();
     // No smaller than the number of owners, so that all counts together are no longer than `owner`.
@@ -55,19 +55,19 @@ inline void bin_by_owner(std::span<const std::uint32_t> owner, int owners, Owner
     };
     for_pieces([&](std::uint32_t* own, std::size_t i) { ++own[owner[i]]; });
     bins.begin.assign(kinds + 1, 0);
-    std::uint32_t place = 0;
+    std::uint32_t slot = 0;
     for (std::size_t k = 0; k < kinds; ++k) {
-        bins.begin[k] = place;
-        for (std::size_t p = 0; p < pieces; ++p) place += std::exchange(next[p * kinds + k], place);
+        bins.begin[k] = slot;
+        for (std::size_t p = 0; p < pieces; ++p) slot += std::exchange(next[p * kinds + k], slot);
     }
-    bins.begin[kinds] = place;
+    bins.begin[kinds] = slot;
     bins.order.resize(n);
     for_pieces([&](std::uint32_t* own, std::size_t i) {
         bins.order[own[owner[i]]++] = static_cast<std::uint32_t>(i);
     });
 }
 
-/// total[p] += sum over chunks, in order, of what add(chunk, partial) put into its own zeroed partial.
+/// total[p] += sum over chunks, in order, of partial[p], which add(chunk, partial) adds to zeros.
 template <class R, class Add>
 void sum_partials(std::int64_t chunks, std::span<R> total, Add&& add) {
     const std::size_t size = total.size();

@@ -27,7 +27,8 @@ SinCos<R> sin_cos_small(R x) {
     return {x + x * y * s, R(1) + y * c};
 }
 
-/// On [-pi, pi]: those of a quarter of the angle, doubled twice, which costs two digits in the last place.
+/// On [-pi, pi]: those of a quarter of the angle, doubled twice, at a cost of two digits in the
+/// last place.
 template <class R>
 SinCos<R> sin_cos(R x) {
     SinCos<R> part = sin_cos_small(R(0.25) * x);

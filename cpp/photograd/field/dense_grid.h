@@ -1,11 +1,11 @@
-// Dense RGBA grid: raw colour and raw density at the centres of X x Y x Z voxels that fill a box.
+// Dense RGBA grid: raw color and raw density at the centers of X x Y x Z voxels that fill a box.
 //
 //   q       = (p - lo) / (hi - lo) * n - 1/2            voxel coordinate, voxel i at q = i
 //   raw     = trilinear(values, q)                      4 channels: r, g, b, density
 //   sigma_t = density_scale density_activation(raw[3]),  rgb = color_activation(raw[0..2])
 //
-// The adjoint runs the chain backwards: d_raw = activation' (d_sigma_t, d_rgb), then each of the eight
-// corners gets its trilinear weight times d_raw, through the brick owners of grid/brick.h.
+// The adjoint runs the chain backwards: d_raw = activation' (d_sigma_t, d_rgb), then each of the
+// eight corners gets its trilinear weight times d_raw, through the brick owners of grid/brick.h.
 #pragma once
 
 #include <algorithm>
@@ -80,8 +80,8 @@ struct DenseGrid {
         }
     }
 
-    /// Contributions of a slab of rays, chunk by chunk in the order of the walk; finish() hands them to
-    /// their owners.
+    /// Contributions of a slab of rays, chunk by chunk in the order of the walk; finish() hands
+    /// them to their owners.
     struct Sink {
         struct Contribution {
             std::uint32_t owner;
@@ -101,7 +101,8 @@ struct DenseGrid {
 
     /// Adds parameter gradients to `sink` and, where asked, dL/d position to d_position[axis].
     void backward(const SampleBatch<R>& batch, const Cache& cache, const SampleValues<R>& d_out,
-                  Sink& sink, int chunk, std::vector<Lanes<R>>* d_position) const {
+                  Sink& sink, int chunk, std::vector<Lanes<R>>* d_position,
+                  std::vector<R>* /*d_direction*/) const {
         const int extent[3] = {shape.x, shape.y, shape.z};
         const BrickLayout layout = BrickLayout::of(extent);
         for (std::size_t g = 0; g < batch.groups(); ++g) {
@@ -146,7 +147,7 @@ void DenseGrid<R>::Sink::finish() {
             if (layout.color(static_cast<int>(brick)) != color ||
                 bins.begin[k] == bins.begin[k + 1])
                 return;
-            std::vector<R> tile(static_cast<std::size_t>(tile_voxels * channels), R(0));
+            std::vector<R> halo(static_cast<std::size_t>(brick_halo_voxels * channels), R(0));
             int corner[3];
             layout.corner(static_cast<int>(brick), corner);
             for (std::uint32_t j = bins.begin[k]; j < bins.begin[k + 1]; ++j) {
@@ -155,10 +156,10 @@ void DenseGrid<R>::Sink::finish() {
                 w.x.base -= corner[0];
                 w.y.base -= corner[1];
                 w.z.base -= corner[2];
-                trilinear_backward<R, channels>({tile_side, tile_side, tile_side}, w.x, w.y, w.z,
-                                                s.d_raw.data(), tile.data());
+                trilinear_backward<R, channels>({brick_halo_side, brick_halo_side, brick_halo_side},
+                                                w.x, w.y, w.z, s.d_raw.data(), halo.data());
             }
-            flush_tile<R, channels>(layout, static_cast<int>(brick), tile.data(), gradient);
+            flush_halo<R, channels>(layout, static_cast<int>(brick), halo.data(), gradient);
         });
 }
 

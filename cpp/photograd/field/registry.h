@@ -1,4 +1,5 @@
-// The fields that the marcher renders from one array of parameters. A new field: one header and one line here.
+// The fields that the marcher renders from one array of parameters. A new field: one header and one
+// line here.
 //
 // A field whose parameters lie in several arrays (field/sparse_sh.h) has bindings of its own.
 #pragma once
@@ -9,8 +10,8 @@
 
 namespace photograd {
 
-/// A field that is made from one array: `axes` names the array's axes as array_args.h reads them, `shape` holds their
-/// sizes, and `expected` says which of them `fits` accepts.
+/// A field that is made from one array: `axes` names the array's axes as array_args.h reads them,
+/// `shape` holds their sizes, and `expected` says which of them `fits` accepts.
 template <class F>
 concept ArrayField = Field<F> && requires(const typename F::Scalar* parameters,
                                           const std::int64_t* shape, const FieldOptions& options) {

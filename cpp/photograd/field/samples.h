@@ -12,8 +12,8 @@
 
 namespace photograd {
 
-/// One batch of samples. Lanes from used[g] on are padding behind the end of a ray: they are evaluated,
-/// their extinction is then set to zero, and nothing is accumulated for them.
+/// One batch of samples. Lanes from used[g] on are padding behind the end of a ray: they are
+/// evaluated, their extinction is then set to zero, and nothing is accumulated for them.
 template <Real R>
 struct SampleBatch {
     std::vector<Lanes<R>> t;
@@ -32,7 +32,7 @@ struct SampleBatch {
     }
 };
 
-/// What a field says about a batch: extinction (1/m) and radiance.
+/// Extinction (1/m) and radiance of a batch.
 template <Real R>
 struct SampleValues {
     std::vector<Lanes<R>> sigma_t;
@@ -44,27 +44,28 @@ struct SampleValues {
     }
 };
 
-/// Options that all fields share; a field ignores what does not concern it.
+/// Options of all fields; a field may ignore some.
 struct FieldOptions {
-    double box[2][3] = {{-1, -1, -1}, {1, 1, 1}};  // world, metres
+    double box[2][3] = {{-1, -1, -1}, {1, 1, 1}};  // world, meters
     Border border = Border::clamp;
     Activation density_activation = Activation::softplus;
     Activation color_activation = Activation::sigmoid;
     double density_scale = 1.0;  // 1/m: sigma_t = density_scale * density_activation(raw)
 };
 
-/// A radiance field: batch calls, never virtual per sample. `Cache` is what backward needs of eval, and
-/// `Sink` collects parameter gradients for a slab of rays; the marcher calls sink.finish() after it.
-/// A field whose colour depends on direction takes one more argument in backward: d_direction[axis],
-/// one number a group, added to.
+/// A radiance field: batch calls, never virtual per sample. `Cache` is what backward needs of eval,
+/// and `Sink` collects parameter gradients for a slab of rays; the marcher calls sink.finish()
+/// after it. backward adds to d_position[axis] (a set of lanes a group) and, if the color depends
+/// on the direction, to d_direction[axis] (a number a group), unless they are null.
 template <class F>
 concept Field =
     requires(const F field, const SampleBatch<typename F::Scalar>& batch, typename F::Cache& cache,
              SampleValues<typename F::Scalar>& values, typename F::Sink& sink, int chunk,
-             std::vector<Lanes<typename F::Scalar>>* d) {
+             std::vector<Lanes<typename F::Scalar>>* d_position,
+             std::vector<typename F::Scalar>* d_direction) {
         { F::name } -> std::convertible_to<const char*>;
         field.eval(batch, cache, values);
-        field.backward(batch, cache, values, sink, chunk, d);
+        field.backward(batch, cache, values, sink, chunk, d_position, d_direction);
         sink.begin(int{});
         sink.finish();
     };

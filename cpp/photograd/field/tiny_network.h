@@ -1,11 +1,12 @@
-// A two-layer network as a radiance field: the smallest field whose parameters every sample touches.
+// A two-layer network as a radiance field: the smallest field whose parameters every sample
+// touches.
 //
 //   h = softplus(W1 p + b1)              16 hidden units
 //   o = W2 h + b2                        4 outputs
 //   rgb = sigmoid(o[0..2]),  sigma_t = softplus(o[3])
 //
-// Adjoint: d_o from the activations; d_W2 = d_o h^T, d_b2 = d_o; d_h = W2^T d_o; d_a = d_h sigmoid(a)
-// with a = W1 p + b1; d_W1 = d_a p^T, d_b1 = d_a, d_p = W1^T d_a.
+// Adjoint: d_o from the activations; d_W2 = d_o h^T, d_b2 = d_o; d_h = W2^T d_o; d_a = d_h
+// sigmoid(a) with a = W1 p + b1; d_W1 = d_a p^T, d_b1 = d_a, d_p = W1^T d_a.
 //
 // It shows that the marcher serves fields that are not grids, and proves the path for shared
 // parameters. It is no match for an image: real coordinate networks need an encoding.
@@ -89,7 +90,8 @@ struct TinyNetwork {
     };
 
     void backward(const SampleBatch<R>& batch, const Cache& cache, const SampleValues<R>& d_values,
-                  Sink& sink, int chunk, std::vector<Lanes<R>>* d_position) const {
+                  Sink& sink, int chunk, std::vector<Lanes<R>>* d_position,
+                  std::vector<R>* /*d_direction*/) const {
         double* d = sink.partials[static_cast<std::size_t>(chunk)].data();
         const R *w1 = parameters, *w2 = w1 + at_w2;
         for (std::size_t g = 0; g < batch.groups(); ++g)

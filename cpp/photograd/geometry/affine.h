@@ -1,5 +1,5 @@
-// world_from_object: three rows of four numbers, rotation, scale and shear in the first three columns,
-// translation in the last.
+// world_from_object: three rows of four numbers, rotation, scale and shear in the first three
+// columns, translation in the last.
 #pragma once
 
 #include <array>

@@ -69,9 +69,9 @@ void find_valid(const RayPacket& rays, float reach, int* valid) {
                     -static_cast<int>(rays.t_min[i] <= rays.t_max[i]);
 }
 
-/// Where packets of sixteen have no kernel (processors without AVX-512), Embree splits them up and does
-/// not look at `valid`, only at the interval: a lane that is off gets an empty one, and a harmless ray.
-/// So does one whose ray is not valid: it meets nothing. Paths may scatter that far.
+/// Where packets of sixteen have no kernel (processors without AVX-512), Embree splits them up and
+/// does not look at `valid`, only at the interval: a lane that is off gets an empty one, and a
+/// harmless ray. So does one whose ray is not valid: it meets nothing. Paths may scatter that far.
 void load(const RayPacket& rays, float reach, RTCRay16& out, int* valid) {
     find_valid(rays, reach, valid);
     for (int i = 0; i < width; ++i) {
@@ -101,7 +101,8 @@ void bounds_of_solid(const RTCBoundsFunctionArguments* a) {
     const Box& box = static_cast<const SdfSolid*>(a->geometryUserPtr)[a->primID].bounds();
     *a->bounds_o = {box.lo.x, box.lo.y, box.lo.z, 0, box.hi.x, box.hi.y, box.hi.z, 0};
 }
-/// met(i, t) for every ray of Embree's packet that meets solid `primID` before anything else it has met.
+/// met(i, t) for every ray of Embree's packet that hits solid `primID` before its
+/// nearest hit so far.
 template <class Arguments, class Met>
 void march_packet(const Arguments& a, RTCRayN* rays, Met&& met) {
     const SdfSolid& solid = static_cast<const SdfSolid*>(a.geometryUserPtr)[a.primID];
@@ -232,9 +233,9 @@ struct Bvh::Tree {
         rtcSetGeometryInstancedScene(g, mesh_scenes[m]);
         rtcSetGeometryTimeStepCount(g, it.moves ? 2 : 1);
         for (unsigned step = 0; step < (it.moves ? 2u : 1u); ++step) {
-            const Affine& place = step == 0 ? it.world_from_object : it.closing;
+            const Affine& transform = step == 0 ? it.world_from_object : it.closing;
             float rows[12];
-            for (std::size_t i = 0; i < 12; ++i) rows[i] = static_cast<float>(place.m[i]);
+            for (std::size_t i = 0; i < 12; ++i) rows[i] = static_cast<float>(transform.m[i]);
             rtcSetGeometryTransform(g, step, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, rows);
         }
         rtcCommitGeometry(g);
@@ -261,7 +262,8 @@ Bvh::Bvh(std::vector<Mesh> meshes, std::vector<Instance> instances, std::vector<
     std::vector<Vec3<double>> extents;
     for (const Mesh& mesh : meshes_) {
         extents.push_back(extent_of(mesh));
-        check_place("vertices", {}, extents.back(), "mesh " + std::to_string(extents.size() - 1));
+        check_transform("vertices", {}, extents.back(),
+                        "mesh " + std::to_string(extents.size() - 1));
         tree_->add_mesh(mesh);
     }
     tree_->mesh_scenes.resize(meshes_.size(), nullptr);
@@ -277,8 +279,8 @@ Bvh::Bvh(std::vector<Mesh> meshes, std::vector<Instance> instances, std::vector<
             fail(ErrorKind::scene, "bvh", "world_from_object", "finite, invertible matrices",
                  "determinant " + std::to_string(volume) + " in " + name);
         const Vec3<double>& extent = extents[static_cast<std::size_t>(it.mesh)];
-        check_place("world_from_object", it.world_from_object, extent, name);
-        if (it.moves) check_place("world_from_object", it.closing, extent, name);
+        check_transform("world_from_object", it.world_from_object, extent, name);
+        if (it.moves) check_transform("world_from_object", it.closing, extent, name);
         if (it.moves || !it.world_from_object.is_identity())
             tree_->reach = std::min(tree_->reach, static_cast<float>(reach_into(it, name)));
         moves_ = moves_ || it.moves;
@@ -333,9 +335,9 @@ void Bvh::occluded(const RayPacket& rays, bool side_by_side, bool* blocked) cons
     RTCRay16 packet;
     alignas(64) int valid[width];
     load(rays, tree_->reach, packet, valid);
-    // In scenes with transformed instances rtcOccluded16 of Embree 3.13.5 (Debian's) loops for ever on
-    // packets with the coherent hint whose directions differ in sign; rtcIntersect16 does not, nor does
-    // Embree 4.4. Occlusion goes without the hint there.
+    // In scenes with transformed instances rtcOccluded16 of Embree 3.13.5 (Debian's) loops for ever
+    // on packets with the coherent hint whose directions differ in sign; rtcIntersect16 does not,
+    // nor does Embree 4.4. Occlusion goes without the hint there.
     any_hit(valid, tree_->scene, side_by_side && !tree_->transformed, &packet);
     for (int i = 0; i < width; ++i) blocked[i] = rays.active[i] && packet.tfar[i] < 0;
 }
@@ -356,7 +358,8 @@ void Bvh::trace(const RaySpan<R>& rays, const RayInterval<R>& interval,
                             out.barycentrics[2 * i] = R(hits.u[k]);
                             out.barycentrics[2 * i + 1] = R(hits.v[k]);
                             if constexpr (std::same_as<R, double>) {
-                                if (hits.primitive[k] < 0) continue;
+                                if (hits.primitive[k] < 0 || hits.instance[k] >= sphere_instance())
+                                    continue;
                                 const auto p =
                                     surface_point(rays.ray(i), hits.instance[k], hits.primitive[k]);
                                 out.t[i] = p.t;

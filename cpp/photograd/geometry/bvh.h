@@ -1,8 +1,9 @@
-// Which triangle does a ray meet first? A bounding volume hierarchy over meshes and their instances.
+// A bounding volume hierarchy over meshes, their instances, spheres and SDFs: nearest hits and
+// occlusion.
 //
-// Built and traversed by Embree [Wald2014], always in its robust mode: the default mode lets single rays
-// slip through the shared edges of closed meshes. Embree answers in float; `surface_point` recomputes
-// where the ray met the triangle in the caller's number type.
+// Built and traversed by Embree [Wald2014], always in its robust mode: in the default mode single
+// rays miss the shared edges of closed meshes. Embree answers in float; `surface_point` recomputes
+// the hit on the triangle in the caller's number type.
 #pragma once
 
 #include <memory>
@@ -18,8 +19,8 @@
 
 namespace photograd {
 
-/// `closing` is world_from_object when the shutter closes, of an instance that moves while it is open: straight on, point
-/// by point, at one speed.
+/// `closing` is world_from_object when the shutter closes, of an instance that moves while it is
+/// open; every point moves in a straight line at constant speed.
 struct Instance {
     int mesh;
     Affine world_from_object;
@@ -31,8 +32,8 @@ struct Instance {
     }
 };
 
-/// Up to 16 rays side by side, the unit in which renderers trace. Directions need not have unit length:
-/// t counts in lengths of the direction.
+/// Up to 16 rays side by side, the unit in which renderers trace. Directions need not have unit
+/// length: t counts in lengths of the direction.
 struct alignas(64) RayPacket {
     static constexpr int width = 16;
     float origin[3][width], direction[3][width], t_min[width], t_max[width];
@@ -46,7 +47,7 @@ struct alignas(64) PacketHits {
     std::int32_t primitive[RayPacket::width], instance[RayPacket::width];
 };
 
-/// The part of each ray that counts, [t_min, t_max]: arrays (R,), or one number for all with step 0.
+/// The part of each ray that counts, [t_min, t_max]: arrays (R,), or one number with step 0.
 template <class R>
 struct RayInterval {
     const R *t_min, *t_max;
@@ -62,7 +63,7 @@ struct HitSpan {
     R* barycentrics;
 };
 
-/// Where `surface_points` puts its answers; uv falls back to the barycentrics in a mesh without any.
+/// Results of `surface_points`; in a mesh without texture coordinates uv are the barycentrics.
 template <class R>
 struct SurfaceSpan {
     R *t, *barycentrics, *uv, *position, *normal;  // (R,), (R, 2), (R, 2), (R, 3), (R, 3)
@@ -71,9 +72,9 @@ struct SurfaceSpan {
 class Bvh {
 public:
     /// Spheres have no instances: all of them answer under one number, `sphere_instance()`, and the
-    /// primitive is the number of the sphere; so do bodies of signed distances under `solid_instance()`.
-    /// Functions that speak of triangles do not take theirs. `closing_spheres` are the same ones when the
-    /// shutter closes, or none if all stand still.
+    /// primitive is the number of the sphere; so do signed distance fields under
+    /// `solid_instance()`. Functions that speak of triangles do not take theirs. `closing_spheres`
+    /// are the same ones when the shutter closes, or none if all stand still.
     Bvh(std::vector<Mesh> meshes, std::vector<Instance> instances, std::vector<Sphere> spheres = {},
         std::vector<SdfSolid> solids = {}, std::vector<Sphere> closing_spheres = {});
     ~Bvh();
@@ -81,7 +82,8 @@ public:
 
     /// Nearest hits of a batch, in the order of the input. Rays that run side by side are traced in
     /// packets; others are reordered first (ray_order.h). The same bits for any number of threads.
-    /// RangeError, with a count, for rays without direction or with numbers Embree does not take.
+    /// Hits on triangles are recomputed in R; t of spheres and SDFs is Embree's, a float.
+    /// RangeError, with a count, for rays without direction or with numbers that Embree refuses.
     template <Real R>
     void trace(const RaySpan<R>& rays, const RayInterval<R>& interval,
                const HitSpan<R>& hits) const;
@@ -128,7 +130,7 @@ public:
         const Vec2<R> a = mesh.uv<R>(c[0]);
         return a + u * (mesh.uv<R>(c[1]) - a) + v * (mesh.uv<R>(c[2]) - a);
     }
-    /// The same for hits of a whole batch; a row with primitive -1 gets infinite t and zeros.
+    /// `surface_point` for a batch of hits; a row with primitive -1 gets infinite t and zeros.
     template <Real R>
     void surface_points(const RaySpan<R>& rays, const std::int32_t* primitive,
                         const std::int32_t* instance, const SurfaceSpan<R>& out) const;

@@ -44,7 +44,7 @@ void check_spheres(const std::vector<Sphere>& spheres) {
         const Sphere& s = spheres[i];
         const std::string name = "sphere " + std::to_string(i);
         if (!std::isfinite(s.x + s.y + s.z + s.radius) || !(s.radius > 0))
-            fail(ErrorKind::scene, "bvh", "spheres", "finite centres and radii above 0",
+            fail(ErrorKind::scene, "bvh", "spheres", "finite centers and radii above 0",
                  "radius " + std::to_string(s.radius) + " in " + name);
         const double size =
             double(std::max({std::abs(s.x), std::abs(s.y), std::abs(s.z)})) + double(s.radius);
@@ -60,10 +60,10 @@ Vec3<double> extent_of(const Mesh& mesh) {
     return extent;
 }
 
-void check_place(const char* argument, const Affine& place, const Vec3<double>& extent,
-                 const std::string& name) {
+void check_transform(const char* argument, const Affine& transform, const Vec3<double>& extent,
+                     const std::string& name) {
     for (int i = 0; i < 3; ++i) {
-        const double* row = place.m.data() + 4 * i;
+        const double* row = transform.m.data() + 4 * i;
         double size = std::abs(row[3]);
         for (int k = 0; k < 3; ++k) size += std::abs(row[k]) * extent[k];
         if (!(size <= world_limit)) refuse_size(argument, size, name);

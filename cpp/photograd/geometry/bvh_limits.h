@@ -1,4 +1,4 @@
-// What Embree takes, checked before it is asked: it ends the process over numbers out of range.
+// Limits of Embree, checked before it is called: it aborts on numbers out of range.
 #pragma once
 
 #include <string>
@@ -14,9 +14,9 @@ void check_spheres(const std::vector<Sphere>& spheres);
 /// The largest |x|, |y| and |z| of the vertices.
 Vec3<double> extent_of(const Mesh& mesh);
 
-/// Refuses (SceneError) a place that takes a mesh of this extent beyond `world_limit`.
-void check_place(const char* argument, const Affine& place, const Vec3<double>& extent,
-                 const std::string& name);
+/// Refuses (SceneError) a transform that takes a mesh of this extent beyond `world_limit`.
+void check_transform(const char* argument, const Affine& transform, const Vec3<double>& extent,
+                     const std::string& name);
 
 /// How far rays may reach so that Embree takes them also in the object's space. The inverse in
 /// float brings them there, adjugate / determinant; an entry of the adjugate is at most twice the

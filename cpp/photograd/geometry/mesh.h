@@ -11,8 +11,8 @@ namespace photograd {
 
 class Mesh {
 public:
-    /// Copies the arrays. Refuses (SceneError, naming `index`) vertices that are not finite, corners
-    /// that name no vertex and triangles without area.
+    /// Copies the arrays. Refuses (SceneError, naming `index`) vertices that are not finite,
+    /// corners that name no vertex and triangles without area.
     Mesh(std::span<const float> vertices, std::span<const std::uint32_t> faces,
          std::span<const float> uv, int index);
 

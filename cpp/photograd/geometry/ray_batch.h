@@ -37,7 +37,7 @@ bool load_lane(const RaySpan<R>& rays, const RayInterval<R>& interval, float rea
     return packet.active[k];
 }
 
-/// Rays in another order than the input lie anywhere in memory; ask for those of a later packet now.
+/// Rays in another order than the input lie anywhere in memory; prefetches those of a later packet.
 template <class R>
 void prefetch(const RaySpan<R>& rays, const std::uint32_t* order, std::int64_t first,
               std::int64_t end) {
@@ -55,7 +55,8 @@ void prefetch(const RaySpan<R>& rays, const std::uint32_t* order, std::int64_t f
          std::to_string(count) + " rays that have not, the first in row " + std::to_string(first));
 }
 
-/// visit(packet, side_by_side, rows) for all rays, packets being cut the same way for any number of threads.
+/// visit(packet, side_by_side, rows) for all rays, packets being cut the same way for any number of
+/// threads.
 template <class R, class Visit>
 void for_each_packet(const RaySpan<R>& rays, const RayInterval<R>& interval, const Box& scene,
                      float reach, const char* function, Visit&& visit) {

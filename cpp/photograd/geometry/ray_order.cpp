@@ -46,12 +46,12 @@ std::uint32_t line_key(const Vec3<float>& o, const Vec3<float>& d, const Box& bo
         const float wall = d[k] > 0 ? box.hi[k] : box.lo[k];
         if (d[k] != 0) exit = std::min(exit, std::max((wall - o[k]) / d[k], 0.0f));
     }
-    const auto& place = spread_table();
+    const auto& spread_bits = spread_table();
     std::uint32_t key = 0;
     for (int k = 0; k < 3; ++k) {
         const float end = exit < std::numeric_limits<float>::infinity() ? o[k] + exit * d[k] : o[k];
-        key |= place[cell(o[k], box.lo[k], scale[k])] << k;
-        key |= place[cell(end, box.lo[k], scale[k])] << (3 + k);
+        key |= spread_bits[cell(o[k], box.lo[k], scale[k])] << k;
+        key |= spread_bits[cell(end, box.lo[k], scale[k])] << (3 + k);
     }
     return key;
 }
@@ -81,9 +81,9 @@ bool side_by_side(const RaySpan<R>& rays, std::int64_t first, float reach) {
 template <class Put>
 void LineOrder::radix_pass(const Keyed* in, std::int64_t n, int shift, Put&& put) {
     const std::int64_t blocks = (n + block_size - 1) / block_size;
-    std::vector<std::uint32_t> place(static_cast<std::size_t>(blocks) * digits, 0);
+    std::vector<std::uint32_t> slot(static_cast<std::size_t>(blocks) * digits, 0);
     const auto each = [&](std::int64_t b, auto&& visit) {
-        std::uint32_t* own = &place[static_cast<std::size_t>(b) * digits];
+        std::uint32_t* own = &slot[static_cast<std::size_t>(b) * digits];
         for (std::int64_t i = b * block_size; i < std::min(n, (b + 1) * block_size); ++i)
             visit(own[(in[i].key >> shift) & (digits - 1)], in[i]);
     };
@@ -93,7 +93,7 @@ void LineOrder::radix_pass(const Keyed* in, std::int64_t n, int shift, Put&& put
     std::uint32_t total = 0;
     for (std::size_t d = 0; d < digits; ++d)
         for (std::size_t b = 0; b < static_cast<std::size_t>(blocks); ++b) {
-            std::uint32_t& p = place[b * digits + d];
+            std::uint32_t& p = slot[b * digits + d];
             const std::uint32_t count = p;
             p = total;
             total += count;
@@ -134,12 +134,12 @@ const std::uint32_t* LineOrder::sort(const RaySpan<R>& rays, const Box& scene) {
                 static_cast<std::uint32_t>(i)};
     });
     const auto into = [](auto& out) {
-        return [&out](std::uint32_t place, const Keyed& item) { out[place] = item; };
+        return [&out](std::uint32_t slot, const Keyed& item) { out[slot] = item; };
     };
     radix_pass(first_.get(), n, 0, into(second_));
     radix_pass(second_.get(), n, digit_bits, into(first_));
     radix_pass(first_.get(), n, 2 * digit_bits,
-               [&](std::uint32_t place, const Keyed& item) { order_[place] = item.ray; });
+               [&](std::uint32_t slot, const Keyed& item) { order_[slot] = item.ray; });
     return order_.get();
 }
 

@@ -1,9 +1,9 @@
-// In which order to trace a batch of rays.
+// The order in which a batch of rays is traced.
 //
-// Neighbouring camera rays visit the same nodes of a bounding volume hierarchy, so sixteen of them share
-// one traversal. Rays after a bounce do not, and most of their time goes into waiting for nodes that
-// have left the cache. Tracing them in an order in which consecutive rays lie close to each other as
-// *lines* brings the nodes back while they are still there [Pharr1997].
+// Neighboring camera rays visit the same nodes of a bounding volume hierarchy, so sixteen of them
+// share one traversal. Rays after a bounce do not, and most of their time goes into waiting for
+// nodes that have left the cache. Tracing them in an order in which consecutive rays lie close to
+// each other as *lines* brings the nodes back while they are still there [Pharr1997].
 #pragma once
 
 #include <cstdint>
@@ -31,7 +31,7 @@ struct RaySpan {
     }
 };
 
-/// Do sixteen consecutive rays mostly run side by side? Looks at up to 256 groups spread over the batch.
+/// Whether sixteen consecutive rays mostly run side by side, by up to 256 groups of the batch.
 template <Real R>
 bool runs_side_by_side(const RaySpan<R>& rays, const Box& scene);
 
@@ -39,8 +39,8 @@ bool runs_side_by_side(const RaySpan<R>& rays, const Box& scene);
 class LineOrder {
 public:
     /// A permutation of the rays, a function of the rays alone: the order of a 30-bit key that
-    /// interleaves, from coarse to fine, the cell in which a ray starts with the cell in which it leaves
-    /// the scene's box. Valid until the next call.
+    /// interleaves, from coarse to fine, the cell in which a ray starts with the cell in which it
+    /// leaves the scene's box. Valid until the next call.
     template <Real R>
     const std::uint32_t* sort(const RaySpan<R>& rays, const Box& scene);
 

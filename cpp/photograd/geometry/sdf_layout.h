@@ -1,4 +1,4 @@
-// The list of steps of a body, and the box around it, from its tree.
+// The list of steps and the bounding box of a signed distance field, from its tree.
 #pragma once
 
 #include <vector>

@@ -60,13 +60,13 @@ Vec3<double> SdfSolid::gradient(const Vec3<double>& p) const { return steps_grad
 double SdfSolid::march(const Ray<double>& ray, double t_min, double t_max) const {
     constexpr double missed = std::numeric_limits<double>::infinity();
     if (!clip(bounds_, ray, t_min, t_max)) return missed;
-    const double per_metre = 1 / length(ray.direction);
+    const double per_meter = 1 / length(ray.direction);
     double t = t_min, f = distance(ray.at(t));
     const bool inside = f < 0;
     for (int step = 0; step < most_steps; ++step) {
         const double gap = inside ? -f : f;
         if (gap <= tolerance_) return t;
-        t += gap * per_metre;
+        t += gap * per_meter;
         if (!(t <= t_max)) return missed;
         f = distance(ray.at(t));
     }
@@ -75,7 +75,8 @@ double SdfSolid::march(const Ray<double>& ray, double t_min, double t_max) const
 
 SdfPoint SdfSolid::point(const Ray<double>& ray, double found_t) const {
     double t = found_t, f = distance(ray.at(t));
-    // Newton's steps along the ray, none longer than half a chord at whose middle the surface is a tolerance deep.
+    // Newton's steps along the ray, none longer than half a chord at whose middle the surface is a
+    // tolerance deep.
     const double size = length(Vec3<double>(bounds_.hi) - Vec3<double>(bounds_.lo));
     for (int step = 0; step < 8 && f != 0; ++step) {
         const double slope = dot(gradient(ray.at(t)), ray.direction), next = t - f / slope;
@@ -85,7 +86,7 @@ SdfPoint SdfSolid::point(const Ray<double>& ray, double found_t) const {
         t = next;
         f = f_next;
     }
-    // What the ray only grazes lies beside it.
+    // Where the ray only grazes the surface: steps along the gradient, to a point beside the ray.
     Vec3<double> p = ray.at(t), g = gradient(p);
     for (int step = 0; step < 4 && f != 0; ++step) {
         const Vec3<double> nearer = p - g * (f / dot(g, g));

@@ -1,9 +1,10 @@
-// A body of signed distances with fixed numbers and an end on all sides, as the tracer meets it [Hart1996].
+// A bounded signed distance field (SDF) with fixed parameters, for the path tracer: sphere tracing
+// [Hart1996].
 //
-// Rays march by |f|, from outside and from inside alike: nothing lies nearer, so no step passes the surface. They start
-// `offset` away from surfaces (scene/path_scene.h), a hundred tolerances and more, and so never meet the one they leave.
-// The march is bounded: a ray that grazes for `most_steps` steps has met what it grazes. It takes less than 1 / 300 as the
-// cosine to do so; to let it pass instead would be a hole in the surface.
+// A ray advances by |f|, outside and inside alike: nothing lies nearer, so no step passes the
+// surface. Rays start `offset` away from surfaces (scene/path_scene.h), a hundred tolerances and
+// more, so that they do not hit the surface they leave. After `most_steps` steps the ray counts as
+// a hit: only cosines below 1 / 300 take so many, and a miss would be a hole in the surface.
 #pragma once
 
 #include <vector>
@@ -14,7 +15,7 @@
 
 namespace photograd {
 
-/// Where a ray met the surface; the normal points out of the body, whichever side the ray came from.
+/// Where a ray hits the surface; the normal points outwards, whichever side the ray came from.
 struct SdfPoint {
     double t;
     Vec3<double> position, normal;
@@ -24,19 +25,19 @@ class SdfSolid {
 public:
     static constexpr int most_steps = 4096;
 
-    /// Refuses (SceneError) bodies that are empty or have no end, and those that nest too deeply for the stack.
+    /// Throws SceneError if the field is empty, unbounded, or nested too deeply for the stack.
     SdfSolid(const Sdf& body, const double* numbers);
 
     [[nodiscard]] double distance(const Vec3<double>& p) const;
     [[nodiscard]] Vec3<double> gradient(const Vec3<double>& p) const;
-    /// All of the body, and a little more.
+    /// The bounding box, slightly enlarged.
     [[nodiscard]] const Box& bounds() const { return bounds_; }
-    /// What counts as the surface while marching, metres.
+    /// What counts as the surface while marching, meters.
     [[nodiscard]] double tolerance() const { return tolerance_; }
 
-    /// The first t in [t_min, t_max], in lengths of the direction, at which the surface is met; infinite if none is.
+    /// The first hit t in [t_min, t_max], in lengths of the direction; infinite if there is none.
     [[nodiscard]] double march(const Ray<double>& ray, double t_min, double t_max) const;
-    /// The same hit to rounding, along a direction of unit length.
+    /// Refines the hit found_t of `march` to rounding, along a direction of unit length.
     [[nodiscard]] SdfPoint point(const Ray<double>& ray, double found_t) const;
 
 private:

@@ -1,12 +1,14 @@
-// A body of signed distances as a list of steps for a stack: quicker to ask than its tree (reference/sdf.h), which says the
-// same.
+// A signed distance field (SDF) as a list of steps for a stack: the same function as its tree
+// (reference/sdf.h), faster to evaluate.
 //
-// A shape puts its distance f onto the stack; a combination takes the topmost, b, and the one below it, a, and puts one
-// back. No step is a placement or a scaling: they are worked into the shapes when the list is made (sdf_solid.cpp), since
+// A shape pushes its distance f; a combination pops b, then a, and pushes one distance. Placements
+// and scalings are not steps: they are folded into the shapes when the list is made
+// (sdf_solid.cpp), since
 //
 //   s f(p / s; lengths) = f(p; s lengths)
 //
-// for every shape and combination. The gradient by p takes the same way; each f has its g = df/dp beside it:
+// for every shape and combination. The gradient with respect to p is carried along: each f on the
+// stack has its g = df/dp beside it.
 //
 //   shape at q = M p + c       g = M^T df/dq        M a rotation
 //   min(a, b)                  that of the smaller one; where both are equal, the first's
@@ -51,7 +53,7 @@ inline Vec3<double> shape_gradient(const SdfStep& step, const Vec3<double>& q) {
             m[2] * g.x + m[6] * g.y + m[10] * g.z};
 }
 
-/// f(p), metres; negative inside.
+/// f(p), meters; negative inside.
 template <class R>
 R steps_distance(std::span<const SdfStep> steps, const Vec3<R>& p) {
     R stack[SdfStep::deepest];

@@ -1,9 +1,7 @@
 // The point where a ray meets a sphere that it is known to hit.
 #pragma once
 
-#include <cmath>
-
-#include "photograd/core/ray.h"
+#include "photograd/ops/ray_sphere.h"
 
 namespace photograd {
 
@@ -17,25 +15,16 @@ struct Sphere {
     }
 };
 
-/// The normal points out of the sphere, whichever side the ray came from.
-template <class R>
-struct SpherePoint {
-    R t;
-    Vec3<R> position, normal;
-};
-
-/// A unit direction d meets the sphere at t = m -+ sqrt(r^2 - |p|^2), where m = <c - o, d> and p = c - o - m d reaches
-/// from the ray to the centre: no difference of large squares, whatever the distance. Of the two, the one nearer to
-/// the tracer's answer; a ray that passes by within rounding touches at t = m.
+/// For a unit direction. Of the two points, the one nearer to the tracer's answer; a ray that
+/// passes by within rounding touches at t = m.
 template <class R>
 SpherePoint<R> sphere_point(const Ray<R>& ray, const Sphere& sphere, R found_t) {
-    const Vec3<R> center = sphere.center<R>(), co = center - ray.origin;
-    const R radius = R(sphere.radius), middle = dot(co, ray.direction);
-    const Vec3<R> p = co - middle * ray.direction;
-    const R rest = radius * radius - dot(p, p), half = rest > R(0) ? std::sqrt(rest) : R(0);
-    const R t = middle + (found_t < middle ? -half : half);
-    const Vec3<R> normal = normalize(ray.at(t) - center);
-    return {t, center + radius * normal, normal};
+    const Vec3<R> center = sphere.center<R>();
+    const R radius = R(sphere.radius);
+    const SphereChord<R> chord = SphereChord<R>::of(ray, center, radius, R(1));
+    const R half = chord.half_squared > R(0) ? sqrt(chord.half_squared) : R(0);
+    const R t = chord.middle + (found_t < chord.middle ? -half : half);
+    return SpherePoint<R>::of(t, center, radius, ray.at(t) - center);
 }
 
 }  // namespace photograd

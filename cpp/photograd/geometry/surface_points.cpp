@@ -1,4 +1,4 @@
-// Where rays met the triangles that the tracer has named, for a whole batch.
+// Surface points of a batch of hits.
 #include <algorithm>
 #include <limits>
 #include <string>

@@ -8,18 +8,18 @@
 namespace photograd {
 namespace {
 
-// A centre on the edge between two triangles belongs to both, whatever rounding says; one this far inside of two, in
-// parts of a triangle, means that the mesh lies on itself.
+// A center on the edge between two triangles belongs to both, whatever rounding says; one this far
+// inside of two, in parts of a triangle, means that the mesh lies on itself.
 constexpr double on_the_edge = 1e-9, well_inside = 1e-6;
 
 double area(const Vec2<double>& x, const Vec2<double>& y) { return x.x * y.y - x.y * y.x; }
 
 double margin(double s, double t) { return std::min({s, t, 1 - s - t}); }
 
-/// Texels of an axis of n whose centres lie between two coordinates, [first, last].
-struct CentreRange {
+/// Texels of an axis of n whose centers lie between two coordinates, [first, last].
+struct CenterRange {
     int first, last;
-    CentreRange(double low, double high, int n)
+    CenterRange(double low, double high, int n)
         : first(static_cast<int>(std::clamp(std::ceil(low * n - 0.5 - 1e-6), 0.0, double(n)))),
           last(static_cast<int>(
               std::clamp(std::floor(high * n - 0.5 + 1e-6), -1.0, double(n - 1)))) {}
@@ -32,7 +32,7 @@ void cover_face(const Vec2<double> (&corner)[3], std::int32_t number, const Text
     if (whole == 0) return;
     const auto [u_low, u_high] = std::minmax({corner[0].x, corner[1].x, corner[2].x});
     const auto [v_low, v_high] = std::minmax({corner[0].y, corner[1].y, corner[2].y});
-    const CentreRange rows(v_low, v_high, shape.height), columns(u_low, u_high, shape.width);
+    const CenterRange rows(v_low, v_high, shape.height), columns(u_low, u_high, shape.width);
     for (int i = rows.first; i <= rows.last; ++i)
         for (int j = columns.first; j <= columns.last; ++j) {
             const Vec2<double> q =

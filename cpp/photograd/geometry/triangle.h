@@ -1,7 +1,8 @@
 // The point where a ray meets a triangle that it is known to hit.
 //
-// The tracer decides in float *which* triangle was hit. This recomputes *where*, in the caller's number
-// type, so that everything downstream (positions, texture coordinates, derivatives) has its accuracy.
+// The tracer decides in float *which* triangle was hit. This recomputes *where*, in the caller's
+// number type, so that everything downstream (positions, texture coordinates, derivatives) has its
+// accuracy.
 #pragma once
 
 #include "photograd/core/ray.h"
@@ -19,7 +20,8 @@ struct TrianglePoint {
 /// Solves o + t d = a + u (b - a) + v (c - a) by Cramer's rule [Moeller1997, Eq. 4-6].
 ///
 /// The position is taken from the corners: its error does not grow with the ray's length as that of
-/// o + t d does. A ray within the plane (determinant 0) gives non-finite numbers; the tracer reports none.
+/// o + t d does. A ray within the plane (determinant 0) gives non-finite numbers; the tracer
+/// reports none.
 template <class R>
 TrianglePoint<R> triangle_point(const Ray<R>& ray, const Vec3<R>& a, const Vec3<R>& b,
                                 const Vec3<R>& c) {

@@ -1,11 +1,11 @@
 // Bricks: cubes of 8^3 cells, the unit in which gradients of a grid are accumulated.
 //
-// A cell belongs to the brick that holds its lower corner, so every sample has exactly one owner. The
-// owner adds into a private tile that is one voxel wider than the brick (a cell's far corners may lie in
-// the next brick) and small enough for the first-level cache; the tile is then added to the gradient.
-// Tiles of neighbouring bricks overlap by one voxel. Bricks are therefore flushed in eight colours, by
-// the parity of their coordinates: two bricks of one colour never share a voxel, and the order of the
-// additions to a voxel (by colour) does not depend on threads.
+// A cell belongs to the brick that holds its lower corner, so every sample has exactly one owner.
+// The owner accumulates into a private copy of the brick with a halo: one more voxel along each
+// axis, since a cell's far corners may lie in the next brick. The copy fits into the L1 cache and
+// is then added to the gradient. Halos overlap the next bricks, so bricks are flushed in eight
+// colors, by the parity of their coordinates: two bricks of one color share no voxel, and the order
+// of the additions to a voxel (by color) does not depend on threads.
 #pragma once
 
 #include "photograd/core/isa.h"
@@ -14,8 +14,8 @@ namespace photograd {
 inline namespace PHOTOGRAD_ISA {
 
 inline constexpr int brick_side = 8;
-inline constexpr int tile_side = brick_side + 1;
-inline constexpr int tile_voxels = tile_side * tile_side * tile_side;
+inline constexpr int brick_halo_side = brick_side + 1;
+inline constexpr int brick_halo_voxels = brick_halo_side * brick_halo_side * brick_halo_side;
 inline constexpr int brick_colors = 8;
 
 /// How a grid of (x, y, z) voxels is covered by bricks.
@@ -48,18 +48,18 @@ struct BrickLayout {
     }
 };
 
-/// gradient (X, Y, Z, C) += tile (tile_side^3, C), leaving out what lies beyond the grid.
+/// gradient (X, Y, Z, C) += halo (brick_halo_side^3, C), leaving out what lies beyond the grid.
 template <class R, int C>
-void flush_tile(const BrickLayout& layout, int brick, const R* tile, R* gradient) {
+void flush_halo(const BrickLayout& layout, int brick, const R* halo, R* gradient) {
     int at[3], size[3];
     layout.corner(brick, at);
     for (int axis = 0; axis < 3; ++axis) {
         const int left = layout.shape[axis] - at[axis];
-        size[axis] = left < tile_side ? left : tile_side;
+        size[axis] = left < brick_halo_side ? left : brick_halo_side;
     }
     for (int i = 0; i < size[0]; ++i)
         for (int j = 0; j < size[1]; ++j) {
-            const R* from = tile + (i * tile_side + j) * tile_side * C;
+            const R* from = halo + (i * brick_halo_side + j) * brick_halo_side * C;
             R* to = gradient + ((static_cast<long long>(at[0] + i) * layout.shape[1] + at[1] + j) *
                                     layout.shape[2] +
                                 at[2]) *

@@ -1,10 +1,11 @@
-// Where a sparse grid keeps its values: a dense table of bricks, and in each brick a row for each voxel.
+// Where a sparse grid keeps its values: a dense table of bricks, and in each brick a row for each
+// voxel.
 //
 //   voxel (i, j, k) -> brick (i >> 3, j >> 3, k >> 3) -> top -> number of the brick, or none
 //                   -> rows[brick][(i & 7) 64 + (j & 7) 8 + (k & 7)] -> row of the values, or none
 //
-// Two loads instead of the walk down a tree. Bricks are numbered in the order of OpenVDB's leaves, rows
-// in the order of the voxels of each leaf, so that values go to and fro without a search.
+// Two loads instead of the walk down a tree. Bricks are numbered in the order of OpenVDB's leaves,
+// rows in the order of the voxels of each leaf, so that values go to and fro without a search.
 #pragma once
 
 #include <array>
@@ -18,11 +19,11 @@ inline constexpr std::int32_t no_row = -1;
 
 class BrickTopology {
 public:
-    static constexpr int side = 8, voxels_a_brick = side * side * side;
+    static constexpr int side = 8, voxels_per_brick = side * side * side;
 
     /// From the leaves of a grid: origins (B, 3), multiples of 8, and active (B, 8, 8, 8). Throws
-    /// RangeError for origins off the lattice or twice the same, and for a table beyond `memory_limit`
-    /// bytes, before it is made.
+    /// RangeError for origins off the lattice or twice the same, and for a table beyond
+    /// `memory_limit` bytes, before it is made.
     BrickTopology(std::span<const std::int32_t> origins, std::span<const std::uint8_t> active,
                   std::int64_t memory_limit);
 
@@ -36,7 +37,7 @@ public:
     [[nodiscard]] const std::vector<std::int32_t>& origins() const { return origins_; }
     /// Rows of the 8^3 voxels of a brick, in C order.
     [[nodiscard]] const std::int32_t* rows_of(std::int32_t brick) const {
-        return rows_.data() + static_cast<std::size_t>(brick) * voxels_a_brick;
+        return rows_.data() + static_cast<std::size_t>(brick) * voxels_per_brick;
     }
 
     /// Number of the brick that holds voxel (i, j, k), or -1.
@@ -48,11 +49,11 @@ public:
             (std::int64_t(at[0]) * extent_[1] + at[1]) * extent_[2] + at[2])];
     }
     [[nodiscard]] std::int32_t row_in(std::int32_t brick, int i, int j, int k) const {
-        return rows_[static_cast<std::size_t>(brick) * voxels_a_brick + offset(i, j, k)];
+        return rows_[static_cast<std::size_t>(brick) * voxels_per_brick + offset(i, j, k)];
     }
 
-    /// The bricks and rows of the eight corners of the cell whose lowest voxel is (i, j, k), in the order
-    /// of ops/cell_blend.h; no_row where nothing is active.
+    /// The bricks and rows of the eight corners of the cell whose lowest voxel is (i, j, k), in the
+    /// order of ops/cell_blend.h; no_row where nothing is active.
     void cell(int i, int j, int k, std::int32_t* brick, std::int32_t* row) const {
         if ((i & 7) < 7 && (j & 7) < 7 && (k & 7) < 7) {  // two of three cells: one brick for all
             const std::int32_t only = brick_of(i, j, k);

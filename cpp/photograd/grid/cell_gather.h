@@ -1,39 +1,19 @@
-// Gradients of a sparse grid from records of samples: every brick adds what concerns its own rows, ray by
-// ray in a fixed order, so that a row has the same sum on any number of threads.
+// Gradients of a sparse grid from records of samples. Every brick sums the contributions to its own
+// rows, ray by ray in a fixed order, so that a row has the same sum on any number of threads.
 //
-// A ray's share of a voxel is summed first, over the samples along the ray, and is then multiplied by the
-// harmonics of the ray's direction (ops/sh_blend.h).
+// The contributions of a ray to a voxel are summed first, over the samples along the ray, and then
+// multiplied by the harmonics of the ray's direction (ops/sh_blend.h).
 #pragma once
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <utility>
 #include <vector>
 
 #include "photograd/grid/cell_table.h"
+#include "photograd/ops/cell_blend.h"
 
 namespace photograd {
-
-/// A point in its cell.
-template <class R>
-struct CellPoint {
-    int base[3];
-    R fraction[3], w[8];
-
-    static CellPoint of(const R* q) {
-        CellPoint at;
-        for (int axis = 0; axis < 3; ++axis) {
-            const R floor = std::floor(q[axis]);
-            at.base[axis] = static_cast<int>(floor);
-            at.fraction[axis] = q[axis] - floor;
-        }
-        const R *f = at.fraction, x[2] = {R(1) - f[0], f[0]}, y[2] = {R(1) - f[1], f[1]},
-                z[2] = {R(1) - f[2], f[2]};
-        for (int n = 0; n < 8; ++n) at.w[n] = (x[n >> 2] * y[n >> 1 & 1]) * z[n & 1];
-        return at;
-    }
-};
 
 /// Parameter gradients of a sparse_sh field, added to.
 template <class R>
@@ -71,12 +51,13 @@ void for_own_corners(const BrickTopology& topology, std::int32_t brick, const Ce
                   z = at.base[2] + (n & 1) - origin[2];
         if (((x | y | z) & ~7) != 0) continue;  // another brick's
         const std::int32_t row = rows[(x * 8 + y) * 8 + z];
-        if (row >= 0) visit(row, at.w[n]);
+        if (row >= 0) visit(row, at.weights.corner(n));
     }
 }
 
-/// use(brick, first, count) for the runs of one ray's records: each is a longest piece in which every record
-/// has corners in `brick`. Coordinates rise or fall along a ray, so that a brick gets one run of a ray.
+/// use(brick, first, count) for the runs of one ray's records: each is a longest piece in which
+/// every record has corners in `brick`. Coordinates rise or fall along a ray, so that a brick gets
+/// one run of a ray.
 template <class R, class Use>
 void for_brick_runs(const BrickTopology& topology, const CellRecord<R>* records, std::int64_t count,
                     Use&& use) {
@@ -114,7 +95,8 @@ void for_brick_runs(const BrickTopology& topology, const CellRecord<R>* records,
         use(open[i].brick, open[i].first, count - open[i].first);
 }
 
-/// Adds the part of a run of one ray that belongs to a brick; Y3 (3 K) is the basis of its direction.
+/// Adds the part of a run of one ray that belongs to a brick; Y3 (3 K) is the basis of its
+/// direction.
 template <class R>
 void gather_run(const BrickTopology& topology, std::int32_t brick, const CellRecord<R>* records,
                 std::int64_t count, const R* Y3, int numbers, const SparseShGradients<R>& to) {
@@ -137,12 +119,12 @@ void gather_run(const BrickTopology& topology, std::int32_t brick, const CellRec
     }
 }
 
-/// most[row] = max(most[row], trilinear weight times record.d[0]).
+/// max_weight[row] = max(max_weight[row], trilinear weight times record.d[0]).
 template <class R>
-void gather_greatest(const BrickTopology& topology, std::int32_t brick, const CellRecord<R>& record,
-                     R* most) {
+void gather_max(const BrickTopology& topology, std::int32_t brick, const CellRecord<R>& record,
+                R* max_weight) {
     for_own_corners(topology, brick, record, [&](std::int32_t row, R w) {
-        most[row] = std::max(most[row], w * record.d[0]);
+        max_weight[row] = std::max(max_weight[row], w * record.d[0]);
     });
 }
 

@@ -1,12 +1,12 @@
-// The cells of a sparse grid, for marching: the rows at the eight corners of a cell without a search, and
-// how far the nearest cell lies that has any.
+// The cells of a sparse grid, for marching: the rows at the eight corners of a cell without a
+// search, and the distance to the nearest cell that has any.
 //
-// A cell has the number of its lowest voxel. Cells are kept in tiles of 8^3; a tile holds the rows of the
-// 9^3 voxels that its cells have as corners, so that a cell's corners lie at fixed offsets in one tile.
-// Wherever no corner of a tile is active the table holds, negated, how many bricks away the nearest
-// tile is along the longest axis: what lies nearer needs no look [Levoy1990].
+// A cell has the number of its lowest voxel. Cells are kept in tiles of 8^3; a tile holds the rows
+// of the 9^3 voxels that its cells have as corners, so that a cell's corners lie at fixed offsets
+// in one tile. Where no corner of a tile is active the table holds, negated, the Chebyshev distance
+// to the nearest tile in bricks: what lies nearer is empty space to skip [Levoy1990].
 //
-//   cell (i, j, k) -> top[((i >> 3) + 1, (j >> 3) + 1, (k >> 3) + 1)] -> number of the tile, or -distance
+//   cell (i, j, k) -> top[((i >> 3) + 1, (j >> 3) + 1, (k >> 3) + 1)] -> tile, or -distance
 //                  -> rows[tile][((i & 7) 9 + (j & 7)) 9 + (k & 7) + corner_offset] -> row, or none
 //
 // Tile 0 has no rows: a lookup in empty space needs no branch.
@@ -23,8 +23,8 @@ namespace photograd {
 
 class CellTable {
 public:
-    /// For a grid of `shape` voxels, the first of which is (0, 0, 0). Throws RangeError when a voxel of the
-    /// topology lies outside, or the table would need more than `memory_limit` bytes.
+    /// For a grid of `shape` voxels, the first of which is (0, 0, 0). Throws RangeError when a
+    /// voxel of the topology lies outside, or the table would need more than `memory_limit` bytes.
     CellTable(const BrickTopology& topology, std::array<int, 3> shape, std::int64_t memory_limit);
 
     [[nodiscard]] CellView view() const {

@@ -1,4 +1,4 @@
-// What a kernel sees of grid/cell_table.h: plain pointers.
+// The view that kernels get of grid/cell_table.h: plain pointers.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ struct CellView {
     int extent[3];
 };
 
-/// What the gradient of one sample is made from.
+/// Inputs to the gradient of one sample.
 template <class R>
 struct CellRecord {
     R q[3];             // voxel coordinates
@@ -41,7 +41,7 @@ inline int tile_entry(const CellView& v, int i, int j, int k) {
 }
 
 /// Place of a cell's lowest voxel within a tile.
-constexpr int place_in_tile(int i, int j, int k) {
+constexpr int offset_in_tile(int i, int j, int k) {
     return ((i & 7) * cell_tile_side + (j & 7)) * cell_tile_side + (k & 7);
 }
 

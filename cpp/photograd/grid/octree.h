@@ -1,15 +1,16 @@
-// Octrees (and quadtrees): space cut into cubes that are small only where something changes [Meagher1982].
+// Octrees (and quadtrees): space cut into cubes that are small only where something changes
+// [Meagher1982].
 //
-// The root is a cube of 2^depth cells a side; a node is either a leaf or has 2^D children, the halves of
-// its cube along each axis. Coordinates are in cells, so every face of every node is an integer, and two
-// questions have exact answers also in floating point: which leaf holds a point (faces belong to the leaf
-// above them), and which leaves a ray passes through.
+// The root is a cube of 2^depth cells a side; a node is either a leaf or has 2^D children, the
+// halves of its cube along each axis. Coordinates are in cells, so every face of every node is an
+// integer, and two questions have exact answers also in floating point: which leaf holds a point
+// (faces belong to the leaf above them), and which leaves a ray passes through.
 //
-// A ray o + t d meets the plane x = k at t = (k - o) / d. Rounding keeps order, k <= m => t(k) <= t(m)
-// for d > 0, so the interval of a child, computed from integer planes, always lies in that of its parent.
-// The descent below therefore finds the very leaves whose own interval [max of entries, min of exits] has
-// positive length, as a search through all leaves would, and in the order of t. A ray that only touches
-// an edge or a corner of a leaf spends no length in it and does not visit it.
+// A ray o + t d meets the plane x = k at t = (k - o) / d. Rounding keeps order, k <= m => t(k) <=
+// t(m) for d > 0, so the interval of a child, computed from integer planes, always lies in that of
+// its parent. The descent below therefore finds the very leaves whose own interval [max of entries,
+// min of exits] has positive length, as a search through all leaves would, and in the order of t. A
+// ray that only touches an edge or a corner of a leaf spends no length in it and does not visit it.
 #pragma once
 
 #include <array>
@@ -27,7 +28,7 @@ namespace photograd {
 template <int D>
 using Cell = std::array<std::int32_t, D>;
 
-/// What a tree costs. Level 0 is the root; a leaf of level l is 2^(depth - l) cells wide.
+/// Size of a tree. Level 0 is the root; a leaf of level l is 2^(depth - l) cells wide.
 struct TreeStatistics {
     std::int64_t nodes = 0, leaves = 0, bytes = 0;
     std::vector<std::int64_t> leaves_per_level;
@@ -77,8 +78,8 @@ public:
         return ~node;
     }
 
-    /// Calls visit(leaf, t0, t1) for the leaves that the ray spends t0 < t1 in, in the order of t, until
-    /// it returns false. A ray along a face belongs to the leaf above it, as a point does.
+    /// Calls visit(leaf, t0, t1) for the leaves that the ray spends t0 < t1 in, in the order of t,
+    /// until it returns false. A ray along a face belongs to the leaf above it, as a point does.
     template <class R, class Visit>
     void traverse(const R* origin, const R* direction, R t_min, R t_max, Visit&& visit) const {
         Descent<R, std::remove_reference_t<Visit>> ray{*this, origin, direction, 0, visit};
@@ -97,7 +98,8 @@ public:
         if (t_min < t_max) ray.descend(nodes_[0], Cell<D>{}, side(), t_min, t_max);
     }
 
-    /// Calls visit(leaf, box) for all leaves, by number: along the Z curve with x fastest [Morton1966].
+    /// Calls visit(leaf, box) for all leaves, by number: along the Z curve with x fastest
+    /// [Morton1966].
     template <class Visit>
     void for_each_leaf(Visit&& visit) const {
         each_leaf(0, Cell<D>{}, side(), visit);
@@ -156,7 +158,8 @@ private:
                 t0 = end;
             }
         }
-        /// t at the plane; for a ray along it, whether it runs above (passed long ago) or below (never).
+        /// t at the plane; for a ray along it, whether it runs above (passed long ago) or below
+        /// (never).
         R crossing(int a, std::int32_t plane) const {
             constexpr R inf = std::numeric_limits<R>::infinity();
             if (direction[a] == R(0)) return origin[a] >= R(plane) ? -inf : inf;

@@ -1,7 +1,7 @@
-// Questions to a tree by the thousand: leaves of points, and the leaves that each of many rays visits.
+// Batched queries of a tree: the leaf of each point, and the leaves along each ray.
 //
-// The visits of a batch are compressed rows: those of ray r are [ray_offset[r], ray_offset[r + 1]). They
-// are counted first and written to their places after, so the result does not depend on threads.
+// The visits of a batch are compressed rows: those of ray r are [ray_offset[r], ray_offset[r + 1]).
+// They are counted first and written afterwards, so the result does not depend on threads.
 #pragma once
 
 #include <algorithm>

@@ -1,9 +1,9 @@
 // Building a tree: from a dense array, whose uniform blocks collapse, or from a function.
 //
-// A block of cells becomes one leaf if, channel by channel, its largest value exceeds its smallest by no
-// more than the tolerance. The leaf holds the mean, so that no cell moves by more than the tolerance and
-// the integral of each channel stays what it was: of the extinction, the optical depth of a block. With
-// tolerance 0 the tree holds the array bit by bit.
+// A block of cells becomes one leaf if, channel by channel, its largest value exceeds its smallest
+// by no more than the tolerance. The leaf holds the mean, so that no cell moves by more than the
+// tolerance and the integral of each channel stays what it was: of the extinction, the optical
+// depth of a block. With tolerance 0 the tree holds the array bit by bit.
 #pragma once
 
 #include <array>
@@ -20,7 +20,8 @@
 
 namespace photograd {
 
-/// What a leaf holds: C channels. A type of one's own needs the same: an element type and operator[].
+/// What a leaf holds: C channels. A type of one's own needs the same: an element type and
+/// operator[].
 template <class T, int C>
 using Payload = std::array<T, C>;
 using Occupancy = Payload<std::uint8_t, 1>;  // 0 empty, 1 full
@@ -47,7 +48,8 @@ using Octree = PayloadTree<P, 3>;
 template <class P>
 using Quadtree = PayloadTree<P, 2>;
 
-/// Builds depth first: children are appended, and cut off again where their block turns out uniform.
+/// Builds depth first: children are appended, and cut off again where their block turns out
+/// uniform.
 template <class P, int D>
 class TreeBuilder {
     static constexpr int children = SpatialTree<D>::children;
@@ -71,7 +73,8 @@ public:
         return finish();
     }
 
-    /// classify(lower, side) gives the payload of a uniform cube, or nothing: then it is cut in halves.
+    /// classify(lower, side) gives the payload of a uniform cube, or nothing: then it is cut in
+    /// halves.
     template <class Classify>
     PayloadTree<P, D> from_function(Classify&& classify) {
         nodes().push_back(0);
@@ -119,7 +122,8 @@ private:
             for (int i = 0; i < children; i += 2 * step)
                 for (int c = 0; c < C; ++c)
                     parts[i].mean[c] = 0.5 * parts[i].mean[c] + 0.5 * parts[i + step].mean[c];
-        // Halves are exact but for the smallest denormals, where equal values shall stay equal, too.
+        // Halves are exact but for the smallest denormals, where equal values shall stay equal,
+        // too.
         for (int c = 0; c < C; ++c)
             whole.mean[c] = whole.low[c] == whole.high[c] ? static_cast<double>(whole.low[c])
                                                           : parts[0].mean[c];

@@ -1,4 +1,5 @@
-// OpenVDB behind grid/sparse_grid.h: for sparse_grid.cpp and vdb_file.cpp, the only two files that see it.
+// OpenVDB behind grid/sparse_grid.h: for sparse_grid.cpp and vdb_file.cpp, the only two files that
+// see it.
 #pragma once
 
 #include <openvdb/openvdb.h>

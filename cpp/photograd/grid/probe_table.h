@@ -1,9 +1,11 @@
-// A table from keys to rows with linear probing [Knuth1998, Sec. 6.4]: not for several threads at a time.
+// A table from keys to rows with linear probing [Knuth1998, Sec. 6.4]: not for several threads at a
+// time.
 //
-// A key stands in the first free slot from that of its hash on. At most half of the slots are in use: at
-// that load a search looks at 1.5 slots on average for a key that is there, (1 + 1 / (1 - load)) / 2, and
-// at 2.5 for one that is not, (1 + 1 / (1 - load)^2) / 2. Erasing leaves no tombstone: keys behind the
-// hole move up, so every key can still be reached from its first slot without crossing a free one.
+// A key stands in the first free slot from that of its hash on. At most half of the slots are in
+// use: at that load a search looks at 1.5 slots on average for a key that is there, (1 + 1 / (1 -
+// load)) / 2, and at 2.5 for one that is not, (1 + 1 / (1 - load)^2) / 2. Erasing leaves no
+// tombstone: keys behind the hole move up, so every key can still be reached from its first slot
+// without crossing a free one.
 #pragma once
 
 #include <algorithm>
@@ -49,7 +51,8 @@ public:
         const std::int32_t row = slots_[hole].row;
         if (slots_[hole].key == no_key) return none;
         for (std::size_t at = next(hole); slots_[at].key != no_key; at = next(at)) {
-            // The key at `at` may fill the hole unless its own first slot lies cyclically in (hole, at].
+            // The key at `at` may fill the hole unless its own first slot lies cyclically in (hole,
+            // at].
             const std::size_t home = first(slots_[at].key);
             if (((at - home) & mask()) < ((at - hole) & mask())) continue;
             slots_[hole] = slots_[at];

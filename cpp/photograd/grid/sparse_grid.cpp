@@ -1,9 +1,11 @@
+#include <openvdb/tools/ChangeBackground.h>
 #include <openvdb/tools/Dense.h>
 #include <openvdb/tools/Interpolation.h>
 #include <openvdb/tools/Morphology.h>
 #include <openvdb/tools/Prune.h>
 
 #include <limits>
+#include <type_traits>
 
 #include "photograd/core/errors.h"
 #include "photograd/core/parallel.h"
@@ -46,11 +48,13 @@ SparseGrid SparseGrid::from_dense(const float* values, std::array<int, 3> shape,
                                   std::array<int, 3> origin, const float* background,
                                   float tolerance) {
     openvdb::initialize();
-    const auto make = [&](auto grid_type) -> openvdb::GridBase::Ptr {
-        using Grid = decltype(grid_type);
+    // Made by the library, which holds all that a grid's virtual functions need.
+    const auto make = [&]<class Grid>(std::type_identity<Grid>) -> openvdb::GridBase::Ptr {
         using Value = typename Grid::ValueType;
         const Value empty = load<Value>(background);
-        const auto grid = Grid::create(empty);
+        const auto grid =
+            openvdb::gridPtrCast<Grid>(openvdb::GridBase::createGrid(Grid::gridType()));
+        openvdb::tools::changeBackground(grid->tree(), empty);
         auto accessor = grid->getAccessor();
         const float* from = values;
         for (int i = 0; i < shape[0]; ++i)
@@ -61,7 +65,8 @@ SparseGrid SparseGrid::from_dense(const float* values, std::array<int, 3> shape,
                                           load<Value>(from));
         return grid;
     };
-    const auto grid = channels == 1 ? make(FloatGrid()) : make(Vec3SGrid());
+    const auto grid = channels == 1 ? make(std::type_identity<FloatGrid>())
+                                    : make(std::type_identity<Vec3SGrid>());
     return SparseGrid(std::make_shared<Impl>(Impl{grid}));
 }
 
@@ -122,14 +127,14 @@ SparseStatistics SparseGrid::statistics() const {
             s.box[0][axis] = box.min()[static_cast<int>(axis)];
             s.box[1][axis] = box.max()[static_cast<int>(axis)] + 1;
         }
-        s.least = std::numeric_limits<float>::infinity();
-        s.most = -s.least;
+        s.min = std::numeric_limits<float>::infinity();
+        s.max = -s.min;
         for (auto at = tree.cbeginValueOn(); at; ++at) {
             float v[3];
             store(*at, v);
             for (int c = 0; c < channels_of<std::decay_t<decltype(*at)>>; ++c) {
-                s.least = std::min(s.least, v[c]);
-                s.most = std::max(s.most, v[c]);
+                s.min = std::min(s.min, v[c]);
+                s.max = std::max(s.max, v[c]);
             }
         }
         return s;

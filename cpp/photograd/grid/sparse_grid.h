@@ -1,12 +1,13 @@
 // Sparse grids: values on the integer lattice, of which only the active ones are stored one by one.
 //
-// OpenVDB keeps the topology and reads and writes the files: a root that maps to two levels of inner
-// nodes (32^3 and 16^3 children) and to leaves of 8^3 voxels [Museth2013]. openvdb_grid.h is the only
-// file that includes it. It is built for growing and pruning, not for hot loops: those run on brick_field.h,
-// made from the leaves of a grid in their order and written back in the same order.
+// OpenVDB keeps the topology and reads and writes the files: a root that maps to two levels of
+// inner nodes (32^3 and 16^3 children) and to leaves of 8^3 voxels [Museth2013]. openvdb_grid.h is
+// the only file that includes it. It is built for growing and pruning, not for hot loops: those run
+// on brick_field.h, made from the leaves of a grid in their order and written back in the same
+// order.
 //
-// Voxel (i, j, k) has its value at the index-space point (i, j, k), the middle of its voxel. A grid has
-// one channel (float) or three (vectors). Edits and reads of one grid must not overlap in time.
+// Voxel (i, j, k) has its value at the index-space point (i, j, k), the middle of its voxel. A grid
+// has one channel (float) or three (vectors). Edits and reads of one grid must not overlap in time.
 #pragma once
 
 #include <array>
@@ -30,7 +31,7 @@ struct SparseStatistics {
     std::int64_t leaves;
     std::int64_t memory;                             // bytes
     std::array<std::array<std::int32_t, 3>, 2> box;  // lowest voxel, and one past the highest
-    float least, most;                               // over active values and channels; 0 if none
+    float min, max;                                  // over active values and channels; 0 if none
 };
 
 /// The leaves of a grid, in the order that numbers the bricks of a brick field.
@@ -44,8 +45,8 @@ public:
     struct Impl;
     explicit SparseGrid(std::shared_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
-    /// Values (X, Y, Z, C) at voxels origin + (x, y, z). Active is what differs from `background` (C) by
-    /// more than `tolerance` in any channel.
+    /// Values (X, Y, Z, C) at voxels origin + (x, y, z). Active is what differs from `background`
+    /// (C) by more than `tolerance` in any channel.
     static SparseGrid from_dense(const float* values, std::array<int, 3> shape, int channels,
                                  std::array<int, 3> origin, const float* background,
                                  float tolerance);
@@ -69,7 +70,8 @@ public:
                    std::uint8_t* active) const;
     /// Writes values (N, C) to voxels (N, 3) and activates them.
     void activate(const std::int32_t* voxels, const float* values, std::int64_t count);
-    /// Trilinear values (N, C) at index-space points (N, 3), by OpenVDB's own BoxSampler: the reference.
+    /// Trilinear values (N, C) at index-space points (N, 3), by OpenVDB's own BoxSampler: the
+    /// reference.
     void sample(const double* points, std::int64_t count, float* out) const;
 
     /// Deactivates what differs from the background by at most `tolerance`, and drops empty nodes.
@@ -95,8 +97,9 @@ struct VdbFile {
     std::vector<SparseGrid> grids;
     MetaTable metadata;
 
-    /// Throws IoError for a damaged file, grids that are neither float nor vec3s, transforms that cannot
-    /// be inverted, values that are not finite, and grids that need more than `memory_limit` bytes.
+    /// Throws IoError for a damaged file, grids that are neither float nor vec3s, transforms that
+    /// cannot be inverted, values that are not finite, and grids that need more than `memory_limit`
+    /// bytes.
     static VdbFile read(const std::string& path, std::int64_t memory_limit);
     /// `half`: values in half precision, or, if not given, as each grid was read.
     void write(const std::string& path, std::optional<bool> half) const;

@@ -1,8 +1,8 @@
 // The table of contents of a .vdb file, read and vetted before OpenVDB sees the file.
 //
-// OpenVDB trusts what a file states: a damaged one makes it set aside gigabytes or write past the end of
-// its buffers. Here every length and every mask is compared with the bytes that there are, and the memory
-// that the grids will need is known before any of it is taken. [Museth2013]
+// OpenVDB trusts what a file states: a damaged one makes it set aside gigabytes or write past the
+// end of its buffers. Here every length and every mask is compared with the bytes that there are,
+// and the memory that the grids will need is known before any of it is taken. [Museth2013]
 #pragma once
 
 #include <cstdint>
@@ -18,8 +18,8 @@ struct VdbEntry {
     std::int64_t memory = 0;  // bytes that its tree will take
 };
 
-/// Throws IoError, in the name of `function`: no .vdb, another version, grids that are neither float nor
-/// vec3s or whose transform is not affine, anything cut off or inconsistent.
+/// Throws IoError, in the name of `function`: no .vdb, another version, grids that are neither
+/// float nor vec3s or whose transform is not affine, anything cut off or inconsistent.
 std::vector<VdbEntry> vdb_contents(std::string_view bytes, std::string_view function,
                                    std::string_view path);
 

@@ -1,4 +1,4 @@
-// A place in the bytes of a .vdb file, for vdb_contents.cpp and vdb_tree.cpp.
+// A read position in the bytes of a .vdb file, for vdb_contents.cpp and vdb_tree.cpp.
 #pragma once
 
 #include <cstdint>

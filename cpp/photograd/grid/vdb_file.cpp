@@ -68,7 +68,8 @@ VdbFile VdbFile::read(const std::string& path, std::int64_t memory_limit) {
              "grids that fit into " + std::to_string(memory_limit) + " bytes",
              "grids of " + std::to_string(memory) + " bytes",
              "raise memory_limit, or write a coarser grid");
-    // A table for reading piece by piece, with lengths of its own. Under another type OpenVDB only skips it.
+    // A table for reading piece by piece, with lengths of its own. Under another type OpenVDB only
+    // skips it.
     constexpr std::string_view table("\x0d\0\0\0__delayedload", 17);
     for (auto at = bytes.find(table); at != std::string::npos; at = bytes.find(table, at))
         bytes[at + table.size() - 1] = '-';
@@ -107,9 +108,9 @@ void VdbFile::write(const std::string& path, std::optional<bool> half) const {
         const openvdb::GridBase::Ptr shallow = grid.impl_->grid->copyGrid();
         if (half) shallow->setSaveFloatAsHalf(*half);
         const SparseStatistics s = grid.statistics();
-        if (shallow->saveFloatAsHalf() && std::max(-s.least, s.most) > largest_half)
+        if (shallow->saveFloatAsHalf() && std::max(-s.min, s.max) > largest_half)
             fail(ErrorKind::range, "write_vdb", "half", "values up to 65504",
-                 std::to_string(std::max(-s.least, s.most)), "write floats");
+                 std::to_string(std::max(-s.min, s.max)), "write floats");
         out.push_back(shallow);
     }
     openvdb::MetaMap table;

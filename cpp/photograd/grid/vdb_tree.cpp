@@ -1,6 +1,6 @@
-// Format, after OpenVDB's io/Compression.h and tree/: a root lists its tiles and children; a node holds a
-// mask of children, a mask of active values, its values, then its children; a leaf holds a mask. After all
-// topology follow, leaf by leaf in the same order, the mask again and the values.
+// Format, after OpenVDB's io/Compression.h and tree/: a root lists its tiles and children; a node
+// holds a mask of children, a mask of active values, its values, then its children; a leaf holds a
+// mask. After all topology follow, leaf by leaf in the same order, the mask again and the values.
 #include "photograd/grid/vdb_tree.h"
 
 #include <array>

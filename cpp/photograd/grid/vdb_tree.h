@@ -11,8 +11,8 @@ struct VdbValues {
     bool half;
 };
 
-/// Passes over topology and values of a tree; the bytes that it will take in memory. Throws IoError if a
-/// count, a mask or the size of a block does not fit.
+/// Passes over topology and values of a tree; the bytes that it will take in memory. Throws IoError
+/// if a count, a mask or the size of a block does not fit.
 std::int64_t vet_vdb_tree(VdbCursor& cursor, const VdbValues& values);
 
 }  // namespace photograd

@@ -1,17 +1,18 @@
-// A hash table from integer voxels to rows of payload arrays, for scenes of unknown extent [Niessner2013].
+// A hash table from integer voxels to rows of payload arrays, for scenes of unknown extent
+// [Niessner2013].
 //
-// The table says which row of an array (N, C) belongs to a voxel; the arrays are the caller's. Any number
-// of threads may call any functions at the same time. The table is cut into shards by the upper bits of
-// the hash, each behind a lock of its own; a shard grows by itself. Locks, and no atomics: a slot is a
-// key with a row, erasing moves slots, and growing moves all of them, each more than one word at once.
+// The table says which row of an array (N, C) belongs to a voxel; the arrays are the caller's. Any
+// number of threads may call any functions at the same time. The table is cut into shards by the
+// upper bits of the hash, each behind a lock of its own; a shard grows by itself. Locks, and no
+// atomics: a slot is a key with a row, erasing moves slots, and growing moves all of them, each
+// more than one word at once.
 //
 // Which row a new voxel gets:
-//   - from single insertions, one after the other: the row freed last, or else the next new one. Several
-//     threads that insert race for the numbers (never for a voxel: all of them get the same row);
-//   - from a list: the same, in the order of the list. Threads own whole shards there, the first place of
-//     each voxel in the list is found without numbers, and numbers are given out along the list
-//     afterwards. So the rows do not depend on the number of threads, and a list of distinct voxels
-//     put into an empty table gets the rows 0, 1, 2 and so on.
+//   - single insertions: the row freed last, or else the next new one. Concurrent insertions race
+//     for the numbers (never for a voxel: all of them get the same row);
+//   - a list: the same, in the order of the list. Each thread owns whole shards and marks the first
+//     occurrence of each voxel; rows are numbered along the list afterwards. They do not depend on
+//     the number of threads, and distinct voxels get the rows 0, 1, 2, ... of an empty table.
 #pragma once
 
 #include <array>
@@ -37,15 +38,17 @@ class VoxelHash {
 public:
     static constexpr std::int32_t none = ProbeTable::none;
 
-    /// Row of `voxel`, which is given one if it has none. RangeError where coordinates cannot be packed.
+    /// Row of `voxel`, which is given one if it has none. RangeError where coordinates cannot be
+    /// packed.
     std::int32_t insert(const Voxel& voxel);
     /// Row of `voxel`, or `none`.
     [[nodiscard]] std::int32_t find(const Voxel& voxel) const;
-    /// Forgets `voxel`; the row that it had and that is free now, or `none`.
+    /// Erases `voxel`; returns the row that is free now, or `none`.
     std::int32_t erase(const Voxel& voxel);
 
-    /// The same for voxels (N, 3) at once; nothing has changed if any of them is refused. Not from inside
-    /// of a parallel_for, whose threads might pick up another such call while they hold the locks.
+    /// Batches of voxels (N, 3); nothing has changed if any of them is refused. Not from
+    /// inside of a parallel_for, whose threads might pick up another such call while they hold the
+    /// locks.
     void insert(std::span<const Voxel> voxels, std::span<std::int32_t> rows);
     void find(std::span<const Voxel> voxels, std::span<std::int32_t> rows) const;
     void erase(std::span<const Voxel> voxels, std::span<std::int32_t> rows);

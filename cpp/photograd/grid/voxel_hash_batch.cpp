@@ -92,7 +92,7 @@ void VoxelHash::insert(std::span<const Voxel> voxels, std::span<std::int32_t> ro
     }
 }
 
-/// Puts new keys in without a row, and marks the first place of each in the list.
+/// Inserts new keys without a row, and marks the first occurrence of each in the list.
 void VoxelHash::insert_new(const Bins& bins, std::span<std::int32_t> rows,
                            std::vector<char>& is_new) {
     bins.for_each([&](std::size_t shard, std::uint32_t i) {
@@ -103,7 +103,7 @@ void VoxelHash::insert_new(const Bins& bins, std::span<std::int32_t> rows,
     });
 }
 
-/// Gives rows to the marked places along the list, then to the repetitions of each voxel.
+/// Gives rows to the marked entries along the list, then to the repetitions of each voxel.
 void VoxelHash::number_new(const Bins& bins, std::span<std::int32_t> rows,
                            const std::vector<char>& is_new) {
     for (std::size_t i = 0; i < is_new.size(); ++i)

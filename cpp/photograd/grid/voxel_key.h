@@ -4,8 +4,9 @@
 // never `no_key`, and two voxels never share one. What does not fit is refused, not wrapped around.
 //
 // The products with primes of [Teschner2003], which [Niessner2013] uses as well, leave the low bits
-// of the hash to the low bits of the coordinates: voxels at multiples of 2^k fall into one slot of 2^k. Here
-// every bit of the key reaches every bit of the hash; the constants are those of [Steele2014].
+// of the hash to the low bits of the coordinates: voxels at multiples of 2^k fall into one slot of
+// 2^k. Here every bit of the key reaches every bit of the hash; the constants are those of
+// [Steele2014].
 #pragma once
 
 #include <array>

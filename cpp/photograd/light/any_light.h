@@ -1,8 +1,8 @@
 // Any light without a surface, for lists of lights of different kinds.
 //
-// The set is closed (registry.h and the environment map), so an entry is a variant over it, not a base class. What it
-// is asked is what sample_light.h asks of each; lights with a surface are shapes of the scene that emit instead, since
-// rays have to hit them.
+// The set is closed (registry.h and the environment map), so an entry is a variant over it, not a
+// base class. Its functions are those of sample_light.h; lights with a surface are shapes of the
+// scene that emit instead, since rays have to hit them.
 #pragma once
 
 #include <variant>
@@ -14,10 +14,10 @@
 
 namespace photograd {
 
-/// Derivatives by a map's texels, not yet added up: texels are many and a path meets few of them, so that they are
-/// scattered by their owners later (environment_gradient.h).
+/// Derivatives with respect to a map's texels, not yet added up: texels are many and a path meets
+/// few of them, so that they are scattered by their owners later (environment_gradient.h).
 template <class R>
-struct SeenDirections {
+struct DirectionAdjoint {
     std::vector<R> w, d_L;  // (N, 3) each
 };
 
@@ -34,16 +34,15 @@ template <class R>
 struct AnyLight {
     typename detail::LightVariantOf<R, Environment<R>, Lights, DeltaLights>::type model;
 };
-/// What derivatives of an AnyLight are added to.
+/// Accumulator of the derivatives of an AnyLight.
 template <class R>
 struct AnyLightGradient {
-    typename detail::LightVariantOf<R, SeenDirections<R>, Lights, DeltaLights>::type model;
+    typename detail::LightVariantOf<R, DirectionAdjoint<R>, Lights, DeltaLights>::type model;
 };
 
 template <class R>
 bool is_delta(const AnyLight<R>& any) {
-    return std::visit([](const auto& light) { return requires { light.at(Vec3<R>()); }; },
-                      any.model);
+    return std::visit([]<class L>(const L&) { return is_delta(L::kind); }, any.model);
 }
 
 /// The gradient of this light, 0.
@@ -51,24 +50,24 @@ template <class R>
 AnyLightGradient<R> zero_gradient(const AnyLight<R>& any) {
     return std::visit(
         []<class L>(const L&) -> AnyLightGradient<R> {
-            if constexpr (requires { L::params; }) {
+            if constexpr (L::kind != LightKind::environment) {
                 L light;
                 for_each_scalar([](R& x) { x = R(0); }, light);
                 return {light};
             } else {
-                return {SeenDirections<R>{}};
+                return {DirectionAdjoint<R>{}};
             }
         },
         any.model);
 }
 
-/// What arrives from the direction w, and its density among samples; nothing from delta lights.
+/// Radiance from the direction w and its sampling density; none from delta lights.
 template <class R>
 Background<R> background(const AnyLight<R>& any, const Vec3<R>& w) {
     return std::visit(
-        [&](const auto& light) -> Background<R> {
-            if constexpr (requires { light.look(w); })
-                return light.look(w);
+        [&]<class L>(const L& light) -> Background<R> {
+            if constexpr (L::kind == LightKind::environment)
+                return light.L_and_pdf(w);
             else
                 return {light_radiance(light, Vec3<R>(R(0)), w),
                         light_pdf(light, Vec3<R>(R(0)), w)};
@@ -81,13 +80,13 @@ void background_backward(const AnyLight<R>& any, const Vec3<R>& w, const Vec3<R>
                          AnyLightGradient<R>& d_any) {
     std::visit(
         [&]<class L>(const L& light) {
-            if constexpr (requires { L::params; }) {
+            if constexpr (L::kind != LightKind::environment) {
                 light_radiance_backward(light, Vec3<R>(R(0)), w, d_L, std::get<L>(d_any.model));
             } else {
-                auto& seen = std::get<SeenDirections<R>>(d_any.model);
+                auto& lookups = std::get<DirectionAdjoint<R>>(d_any.model);
                 for (int k = 0; k < 3; ++k) {
-                    seen.w.push_back(w[k]);
-                    seen.d_L.push_back(d_L[k]);
+                    lookups.w.push_back(w[k]);
+                    lookups.d_L.push_back(d_L[k]);
                 }
             }
         },
@@ -104,7 +103,7 @@ void delta_backward(const AnyLight<R>& any, const Vec3<R>& point, const Vec3<R>&
                     AnyLightGradient<R>& d_any) {
     std::visit(
         [&]<class L>(const L& light) {
-            if constexpr (requires { light.at(point); })
+            if constexpr (is_delta(L::kind))
                 light.at_backward(point, d_radiance, std::get<L>(d_any.model));
         },
         any.model);

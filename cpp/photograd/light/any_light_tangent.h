@@ -1,6 +1,6 @@
-// How what a light sends changes along a direction of its parameters: forward mode, the transpose of
-// background_backward and delta_backward. `along` is a light of the same kind, which holds the change of each
-// parameter; a map's holds that of each texel.
+// The directional derivative of a light's radiance along a direction of its parameters: forward
+// mode, the transpose of background_backward and delta_backward. `along` is a light of the same
+// kind, which holds the change of each parameter; a map's holds that of each texel.
 #pragma once
 
 #include "photograd/light/any_light.h"
@@ -56,8 +56,8 @@ template <class R>
 Vec3<R> delta_tangent(const AnyLight<R>& any, const AnyLight<R>& along, const Vec3<R>& point) {
     using D = Dual<R>;
     const Vec3<D> at(D(point.x), D(point.y), D(point.z));
-    return light_tangent(any, along, [&](const auto& light) {
-        if constexpr (requires { light.at(at); })
+    return light_tangent(any, along, [&]<class L>(const L& light) {
+        if constexpr (is_delta(L::kind))
             return light.at(at).radiance;
         else
             return Vec3<D>(D(0.0));

@@ -1,4 +1,4 @@
-// The same radiance from everywhere: "ambient" light, which shadows still reach.
+// A constant environment: equal radiance from all directions.
 //
 //   L(w) = radiance,    dL/dradiance = 1
 #pragma once
@@ -13,6 +13,7 @@ struct ConstantLight {
     Vec3<R> radiance{R(1)};
 
     static constexpr const char* name = "constant";
+    static constexpr LightKind kind = LightKind::infinite;
     static constexpr auto params =
         describe(p("radiance", &ConstantLight::radiance, 0.0, 10.0, "W/(m^2 sr)"));
     static constexpr auto constants = describe();

@@ -1,9 +1,9 @@
-// A sun without size: parallel light from one direction, the same at every point.
+// A directional light: parallel light from one direction, equal at every point.
 //
 //   irradiance of what faces it = irradiance,    d/dirradiance = 1
 //
-// A surface at an angle gets cos times that; the cosine is the surface's business. `direction` moves shadows: no
-// derivative is given.
+// The cosine at a tilted surface is not included. `direction` moves shadows: no derivative is
+// given.
 #pragma once
 
 #include "photograd/light/light.h"
@@ -16,6 +16,7 @@ struct DirectionalLight {
     Vec3<R> direction{R(0), R(1), R(0)};  // unit, towards the light
 
     static constexpr const char* name = "directional";
+    static constexpr LightKind kind = LightKind::directional;
     static constexpr auto params =
         describe(p("irradiance", &DirectionalLight::irradiance, 0.0, 10.0, "W/m^2"));
     static constexpr auto constants =

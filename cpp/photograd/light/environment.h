@@ -1,10 +1,11 @@
-// Light from all around, painted on a picture of all directions (lat_long.h).
+// An environment map: radiance by direction, as a latitude-longitude image (lat_long.h).
 //
-//   L(w) = sum over the four texels around w's place of weight * texel       weights bilinear, columns going around
+//   L(w) = sum over the four texels around w of weight * texel
+//       weights bilinear, columns going around
 //   dL/dtexel = weight
 //
-// The picture may be turned: world_from_map takes directions of the picture to those of the world. Turning moves
-// every texel's edges through the scene; no derivative by it is given.
+// world_from_map rotates directions of the map to those of the world. A rotation moves the edges of
+// all texels through the scene; no derivative with respect to it is given.
 #pragma once
 
 #include "photograd/light/environment_sampler.h"
@@ -30,8 +31,9 @@ EnvironmentTaps<R> environment_taps(double u, double v, int height) {
             {R((1 - g) * (1 - f)), R((1 - g) * f), R(g * (1 - f)), R(g * f)}};
 }
 
-/// A view: texels and sampler belong to the caller. The sampler may have been built from other texels, as while a
-/// picture is being recovered: its density is its own, and the estimate stays right wherever it is not zero.
+/// A view: texels and sampler belong to the caller. The sampler may have been built from other
+/// texels, as while a picture is being recovered: its density is its own, and the estimate stays
+/// right wherever it is not zero.
 template <class R>
 struct Environment {
     const R* texels;
@@ -40,6 +42,7 @@ struct Environment {
     const EnvironmentSampler* sampler;
 
     static constexpr const char* name = "environment";
+    static constexpr LightKind kind = LightKind::environment;
 
     [[nodiscard]] EnvironmentTaps<R> taps(const Vec3<R>& w) const {
         const Vec2<double> uv = lat_long_from_direction(map_from_world(w));
@@ -59,18 +62,20 @@ struct Environment {
     }
     R pdf(const Vec3<R>& w) const { return R(sampler->pdf(lat_long_of(map_from_world(w)))); }
 
-    /// `sample` with its radiance and density: its place in the map is known, but for the angle to the zenith.
-    [[nodiscard]] LightSample<R> draw(const Vec2<R>& u2) const {
-        const DrawnDirection drawn = sampler->sample({double(u2.x), double(u2.y)});
-        const Vec3<double>& w = drawn.w;
+    /// `sample` with its radiance and density: its place in the map is known, but for the angle to
+    /// the zenith.
+    [[nodiscard]] LightSample<R> sample_with_radiance(const Vec2<R>& u2) const {
+        const SampledDirection sampled = sampler->sample({double(u2.x), double(u2.y)});
+        const Vec3<double>& w = sampled.w;
         const double v = polar_angle(sqrt(w.x * w.x + w.z * w.z), w.y) / pi;
         return {world_from_map * Vec3<R>(w), infinitely_far<R>(),
-                look_up(environment_taps<R>(drawn.u, v, height)), R(drawn.pdf), false};
+                look_up(environment_taps<R>(sampled.u, v, height)), R(sampled.pdf), false};
     }
     /// L and pdf of a direction by one lookup of its place.
-    [[nodiscard]] Background<R> look(const Vec3<R>& w) const {
-        const LatLong place = lat_long_of(map_from_world(w));
-        return {look_up(environment_taps<R>(place.u, place.v, height)), R(sampler->pdf(place))};
+    [[nodiscard]] Background<R> L_and_pdf(const Vec3<R>& w) const {
+        const LatLong map_point = lat_long_of(map_from_world(w));
+        return {look_up(environment_taps<R>(map_point.u, map_point.v, height)),
+                R(sampler->pdf(map_point))};
     }
 
 private:

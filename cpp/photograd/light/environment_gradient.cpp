@@ -8,17 +8,18 @@
 namespace photograd {
 namespace {
 
-constexpr std::int64_t slab = 1 << 17;         // directions handled at once: 8 MB of taps in float
-constexpr std::int64_t piece = 4096;           // of a slab, for one task
-constexpr std::int64_t texels_of_owner = 512;  // 6 KB of derivatives
+constexpr std::int64_t slab = 1 << 17;  // directions handled at once: 8 MB of taps in float
+constexpr std::int64_t chunk_directions = 4096;  // of a slab, for one task
+constexpr std::int64_t texels_of_owner = 512;    // 6 KB of derivatives
 
 template <class R>
 void add_slab(const Environment<R>& environment, const R* w, const R* d_L, std::int64_t count,
               R* d_texels) {
     std::vector<EnvironmentTaps<R>> taps(static_cast<std::size_t>(count));
     std::vector<std::uint32_t> owner(4 * taps.size());
-    parallel_for((count + piece - 1) / piece, [&](std::int64_t p) {
-        for (std::int64_t i = p * piece; i < std::min(count, (p + 1) * piece); ++i) {
+    parallel_for((count + chunk_directions - 1) / chunk_directions, [&](std::int64_t p) {
+        for (std::int64_t i = p * chunk_directions; i < std::min(count, (p + 1) * chunk_directions);
+             ++i) {
             const auto n = static_cast<std::size_t>(i);
             taps[n] = environment.taps({w[3 * i], w[3 * i + 1], w[3 * i + 2]});
             for (std::size_t k = 0; k < 4; ++k)

@@ -1,5 +1,6 @@
-// The adjoint of many lookups in an environment map, on all threads: each texel's derivatives are added by its owner,
-// in the order of the directions, so that the sum has the same bits however many threads there are.
+// The adjoint of many lookups in an environment map, on all threads: each texel's derivatives are
+// added by its owner, in the order of the directions, so that the sum has the same bits however
+// many threads there are.
 #pragma once
 
 #include "photograd/light/environment.h"

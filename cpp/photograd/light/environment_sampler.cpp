@@ -24,7 +24,7 @@ void check_texels(std::span<const R> texels, std::int64_t width) {
              "repair the picture, for example with numpy.nan_to_num and numpy.maximum");
 }
 
-/// 1 - cos(theta) = 2 sin^2(theta / 2) at the rows' centres, between those of the poles.
+/// 1 - cos(theta) = 2 sin^2(theta / 2) at the rows' centers, between those of the poles.
 std::vector<double> band_edges(int height) {
     std::vector<double> drop(static_cast<std::size_t>(height) + 2);
     for (int row = 0; row < height; ++row) {
@@ -69,8 +69,8 @@ EnvironmentSampler::EnvironmentSampler(std::span<const R> texels, int height, do
 template EnvironmentSampler::EnvironmentSampler(std::span<const float>, int, double);
 template EnvironmentSampler::EnvironmentSampler(std::span<const double>, int, double);
 
-/// Column k of a band reaches from the centre of texel k to that of its right neighbour; band k lies between the
-/// rows k - 1 and k, where they exist.
+/// Column k of a band reaches from the center of texel k to that of its right neighbor; band k
+/// lies between the rows k - 1 and k, where they exist.
 BilinearPatch<double> EnvironmentSampler::corners(std::int64_t band, std::int64_t column) const {
     const std::int64_t width = 2 * static_cast<std::int64_t>(height_);
     const std::int64_t upper = std::max<std::int64_t>(band - 1, 0) * width;
@@ -82,7 +82,7 @@ BilinearPatch<double> EnvironmentSampler::corners(std::int64_t band, std::int64_
     return {at(upper + column), at(upper + right), at(lower + column), at(lower + right)};
 }
 
-DrawnDirection EnvironmentSampler::sample(const Vec2<double>& u2) const {
+SampledDirection EnvironmentSampler::sample(const Vec2<double>& u2) const {
     const CellChoice cell = cells_.sample(u2.y, u2.x);
     const BilinearPatch<double> patch = corners(cell.row, cell.column);
     const Vec2<double> in = patch.sample(cell.rest_column, cell.rest_row);
@@ -93,11 +93,11 @@ DrawnDirection EnvironmentSampler::sample(const Vec2<double>& u2) const {
             density_scale_ * patch.at(in.x, in.y)};
 }
 
-double EnvironmentSampler::pdf(const LatLong& place) const {
-    const TexelPair column = columns_at(place.u, 2 * height_);
-    const auto band =
-        static_cast<std::size_t>(smaller(double(height_), larger(0.0, place.v * height_ + 0.5)));
-    const double s = (place.drop - drop_[band]) / (drop_[band + 1] - drop_[band]);
+double EnvironmentSampler::pdf(const LatLong& map_point) const {
+    const TexelPair column = columns_at(map_point.u, 2 * height_);
+    const auto band = static_cast<std::size_t>(
+        smaller(double(height_), larger(0.0, map_point.v * height_ + 0.5)));
+    const double s = (map_point.drop - drop_[band]) / (drop_[band + 1] - drop_[band]);
     return density_scale_ * corners(static_cast<std::int64_t>(band), column.first)
                                 .at(column.fraction, clamped(s, 0.0, 1.0));
 }

@@ -3,9 +3,9 @@
 //   w = (-sin(theta) sin(phi), cos(theta), sin(theta) cos(phi))
 //   u = 1/2 + phi / (2 pi),  v = theta / pi
 //
-// The picture is twice as wide as high. Its middle shows +Z, its left and right edges -Z, its upper edge the zenith +Y.
-// It is seen from inside: with +Y up, what is to the right of +Z is -X. All in double, since float cannot tell apart
-// points between the texels of a large picture.
+// The picture is twice as wide as high. Its middle shows +Z, its left and right edges -Z, its upper
+// edge the zenith +Y. It is seen from inside: with +Y up, what is to the right of +Z is -X. All in
+// double, since float cannot tell apart points between the texels of a large picture.
 #pragma once
 
 #include "photograd/core/atan.h"
@@ -20,12 +20,14 @@ inline Vec2<double> lat_long_from_direction(const Vec3<double>& w) {
     return {0.5 + polar_angle(-w.x, w.z) / (2 * pi), theta / pi};
 }
 
-/// A direction's place in the picture, with its height beside the angle: what lookup and density ask.
+/// A direction's place in the picture, with its height beside the angle: what lookup and density
+/// ask.
 struct LatLong {
     double u, v, drop;
 };
 
-/// The direction at u whose height is w.y = 1 - drop; drop in [0, 2] keeps its digits at the zenith.
+/// The direction at u whose height is w.y = 1 - drop; drop in [0, 2] keeps its digits at the
+/// zenith.
 inline Vec3<double> direction_from_lat_long(double u, double drop) {
     const SinCos<double> phi = sin_cos(2 * pi * (u - 0.5));
     const double sin_theta = sqrt(larger(0.0, drop * (2 - drop)));
@@ -43,13 +45,13 @@ inline LatLong lat_long_of(const Vec3<double>& w) {
     return {uv.x, uv.y, drop_of(w)};
 }
 
-/// Two neighbouring rows or columns of texels, and how far from the first to the second.
+/// Two neighboring rows or columns of texels, and how far from the first to the second.
 struct TexelPair {
     int first, second;
     double fraction;
 };
 
-/// Columns go around: the last is the first's neighbour.
+/// Columns go around: the last is the first's neighbor.
 inline TexelPair columns_at(double u, int width) {
     const double q = smaller(width - 0.5, larger(-0.5, u * width - 0.5));  // a NaN becomes -0.5
     const int base = q < 0 ? -1 : static_cast<int>(q);

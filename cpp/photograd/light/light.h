@@ -1,10 +1,13 @@
-// What every light says about itself. There are three kinds:
+// The interface of lights. There are three families:
 //
 //   at infinity   Light       sky, sun, environment map: radiance depends on the direction alone
-//   delta         DeltaLight  point, spot, directional: reaches a place from one direction; no ray ever hits it
-//   area          AreaLight   rectangle, sphere, triangle, mesh: a surface that glows on the side of its normal
+//   delta         DeltaLight  point, spot, directional: reaches a point from one direction, and no
+//                             ray ever hits it
+//   area          AreaLight   rectangle, sphere, triangle: a surface that emits on the side of its
+//                             normal
 //
-// sample_light.h gives all of them one interface. Points and directions are of the world; w leaves the lit point.
+// sample_light.h gives all of them one interface. Points and directions are of the world; w leaves
+// the lit point.
 #pragma once
 
 #include <concepts>
@@ -15,8 +18,16 @@
 
 namespace photograd {
 
-/// What a light sends to a point along one direction, drawn with density `pdf`. Nothing is known of what stands between.
-/// An estimate of reflected light is f(wo, wi) cos radiance / pdf; pdf = 0 says that nothing arrives.
+enum class LightKind : int { infinite, environment, point, spot, directional, area };
+
+/// One direction at each point: a light that no ray hits, of weight 1 in multiple importance
+/// sampling.
+constexpr bool is_delta(LightKind kind) {
+    return kind == LightKind::point || kind == LightKind::spot || kind == LightKind::directional;
+}
+
+/// A sample of the light at a point, one direction of density `pdf`, before occlusion. The estimate
+/// of reflected light is f(wo, wi) cos radiance / pdf; pdf = 0 if no light arrives.
 template <class R>
 struct LightSample {
     Vec3<R> direction{R(0)};  // unit, towards the light
@@ -28,14 +39,14 @@ struct LightSample {
         false;  // no other strategy finds this light: weight 1 in multiple importance sampling
 };
 
-/// What lights at infinity send from one direction, and how densely samples of them are drawn there, 1/sr.
+/// Radiance of the lights at infinity in one direction, and its sampling density, 1/sr.
 template <class R>
 struct Background {
     Vec3<R> radiance{R(0)};
     R pdf = R(0);
 };
 
-/// What is wrong with a light's numbers; no argument: nothing.
+/// A fault of a light's numbers; a null `argument` if there is none.
 struct LightFault {
     const char* argument = nullptr;
     const char* expected = nullptr;
@@ -53,11 +64,13 @@ constexpr R infinitely_far() {
     return R(std::numeric_limits<double>::infinity());
 }
 
-/// A light at infinity T = M<R>. `L(w)` is the radiance seen when looking along w (towards the light); `L_backward` adds
-/// dL/dparameter to its last argument. `constants` are described like parameters but not differentiated.
+/// A light at infinity T = M<R>. `L(w)` is the radiance seen when looking along w (towards the
+/// light); `L_backward` adds dL/dparameter to its last argument. `constants` are described like
+/// parameters but not differentiated.
 template <class T, class R>
 concept LightValue = requires(const T& light, T& d_light, const Vec3<R>& w) {
     { T::name } -> std::convertible_to<const char*>;
+    { T::kind } -> std::convertible_to<LightKind>;
     T::params;
     T::constants;
     { light.L(w) } -> std::same_as<Vec3<R>>;
@@ -79,6 +92,7 @@ concept Light = LightValue<M<double>, double> && LightValue<M<Dual<double>>, Dua
 template <class T, class R>
 concept DeltaLightValue = requires(const T& light, T& d_light, const Vec3<R>& v) {
     { T::name } -> std::convertible_to<const char*>;
+    { T::kind } -> std::convertible_to<LightKind>;
     T::params;
     T::constants;
     { light.fault() } -> std::same_as<LightFault>;
@@ -86,11 +100,12 @@ concept DeltaLightValue = requires(const T& light, T& d_light, const Vec3<R>& v)
     { light.at_backward(v, v, d_light) } -> std::same_as<void>;
 };
 
-/// `L(point, w)` is what arrives at a point from w, if nothing else is in between; `radiance` is what the surface
-/// emits, the same everywhere.
+/// `L(point, w)` is what arrives at a point from w, if nothing else is in between; `radiance` is
+/// what the surface emits, the same everywhere.
 template <class T, class R>
 concept AreaLightValue = requires(const T& light, T& d_light, const Vec3<R>& v) {
     { T::name } -> std::convertible_to<const char*>;
+    { T::kind } -> std::convertible_to<LightKind>;
     T::params;
     { light.radiance } -> std::convertible_to<Vec3<R>>;
     { light.fault() } -> std::same_as<LightFault>;

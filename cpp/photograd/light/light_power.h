@@ -1,11 +1,13 @@
-// How much light there is: by it, a scene's lights are chosen.
+// Power of the lights of a scene, in proportion to which they are sampled.
 //
-// All in watts of luminance. Of a light at infinity it is what enters the scene's box, whose mean shadow is a quarter of
-// its surface (true of every convex body), or, for light of one direction, the shadow that it casts along that
-// direction. The numbers only decide where to look.
+// All in watts of luminance. Of a light at infinity it is what enters the scene's box, whose mean
+// shadow is a quarter of its surface (true of every convex body), or, for light of one direction,
+// the shadow that it casts along that direction. Powers change the variance of estimates, not their
+// mean.
 //
 //   point          4 pi I
-//   spot           2 pi (1 - cos_outer) (1 - softness / 2) I     the fading part counts half, s(t) + s(1 - t) = 1
+//   spot           2 pi (1 - cos_outer) (1 - softness / 2) I
+//       the fading part counts half, s(t) + s(1 - t) = 1
 //   directional    E (shadow of the box along the light)
 //   at infinity    (surface of the box / 4) integral of L over the sphere
 //   surface        pi A L

@@ -1,4 +1,4 @@
-// How bright a colour looks, by which lights and directions are chosen.
+// Luminance of a color, the weight by which lights and directions are sampled.
 #pragma once
 
 namespace photograd {

@@ -1,4 +1,4 @@
-// A light without size, the same to all sides.
+// A point light, isotropic.
 //
 //   irradiance of what faces it = intensity / r^2,    d/dintensity = 1 / r^2
 //
@@ -15,6 +15,7 @@ struct PointLight {
     Vec3<R> position{R(0)};
 
     static constexpr const char* name = "point";
+    static constexpr LightKind kind = LightKind::point;
     static constexpr auto params =
         describe(p("intensity", &PointLight::intensity, 0.0, 10.0, "W/sr"));
     static constexpr auto constants =

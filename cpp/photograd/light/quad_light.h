@@ -1,13 +1,13 @@
-// A glowing rectangle, sampled by the solid angle that it fills: all its light arrives with one weight, and what is left
-// of the noise is the receiving surface's cosine and shadows.
+// A rectangular area light, sampled uniformly by solid angle: all samples have one weight, so that
+// only the cosine at the receiver and shadows cause variance.
 //
 //   L(point, w) = radiance where w meets the rectangle's front,    dL/dradiance = 1 there
 //
-// The front is the side of edge_x x edge_y. Where the rectangle fills less than 1e-6 sr, its solid angle is not known
-// well enough and points are drawn evenly over its area instead.
+// The front is the side of edge_x x edge_y. Where the rectangle fills less than 1e-6 sr, its solid
+// angle loses its digits, and points are sampled uniformly over its area instead.
 #pragma once
 
-#include "photograd/light/glow.h"
+#include "photograd/light/area_light.h"
 #include "photograd/sampling/spherical_rectangle.h"
 
 namespace photograd {
@@ -18,6 +18,7 @@ struct QuadLight {
     Vec3<R> corner{R(-0.5), R(0), R(-0.5)}, edge_x{R(1), R(0), R(0)}, edge_y{R(0), R(0), R(1)};
 
     static constexpr const char* name = "quad";
+    static constexpr LightKind kind = LightKind::area;
     static constexpr auto params =
         describe(p("radiance", &QuadLight::radiance, 0.0, 10.0, "W/(m^2 sr)"));
     static constexpr auto constants = describe(p("corner", &QuadLight::corner, -1.0, 1.0, "m"),
@@ -31,41 +32,41 @@ struct QuadLight {
         return {};
     }
     Vec3<R> L(const Vec3<R>& point, const Vec3<R>& w) const {
-        return meet(point, w).cosine > R(0) ? radiance : Vec3<R>(R(0));
+        return intersect(point, w).cosine > R(0) ? radiance : Vec3<R>(R(0));
     }
     void L_backward(const Vec3<R>& point, const Vec3<R>& w, const Vec3<R>& d_L,
                     QuadLight& d_self) const {
-        if (meet(point, w).cosine > R(0)) d_self.radiance += d_L;
+        if (intersect(point, w).cosine > R(0)) d_self.radiance += d_L;
     }
 
     LightSample<R> sample(const Vec3<R>& point, const Vec2<R>& u2) const {
         return sample(point, u2, axes());
     }
-    /// The same for who has kept `axes()`, which no point changes.
+    /// With `axes()` kept, which no point changes.
     LightSample<R> sample(const Vec3<R>& point, const Vec2<R>& u2,
                           const RectangleAxes& known) const {
         const Vec3<R> normal = cross(edge_x, edge_y), from = corner - point;
         if (!(dot(from, normal) < R(0))) return {};
-        const SphericalRectangle seen = seen_from(point, known);
-        if (seen.solid_angle < smallest)
-            return glow_sample(from + u2.x * edge_x + u2.y * edge_y, normalize(normal),
-                               R(1) / length(normal), radiance);
-        const Vec3<double> to = seen.sample({double(u2.x), double(u2.y)});
+        const SphericalRectangle projected = spherical_rectangle(point, known);
+        if (projected.solid_angle < smallest)
+            return sample_area_light(from + u2.x * edge_x + u2.y * edge_y, normalize(normal),
+                                     R(1) / length(normal), radiance);
+        const Vec3<double> to = projected.sample({double(u2.x), double(u2.y)});
         const double r = length(to);
         const Vec3<double> w = to * (1 / r);
-        return {{R(w.x), R(w.y), R(w.z)}, R(r), radiance, R(1 / seen.solid_angle), false};
+        return {{R(w.x), R(w.y), R(w.z)}, R(r), radiance, R(1 / projected.solid_angle), false};
     }
     R pdf(const Vec3<R>& point, const Vec3<R>& w) const {
-        const Meeting at = meet(point, w);
+        const Hit at = intersect(point, w);
         return at.cosine > R(0) ? hit_pdf(point, at.t, at.cosine) : R(0);
     }
-    /// The same for a tracer that knows the distance and the cosine at the front that it has hit.
+    /// `pdf` of a direction that hits the front, at this distance and cosine.
     [[nodiscard]] R hit_pdf(const Vec3<R>& point, R distance, R cosine) const {
         return hit_pdf(point, distance, cosine, axes());
     }
     [[nodiscard]] R hit_pdf(const Vec3<R>& point, R distance, R cosine,
                             const RectangleAxes& known) const {
-        const double solid_angle = seen_from(point, known).solid_angle;
+        const double solid_angle = spherical_rectangle(point, known).solid_angle;
         if (solid_angle >= smallest) return R(1 / solid_angle);
         return solid_angle_density(R(1) / length(cross(edge_x, edge_y)), distance * distance,
                                    cosine);
@@ -77,10 +78,10 @@ struct QuadLight {
 private:
     static constexpr double smallest = 1e-6;  // sr
 
-    struct Meeting {
+    struct Hit {
         R t, cosine;  // cosine 0: w misses the front
     };
-    [[nodiscard]] Meeting meet(const Vec3<R>& point, const Vec3<R>& w) const {
+    [[nodiscard]] Hit intersect(const Vec3<R>& point, const Vec3<R>& w) const {
         const Vec3<R> normal = normalize(cross(edge_x, edge_y)), from = corner - point;
         const R cosine = -dot(w, normal), t = -dot(from, normal) / cosine;
         if (!(cosine > R(0)) || !(t > R(0))) return {R(0), R(0)};
@@ -91,15 +92,15 @@ private:
         return {t, hit ? cosine : R(0)};
     }
     static Vec3<double> wide(const Vec3<R>& v) { return Vec3<double>(v.x, v.y, v.z); }
-    [[nodiscard]] SphericalRectangle seen_from(const Vec3<R>& point,
-                                               const RectangleAxes& known) const {
+    [[nodiscard]] SphericalRectangle spherical_rectangle(const Vec3<R>& point,
+                                                         const RectangleAxes& known) const {
         return {wide(corner) - wide(point), known};
     }
 };
 
 static_assert(AreaLight<QuadLight>);
 
-/// A rectangle that stays where it is, for who asks it often.
+/// A rectangle with what no lit point changes.
 template <class R>
 struct PlacedQuad {
     QuadLight<R> light;

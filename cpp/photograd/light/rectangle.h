@@ -1,4 +1,4 @@
-// Two triangles that are a rectangle: worth finding out, since a rectangle can be sampled by solid angle.
+// Detects pairs of triangles that form a rectangle, which can be sampled by solid angle.
 #pragma once
 
 #include <optional>
@@ -7,11 +7,13 @@
 
 namespace photograd {
 
-/// The rectangle that two triangles make, corners first (3) and second (3) counterclockwise seen from the same side;
-/// nothing if they make none. Corners are compared exactly: they come from the same list of vertices.
+/// The rectangle that two triangles make, corners first (3) and second (3) counterclockwise seen
+/// from the same side; nothing if they make none. Corners are compared exactly: they come from the
+/// same list of vertices.
 inline std::optional<QuadLight<double>> rectangle_of(const Vec3<double>* first,
                                                      const Vec3<double>* second) {
-    // Some corner p of the first lies off the common edge, whose ends are q and r; s is the corner across.
+    // Some corner p of the first lies off the common edge, whose ends are q and r; s is the corner
+    // across.
     for (int i = 0; i < 3; ++i) {
         const Vec3<double>&p = first[i], &q = first[(i + 1) % 3], &r = first[(i + 2) % 3];
         for (int j = 0; j < 3; ++j) {

@@ -1,5 +1,5 @@
-// All lights of a fixed number of parameters. A new one: its header, and its name here. Meshes and environment maps,
-// whose size is not fixed, have bindings of their own.
+// All lights of a fixed number of parameters. A new one: its header, and its name here. Meshes and
+// environment maps, whose size is not fixed, have bindings of their own.
 #pragma once
 
 #include "photograd/light/constant_light.h"
@@ -20,7 +20,7 @@ using Lights = ModelList<Sun, Sky, ConstantLight>;
 /// Of one direction at each place; no ray ever hits them.
 using DeltaLights = ModelList<PointLight, DirectionalLight, SpotLight>;
 
-/// Surfaces that glow.
+/// Surfaces that emit.
 using AreaLights = ModelList<QuadLight, SphereLight, TriangleLight>;
 
 }  // namespace photograd

@@ -1,4 +1,5 @@
-// A dome whose radiance depends on the height h = w.y of a direction alone; three equal colours make it constant.
+// A sky gradient: radiance by the height h = w.y of a direction alone, constant if its three colors
+// are equal.
 //
 //   L(w) = (1 - h) horizon + h zenith     above the horizon
 //   L(w) = (1 + h) horizon - h ground     below
@@ -14,6 +15,7 @@ struct Sky {
     Vec3<R> zenith{R(1)}, horizon{R(1)}, ground{R(1)};
 
     static constexpr const char* name = "sky";
+    static constexpr LightKind kind = LightKind::infinite;
     static constexpr auto params = describe(p("zenith", &Sky::zenith, 0.0, 10.0, "W/(m^2 sr)"),
                                             p("horizon", &Sky::horizon, 0.0, 10.0, "W/(m^2 sr)"),
                                             p("ground", &Sky::ground, 0.0, 10.0, "W/(m^2 sr)"));

@@ -1,11 +1,10 @@
-// A glowing ball, sampled by the cone of directions that meet it.
+// A spherical area light, sampled uniformly in the cone of directions that hit it.
 //
-//   sin^2(a) = radius^2 / d^2 for the angle a of the cone, d = distance of the centre
-//   height of the cone's cap = 1 - cos(a) = sin^2(a) / (1 + cos(a))        nothing cancels for balls far away
+//   sin^2(a) = radius^2 / d^2 for the angle a of the cone, d = distance of the center
+//   height of the cone's cap = 1 - cos(a) = sin^2(a) / (1 + cos(a))
+//       nothing cancels for balls far away
 //   density = 1 / (2 pi height)
 //   L(point, w) = radiance in the cone, 0 outside;    dL/dradiance = 1 in the cone
-//
-// It glows outwards: inside of it, there is no light.
 #pragma once
 
 #include "photograd/core/frame.h"
@@ -21,6 +20,7 @@ struct SphereLight {
     R radius{R(1)};
 
     static constexpr const char* name = "sphere";
+    static constexpr LightKind kind = LightKind::area;
     static constexpr auto params =
         describe(p("radiance", &SphereLight::radiance, 0.0, 10.0, "W/(m^2 sr)"));
     static constexpr auto constants = describe(p("center", &SphereLight::center, -1.0, 1.0, "m"),
@@ -40,8 +40,8 @@ struct SphereLight {
         if (cone.height > R(0) && in_cap(w, cone.axis, cone.height)) d_self.radiance += d_L;
     }
 
-    /// A ray at the angle b to the axis meets the near side at t = d cos(b) - sqrt(radius^2 - d^2 sin^2(b)), here as
-    /// the product of both meetings, d^2 - radius^2, over the far one.
+    /// A ray at the angle b to the axis meets the near side at t = d cos(b) - sqrt(radius^2 - d^2
+    /// sin^2(b)), here as the product of both meetings, d^2 - radius^2, over the far one.
     LightSample<R> sample(const Vec3<R>& point, const Vec2<R>& u2) const {
         const Cone cone = cone_from(point);
         if (!(cone.height > R(0))) return {};
@@ -54,10 +54,10 @@ struct SphereLight {
     }
     R pdf(const Vec3<R>& point, const Vec3<R>& w) const {
         const Cone cone = cone_from(point);
-        const bool seen = cone.height > R(0) && in_cap(w, cone.axis, cone.height);
-        return seen ? R(1 / (2 * pi)) / cone.height : R(0);
+        const bool in_cone = cone.height > R(0) && in_cap(w, cone.axis, cone.height);
+        return in_cone ? R(1 / (2 * pi)) / cone.height : R(0);
     }
-    /// The same for a tracer that has hit the ball: directions along its rim may round to either side.
+    /// `pdf` of a direction that hits the sphere; at its rim `pdf` may round to a miss.
     [[nodiscard]] R hit_pdf(const Vec3<R>& point, R, R) const {
         const Cone cone = cone_from(point);
         return cone.height > R(0) ? R(1 / (2 * pi)) / cone.height : R(0);

@@ -1,6 +1,6 @@
-// The sun: a disc of equal radiance at infinity. Its size makes shadows soft.
+// The sun: a disc of constant radiance at infinity, with soft shadows.
 //
-//   L(w) = radiance  where the angle between w and the direction of the sun is at most the angular radius
+//   L(w) = radiance  where w is within the angular radius of the sun's direction
 //   dL/dradiance = 1 there, 0 elsewhere
 // Direction and size move an edge of the integrand; L has no derivative there and none is given.
 #pragma once
@@ -18,6 +18,7 @@ struct Sun {
     R height{R(1.08e-5)};                 // 1 - cos(angular radius) of the disc
 
     static constexpr const char* name = "sun";
+    static constexpr LightKind kind = LightKind::infinite;
     static constexpr auto params =
         describe(p("radiance", &Sun::radiance, 0.0, 100.0, "W/(m^2 sr)"));
     static constexpr auto constants =

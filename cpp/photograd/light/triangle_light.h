@@ -1,11 +1,13 @@
-// A glowing triangle, sampled evenly over its area.
+// A triangular area light, sampled uniformly over its area.
 //
-//   L(point, w) = radiance where w meets the front, from which a, b, c turn counterclockwise;  dL/dradiance = 1 there
-//   density = (1 / area) r^2 / cos        cos at the triangle, between its normal and the way back to the point
+//   L(point, w) = radiance where w hits the front, from which a, b, c turn counterclockwise;
+//   dL/dradiance = 1 there
+//   density = (1 / area) r^2 / cos
+//       cos at the triangle, between its normal and the direction to the point
 #pragma once
 
 #include "photograd/geometry/triangle.h"
-#include "photograd/light/glow.h"
+#include "photograd/light/area_light.h"
 
 namespace photograd {
 
@@ -15,6 +17,7 @@ struct TriangleLight {
     Vec3<R> a{R(0)}, b{R(1), R(0), R(0)}, c{R(0), R(0), R(1)};
 
     static constexpr const char* name = "triangle";
+    static constexpr LightKind kind = LightKind::area;
     static constexpr auto params =
         describe(p("radiance", &TriangleLight::radiance, 0.0, 10.0, "W/(m^2 sr)"));
     static constexpr auto constants = describe(p("a", &TriangleLight::a, -1.0, 1.0, "m"),
@@ -35,11 +38,11 @@ struct TriangleLight {
 
     LightSample<R> sample(const Vec3<R>& point, const Vec2<R>& u2) const {
         const Vec2<R> q = square_to_triangle(u2);
-        return glow_sample((a - point) + q.x * (b - a) + q.y * (c - a), normal(), R(1) / area(),
-                           radiance);
+        return sample_area_light((a - point) + q.x * (b - a) + q.y * (c - a), normal(),
+                                 R(1) / area(), radiance);
     }
     R pdf(const Vec3<R>& point, const Vec3<R>& w) const { return density(point, w); }
-    /// The same for a tracer that knows the distance and the cosine at the front that it has hit.
+    /// `pdf` of a direction that hits the front, at this distance and cosine.
     [[nodiscard]] R hit_pdf(const Vec3<R>&, R distance, R cosine) const {
         return solid_angle_density(R(1) / area(), distance * distance, cosine);
     }

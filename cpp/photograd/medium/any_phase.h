@@ -1,4 +1,5 @@
-// One phase function of the registry, with its parameters, as a value: a scene has media with different ones.
+// One phase function of the registry, with its parameters, as a value: a scene has media with
+// different ones.
 #pragma once
 
 #include <string>
@@ -6,7 +7,6 @@
 #include <variant>
 
 #include "photograd/core/errors.h"
-#include "photograd/medium/phase_lobe.h"
 #include "photograd/medium/registry.h"
 
 namespace photograd {
@@ -47,23 +47,28 @@ struct AnyPhase {
         return std::visit([](const auto& m) { return scalars_in(m.params); }, model);
     }
 
-    /// Density of a turn, 1/sr, and its derivative, added to d_self: a phase function of the same kind.
+    /// Density of a turn, 1/sr, and its derivatives, added to d_self, a phase function of the same
+    /// kind, and to d_cos_theta.
     [[nodiscard]] R p(R cos_theta) const {
         return std::visit([&](const auto& m) { return m.p(cos_theta); }, model);
     }
-    void p_backward(R cos_theta, R d_p, AnyPhase& d_self) const {
-        R fixed = R(0);  // the direction was drawn, and is held
+    void p_backward(R cos_theta, R d_p, AnyPhase& d_self, R& d_cos_theta) const {
         std::visit(
             [&]<class M>(const M& m) {
-                m.p_backward(cos_theta, d_p, std::get<M>(d_self.model), fixed);
+                m.p_backward(cos_theta, d_p, std::get<M>(d_self.model), d_cos_theta);
             },
             model);
     }
-    /// The lobe by which directions are drawn (phase_lobe.h).
-    [[nodiscard]] Vec3<R> sample(const Vec3<R>& direction, const Vec2<R>& u2) const {
-        return sample_lobe(lobe(), direction, u2);
+    /// p_backward of a sampled direction, which is detached.
+    void p_backward(R cos_theta, R d_p, AnyPhase& d_self) const {
+        R held = R(0);
+        p_backward(cos_theta, d_p, d_self, held);
     }
-    [[nodiscard]] R pdf(R cos_theta) const { return lobe_pdf(lobe(), cos_theta); }
+    /// All are sampled as Henyey and Greenstein's (henyey_greenstein.h).
+    [[nodiscard]] Vec3<R> sample(const Vec3<R>& direction, const Vec2<R>& u2) const {
+        return sample_henyey_greenstein(lobe(), direction, u2);
+    }
+    [[nodiscard]] R pdf(R cos_theta) const { return henyey_greenstein_pdf(lobe(), cos_theta); }
 
 private:
     [[nodiscard]] R lobe() const {

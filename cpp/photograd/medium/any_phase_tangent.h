@@ -1,5 +1,6 @@
-// How a phase function changes along a direction of its parameters: forward mode, the transpose of p_backward.
-// `along` is a phase function of the same kind, which holds the change of each parameter.
+// The directional derivative of a phase function along its parameters: forward mode, transpose of
+// p_backward. `along` is a phase function of the same kind, which holds the change of each
+// parameter.
 #pragma once
 
 #include "photograd/core/dual.h"
@@ -7,9 +8,9 @@
 
 namespace photograd {
 
-/// t(p), at an angle that is held.
+/// t(p), where the cosine changes by v_cos_theta; by default the angle is held.
 inline double phase_tangent(const AnyPhase<double>& phase, const AnyPhase<double>& along,
-                            double cos_theta) {
+                            double cos_theta, double v_cos_theta = 0) {
     using D = Dual<double>;
     double value[8], change[8], found = 0;
     Phases::for_each([&]<template <class> class M>() {
@@ -26,7 +27,7 @@ inline double phase_tangent(const AnyPhase<double>& phase, const AnyPhase<double
                 ++k;
             },
             dual);
-        found = dual.p(D(cos_theta)).tangent;
+        found = dual.p(D(cos_theta, v_cos_theta)).tangent;
     });
     return found;
 }

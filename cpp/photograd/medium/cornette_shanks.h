@@ -1,5 +1,5 @@
-// Cornette and Shanks's phase function [Cornette1992]: Henyey and Greenstein's, times what makes very
-// small particles (g = 0) scatter as Rayleigh found, as much back as forward and less to the sides.
+// Cornette-Shanks phase function [Cornette1992]: Henyey-Greenstein times a factor that makes it
+// Rayleigh scattering for very small particles (g = 0).
 //
 //   q = 1 + g^2 - 2 g c,   c = cos_theta
 //   p = 3 (1 - g^2) (1 + c^2) / (8 pi (2 + g^2) q^(3/2))

@@ -1,8 +1,8 @@
 // Derivatives of many lookups of a density grid, added up by the owners of voxels.
 //
-// A lookup between the layers x = i and i + 1 of voxels belongs to owner i, who adds his in their order. Neighbouring
-// owners share a layer, so that all with even i go first, then all with odd: no voxel is ever written by two at once,
-// and the order of each voxel's sum is fixed.
+// A lookup between the layers x = i and i + 1 of voxels belongs to owner i; an owner adds its own
+// in their order. Neighboring owners share a layer, so that all with even i go first, then all with
+// odd: no voxel is ever written by two at once, and the order of each voxel's sum is fixed.
 #pragma once
 
 #include "photograd/core/scatter.h"
@@ -12,12 +12,12 @@ namespace photograd {
 
 /// d_values (X, Y, Z) += weight d_density of each lookup.
 template <class R>
-void density_backward(const DensityLayout& layout, const DensityAdjoint<R>& seen,
+void density_backward(const DensityLayout& layout, const DensityAdjoint<R>& lookups,
                       double* d_values) {
-    const std::size_t count = seen.d_density.size();
+    const std::size_t count = lookups.d_density.size();
     const int owners = layout.shape.x - 1;
     const auto taps_of = [&](std::size_t i) {
-        const R* x = &seen.world[3 * i];
+        const R* x = &lookups.world[3 * i];
         return DensityTaps<double>(layout, Vec3<double>(double(x[0]), double(x[1]), double(x[2])));
     };
     std::vector<std::uint32_t> owner(count);
@@ -34,7 +34,7 @@ void density_backward(const DensityLayout& layout, const DensityAdjoint<R>& seen
             for (std::size_t n = bins.begin[k]; n < bins.begin[k + 1]; ++n) {
                 const std::size_t i = bins.order[n];
                 const DensityTaps<double> taps = taps_of(i);
-                const auto d = static_cast<double>(seen.d_density[i]);
+                const auto d = static_cast<double>(lookups.d_density[i]);
                 trilinear_backward<double, 1>(layout.shape, taps.x, taps.y, taps.z, &d, d_values);
             }
         });

@@ -1,8 +1,9 @@
-// A density that varies from place to place: values (X, Y, Z) at the voxels' centres of a box in the world.
+// A density grid of a heterogeneous medium: values (X, Y, Z) at the voxels' centers of a box in the
+// world.
 //
-// grid_from_world takes the box to [0, 1]^3; voxel i of n sits at (i + 1/2) / n. Between centres the density is
-// trilinear (ops/trilinear.h), from the outermost centres to the box's sides it stays, and outside it is 0. By the values
-// it is linear; the weights are those of the lookup.
+// box_from_world takes the box to [0, 1]^3; voxel i of n sits at (i + 1/2) / n. Between centers the
+// density is trilinear (ops/trilinear.h), from the outermost centers to the box's sides it stays,
+// and outside it is 0. It is linear in the values, whose derivatives are the weights of the lookup.
 #pragma once
 
 #include <array>
@@ -28,6 +29,18 @@ struct DensityLayout {
             q[i] = R(row[0]) * v.x + R(row[1]) * v.y + R(row[2]) * v.z + R(row[3]) * last;
         }
         return q;
+    }
+    /// The point of the world with these coordinates in the box; the inverse is by cofactors.
+    [[nodiscard]] Vec3<double> in_world(const Vec3<double>& q) const {
+        const auto row = [&](std::size_t i) {
+            const double* m = box_from_world.data() + 4 * i;
+            return Vec3<double>(m[0], m[1], m[2]);
+        };
+        const Vec3<double> a = row(0), b = row(1), c = row(2);
+        const Vec3<double> p =
+            q - Vec3<double>(box_from_world[3], box_from_world[7], box_from_world[11]);
+        return (cross(b, c) * p.x + cross(c, a) * p.y + cross(a, b) * p.z) *
+               (1 / dot(a, cross(b, c)));
     }
     /// Cuts [t0, t1] of a ray down to what lies in the box; t1 < t0 where nothing does.
     template <class R>

@@ -1,9 +1,9 @@
-// What fills a volume: particles that absorb light and, if it has a phase function, scatter it.
+// A participating medium: particles that absorb light and, with a phase function, scatter it.
 //
-//   sigma_t   extinction: what a metre takes out of a beam, 1/m      sigma_t = sigma_a + sigma_s
-//   albedo    sigma_s / sigma_t: how much of that goes on elsewhere, 0 to 1
+//   sigma_t   extinction coefficient, 1/m                           sigma_t = sigma_a + sigma_s
+//   albedo    sigma_s / sigma_t, the share of it that scatters, 0 to 1
 //
-// each for three channels. Along a straight line through an even medium [Chandrasekhar1960]
+// each for three channels. Along a straight line through a homogeneous medium [Chandrasekhar1960]
 //
 //   T(t) = exp(-sigma_t t),      dT/dsigma_t = -t T
 //
@@ -33,7 +33,7 @@ struct Medium {
         phase->for_each(visit);
     }
     [[nodiscard]] int parameter_count() const { return phase ? 6 + phase->parameter_count() : 3; }
-    /// The same kind of medium with all numbers 0: where derivatives are added up.
+    /// This medium with all numbers 0, as an accumulator of derivatives.
     [[nodiscard]] Medium zero() const {
         Medium copy = *this;
         copy.for_each([](R& x) { x = R(0); });

@@ -1,7 +1,7 @@
-// Activations: from an unbounded parameter to a density (>= 0) or a colour (in [0, 1]).
+// Activations: from an unbounded parameter to a density (>= 0) or a color (in [0, 1]).
 //
-// Trilinear interpolation acts on the raw parameters and the activation on the result, which keeps a
-// surface inside a voxel sharp [Sun2022, Sec. 4.1].
+// Trilinear interpolation acts on the raw parameters and the activation on the result, which keeps
+// a surface inside a voxel sharp [Sun2022, Sec. 4.1].
 //
 //   identity  y = x
 //   relu      y = max(x, 0)        dy/dx = [x > 0]      dead below 0: no gradient ever revives it

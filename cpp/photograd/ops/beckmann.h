@@ -1,14 +1,17 @@
-// Beckmann: facets whose slopes are distributed normally, with no tails to speak of [Walter2007, Eq. 25].
+// Beckmann: facets whose slopes are distributed normally, with no tails to speak of [Walter2007,
+// Eq. 25].
 //
 //   u = (h_x^2 + h_y^2) / h_z^2                       squared tangent of the half vector's angle
 //   D = exp(-u / alpha^2) / (pi alpha^2 h_z^4)        integral of D h_z over the hemisphere: 1
 //   dD/dalpha = 2 D (u / alpha^2 - 1) / alpha
 //
-// Smith's masking, exact, not by the usual fit [Heitz2014], for a = w_z / (alpha sqrt(w_x^2 + w_y^2)):
+// Smith's masking, exact, not by the usual fit [Heitz2014], for a = w_z / (alpha sqrt(w_x^2 +
+// w_y^2)):
 //
-//   Lambda = (exp(-a^2) / (a sqrt(pi)) - erfc(a)) / 2         dLambda/da = -exp(-a^2) / (2 sqrt(pi) a^2)
+//   Lambda = (exp(-a^2) / (a sqrt(pi)) - erfc(a)) / 2    dLambda/da = -exp(-a^2) / (2 sqrt(pi) a^2)
 //   da/dalpha = -a / alpha
-//   V = G2 / (4 o_z i_z),  G2 = 1 / (1 + Lambda_o + Lambda_i)  correlated by height [Heitz2014, Eq. 99]
+//   V = G2 / (4 o_z i_z),  G2 = 1 / (1 + Lambda_o + Lambda_i)      height-correlated
+//                                                                  [Heitz2014, Eq. 99]
 //   dV/dLambda = -V G2
 //
 // Directions are held constant.
@@ -20,7 +23,8 @@
 namespace photograd {
 inline namespace PHOTOGRAD_ISA {
 
-/// Density of facets with normal wh, per solid angle and area of the surface. wh is a unit vector with z > 0.
+/// Density of facets with normal wh, per solid angle and area of the surface. wh is a unit vector
+/// with z > 0.
 template <class R>
 inline R beckmann_D(const Vec3<R>& wh, R alpha) {
     const R z2 = wh.z * wh.z, a2 = alpha * alpha, u = (wh.x * wh.x + wh.y * wh.y) / z2;
@@ -34,7 +38,8 @@ inline void beckmann_D_backward(const Vec3<R>& wh, R alpha, R d_D, R& d_alpha) {
 
 namespace beckmann_detail {
 
-/// a of the head of this file; straight up, where it is infinite, 6 serves as well (Lambda = 1e-18).
+/// a of the head of this file; straight up, where it is infinite, 6 serves as well (Lambda =
+/// 1e-18).
 template <class R>
 inline R steepness(const Vec3<R>& w, R alpha) {
     const R s2 = w.x * w.x + w.y * w.y, most = R(6) * alpha;

@@ -1,12 +1,13 @@
-// Bilinear interpolation in a texture T[row, column] with texels as values at their centres.
+// Bilinear interpolation in a texture T[row, column] with texels as values at their centers.
 //
-// Texture coordinates (u, v) lie in [0, 1], v points down, and the centre of texel i of n lies at
+// Texture coordinates (u, v) lie in [0, 1], v points down, and the center of texel i of n lies at
 // (i + 0.5) / n. Along one axis, x = u for columns and v for rows:
 //
-//   q = clamp(x n - 0.5, 0, n - 1),  base = floor(q),  f = q - base     df/dx = n, 0 where q is clamped
+//   q = clamp(x n - 0.5, 0, n - 1),  base = floor(q),  f = q - base
+//   df/dx = n, 0 where q is clamped
 //
-// so that outside of the outermost centres the border value continues. With f along the columns and g
-// along the rows, the four texels and their weights are
+// so that outside of the outermost centers the border value continues. With f along the columns and
+// g along the rows, the four texels and their weights are
 //
 //   value = w00 T00 + w01 T01 + w10 T10 + w11 T11
 //   w00 = (1 - f)(1 - g),  w01 = f (1 - g),  w10 = (1 - f) g,  w11 = f g
@@ -15,9 +16,9 @@
 //   dvalue/du = W ((1 - g)(T01 - T00) + g (T11 - T10))
 //   dvalue/dv = H ((1 - f)(T10 - T00) + f (T11 - T01))
 //
-// The value is linear in T. As a function of the point it has kinks at the centres; there the side of
-// growing x counts. `base` is at most n - 2, so that its right neighbour exists; an axis with a single
-// texel is constant.
+// The value is linear in T. As a function of the point it has kinks at the centers; there the side
+// of growing x counts. `base` is at most n - 2, so that its right neighbor exists; an axis with a
+// single texel is constant.
 #pragma once
 
 #include "photograd/core/dual.h"
@@ -31,7 +32,7 @@ struct TextureShape {
     [[nodiscard]] long long texels() const { return static_cast<long long>(height) * width; }
 };
 
-/// Two neighbouring texels along one axis, `base` and `base + 1`.
+/// Two neighboring texels along one axis, `base` and `base + 1`.
 template <class R>
 struct TexelAxis {
     int base;
@@ -89,7 +90,7 @@ inline void bilinear_backward(const TextureShape& shape, const TexelAxis<R>& col
     const TexelSteps<C> step = TexelSteps<C>::of(shape);
     const BilinearWeights<R> w = BilinearWeights<R>::of(column.fraction, row.fraction);
     R* d = d_texels + (static_cast<long long>(row.base) * shape.width + column.base) * C;
-    // Texel by texel: the channels of one are neighbours in memory and turn into lanes.
+    // Texel by texel: the channels of one are neighbors in memory and turn into lanes.
     for (int c = 0; c < C; ++c) d[c] += w.w00 * d_out[c];
     for (int c = 0; c < C; ++c) d[step.right + c] += w.w01 * d_out[c];
     for (int c = 0; c < C; ++c) d[step.down + c] += w.w10 * d_out[c];

@@ -1,13 +1,15 @@
 // Trilinear interpolation of eight corners that may lie anywhere in memory, as in a sparse grid.
 //
-// Corner (x, y, z) of a cell, each 0 or 1, has number 4 x + 2 y + z. With the fractions f of a point in
-// the cell and the weights w(0) = 1 - f, w(1) = f along each axis
+// Corner (x, y, z) of a cell, each 0 or 1, has number 4 x + 2 y + z. With the fractions f of a
+// point in the cell and the weights w(0) = 1 - f, w(1) = f along each axis
 //
 //   out = sum_xyz w_x w_y w_z v_xyz,   dout/dv_xyz = w_x w_y w_z,
 //   dout/df_x = sum_yz w_y w_z (v_1yz - v_0yz), ...
 //
 // The sum has the order of ops/trilinear.h, so that dense and sparse lookups agree bit for bit.
 #pragma once
+
+#include <cmath>
 
 #include "photograd/core/dual.h"
 
@@ -24,6 +26,32 @@ struct CellWeights {
     }
     [[nodiscard]] R corner(int number) const {
         return (x[number >> 2] * y[number >> 1 & 1]) * z[number & 1];
+    }
+    /// d_fraction[axis] += d_weight d corner(number) / d fraction[axis].
+    void corner_backward(int number, R d_weight, R* d_fraction) const {
+        const int i = number >> 2, j = number >> 1 & 1, k = number & 1;
+        d_fraction[0] += (i ? d_weight : -d_weight) * (y[j] * z[k]);
+        d_fraction[1] += (j ? d_weight : -d_weight) * (x[i] * z[k]);
+        d_fraction[2] += (k ? d_weight : -d_weight) * (x[i] * y[j]);
+    }
+};
+
+/// A point in its cell; q in voxels, voxel i at q = i.
+template <class R>
+struct CellPoint {
+    int base[3];  // the lowest corner
+    CellWeights<R> weights;
+
+    static CellPoint of(const R* q) {
+        CellPoint at;
+        R fraction[3];
+        for (int axis = 0; axis < 3; ++axis) {
+            const R floor = std::floor(q[axis]);
+            at.base[axis] = static_cast<int>(floor);
+            fraction[axis] = q[axis] - floor;
+        }
+        at.weights = CellWeights<R>::of(fraction);
+        return at;
     }
 };
 
@@ -54,12 +82,9 @@ template <class R>
 inline void cell_blend_fraction_backward(const R* const* corner, const CellWeights<R>& w,
                                          int channels, const R* d_out, R* d_fraction) {
     for (int number = 0; number < 8; ++number) {
-        const int x = number >> 2, y = number >> 1 & 1, z = number & 1;
-        R along = R(0);
-        for (int c = 0; c < channels; ++c) along += d_out[c] * corner[number][c];
-        d_fraction[0] += (x ? along : -along) * (w.y[y] * w.z[z]);
-        d_fraction[1] += (y ? along : -along) * (w.x[x] * w.z[z]);
-        d_fraction[2] += (z ? along : -along) * (w.x[x] * w.y[y]);
+        R d_weight = R(0);
+        for (int c = 0; c < channels; ++c) d_weight += d_out[c] * corner[number][c];
+        w.corner_backward(number, d_weight, d_fraction);
     }
 }
 

@@ -1,6 +1,7 @@
-// The fibres of cloth: a distribution that is largest at the horizon, and its masking [Estevez2017].
+// The fibers of cloth: a distribution that is largest at the horizon, and its masking
+// [Estevez2017].
 //
-//   D = (2 + q) sin(theta)^q / (2 pi),   q = 1 / alpha             integral of D cos over the hemisphere: 1
+//   D = (2 + q) sin(theta)^q / (2 pi),   q = 1 / alpha    integral of D cos over the hemisphere: 1
 //   dD/dq = D (1 / (2 + q) + ln sin(theta)),   dq/dalpha = -1 / alpha^2
 //
 // Masking was simulated and fitted, for the cosine x of a direction:
@@ -8,10 +9,10 @@
 //   Lambda(x) = exp(L(x)) below x = 0.5, exp(2 L(0.5) - L(1 - x)) above
 //   L(x) = a / (1 + b x^c) + d x + e
 //
-// where each of a to e goes from its value at alpha = 0 to that at alpha = 1 with the weight w = (1 - alpha)^2 of the
-// first. So, with P = 1 + b x^c,
+// where each of a to e goes from its value at alpha = 0 to that at alpha = 1 with the weight w = (1
+// - alpha)^2 of the first. So, with P = 1 + b x^c,
 //
-//   dL/da = 1 / P     dL/db = -a x^c / P^2     dL/dc = -a b x^c ln x / P^2     dL/dd = x     dL/de = 1
+//   dL/da = 1 / P    dL/db = -a x^c / P^2    dL/dc = -a b x^c ln x / P^2    dL/dd = x    dL/de = 1
 //   dw/dalpha = -2 (1 - alpha)
 //   V = 1 / (4 o_z i_z (1 + Lambda_o + Lambda_i)),   dV/dLambda = -V / (1 + Lambda_o + Lambda_i)
 //
@@ -46,7 +47,7 @@ struct Fit {
     }
 };
 
-/// ln Lambda and its derivative by w.
+/// ln Lambda and its derivative with respect to w.
 template <class R>
 inline Fit<R> log_lambda(R cos_theta, R w) {
     if (cos_theta < R(0.5)) return Fit<R>::of(cos_theta, w);
@@ -58,7 +59,7 @@ inline Fit<R> log_lambda(R cos_theta, R w) {
 
 }  // namespace charlie_detail
 
-/// Density of fibres' normals, per solid angle and area; sin_theta > 0.
+/// Density of fibers' normals, per solid angle and area; sin_theta > 0.
 template <class R>
 inline R charlie_D(R sin_theta, R alpha) {
     const R q = R(1) / alpha;

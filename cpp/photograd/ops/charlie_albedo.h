@@ -1,5 +1,6 @@
-// The part of the light that white sheen (ops/charlie.h) returns: computed by quadrature for 12 roughnesses and 25 views,
-// and fitted by a polynomial (tools/fit_albedo.py), within 0.005 for cosines of 0.003 or more:
+// The part of the light that white sheen (ops/charlie.h) returns: computed by quadrature for 12
+// roughnesses and 25 views, and fitted by a polynomial (tools/fit_albedo.py), within 0.005 for
+// cosines of 0.003 or more:
 //
 //   E(c, r) = sum_ij k_ij x^i y^j,   x = 2 c^(1/4) - 1,   y = 2 r - 1
 //
@@ -20,7 +21,7 @@ inline constexpr double albedo[24] = {
 
 }  // namespace sheen_detail
 
-/// E and its derivative by roughness.
+/// E and its derivative with respect to roughness.
 template <class R>
 struct SheenAlbedo {
     R value, slope;

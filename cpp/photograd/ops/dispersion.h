@@ -1,15 +1,16 @@
-// The refractive index of glass for red, green and blue light, after KHR_materials_dispersion [Khronos2022].
+// The refractive index of glass for red, green and blue light, after KHR_materials_dispersion
+// [Khronos2022].
 //
-// Glass is denser for blue light than for red. Abbe's number V = (n_d - 1) / (n_F - n_C) says how little, by the indices
-// at the lines C (656.3 nm, red), d (587.6 nm) and F (486.1 nm, blue). With eta = n_d, dispersion = 20 / V and
-// k = -1, 0, 1 for red, green and blue,
+// Glass is denser for blue light than for red. Abbe's number V = (n_d - 1) / (n_F - n_C) says how
+// little, by the indices at the lines C (656.3 nm, red), d (587.6 nm) and F (486.1 nm, blue). With
+// eta = n_d, dispersion = 20 / V and k = -1, 0, 1 for red, green and blue,
 //
-//   index_k = eta + k (eta - 1) dispersion / 40          so that index_blue - index_red = (eta - 1) / V
+//   index_k = eta + k (eta - 1) dispersion / 40      so that index_blue - index_red = (eta - 1) / V
 //
 //   dindex_k/deta = 1 + k dispersion / 40                dindex_k/ddispersion = k (eta - 1) / 40
 //
-// These are the extension's three indices. Its law for single wavelengths, Cauchy's, has the same distance from C to F
-// and divides it unevenly, 0.30 below d and 0.70 above.
+// These are the extension's three indices. Its law for single wavelengths, Cauchy's, has the same
+// distance from C to F and divides it unevenly, 0.30 below d and 0.70 above.
 #pragma once
 
 #include "photograd/core/vec.h"

@@ -1,4 +1,5 @@
-// The error function, from the series that has only positive terms (nothing cancels) [Abramowitz1964, Eq. 7.1.6]:
+// The error function, from the series that has only positive terms (nothing cancels)
+// [Abramowitz1964, Eq. 7.1.6]:
 //
 //   erf(x) = 2/sqrt(pi) e^(-x^2) sum_n 2^n x^(2n+1) / (1 3 5 ... (2n+1))
 //   derf/dx = 2/sqrt(pi) e^(-x^2)
@@ -17,7 +18,8 @@ inline constexpr double two_over_sqrt_pi = 1.12837916709551257390;
 template <class R>
 inline R erf(R x) {
     if (x > R(6)) return R(1);
-    // A term is at most 2 x^2 / (2n + 3) of the one before; after 120 the rest is below 1e-20 at x = 6.
+    // A term is at most 2 x^2 / (2n + 3) of the one before; after 120 the rest is below 1e-20 at x
+    // = 6.
     R term = x, sum = x;
     for (int n = 1; n < 120 && term > R(1e-18) * sum; ++n) {
         term *= R(2) * x * x / R(2 * n + 1);

@@ -1,7 +1,8 @@
-// Fresnel's reflectance of a metal with complex index eta + i k, for unpolarised light [Born1999, Sec. 14.2].
+// Fresnel's reflectance of a metal with complex index eta + i k, for unpolarised light [Born1999,
+// Sec. 14.2].
 //
-// With c = cos_theta, s2 = 1 - c^2 and (a + i b)^2 = (eta + i k)^2 - s2, that is a^2 - b^2 = t = eta^2 - k^2 - s2 and
-// a b = eta k:
+// With c = cos_theta, s2 = 1 - c^2 and (a + i b)^2 = (eta + i k)^2 - s2, that is a^2 - b^2 = t =
+// eta^2 - k^2 - s2 and a b = eta k:
 //
 //   Q(x, y, z) = ((x - y)^2 + z^2) / ((x + y)^2 + z^2)
 //   R_s = Q(a, c, b)            electric field across the plane of incidence

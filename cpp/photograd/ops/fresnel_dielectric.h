@@ -1,6 +1,8 @@
-// Fresnel's reflectance of a smooth boundary of two clear media, for unpolarised light [Born1999, Sec. 1.5.2].
+// Fresnel's reflectance of a smooth boundary of two clear media, for unpolarised light [Born1999,
+// Sec. 1.5.2].
 //
-// eta is the index on the far side over the one on the side of the light, c its cosine, t that of the refracted ray:
+// eta is the index on the far side over the one on the side of the light, c its cosine, t that of
+// the refracted ray:
 //
 //   t^2 = 1 - (1 - c^2) / eta^2                       Snell; t^2 <= 0 is total reflection, F = 1
 //   r_s = (c - eta t) / (c + eta t)                   electric field across the plane of incidence
@@ -10,7 +12,8 @@
 //   dt/deta = (1 - c^2) / (eta^3 t)                   dt/dc = c / (eta^2 t)
 //   r = (x - y) / (x + y):   dr/dx = 2 y / (x + y)^2,   dr/dy = -2 x / (x + y)^2
 //
-// Under total reflection F is constant and all derivatives are 0; towards the critical angle they grow without bound.
+// Under total reflection F is constant and all derivatives are 0; towards the critical angle they
+// grow without bound.
 #pragma once
 
 #include "photograd/core/dual.h"

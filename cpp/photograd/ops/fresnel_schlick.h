@@ -1,4 +1,5 @@
-// Schlick's ramp from f0, the reflectance straight on, to f90 at grazing angles [Schlick1994, Eq. 15].
+// Schlick's ramp from f0, the reflectance straight on, to f90 at grazing angles [Schlick1994, Eq.
+// 15].
 //
 //   m = 1 - cos_theta
 //   F = f0 + (f90 - f0) m^5
@@ -47,7 +48,7 @@ inline void schlick_f0_backward(R eta, R d_f0, R& d_eta) {
     d_eta += d_f0 * R(4) * (eta - R(1)) / (sum * sum * sum);
 }
 
-/// Schlick's ramp for a colour that turns white at grazing angles, f90 = 1.
+/// Schlick's ramp for a color that turns white at grazing angles, f90 = 1.
 template <class R>
 inline Vec3<R> schlick(const Vec3<R>& f0, R cos_theta) {
     return f0 + (Vec3<R>(R(1)) - f0) * schlick_ramp(cos_theta);

@@ -1,23 +1,25 @@
-// GGX: facets whose slopes have long tails [Walter2007, Eq. 33], with one roughness for each tangent axis
-// [Heitz2014]. Equal ones are the isotropic model.
+// GGX: facets whose slopes have long tails [Walter2007, Eq. 33], with one roughness for each
+// tangent axis [Heitz2014]. Equal ones are the isotropic model.
 //
 //   q = (h_x / alpha_x)^2 + (h_y / alpha_y)^2 + h_z^2            of the half vector wh
-//   D = 1 / (pi alpha_x alpha_y q^2)                              integral of D h_z over the hemisphere: 1
+//   D = 1 / (pi alpha_x alpha_y q^2)      integral of D h_z over the hemisphere: 1
 //
 //   dD/dq = -2 D / q      dq/dh_x = 2 h_x / alpha_x^2      dq/dalpha_x = -2 h_x^2 / alpha_x^3
 //   dD/dalpha_x = -D / alpha_x + dD/dq dq/dalpha_x
 //
-// Written with h_x and h_y it stays exact where h_z is near 1; the usual (alpha^2 - 1) h_z^2 + 1 loses all digits of
-// float there, just where D is largest.
+// Written with h_x and h_y it stays exact where h_z is near 1; the usual (alpha^2 - 1) h_z^2 + 1
+// loses all digits of float there, just where D is largest.
 //
-// Masking and shadowing after Smith, correlated by height [Heitz2014, Eq. 99]: a facet deep down is hidden from both
-// sides. With |w| = sqrt((alpha_x w_x)^2 + (alpha_y w_y)^2 + w_z^2), the microfacet model's denominator included:
+// Masking and shadowing after Smith, correlated by height [Heitz2014, Eq. 99]: a facet deep down is
+// hidden from both sides. With |w| = sqrt((alpha_x w_x)^2 + (alpha_y w_y)^2 + w_z^2), the
+// microfacet model's denominator included:
 //
 //   V = G2 / (4 o_z i_z) = 1 / (2 (|o| i_z + |i| o_z))
 //
 //   L = |o| i_z + |i| o_z,    dV/dL = -2 V^2
 //   dL/dalpha_x = alpha_x (o_x^2 i_z / |o| + i_x^2 o_z / |i|)
-//   dL/do_x = alpha_x^2 o_x i_z / |o|      dL/do_z = o_z i_z / |o| + |i|       and the same with o and i exchanged
+//   dL/do_x = alpha_x^2 o_x i_z / |o|      dL/do_z = o_z i_z / |o| + |i|
+//   and the same with o and i exchanged
 #pragma once
 
 #include "photograd/core/vec.h"
@@ -25,7 +27,8 @@
 namespace photograd {
 inline namespace PHOTOGRAD_ISA {
 
-/// Density of facets with normal wh, per solid angle and area of the surface. wh is a unit vector with z > 0.
+/// Density of facets with normal wh, per solid angle and area of the surface. wh is a unit vector
+/// with z > 0.
 template <class R>
 inline R ggx_D(const Vec3<R>& wh, R alpha_x, R alpha_y) {
     const R x = wh.x / alpha_x, y = wh.y / alpha_y, q = x * x + y * y + wh.z * wh.z;
@@ -46,12 +49,6 @@ template <class R>
 inline R ggx_stretched_length(const Vec3<R>& w, R alpha_x, R alpha_y) {
     const R x = alpha_x * w.x, y = alpha_y * w.y;
     return sqrt(x * x + y * y + w.z * w.z);
-}
-
-/// The fraction of the facets turned to w that w sees: 1 / (1 + Lambda).
-template <class R>
-inline R ggx_G1(const Vec3<R>& w, R alpha_x, R alpha_y) {
-    return R(2) * w.z / (w.z + ggx_stretched_length(w, alpha_x, alpha_y));
 }
 
 template <class R>

@@ -1,12 +1,13 @@
-// The light that a mirror of GGX facets loses: under Smith's masking, what meets a second facet is dropped. Computed by
-// quadrature for 22 roughnesses and 24 views, and fitted by smooth functions (tools/fit_albedo.py), within 0.005 for
-// cosines of 0.03 or more and 0.008 below:
+// The light that a mirror of GGX facets loses: under Smith's masking, what meets a second facet is
+// dropped. Computed by quadrature for 22 roughnesses and 24 views, and fitted by smooth functions
+// (tools/fit_albedo.py), within 0.005 for cosines of 0.03 or more and 0.008 below:
 //
-//   loss(c, r) = s (1 - s)^2 exp(P(x, y)),   s = c / (c + alpha),  alpha = r^2        for a view of cosine c
+//   loss(c, r) = s (1 - s)^2 exp(P(x, y)),   s = c / (c + alpha),  alpha = r^2   (view cosine c)
 //   x = 2 t - 1,  t = c (1 + alpha) / (c + alpha),   y = 2 r - 1
 //   average(r) = alpha^2 exp(Q(y))           2 int loss c dc of the fit
 //
-// s, since a smooth surface loses light only within alpha of the horizon. Both are positive, whatever the polynomials.
+// s, since a smooth surface loses light only within alpha of the horizon. Both are positive,
+// whatever the polynomials.
 //
 //   dln(loss)/dr = 2 r ((2 c / alpha - 1) / (c + alpha) + 2 P_x dt/dalpha) + 2 P_y
 //   dt/dalpha = c (c - 1) / (c + alpha)^2         dln(average)/dr = 4 / r + 2 Q'
@@ -29,7 +30,7 @@ inline constexpr double average[6] = {0.635419, -1.061316, -0.101745,
 
 }  // namespace loss_detail
 
-/// A value and its derivative by roughness.
+/// A value and its derivative with respect to roughness.
 template <class R>
 struct Loss {
     R value, slope;

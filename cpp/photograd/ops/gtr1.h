@@ -1,6 +1,7 @@
-// Facets with tails that fall as slowly as may be: Burley's clear coat [Burley2012, App. B.2, Eq. 4].
+// Facets with tails that fall as slowly as may be: Burley's clear coat [Burley2012, App. B.2, Eq.
+// 4].
 //
-//   D = (q - 1) / (pi ln(q) t),   q = alpha^2,   t = h_x^2 + h_y^2 + q h_z^2        integral of D h_z: 1
+//   D = (q - 1) / (pi ln(q) t),   q = alpha^2,   t = h_x^2 + h_y^2 + q h_z^2   integral of D h_z: 1
 //
 //   dD/dq = D (1 / (q - 1) - 1 / (q ln q) - h_z^2 / t),   dq/dalpha = 2 alpha
 #pragma once

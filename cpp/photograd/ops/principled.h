@@ -1,22 +1,30 @@
-// Burley's principled surface without its extra lobes: a ground, varnished, that turns into a metal [Burley2012, Sec. 5].
+// Burley's principled surface without its extra lobes: a base layer, coated, that turns into a
+// metal [Burley2012, Sec. 5].
 //
-//   f = (1 - metalness) (ground + F_d L) + metalness (base + (1 - base) ramp) L = base P + Q       in each channel
+//   f = (1 - metalness) (diffuse + F_d L) + metalness (base + (1 - base) ramp) L = base P + Q
+//       in each channel
 //
-//   P = (1 - metalness) S / pi + metalness (1 - ramp) L         Q = L ((1 - metalness) F_d + metalness ramp)
+//   P = (1 - metalness) S / pi + metalness (1 - ramp) L
+//       Q = L ((1 - metalness) F_d + metalness ramp)
 //
-//   c = <wo, wh>, ramp = (1 - c)^5, F_d = Fresnel's reflectance at c, index 1.5                    [Born1999, Sec. 1.5.2]
-//   S = s(o_z) s(i_z), s(z) = 1 + (2 roughness c^2 - 1/2) (1 - z)^5           burley_diffuse.h, for albedo 1, times pi
-//   L = D G1(wo) G1(wi) / (4 o_z i_z)                         GGX, A = alpha^2 = roughness^4       [Walter2007, Eq. 33]
+//   c = <wo, wh>, ramp = (1 - c)^5, F_d = Fresnel's reflectance at c, index 1.5
+//       [Born1999, Sec. 1.5.2]
+//   S = s(o_z) s(i_z), s(z) = 1 + (2 roughness c^2 - 1/2) (1 - z)^5
+//       burley_diffuse.h, for albedo 1, times pi
+//   L = D G1(wo) G1(wi) / (4 o_z i_z)     GGX, A = alpha^2 = roughness^4       [Walter2007, Eq. 33]
 //
-// Here masking and shadowing are independent, unlike in ggx.h: G1 = 2 z / (z + |w|), |w|^2 = A (x^2 + y^2) + z^2. With
-// w = wo + wi (not normalised), X = w_x^2 + w_y^2, Z = w_z^2 and n = X + Z, L needs no half vector and one division:
+// Here masking and shadowing are independent, unlike in ggx.h: G1 = 2 z / (z + |w|), |w|^2 = A (x^2
+// + y^2) + z^2. With w = wo + wi (not normalized), X = w_x^2 + w_y^2, Z = w_z^2 and n = X + Z, L
+// needs no half vector and one division:
 //
 //   L = A n^2 / (pi (X + A Z)^2 (o_z + |o|) (i_z + |i|))
 //
-//   dL/dA = L (1 / A - 2 Z / (X + A Z) - |o|' / (o_z + |o|) - |i|' / (i_z + |i|)),   |w|' = (x^2 + y^2) / (2 |w|)
-//   dP/dmetalness = (1 - ramp) L - S / pi                  dQ/dmetalness = L (ramp - F_d)
-//   dP/dL = metalness (1 - ramp)                           dQ/dL = (1 - metalness) F_d + metalness ramp
-//   dP/droughness = dP/dL dL/dA 4 roughness^3 + (1 - metalness) / pi dS/droughness,   Q without the ground's term
+//   dL/dA = L (1 / A - 2 Z / (X + A Z) - |o|' / (o_z + |o|) - |i|' / (i_z + |i|)),
+//       |w|' = (x^2 + y^2) / (2 |w|)
+//   dP/dmetalness = (1 - ramp) L - S / pi              dQ/dmetalness = L (ramp - F_d)
+//   dP/dL = metalness (1 - ramp)                       dQ/dL = (1 - metalness) F_d + metalness ramp
+//   dP/droughness = dP/dL dL/dA 4 roughness^3 + (1 - metalness) / pi dS/droughness,
+//       Q without the base layer's term
 //   dS/droughness = 2 c^2 ((1 - o_z)^5 s(i_z) + (1 - i_z)^5 s(o_z))
 //
 // Directions are held constant; both lie above the surface.

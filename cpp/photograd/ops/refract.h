@@ -1,8 +1,9 @@
 // Snell's refraction at a flat boundary whose normal is +Z.
 //
-// wo leaves the surface on either side; e is the index on the far side over that on wo's side, s the sign of o_z:
+// wo leaves the surface on either side; e is the index on the far side over that on wo's side, s
+// the sign of o_z:
 //
-//   t2 = 1 - (1 - o_z^2) / e^2                  not positive under total reflection: there is no refracted ray
+//   t2 = 1 - (1 - o_z^2) / e^2      not positive under total reflection: there is no refracted ray
 //   wi = (-o_x / e, -o_y / e, -s sqrt(t2))       away from the surface, on the far side
 //
 //   di_x/de = o_x / e^2      di_z/de = -s (1 - o_z^2) / (e^3 t)

@@ -1,14 +1,17 @@
 // Signed distances of shapes that are moved, and of two shapes blended into one [Hart1996].
 //
-// The union of two shapes is as far away as the nearer one, min(a, b); their intersection is max(a, b), and a
-// without b is max(a, -b). All three keep the slope at or below 1, so that a distance is never overstated.
+// The union of two shapes is as far away as the nearer one, min(a, b); their intersection is max(a,
+// b), and a without b is max(a, -b). All three keep the slope at or below 1, so that a distance is
+// never overstated.
 //
-// A smooth union rounds the seam, within k metres of it, by a parabola that meets both sides with their slope:
+// A smooth union rounds the seam, within k meters of it, by a parabola that meets both sides with
+// their slope:
 //
 //   h = max(0, 1 - |a - b| / k)        f = min(a, b) - k h^2 / 4
 //
-//   df/da = h / 2 where a > b, 1 - h / 2 where a < b; df/db the other one    since dh/da = -sign(a - b) / k
-//   df/dk = -h^2 / 4 - h (1 - h) / 2                                         since dh/dk = (1 - h) / k
+//   df/da = h / 2 where a > b, 1 - h / 2 where a < b;   dh/da = -sign(a - b) / k
+//   df/db is the other one
+//   df/dk = -h^2 / 4 - h (1 - h) / 2      since dh/dk = (1 - h) / k
 //
 // The two slopes lie between 0 and 1 and add up to 1: what was 1-Lipschitz stays so.
 //
@@ -18,7 +21,7 @@
 #pragma once
 
 #include "photograd/core/vec.h"
-#include "photograd/ops/covariance.h"
+#include "photograd/ops/quaternion.h"
 
 namespace photograd {
 inline namespace PHOTOGRAD_ISA {

@@ -1,17 +1,19 @@
 // Signed distances from a point to the surfaces of simple shapes, negative inside [Hart1996].
 //
-// Each shape stands at the origin of its own frame. A distance has a gradient of length 1, straight away
-// from the nearest point of the surface, except where two points are equally near; there, one of their
-// gradients, or zero, is returned.
+// Each shape stands at the origin of its own frame. A distance has a gradient of length 1, straight
+// away from the nearest point of the surface, except where two points are equally near; there, one
+// of their gradients, or zero, is returned.
 //
-//   sphere   f = |p| - r                                   df/dp = p / |p|            df/dr = -1
-//   plane    f = <n, p> - h,  n = N / |N|                  df/dp = n    df/dh = -1    df/dN = (p - n <n, p>) / |N|
-//   torus    q = (|(x, z)| - R, y),  f = |q| - r           df/dq = q / |q|            df/dR = -q_0 / |q|
+//   sphere   f = |p| - r                              df/dp = p / |p|      df/dr = -1
+//   plane    f = <n, p> - h,  n = N / |N|             df/dp = n            df/dh = -1
+//                                                     df/dN = (p - n <n, p>) / |N|
+//   torus    q = (|(x, z)| - R, y),  f = |q| - r      df/dq = q / |q|      df/dR = -q_0 / |q|
 //   box      q_i = |p_i| - h_i
-//            outside  f = |max(q, 0)|                      df/dq = max(q, 0) / f
-//            inside   f = max_i q_i                        df/dq = 1 for the largest  df/dh = -df/dq
-//   capsule  q = p - (0, clamp(y, -h, h), 0),  f = |q| - r df/dp = q / |q|    df/dh = -|q_y| / |q|    df/dr = -1
-//            (p - q is the nearest point of the middle line: moving it along the line changes nothing)
+//            outside  f = |max(q, 0)|                 df/dq = max(q, 0) / f
+//            inside   f = max_i q_i                   df/dq = 1 for the largest;  df/dh = -df/dq
+//   capsule  q = p - (0, clamp(y, -h, h), 0),         df/dp = q / |q|      df/dh = -|q_y| / |q|
+//            f = |q| - r                              df/dr = -1
+//            (p - q is the nearest point of the axis: moving it along the axis changes nothing)
 #pragma once
 
 #include "photograd/core/vec.h"

@@ -1,17 +1,17 @@
-// Real spherical harmonics up to degree 4: functions of direction, and colour as a sum of them.
+// Real spherical harmonics up to degree 4: functions of direction, and color as a sum of them.
 //
-// Y_lm stands at index l (l + 1) + m, m from -l to l. They are written as homogeneous polynomials of degree l
-// in (x, y, z), with r^2 = x^2 + y^2 + z^2 where others write 1 [Sloan2013, App. A2]: on the unit sphere that is
-// the same, and off it the derivative is that of one formula instead of a branch. They are orthonormal:
-// the integral of Y_i Y_j over the sphere is 1 for i = j, else 0.
+// Y_lm stands at index l (l + 1) + m, m from -l to l. They are written as homogeneous polynomials
+// of degree l in (x, y, z), with r^2 = x^2 + y^2 + z^2 where others write 1 [Sloan2013, App. A2]:
+// on the unit sphere that is the same, and off it the derivative is that of one formula instead of
+// a branch. They are orthonormal: the integral of Y_i Y_j over the sphere is 1 for i = j, else 0.
 //
 //   color_c = sum_k Y_k(d) C_kc          dL/dC_kc = Y_k d_color_c
 //                                        dL/dY_k  = sum_c C_kc d_color_c
 //                                        dL/dd    = sum_k dL/dY_k dY_k/dd
 //
-// Signs: those of Plenoxels and Gaussian splatting, which keep the Condon-Shortley phase (-1)^m, so that
-// Y_1 is (-y, z, -x) times 0.4886. Without the phase (graphics textbooks) functions of odd m change sign;
-// the order is the same in both.
+// Signs: those of Plenoxels and Gaussian splatting, which keep the Condon-Shortley phase (-1)^m, so
+// that Y_1 is (-y, z, -x) times 0.4886. Without the phase (graphics textbooks) functions of odd m
+// change sign; the order is the same in both.
 #pragma once
 
 #include "photograd/core/isa.h"
@@ -22,6 +22,17 @@ inline namespace PHOTOGRAD_ISA {
 inline constexpr int sh_max_degree = 4;
 
 constexpr int sh_count(int degree) { return (degree + 1) * (degree + 1); }
+
+/// visit.template operator()<Degree>() for a degree known at run time, 0 to 3.
+template <class Visit>
+inline void with_sh_degree(int degree, Visit&& visit) {
+    switch (degree) {
+        case 0: visit.template operator()<0>(); break;
+        case 1: visit.template operator()<1>(); break;
+        case 2: visit.template operator()<2>(); break;
+        default: visit.template operator()<3>();
+    }
+}
 
 /// The constants of each band; sqrt of rationals over pi, to double precision.
 namespace sh_constants {
@@ -80,7 +91,8 @@ inline void sh_basis(R x, R y, R z, R* Y) {
         }
     }
 }
-/// Adds sum_k d_Y[k] dY_k/d(x, y, z) to d_direction. Each line is the gradient of the line above it.
+/// Adds sum_k d_Y[k] dY_k/d(x, y, z) to d_direction. Each line is the gradient of the line above
+/// it.
 template <int Degree, class R>
 inline void sh_basis_backward(R x, R y, R z, const R* d_Y, R* d_direction) {
     static_assert(0 <= Degree && Degree <= sh_max_degree);

@@ -1,4 +1,4 @@
-// Spherical-harmonic colours of many points: N directions, N times K coefficients of C channels.
+// Spherical-harmonic colors of many points: N directions, N times K coefficients of C channels.
 //
 // Each row is its own: forward and backward run over rows in parallel, and nothing is shared.
 #pragma once
@@ -11,7 +11,7 @@
 
 namespace photograd {
 
-/// Rows of the arrays below: directions (N, 3), coefficients (N, K, C), colours (N, C).
+/// Rows of the arrays below: directions (N, 3), coefficients (N, K, C), colors (N, C).
 template <class R>
 struct ShRows {
     std::int64_t count;

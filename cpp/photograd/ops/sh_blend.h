@@ -1,16 +1,17 @@
-// Colour of a point in a sparse cell: what each of the eight corners shows in the ray's direction, blended.
+// Color of a point in a sparse cell: what each of the eight corners shows in the ray's direction,
+// blended.
 //
-//   p_nc = sum_k Y_k v_nkc,   color_c = sum_n w_n p_nc         v_n: the K x 3 coefficients of corner n
+//   p_nc = sum_k Y_k v_nkc,   color_c = sum_n w_n p_nc     v_n: K x 3 coefficients of corner n
 //
 //   d_v_nkc = Y_k (w_n d_color_c)
 //
-// A ray has one direction, so p_n is the same for all of its samples around a voxel, and so is Y in the
-// derivative: both are sums over (ray, voxel) instead of (sample, corner), of which there are three times
-// as many.
+// A ray has one direction, so p_n is the same for all of its samples around a voxel, and so is Y in
+// the derivative: both are sums over (ray, voxel) instead of (sample, corner), of which there are
+// three times as many.
 //
-// Coefficients lie as [k][c], so that the 3 K numbers of a corner are one run of memory. The sum over k
-// is kept apart for 12 neighbouring numbers (four k, three channels) and folded at the end: the order in
-// which a vector kernel adds, and this scalar form with it, bit for bit.
+// Coefficients lie as [k][c], so that the 3 K numbers of a corner are one run of memory. The sum
+// over k is kept apart for 12 neighboring numbers (four k, three channels) and folded at the end:
+// the order in which a vector kernel adds, and this scalar form with it, bit for bit.
 #pragma once
 
 #include "photograd/ops/sh.h"
@@ -27,17 +28,6 @@ inline void sh_basis_by_channel(const R* direction, R* Y3) {
     sh_basis<Degree>(direction[0], direction[1], direction[2], Y);
     for (int k = 0; k < sh_count(Degree); ++k)
         for (int c = 0; c < 3; ++c) Y3[3 * k + c] = Y[k];
-}
-
-/// visit.template operator()<Degree>() for a degree known at run time, 0 to 3.
-template <class Visit>
-inline void with_sh_degree(int degree, Visit&& visit) {
-    switch (degree) {
-        case 0: visit.template operator()<0>(); break;
-        case 1: visit.template operator()<1>(); break;
-        case 2: visit.template operator()<2>(); break;
-        default: visit.template operator()<3>();
-    }
 }
 
 /// color[c] = sum_k Y_k v_kc, folded as described above; `count` is 3 K.

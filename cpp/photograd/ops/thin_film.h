@@ -1,7 +1,8 @@
-// Fresnel's reflectance under a thin film, as a colour: light that bounced in the film interferes with light that did
-// not [Belcour2017], in the form of KHR_materials_iridescence [Khronos2022].
+// Fresnel's reflectance under a thin film, as a color: light that bounced in the film interferes
+// with light that did not [Belcour2017], in the form of KHR_materials_iridescence [Khronos2022].
 //
-// Air, a film of index n > 1 and thickness d (nm), a base that reflects f0 straight on; c1 = cos_theta, per channel:
+// Air, a film of index n > 1 and thickness d (nm), a base that reflects f0 straight on; c1 =
+// cos_theta, per channel:
 //
 //   c2 = sqrt(1 - (1 - c1^2) / n^2)                               Snell
 //   R12 = R0 + (1 - R0) (1 - c1)^5,   R0 = ((n - 1) / (n + 1))^2  upper boundary
@@ -11,17 +12,19 @@
 //   T = 1 - R12,  D = 1 - R12 R23,  r = sqrt(R12 R23),  Rs = T^2 R23 / D
 //   F = max(R12 + Rs + 2 (Rs - T) H, 0),   H = r s S(psi) + r^2 S(2 psi)
 //
-// s is the sign of the phases that the boundaries turn: -1 where the base is denser than the film (a > 0), else 1. S(psi)
-// is what a wave of this path contributes to red, green and blue: the eye's sensitivities as four Gaussians in frequency,
-// Fourier transformed, sum_k A_k exp(-v_k psi^2) cos(p_k psi), and turned into Rec. 709. Of the waves that bounce more
-// often, the third and later are left out. All of these are approximations: tests say how far from the spectral sum.
+// s is the sign of the phases that the boundaries turn: -1 where the base is denser than the film
+// (a > 0), else 1. S(psi) is what a wave of this path contributes to red, green and blue: the eye's
+// sensitivities as four Gaussians in frequency, Fourier transformed, sum_k A_k exp(-v_k psi^2)
+// cos(p_k psi), and turned into Rec. 709. Of the waves that bounce more often, the third and later
+// are left out. All of these are approximations: tests say how far from the spectral sum.
 //
 //   dF/dRs = 1 + 2 H     dF/dT = -2 H     dF/dr = 2 (Rs - T) (s S(psi) + 2 r S(2 psi))
 //   dRs/dT = 2 T R23 / D     dRs/dR23 = T^2 / D     dRs/dD = -Rs / D     dr/dR12 = R23 / (2 r)
 //   da/dP = 2 Q / (P + Q)^2     da/dQ = -2 P / (P + Q)^2     dR0/dn = 4 (n - 1) / (n + 1)^3
 //   dc2/dn = (1 - c1^2) / (n^3 c2)
 //
-// The 1e-4 keeps dg/df0 finite for a black base. D is held at 1e-4 or more: both boundaries are mirrors at the horizon.
+// The 1e-4 keeps dg/df0 finite for a black base. D is held at 1e-4 or more: both boundaries are
+// mirrors at the horizon.
 #pragma once
 
 #include "photograd/core/exp.h"
@@ -36,12 +39,13 @@ namespace film_detail {
 
 inline constexpr double turn = 6.28318530717958647693;
 
-/// X, Y, Z and the second lobe of X: heights, positions and variances per nm and nm^2 [Belcour2017].
+/// X, Y, Z and the second lobe of X: heights, positions and variances per nm and nm^2
+/// [Belcour2017].
 inline constexpr double height[4] = {0.8465900, 1.0002219, 1.0011225, 0.1538683};
 inline constexpr double position[4] = {1.6810e-3, 1.7953e-3, 2.2084e-3, 2.2399e-3};
 inline constexpr double variance[4] = {4.3278e-9, 9.3046e-9, 6.6121e-9, 4.5282e-9};
 
-/// A colour in X, Y, Z as red, green and blue of Rec. 709.
+/// A color in X, Y, Z as red, green and blue of Rec. 709.
 template <class R>
 Vec3<R> rec709(R x, R y, R z) {
     return {R(3.2404542) * x - R(1.5371385) * y - R(0.4985314) * z,

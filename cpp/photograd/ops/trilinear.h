@@ -1,7 +1,7 @@
-// Trilinear interpolation on a grid of values at voxel centres.
+// Trilinear interpolation on a grid of values at voxel centers.
 //
-// Along one axis a coordinate q (in voxels, voxel i at q = i) picks the voxels `base` and `base + 1`
-// with weights w0 and w1:
+// Along one axis a coordinate q (in voxels, voxel i at q = i) picks the voxels `base` and `base +
+// 1` with weights w0 and w1:
 //
 //   inside           base = floor(q),  w1 = q - base,  w0 = 1 - w1     dw0/dq = -1  dw1/dq = +1
 //   clamp, outside   the border value continues: q is moved onto the border, slopes 0
@@ -54,8 +54,9 @@ struct GridShape {
     [[nodiscard]] long long size() const { return static_cast<long long>(x) * y * z; }
 };
 
-/// out[c] = interpolated value of channel c; values (X, Y, Z, C). The four rows (x, y) are summed in
-/// the order 00 01 10 11, then the two z ends are blended: the order that the vector kernel follows.
+/// out[c] = interpolated value of channel c; values (X, Y, Z, C). The four rows (x, y) are summed
+/// in the order 00 01 10 11, then the two z ends are blended: the order that the vector kernel
+/// follows.
 template <class R, int C>
 inline void trilinear(const R* values, const GridShape& shape, const AxisWeights<R>& ax,
                       const AxisWeights<R>& ay, const AxisWeights<R>& az, R* out) {

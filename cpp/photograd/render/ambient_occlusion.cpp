@@ -1,51 +1,48 @@
 #include "photograd/render/ambient_occlusion.h"
 
-#include <limits>
-
 #include "photograd/core/parallel.h"
-#include "photograd/render/ray_lanes.h"
-#include "photograd/sampling/even_points.h"
+#include "photograd/render/path/camera_sample.h"
+#include "photograd/render/path/trace16.h"
+#include "photograd/sampling/sobol.h"
 #include "photograd/sampling/warp.h"
 
 namespace photograd {
 namespace {
 
-constexpr int width = RayPacket::width;
-
 /// Up to sixteen samples of one pixel: how many of them are free.
 template <class R>
 int free_samples(const PathGeometry& scene, const Pinhole& camera, double radius, RandomKey key,
                  int count) {
-    RayPacket packet{};
-    Ray<R> rays[width];
-    RandomKey keys[width];
-    for (int k = 0; k < width; ++k) {
-        packet.active[k] = false;
-        if (k >= count) continue;
+    Ray<R> rays[trace_width];
+    RandomKey keys[trace_width];
+    for (int k = 0; k < count; ++k) {
         keys[k] = key;
         keys[k].sample += static_cast<std::uint32_t>(k);
-        rays[k] = camera_ray<R>(camera, keys[k], random_block(keys[k], 0));
-        set_lane(packet, k, rays[k].origin, rays[k].direction,
-                 std::numeric_limits<float>::infinity());
+        rays[k] = camera_ray<R>(camera, keys[k], random_block(keys[k], dimensions::camera_block));
     }
     PacketHits found;
-    scene.bvh.trace(packet, true, found);
-    int open = count;
-    for (int k = 0; k < count; ++k) {
-        packet.active[k] = false;
-        if (found.primitive[k] < 0) continue;
+    closest16<R>(
+        scene.bvh, true,
+        [&](int k, RayQuery<R>& ray) {
+            if (k < count) ray = {rays[k].origin, rays[k].direction};
+            return k < count;
+        },
+        found);
+    bool blocked[trace_width];
+    const auto to_sky = [&](int k, RayQuery<R>& ray) {
+        if (k >= count || found.primitive[k] < 0) return false;
         const SurfaceHit<R> hit =
             surface_hit(scene, rays[k], found.instance[k], found.primitive[k], found.t[k]);
         const SurfaceSide<R> side(hit, -rays[k].direction, false);
-        const Philox4 words = random_block(keys[k], 1);
+        const Philox4 words = random_block(keys[k], dimensions::occlusion_block);
         const Vec3<R> w = Frame<R>::from_normal(side.normal)
                               .to_world(square_to_cosine_hemisphere(
                                   Vec2<R>(uniform_from<R>(words[0]), uniform_from<R>(words[1]))));
-        set_lane(packet, k, side.start(hit.position, w, scene.offset), w,
-                 static_cast<float>(radius));
-    }
-    bool blocked[width];
-    scene.bvh.occluded(packet, false, blocked);
+        ray = {side.start(hit.position, w, scene.offset), w, 0, static_cast<float>(radius)};
+        return true;
+    };
+    occluded16<R>(scene.bvh, to_sky, blocked);
+    int open = count;
     for (int k = 0; k < count; ++k) open -= blocked[k] ? 1 : 0;
     return open;
 }
@@ -61,20 +58,22 @@ int free_directions(const PathGeometry& scene, const Vec3<double>& position,
                     const SampleRange& samples) {
     const auto frame = Frame<double>::from_normal(normal);
     const Vec3<double> start = position + normal * scene.offset;
-    const EvenPoints numbers(key, 0);
+    const SobolSampler numbers(key, 0);
     int open = 0;
-    for (std::uint32_t first = 0; first < samples.count; first += width) {
-        RayPacket packet{};
-        const int count = static_cast<int>(std::min<std::uint32_t>(width, samples.count - first));
-        for (int k = 0; k < count; ++k) {
+    for (std::uint32_t first = 0; first < samples.count; first += trace_width) {
+        const int count =
+            static_cast<int>(std::min<std::uint32_t>(trace_width, samples.count - first));
+        const auto to_sky = [&](int k, RayQuery<double>& ray) {
+            if (k >= count) return false;
             const Philox4 words =
                 numbers.words(samples.first + first + static_cast<std::uint32_t>(k));
             const Vec3<double> w = frame.to_world(square_to_cosine_hemisphere(
                 Vec2<double>(uniform_from<double>(words[0]), uniform_from<double>(words[1]))));
-            set_lane(packet, k, start, w, radius);
-        }
-        bool blocked[width];
-        scene.bvh.occluded(packet, false, blocked);
+            ray = {start, w, 0, radius};
+            return true;
+        };
+        bool blocked[trace_width];
+        occluded16<double>(scene.bvh, to_sky, blocked);
         for (int k = 0; k < count; ++k) open += blocked[k] ? 0 : 1;
     }
     return open;
@@ -90,11 +89,11 @@ void trace_ambient_occlusion(const PathGeometry& scene, const Pinhole& camera, d
     parallel_for((pixels + chunk_pixels - 1) / chunk_pixels, [&](std::int64_t chunk) {
         const std::int64_t end = std::min((chunk + 1) * chunk_pixels, pixels);
         for (std::int64_t pixel = chunk * chunk_pixels; pixel < end; ++pixel)
-            for (std::uint32_t first = 0; first < samples.count; first += width) {
+            for (std::uint32_t first = 0; first < samples.count; first += trace_width) {
                 const RandomKey key{seed, 0, static_cast<std::uint32_t>(pixel),
                                     samples.first + first};
                 const int count = static_cast<int>(std::min<std::uint32_t>(
-                    static_cast<std::uint32_t>(width), samples.count - first));
+                    static_cast<std::uint32_t>(trace_width), samples.count - first));
                 sums[pixel] += free_samples<R>(scene, camera, radius, key, count);
             }
     });

@@ -1,15 +1,15 @@
-// Ambient occlusion: how much of the sky over a surface is free, weighted with the cosine [Zhukov1998].
+// Ambient occlusion: how much of the hemisphere is free, weighted with the cosine [Zhukov1998].
 //
 //   1 - A = (1 / pi) integral over the hemisphere of V(w) cos(w) dw
 //
-// where V is 0 if something stands within `radius` along w. Directions are drawn in proportion to the cosine, so
-// each sample is V itself. Rays of the camera that meet nothing count as free.
+// where V is 0 if something stands within `radius` along w. Directions are sampled in proportion to
+// the cosine, so each sample is V itself. Camera rays that meet nothing count as free.
 //
-// Where a camera asks once a view, a texture is asked once: it holds the free part over each of its texels, seen from
-// the front of the surface (geometry/texel_cover.h says which point a texel shows).
+// A picture of it is of one camera; a texture that holds it, of the point under each texel
+// (geometry/texel_cover.h), serves all.
 #pragma once
 
-#include "photograd/render/path.h"
+#include "photograd/render/path/path.h"
 
 namespace photograd {
 
@@ -24,8 +24,8 @@ struct SurfacePoints {
     std::int64_t count;
 };
 
-/// Adds to sums (N,) how many of the samples over each point are free. Directions are spread evenly
-/// (sampling/even_points.h); point i has the random numbers of pixel i.
+/// Adds to sums (N,) how many of the samples over each point are free. Directions are Sobol' points
+/// (sampling/sobol.h); point i has the random numbers of pixel i.
 void add_point_occlusion(const PathGeometry& scene, const SurfacePoints& points, double radius,
                          std::uint64_t seed, const SampleRange& samples, double* sums);
 

@@ -2,8 +2,9 @@
 //
 //   cdf[i] = (w_0 + ... + w_{i-1}) / (w_0 + ... + w_{n-1})
 //
-// A uniform u falls between cdf[i] and cdf[i + 1] with probability pmf = w_i / sum. How far it fell between them is
-// uniform again and serves as a fresh number, and neighbouring u stay neighbours: strata survive the choice.
+// A uniform u falls between cdf[i] and cdf[i + 1] with probability pmf = w_i / sum. How far it fell
+// between them is uniform again and serves as a fresh number, and neighboring u stay neighbors:
+// strata survive the choice.
 #pragma once
 
 #include <algorithm>
@@ -13,14 +14,15 @@
 
 namespace photograd {
 
-/// What a distribution has drawn: which, how far through its share in [0, 1), and its probability.
+/// A sample of a distribution: which, how far through its share in [0, 1), and its probability.
 struct Choice {
     std::int64_t index;
     double rest, pmf;
 };
 
-/// Turns weights in cdf[1 .. n] into the table above, and returns their sum. Without any weight the last one has it
-/// all, so that tables stay valid; a caller that must not draw then looks at the sum.
+/// Turns weights in cdf[1 .. n] into the table above, and returns their sum. Without any weight the
+/// last one has it all, so that tables stay valid; a caller that must not draw then looks at the
+/// sum.
 inline double accumulate_cdf(std::span<double> cdf) {
     double total = 0.0;
     cdf.front() = 0.0;
@@ -31,7 +33,8 @@ inline double accumulate_cdf(std::span<double> cdf) {
     return total;
 }
 
-/// The bin of u: the first whose end lies beyond u. Empty bins begin and end at one place and are never found.
+/// The bin of u: the first whose end lies beyond u. Empty bins begin and end at one place and are
+/// never found.
 inline Choice choose(std::span<const double> cdf, double u) {
     const auto ends = cdf.subspan(1);
     const auto found = std::upper_bound(ends.begin(), ends.end(), u) - ends.begin();

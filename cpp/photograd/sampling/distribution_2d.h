@@ -1,5 +1,5 @@
-// A choice among the cells of a table in proportion to their weights: first the row by the sums of the rows, then the
-// column within it. pmf = (row's sum / total) (cell / row's sum).
+// A choice among the cells of a table in proportion to their weights: first the row by the sums of
+// the rows, then the column within it. pmf = (row's sum / total) (cell / row's sum).
 #pragma once
 
 #include "photograd/core/parallel.h"
@@ -16,7 +16,8 @@ struct CellChoice {
 class Distribution2D {
 public:
     Distribution2D() = default;
-    /// weight(row, column) is finite and not negative. Rows are summed up on all threads, each by itself.
+    /// weight(row, column) is finite and not negative. Rows are summed up on all threads, each by
+    /// itself.
     template <class Weight>
     Distribution2D(std::int64_t rows, std::int64_t columns, Weight&& weight)
         : stride_(static_cast<std::size_t>(columns) + 1),

@@ -1,14 +1,19 @@
-// A rectangle as a part of the sphere around a viewer: its solid angle, and points that are uniform over it [Urena2013].
+// A rectangle as a part of the sphere around a viewer: its solid angle, and points that are uniform
+// over it [Urena2013].
 //
-// The viewer sits at the origin, the rectangle at depth z < 0 with x in [x0, x1] and y in [y0, y1]. Projected onto the
-// sphere, its sides are arcs of great circles, and a polygon of four arcs has the area of its angles minus 2 pi:
+// The viewer sits at the origin, the rectangle at depth z < 0 with x in [x0, x1] and y in [y0, y1].
+// Projected onto the sphere, its sides are arcs of great circles, and a polygon of four arcs has
+// the area of its angles minus 2 pi:
 //
-//   solid angle = g00 + g01 + g10 + g11 - 2 pi,      g at the corner (x, y) = angle of the point (+-x y, -z r)
+//   solid angle = g00 + g01 + g10 + g11 - 2 pi,
+//       g at the corner (x, y) = angle of the point (+-x y, -z r)
 //
-// with r = |(x, y, z)|, + for the corners (x1, y0) and (x0, y1) and - for the other two. Written so, no angle near 0 comes
-// from a cosine near 1. Angles add up where complex numbers multiply, so the four need one arc tangent, not four:
+// with r = |(x, y, z)|, + for the corners (x1, y0) and (x0, y1) and - for the other two. Written
+// so, no angle near 0 comes from a cosine near 1. Angles add up where complex numbers multiply, so
+// the four need one arc tangent, not four:
 //
-//   e^(i g) = (+-x y - i z r) / (|(x, z)| |(y, z)|)            since (x y)^2 + (z r)^2 = (x^2 + z^2) (y^2 + z^2)
+//   e^(i g) = (+-x y - i z r) / (|(x, z)| |(y, z)|)
+//       since (x y)^2 + (z r)^2 = (x^2 + z^2) (y^2 + z^2)
 #pragma once
 
 #include "photograd/core/atan.h"
@@ -60,8 +65,8 @@ struct SphericalRectangle {
         far_side = corner_turn(x0, y1, 1, to_x0 * to_y1) * corner_turn(x0, y0, -1, to_x0 * to_y0);
         const Turn near_side =
             corner_turn(x1, y0, 1, to_x1 * to_y0) * corner_turn(x1, y1, -1, to_x1 * to_y1);
-        // Solid angles above pi come out negative, and so may those near 0, by rounding. The latter look like those above
-        // 3/2 pi; only there, both sides have angles above 3/2 pi.
+        // Solid angles above pi come out negative, and so may those near 0, by rounding. The latter
+        // look like those above 3/2 pi; only there, both sides have angles above 3/2 pi.
         const Turn all = far_side * near_side;
         solid_angle = polar_angle(all.sin, all.cos);
         const bool full = far_side.nearly_full() && near_side.nearly_full();
@@ -70,13 +75,17 @@ struct SphericalRectangle {
 
     /// A point of the rectangle, uniform as seen from the origin.
     ///
-    /// The part of the rectangle left of x has a solid angle too: its two new angles are acos(-c b0) and acos(-c b1) with
-    /// b0 = -y0 / sqrt(y0^2 + z^2), b1 = y1 / sqrt(y1^2 + z^2), c = x / sqrt(x^2 + z^2). Where they add up to `sum`,
-    ///   c f = sqrt(1 - b0^2 c^2),   f = (b0 cos(sum) - b1) / sin(sum),   so   c = sign(f) / sqrt(f^2 + b0^2).
-    /// Up the line at x, the solid angle of its points below y grows as y / sqrt(d^2 + y^2), d^2 = x^2 + z^2.
+    /// The part of the rectangle left of x has a solid angle too: its two new angles are acos(-c
+    /// b0) and acos(-c b1) with b0 = -y0 / sqrt(y0^2 + z^2), b1 = y1 / sqrt(y1^2 + z^2), c = x /
+    /// sqrt(x^2 + z^2). Where they add up to `sum`,
+    ///   c f = sqrt(1 - b0^2 c^2),   f = (b0 cos(sum) - b1) / sin(sum),   so
+    ///       c = sign(f) / sqrt(f^2 + b0^2).
+    /// Up the line at x, the solid angle of its points below y grows as y / sqrt(d^2 + y^2), d^2 =
+    /// x^2 + z^2.
     [[nodiscard]] Vec3<double> sample(const Vec2<double>& u2) const {
         const double b0 = -y0 * to_y0, b1 = y1 * to_y1;
-        // -sum = far_side - part, where part = u solid_angle in [0, 2 pi]; sin and cos change sign with pi.
+        // -sum = far_side - part, where part = u solid_angle in [0, 2 pi]; sin and cos change sign
+        // with pi.
         const SinCos<double> part = sin_cos(u2.x * solid_angle - pi);
         const Turn back = far_side * Turn{-part.cos, part.sin};
         const double f = (b0 * back.cos - b1) / -back.sin;

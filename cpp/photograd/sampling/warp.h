@@ -1,7 +1,8 @@
-// Maps from the unit square to the sets that renderers sample; each stands beside its inverse and its density.
+// Maps from the unit square to the sets that renderers sample; each stands beside its inverse and
+// its density.
 //
 // All of them begin with the concentric map of the square onto the disk [Shirley1997], which keeps
-// neighbours together and areas in proportion, so that strata in the square stay strata on the set.
+// neighbors together and areas in proportion, so that strata in the square stay strata on the set.
 #pragma once
 
 #include <cmath>
@@ -29,7 +30,8 @@ Vec2<R> square_to_disk(const Vec2<R>& u2) {
 }
 template <Real R>
 Vec2<R> disk_to_square(const Vec2<R>& p) {
-    // In the wedge around +-x the signed radius is a; the angle against that axis is (pi / 4) (b / a).
+    // In the wedge around +-x the signed radius is a; the angle against that axis is (pi / 4) (b /
+    // a).
     const R r = std::sqrt(p.x * p.x + p.y * p.y);
     if (r == R(0)) return {R(0.5), R(0.5)};
     const bool along_x = std::abs(p.x) > std::abs(p.y);
@@ -56,9 +58,10 @@ R cosine_hemisphere_pdf(const Vec3<R>& w) {
     return w.z > R(0) ? w.z * R(1 / pi) : R(0);
 }
 
-/// Uniform on the cap z >= 1 - height of the unit sphere, density 1 / (2 pi height); height 2 is the whole
-/// sphere. A point at radius r of the disk goes to z = 1 - height r^2 (Archimedes: equal areas), which
-/// scales its x and y by sin(theta) / r = sqrt(height (2 - height r^2)); nothing cancels for small caps.
+/// Uniform on the cap z >= 1 - height of the unit sphere, density 1 / (2 pi height); height 2 is
+/// the whole sphere. A point at radius r of the disk goes to z = 1 - height r^2 (Archimedes: equal
+/// areas), which scales its x and y by sin(theta) / r = sqrt(height (2 - height r^2)); nothing
+/// cancels for small caps.
 template <Real R>
 Vec3<R> square_to_cap(const Vec2<R>& u2, R height) {
     const Vec2<R> p = square_to_disk(u2);
@@ -73,23 +76,14 @@ Vec2<R> cap_to_square(const Vec3<R>& w, R height) {
     const R scale = rest > R(0) ? R(1) / sqrt(rest) : R(0);
     return disk_to_square(Vec2<R>(w.x * scale, w.y * scale));
 }
-template <class R>
-R cap_pdf(const Vec3<R>& w, R height) {
-    return w.z >= R(1) - height ? R(1 / (2 * pi)) / height : R(0);
-}
 
-/// Whether w lies in the cap of this height around `axis`. |w - axis|^2 = 2 (1 - cos) tells apart angles that a float
-/// cosine cannot; a hair more than the cap, so that samples on its rim belong to it after rounding.
+/// Whether w lies in the cap of this height around `axis`. |w - axis|^2 = 2 (1 - cos) tells apart
+/// angles that a float cosine cannot; a hair more than the cap, so that samples on its rim belong
+/// to it after rounding.
 template <class R>
 bool in_cap(const Vec3<R>& w, const Vec3<R>& axis, R height) {
     const Vec3<R> apart = w - axis;
     return dot(apart, apart) <= R(2.0001) * height;
-}
-
-/// Height of a cap of angular radius a: 1 - cos(a) = 2 sin^2(a / 2).
-inline double cap_height(double angular_radius) {
-    const double s = std::sin(0.5 * angular_radius);
-    return 2 * s * s;
 }
 
 }  // namespace photograd

@@ -4,38 +4,14 @@ namespace photograd {
 
 Vec3<double> value_tangent(const Material<double>& material, const Material<double>& along,
                            const Vec3<double>& wo, const Vec3<double>& wi, int lobe) {
-    using D = Dual<double>;
-    double value[max_parameters], tangent[max_parameters];
-    material.get(value);
-    along.get(tangent);
-    const Vec3<D> fixed_o(D(wo.x), D(wo.y), D(wo.z)), fixed_i(D(wi.x), D(wi.y), D(wi.z));
-    Vec3<D> out(D(0.0));
-    const auto look = [&]<template <class> class M>() {
-        if (!std::holds_alternative<M<double>>(material.model)) return;
-        M<D> model;
-        std::size_t i = 0;
-        for_each_scalar(
-            [&](D& x) {
-                x = D(value[i], tangent[i]);
-                ++i;
-            },
-            model);
-        if constexpr (requires { M<D>::lobe_count; }) {
-            if (lobe >= 0) out = model.lobes(fixed_o)[static_cast<std::size_t>(lobe)].weight;
-        } else {
-            out = model.f(fixed_o, fixed_i);
-        }
-    };
-    Bsdfs::for_each(look);
-    DeltaBsdfs::for_each(look);
-    return {out.x.tangent, out.y.tangent, out.z.tangent};
+    return bsdf_tangents[material.model].value(material.parameter, along.parameter, wo, wi, lobe);
 }
 
 Material<double> textured_tangent(const Material<double>& base, const Material<double>& along,
                                   std::span<const TextureUse> uses, const SurfaceTextures& textures,
                                   std::span<const double* const> texels,
                                   std::span<const double* const> along_texels,
-                                  const Vec2<double>& uv, const Footprint<double>& seen) {
+                                  const Vec2<double>& uv, const Footprint<double>& footprint) {
     double value[max_parameters], change[max_parameters];
     base.get(value);
     along.get(change);
@@ -43,7 +19,7 @@ Material<double> textured_tangent(const Material<double>& base, const Material<d
         const auto t = static_cast<std::size_t>(use.texture);
         const TextureLayout& layout = textures.layouts[t];
         double color[max_channels], d_color[max_channels];
-        const double level = layout.level_of(seen);
+        const double level = layout.level_of(footprint);
         layout.look_up(texels[t], layout.inside(uv), level, color);
         layout.look_up(along_texels[t], layout.inside(uv), level, d_color);
         for (int i = 0; i < use.count; ++i) {

@@ -1,7 +1,9 @@
-// What a path tracer walks through: shapes with a material each, shapes that emit, and what lies behind them.
+// The scene of a path tracer: shapes with a material each, shapes that emit, and lights without a
+// shape.
 //
-// A shape is a mesh, a sphere or a body of signed distances, numbered in that order; a mesh's shape number is that of its
-// instance. Geometry is built once; materials, emission and what lights send are numbers that may change between renderings.
+// A shape is a mesh instance, a sphere or a signed distance field, numbered in that order. Geometry
+// is built once; materials, emission and radiance of lights are numbers that may change between
+// renderings.
 #pragma once
 
 #include <algorithm>
@@ -11,9 +13,9 @@
 
 #include "photograd/core/frame.h"
 #include "photograd/medium/medium.h"
-#include "photograd/scene/bent_normal.h"
 #include "photograd/scene/material.h"
 #include "photograd/scene/media.h"
+#include "photograd/scene/normal_map.h"
 #include "photograd/scene/scene_lights.h"
 #include "photograd/scene/textured.h"
 
@@ -26,15 +28,15 @@ struct PathGeometry {
     SceneLights lights;
     SurfaceTextures textures;
     MediaGeometry media;
-    double offset;  // by which rays start away from a surface, metres
+    double offset;  // by which rays start away from a surface, meters
 
     PathGeometry(Bvh hierarchy, std::vector<std::int32_t> materials,
                  std::vector<std::vector<float>> shading, std::span<const double> emission,
-                 std::span<const AnyLight<double>> listed)
+                 std::span<const AnyLight<double>> infinite_and_delta)
         : bvh(std::move(hierarchy)),
           material(std::move(materials)),
           normals(std::move(shading)),
-          lights(bvh, emission, listed) {
+          lights(bvh, emission, infinite_and_delta) {
         // The tracer calculates in float: its error is a few 6e-8 of the largest coordinate.
         double largest = 0;
         for (int k = 0; k < 3; ++k)
@@ -45,8 +47,9 @@ struct PathGeometry {
     [[nodiscard]] std::size_t shape_count() const { return material.size(); }
 };
 
-/// `sampling` decides where paths go, `materials` how bright what they find is. They are the same but for proofs:
-/// a finite difference of `materials` alone is that of the detached estimate, whose derivative `gather_backward` gives.
+/// `sampling` is what is sampled, `materials` what is evaluated. They differ only in proofs: finite
+/// differences of `materials` alone are those of the detached estimate, which `radiance_backward`
+/// differentiates.
 template <Real R>
 struct PathScene {
     const PathGeometry* geometry;
@@ -60,20 +63,22 @@ struct PathScene {
         const R* L = emission + 3 * static_cast<std::size_t>(shape);
         return {L[0], L[1], L[2]};
     }
-    /// The same at a point of it.
+    /// Emitted radiance at the texture coordinates `uv`, times the emission texture if there is
+    /// one.
     [[nodiscard]] Vec3<R> emitted(std::int32_t shape, const Vec2<R>& uv) const {
-        const EmissionUse* use = geometry->textures.glows(static_cast<std::size_t>(shape));
-        return use ? emitted(shape) * glow(*use, uv) : emitted(shape);
+        const EmissionUse* use =
+            geometry->textures.emission_texture(static_cast<std::size_t>(shape));
+        return use ? emitted(shape) * emission_factor(*use, uv) : emitted(shape);
     }
-    [[nodiscard]] Vec3<R> glow(const EmissionUse& use, const Vec2<R>& uv) const {
+    [[nodiscard]] Vec3<R> emission_factor(const EmissionUse& use, const Vec2<R>& uv) const {
         const TextureLayout& layout =
             geometry->textures.layouts[static_cast<std::size_t>(use.texture)];
         R color[max_channels];
         layout.look_up(texels[static_cast<std::size_t>(use.texture)], layout.inside(uv), color);
         return {color[use.channel], color[use.channel + 1], color[use.channel + 2]};
     }
-    /// All lights at infinity: radiance, and density of asking for this direction. `found` is what is already known of
-    /// the light `known`.
+    /// All lights at infinity: radiance, and density of emitter sampling in this direction. `found`
+    /// is what is already known of the light `known`.
     [[nodiscard]] Background<R> behind(const Vec3<R>& direction, std::int64_t known = -1,
                                        const Background<R>& found = {}) const {
         Background<R> sum;
@@ -85,24 +90,24 @@ struct PathScene {
         }
         return sum;
     }
-    [[nodiscard]] bool drawn_as_sampled() const {
+    [[nodiscard]] bool sampling_is_attached() const {
         return materials.data() == sampling.data() && texels.data() == sampling_texels.data() &&
                media.data() == sampling_media.data();
     }
 };
 
-/// Where a ray met a shape. `outside` is the unit normal of the triangle's winding, or out of the body; `shading` is
-/// the interpolated one, on the same side.
+/// Where a ray hits a shape. `outside` is the unit normal of the triangle's winding, or out of the
+/// solid; `shading` is the interpolated one, on the same side.
 template <class R>
 struct SurfaceHit {
-    std::int32_t shape, primitive;
-    Vec3<R> position, outside, shading;
+    std::int32_t shape = SceneLights::none, primitive = -1;
+    Vec3<R> position{R(0)}, outside{R(0)}, shading{R(0)};
     Vec2<R> uv{R(0)};
     Vec3<R> along{R(0)};  // growing u, where the material has a direction; or 0
 };
 
-/// A normal of an instance in the world, not of unit length: by the cofactors of the matrix, which are its inverse's
-/// transpose times a determinant that is positive here.
+/// A normal of an instance in the world, not of unit length: by the cofactors of the matrix, which
+/// are its inverse's transpose times a determinant that is positive here.
 template <class R>
 Vec3<R> world_normal(const Affine& world_from_object, const Vec3<R>& n) {
     const auto& m = world_from_object.m;
@@ -117,8 +122,8 @@ Vec3<R> world_normal(const Affine& world_from_object, const Vec3<R>& n) {
 template <class R>
 void shade(const PathGeometry& scene, std::int32_t instance, std::int32_t primitive,
            const TrianglePoint<R>& p, double time, SurfaceHit<R>& hit) {
-    const Instance& place = scene.bvh.instances()[static_cast<std::size_t>(instance)];
-    const std::vector<float>& normals = scene.normals[static_cast<std::size_t>(place.mesh)];
+    const Instance& placed = scene.bvh.instances()[static_cast<std::size_t>(instance)];
+    const std::vector<float>& normals = scene.normals[static_cast<std::size_t>(placed.mesh)];
     if (normals.empty()) return;
     const std::uint32_t* corner =
         scene.bvh.mesh_of(instance).corners(static_cast<std::uint32_t>(primitive));
@@ -128,36 +133,39 @@ void shade(const PathGeometry& scene, std::int32_t instance, std::int32_t primit
         const float* n = normals.data() + 3 * static_cast<std::size_t>(corner[k]);
         sum += weight[k] * Vec3<R>(R(n[0]), R(n[1]), R(n[2]));
     }
-    if (!(length(sum) > R(1e-3))) return;  // normals that cancel say nothing
-    if (place.moves)
-        sum = world_normal(place.at(time), sum);
-    else if (!place.world_from_object.is_identity())
-        sum = world_normal(place.world_from_object, sum);
+    if (!(length(sum) > R(1e-3))) return;  // normals that cancel
+    if (placed.moves)
+        sum = world_normal(placed.at(time), sum);
+    else if (!placed.world_from_object.is_identity())
+        sum = world_normal(placed.world_from_object, sum);
     const R size = length(sum);
     if (!(size > R(0))) return;
     hit.shading = sum * ((dot(sum, p.normal) < R(0) ? R(-1) : R(1)) / size);
 }
 
-/// Texture coordinates of a point of a light's piece.
+/// Texture coordinates of a point of an emissive primitive if its emission has a texture; else 0.
 template <class R>
-Vec2<R> piece_uv(const Bvh& bvh, const LightPiece& piece, const Vec3<R>& position) {
-    if (piece.shape >= bvh.sphere_instance()) return Vec2<R>(R(0));
+Vec2<R> emissive_uv(const PathGeometry& scene, const EmissivePrimitive& emitter,
+                    const Vec3<R>& position) {
+    const Bvh& bvh = scene.bvh;
+    const bool textured = scene.textures.emission_texture(static_cast<std::size_t>(emitter.shape));
+    if (!textured || emitter.shape >= bvh.sphere_instance()) return Vec2<R>(R(0));
     R u = R(0), v = R(0);
-    const std::int32_t last = piece.rectangle >= 0 ? 1 : piece.primitive;
-    std::int32_t face = piece.primitive;
+    const std::int32_t last = emitter.rectangle >= 0 ? 1 : emitter.primitive;
+    std::int32_t face = emitter.primitive;
     for (;; ++face) {
         Vec3<R> p[3];
-        bvh.corners(piece.shape, face, p);
+        bvh.corners(emitter.shape, face, p);
         const Vec3<R> a = p[1] - p[0], b = p[2] - p[0], q = position - p[0], n = cross(a, b);
         u = dot(cross(q, b), n) / dot(n, n);
         v = dot(cross(a, q), n) / dot(n, n);
-        const R least = std::min({u, v, R(1) - u - v});
-        if (face == last || !(least < R(-1e-5))) break;  // of a rectangle, the half that it is in
+        const R lowest = std::min({u, v, R(1) - u - v});
+        if (face == last || !(lowest < R(-1e-5))) break;  // of a rectangle, the half that it is in
     }
-    return bvh.texture_point(piece.shape, face, u, v);
+    return bvh.texture_point(emitter.shape, face, u, v);
 }
 
-/// `time`: at which the ray sees what moves, from 0 to 1.
+/// `time` of the ray, from 0 to 1 while the shutter is open.
 template <class R>
 SurfaceHit<R> surface_hit(const PathGeometry& scene, const Ray<R>& ray, std::int32_t instance,
                           std::int32_t primitive, float found_t, float time = 0) {
@@ -188,13 +196,15 @@ SurfaceHit<R> surface_hit(const PathGeometry& scene, const Ray<R>& ray, std::int
     return hit;
 }
 
-/// The side of a surface that a path sees: shading frame, and the geometric normal that keeps it honest.
+/// The side of a surface that a path sees: shading frame, and the geometric normal, by which
+/// directions that cross the surface are rejected [Veach1997, Sec. 5.3].
 ///
-/// Opaque surfaces are turned towards the viewer. Interpolated or bent normals disagree with the surface near its
-/// silhouette: a viewer in front of it may stand behind the shading normal, and a direction above one of them lie
-/// below the other. The first case falls back to the geometric normal (no black seams); a direction of the second kind
-/// is refused by `agrees` (no light through closed surfaces). What remains is f cos over a part of the hemisphere of
-/// one unit normal, so no more light leaves than the model returns.
+/// Opaque surfaces are turned towards the viewer. Interpolated or bent normals disagree with the
+/// surface near its silhouette: a viewer in front of it may be behind the shading normal, and a
+/// direction above one of them below the other. The first case falls back to the geometric normal
+/// (no black seams); a direction of the second kind is refused by `agrees` (no light through closed
+/// surfaces). What remains is f cos over a part of the hemisphere of one unit normal, so that no
+/// more light leaves than the model returns.
 template <class R>
 struct SurfaceSide {
     Vec3<R> normal;  // geometric
@@ -219,7 +229,7 @@ struct SurfaceSide {
     [[nodiscard]] bool agrees(const Vec3<R>& world, const Vec3<R>& local) const {
         return dot(normal, world) * local.z > R(0);
     }
-    /// A start for rays along `direction` that does not meet the surface again.
+    /// A start for rays along `direction` that does not hit the surface again.
     [[nodiscard]] Vec3<R> start(const Vec3<R>& position, const Vec3<R>& direction,
                                 double offset) const {
         return position + normal * R(dot(normal, direction) > R(0) ? offset : -offset);

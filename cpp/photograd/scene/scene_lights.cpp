@@ -45,16 +45,16 @@ Vec3<R> front_of(const TriangleLight<R>& triangle, const Vec3<R>&) {
     return triangle.normal();
 }
 
-PiecePoint even_point(const SphereLight<double>& ball, const Vec2<double>& u2) {
+EmissivePoint uniform_point(const SphereLight<double>& ball, const Vec2<double>& u2) {
     const Vec3<double> out = square_to_cap(u2, 2.0);
     return {ball.center + ball.radius * out, out, 4 * pi * ball.radius * ball.radius};
 }
-PiecePoint even_point(const PlacedQuad<double>& placed, const Vec2<double>& u2) {
+EmissivePoint uniform_point(const PlacedQuad<double>& placed, const Vec2<double>& u2) {
     const QuadLight<double>& quad = placed.light;
     return {quad.corner + u2.x * quad.edge_x + u2.y * quad.edge_y, placed.front,
             length(cross(quad.edge_x, quad.edge_y))};
 }
-PiecePoint even_point(const TriangleLight<double>& triangle, const Vec2<double>& u2) {
+EmissivePoint uniform_point(const TriangleLight<double>& triangle, const Vec2<double>& u2) {
     const Vec2<double> q = square_to_triangle(u2);
     return {triangle.a + q.x * (triangle.b - triangle.a) + q.y * (triangle.c - triangle.a),
             triangle.normal(), triangle.area()};
@@ -63,12 +63,13 @@ PiecePoint even_point(const TriangleLight<double>& triangle, const Vec2<double>&
 }  // namespace
 
 SceneLights::SceneLights(const Bvh& bvh, std::span<const double> emission,
-                         std::span<const AnyLight<double>> listed)
-    : listed_(static_cast<std::int64_t>(listed.size())) {
+                         std::span<const AnyLight<double>> infinite_and_delta)
+    : infinite_and_delta_count_(static_cast<std::int64_t>(infinite_and_delta.size())) {
     std::vector<double> power;
-    for (std::size_t i = 0; i < listed.size(); ++i) {
-        (is_delta(listed[i]) ? deltas_ : at_infinity_).push_back(static_cast<std::int32_t>(i));
-        power.push_back(light_power(listed[i], bvh.bounds()));
+    for (std::size_t i = 0; i < infinite_and_delta.size(); ++i) {
+        (is_delta(infinite_and_delta[i]) ? deltas_ : at_infinity_)
+            .push_back(static_cast<std::int32_t>(i));
+        power.push_back(light_power(infinite_and_delta[i], bvh.bounds()));
     }
     const std::size_t shapes = bvh.shape_count();
     first_.assign(shapes, -1);
@@ -79,8 +80,11 @@ SceneLights::SceneLights(const Bvh& bvh, std::span<const double> emission,
     double total = 0;
     for (const double P : power) total += P;
     const double least =
-        total > 0 ? least_share * total / std::max(1.0, static_cast<double>(listed_)) : 1.0;
-    for (std::size_t i = 0; i < listed.size(); ++i) power[i] = std::max(power[i], least);
+        total > 0
+            ? least_share * total / std::max(1.0, static_cast<double>(infinite_and_delta_count_))
+            : 1.0;
+    for (std::size_t i = 0; i < infinite_and_delta.size(); ++i)
+        power[i] = std::max(power[i], least);
     if (!power.empty()) choice_ = Distribution1D(power);
     std::vector<double> of_deltas;
     for (const std::int32_t i : deltas_) of_deltas.push_back(power[static_cast<std::size_t>(i)]);
@@ -101,12 +105,12 @@ void SceneLights::add_shape(const Bvh& bvh, std::int32_t shape, double L,
              "one that moves, shape " + std::to_string(shape));
     if (shape >= bvh.first_solid())
         fail(ErrorKind::scene, "scene", "emission", "light from meshes and spheres alone",
-             "a body of signed distances that shines, shape " + std::to_string(shape));
-    first_[static_cast<std::size_t>(shape)] = static_cast<std::int32_t>(pieces_.size());
+             "an SDF that emits light, shape " + std::to_string(shape));
+    first_[static_cast<std::size_t>(shape)] = static_cast<std::int32_t>(primitives_.size());
     if (shape >= bvh.sphere_instance()) {
         const std::int32_t ball = shape - bvh.sphere_instance();
         const double r = double(bvh.spheres()[static_cast<std::size_t>(ball)].radius);
-        pieces_.push_back({shape, ball});
+        primitives_.push_back({shape, ball});
         power.push_back(surface_power(4 * pi * r * r, L, shape, ball));
         return;
     }
@@ -117,7 +121,7 @@ void SceneLights::add_shape(const Bvh& bvh, std::int32_t shape, double L,
         bvh.corners(shape, 1, other);
         if (const auto rectangle = rectangle_of(p, other)) {
             const auto known = std::get<1>(rectangles_).size();
-            pieces_.push_back({shape, 0, static_cast<std::int32_t>(known)});
+            primitives_.push_back({shape, 0, static_cast<std::int32_t>(known)});
             add_rectangle<float>(*rectangle);
             add_rectangle<double>(*rectangle);
             const double area = length(cross(rectangle->edge_x, rectangle->edge_y));
@@ -127,7 +131,7 @@ void SceneLights::add_shape(const Bvh& bvh, std::int32_t shape, double L,
     }
     for (std::int32_t face = 0; face < faces; ++face) {
         bvh.corners(shape, face, p);
-        pieces_.push_back({shape, face});
+        primitives_.push_back({shape, face});
         power.push_back(
             surface_power(0.5 * length(cross(p[1] - p[0], p[2] - p[0])), L, shape, face));
     }
@@ -139,34 +143,35 @@ Choice SceneLights::choose_delta(double u) const {
     return choice;
 }
 
-/// use(the piece as a light of its kind).
+/// use(the primitive as a light of its kind).
 template <class R, class Use>
-auto SceneLights::as_light(const Bvh& bvh, const LightPiece& piece, Use&& use) const {
-    if (piece.rectangle >= 0)
+auto SceneLights::as_light(const Bvh& bvh, const EmissivePrimitive& emissive, Use&& use) const {
+    if (emissive.rectangle >= 0)
         return use(std::get<std::vector<PlacedQuad<R>>>(
-            rectangles_)[static_cast<std::size_t>(piece.rectangle)]);
-    if (piece.shape >= bvh.sphere_instance()) {
-        const Sphere& ball = bvh.spheres()[static_cast<std::size_t>(piece.primitive)];
+            rectangles_)[static_cast<std::size_t>(emissive.rectangle)]);
+    if (emissive.shape >= bvh.sphere_instance()) {
+        const Sphere& ball = bvh.spheres()[static_cast<std::size_t>(emissive.primitive)];
         return use(SphereLight<R>{Vec3<R>(1), ball.center<R>(), R(ball.radius)});
     }
     Vec3<R> p[3];
-    bvh.corners(piece.shape, piece.primitive, p);
+    bvh.corners(emissive.shape, emissive.primitive, p);
     return use(TriangleLight<R>{Vec3<R>(1), p[0], p[1], p[2]});
 }
 
 template <Real R>
-PieceSample<R> SceneLights::sample(const Bvh& bvh, const LightPiece& piece, const Vec3<R>& point,
-                                   const Vec2<R>& u2) const {
-    return as_light<R>(bvh, piece, [&](const auto& light) -> PieceSample<R> {
+EmissiveSample<R> SceneLights::sample(const Bvh& bvh, const EmissivePrimitive& emissive,
+                                      const Vec3<R>& point, const Vec2<R>& u2) const {
+    return as_light<R>(bvh, emissive, [&](const auto& light) -> EmissiveSample<R> {
         const LightSample<R> found = light.sample(point, u2);
         if (!(found.pdf > R(0))) return {};
         return {found, front_of(light, point + found.direction * found.distance)};
     });
 }
 
-PiecePoint SceneLights::point_on(const Bvh& bvh, const LightPiece& piece,
-                                 const Vec2<double>& u2) const {
-    return as_light<double>(bvh, piece, [&](const auto& light) { return even_point(light, u2); });
+EmissivePoint SceneLights::point_on(const Bvh& bvh, const EmissivePrimitive& emissive,
+                                    const Vec2<double>& u2) const {
+    return as_light<double>(bvh, emissive,
+                            [&](const auto& light) { return uniform_point(light, u2); });
 }
 
 template <Real R>
@@ -174,19 +179,19 @@ R SceneLights::hit_pdf(const Bvh& bvh, std::int32_t shape, std::int32_t primitiv
                        const Vec3<R>& point, R distance, R cosine) const {
     const std::int32_t first = first_[static_cast<std::size_t>(shape)];
     if (first < 0) return R(0);
-    const LightPiece& start = pieces_[static_cast<std::size_t>(first)];
+    const EmissivePrimitive& start = primitives_[static_cast<std::size_t>(first)];
     const bool single = start.rectangle >= 0 || shape >= bvh.sphere_instance();
     const std::int64_t number = first + (single ? 0 : primitive);
     const R density =
-        as_light<R>(bvh, pieces_[static_cast<std::size_t>(number)],
+        as_light<R>(bvh, primitives_[static_cast<std::size_t>(number)],
                     [&](const auto& light) { return light.hit_pdf(point, distance, cosine); });
-    return R(pmf(listed_ + number)) * density;
+    return R(pmf(infinite_and_delta_count_ + number)) * density;
 }
 
-template PieceSample<float> SceneLights::sample(const Bvh&, const LightPiece&, const Vec3<float>&,
-                                                const Vec2<float>&) const;
-template PieceSample<double> SceneLights::sample(const Bvh&, const LightPiece&, const Vec3<double>&,
-                                                 const Vec2<double>&) const;
+template EmissiveSample<float> SceneLights::sample(const Bvh&, const EmissivePrimitive&,
+                                                   const Vec3<float>&, const Vec2<float>&) const;
+template EmissiveSample<double> SceneLights::sample(const Bvh&, const EmissivePrimitive&,
+                                                    const Vec3<double>&, const Vec2<double>&) const;
 template float SceneLights::hit_pdf(const Bvh&, std::int32_t, std::int32_t, const Vec3<float>&,
                                     float, float) const;
 template double SceneLights::hit_pdf(const Bvh&, std::int32_t, std::int32_t, const Vec3<double>&,

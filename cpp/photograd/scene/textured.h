@@ -1,14 +1,16 @@
-// Materials whose parameters vary over a surface: each is its value times a texture, brought into its range.
+// Materials whose parameters vary over a surface: each is its value times a texture, brought into
+// its range.
 //
-//   p = clamp(value t(u, v), lo, hi)          t bilinear (ops/bilinear.h), at coordinates brought back into 0..1,
-//                                             or between the levels of a mip map (texture/mip_sample.h)
+//   p = clamp(value t(u, v), lo, hi)       t bilinear (ops/bilinear.h), at wrapped coordinates, or
+//                                          between the levels of a mip map (texture/mip_sample.h)
 //
 //   dp/dvalue = t,  dp/dt = value             0 where p is cut off
 //
-// The derivative by t goes to texels. A path tracer meets them in no order, so it writes down (u, v) and dL/dt, and
-// adds them up afterwards, texel by texel (texture/sample.h). A coordinate is wrapped before the lookup: texels on
-// both sides of a seam are not mixed. The level is that of the place where a path looks (render/ray_cone.h), and has no
-// derivative. Normal maps bend the shading normal; they are part of the geometry, without a derivative.
+// The derivative with respect to t goes to texels. A path tracer looks them up in no order, so it
+// keeps (u, v) and dL/dt, and adds them up afterwards, texel by texel (texture/sample.h). A
+// coordinate is wrapped before the lookup: texels on both sides of a seam are not mixed. The level
+// follows from the footprint of a path (render/path/ray_cone.h), and is held fixed. Normal maps
+// change the shading normal; they are part of the geometry, without a derivative.
 #pragma once
 
 #include <algorithm>
@@ -32,7 +34,7 @@ R wrapped(Wrap wrap, R x) {
     return two > R(1) ? R(2) - two : two;
 }
 
-/// What a path sees at once of a surface, in (u, v): a parallelogram of these sides; a point if they are 0.
+/// Footprint of a path on a surface, in (u, v): a parallelogram with these sides; a point if 0.
 template <class R>
 struct Footprint {
     Vec2<R> along{R(0)}, across{R(0)};
@@ -56,22 +58,22 @@ struct TextureLayout {
                                                 texel_axis(uv.y, shape.height), out);
         });
     }
-    /// Level of a footprint; 0 without mip maps. rho is the longer diameter of the ellipse in it, in texels: with the sides
-    /// as columns of M, the largest singular value,
+    /// Level of a footprint; 0 without mip maps. rho is the longer diameter of the ellipse in it,
+    /// in texels: with the sides as columns of M, the largest singular value,
     ///   2 rho^2 = |a|^2 + |c|^2 + sqrt((|a|^2 - |c|^2)^2 + 4 (a.c)^2)
     template <class R>
-    [[nodiscard]] R level_of(const Footprint<R>& seen) const {
+    [[nodiscard]] R level_of(const Footprint<R>& footprint) const {
         if (mips.empty()) return R(0);
         const double W = shape.width, H = shape.height;
-        const double au = W * static_cast<double>(seen.along.x),
-                     av = H * static_cast<double>(seen.along.y),
-                     cu = W * static_cast<double>(seen.across.x),
-                     cv = H * static_cast<double>(seen.across.y);
+        const double au = W * static_cast<double>(footprint.along.x),
+                     av = H * static_cast<double>(footprint.along.y),
+                     cu = W * static_cast<double>(footprint.across.x),
+                     cv = H * static_cast<double>(footprint.across.y);
         const double a = au * au + av * av, c = cu * cu + cv * cv, both = au * cu + av * cv;
         return static_cast<R>(
             level_of_squared(0.5 * (a + c + std::sqrt((a - c) * (a - c) + 4 * both * both))));
     }
-    /// The same at a level; `texels` are all levels.
+    /// Trilinear lookup at a level of the mip map; `texels` holds all levels.
     template <class R>
     void look_up(const R* texels, const Vec2<R>& uv, R level, R out[max_channels]) const {
         if (!(level > R(0))) return look_up(texels, uv, out);
@@ -91,7 +93,8 @@ struct TextureLayout {
     }
 };
 
-/// `count` numbers of a material, from `first` on in their order, are scaled by channels of a texture.
+/// `count` numbers of a material, from `first` on in their order, are scaled by channels of a
+/// texture.
 struct TextureUse {
     int texture, channel, first, count;
     double lo, hi;
@@ -103,12 +106,13 @@ struct NormalMap {
     std::vector<float> values;
 };
 
-/// A shape's radiance is scaled by three channels of a texture, from `channel` on; texture -1 for none.
+/// A shape's radiance is scaled by three channels of a texture, from `channel` on; texture -1 for
+/// none.
 struct EmissionUse {
     int texture = -1, channel = 0;
 };
 
-/// What a scene knows of textures, besides their texels.
+/// The textures of a scene, without their texels.
 struct SurfaceTextures {
     std::vector<TextureLayout> layouts;
     std::vector<std::vector<TextureUse>> uses;  // of each material, those of one texture together
@@ -121,7 +125,7 @@ struct SurfaceTextures {
         return material < cutoffs.size() ? cutoffs[material] : -1.0;
     }
     /// The texture of what a shape emits, or null.
-    [[nodiscard]] const EmissionUse* glows(std::size_t shape) const {
+    [[nodiscard]] const EmissionUse* emission_texture(std::size_t shape) const {
         return shape < emission.size() && emission[shape].texture >= 0 ? &emission[shape] : nullptr;
     }
     [[nodiscard]] std::span<const TextureUse> of(std::size_t material) const {
@@ -143,7 +147,8 @@ struct SurfaceTextures {
     }
 };
 
-/// Lookups of one texture and their derivatives: uv (N, 2), d_color (N, C); level (N,), where it has mip maps.
+/// Lookups of one texture and their derivatives: uv (N, 2), d_color (N, C); level (N,), where it
+/// has mip maps.
 template <class R>
 struct TexelAdjoint {
     std::vector<R> uv, d_color, level;
@@ -168,14 +173,14 @@ struct TexelAdjoint {
 template <Real R>
 Material<R> textured(const Material<R>& base, std::span<const TextureUse> uses,
                      const SurfaceTextures& textures, std::span<const R* const> texels,
-                     const Vec2<R>& uv, const Footprint<R>& seen = {}) {
+                     const Vec2<R>& uv, const Footprint<R>& footprint = {}) {
     R row[max_parameters];
     base.get(row);
     for (const TextureUse& use : uses) {
         const auto t = static_cast<std::size_t>(use.texture);
         const TextureLayout& layout = textures.layouts[t];
         R color[max_channels];
-        layout.look_up(texels[t], layout.inside(uv), layout.level_of(seen), color);
+        layout.look_up(texels[t], layout.inside(uv), layout.level_of(footprint), color);
         for (int i = 0; i < use.count; ++i)
             row[use.first + i] =
                 std::clamp(row[use.first + i] * color[use.channel + i], R(use.lo), R(use.hi));
@@ -185,11 +190,12 @@ Material<R> textured(const Material<R>& base, std::span<const TextureUse> uses,
     return own;
 }
 
-/// Adds to d_base and to d_texels (one a texture) for d_own, the derivative by the material at the point.
+/// Adds to d_base and to d_texels (one a texture) for d_own, the derivative with respect to the
+/// material at the point.
 template <Real R>
 void textured_backward(const Material<R>& base, std::span<const TextureUse> uses,
                        const SurfaceTextures& textures, std::span<const R* const> texels,
-                       const Vec2<R>& uv, const Footprint<R>& seen, const Material<R>& d_own,
+                       const Vec2<R>& uv, const Footprint<R>& footprint, const Material<R>& d_own,
                        Material<R>& d_base, std::vector<TexelAdjoint<R>>& d_texels) {
     R value[max_parameters], d_row[max_parameters], sum[max_parameters];
     base.get(value);
@@ -199,7 +205,7 @@ void textured_backward(const Material<R>& base, std::span<const TextureUse> uses
         const auto t = static_cast<std::size_t>(use.texture);
         const TextureLayout& layout = textures.layouts[t];
         const Vec2<R> at = layout.inside(uv);
-        const R level = layout.level_of(seen);
+        const R level = layout.level_of(footprint);
         R color[max_channels];
         layout.look_up(texels[t], at, level, color);
         if (use.texture != last) d_texels[t].start(layout, at, level);

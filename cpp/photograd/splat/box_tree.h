@@ -1,6 +1,6 @@
-// Which boxes does a ray meet between two distances? A bounding volume hierarchy over boxes, halved at the
-// median of their centres along the widest axis [Kay1986]. Which items are reported does not depend on
-// how the tree was cut: a caller that orders what it gets has an answer that is the boxes' alone.
+// Boxes that a ray meets between two distances: a bounding volume hierarchy, split at the median of
+// the centers along the widest axis [Kay1986]. Which items are reported does not depend on the
+// splits, so a caller that orders them gets the same result from any tree.
 #pragma once
 
 #include <algorithm>
@@ -25,8 +25,8 @@ struct BoxBounds {
     }
 };
 
-/// A ray as boxes see it. An axis that the ray does not move along gets a huge slope instead of infinity,
-/// so that 0 / 0 cannot arise; the ray is bent by 1e-30 of its length.
+/// A ray prepared for box tests. Along an axis without motion the inverse is huge instead of
+/// infinite, so that 0 / 0 cannot arise; the ray is bent by 1e-30 of its length.
 template <class R>
 struct BoxRay {
     R origin[3], inverse[3];
@@ -42,9 +42,9 @@ struct BoxRay {
         return out;
     }
 
-    /// Does the ray touch the box within [t_lo, t_hi]? Distances are widened by a thousandth, which is more
-    /// than the rounding in them: a yes may be wrong, a no is right.
-    [[nodiscard]] bool meets(const BoxBounds<R>& box, R t_lo, R t_hi) const {
+    /// Whether the ray touches the box within [t_lo, t_hi]? Distances are widened by a thousandth,
+    /// which is more than the rounding in them: a yes may be wrong, a no is right.
+    [[nodiscard]] bool intersects(const BoxBounds<R>& box, R t_lo, R t_hi) const {
         R enter = R(-3e38), exit = R(3e38);
         for (int k = 0; k < 3; ++k) {
             const R a = (box.lo[k] - origin[k]) * inverse[k];
@@ -71,8 +71,8 @@ public:
     /// The items in the order of the leaves.
     [[nodiscard]] std::span<const std::uint32_t> order() const { return order_; }
 
-    /// visit(k), k a place in `order`, for every item whose leaf the ray meets between t_lo and t_hi, roughly
-    /// from near to far. visit may lower t_hi.
+    /// visit(k), k an index into `order`, for every item whose leaf the ray meets between t_lo and
+    /// t_hi, roughly from near to far. visit may lower t_hi.
     template <class Visit>
     void walk(const BoxRay<R>& ray, R t_lo, const R& t_hi, Visit&& visit) const {
         if (nodes_.empty()) return;
@@ -82,7 +82,7 @@ public:
         while (height > 0) {
             const std::uint32_t at = stack[--height];
             const Node& node = nodes_[at];
-            if (!ray.meets(node.box, t_lo, t_hi)) continue;
+            if (!ray.intersects(node.box, t_lo, t_hi)) continue;
             if (node.count > 0) {
                 for (std::uint32_t k = node.first; k < node.first + node.count; ++k) visit(k);
                 continue;
@@ -99,7 +99,7 @@ private:
     struct Node {
         BoxBounds<R> box;
         std::uint32_t
-            first;  // of a leaf: first place in order_; else its second child, the first is next
+            first;  // of a leaf: first index into order_; else its second child, the first is next
         std::uint32_t count;  // items of a leaf; 0: not a leaf
         int axis;
     };
@@ -108,15 +108,15 @@ private:
         const std::size_t at = nodes_.size();
         nodes_.push_back({boxes[order_[begin]], static_cast<std::uint32_t>(begin),
                           static_cast<std::uint32_t>(end - begin), 0});
-        const auto centre = [&](std::uint32_t item, int k) {
+        const auto center = [&](std::uint32_t item, int k) {
             return R(0.5) * boxes[item].lo[k] + R(0.5) * boxes[item].hi[k];
         };
         R lo[3] = {R(3e38), R(3e38), R(3e38)}, hi[3] = {R(-3e38), R(-3e38), R(-3e38)};
         for (std::size_t i = begin; i < end; ++i) {
             nodes_[at].box.include(boxes[order_[i]]);
             for (int k = 0; k < 3; ++k) {
-                lo[k] = smaller(lo[k], centre(order_[i], k));
-                hi[k] = larger(hi[k], centre(order_[i], k));
+                lo[k] = smaller(lo[k], center(order_[i], k));
+                hi[k] = larger(hi[k], center(order_[i], k));
             }
         }
         if (end - begin <= leaf_size) return;
@@ -129,7 +129,7 @@ private:
         };
         std::nth_element(item(begin), item(middle), item(end),
                          [&](std::uint32_t a, std::uint32_t b) {
-                             const R x = centre(a, axis), y = centre(b, axis);
+                             const R x = center(a, axis), y = center(b, axis);
                              return x != y ? x < y : a < b;
                          });
         build(boxes, begin, middle);

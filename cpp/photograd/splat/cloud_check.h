@@ -1,4 +1,4 @@
-// Gaussians that no number can be computed of are refused with their row and the group at fault.
+// Gaussians with parameters that are not finite are refused; the error names row and parameter.
 #pragma once
 
 #include <cmath>
@@ -19,8 +19,8 @@ bool all_numbers(const R* x, std::int64_t n) {
     return bad == 0;
 }
 
-/// The group of row i that holds what no parameter may be; nullptr if there is none. A log-scale of minus
-/// infinity (no extent) and infinite logits (fully opaque, or absent) have a meaning.
+/// The group of row i that holds what no parameter may be; nullptr if there is none. A log-scale of
+/// minus infinity (no extent) and infinite logits (fully opaque, or absent) have a meaning.
 template <class R>
 const char* bad_group(const GaussianCloud<R>& cloud, std::int64_t i) {
     const R* log_scale = cloud.log_scales + 3 * i;
@@ -34,7 +34,8 @@ const char* bad_group(const GaussianCloud<R>& cloud, std::int64_t i) {
     return nullptr;
 }
 
-/// Throws if a task of `rows_per_task` rows is marked: it names the first bad row of the first such task.
+/// Throws if a task of `rows_per_task` rows is marked: it names the first bad row of the first such
+/// task.
 template <class R>
 void refuse_bad_rows(const char* function, const GaussianCloud<R>& cloud,
                      const std::vector<char>& bad_task, std::int64_t rows_per_task) {

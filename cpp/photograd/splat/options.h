@@ -1,4 +1,4 @@
-// What decides a picture of Gaussians besides the Gaussians: camera and policies. Plain data.
+// Camera and policies of splatting, and the arrays of Gaussians. Plain data.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ struct SplatOptions {
     bool pass_clamped = false;   // derivative at alpha_max: 1 instead of 0
     double extent_sigmas = 0.0;  // half-size of a splat's box, in standard deviations; 0: off
     double stop = 1e-4;
-    double near = 0.01;            // metres; what is closer, or behind the camera, is not drawn
+    double near = 0.01;            // meters; what is closer, or behind the camera, is culled
     double frustum_margin = 0.15;  // widens the field of view, in image sizes, for the Jacobian
 };
 
@@ -43,7 +43,7 @@ struct GaussianGradients {
     R* opacity_logits;
     R* sh;
     R* view;    // (3, 4) of camera_from_world, as twelve free numbers
-    R* screen;  // (N, 2) of the screen means, per pixel; density control looks at them
+    R* screen;  // (N, 2) of the screen means, per pixel: grad2d of density control
 };
 
 }  // namespace photograd

@@ -1,21 +1,21 @@
-// Stage 1: from a Gaussian to a splat on the screen, and back.
+// Stage 1: from a Gaussian to a splat on the screen, and the adjoint.
 //
-// Everything that depends on one Gaussian alone happens here: covariance, projection, conic, opacity,
-// colour, and the box of pixels that may see it. Backward computes the forward values again from the
-// parameters, which is cheaper than keeping them. What is behind `near`, off the screen, or has no extent
-// that numbers can hold is culled: an empty box, and derivatives of zero.
+// Everything that depends on one Gaussian alone: covariance, projection, conic, opacity, color, and
+// the box of pixels in which it may be visible. The backward pass recomputes the forward values
+// from the parameters, which is cheaper than storing them. A Gaussian behind `near`, off the screen
+// or with an extent that is not representable is culled: an empty box, and derivatives of zero.
 #pragma once
 
 #include <cmath>
 #include <type_traits>
 
 #include "photograd/ops/activation.h"
-#include "photograd/ops/conic.h"
-#include "photograd/ops/covariance.h"
-#include "photograd/ops/projection.h"
-#include "photograd/ops/screen_splat.h"
-#include "photograd/ops/splat_color.h"
+#include "photograd/splat/conic.h"
+#include "photograd/splat/covariance.h"
 #include "photograd/splat/options.h"
+#include "photograd/splat/projection.h"
+#include "photograd/splat/screen_splat.h"
+#include "photograd/splat/splat_color.h"
 
 namespace photograd {
 
@@ -46,25 +46,14 @@ struct SplatView {
     }
 };
 
-/// visit(constant degree) for 0 to 3.
-template <class Visit>
-void with_degree(int degree, Visit&& visit) {
-    switch (degree) {
-        case 0: return visit(std::integral_constant<int, 0>{});
-        case 1: return visit(std::integral_constant<int, 1>{});
-        case 2: return visit(std::integral_constant<int, 2>{});
-        default: return visit(std::integral_constant<int, 3>{});
-    }
-}
-
-/// First pixel whose centre is at or behind x, held to [0, size].
+/// First pixel whose center is at or behind x, held to [0, size].
 template <class R>
 int first_pixel_from(R x, int size) {
     return static_cast<int>(clamped(std::ceil(x - R(0.5)), R(0), R(size)));
 }
 
-/// Pixels that may see the splat. Two policies cut it: `extent_sigmas` exactly, per axis, and alpha_min,
-/// for which the box is a little too large (the test in the pixel decides).
+/// Pixels that may see the splat. Two policies cut it: `extent_sigmas` exactly, per axis, and
+/// alpha_min, for which the box is a little too large (the test in the pixel decides).
 template <class R>
 void find_box(const SplatView<R>& view, const R* cov2d, ScreenSplat<R>& s) {
     const SplatOptions& o = view.options;
@@ -93,7 +82,7 @@ struct ProjectedGaussian {
     R cov3d[6];
     SplatProjection<R> p;
     Conic<R> conic;
-    bool drawn;
+    bool visible;
 };
 
 template <class R>
@@ -103,16 +92,16 @@ ProjectedGaussian<R> project_geometry(const GaussianCloud<R>& cloud, const Splat
     R t[3];
     const R* mean = cloud.means + 3 * i;
     view_point(view.view, mean, t);
-    out.drawn = t[2] >= R(view.options.near);
-    if (!out.drawn) return out;
+    out.visible = t[2] >= R(view.options.near);
+    if (!out.visible) return out;
     out.axes = GaussianAxes<R>::of(cloud.quats + 4 * i, cloud.log_scales + 3 * i);
     covariance(out.axes, out.cov3d);
     out.p = project_gaussian(view.lens, view.view, mean, out.cov3d);
     out.conic = conic_of(out.p.cov2d, R(view.options.low_pass));
     // Comparisons are false for NaN. A splat wider than a million pixels has a conic of nothing but
     // rounding, and its derivatives overflow; a mean so far away is nowhere near the screen.
-    out.drawn = out.conic.valid() && out.p.cov2d[0] + out.p.cov2d[2] < R(1e12) &&
-                std::abs(out.p.mean2d[0]) < R(1e7) && std::abs(out.p.mean2d[1]) < R(1e7);
+    out.visible = out.conic.valid() && out.p.cov2d[0] + out.p.cov2d[2] < R(1e12) &&
+                  std::abs(out.p.mean2d[0]) < R(1e7) && std::abs(out.p.mean2d[1]) < R(1e7);
     return out;
 }
 
@@ -122,7 +111,7 @@ ScreenSplat<R> project_splat(const GaussianCloud<R>& cloud, const SplatView<R>& 
                              std::int64_t i) {
     ScreenSplat<R> s{};
     const ProjectedGaussian<R> g = project_geometry(cloud, view, i);
-    if (!g.drawn) return s;
+    if (!g.visible) return s;
     s.x = g.p.mean2d[0];
     s.y = g.p.mean2d[1];
     for (int k = 0; k < 3; ++k) s.conic[k] = g.conic.abc[k];
@@ -135,8 +124,8 @@ ScreenSplat<R> project_splat(const GaussianCloud<R>& cloud, const SplatView<R>& 
                             s.color);
     return s;
 }
-/// Adds the derivatives of Gaussian i, given those of its splat, d[partial_count]; those of the view and the
-/// eye to d_view[12] and d_eye[3], which all Gaussians of a task share.
+/// Adds the derivatives of Gaussian i, given those of its splat, d[partial_count]; those of the
+/// view and the eye to d_view[12] and d_eye[3], which all Gaussians of a task share.
 template <int Degree, class R>
 void project_splat_backward(const GaussianCloud<R>& cloud, const SplatView<R>& view, std::int64_t i,
                             const ScreenSplat<R>& s, const R* d, const GaussianGradients<R>& out,

@@ -1,10 +1,10 @@
-// The Gaussians along a ray, in the order of their peaks, with a fixed amount of memory.
+// The Gaussians along a ray, in the order of their peaks, in a fixed amount of memory.
 //
-// A round asks the tree for the few nearest peaks behind a given one, which a short sorted list keeps;
-// once it is full, the tree leaves out what is farther than its last. Rounds repeat until the ray ends
-// or the list is not filled any more [MoenneLoccoz2024]. The order is that of t, and of rows where t is
-// equal; it is each ray's own, so nothing pops while a camera turns, but where two peaks change places
-// the picture has a step, which derivatives do not see.
+// A round collects the nearest peaks behind a given one in a short sorted list; once the list is
+// full, the tree skips what is farther than its last entry. Rounds repeat until the ray ends or the
+// list is no longer filled [MoenneLoccoz2024]. The order is that of t, then of rows. Each ray has
+// its own order, so nothing pops while a camera turns; where two peaks swap, the image has a
+// discontinuity that derivatives do not include.
 #pragma once
 
 #include "photograd/splat/ray_cloud.h"
@@ -15,7 +15,7 @@ namespace photograd {
 template <class R>
 struct Crossing {
     R t, raw;
-    std::uint32_t row, place;  // place: in RayCloud::seen
+    std::uint32_t row, slot;  // slot: in RayCloud::gaussians
 
     [[nodiscard]] bool before(const Crossing& other) const {
         return t != other.t ? t < other.t : row < other.row;
@@ -40,7 +40,7 @@ public:
         if (full()) limit_ = list_[count_ - 1].t;
     }
     [[nodiscard]] bool full() const { return count_ == capacity; }
-    /// Peaks beyond need not be looked at.
+    /// Peaks beyond cannot enter the list.
     [[nodiscard]] const R& limit() const { return limit_; }
     [[nodiscard]] const Crossing<R>* begin() const { return list_; }
     [[nodiscard]] const Crossing<R>* end() const { return list_ + count_; }
@@ -51,8 +51,8 @@ private:
     Crossing<R> list_[capacity];
 };
 
-/// visit(crossing) for each Gaussian that the ray sees, nearest first, until it returns false. The direction
-/// has unit length.
+/// visit(crossing) for each Gaussian visible on the ray, nearest first, until it returns false. The
+/// direction has unit length.
 template <class R, class Visit>
 void walk_ray(const RayCloud<R>& cloud, const R* origin, const R* direction, Visit&& visit) {
     const BoxRay<R> ray = BoxRay<R>::of(origin, direction);
@@ -63,10 +63,10 @@ void walk_ray(const RayCloud<R>& cloud, const R* origin, const R* direction, Vis
     do {
         found.clear();
         const R t_lo = first_round ? t_min : last.t;
-        cloud.tree.walk(ray, t_lo, found.limit(), [&](std::uint32_t place) {
-            const CastGaussian<R>& g = cloud.seen[place];
+        cloud.tree.walk(ray, t_lo, found.limit(), [&](std::uint32_t slot) {
+            const CastGaussian<R>& g = cloud.gaussians[slot];
             const RayPeak<R> peak = ray_peak(g.shape, origin, direction);
-            const Crossing<R> x{peak.t, g.raw(peak), g.row, place};
+            const Crossing<R> x{peak.t, g.raw(peak), g.row, slot};
             // Comparisons are false for NaN, which numbers too large may leave.
             if (!(x.raw > R(0) && x.raw >= alpha_min && x.t >= t_min)) return;
             if (first_round || last.before(x)) found.insert(x);

@@ -1,19 +1,20 @@
-// What blending a tile needs and gives. Plain data, because every instruction set's translation unit
+// Input and output of blending a tile. Plain data, because every instruction set's translation unit
 // includes it.
 #pragma once
 
 #include <cstdint>
 
-#include "photograd/ops/screen_splat.h"
+#include "photograd/splat/rendered_image.h"
+#include "photograd/splat/screen_splat.h"
 
 namespace photograd {
 
-/// A tile is tile_size x tile_size pixels: a row of it is one set of lanes.
-inline constexpr int tile_size = 16;
+/// A tile is splat_tile_size x splat_tile_size pixels: a row of it is one set of lanes.
+inline constexpr int splat_tile_size = 16;
 
-/// A splat that a tile must look at, and the place for what the tile has for it.
+/// A splat whose box touches a tile, and the slot for its partial derivatives from that tile.
 struct TilePair {
-    std::uint32_t splat, place;
+    std::uint32_t splat, slot;
 };
 
 /// One tile's pairs, nearest splat first.
@@ -27,17 +28,13 @@ struct BlendArgs {
     SplatCutoffs<R> cut;
     R background[3];
     int width, height;
-    R* color;    // (H, W, 3)
-    R* opacity;  // (H, W)
-    R* depth;    // (H, W)
+    RenderedImage<R> image;  // (H, W)
 };
 
 template <class R>
 struct BlendBackward {
-    const R* d_color;    // (H, W, 3)
-    const R* d_opacity;  // (H, W)
-    const R* d_depth;    // (H, W)
-    R* partials;         // (pairs, partial_count), by place: each is written once
+    ImageCotangents<R> d_image;  // (H, W)
+    R* partials;                 // (pairs, partial_count), by slot: each is written once
 };
 
 }  // namespace photograd

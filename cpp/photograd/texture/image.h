@@ -19,7 +19,8 @@ struct ImageView {
 
 inline constexpr int max_channels = 4;
 
-/// Calls use(std::integral_constant<int, channels>) so that loops over channels have a fixed length.
+/// Calls use(std::integral_constant<int, channels>) so that loops over channels have a fixed
+/// length.
 template <class Use>
 void with_channels(int channels, Use&& use) {
     const auto match = [&]<int C>(std::integral_constant<int, C> fixed) {

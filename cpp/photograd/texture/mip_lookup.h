@@ -1,4 +1,5 @@
-// One lookup between the levels of a mip map; mip_sample.h has the formulas, and does it for many points.
+// One lookup between the levels of a mip map; mip_sample.h has the formulas, and does it for many
+// points.
 #pragma once
 
 #include <cmath>
@@ -10,7 +11,8 @@
 
 namespace photograd {
 
-/// log2 x for x >= 1, by our own logarithm: a library's may differ between processors in the last bit.
+/// log2 x for x >= 1, by our own logarithm: a library's may differ between processors in the last
+/// bit.
 inline double log2_above_one(double x) {
     int exponent = 0;
     const double mantissa =
@@ -18,12 +20,13 @@ inline double log2_above_one(double x) {
     return exponent - 1 + log1p_unit(2 * mantissa - 1) / std::numbers::ln2;
 }
 
-/// max(log2 rho, 0) by rho^2: of a footprint of at most a texel, a point for example, level 0 is wanted.
+/// max(log2 rho, 0) by rho^2: of a footprint of at most a texel, a point for example, level 0 is
+/// wanted.
 inline double level_of_squared(double longest) {
     return longest > 1 ? 0.5 * log2_above_one(longest) : 0.0;
 }
 
-/// Two neighbouring levels, `first` and `second`, the same one where there is but one.
+/// Two neighboring levels, `first` and `second`, the same one where there is but one.
 template <class R>
 struct LevelPair {
     int first, second;

@@ -1,12 +1,12 @@
-// Lookups between the levels of a mip map, and which level a point wants [Williams1983; Heckbert1989].
+// Trilinear lookups in a mip map, and the level of a footprint [Williams1983; Heckbert1989].
 //
-// A pixel's footprint in the texture is, to first order, the parallelogram of the derivatives of (u, v)
-// along the picture's x and y. Its level is that of the longer side, in texels of level 0:
+// A pixel's footprint in the texture is, to first order, the parallelogram of the derivatives of
+// (u, v) along the picture's x and y. Its level is that of the longer side, in texels of level 0:
 //
 //   rho = max(|(W du/dx, H dv/dx)|, |(W du/dy, H dv/dy)|),   level = max(log2 rho, 0)
 //
-// so the footprint is about one texel wide there; across its shorter side the picture is blurred more
-// than it would have to be (isotropic filtering). Between the levels the lookup is linear:
+// so the footprint is about one texel wide there; across its shorter side the picture is blurred
+// more than it would have to be (isotropic filtering). Between the levels the lookup is linear:
 //
 //   l = clamp(level, 0, last),  k = floor(l),  t = l - k
 //   value = (1 - t) B_k(uv) + t B_k+1(uv)        B_k: bilinear lookup in level k
@@ -35,7 +35,8 @@ void mip_level(const TextureShape& shape, const R* footprint, std::int64_t count
 template <Real R>
 void sample_mips(MipView<const R> mips, const R* uv, const R* level, std::int64_t count, R* color);
 
-/// The levels of d_mips, d_uv (N, 2) and d_level (N,) are added to; the latter two may both be null.
+/// The levels of d_mips, d_uv (N, 2) and d_level (N,) are added to; the latter two may both be
+/// null.
 template <Real R>
 void sample_mips_backward(MipView<const R> mips, const R* uv, const R* level, std::int64_t count,
                           const R* d_color, MipView<R> d_mips, R* d_uv, R* d_level);

@@ -1,6 +1,5 @@
-// The levels of one texture, one after another in memory: for a renderer that meets textures in no order.
-//
-// Level 0 comes first, so that whoever knows no levels sees the texture itself.
+// The levels of one texture, contiguous in memory: for a renderer that looks textures up in any
+// order. Level 0 comes first, so that a reader without levels gets the texture itself.
 #pragma once
 
 #include "photograd/texture/mip_chain.h"

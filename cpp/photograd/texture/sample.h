@@ -7,8 +7,8 @@
 
 namespace photograd {
 
-/// color (N, C) = texture at the points uv (N, 2). False, with some colours not written, if a coordinate
-/// is not finite: a NaN has no texels.
+/// color (N, C) = texture at the points uv (N, 2). False, with some colors not written, if a
+/// coordinate is not finite: a NaN has no texels.
 template <Real R>
 [[nodiscard]] bool sample(const ImageView<const R>& texture, const R* uv, std::int64_t count,
                           R* color);

@@ -1,7 +1,8 @@
-// Adding contributions of many points to the four texels around each: the adjoint of a batch of lookups.
+// Scattering the contributions of many points to the four texels around each: the adjoint of a
+// batch of lookups.
 #pragma once
 
-#include "photograd/texture/tile.h"
+#include "photograd/texture/texel_tile.h"
 
 namespace photograd {
 
@@ -16,8 +17,8 @@ void for_point_chunks(std::int64_t count, Visit&& visit) {
     });
 }
 
-/// Points uv (N, 2) by the tile that owns them, each tile's in their order. Points with keep(i) false
-/// stand behind the last tile.
+/// Points uv (N, 2) by the tile that owns them, each tile's in their order. Points with keep(i)
+/// false stand behind the last tile.
 template <Real R, class Keep>
 OwnerBins bin_points(const TextureTiles& tiles, const R* uv, std::int64_t count, Keep&& keep) {
     std::vector<std::uint32_t> owner(static_cast<std::size_t>(count));
@@ -45,7 +46,7 @@ TexelAxis<R> in_tile(TexelAxis<R> axis, int first) {
 template <Real R, int C, class Weight>
 void scatter_texels(const TextureTiles& tiles, const OwnerBins& bins, const R* uv, const R* d_color,
                     Weight&& weight, R* d_texels) {
-    constexpr int stride = tile_stride<C>;
+    constexpr int stride = texel_tile_stride<C>;
     for_each_owner(tiles, bins, [&](int tile) {
         TexelTile<R, C> sum = {};
         const auto k = static_cast<std::size_t>(tile);
@@ -54,12 +55,12 @@ void scatter_texels(const TextureTiles& tiles, const OwnerBins& bins, const R* u
             R d_out[stride] = {};
             for (int c = 0; c < C; ++c) d_out[c] = weight(i) * d_color[C * i + c];
             bilinear_backward<R, stride>(
-                tile_shape,
+                texel_tile_shape,
                 in_tile(texel_axis(uv[2 * i], tiles.shape.width), tiles.first_column(tile)),
                 in_tile(texel_axis(uv[2 * i + 1], tiles.shape.height), tiles.first_row(tile)),
                 d_out, sum.texels);
         }
-        flush_tile(tiles, tile, sum, d_texels);
+        flush_texel_tile(tiles, tile, sum, d_texels);
     });
 }
 

@@ -31,7 +31,8 @@ void TexturePlan<R>::sort(const OwnerBins& bins, const R* uv, const R* target) {
             const TexelAxis<R> row = texel_axis(uv[2 * i + 1], shape_.height);
             Point<C>& point = *new (points + n) Point<C>{column.fraction, row.fraction, {}, 0};
             for (int c = 0; c < C; ++c) point.target[c] = target[C * i + c];
-            point.texel = row.base % tile_cells * tile_shape.width + column.base % tile_cells;
+            point.texel = row.base % texel_tile_cells * texel_tile_shape.width +
+                          column.base % texel_tile_cells;
         }
     });
 }
@@ -39,28 +40,28 @@ void TexturePlan<R>::sort(const OwnerBins& bins, const R* uv, const R* target) {
 template <Real R>
 template <int C>
 double TexturePlan<R>::tile_loss(int tile, const R* texels, R* d_texels) const {
-    constexpr int stride = tile_stride<C>;
+    constexpr int stride = texel_tile_stride<C>;
     const TextureTiles tiles = TextureTiles::of(shape_);
     const auto* points = reinterpret_cast<const Point<C>*>(points_.get());
     const auto k = static_cast<std::size_t>(tile);
     const R scale = static_cast<R>(2.0 / (static_cast<double>(count_) * C));
     TexelTile<R, C> value = {}, sum = {};
-    load_tile(tiles, tile, texels, value);
+    load_texel_tile(tiles, tile, texels, value);
     double squares[stride] = {};
     for (std::size_t n = bins_.begin[k]; n < bins_.begin[k + 1]; ++n) {
         const Point<C>& point = points[n];
         // The four texels lie in the tile at `texel` whatever their row and column.
         const TexelAxis<R> column{point.texel, point.f, R(0)}, row{0, point.g, R(0)};
         R color[stride], d_color[stride];
-        bilinear<R, stride>(value.texels, tile_shape, column, row, color);
+        bilinear<R, stride>(value.texels, texel_tile_shape, column, row, color);
         for (int c = 0; c < stride; ++c) {  // the padding, where all is zero, fills the lanes
             const R error = color[c] - point.target[c];
             squares[c] += static_cast<double>(error) * static_cast<double>(error);
             d_color[c] = scale * error;
         }
-        bilinear_backward<R, stride>(tile_shape, column, row, d_color, sum.texels);
+        bilinear_backward<R, stride>(texel_tile_shape, column, row, d_color, sum.texels);
     }
-    flush_tile(tiles, tile, sum, d_texels);
+    flush_texel_tile(tiles, tile, sum, d_texels);
     double total = 0;
     for (const double sum_of_channel : squares) total += sum_of_channel;
     return total;

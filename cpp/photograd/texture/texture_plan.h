@@ -1,12 +1,11 @@
-// Recovering a texture from colours at points: the points once sorted by tile, then any number of losses
-// and gradients.
+// Recovering a texture from colors at points: the points are sorted by tile once, for any number of
+// losses and gradients.
 //
 //   L(T) = 1 / (N C) sum over points i, channels c of (T(uv_i)_c - target_ic)^2
 //   dL/dT(uv_i)_c = 2 / (N C) (T(uv_i)_c - target_ic)
 //
-// In the order of the points every lookup would fetch its texels from far away, twice. Sorted, a tile's
-// texels stay in the first-level cache while all its points are looked up and differentiated, and the
-// points stream by: their places, weights and targets were written down in that order.
+// Sorted, the texels of a tile stay in the L1 cache while all its points are looked up and
+// differentiated, and the points stream: position, weights and target are stored in that order.
 #pragma once
 
 #include <cstddef>
@@ -14,14 +13,15 @@
 #include <memory>
 
 #include "photograd/core/scatter.h"
-#include "photograd/texture/tile.h"
+#include "photograd/texture/texel_tile.h"
 
 namespace photograd {
 
 template <Real R>
 class TexturePlan {
 public:
-    /// Points uv (N, 2) and their colours target (N, C), in a texture of the given shape; both are copied.
+    /// Points uv (N, 2) and their colors target (N, C), in a texture of the given shape; both are
+    /// copied.
     TexturePlan(const TextureShape& shape, int channels, const R* uv, const R* target,
                 std::int64_t count);
 
@@ -35,9 +35,9 @@ public:
 private:
     template <int C>
     struct Point {
-        R f, g;                    // fractions along column and row
-        R target[tile_stride<C>];  // padded with zeros, like the texels of a tile
-        std::int32_t texel;        // upper left of the four, in the tile
+        R f, g;                          // fractions along column and row
+        R target[texel_tile_stride<C>];  // padded with zeros, like the texels of a tile
+        std::int32_t texel;              // upper left of the four, in the tile
     };
     template <int C>
     void sort(const OwnerBins& bins, const R* uv, const R* target);

@@ -28,10 +28,10 @@ from photograd.commands.shared import out_option, use_threads
 from photograd.data.write import require_free_folder, write_blender_capture
 from photograd.run_lock import one_run_in
 from photograd.scenes.capture import capture_scene
+from photograd.scenes.direct_light import DirectLight
 from photograd.scenes.registry import scene as build_scene
 from photograd.scenes.registry import scenes
 from photograd.sfm.engine import Settings
-from photograd.tracer import TracedScene
 
 DEFAULT_SCENE = next(iter(scenes()))
 
@@ -106,10 +106,10 @@ def make_capture(
     description = build_scene(name, seed=seed)
     with one_run_in("capture", out):
         require_free_folder("capture", out, overwrite=overwrite)
-        traced = TracedScene(description)
+        light = DirectLight(description)
         with Progress("capture", views + test_views, [Column("view", "{:.0f}".format)]) as bar:
             splits = capture_scene(
-                description, traced.render_view, views=views, test_views=test_views, size=size,
+                description, light.render_view, views=views, test_views=test_views, size=size,
                 seed=seed, spp=spp, on_view=lambda done, _total: bar.update(done, view=done),
             )  # fmt: skip
         others = write_blender_capture(out, splits, aabb=description.bounds, overwrite=overwrite)

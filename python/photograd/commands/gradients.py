@@ -41,7 +41,7 @@ from photograd.representation import Array
 from photograd.run_lock import one_run_in
 from photograd.snapshots import load_snapshots
 from photograd.splats.clone_split_prune import CloneSplitPrune
-from photograd.splats.view_gradients import pressure_picture, view_gradients
+from photograd.splats.view_gradients import grad2d_picture, view_gradients
 from photograd.training_views import TrainingViews
 
 if TYPE_CHECKING:
@@ -164,7 +164,7 @@ def draw_gaussians(model: Model, folder: Path, capture: Capture, out: Path) -> d
             scene: GaussianScene = found[step]
             here = view_gradients(scene, views, 0, ssim_weight=model.options.ssim_weight)
             camera = views.views[0].camera
-            rows[step] = here, pressure_picture(scene.gaussians, here.pressure, camera)
+            rows[step] = here, grad2d_picture(scene.gaussians, here.grad2d, camera)
             bar.update(number + 1, loss=here.loss)
     pictures = {
         "gaussian_gradients": draw_gaussian_gradients(

@@ -42,7 +42,7 @@ from photograd.splat import (
 )
 from photograd.splat_orbit import scene_box
 from photograd.splats.density import DensityControl, NoControl
-from photograd.splats.pressure import Pressure
+from photograd.splats.grad2d import Grad2dStatistics
 
 MEAN_RATE = 1.6e-4
 """Adam's rate of the means, in extents of the scene [Kerbl2023]."""
@@ -68,7 +68,7 @@ class GaussianScene(Representation):
         control: decides when Gaussians are cloned, split, moved and dropped.
         extent: size of the scene in metres; rates and thresholds are in units of it.
         active_degree: harmonics up to here are drawn.
-        pressure: what the pictures since the last refinement asked of each Gaussian.
+        grad2d: positional gradient statistics of the pictures since the last refinement.
     """
 
     name: ClassVar[str] = "gaussians"
@@ -99,7 +99,7 @@ class GaussianScene(Representation):
         self.policy = policy or SplatOptions()
         self.control = control or NoControl()
         self.active_degree = degree
-        self.pressure = Pressure.zero(len(gaussians))
+        self.grad2d = Grad2dStatistics.zero(len(gaussians))
 
     @classmethod
     def example(cls, *, seed: int, dtype: type[np.floating[Any]] = np.float64) -> GaussianScene:
@@ -203,7 +203,7 @@ class GaussianScene(Representation):
     def observe(self, context: GaussianContext) -> None:
         """Note what the picture behind `context` asked of each Gaussian; after its backward."""
         if context.screen is not None:
-            self.pressure.add(context.screen, context.splats.visible, context.camera)
+            self.grad2d.add(context.screen, context.splats.visible, context.camera)
 
     def explore(self, rate: float, step: int) -> None:
         """The density control's random motion after a step; `rate` is that of the means in m."""
@@ -215,20 +215,20 @@ class GaussianScene(Representation):
         `statistics` is not looked at: a scene gathers its own, see `observe`.
         """
         del statistics
-        change = self.control.change(self.params, self.pressure, extent=self.extent, step=step)
+        change = self.control.change(self.params, self.grad2d, extent=self.extent, step=step)
         if change is None:
             return None
         self.params = change.params
-        self.pressure = Pressure.zero(self.resolution)
+        self.grad2d = Grad2dStatistics.zero(self.resolution)
         return change.row_map
 
     def state(self) -> dict[str, Array]:
-        """Active degree, extent, and the pressure since the last refinement."""
+        """Active degree, extent, and the statistics since the last refinement."""
         return {
             "active_degree": np.array(self.active_degree, np.int64),
             "extent": np.array(self.extent, np.float64),
-            "pressure_sum": self.pressure.total,
-            "pressure_count": self.pressure.count,
+            "pressure_sum": self.grad2d.total,
+            "pressure_count": self.grad2d.count,
         }
 
     @classmethod
@@ -257,7 +257,7 @@ class GaussianScene(Representation):
             raise RangeError(
                 message("GaussianScene.load_state", "state", expected, f"{sorted(state)}")
             )
-        self.pressure = Pressure(
+        self.grad2d = Grad2dStatistics(
             state["pressure_sum"].copy(), state["pressure_count"].copy()
         ).checked(self.resolution)
         self.active_degree = int(state["active_degree"])

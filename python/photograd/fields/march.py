@@ -1,7 +1,7 @@
 """The ray marcher as representations use it: options as an enum-typed dataclass, context, backward.
 
 The mathematics is in cpp/photograd/ops/composite.h (value and adjoint of a ray) and
-cpp/photograd/render/march.h (the loop).
+cpp/photograd/render/march/march.h (the loop).
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ Quadrature = Literal["alpha", "riemann"]
 Border = Literal["clamp", "zero"]
 Activation = Literal["identity", "relu", "softplus", "exp", "sigmoid"]
 
-MOST_SAMPLES: int = _core.most_samples
+MOST_SAMPLES: int = _core.max_samples
 """Of a ray along the diagonal of the box; a shorter step takes hours, and then memory."""
 
 
@@ -155,7 +155,7 @@ def march(
         before = np.floor(np.clip((t_max - t0) / policy.dt + 0.5, 0, samples))
         samples = np.ascontiguousarray(before, np.int32)
     color, transmittance, depth = _core.march(
-        field, parameters, settings, origins, directions, t0, samples, fused
+        field, parameters, settings, (origins, directions, t0, samples), fused
     )
     require_finite_image(color, transmittance, batch)
     context = MarchContext(
@@ -175,18 +175,22 @@ def march_backward(context: MarchContext, d_outputs: Outputs) -> dict[str, Array
     dtype = c.parameters.dtype
     d_opacity = np.zeros(rays, dtype) if d_outputs.opacity is None else d_outputs.opacity
     d_depth = np.zeros(rays, dtype) if d_outputs.depth is None else d_outputs.depth
+    cotangents = [np.ascontiguousarray(d, dtype) for d in (d_outputs.color, -d_opacity, d_depth)]
     gradients = {"parameters": np.zeros_like(c.parameters)}
     if c.camera_adjoint:
         gradients["origins"] = np.zeros_like(c.origins)
         gradients["directions"] = np.zeros_like(c.directions)
     _core.march_backward(
-        c.field, c.parameters, c.settings, c.origins, c.directions, c.t0, c.samples,
-        c.color, c.transmittance, c.depth,
-        np.ascontiguousarray(d_outputs.color, dtype),
-        np.ascontiguousarray(-d_opacity, dtype),
-        np.ascontiguousarray(d_depth, dtype),
-        gradients["parameters"], gradients.get("origins"), gradients.get("directions"), c.fused,
-    )  # fmt: skip
+        c.field,
+        c.parameters,
+        c.settings,
+        (c.origins, c.directions, c.t0, c.samples),
+        (c.color, c.transmittance, c.depth),
+        cotangents,
+        gradients["parameters"],
+        (gradients["origins"], gradients["directions"]) if c.camera_adjoint else None,
+        c.fused,
+    )
     return gradients
 
 

@@ -70,8 +70,8 @@ class SparseSh(Representation):
     active voxel: sigma_t = density_scale * density_activation(density) in 1/m,
     rgb = color_activation(sum_k Y_k(direction) sh_k), linear Rec. 709; direction is that of the
     ray, away from the camera. What is not active has raw density `background_density` and no
-    colour of its own; a cell without any active corner is empty. `lost` (1 + 3 K,), after a
-    backward pass, is what the loss would have told voxels that do not exist.
+    color of its own; a cell without any active corner is empty. `background_gradient` (1 + 3 K,),
+    after a backward pass, is the gradient that reaches corners of cells where no voxel is active.
     """
 
     name: ClassVar[str] = "sparse_sh"
@@ -111,7 +111,7 @@ class SparseSh(Representation):
         self.policy = policy
         self.background_density = background_density
         self.fused = fused
-        self.lost: Array = np.zeros(1 + 3 * coefficients.shape[1], density.dtype)
+        self.background_gradient: Array = np.zeros(1 + 3 * coefficients.shape[1], density.dtype)
 
     @classmethod
     def full(
@@ -206,9 +206,13 @@ class SparseSh(Representation):
         settings = self.policy.settings(options.stop)
         rays = checked_rays(batch, settings, options, density.dtype, seed=seed, step=step)
         color, transmittance, depth, looked_up = _core.march_sparse_sh(
-            self.active.table, density, coefficients, self._background(), settings, 0.0, *rays,
+            self.active.table,
+            (density, coefficients, self._background()),
+            settings,
+            0.0,
+            rays,
             fused=self.fused,
-        )  # fmt: skip
+        )
         require_finite_image(color, transmittance, batch)
         context = SparseContext(
             self.active, density, coefficients, settings, *rays, color, transmittance, depth,
@@ -223,18 +227,27 @@ class SparseSh(Representation):
         none = np.zeros(len(c.t0), dtype)
         d_opacity = none if d_outputs.opacity is None else d_outputs.opacity
         d_depth = none if d_outputs.depth is None else d_outputs.depth
+        cotangents = [
+            np.ascontiguousarray(d, dtype) for d in (d_outputs.color, -d_opacity, d_depth)
+        ]
+        background = self._background()
+        self.background_gradient = np.zeros_like(background)
         gradients = {"density": np.zeros_like(c.density), "sh": np.zeros_like(c.sh)}
         if c.camera_adjoint:
             gradients["origins"] = np.zeros_like(c.origins)
             gradients["directions"] = np.zeros_like(c.directions)
-        self.lost = np.zeros_like(self._background())
         _core.march_sparse_sh_backward(
-            c.active.table, c.density, c.sh, self._background(), c.settings, 0.0,
-            c.origins, c.directions, c.t0, c.samples, c.color, c.transmittance, c.depth,
-            np.ascontiguousarray(d_outputs.color, dtype), np.ascontiguousarray(-d_opacity, dtype),
-            np.ascontiguousarray(d_depth, dtype), gradients["density"], gradients["sh"], self.lost,
-            gradients.get("origins"), gradients.get("directions"), self.fused,
-        )  # fmt: skip
+            c.active.table,
+            (c.density, c.sh, background),
+            c.settings,
+            0.0,
+            (c.origins, c.directions, c.t0, c.samples),
+            (c.color, c.transmittance, c.depth),
+            cotangents,
+            (gradients["density"], gradients["sh"], self.background_gradient),
+            (gradients["origins"], gradients["directions"]) if c.camera_adjoint else None,
+            self.fused,
+        )
         return gradients
 
     def priors(self) -> Sequence[Prior]:
@@ -246,7 +259,7 @@ class SparseSh(Representation):
 
     def _variation(self, values: Array) -> float:
         flat = np.ascontiguousarray(values).reshape(len(values), -1)
-        return float(_core.sparse_variation(self.active.topology, flat))
+        return float(_core.total_variation(self.active.topology, flat))
 
     def _variation_backward(self, values: Array, d_value: float = 1.0) -> Array:
         d_values = np.zeros_like(values)
@@ -258,7 +271,7 @@ class SparseSh(Representation):
     ) -> None:
         """Add the adjoint of the variation to the rows of bricks first .. last - 1."""
         n = len(values)
-        _core.sparse_variation_backward(
+        _core.total_variation_backward(
             self.active.topology, np.ascontiguousarray(values).reshape(n, -1), d_value, *bricks,
             d_values.reshape(n, -1),
         )  # fmt: skip
@@ -283,17 +296,15 @@ class SparseSh(Representation):
         """
         density = np.ascontiguousarray(self.params["density"], np.float32)
         coefficients = np.ascontiguousarray(self.params["sh"], np.float32)
-        background = self._background().astype(np.float32)
         settings = self.policy.settings(0.0)
-        most = np.zeros(len(self.active), np.float32)
+        max_weight = np.zeros(len(self.active), np.float32)
+        parameters = density, coefficients, self._background().astype(np.float32)
         for batch in batches:
             rays = checked_rays(
                 batch, settings, RenderOptions(), np.dtype(np.float32), seed=0, step=0
             )
-            _core.sparse_sh_weights(
-                self.active.table, density, coefficients, background, settings, *rays, most
-            )
-        return most
+            _core.sparse_sh_weights(self.active.table, parameters, settings, rays, max_weight)
+        return max_weight
 
     def refine(self, step: int, statistics: Mapping[str, Array]) -> RowMap | None:
         """Drop voxels with statistics["weight"] (N,) below statistics["threshold"], then dilate.

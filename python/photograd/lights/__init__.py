@@ -13,7 +13,6 @@ from __future__ import annotations
 
 from photograd.lights.base import Light, LightSamples
 from photograd.lights.environment import EnvironmentMap, about_y
-from photograd.lights.mesh import MeshLight
 from photograd.lights.registered import (
     ConstantLight,
     DirectionalLight,
@@ -33,7 +32,6 @@ __all__ = [
     "EnvironmentMap",
     "Light",
     "LightSamples",
-    "MeshLight",
     "PointLight",
     "QuadLight",
     "RegisteredLight",

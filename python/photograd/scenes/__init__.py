@@ -1,6 +1,7 @@
 """Procedural scenes: described, not rendered; a capture of one can be recovered like photographs.
 
 toys = scene("toy_table", seed=0)
+render_view = DirectLight(toys).render_view  # of photograd.scenes.direct_light
 splits = capture_scene(toys, render_view, views=60, test_views=8, size=128, seed=0, spp=64)
 write_blender_capture(folder, splits, aabb=toys.bounds)
 """

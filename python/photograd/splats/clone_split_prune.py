@@ -1,10 +1,10 @@
 """A growing number of Gaussians: clone, split, prune, and make everything a little fainter.
 
-A Gaussian under pressure (see `pressure`) covers too much or too little. A small one is cloned: its
-twin is free to go elsewhere. A large one is split in two along its longest axis. Faint ones are
-dropped [Kerbl2023]. Each time all opacities are lowered a little: what is needed recovers, what
-only fogs the view in front of a camera does not [Bulo2024]. (The original code lowers them to 0.01
-every 3000 steps, after which a fit has to begin anew.)
+A Gaussian with a large positional gradient (see `grad2d`) covers too much or too little. A small
+one is cloned: its twin is free to go elsewhere. A large one is split in two along its longest axis.
+Faint ones are dropped [Kerbl2023]. Each time all opacities are lowered a little: what is needed
+recovers, what only fogs the view in front of a camera does not [Bulo2024]. (The original code
+lowers them to 0.01 every 3000 steps, after which a fit has to begin anew.)
 
 None of this may cost what the fit has learned. Two Gaussians of opacity a at one place cover like
 one of 1 - (1 - a)^2, so a clone and its original get
@@ -42,7 +42,7 @@ from photograd.splats.density import (
     opacities,
     rebuilt,
 )
-from photograd.splats.pressure import Pressure
+from photograd.splats.grad2d import Grad2dStatistics
 
 SPLIT = 1.6
 """A part of a split Gaussian is shorter by this, along its longest axis [Kerbl2023]."""
@@ -51,9 +51,9 @@ SPLIT = 1.6
 @dataclass(frozen=True)
 class CloneSplitPrune(DensityControl):
     """Attributes:
-    budget: there are never more Gaussians; those under the highest pressure go first.
+    budget: there are never more Gaussians; those with the largest grad2d go first.
     schedule: of cloning, splitting and pruning.
-    threshold: pressure above which a Gaussian is cloned or split.
+    threshold: grad2d above which a Gaussian is cloned or split.
     small: in extents; Gaussians whose longest scale is below are cloned, others split.
     faint: opacity below which a Gaussian is dropped.
     large: in extents; Gaussians with a longer scale are dropped.
@@ -69,7 +69,7 @@ class CloneSplitPrune(DensityControl):
     fading: float = 0.001
 
     def change(
-        self, params: Params, pressure: Pressure, *, extent: float, step: int
+        self, params: Params, grad2d: Grad2dStatistics, *, extent: float, step: int
     ) -> Change | None:
         """Rows kept in their order, then clones, then the parts of split ones."""
         if not self.schedule.due(step):
@@ -79,7 +79,7 @@ class CloneSplitPrune(DensityControl):
         pruned = (alpha < self.faint) | (longest > self.large * extent)
         if pruned.all():
             pruned[np.argmax(alpha)] = False  # an empty scene has no gradient to grow from
-        chosen = self._under_pressure(pressure.mean(), pruned)
+        chosen = self._above_threshold(grad2d.mean(), pruned)
         small = longest <= self.small * extent
         cloned, split = np.flatnonzero(chosen & small), np.flatnonzero(chosen & ~small)
         before = _with_clones_thinned(params, cloned)
@@ -90,12 +90,12 @@ class CloneSplitPrune(DensityControl):
         after["opacity_logits"] = logits(alpha).astype(params["opacity_logits"].dtype)
         return Change(after, row_map)
 
-    def _under_pressure(self, pressure: Array, pruned: NDArray[np.bool_]) -> NDArray[np.bool_]:
-        """(N,) those above the threshold, the most pressed first while the budget lasts."""
-        wanted = np.flatnonzero((pressure >= self.threshold) & ~pruned)
+    def _above_threshold(self, grad2d: Array, pruned: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """(N,) those above the threshold, the largest first while the budget lasts."""
+        wanted = np.flatnonzero((grad2d >= self.threshold) & ~pruned)
         room = max(0, self.budget - int((~pruned).sum()))
-        order = np.argsort(-pressure[wanted], kind="stable")[:room]
-        chosen = np.zeros(len(pressure), np.bool_)
+        order = np.argsort(-grad2d[wanted], kind="stable")[:room]
+        chosen = np.zeros(len(grad2d), np.bool_)
         chosen[wanted[order]] = True
         return chosen
 

@@ -18,7 +18,7 @@ from photograd_course.row_map import RowMap
 
 from photograd.errors import RangeError, message
 from photograd.representation import Array
-from photograd.splats.pressure import Pressure
+from photograd.splats.grad2d import Grad2dStatistics
 
 Params = Mapping[str, Array]
 
@@ -55,7 +55,7 @@ class DensityControl(ABC):
 
     @abstractmethod
     def change(
-        self, params: Params, pressure: Pressure, *, extent: float, step: int
+        self, params: Params, grad2d: Grad2dStatistics, *, extent: float, step: int
     ) -> Change | None:
         """What becomes of the Gaussians before this step; None if nothing changes."""
 
@@ -72,10 +72,10 @@ class NoControl(DensityControl):
     """Leaves the number of Gaussians as it is."""
 
     def change(
-        self, params: Params, pressure: Pressure, *, extent: float, step: int
+        self, params: Params, grad2d: Grad2dStatistics, *, extent: float, step: int
     ) -> Change | None:
         """None."""
-        del params, pressure, extent, step
+        del params, grad2d, extent, step
         return None
 
 

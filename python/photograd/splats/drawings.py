@@ -25,19 +25,19 @@ LONGEST = 0.08  # of the picture's width: the arrow at the 98th percentile
 CAPTION = (
     "Arrows: where lower loss would take the most pulled means; lengths have the scale of their "
     "row. Ellipses: the derivative by opacity, one standard deviation wide; blue: more lowers the "
-    "loss, red: less does. Pressure: how hard the pictures drag at the Gaussians, in either "
-    "direction; the line is where a Gaussian is cloned or split."
+    "loss, red: less does. Positional gradient: |dL/d mean| on the screen, "
+    "averaged over the pictures; the line is where a Gaussian is cloned or split."
 )
 
 
 def draw_gaussian_gradients(
     rows: Mapping[int, tuple[ViewGradients, Array]], *, threshold: float, title: str | None = None
 ) -> Figure:
-    """Three panels for each step: arrows of the means, opacity's derivative, pressure.
+    """Three panels for each step: arrows of the means, opacity's derivative, grad2d.
 
     Args:
-        rows: {step: gradients, pressure (H, W) as `pressure_picture` draws it}.
-        threshold: pressure above which Gaussians are cloned or split.
+        rows: {step: gradients, grad2d (H, W) as `grad2d_picture` draws it}.
+        threshold: grad2d above which Gaussians are cloned or split.
         title: above everything.
     """
     first = next(iter(rows.values()))[0]
@@ -47,7 +47,7 @@ def draw_gaussian_gradients(
     bottom = style.caption_height(CAPTION, width - LEFT - 0.1) + 0.05
     with style.house_style():
         figure = style.new_figure(width, TOP + len(rows) * (height + GAP) + bottom)
-        for k, (step, (found, pressure)) in enumerate(rows.items()):
+        for k, (step, (found, grad2d)) in enumerate(rows.items()):
             top = TOP + k * (height + GAP)
             left = LEFT
             axes = _panel(figure, left, top, height, found.picture)
@@ -59,11 +59,15 @@ def draw_gaussian_gradients(
             _ellipses(figure, middle, found, bar)
             left += PANEL + BAR
             last = _panel(figure, left, top, height, None)
-            _pressure(figure, last, pressure, threshold, (left + PANEL + 0.06, top, 0.1, height))
+            _grad2d(figure, last, grad2d, threshold, (left + PANEL + 0.06, top, 0.1, height))
             for panel in (axes, middle, last):
                 panel.set(xlim=frame[:2], ylim=frame[2:])
             if k == 0:
-                for panel, name in ((axes, "means"), (middle, "opacity"), (last, "pressure")):
+                for panel, name in (
+                    (axes, "means"),
+                    (middle, "opacity"),
+                    (last, "positional gradient"),
+                ):
                     panel.set_title(name)
         style.write_title(figure, title, left=LEFT)
         style.write_caption(figure, CAPTION, left=LEFT, right=0.1)
@@ -142,16 +146,16 @@ def _ellipses(
     style.colour_bar(figure, bar, shades, r"$\partial L\,/\,\partial$ logit", extend=limits.extend)
 
 
-def _pressure(
-    figure: Figure, axes: Axes, pressure: Array, threshold: float,
+def _grad2d(
+    figure: Figure, axes: Axes, grad2d: Array, threshold: float,
     bar: tuple[float, float, float, float],
 ) -> None:  # fmt: skip
     """The map, and the line at the threshold."""
-    top = nice_limit(float(np.quantile(pressure, 0.995)))
-    extent = (0, pressure.shape[1], pressure.shape[0], 0)
-    axes.imshow(pressure, extent=extent, cmap=style.MAGNITUDE_MAP, norm=Normalize(0, top))
-    if pressure.min() < threshold < pressure.max():
-        across, down = (np.arange(n) + 0.5 for n in pressure.shape[::-1])
-        axes.contour(across, down, pressure, levels=[threshold], colors="white", linewidths=0.6)
+    top = nice_limit(float(np.quantile(grad2d, 0.995)))
+    extent = (0, grad2d.shape[1], grad2d.shape[0], 0)
+    axes.imshow(grad2d, extent=extent, cmap=style.MAGNITUDE_MAP, norm=Normalize(0, top))
+    if grad2d.min() < threshold < grad2d.max():
+        across, down = (np.arange(n) + 0.5 for n in grad2d.shape[::-1])
+        axes.contour(across, down, grad2d, levels=[threshold], colors="white", linewidths=0.6)
     shades = ScalarMappable(Normalize(0, top), style.MAGNITUDE_MAP)
-    style.colour_bar(figure, bar, shades, "pressure", extend="max")
+    style.colour_bar(figure, bar, shades, "positional gradient", extend="max")

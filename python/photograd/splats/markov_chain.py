@@ -32,7 +32,7 @@ from photograd_course.row_map import RowMap
 from photograd.quaternions import rotation_matrices
 from photograd.representation import Array
 from photograd.splats.density import Change, DensityControl, Params, Schedule, logits, opacities
-from photograd.splats.pressure import Pressure
+from photograd.splats.grad2d import Grad2dStatistics
 
 MOST_COPIES = 51
 """At so many copies of a Gaussian the formula ends, as in the authors' code."""
@@ -64,10 +64,10 @@ class MarkovChain(DensityControl):
     noise: float = 5e5
 
     def change(
-        self, params: Params, pressure: Pressure, *, extent: float, step: int
+        self, params: Params, grad2d: Grad2dStatistics, *, extent: float, step: int
     ) -> Change | None:
         """Faint rows become copies in place, new ones stand at the end; all copies are fresh."""
-        del pressure, extent
+        del grad2d, extent
         if not self.schedule.due(step):
             return None
         alpha = opacities(params)

@@ -15,7 +15,7 @@ from photograd.picture_loss import picture_loss, picture_loss_backward
 from photograd.quaternions import rotation_matrices
 from photograd.representation import Array, ImageBatch, RenderOptions
 from photograd.splat import Gaussians, SplatOptions, render
-from photograd.splats.pressure import Pressure
+from photograd.splats.grad2d import Grad2dStatistics
 from photograd.training_views import TrainingView, TrainingViews
 
 MOST_VIEWS = 24
@@ -33,7 +33,7 @@ class ViewGradients:
         screen: (N, 2) dL/d projected mean of this view, per pixel.
         visible: (N,) which Gaussians have pixels in this view.
         d_logit: (N,) dL/d opacity logit, mean over the views.
-        pressure: (N,) what density control looks at, mean over the views.
+        grad2d: (N,) positional gradient, mean over the views; density control compares it.
         loss: mean over the views.
     """
 
@@ -43,7 +43,7 @@ class ViewGradients:
     screen: Array
     visible: NDArray[np.bool_]
     d_logit: Array
-    pressure: Array
+    grad2d: Array
     loss: float
 
 
@@ -52,24 +52,24 @@ def view_gradients(
 ) -> ViewGradients:
     """Gradients over at most 24 of the views, evenly spaced; the picture is that of view `number`.
 
-    Over white. Does not touch the scene's own pressure.
+    Over white. Does not touch the scene's own statistics.
 
     Raises:
         IndexError: there is no such view.
     """
     shown = views.views[number]
-    pressure, total, loss = Pressure.zero(scene.resolution), np.zeros(scene.resolution), 0.0
+    grad2d, total, loss = Grad2dStatistics.zero(scene.resolution), np.zeros(scene.resolution), 0.0
     chosen = views.views[:: max(1, -(-len(views) // MOST_VIEWS))]
     for view in chosen:
         value, gradients, screen, visible, _ = _slope(scene, view, ssim_weight)
         total += gradients["opacity_logits"]
-        pressure.add(screen, visible, view.camera)
+        grad2d.add(screen, visible, view.camera)
         loss += value
     _, _, screen, visible, picture = _slope(scene, shown, ssim_weight)
     pixels, _ = shown.camera.project(scene.params["means"].astype(np.float64))
     spread = screen_covariances(scene.gaussians, shown.camera)
     return ViewGradients(
-        picture, pixels, spread, screen, visible, total / len(chosen), pressure.mean(),
+        picture, pixels, spread, screen, visible, total / len(chosen), grad2d.mean(),
         loss / len(chosen),
     )  # fmt: skip
 
@@ -107,10 +107,10 @@ def screen_covariances(gaussians: Gaussians, camera: Camera) -> Array:
     return found
 
 
-def pressure_picture(gaussians: Gaussians, pressure: Array, camera: Camera) -> Array:
-    """(H, W) pressure as the camera would see it, if it were what Gaussians show; 0 in between."""
-    top = max(float(pressure.max()), 1e-30)
-    plain = (pressure / top - 0.5) / sh.Y_0
+def grad2d_picture(gaussians: Gaussians, grad2d: Array, camera: Camera) -> Array:
+    """(H, W) grad2d as the camera would see it, if it were what Gaussians show; 0 in between."""
+    top = max(float(grad2d.max()), 1e-30)
+    plain = (grad2d / top - 0.5) / sh.Y_0
     arrays = gaussians.arrays() | {"sh": np.repeat(plain[:, None, None], 3, axis=2)}
     shown = Gaussians(**{name: a.astype(np.float64) for name, a in arrays.items()})
     picture, _ = render(shown, camera, options=SplatOptions())

@@ -90,3 +90,19 @@ def _bent(material: Material) -> BentNormals | None:
 
 def _wrap(wrap: tuple[str, str]) -> tuple[Any, ...]:
     return WRAPS.index(wrap[0]), WRAPS.index(wrap[1])
+
+
+def blocks_of(arguments: dict[str, Any]) -> dict[str, Array]:
+    """The arrays of a scene that have derivatives, by the names of the core's blocks.
+
+    Those of cpp/photograd/scene/gradient.h: "parameters", "emission", "lights.0", "textures.0",
+    "media.0", "densities.0" and so on.
+    """
+    blocks = {name: arguments[name] for name in ("parameters", "emission")}
+    blocks |= {f"lights.{i}": row[1] for i, row in enumerate(arguments["lights"])}
+    blocks |= {f"textures.{i}": texels for i, texels in enumerate(arguments["textures"])}
+    for i, (_, row, density, _) in enumerate(arguments["media"]):
+        blocks[f"media.{i}"] = row
+        if density is not None:
+            blocks[f"densities.{i}"] = density
+    return blocks

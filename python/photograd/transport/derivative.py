@@ -1,6 +1,6 @@
 """Derivative pictures: how every pixel changes with one number of a scene.
 
-The mathematics is in cpp/photograd/render/path_tangent.h. Where `PathTracer.render_backward` gives
+The mathematics is in cpp/photograd/render/path/tangent.h. Where `PathTracer.render_backward` gives
 the derivatives of one number with respect to all parameters, this gives the derivative of all
 pixels with respect to one.
 """

@@ -17,7 +17,6 @@ from photograd.errors import ShapeError, message
 from photograd.lights import (
     EnvironmentMap,
     Light,
-    MeshLight,
     QuadLight,
     RegisteredLight,
     SkyLight,
@@ -27,7 +26,7 @@ from photograd.lights import (
 from photograd.transport.scene import Array, Environment, MeshShape, Scene, Shape, SphereShape
 from photograd.transport.shapes import rectangle
 
-SURFACES = (QuadLight, SphereLight, TriangleLight, MeshLight)
+SURFACES = (QuadLight, SphereLight, TriangleLight)
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,9 +106,6 @@ def _shape(name: str, light: Light) -> Shape:
     if isinstance(light, SphereLight):
         center, emission = np.asarray(light.center), np.asarray(light.radiance)
         return SphereShape(name, center, light.radius, "", emission)
-    if isinstance(light, TriangleLight):
-        corners = np.array([light.a, light.b, light.c], np.float64)
-        return MeshShape(name, corners, np.array([[0, 1, 2]]), "", np.asarray(light.radiance))
-    assert isinstance(light, MeshLight)
-    vertices = np.asarray(light.vertices, np.float64)
-    return MeshShape(name, vertices, np.asarray(light.faces), "", light.radiance)
+    assert isinstance(light, TriangleLight)
+    corners = np.array([light.a, light.b, light.c], np.float64)
+    return MeshShape(name, corners, np.array([[0, 1, 2]]), "", np.asarray(light.radiance))

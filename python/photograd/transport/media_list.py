@@ -175,14 +175,14 @@ class ListedMedia:
             found.append((medium.phase_name, row, density, sigma_maj))
         return found
 
-    def named(self, d_rows: Sequence[Array], d_densities: Sequence[Any]) -> dict[str, Array]:
-        """Derivatives by the second and third entries of `rows`, under the names of the params."""
+    def named(self, blocks: Mapping[str, Array]) -> dict[str, Array]:
+        """The derivatives in "media.I" and "densities.I", under the names of the params."""
         gradients: dict[str, Array] = {}
-        for (name, medium), row, grid in zip(self.media.items(), d_rows, d_densities, strict=True):
-            first = 0
+        for i, (name, medium) in enumerate(self.media.items()):
+            row, first = blocks[f"media.{i}"], 0
             for key, value in medium.start.items():
                 if key == "density":
-                    gradients[f"media.{name}.{key}"] = grid
+                    gradients[f"media.{name}.{key}"] = blocks[f"densities.{i}"]
                     continue
                 part = row[first : first + value.size]
                 gradients[f"media.{name}.{key}"] = part.reshape(value.shape)

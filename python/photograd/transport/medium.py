@@ -1,7 +1,7 @@
 """What fills volumes: fog, milk, coloured glass. Absorption, scattering, and where they vary.
 
-The mathematics is in cpp/photograd/medium/medium.h, render/free_flight.h (sampling) and
-render/volume_vertex.h (what a path carries, and its adjoint).
+The mathematics is in cpp/photograd/medium/medium.h, render/path/free_path.h
+(sampling) and adjoint.h (what a path carries, and its derivatives).
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
 """Shapes that move while the shutter is open: each point straight on, at one speed.
 
-A path sees them, and what they shadow, at one moment, which it draws (render/shutter_time.h). A
-medium fills the shape wherever that is; a grid of densities stays where it is in the world.
+A path sees them, and what they shadow, at one moment, which it samples
+(cpp/photograd/render/path/camera_sample.h). A medium fills the shape wherever that is; a grid of
+densities stays where it is in the world.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Light tracing: particles from the lights, and the irradiance of what they land on.
 
-The mathematics is in cpp/photograd/scene/emit.h (how they leave), render/particle_walk.h (what
-surfaces do to them), volume_particles.h (what media do) and light_map.h (where they land).
+The mathematics is in cpp/photograd/scene/emit.h (how they leave), render/path/scatter.h (what
+surfaces do to them), tracer.h (how they travel) and render/light/irradiance_sensor.h.
 """
 
 from __future__ import annotations
@@ -12,20 +12,11 @@ from typing import Any
 import numpy as np
 
 from photograd.core import _core
-from photograd.errors import RangeError, SceneError, ShapeError, message
-from photograd.lights import (
-    ConstantLight,
-    DirectionalLight,
-    EnvironmentMap,
-    SkyLight,
-    SunLight,
-)
+from photograd.errors import RangeError, ShapeError, message
 from photograd.transport.accumulation import Accumulation
 from photograd.transport.motion import refuse_motion
 from photograd.transport.scene import Array
 from photograd.transport.tracer import NEVER, PathTracer
-
-FAR = (ConstantLight, DirectionalLight, EnvironmentMap, SkyLight, SunLight)
 
 
 @dataclass(frozen=True)
@@ -131,8 +122,7 @@ def trace_light(
     Raises:
         RangeError: particles below 1, or a scene without lights.
         ShapeError: sums of another shape than the receiver.
-        SceneError: shapes that move, or lights at infinity in a scene whose world's medium has a
-            grid.
+        SceneError: shapes that move.
     """
     shape = (receiver.height, receiver.width)
     total = Accumulation.empty(*shape) if sums is None else sums
@@ -185,16 +175,9 @@ def scene_arguments(function: str, tracer: PathTracer) -> dict[str, Any]:
     """The scene as the core's functions take it that have no camera.
 
     Raises:
-        SceneError: shapes that move; or light from infinity, and around everything a medium with a
-            grid: particles start from a disc before the shapes, and the grid may reach beyond.
+        SceneError: shapes that move.
     """
-    scene = tracer.scene
-    refuse_motion(function, scene)
-    far = scene.environment is not None or any(isinstance(x, FAR) for x in scene.lights)
-    if scene.world is not None and scene.media[scene.world].density is not None and far:
-        expected = "no grid of densities around everything beside lights at infinity"
-        remedy = "make it the interior of a box"
-        raise SceneError(message(function, "scene.world", expected, f"'{scene.world}'", remedy))
+    refuse_motion(function, tracer.scene)
     arguments = tracer.wide_arguments()
     del arguments["camera"]
     return arguments

@@ -1,25 +1,22 @@
 """Photon mapping: particles kept where they land, and pictures read off their density.
 
-The mathematics is in cpp/photograd/render/photon_map.h.
+The mathematics is in cpp/photograd/render/light/photon_map.h.
 """
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from photograd.core import _core
-from photograd.errors import RangeError, SceneError, ShapeError, message
+from photograd.errors import RangeError, ShapeError, message
 from photograd.transport.accumulation import Accumulation
-from photograd.transport.media_list import has_media
 from photograd.transport.particles import PARTICLES, ParticleOptions, scene_arguments
 from photograd.transport.scene import Array
 from photograd.transport.tracer import DEFAULTS, PathOptions, PathTracer
 
 
 class PhotonMap:
-    """What particles brought to the surfaces of a scene that are not smooth.
+    """What particles brought to the surfaces of a scene that are not specular.
 
     The estimate is biased by a blur of the radius, whatever the number of particles; in a smaller
     radius fewer of them count, and it is noisier.
@@ -46,20 +43,14 @@ class PhotonMap:
         Raises:
             RangeError: particles below 1, a radius that is not above 0 and finite, or a scene
                 without lights.
-            SceneError: a scene with media, in which light also comes from between the surfaces, or
-                with shapes that move.
+            SceneError: shapes that move.
         """
         if particles < 1:
             raise RangeError(message("PhotonMap", "particles", "at least 1", particles))
-        if has_media(tracer.scene):
-            expected = "a scene without media: photons are kept on surfaces alone"
-            remedy = "trace_light goes through media, and so does PathTracer.render"
-            got = sorted(tracer.scene.media) or "boundaries"
-            raise SceneError(message("PhotonMap", "scene.media", expected, got, remedy))
         self.tracer = tracer
         self.radius = radius
         self._map = _core.PhotonMap(
-            **_without_media(scene_arguments("PhotonMap", tracer)),
+            **scene_arguments("PhotonMap", tracer),
             options=options.numbers(seed), count=particles, radius=radius, direct=direct,
         )  # fmt: skip
 
@@ -86,8 +77,9 @@ class PhotonMap:
     ) -> None:
         """Add the next `spp` samples of the scene's camera to `sums` (H, W, 3), in place.
 
-        A path of the camera goes through smooth surfaces to the first that is not; all the light
-        there is read off the map. Of `options`, max_depth and sampler count.
+        A camera path goes through specular surfaces, and through media, to the first surface that
+        is not specular; all the light there is read from the map. Light that media scatter is path
+        traced.
 
         Raises:
             RangeError: spp below 1.
@@ -97,7 +89,7 @@ class PhotonMap:
         view = self.tracer.scene.camera
         sums.check_call("PhotonMap.add_samples", (view.height, view.width), spp)
         self._map.trace(
-            **_without_media(self.tracer.wide_arguments()), options=options.numbers(seed),
+            **self.tracer.wide_arguments(), options=options.numbers(seed),
             first=sums.count, count=spp, radiance=sums.radiance, squares=sums.squares,
         )  # fmt: skip
         sums.count += spp
@@ -109,7 +101,3 @@ class PhotonMap:
         sums = Accumulation.empty(view.height, view.width)
         self.add_samples(sums, spp, seed=seed, options=options)
         return sums
-
-
-def _without_media(arguments: dict[str, Any]) -> dict[str, Any]:
-    return {name: value for name, value in arguments.items() if name != "media"}

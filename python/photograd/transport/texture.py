@@ -3,9 +3,10 @@
 A texture is linear and (H, W, C), T[row, column], v downwards; `from_image` decodes sRGB. Lookups
 are bilinear: a path tracer averages over a pixel by its many samples, and needs no mip map. With
 few samples one helps: `filter` "mip" looks up the mean over what a pixel sees at once, by ray cones
-(cpp/photograd/render/ray_cone.h). It is less noisy and biased: what is averaged is the texture, not
-the light, over a square as wide as the longer side of that area, and no number of samples sharpens
-it again. Pictures of the textured surface itself, seen far away or through many bounces, gain most.
+(cpp/photograd/render/path/ray_cone.h). It is less noisy and biased: what is averaged is the
+texture, not the light, over a square as wide as the longer side of that area, and no number of
+samples sharpens it again. Pictures of the textured surface itself, seen far away or through many
+bounces, gain most.
 Normal maps, what shines, shadows of what covers in part, and photons see single points always. A
 mask is compared with its cutoff after the mean is taken, so that a net far away is all or nothing:
 its alpha is better bilinear, as it is when read from glTF.

@@ -1,7 +1,7 @@
 """Path tracing of a scene, and the derivatives of its picture by everything that is a number.
 
-The mathematics is in cpp/photograd/render/path_walk.h (which paths) and path_vertex.h (what they
-carry, and its adjoint).
+The mathematics is in cpp/photograd/render/path/tracer.h (which paths are sampled) and adjoint.h
+(what they carry, and its derivatives).
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from photograd.data.camera import Camera
 from photograd.errors import DtypeError, RangeError, ShapeError, message
 from photograd.transport.accumulation import Accumulation
 from photograd.transport.core_arrays import (
+    blocks_of,
     cutoffs_of,
     glows_of,
     instances_of,
@@ -184,8 +185,7 @@ class PathTracer:
         """A picture of `spp` samples a pixel; the same seed gives the same bits on any threads.
 
         Args:
-            spp: samples a pixel.
-            seed: of all random numbers.
+            spp, seed: samples a pixel, and the seed of all random numbers.
             options: how light is looked for.
             camera: None takes the scene's.
 
@@ -201,18 +201,20 @@ class PathTracer:
     def add_samples(
         self, sums: Accumulation, spp: int, *, seed: int, options: PathOptions = DEFAULTS,
         camera: Camera | None = None, sampling_params: dict[str, Array] | None = None,
+        hits: Array | None = None,
     ) -> None:  # fmt: skip
         """Add the next `spp` samples to `sums`, in place.
 
         Args:
             sums: of the same seed, options and camera, or empty.
             spp, seed, options, camera: as for `render`.
-            sampling_params: what decides where paths go, if not `params`: a difference of two
-                pictures with different `params` and the same sampling is what `render_backward`
-                differentiates.
+            sampling_params: what decides where paths go, if not `params`: `render_backward` is the
+                derivative of pictures whose `params` change while these do not.
+            hits: (H, W) float64, or None. If given, camera rays that see the background alone add
+                nothing to `sums`, and `hits` counts the others: `hits / sums.count` is alpha.
 
         Raises:
-            As `render`; ShapeError: sums of another size.
+            As `render`; ShapeError: sums or hits of another size.
         """
         view = self.scene.camera if camera is None else camera
         sums.check_call("add_samples", (view.height, view.width), spp)
@@ -222,7 +224,7 @@ class PathTracer:
         _core.trace_paths(
             **self._arguments(view), sampling_parameters=other, sampling_textures=texels,
             sampling_media=media, options=options.numbers(seed),
-            first=sums.count, count=spp, radiance=sums.radiance, squares=sums.squares,
+            first=sums.count, count=spp, radiance=sums.radiance, squares=sums.squares, hits=hits,
         )  # fmt: skip
         sums.count += spp
         sums.check_finite("PathTracer.render")
@@ -268,32 +270,23 @@ class PathTracer:
     def add_up(self, function: str, backward: Any, view: Camera, **given: Any) -> WholeGradients:
         """What an adjoint of the core adds to zeros, by names of `params`, for a `function`."""
         arguments = self._arguments(view)
-        d_rows = np.zeros_like(arguments["parameters"])
-        d_emission = np.zeros_like(arguments["emission"])
-        d_lights = [np.zeros_like(row[1]) for row in arguments["lights"]]
-        d_textures = [np.zeros_like(texels) for texels in arguments["textures"]]
-        d_media = [np.zeros_like(row) for _, row, _, _ in arguments["media"]]
-        grids = [grid for _, _, grid, _ in arguments["media"]]
-        d_densities = [None if grid is None else np.zeros_like(grid) for grid in grids]
-        backward(
-            **arguments, **given, d_parameters=d_rows, d_emission=d_emission, d_lights=d_lights,
-            d_textures=d_textures, d_media=d_media, d_densities=d_densities,
-        )  # fmt: skip
+        gradient = {name: np.zeros_like(value) for name, value in blocks_of(arguments).items()}
+        backward(**arguments, **given, gradient=gradient)
         d_shapes = np.zeros((len(self._shapes), 3), self.dtype)
-        np.add.at(d_shapes, self._owner, d_emission)
+        np.add.at(d_shapes, self._owner, gradient["emission"])
         gradients = dict(zip(self._emissions, d_shapes, strict=True))
-        for name, d_texels in zip(self.scene.textures, d_textures, strict=True):
-            gradients[f"textures.{name}"] = d_texels
+        for i, name in enumerate(self.scene.textures):
+            gradients[f"textures.{name}"] = gradient[f"textures.{i}"]
         start = 0
         for name, material in self.scene.materials.items():
             for parameter in material.parameters:
-                part = d_rows[start : start + parameter.size]
+                part = gradient["parameters"][start : start + parameter.size]
                 key = f"materials.{name}.{parameter.name}"
                 gradients[key] = part.reshape(self.params[key].shape)
                 start += parameter.size
-        for light, derivative in zip(self._lights, d_lights, strict=True):
-            gradients.update(light.named(derivative))
-        gradients.update(self._media.named(d_media, d_densities))
+        for i, light in enumerate(self._lights):
+            gradients.update(light.named(gradient[f"lights.{i}"]))
+        gradients.update(self._media.named(gradient))
         return WholeGradients(function, gradients, self.params, self.incomplete)
 
     def add_occlusion(

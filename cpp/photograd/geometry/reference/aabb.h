@@ -34,11 +34,12 @@ struct Aabb {
     }
 };
 
-/// Does the ray meet the box within [t_min, t_max]? Between the two planes of an axis it is for t from
-/// (lo - o) / d to (hi - o) / d, the larger last; in the box where it is between all three pairs.
+/// Whether the ray hits the box within [t_min, t_max]. Between the two planes of an axis it is for
+/// t from (lo - o) / d to (hi - o) / d, the larger last; in the box where it is between all three
+/// pairs.
 ///
-/// The interval is widened by far more than what rounding here and in the test of a triangle can make:
-/// a box may be entered in vain, but is never missed. `enter` is where the ray comes in.
+/// The interval is widened by far more than what rounding here and in the test of a triangle can
+/// make: a hit may be false, a miss never is. `enter` is where the ray comes in.
 inline bool meets(const Aabb& box, const Ray<double>& ray, double t_min, double t_max,
                   double& enter) {
     constexpr double slack = 1e-12;

@@ -15,8 +15,8 @@ using Polygons = std::vector<BspPolygon>;
 
 enum Side { in_plane = 0, front = 1, back = 2, crossing = 3 };  // crossing = front | back
 
-/// All triangles as polygons, the plane of each, and what is as near to a plane as rounding: it then lies in
-/// the plane, or cuts would leave slivers without end.
+/// All triangles as polygons, the plane of each, and what is as near to a plane as rounding: it
+/// then lies in the plane, or cuts would leave slivers without end.
 struct Workshop {
     Polygons polygons;
     std::vector<BspPlane> planes;
@@ -53,8 +53,8 @@ struct Workshop {
         return static_cast<Side>(side);
     }
 
-    /// Of `candidates` polygons spread over the list, the face whose plane cuts few others and leaves as
-    /// many in front as behind; a cut counts as much as four polygons out of balance.
+    /// Of `candidates` polygons spread over the list, the face whose plane cuts few others and
+    /// leaves as many in front as behind; a cut counts as much as four polygons out of balance.
     [[nodiscard]] std::int32_t best_face(const Polygons& list, int candidates) const {
         std::int32_t best = list.front().face;
         double least = std::numeric_limits<double>::infinity();
@@ -72,7 +72,8 @@ struct Workshop {
     }
 };
 
-/// Walks around the polygon: corners go to their side, those in the plane and crossing points to both.
+/// Walks around the polygon: corners go to their side, those in the plane and crossing points to
+/// both sides.
 std::pair<BspPolygon, BspPolygon> cut(const BspPolygon& polygon, const BspPlane& plane,
                                       double tolerance) {
     std::pair<BspPolygon, BspPolygon> halves{{{}, polygon.face}, {{}, polygon.face}};
@@ -117,8 +118,8 @@ void check_positive(const char* argument, int value) {
 BspTree::BspTree(const Mesh& mesh, const BspOptions& options) {
     check_positive("candidates", options.candidates);
     check_positive("max_polygons", options.max_polygons);
-    struct
-        Task {  // a list of them, not recursion: trees of convex bodies are as deep as they have faces
+    // A list of tasks, not recursion: the tree of a convex body is as deep as it has faces.
+    struct Task {
         Polygons polygons;
         std::int32_t parent;
         bool in_front;
@@ -155,7 +156,8 @@ BspTree::BspTree(const Mesh& mesh, const BspOptions& options) {
 }
 
 void BspTree::back_to_front(const Vec3<double>& eye, std::uint32_t* order) const {
-    // A node comes up twice: first to put its halves in order, then, as ~node, for its own polygons.
+    // A node comes up twice: first to put its halves in order, then, as ~node, for its own
+    // polygons.
     std::vector<std::int32_t> stack{0};
     while (!stack.empty()) {
         const std::int32_t top = stack.back();

@@ -1,8 +1,9 @@
-// A binary space partition: polygons in an order in which none hides a later one, from any eye [Fuchs1980].
+// A binary space partition: polygons in an order in which none hides a later one, from any eye
+// point [Fuchs1980].
 //
-// The plane of one polygon halves space, and with it all others; those that it crosses are cut in two.
-// Seen from one side, nothing on the far side can hide what lies on the near side. Both halves are
-// treated alike, until every polygon lies in the plane of a node.
+// The plane of one polygon halves space, and with it all others; those that it crosses are cut in
+// two. Seen from one side, nothing on the far side can hide what lies on the near side. Both halves
+// are treated alike, until every polygon lies in the plane of a node.
 #pragma once
 
 #include <cstdint>
@@ -39,8 +40,8 @@ struct BspOptions {
 
 class BspTree {
 public:
-    /// Refuses (RangeError) options that are not positive, and meshes that fall into more polygons than
-    /// the options allow.
+    /// Refuses (RangeError) options that are not positive, and meshes that fall into more polygons
+    /// than the options allow.
     BspTree(const Mesh& mesh, const BspOptions& options);
 
     /// Numbers of all polygons, those that may be hidden first; order (polygon_count(),).

@@ -49,8 +49,8 @@ public:
     }
 
 private:
-    [[nodiscard]] std::uint32_t triangle(std::int32_t place) const {
-        return tree_.order[static_cast<std::size_t>(place)];
+    [[nodiscard]] std::uint32_t triangle(std::int32_t slot) const {
+        return tree_.order[static_cast<std::size_t>(slot)];
     }
     [[nodiscard]] Aabb bounds(std::int32_t first, std::int32_t count) const {
         Aabb box;
@@ -79,7 +79,8 @@ private:
                 s.box.add(boxes_[triangle(i)]);
                 ++s.count;
             }
-            // One sweep from the right keeps what lies right of each border, one from the left decides.
+            // A sweep from the right stores what lies right of each border; one from the left
+            // compares the costs.
             std::vector<double> right_cost(bins);
             Slice sum;
             for (std::size_t b = bins - 1; b > 0; --b) {

@@ -1,12 +1,12 @@
 // A bounding volume hierarchy, built from the top by the surface area heuristic.
 //
-// What a node costs is one test of its box, and, for each half, the chance that a line that meets the
-// node meets the half (the ratio of their areas) times the triangles in there [Goldsmith1987]:
+// What a node costs is one test of its box, and, for each half, the chance that a line that meets
+// the node meets the half (the ratio of their areas) times the triangles in there [Goldsmith1987]:
 //
 //   C = 1 + A_left / A n_left + A_right / A n_right        a leaf costs n
 //
-// Not all 2^n halves are tried, but planes across each axis: centroids fall into `bins` slices, and the
-// borders of slices are the candidates [Wald2007].
+// Not all 2^n halves are tried, but planes across each axis: centroids fall into `bins` slices, and
+// the borders of slices are the candidates [Wald2007].
 #pragma once
 
 #include <cstdint>
@@ -17,8 +17,8 @@
 
 namespace photograd {
 
-/// A leaf has count > 0 and holds order[first] .. order[first + count - 1]; of any other node, the left
-/// child is the next node in the list and `right` the number of the other one.
+/// A leaf has count > 0 and holds order[first] .. order[first + count - 1]; of any other node, the
+/// left child is the next node in the list and `right` the number of the other one.
 struct BvhNode {
     Aabb box;
     std::int32_t first, count, right, depth;

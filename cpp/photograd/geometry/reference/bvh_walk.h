@@ -12,17 +12,17 @@ struct NearestHit {
     std::int32_t primitive;
 };
 
-/// What a ray cost.
+/// Cost of a ray.
 struct Visits {
     std::int32_t boxes = 0, triangles = 0;
 };
 
-/// The nearest hit of a ray within [t_min, t_max], or, with `any`, whichever is found first. Of triangles
-/// hit at one and the same t, the one with the least number.
+/// The nearest hit of a ray within [t_min, t_max], or, with `any`, whichever is found first. Of
+/// triangles hit at one and the same t, the one with the least number.
 NearestHit walk_bvh(const Mesh& mesh, const BvhTree& tree, const Ray<double>& ray, double t_min,
                     double t_max, bool any, Visits& visits);
 
-/// The same hit, looked for among all triangles.
+/// The nearest hit by testing all triangles, as a reference for `walk_bvh`.
 NearestHit try_all_triangles(const Mesh& mesh, const Ray<double>& ray, double t_min, double t_max);
 
 }  // namespace photograd

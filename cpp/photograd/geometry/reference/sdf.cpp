@@ -140,12 +140,11 @@ void Sdf::backward(std::int32_t at, const double* numbers, const Vec3<double>& p
         case SdfKind::intersect:
             pass(child(node.first) >= child(node.second) ? node.first : node.second, d_f, p, d_p);
             break;
-        case SdfKind::subtract:
-            if (child(node.first) >= -child(node.second))
-                pass(node.first, d_f, p, d_p);
-            else
-                pass(node.second, -d_f, p, d_p);
+        case SdfKind::subtract: {
+            const bool outer = child(node.first) >= -child(node.second);
+            pass(outer ? node.first : node.second, outer ? d_f : -d_f, p, d_p);
             break;
+        }
         case SdfKind::smooth_unite: {
             double d_a = 0, d_b = 0;
             smooth_union_backward(child(node.first), child(node.second), x[0], d_f, d_a, d_b,
@@ -155,14 +154,13 @@ void Sdf::backward(std::int32_t at, const double* numbers, const Vec3<double>& p
             break;
         }
         case SdfKind::place: {
-            const Vec3<double> shift = three(x + 4);
-            pass(node.first, d_f, to_shape(p, x, shift), d_local);
-            to_shape_backward(p, x, shift, d_local, d_p, d_x, d_three);
+            pass(node.first, d_f, to_shape(p, x, three(x + 4)), d_local);
+            to_shape_backward(p, x, three(x + 4), d_local, d_p, d_x, d_three);
             add_three(d_three, d_x + 4);
             break;
         }
         case SdfKind::scale: {
-            // f = s g(q), q = p / s:   dL/dg = s dL/df    dL/dp = dL/dq / s    dL/ds = g dL/df - <dL/dq, q> / s
+            // f = s g(q), q = p / s:   d_g = s d_f,   d_p = d_q / s,   d_s = g d_f - <d_q, q> / s
             const Vec3<double> q = p / x[0];
             pass(node.first, x[0] * d_f, q, d_local);
             d_p += d_local / x[0];

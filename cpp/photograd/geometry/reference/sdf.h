@@ -1,7 +1,7 @@
-// A body as a tree of signed distances: shapes at the leaves, unions and placements above them.
+// A signed distance field (SDF) as a tree: shapes at the leaves, unions and placements above them.
 //
-// The tree says what is combined with what; the numbers (radii, places) lie in one array beside it, which
-// callers may change and differentiate by.
+// The tree says what is combined with what; the numbers (radii, positions) lie in one array beside
+// it. Callers may change them and differentiate with respect to them.
 #pragma once
 
 #include <cstdint>
@@ -38,25 +38,26 @@ struct SdfNode {
 class Sdf {
 public:
     static constexpr int deepest = 256;
-    /// The last node is the root. Refuses (RangeError) lists that are no tree, or one deeper than that.
+    /// The last node is the root. Refuses (RangeError) lists that are no tree, or one deeper than
+    /// that.
     explicit Sdf(std::vector<SdfNode> nodes);
 
     [[nodiscard]] std::int64_t number_count() const { return number_count_; }
     [[nodiscard]] const std::vector<SdfNode>& nodes() const { return nodes_; }
 
-    /// f(p), metres; negative inside. Of a smooth union or a difference it may understate how far the
-    /// surface is, never overstate it.
+    /// f(p), meters; negative inside. Of a smooth union or a difference it may understate how far
+    /// the surface is, never overstate it.
     [[nodiscard]] double distance(const double* numbers, const Vec3<double>& p) const {
         return distance(root(), numbers, p);
     }
-    /// Adds d_f df/dp and d_f df/dnumbers. With d_f = 1 the first is the gradient, which points out of the
-    /// surface. Where two children are equally near, the derivative is that of the first.
+    /// Adds d_f df/dp and d_f df/dnumbers. With d_f = 1 the first is the gradient, which points out
+    /// of the surface. Where two children are equally near, the derivative is that of the first.
     void backward(const double* numbers, const Vec3<double>& p, double d_f, Vec3<double>& d_p,
                   double* d_numbers) const {
         backward(root(), numbers, p, d_f, d_p, d_numbers);
     }
-    /// What is wrong with the numbers, or null: radii and widths must be above 0, normals and quaternions not
-    /// of length 0, all finite.
+    /// The first fault of the numbers, or null: radii and widths must be above 0, normals and
+    /// quaternions not of length 0, all finite.
     [[nodiscard]] const char* fault(const double* numbers) const;
 
 private:

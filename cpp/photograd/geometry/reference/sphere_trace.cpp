@@ -43,7 +43,7 @@ struct March {
 
 March march_ray(const Sdf& body, const double* numbers, const Ray<double>& ray,
                 const SdfMarch& march, std::vector<double>& unused) {
-    const double per_metre = 1 / length(ray.direction);
+    const double per_meter = 1 / length(ray.direction);
     double t = march.t_min;
     for (std::int32_t step = 1; step <= march.max_steps; ++step) {
         const double f = body.distance(numbers, ray.at(t));
@@ -51,7 +51,7 @@ March march_ray(const Sdf& body, const double* numbers, const Ray<double>& ray,
             if (t > march.t_min) t = polished(body, numbers, ray, t, march.t_min, unused);
             return {t, step, SdfEnd::hit};
         }
-        t += f * per_metre;
+        t += f * per_meter;
         if (!(t <= march.t_max))
             return {std::numeric_limits<double>::infinity(), step, SdfEnd::missed};
     }

@@ -1,8 +1,8 @@
-// Where rays meet a body of signed distances [Hart1996].
+// Where rays hit the surface of a signed distance field (SDF) [Hart1996].
 //
-// A distance is a promise that nothing lies nearer. Stepping ahead by it can therefore not pass through the
-// surface; steps shrink as it comes close. Whether what a ray meets so is its first hit depends on the
-// promise alone: |f(p) - f(q)| <= |p - q| (f is 1-Lipschitz).
+// Nothing lies nearer than the distance, so a step of that length cannot pass through the surface;
+// steps shrink as it comes close. That the march finds the first hit rests on |f(p) - f(q)| <=
+// |p - q| alone (f is 1-Lipschitz).
 //
 // The march ends within a tolerance of the surface; Newton steps t -= f / <n, w>, n = df/dp, w the
 // direction, then bring the hit to rounding, as long as they bring f nearer to 0.
@@ -12,7 +12,8 @@
 //   <n, w> dt/dx + df/dx = 0        dt/dx = -(df/dx) / <n, w>
 //   <n, w> dt/do + n = 0            dt/do = -n / <n, w>        dt/dw = -t n / <n, w>
 //
-// These are the derivatives inside of the silhouette; where <n, w> goes to 0 they grow without bound.
+// These are the derivatives inside of the silhouette; where <n, w> goes to 0 they grow without
+// bound.
 #pragma once
 
 #include "photograd/geometry/ray_order.h"
@@ -28,20 +29,21 @@ struct SdfMarch {
     std::int32_t max_steps;
 };
 
-/// Arrays (R,), filled: t (infinite where nothing was met), f evaluated, how the ray ended. A ray that
-/// starts inside has its hit at t_min. Directions need not have unit length: t counts in their lengths.
+/// Arrays (R,), filled: t (infinite where nothing was met), f evaluated, how the ray ended. A ray
+/// that starts inside has its hit at t_min. Directions need not have unit length: t counts in their
+/// lengths.
 struct SdfHits {
     double* t;
     std::int32_t* steps;
     SdfEnd* end;
 };
 
-/// The same bits for any number of threads.
+/// Results do not depend on the number of threads, to the bit.
 void trace_sdf(const Sdf& body, const double* numbers, const RaySpan<double>& rays,
                const SdfMarch& march, const SdfHits& hits);
 
-/// Adds dL/dnumbers, dL/dorigins and dL/ddirections (R, 3) of dL/dt (R,); rows that end otherwise than in a
-/// hit, and those that started inside, have no derivative and are left out.
+/// Adds dL/dnumbers, dL/dorigins and dL/ddirections (R, 3) of dL/dt (R,); rows that end otherwise
+/// than in a hit, and those that started inside, have no derivative and are left out.
 void trace_sdf_backward(const Sdf& body, const double* numbers, const RaySpan<double>& rays,
                         const SdfMarch& march, const double* t, const SdfEnd* end,
                         const double* d_t, double* d_numbers, double* d_origins,

@@ -16,7 +16,8 @@ that contains the same noise.
     dL/da = w (b - t) / N        dL/db = w (a - t) / N        N = numbers in the picture
 
 Each half's paths carry the derivative that the other half's picture asks for. Held constant: t, w.
-Others call it a dual buffer [Deng2022]; cpp/photograd/render/path_pairs.h traces both at once.
+This is the dual-buffer loss [Deng2022]; cpp/photograd/render/path/dual_buffer.h traces both at
+once.
 """
 
 from __future__ import annotations
@@ -101,7 +102,7 @@ def loss_and_gradients(
         counts = pair_counts(pilot, weight * (pilot.mean - target), spp, spread)
     halves = np.zeros((2, *shape))
     found = tracer.add_up(
-        "loss_and_gradients", _core.trace_pairs_backward, view,
+        "loss_and_gradients", _core.dual_buffer_backward, view,
         options=options.numbers(seeds[0]), other_seed=seeds[1],
         spp=spp, counts=counts, pictures=halves,
         target=np.ascontiguousarray(target, np.float64),

@@ -1,0 +1,94 @@
+"""Direct light in a described scene, for captures: the path tracer at two segments."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from photograd.data.camera import Camera
+from photograd.light import cap_height
+from photograd.lights import SunLight
+from photograd.scenes.description import SceneDescription, SceneMesh
+from photograd.scenes.vertex_colors import vertex_color_texture
+from photograd.transport.accumulation import Accumulation
+from photograd.transport.scene import Environment, Material, MeshShape, Scene
+from photograd.transport.texture import Texture, TextureUse
+from photograd.transport.tracer import PathOptions, PathTracer
+
+Array = npt.NDArray[Any]
+TWO_SEGMENTS = PathOptions(max_depth=2, roulette_from=None)
+"""From the camera to a surface, and on to a light."""
+
+
+def lit_scene(description: SceneDescription, camera: Camera) -> Scene:
+    """The description's meshes, Lambertian, under its sun and sky; its density is left out.
+
+    Raises:
+        SceneError: what a path tracer cannot draw.
+    """
+    parts = [_drawable(f"mesh {k}", mesh) for k, mesh in enumerate(description.meshes)]
+    sun, sky = description.sun, description.sky
+    return Scene(
+        description.name,
+        tuple(shape for shape, _, _ in parts),
+        {shape.name: material for shape, material, _ in parts},
+        camera,
+        Environment(sky.zenith, sky.horizon, sky.ground),
+        (SunLight(sun.direction, sun.radiance, cap_height(sun.angular_radius)),),
+        {shape.name: texture for shape, _, texture in parts if texture is not None},
+    )
+
+
+class DirectLight:
+    """A described scene ready to be photographed: direct light, soft shadows, alpha."""
+
+    def __init__(self, description: SceneDescription) -> None:
+        """Build the hierarchy.
+
+        Raises:
+            SceneError: a mesh that cannot be traced.
+        """
+        anywhere = Camera(1, 1, 1.0, 1.0, 0.5, 0.5, np.eye(4))
+        scene = lit_scene(description, anywhere)
+        # Lights are chosen by the powers that they have when the tracer is built. BSDF sampling
+        # finds the sky but hardly ever the sun: a sky that is dark until then leaves nearly all
+        # light samples to the sun, and multiple importance sampling accounts for the few others.
+        self._tracer = PathTracer(replace(scene, environment=Environment.constant(0.0)))
+        sky = description.sky
+        self._tracer.params["environment"] = np.array(
+            [sky.zenith, sky.horizon, sky.ground], self._tracer.dtype
+        )
+
+    def render_view(self, camera: Camera, spp: int, seed: int) -> tuple[Array, Array]:
+        """Linear radiance (H, W, 3), premultiplied, and alpha (H, W), as `capture_scene` asks.
+
+        Alpha is the share of the samples whose ray of the camera meets a surface; those that meet
+        none are black, whatever they see of the sky. The same seed gives the same bits on any
+        number of threads.
+
+        Raises:
+            RangeError: spp below 1.
+            Error: radiance that is not finite; names the pixel.
+        """
+        sums = Accumulation.empty(camera.height, camera.width)
+        hits = np.zeros((camera.height, camera.width))
+        self._tracer.add_samples(
+            sums, spp, seed=seed, options=TWO_SEGMENTS, camera=camera, hits=hits
+        )
+        return sums.mean, hits / spp
+
+
+def _drawable(name: str, mesh: SceneMesh) -> tuple[MeshShape, Material, Texture | None]:
+    if mesh.albedo_kind == "constant":
+        shape = MeshShape(name, mesh.vertices, mesh.faces, name)
+        return shape, Material("lambert", {"albedo": mesh.albedo}), None
+    vertices, faces, uv, texels = mesh.vertices, mesh.faces, mesh.uv, mesh.albedo
+    if mesh.albedo_kind == "vertices":
+        uv, texels = vertex_color_texture(faces, mesh.albedo)
+        vertices = vertices[faces].reshape(-1, 3)
+        faces = np.arange(len(vertices), dtype=np.uint32).reshape(-1, 3)
+    white = Material("lambert", {"albedo": np.ones(3)}, {"albedo": TextureUse(name)})
+    return MeshShape(name, vertices, faces, name, uv=uv), white, Texture(texels, ("clamp", "clamp"))

@@ -1,0 +1,77 @@
+"""Names and phrases that the sources no longer use (support/words.py)."""
+
+from __future__ import annotations
+
+import pytest
+
+from support.tree import cpp_texts
+from support.words import EXCEPTIONS, banned_names, banned_phrases, cpp_names, cpp_prose, parts
+
+
+def test_cpp_names_speak_the_language_of_the_field() -> None:
+    texts = cpp_texts()
+    assert len(texts) > 300, "the sources are not found any more"
+    assert banned_names(texts) == []
+
+
+def test_exceptions_are_still_needed() -> None:
+    texts = cpp_texts()
+    names = {path: {name for _, name in cpp_names(path, texts[path])} for path, _ in EXCEPTIONS}
+    assert [key for key in EXCEPTIONS if key[1] not in names[key[0]]] == []
+
+
+def test_cpp_prose_speaks_the_language_of_the_field() -> None:
+    found = [
+        line
+        for path, text in cpp_texts().items()
+        for line in banned_phrases(f"cpp/{path}", cpp_prose(text))
+    ]
+    assert found == []
+
+
+@pytest.mark.parametrize(
+    ("path", "text"),
+    [
+        ("photograd/render/path/x.h", "struct VeilList {};"),
+        ("photograd/render/path/x.h", "void d_veils_backward();"),
+        ("photograd/render/path/x.cpp", "if (material.sheer) f();"),
+        ("photograd/scene/x.h", "int find_light();"),
+        ("photograd/light/light_map.h", "int seen_by;"),
+        ("photograd/render/light/light_map.h", ""),  # the name of the file
+        ("photograd/splat/x.h", "int least = 0;"),
+        ("bindings/bind_x.cpp", 'm.def("trace_veils", &f);'),  # the name in Python
+        ("photograd/core/x.h", "std::size_t place = 0;"),
+    ],
+)
+def test_a_planted_old_name_is_seen(path: str, text: str) -> None:
+    assert len(banned_names({path: text})) == 1
+
+
+def test_other_meanings_and_prose_are_free() -> None:
+    texts = {
+        "photograd/medium/x.h": "// drawn and seen\nint haircut; int placement, unseen;",
+        "photograd/grid/x.h": 'int pieces, most, halves; const char* t = "place"; int n = 1\'000;',
+        "photograd/ops/thin_film.h": "struct Wave {};",
+    }
+    assert banned_names(texts) == []
+    assert parts("d_LightMap2RGB") == ("d", "light", "map", "2", "rgb")
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "// The derivative by x.",
+        "/// Gradients\n/// by the radius.",
+        "int x;  // Sums on the way\n        // back.",
+        'fail("a body of signed distances that shines");',
+        "/* lights asked */",
+        "// in metres",
+    ],
+)
+def test_a_planted_phrase_is_seen(text: str) -> None:
+    assert len(banned_phrases("x.h", cpp_prose(text))) == 1
+
+
+def test_phrases_of_other_meanings_pass() -> None:
+    text = "// Checked: derivatives by finite differences. A lampshade.\nint lamp, derivative, by;"
+    assert banned_phrases("x.h", cpp_prose(text)) == []
