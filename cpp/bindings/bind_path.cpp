@@ -31,9 +31,7 @@ void trace(const PathGeometry& geometry, const Models& models, const py::array& 
         const ThinLens camera = thin_lens(camera_numbers);
         const PathSums sums = path_sums(args, camera, radiance, squares);
         double* counts = nullptr;
-        if (hits)
-            counts = args.out<double>(
-                "hits", *hits, std::to_string(camera.height) + " " + std::to_string(camera.width));
+        if (hits) counts = args.out<double>("hits", *hits, picture_axes(camera));
         const PathOptions options = options_of(args, given);
         check_samples(args, first, count);
         const py::gil_scoped_release release;
@@ -59,8 +57,7 @@ void ambient_occlusion(const PathGeometry& geometry, const py::tuple& camera_num
                        py::array sums) {
     ArrayArgs args("ambient_occlusion");
     const Pinhole camera = pinhole(camera_numbers);
-    double* out = args.out<double>(
-        "sums", sums, std::to_string(camera.height) + " " + std::to_string(camera.width));
+    double* out = args.out<double>("sums", sums, picture_axes(camera));
     if (!(radius > 0)) args.range("radius", "above 0 m", std::to_string(radius));
     check_samples(args, first, count);
     const py::gil_scoped_release release;

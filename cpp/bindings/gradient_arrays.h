@@ -40,11 +40,6 @@ std::vector<GradientBlock<R>> gradient_blocks_in(const std::string& function,
     return blocks;
 }
 
-/// The axes of pictures of a camera, but for channels.
-inline std::string picture_axes(const ThinLens& camera) {
-    return std::to_string(camera.height) + " " + std::to_string(camera.width);
-}
-
 /// Numbers of samples (H, W), at least 1 each; null for None.
 inline const std::uint32_t* sample_counts(ArrayArgs& args, std::uint32_t spp,
                                           const std::optional<py::array>& counts,

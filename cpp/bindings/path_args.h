@@ -133,11 +133,15 @@ inline PathOptions options_of(const ArrayArgs& args, const Options& given) {
             static_cast<Sampler>(sampler)};
 }
 
+/// The axes of pictures of a camera, but for channels.
+inline std::string picture_axes(const Pinhole& camera) {
+    return std::to_string(camera.height) + " " + std::to_string(camera.width);
+}
+
 /// Where samples of a camera's pixels are added, "radiance" and "squares": (H, W, 3) each, float64.
 inline PathSums path_sums(ArrayArgs& args, const Pinhole& camera, py::array& radiance,
                           py::array& squares, const std::string& prefix = "") {
-    const std::string axes =
-        std::to_string(camera.height) + " " + std::to_string(camera.width) + " 3";
+    const std::string axes = picture_axes(camera) + " 3";
     return {args.out<double>((prefix + "radiance").c_str(), radiance, axes),
             args.out<double>((prefix + "squares").c_str(), squares, axes)};
 }

@@ -45,9 +45,10 @@ void trace(const PathScene<double>& scene, const ParticleOptions& options,
             visitor.flux[k] = one.flux;
             if constexpr (Media) {
                 if (one.far) visitor.flux[k] *= transmittance_from_infinity(scene, one, start.key);
-                start.stack = medium_stack_at(*scene.geometry, one.origin);
             }
             start.exists = !is_black(visitor.flux[k]);
+            if constexpr (Media)
+                if (start.exists) start.stack = medium_stack_at(*scene.geometry, one.origin);
         }
         tracer.trace(starts, count, &visitor);
     }
