@@ -20,7 +20,7 @@ import _estimates
 import numpy as np
 from numpy.typing import NDArray
 from photograd.transport import PathOptions, PathTracer
-from photograd.transport.recovery import loss_and_gradients
+from photograd.transport.inverse import loss_and_gradients
 from photograd.transport.sample_counts import SPREADS
 
 Array = NDArray[Any]

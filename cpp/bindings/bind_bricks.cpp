@@ -1,4 +1,4 @@
-// Brick fields; photograd.bricks is the typed face.
+// Brick fields; photograd.grids.bricks is the typed face.
 #include "array_args.h"
 #include "module.h"
 #include "photograd/grid/brick_field.h"

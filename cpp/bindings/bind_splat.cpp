@@ -1,4 +1,4 @@
-// Gaussian splatting; photograd.splat is the typed face.
+// Gaussian splatting; photograd.splats.splatting is the typed face.
 #include "module.h"
 #include "photograd/render/splat/splat.h"
 #include "splat_args.h"

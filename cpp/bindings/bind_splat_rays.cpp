@@ -1,4 +1,4 @@
-// Gaussians along rays; photograd.splat_rays is the typed face.
+// Gaussians along rays; photograd.splats.rays is the typed face.
 #include <optional>
 
 #include "photograd/render/splat/splat_rays.h"

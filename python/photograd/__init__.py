@@ -1,6 +1,6 @@
 """Recover scenes from photographs by gradient descent: forward and adjoint renderers, proved.
 
-Importing the package needs the compiled core; `photograd.data` and `photograd.errors` do not use
+Importing the package needs the compiled core; `photograd.capture` and `photograd.errors` do not use
 it.
 """
 

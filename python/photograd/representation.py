@@ -1,8 +1,8 @@
 """The protocol that every scene representation speaks, and the registry of those that exist.
 
-One optimiser loop (`photograd.fit`), one gradient viewer and one set of proofs serve everything
-that is registered here. Parameters are NumPy arrays; what is expensive to rebuild lives in C++
-objects.
+One optimiser loop (`photograd.fitting.loop`), one gradient viewer and one set of proofs serve
+everything that is registered here. Parameters are NumPy arrays; what is expensive to rebuild lives
+in C++ objects.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ from photograd_course.optim import Gradient
 from photograd_course.row_map import RowMap
 from photograd_course.suggest import nearest
 
-from photograd.data.camera import Camera
+from photograd._finite import require_finite
+from photograd.capture.camera import Camera
 from photograd.errors import RangeError, ShapeError, message
-from photograd.finite import require_finite
 
 Array: TypeAlias = NDArray[Any]
 Gradients: TypeAlias = Mapping[str, Gradient]

@@ -13,7 +13,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from photograd.core import _core
+from photograd._compiled import _core
 from photograd.errors import RangeError, ShapeError, message
 
 Array = NDArray[Any]

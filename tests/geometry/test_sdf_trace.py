@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.core import _core
+from photograd._compiled import _core
 from photograd.errors import RangeError, ShapeError
 from photograd.geometry import Body, SdfHits, draw_body
 from photograd.geometry.sdf import GAVE_UP, HIT, MISSED

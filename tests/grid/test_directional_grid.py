@@ -7,7 +7,9 @@ from typing import Any
 import numpy as np
 import pytest
 from photograd import sh
-from photograd.directional_grid import (
+from photograd.errors import RangeError, ShapeError
+from photograd.fields.dense_grid import DenseGrid
+from photograd.lights.directional_grid import (
     best_harmonics,
     best_table,
     blend,
@@ -17,9 +19,7 @@ from photograd.directional_grid import (
     rows_for,
     table_numbers,
 )
-from photograd.errors import RangeError, ShapeError
-from photograd.fields.dense_grid import DenseGrid
-from photograd.probes import sphere_quadrature
+from photograd.lights.probes import sphere_quadrature
 from photograd_course.gradcheck import check_gradient
 
 pytestmark = pytest.mark.usefixtures("core")

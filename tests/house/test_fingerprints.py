@@ -13,8 +13,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd import lights, phase
-from photograd.core import _core
+from photograd import lights
+from photograd._compiled import _core
+from photograd.bsdf import phase
 from photograd.transport import (
     DensityGrid,
     Environment,

@@ -21,8 +21,8 @@ from photograd.lights.prefilter import (
     specular_kernel,
     specular_map,
 )
+from photograd.lights.probes import sphere_quadrature
 from photograd.lights.zonal import zonal_mean
-from photograd.probes import sphere_quadrature
 from photograd.transport.evening import evening_map
 from photograd_course.random import uniform
 

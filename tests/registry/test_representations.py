@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import photograd
 import pytest
-from photograd.core import _core
+from photograd._compiled import _core
 from photograd.errors import RangeError, ShapeError
 from photograd.fields.march import MarchPolicy
 from photograd.representation import (

@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.core import _core
-from photograd.data.camera import Camera
+from photograd._compiled import _core
+from photograd.capture.camera import Camera
+from photograd.capture.orbit import look_at
 from photograd.errors import RangeError, ShapeError
-from photograd.orbit import look_at
 from photograd.scenes.description import (
     SceneDescription,
     SceneMesh,
@@ -18,7 +18,7 @@ from photograd.scenes.description import (
 )
 from photograd.scenes.direct_light import DirectLight
 from photograd.scenes.vertex_colors import vertex_color_texture
-from photograd.texture import sample
+from photograd.textures import sample
 
 from geometry.shapes import bumpy_sphere
 

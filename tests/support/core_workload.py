@@ -9,22 +9,27 @@ from typing import Any
 
 import numpy as np
 import photograd
-from photograd import phase, sh, splat, splat_rays
-from photograd.bricks import BrickField
+from photograd import sh
+from photograd._compiled import _core
+from photograd.bsdf import phase
 from photograd.bsdf import registry as bsdf_registry
-from photograd.core import _core
-from photograd.delta_bsdf import registry as delta_registry
+from photograd.bsdf.principled import evaluate, evaluate_backward
+from photograd.bsdf.specular import registry as delta_registry
+from photograd.fitting.row_adam import RowAdam
+from photograd.fitting.structural import ssim, ssim_backward
 from photograd.geometry import Body, BspTree, ReferenceBvh
+from photograd.geometry.mesh import Bvh, Instance, Mesh
 from photograd.geometry.sdf_shapes import box, placed, smooth_union, sphere
 from photograd.geometry.sorting import order_by_distance
-from photograd.mesh import Bvh, Instance, Mesh
-from photograd.octree import Octree, Quadtree
-from photograd.principled import evaluate, evaluate_backward
+from photograd.grids.bricks import BrickField
+from photograd.grids.octree import Octree, Quadtree
+from photograd.grids.sparse import SparseGrid
+from photograd.grids.vdb import read_vdb, write_vdb
+from photograd.grids.voxel_hash import VoxelHash
 from photograd.representation import Outputs, RenderOptions
-from photograd.row_adam import RowAdam
-from photograd.sparse import SparseGrid
-from photograd.structural import ssim, ssim_backward
-from photograd.texture import (
+from photograd.splats import rays as splat_rays
+from photograd.splats import splatting as splat
+from photograd.textures import (
     TexturePlan,
     build_mips,
     build_mips_backward,
@@ -51,9 +56,7 @@ from photograd.transport import (
     emit_particles,
     trace_light,
 )
-from photograd.transport.recovery.cross_loss import loss_and_gradients
-from photograd.vdb import read_vdb, write_vdb
-from photograd.voxel_hash import VoxelHash
+from photograd.transport.inverse.cross_loss import loss_and_gradients
 
 from tests.splat import oracle
 from tests.transport import light_scenes, media_scenes

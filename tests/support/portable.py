@@ -10,15 +10,17 @@ COURSE, CORE = "python/photograd_course/src/photograd_course/", "python/photogra
 PROMISED = (
     *(COURSE + name for name in ("color.py", "losses.py", "optim/", "priors.py", "random.py")),
     *(COURSE + name for name in ("resample.py", "row_map.py", "schedules.py")),
-    *(CORE + name for name in ("backgrounds.py", "fields/", "fit.py", "imaging.py", "model.py")),
-    *(CORE + name for name in ("picture_loss.py", "pixels.py", "quaternions.py", "row_adam.py")),
-    *(CORE + name for name in ("fit_rays.py", "fit_views.py", "structural.py", "texture/")),
-    *(CORE + "splats/" + name for name in ("clone_split_prune.py", "density.py", "first_scene.py")),
-    *(CORE + "splats/" + name for name in ("markov_chain.py", "grad2d.py", "start.py")),
-    *(CORE + "splats/" + name for name in ("surface_points.py",)),
-    *(CORE + "data/" + name for name in ("assemble.py", "bounds.py", "camera.py", "convention.py")),
-    *(CORE + "data/" + name for name in ("frames.py", "hull.py", "view.py", "visibility.py")),
-    *(CORE + name for name in ("training_views.py", "transport/recovery/")),
+    *(CORE + name for name in ("fields/", "textures/", "transport/inverse/")),
+    *(CORE + "fitting/" + name for name in ("backgrounds.py", "first_scene.py", "imaging.py")),
+    *(CORE + "fitting/" + name for name in ("loop.py", "model.py", "picture_loss.py", "pixels.py")),
+    *(CORE + "fitting/" + name for name in ("rays.py", "row_adam.py", "start.py", "structural.py")),
+    *(CORE + "fitting/" + name for name in ("surface_points.py", "training_views.py", "views.py")),
+    *(CORE + "splats/" + name for name in ("clone_split_prune.py", "density.py", "grad2d.py")),
+    *(CORE + "splats/" + name for name in ("markov_chain.py", "model.py", "quaternions.py")),
+    *(CORE + "splats/" + name for name in ("start.py",)),
+    *(CORE + "capture/" + name for name in ("assemble.py", "bounds.py", "camera.py", "frames.py")),
+    *(CORE + "capture/" + name for name in ("convention.py", "hull.py", "view.py")),
+    *(CORE + "capture/" + name for name in ("visibility.py",)),
 )
 """Beginnings of the paths of what a fit, or a recovery of a scene, runs through."""
 

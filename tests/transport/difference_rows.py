@@ -11,7 +11,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from photograd import delta_bsdf, phase
+from photograd.bsdf import phase
+from photograd.bsdf import specular as delta_bsdf
 from photograd.lights import EnvironmentMap, RegisteredLight
 from photograd.transport import Medium, PathOptions, PathTracer, Scene
 from photograd.transport.incomplete import TURNING

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from photograd.data.camera import Camera
+from photograd.capture.camera import Camera
 from photograd.transport import Environment, Material, MeshShape, Scene, SphereShape
 from photograd.transport.builtin import camera_at, cornell_box
 from photograd.transport.scene import MODELS

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.core import _core
+from photograd._compiled import _core
 from photograd.errors import DtypeError, RangeError, ShapeError
 from photograd.transport import Accumulation, Material, PathOptions, PathTracer, Scene
 from photograd.transport.builtin import cornell_box, cornell_spheres, furnace_box

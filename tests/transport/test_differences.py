@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd import phase
-from photograd.core import _core
+from photograd._compiled import _core
+from photograd.bsdf import phase
 from photograd.lights.registered import CLASSES
 from photograd.transport import PathOptions, PathTracer
 from photograd.transport.incomplete import TURNING

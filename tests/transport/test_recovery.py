@@ -23,8 +23,8 @@ from photograd.transport import (
 )
 from photograd.transport.builtin import cornell_box, evening
 from photograd.transport.evening import evening_map
-from photograd.transport.recovery import cross_loss, cross_loss_backward, loss_and_gradients
-from photograd.transport.recovery.activation import Activation
+from photograd.transport.inverse import cross_loss, cross_loss_backward, loss_and_gradients
+from photograd.transport.inverse.activation import Activation
 from photograd_course.gradcheck import check_gradient
 from photograd_course.mutants import check_mutants
 

@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
-from photograd.delta_bsdf import registry
+from photograd.bsdf.specular import registry
 from photograd.lights import PointLight
 from photograd.transport import (
     Environment,

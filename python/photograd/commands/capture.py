@@ -17,6 +17,9 @@ from photograd_course.cli import (
     note,
 )
 
+from photograd._run_lock import one_run_in
+from photograd.capture.sfm.engine import Settings
+from photograd.capture.write import require_free_folder, write_blender_capture
 from photograd.commands.photo_capture import (
     MaxSizeOption,
     PairsOption,
@@ -25,13 +28,10 @@ from photograd.commands.photo_capture import (
     refuse_mixture,
 )
 from photograd.commands.shared import out_option, use_threads
-from photograd.data.write import require_free_folder, write_blender_capture
-from photograd.run_lock import one_run_in
 from photograd.scenes.capture import capture_scene
 from photograd.scenes.direct_light import DirectLight
 from photograd.scenes.registry import scene as build_scene
 from photograd.scenes.registry import scenes
-from photograd.sfm.engine import Settings
 
 DEFAULT_SCENE = next(iter(scenes()))
 

@@ -19,8 +19,9 @@ from photograd_course.cli import (
 )
 from photograd_course.cli import Progress as Bar
 
-from photograd.backgrounds import learned_background
-from photograd.checkpoint import FILE_NAME
+from photograd._run_lock import one_run_in
+from photograd.capture.capture import Capture
+from photograd.capture.load import load_capture
 from photograd.commands.fit_arguments import (
     AllowBlindOption,
     BackgroundOption,
@@ -46,19 +47,18 @@ from photograd.commands.shared import (
     stop_on_signals,
     use_threads,
 )
-from photograd.data.capture import Capture
-from photograd.data.gaussian_files import write_gaussians
-from photograd.data.gaussian_frame import USUAL_UP, WORLD_UP, half_turn
-from photograd.data.gaussian_header import Presentation
-from photograd.data.load import load_capture
 from photograd.errors import RangeError, message
-from photograd.fields.gaussians import GaussianScene
-from photograd.fit import Fit
-from photograd.fit_checks import require_startable
-from photograd.fit_options import USERS_OF, FitOptions, options_for
-from photograd.fit_result import FitResult, Progress, summary
-from photograd.model import load_model
-from photograd.run_lock import one_run_in
+from photograd.fitting.backgrounds import learned_background
+from photograd.fitting.checkpoint import FILE_NAME
+from photograd.fitting.checks import require_startable
+from photograd.fitting.loop import Fit
+from photograd.fitting.model import load_model
+from photograd.fitting.options import USERS_OF, FitOptions, options_for
+from photograd.fitting.result import FitResult, Progress, summary
+from photograd.splats.files import write_gaussians
+from photograd.splats.frames import USUAL_UP, WORLD_UP, half_turn
+from photograd.splats.header import Presentation
+from photograd.splats.model import GaussianScene
 
 PLY_NAME = "gaussians.ply"
 DEFAULTS = FitOptions()

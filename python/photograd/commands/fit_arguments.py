@@ -7,8 +7,7 @@ from typing import Annotated, TypeAlias
 
 import typer
 
-from photograd.fields.fitted import FITTED
-from photograd.fit_options import (
+from photograd.fitting.options import (
     BACKGROUNDS,
     DEFAULTS_OF,
     DENSITY_CONTROLS,
@@ -16,6 +15,7 @@ from photograd.fit_options import (
     USERS_OF,
     FitOptions,
 )
+from photograd.fitting.start import FITTED
 
 
 def _defaults(option: str) -> str:

@@ -9,8 +9,8 @@ from typing import Annotated, Any
 import typer
 from photograd_course.cli import note
 
-from photograd.run_lock import one_run_in
-from photograd.sfm.engine import Settings
+from photograd._run_lock import one_run_in
+from photograd.capture.sfm.engine import Settings
 
 _PANEL = "Photographs"
 _OF_SCENES = ("scene", "views", "test_views", "size", "spp")
@@ -60,9 +60,9 @@ def capture_photographs(
 
     Raises:
         BadParameter: `pairs` is none of its values.
-        IoError, SceneError: as `photograd.sfm.reconstruct.reconstruct` does.
+        IoError, SceneError: as `photograd.capture.sfm.reconstruct.reconstruct` does.
     """
-    from photograd.sfm.reconstruct import PICTURE, reconstruct
+    from photograd.capture.sfm.reconstruct import PICTURE, reconstruct
 
     exhaustive = {"auto": None, "all": True, "walk": False}
     if pairs not in exhaustive:

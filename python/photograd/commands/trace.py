@@ -23,6 +23,7 @@ from photograd_course.cli import (
 )
 from photograd_course.color import srgb_encode
 
+from photograd._run_lock import one_run_for
 from photograd.commands.drawable import check_traced
 from photograd.commands.shared import (
     PICTURES,
@@ -41,10 +42,9 @@ from photograd.commands.trace_estimates import (
     PhotonsOption,
     write_derivative,
 )
-from photograd.data.image_kind import LINEAR_SUFFIXES
-from photograd.data.image_write import write_png, write_radiance
-from photograd.data.pixel_limit import LARGEST_SIDE
-from photograd.run_lock import one_run_for
+from photograd.images.kind import LINEAR_SUFFIXES
+from photograd.images.pixel_limit import LARGEST_SIDE
+from photograd.images.write import write_png, write_radiance
 from photograd.transport.accumulation import Accumulation, load_accumulation
 from photograd.transport.builtin import BUILTIN, builtin_scene
 from photograd.transport.mesh_files import SUFFIXES, model_scene, read_model

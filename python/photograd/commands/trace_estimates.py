@@ -10,9 +10,9 @@ from typing import Annotated
 import numpy as np
 import typer
 
-from photograd.data.image_kind import LINEAR_SUFFIXES
-from photograd.data.image_write import write_png, write_radiance
 from photograd.errors import RangeError, message
+from photograd.images.kind import LINEAR_SUFFIXES
+from photograd.images.write import write_png, write_radiance
 from photograd.transport.accumulation import Accumulation
 from photograd.transport.derivative import add_derivative_samples, direction_of
 from photograd.transport.incomplete import require_whole

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from photograd.fields.dense_grid import DenseGrid
 from photograd.fields.dense_sh import DenseSh
-from photograd.fields.gaussians import GaussianScene
 from photograd.fields.gaussians_2d import Gaussians2D
 from photograd.fields.octree_sh import OctreeSh
 from photograd.fields.points import Points
@@ -13,6 +12,7 @@ from photograd.fields.sunlit_medium import SunlitMedium
 from photograd.fields.texture_2d import Texture2D
 from photograd.fields.tiny_network import TinyNetwork
 from photograd.fields.toy_blobs import ToyBlobs
+from photograd.splats.model import GaussianScene
 
 __all__ = [
     "DenseGrid",

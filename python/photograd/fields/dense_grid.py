@@ -13,9 +13,9 @@ from photograd_course.portable_math import expm1, log
 from photograd_course.random import uniform
 from photograd_course.resample import upsample_trilinear
 
+from photograd._memory import require_room
 from photograd.errors import DtypeError, Error, RangeError, ShapeError, message
 from photograd.fields.march import MarchContext, MarchPolicy, march, march_backward
-from photograd.memory import require_room
 from photograd.representation import (
     Array,
     Outputs,

@@ -18,7 +18,7 @@ from photograd import sh
 from photograd.errors import RangeError, message
 from photograd.fields.dense_grid import DenseGrid
 from photograd.fields.sparse_sh import SparseSh
-from photograd.octree import Octree
+from photograd.grids.octree import Octree
 from photograd.representation import Array
 
 Corner = tuple[float, float, float]

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from photograd.octree import Octree
+from photograd.grids.octree import Octree
 from photograd.representation import Array
 
 

@@ -14,9 +14,9 @@ import numpy as np
 from photograd_course.portable_math import norm
 from photograd_course.random import uniform
 
-from photograd.core import _core
+from photograd._compiled import _core
+from photograd._finite import require_finite
 from photograd.errors import DtypeError, Error, RangeError, message
-from photograd.finite import require_finite
 from photograd.representation import Array, Outputs, RayBatch, RenderOptions
 
 LATTICES = {"origin": 0, "entry": 1}

@@ -37,7 +37,7 @@ from photograd.fields.dense_grid import DenseGrid
 from photograd.fields.frozen_leaves import Leaves, TreePolicy, leaves_of_grid, leaves_of_voxels
 from photograd.fields.leaf_segments import Borders, Segments, border_gradients, segments_of
 from photograd.fields.sparse_sh import SparseSh
-from photograd.octree import Octree, tree_of_leaves
+from photograd.grids.octree import Octree, tree_of_leaves
 from photograd.representation import (
     Array,
     Outputs,

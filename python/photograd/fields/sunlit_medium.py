@@ -32,10 +32,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 from photograd_course.portable_math import norm
 
+from photograd.bsdf.phase import phase_function
 from photograd.errors import DtypeError, RangeError, ShapeError, message
 from photograd.fields.march import MarchContext, MarchPolicy, march, march_backward
-from photograd.mesh import Bvh
-from photograd.phase import phase_function
+from photograd.fields.sun_visibility import sun_visibility, voxel_centres
+from photograd.geometry.mesh import Bvh
 from photograd.representation import (
     Array,
     Outputs,
@@ -45,7 +46,6 @@ from photograd.representation import (
     Representation,
     register,
 )
-from photograd.sun_visibility import sun_visibility, voxel_centres
 
 
 @dataclass(frozen=True)
@@ -93,7 +93,7 @@ class SunlitMedium(Representation):
             box: (2, 3), metres; beyond it there is no medium.
             dt: step of both marches, metres; half a voxel or less.
             sun: (3,) direction towards the sun, of any length.
-            phase: of photograd.phase.registry.
+            phase: of photograd.bsdf.phase.registry.
             visibility: by default what the solids leave of it, `sun_visibility`; 1 without any.
             solids: rays end where they meet them.
 

@@ -1,4 +1,4 @@
-"""Geometry that is written to be read, beside what is written to be fast (`photograd.mesh`).
+"""Geometry that is written to be read, beside what is written to be fast (`mesh`).
 
 A hierarchy of boxes that counts what a ray costs, a partition of space that puts polygons in an
 order, octrees that drop what a camera cannot see, coarser meshes with a bound on what they get

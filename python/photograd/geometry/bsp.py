@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from photograd.core import _core
+from photograd._compiled import _core
 from photograd.geometry.checks import Array, finite_rows
-from photograd.mesh import Mesh
+from photograd.geometry.mesh import Mesh
 
 
 class BspTree:
@@ -40,7 +40,7 @@ class BspTree:
             max_polygons: an error where more are made; n triangles can fall into n^2 parts.
 
         Raises:
-            SceneError: as `photograd.mesh.Bvh`: no triangle, no number, no area.
+            SceneError: as `photograd.geometry.mesh.Bvh`: no triangle, no number, no area.
             RangeError: an option below 1, or more polygons than allowed.
         """
         self._core = _core.BspTree(mesh.vertices, mesh.faces, candidates, max_polygons)

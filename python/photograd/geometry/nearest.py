@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from photograd.geometry.checks import Array, finite_rows
-from photograd.mesh import Mesh
+from photograd.geometry.mesh import Mesh
 
 
 def nearest_on_mesh(points: Any, mesh: Mesh) -> tuple[Array, Array]:

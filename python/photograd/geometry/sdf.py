@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 from photograd_course.checks import require_integer, require_number
 
-from photograd.core import _core
+from photograd._compiled import _core
 from photograd.errors import RangeError, ShapeError, message
 from photograd.geometry.checks import Array, checked_interval, checked_rays, finite_rows
 from photograd.geometry.sdf_shapes import KINDS, Shape

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 from photograd_course.checks import require_number
 
-from photograd.data.camera import Camera
+from photograd.capture.camera import Camera
 from photograd.errors import RangeError, ShapeError, message
 from photograd.geometry.checks import Array
 from photograd.geometry.sdf import GAVE_UP, Body

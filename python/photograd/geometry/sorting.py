@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from photograd.core import _core
+from photograd._compiled import _core
 from photograd.errors import ShapeError, message
 from photograd.geometry.checks import finite_rows
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from photograd.core import _core
+from photograd._compiled import _core
 from photograd.errors import DtypeError, RangeError, ShapeError, message
 from photograd.lights.base import Array, Light
 

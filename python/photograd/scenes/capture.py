@@ -12,8 +12,8 @@ from photograd_course.checks import require_integer
 from photograd_course.color import srgb_encode, unpremultiply
 from photograd_course.errors import RangeError, ShapeError, message
 
-from photograd.data.camera import Camera
-from photograd.data.write import Frame
+from photograd.capture.camera import Camera
+from photograd.capture.write import Frame
 from photograd.scenes.cameras import capture_cameras
 from photograd.scenes.description import SceneDescription
 
@@ -37,7 +37,7 @@ def capture_scene(
     spp: int,
     on_view: Callable[[int, int], None] | None = None,
 ) -> dict[str, list[Frame]]:
-    """Splits for `photograd.data.write_blender_capture`; give it `aabb=scene.bounds`.
+    """Splits for `photograd.capture.write_blender_capture`; give it `aabb=scene.bounds`.
 
     Args:
         scene: what is photographed; its outermost vertex fills 90 % of each picture's half width.

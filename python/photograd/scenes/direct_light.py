@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from photograd.data.camera import Camera
-from photograd.light import cap_height
+from photograd.capture.camera import Camera
 from photograd.lights import SunLight
+from photograd.lights.distant import cap_height
 from photograd.scenes.description import SceneDescription, SceneMesh
 from photograd.scenes.vertex_colors import vertex_color_texture
 from photograd.transport.accumulation import Accumulation

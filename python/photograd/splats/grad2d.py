@@ -18,7 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from photograd.data.camera import Camera
+from photograd.capture.camera import Camera
 from photograd.errors import ShapeError, message
 from photograd.representation import Array
 

@@ -15,6 +15,15 @@ from photograd.transport.derivative import (
     derivative_image,
     direction_of,
 )
+from photograd.transport.inverse import (
+    Recovery,
+    RecoveryOptions,
+    RecoveryResult,
+    Target,
+    Unknown,
+    recover,
+    scene_with,
+)
 from photograd.transport.lens import Lens
 from photograd.transport.medium import BOUNDARY, VACUUM, DensityGrid, Medium
 from photograd.transport.mesh_files import (
@@ -33,15 +42,6 @@ from photograd.transport.particles import (
     trace_light,
 )
 from photograd.transport.photons import PhotonMap
-from photograd.transport.recovery import (
-    Recovery,
-    RecoveryOptions,
-    RecoveryResult,
-    Target,
-    Unknown,
-    recover,
-    scene_with,
-)
 from photograd.transport.scene import Environment, Material, MeshShape, Scene, SphereShape
 from photograd.transport.scene_file import read_scene
 from photograd.transport.sdf_shape import SdfShape

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 from photograd_course.atomic_io import atomic_write
 
-from photograd.data.npz import read_npz
+from photograd._npz import read_npz
 from photograd.errors import Error, IoError, RangeError, ShapeError, message
 
 Array = npt.NDArray[Any]

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from photograd.data.camera import Camera
-from photograd.orbit import look_at
+from photograd.capture.camera import Camera
+from photograd.capture.orbit import look_at
 
 
 def camera_at(

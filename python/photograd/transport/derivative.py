@@ -13,8 +13,8 @@ from collections.abc import Mapping
 import numpy as np
 from photograd_course.suggest import choose_from
 
-from photograd.core import _core
-from photograd.data.camera import Camera
+from photograd._compiled import _core
+from photograd.capture.camera import Camera
 from photograd.errors import RangeError, ShapeError, message
 from photograd.transport.accumulation import Accumulation
 from photograd.transport.incomplete import changed_names, require_whole

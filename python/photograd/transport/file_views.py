@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from photograd_course.suggest import choose_from
 
-from photograd.data.camera import Camera
+from photograd.capture.camera import Camera
 from photograd.lights import DirectionalLight, Light, PointLight, SpotLight
 from photograd.transport.mesh_files import ModelFile, read_model
 from photograd.transport.scene import Array

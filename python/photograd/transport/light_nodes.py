@@ -26,10 +26,10 @@ from pathlib import Path
 
 import numpy as np
 
-from photograd.data.image_kind import LINEAR_SUFFIXES
-from photograd.data.images import read_radiance
-from photograd.light import cap_height
+from photograd.images.kind import LINEAR_SUFFIXES
+from photograd.images.read import read_radiance
 from photograd.lights import EnvironmentMap, Light, about_y
+from photograd.lights.distant import cap_height
 from photograd.lights.registered import CLASSES, RegisteredLight
 from photograd.transport.scene_node import Node
 

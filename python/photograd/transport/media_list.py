@@ -9,7 +9,8 @@ import numpy as np
 import numpy.typing as npt
 from photograd_course.suggest import choose_from
 
-from photograd import bsdf, delta_bsdf
+from photograd import bsdf
+from photograd.bsdf import specular as delta_bsdf
 from photograd.errors import SceneError, ShapeError, message
 from photograd.transport.medium import BOUNDARY, VACUUM, Medium
 

@@ -37,7 +37,7 @@ from typing import Any
 
 import numpy as np
 
-from photograd.phase import registry
+from photograd.bsdf.phase import registry
 from photograd.transport.density_files import is_placed, read_density
 from photograd.transport.medium import VACUUM, DensityGrid, Medium
 from photograd.transport.scene import Shape

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from photograd_course.suggest import choose_from
 
-from photograd.core import _core
+from photograd._compiled import _core
 from photograd.errors import RangeError, SceneError, message
 from photograd.transport.motion import refuse_motion
 from photograd.transport.scene import Array, MeshShape, Scene

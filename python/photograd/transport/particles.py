@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from photograd.core import _core
+from photograd._compiled import _core
 from photograd.errors import RangeError, ShapeError, message
 from photograd.transport.accumulation import Accumulation
 from photograd.transport.motion import refuse_motion

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from photograd.core import _core
+from photograd._compiled import _core
 from photograd.errors import RangeError, ShapeError, message
 from photograd.transport.accumulation import Accumulation
 from photograd.transport.particles import PARTICLES, ParticleOptions, scene_arguments

@@ -14,8 +14,9 @@ import numpy as np
 import numpy.typing as npt
 from photograd_course.suggest import choose_from
 
-from photograd import bsdf, delta_bsdf
-from photograd.data.camera import Camera
+from photograd import bsdf
+from photograd.bsdf import specular as delta_bsdf
+from photograd.capture.camera import Camera
 from photograd.errors import DtypeError, RangeError, SceneError, ShapeError, message
 from photograd.lights import Light
 from photograd.transport.lens import PINHOLE, Lens

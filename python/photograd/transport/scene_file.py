@@ -54,7 +54,7 @@ from photograd_course.input_files import read_text
 from photograd_course.toml_limits import parse_toml
 
 from photograd.bsdf import Parameter, pack_rows
-from photograd.data.camera import Camera
+from photograd.capture.camera import Camera
 from photograd.geometry.sdf_shapes import Shape as SdfNode
 from photograd.transport.builtin import camera_at
 from photograd.transport.file_views import camera_of_file

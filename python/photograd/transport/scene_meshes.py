@@ -35,7 +35,7 @@ from typing import Any
 
 import numpy as np
 
-from photograd.data.images import read_image
+from photograd.images.read import read_image
 from photograd.lights import Light
 from photograd.transport.file_views import lights_of
 from photograd.transport.medium import Medium

@@ -9,8 +9,8 @@ from typing import Any, TypeVar
 import numpy as np
 from photograd_course.suggest import choose_from
 
-from photograd.data.pixel_limit import LARGEST_SIDE
 from photograd.errors import Error, SceneError, message
+from photograd.images.pixel_limit import LARGEST_SIDE
 from photograd.transport.toml_lines import KeyPath
 
 Built = TypeVar("Built")

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from photograd.bsdf import SMOOTH, Parameter
 from photograd.errors import DtypeError, RangeError, ShapeError, message
-from photograd.mesh import drop_degenerate
+from photograd.geometry.mesh import drop_degenerate
 
 Array = npt.NDArray[Any]
 

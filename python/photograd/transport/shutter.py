@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from photograd.data.camera import Camera
-from photograd.data.frames import check_pose
+from photograd.capture.camera import Camera
+from photograd.capture.frames import check_pose
 from photograd.errors import RangeError, message
 
 Array = npt.NDArray[np.float64]

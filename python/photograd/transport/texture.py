@@ -24,8 +24,8 @@ import numpy as np
 import numpy.typing as npt
 from photograd_course.color import srgb_decode
 
-from photograd.data.images import read_header, read_image
 from photograd.errors import DtypeError, RangeError, ShapeError, message
+from photograd.images.read import read_header, read_image
 
 Array = npt.NDArray[Any]
 WRAPS = ("repeat", "mirror", "clamp")

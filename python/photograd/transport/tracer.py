@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from photograd.core import _core
-from photograd.data.camera import Camera
+from photograd._compiled import _core
+from photograd.capture.camera import Camera
 from photograd.errors import DtypeError, RangeError, ShapeError, message
 from photograd.transport.accumulation import Accumulation
 from photograd.transport.core_arrays import (

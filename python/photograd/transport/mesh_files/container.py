@@ -16,9 +16,9 @@ from urllib.parse import unquote
 
 from photograd_course.limits import EXPANSION, MODEL_ELEMENTS, Limit
 
-from photograd.data.file_bytes import read_file
-from photograd.data.inside import inside
-from photograd.data.json_node import JsonNode
+from photograd._file_bytes import read_file
+from photograd._inside import inside
+from photograd._json_node import JsonNode
 from photograd.errors import IoError, message
 
 NAME = "read_model"

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from photograd.data.json_node import JsonNode
+from photograd._json_node import JsonNode
 from photograd.errors import IoError, SceneError, message
 from photograd.transport.mesh_files.accessor import read_floats, read_indices
 from photograd.transport.mesh_files.container import NAME, Container, open_container, whole

@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from photograd.data.frames import LARGEST_COORDINATE, OPENGL_FROM_OPENCV, RIGID_TOLERANCE
-from photograd.data.json_node import JsonNode
+from photograd._json_node import JsonNode
+from photograd.capture.frames import LARGEST_COORDINATE, OPENGL_FROM_OPENCV, RIGID_TOLERANCE
 from photograd.errors import IoError, message
 from photograd.transport.mesh_files.container import NAME, Container, whole
 from photograd.transport.mesh_files.model_camera import ModelCamera

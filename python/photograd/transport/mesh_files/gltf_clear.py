@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from photograd.data.json_node import JsonNode
+from photograd._json_node import JsonNode
 from photograd.transport.medium import Medium
 from photograd.transport.mesh_files.container import real
 from photograd.transport.mesh_files.gltf_draft import Draft, finished, metallic_roughness

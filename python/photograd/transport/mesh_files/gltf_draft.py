@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from photograd.data.json_node import JsonNode
+from photograd._json_node import JsonNode
 from photograd.transport.medium import Medium
 from photograd.transport.mesh_files.container import real
 from photograd.transport.scene import MODELS, Material

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from photograd.data.camera import Camera
+from photograd.capture.camera import Camera
 from photograd.errors import RangeError, message
 
 Array = npt.NDArray[Any]

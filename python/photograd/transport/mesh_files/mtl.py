@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from photograd.data.file_bytes import read_file
-from photograd.data.inside import inside
+from photograd._file_bytes import read_file
+from photograd._inside import inside
 from photograd.errors import Error, RangeError, message
 from photograd.transport.mesh_files.container import NAME
 from photograd.transport.mesh_files.plain import Note

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from photograd.data.json_node import JsonNode
+from photograd._json_node import JsonNode
 from photograd.errors import IoError, message
 from photograd.transport.mesh_files.container import NAME, Container, whole
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from photograd.data.ply_elements import read_ply
+from photograd._ply import read_ply
 from photograd.errors import IoError, SceneError, message
 from photograd.transport.mesh_files.container import NAME
 from photograd.transport.mesh_files.model_file import ModelFile
