@@ -12,7 +12,7 @@ import numpy as np
 from photograd_course.errors import IoError, RangeError, message
 
 from photograd._file_bytes import read_text
-from photograd.capture.frames import FloatArray
+from photograd.types import FloatArray
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ import numpy as np
 from photograd_course.errors import DtypeError, IoError, message
 
 from photograd._file_bytes import require_file
-from photograd.capture.frames import FloatArray
+from photograd.types import FloatArray
 
 
 def read_npy(function: str, path: Path) -> FloatArray:

@@ -11,17 +11,15 @@ import math
 import zipfile
 from collections.abc import Collection
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 from photograd_course.errors import IoError, message
 from photograd_course.limits import EXPANSION
 
 from photograd._file_bytes import require_file
 from photograd._memory import available_memory, bytes_text
+from photograd.types import Array
 
-Array = npt.NDArray[Any]
 _SUFFIX = ".npy"
 
 

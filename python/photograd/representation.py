@@ -21,8 +21,8 @@ from photograd_course.suggest import nearest
 from photograd._finite import require_finite
 from photograd.capture.camera import Camera
 from photograd.errors import RangeError, ShapeError, message
+from photograd.types import Array
 
-Array: TypeAlias = NDArray[Any]
 Gradients: TypeAlias = Mapping[str, Gradient]
 """dL/d parameter by group: an array of the parameter's shape, or (rows, values): rows (M,) int64
 strictly increasing, values (M, ...), for parameters of which only some rows were touched."""

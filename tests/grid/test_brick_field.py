@@ -8,7 +8,7 @@ from photograd import _core
 from photograd.errors import RangeError, ShapeError
 from photograd.grids.bricks import BrickField
 from photograd.grids.sparse import SparseGrid
-from photograd.representation import Array
+from photograd.types import Array
 
 from grid.solids import ORIGIN, spotted, spotted_grid, trilinear
 

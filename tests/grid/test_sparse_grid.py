@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from photograd.errors import DtypeError, Error, RangeError, ShapeError
 from photograd.grids.sparse import SparseGrid
-from photograd.representation import Array
+from photograd.types import Array
 
 from grid.solids import ORIGIN, WORLD_FROM_INDEX, dilated, spotted, spotted_grid, trilinear
 

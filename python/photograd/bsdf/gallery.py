@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
@@ -16,8 +15,8 @@ from photograd_course.random import uniform
 
 from photograd.bsdf.models import BsdfModel
 from photograd.bsdf.response import derivatives, furnace_curve
+from photograd.types import Array
 
-Array = npt.NDArray[Any]
 _FRACTIONS = (0.1, 0.4, 0.7, 1.0)
 _COSINES = np.linspace(0.04, 1.0, 9)
 _LIGHT = np.array([-0.5, 0.6, 0.62]) / np.linalg.norm([-0.5, 0.6, 0.62])

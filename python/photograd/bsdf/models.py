@@ -24,8 +24,8 @@ import numpy.typing as npt
 
 from photograd._compiled import _core
 from photograd.errors import DtypeError, RangeError, ShapeError, message
+from photograd.types import Array
 
-Array = npt.NDArray[Any]
 Parameters = Mapping[str, Any]
 """{name: value}; a value is a number or (3,), or one for each of N rows: (N,) or (N, 3)."""
 SMOOTH = "surfaces without roughness are models of their own: mirror, glass, thin_glass"

@@ -10,11 +10,9 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from photograd._compiled import _core
-
-Array = NDArray[Any]
+from photograd.types import Array
 
 
 def rows(base_color: Any, metalness: Any, roughness: Any) -> Array:

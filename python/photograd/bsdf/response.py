@@ -5,11 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from photograd.bsdf.models import BsdfModel
+from photograd.types import Array
 
-Array = npt.NDArray[Any]
 _EVEN = (0.7548776662466927, 0.5698402909980532)  # 1/x and 1/x^2 of x^3 = x + 1: multiples fill
 
 

@@ -15,15 +15,9 @@ from typing import Any
 import numpy as np
 
 from photograd._compiled import _core
-from photograd.bsdf.models import (
-    Array,
-    Parameter,
-    Parameters,
-    checked_directions,
-    pack_rows,
-    unpack_rows,
-)
+from photograd.bsdf.models import Parameter, Parameters, checked_directions, pack_rows, unpack_rows
 from photograd.errors import ShapeError, message
+from photograd.types import Array
 
 
 @dataclass(frozen=True)

@@ -12,9 +12,9 @@ from photograd_course.portable_math import matmul
 
 from photograd._inside import TRUST, inside
 from photograd.capture.camera import Camera
-from photograd.capture.frames import FloatArray
 from photograd.images.kind import LINEAR_SUFFIXES
 from photograd.images.read import IMAGE_SUFFIXES, ColorSpace, ImageHeader, read_header
+from photograd.types import FloatArray
 
 
 @dataclass(frozen=True)

@@ -10,9 +10,9 @@ from photograd_course.portable_math import matmul, norm
 
 from photograd.capture.capture import Capture
 from photograd.capture.convention import meeting_of_axes
-from photograd.capture.frames import FloatArray
 from photograd.capture.hull import mean_coverage, silhouettes_of, visual_hull_box
 from photograd.capture.visibility import blind_cameras, no_view
+from photograd.types import FloatArray
 
 PADDING = 0.05
 """Share of the extent added on each side of an estimated box."""

@@ -9,7 +9,8 @@ import numpy.typing as npt
 from photograd_course.errors import DtypeError, RangeError, ShapeError, message
 from photograd_course.portable_math import matmul
 
-from photograd.capture.frames import FloatArray, check_pose, invert_rigid
+from photograd.capture.frames import check_pose, invert_rigid
+from photograd.types import FloatArray
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,10 +12,10 @@ import numpy as np
 import numpy.typing as npt
 from photograd_course.errors import IoError, RangeError, ShapeError, message
 
-from photograd.capture.frames import FloatArray
 from photograd.capture.splits import hold_out
 from photograd.capture.view import View
 from photograd.images.read import ColorSpace
+from photograd.types import FloatArray
 
 
 @dataclass(frozen=True, eq=False)

@@ -22,7 +22,6 @@ from photograd.capture.capture import Capture
 from photograd.capture.colmap_binary import read_binary_model
 from photograd.capture.colmap_model import ColmapCamera, ColmapImage, ColmapModel, read_text_model
 from photograd.capture.frames import (
-    FloatArray,
     check_pose,
     invert_rigid,
     rotation_from_quaternion,
@@ -31,6 +30,7 @@ from photograd.capture.frames import (
 from photograd.capture.splits import hold_out
 from photograd.capture.undistort import Distortion, distort
 from photograd.capture.view import View
+from photograd.types import FloatArray
 
 _NAME = "load_colmap"
 _MODEL_FOLDERS = ("sparse/0", "sparse", "colmap/sparse/0", "0", "")

@@ -16,7 +16,7 @@ import numpy.typing as npt
 from photograd_course.errors import IoError, RangeError, message
 
 from photograd._file_bytes import read_text
-from photograd.capture.frames import FloatArray
+from photograd.types import FloatArray
 
 MODELS = (
     ("SIMPLE_PINHOLE", 3),

@@ -16,8 +16,9 @@ import numpy as np
 from photograd_course.errors import SceneError, message
 from photograd_course.portable_math import matmul, norm
 
-from photograd.capture.frames import OPENGL_FROM_OPENCV, FloatArray, invert_rigid, mean_camera_up
+from photograd.capture.frames import OPENGL_FROM_OPENCV, invert_rigid, mean_camera_up
 from photograd.capture.view import View
+from photograd.types import FloatArray
 
 FEWEST_CAMERAS = 4
 """Fewer axes can meet by accident."""

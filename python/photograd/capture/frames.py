@@ -7,14 +7,12 @@ Every matrix is named result_from_source and acts on column vectors.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TypeAlias
 
 import numpy as np
-import numpy.typing as npt
 from photograd_course.errors import RangeError, SceneError, ShapeError, message
 from photograd_course.portable_math import cos, matmul, norm, sin
 
-FloatArray: TypeAlias = npt.NDArray[np.float64]
+from photograd.types import FloatArray
 
 OPENGL_FROM_OPENCV: FloatArray = np.diag([1.0, -1.0, -1.0, 1.0])
 """OpenGL cameras have +Y up and look along -Z: both axes flip, and the flip is its own inverse."""

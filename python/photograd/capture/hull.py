@@ -10,8 +10,8 @@ import numpy.typing as npt
 from photograd_course.portable_math import norm
 
 from photograd.capture.camera import Camera
-from photograd.capture.frames import FloatArray
 from photograd.capture.view import View
+from photograd.types import FloatArray
 
 RESOLUTIONS = (32, 64)
 """The second pass carves inside the box of the first, whose voxels were coarse."""

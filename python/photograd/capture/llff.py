@@ -24,10 +24,11 @@ from photograd.capture.assemble import (
 )
 from photograd.capture.capture import Capture
 from photograd.capture.convention import check_convention
-from photograd.capture.frames import FloatArray, check_pose, world_from_estimated_up
+from photograd.capture.frames import check_pose, world_from_estimated_up
 from photograd.capture.splits import hold_out
 from photograd.capture.view import View
 from photograd.images.read import read_header
+from photograd.types import FloatArray
 
 _NAME = "load_llff"
 

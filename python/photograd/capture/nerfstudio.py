@@ -27,16 +27,12 @@ from photograd.capture.assemble import (
 )
 from photograd.capture.capture import Capture
 from photograd.capture.convention import check_convention
-from photograd.capture.frames import (
-    OPENGL_FROM_OPENCV,
-    FloatArray,
-    check_pose,
-    world_from_estimated_up,
-)
+from photograd.capture.frames import OPENGL_FROM_OPENCV, check_pose, world_from_estimated_up
 from photograd.capture.intrinsics import read_intrinsics
 from photograd.capture.point_ply import read_point_ply
 from photograd.capture.splits import hold_out
 from photograd.capture.view import View
+from photograd.types import FloatArray
 
 _NAME = "load_nerfstudio"
 _IGNORED = ("aabb_scale", "scale", "offset", "depth_unit_scale_factor")

@@ -27,7 +27,6 @@ from photograd.capture.capture import Capture
 from photograd.capture.convention import check_convention
 from photograd.capture.frames import (
     Y_UP_FROM_Z_UP,
-    FloatArray,
     check_pose,
     invert_rigid,
     rotation_from_axis_angle,
@@ -35,6 +34,7 @@ from photograd.capture.frames import (
 from photograd.capture.splits import hold_out
 from photograd.capture.undistort import Distortion
 from photograd.capture.view import View
+from photograd.types import FloatArray
 
 _NAME = "load_opensfm"
 

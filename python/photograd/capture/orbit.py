@@ -6,7 +6,7 @@ import numpy as np
 
 from photograd.capture.camera import Camera
 from photograd.errors import RangeError, message
-from photograd.representation import Array
+from photograd.types import Array
 
 
 def orbit_cameras(

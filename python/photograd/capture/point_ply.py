@@ -13,7 +13,8 @@ import numpy.typing as npt
 from photograd_course.errors import IoError, message
 
 from photograd._ply import read_ply
-from photograd.capture.frames import LARGEST_COORDINATE, FloatArray
+from photograd.capture.frames import LARGEST_COORDINATE
+from photograd.types import FloatArray
 
 _NAME = "read_point_ply"
 _POSITION, _COLOR = ("x", "y", "z"), ("red", "green", "blue")

@@ -16,7 +16,7 @@ import numpy.typing as npt
 from photograd_course.errors import RangeError, ShapeError, message
 
 from photograd.capture.camera import Camera
-from photograd.capture.frames import FloatArray
+from photograd.types import FloatArray
 
 LARGEST_STEPS = 50
 """Newton converges in about 5 steps wherever the lens does not fold; the rest is for the search."""

@@ -13,9 +13,9 @@ from photograd_course.errors import IoError, message
 from photograd_course.portable_math import matmul
 
 from photograd.capture.camera import Camera
-from photograd.capture.frames import FloatArray
 from photograd.capture.undistort import Distortion, undistort_image
 from photograd.images.read import ColorSpace, ImageArray, downscale_image, read_image
+from photograd.types import FloatArray
 
 
 def display_color(color: npt.NDArray[Any], color_space: ColorSpace) -> npt.NDArray[Any]:

@@ -11,8 +11,8 @@ from photograd_course.portable_math import matmul
 from photograd.capture.assemble import box_corners
 from photograd.capture.camera import Camera
 from photograd.capture.capture import check_box
-from photograd.capture.frames import FloatArray
 from photograd.capture.view import View
+from photograd.types import FloatArray
 
 
 def sees_box(camera: Camera, box: FloatArray) -> bool:

@@ -16,7 +16,7 @@ from photograd_course.errors import IoError, RangeError, SceneError, ShapeError,
 from photograd.capture.assemble import box_from_source
 from photograd.capture.camera import Camera
 from photograd.capture.capture import check_box
-from photograd.capture.frames import OPENGL_FROM_OPENCV, Y_UP_FROM_Z_UP, FloatArray, invert_rigid
+from photograd.capture.frames import OPENGL_FROM_OPENCV, Y_UP_FROM_Z_UP, invert_rigid
 from photograd.capture.written import (
     MANIFEST,
     left_alone,
@@ -26,6 +26,7 @@ from photograd.capture.written import (
 )
 from photograd.images.read import ImageArray
 from photograd.images.write import write_exr, write_png
+from photograd.types import FloatArray
 
 _NAME = "write_blender_capture"
 _SPLITS = ("train", "test", "val")

@@ -40,9 +40,9 @@ from photograd.fitting.snapshots import load_snapshots
 from photograd.fitting.start import VoxelField
 from photograd.fitting.training_views import TrainingViews
 from photograd.fitting.view_gradients import grad2d_picture, view_gradients
-from photograd.representation import Array
 from photograd.splats.clone_split_prune import CloneSplitPrune
 from photograd.splats.model import GaussianScene
+from photograd.types import Array
 
 if TYPE_CHECKING:
     from photograd_course import viz

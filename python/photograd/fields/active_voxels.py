@@ -14,7 +14,7 @@ import numpy as np
 from photograd._compiled import _core
 from photograd._memory import available_memory
 from photograd.errors import Error, RangeError, ShapeError, message
-from photograd.representation import Array
+from photograd.types import Array
 
 SIDE = 8
 

@@ -19,7 +19,7 @@ from photograd.errors import RangeError, message
 from photograd.fields.dense_grid import DenseGrid
 from photograd.fields.sparse_sh import SparseSh
 from photograd.grids.octree import Octree
-from photograd.representation import Array
+from photograd.types import Array
 
 Corner = tuple[float, float, float]
 

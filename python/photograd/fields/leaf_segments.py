@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from photograd.grids.octree import Octree
-from photograd.representation import Array
+from photograd.types import Array
 
 
 @dataclass(frozen=True)

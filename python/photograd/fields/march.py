@@ -17,7 +17,8 @@ from photograd_course.random import uniform
 from photograd._compiled import _core
 from photograd._finite import require_finite
 from photograd.errors import DtypeError, Error, RangeError, message
-from photograd.representation import Array, Outputs, RayBatch, RenderOptions
+from photograd.representation import Outputs, RayBatch, RenderOptions
+from photograd.types import Array
 
 LATTICES = {"origin": 0, "entry": 1}
 QUADRATURES = {"alpha": 0, "riemann": 1}

@@ -39,7 +39,6 @@ from photograd.fields.leaf_segments import Borders, Segments, border_gradients, 
 from photograd.fields.sparse_sh import SparseSh
 from photograd.grids.octree import Octree, tree_of_leaves
 from photograd.representation import (
-    Array,
     Outputs,
     ParamSpec,
     RayBatch,
@@ -47,6 +46,7 @@ from photograd.representation import (
     Representation,
     register,
 )
+from photograd.types import Array
 
 
 @dataclass(frozen=True)

@@ -25,7 +25,6 @@ from photograd_course.random import uniform
 
 from photograd.errors import DtypeError, RangeError, ShapeError, message
 from photograd.representation import (
-    Array,
     Outputs,
     ParamSpec,
     RayBatch,
@@ -36,6 +35,7 @@ from photograd.representation import (
 from photograd.sh import Y_0
 from photograd.splats.rays import RayContext, RayOptions, render, render_backward
 from photograd.splats.splatting import Gaussians
+from photograd.types import Array
 
 
 @dataclass(frozen=True)

@@ -30,7 +30,6 @@ from photograd.fields.march import (
     require_finite_image,
 )
 from photograd.representation import (
-    Array,
     Outputs,
     ParamSpec,
     Prior,
@@ -39,6 +38,7 @@ from photograd.representation import (
     Representation,
     register,
 )
+from photograd.types import Array
 
 MOST_DEGREE = 3
 

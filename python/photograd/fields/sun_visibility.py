@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from photograd.errors import RangeError, message
 from photograd.geometry.mesh import Bvh
-
-Array = NDArray[Any]
 
 
 def voxel_centres(box: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.float64]:

@@ -38,7 +38,6 @@ from photograd.fields.march import MarchContext, MarchPolicy, march, march_backw
 from photograd.fields.sun_visibility import sun_visibility, voxel_centres
 from photograd.geometry.mesh import Bvh
 from photograd.representation import (
-    Array,
     Outputs,
     ParamSpec,
     RayBatch,
@@ -46,6 +45,7 @@ from photograd.representation import (
     Representation,
     register,
 )
+from photograd.types import Array
 
 
 @dataclass(frozen=True)

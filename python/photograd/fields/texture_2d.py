@@ -16,7 +16,6 @@ from photograd_course.random import uniform
 
 from photograd.errors import DtypeError, ShapeError, message
 from photograd.representation import (
-    Array,
     CanvasBatch,
     Outputs,
     ParamSpec,
@@ -25,6 +24,7 @@ from photograd.representation import (
     register,
 )
 from photograd.textures import sample, sample_backward
+from photograd.types import Array
 
 
 @dataclass(frozen=True)

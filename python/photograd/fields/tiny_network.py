@@ -12,7 +12,6 @@ from photograd._compiled import _core
 from photograd.errors import ShapeError, message
 from photograd.fields.march import MarchContext, MarchPolicy, march, march_backward
 from photograd.representation import (
-    Array,
     Outputs,
     ParamSpec,
     RayBatch,
@@ -20,6 +19,7 @@ from photograd.representation import (
     Representation,
     register,
 )
+from photograd.types import Array
 
 HIDDEN = 16
 

@@ -12,7 +12,7 @@ from photograd_course.color import srgb_decode
 from photograd_course.portable_math import log, sigmoid
 from photograd_course.random import uniform
 
-from photograd.representation import Array
+from photograd.types import Array
 
 
 def background_kind(option: str, *, has_alpha: bool) -> str:

@@ -20,7 +20,7 @@ from photograd_course.atomic_io import atomic_write
 
 from photograd._npz import read_npz
 from photograd.errors import IoError, message
-from photograd.representation import Array
+from photograd.types import Array
 
 VERSION = 1
 FILE_NAME = "model.npz"

@@ -17,7 +17,7 @@ from photograd._plain_values import typed
 from photograd.errors import DtypeError, RangeError, ShapeError, message
 from photograd.fitting.checkpoint import Checkpoint
 from photograd.fitting.options import FitOptions
-from photograd.representation import Array
+from photograd.types import Array
 
 Row: TypeAlias = tuple[tuple[str, ...], tuple[int | str, ...]]
 """Types, of which the array has one, and shape."""

@@ -14,8 +14,9 @@ from photograd.fields.octree_sh import OctreeSh
 from photograd.fitting.checkpoint import Checkpoint
 from photograd.fitting.options import FitOptions
 from photograd.fitting.start import FITTED
-from photograd.representation import Array, representation, representations
+from photograd.representation import representation, representations
 from photograd.splats.model import GaussianScene
+from photograd.types import Array
 
 _SAME = "resume with the capture, and the --downscale, that the fit was started on"
 

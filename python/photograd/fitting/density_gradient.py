@@ -22,7 +22,8 @@ from photograd.fitting.imaging import image_loss, image_loss_backward
 from photograd.fitting.pixels import TrainingPixels
 from photograd.fitting.start import VoxelField
 from photograd.fitting.voxel_rows import active_voxels, density_rows, to_voxels, voxel_shape
-from photograd.representation import Array, RenderOptions
+from photograd.representation import RenderOptions
+from photograd.types import Array
 
 RAYS_AT_ONCE = 1 << 16
 LEAF_RAYS_AT_ONCE = 1 << 13  # an octree keeps numbers of every leaf on the way of every ray

@@ -24,7 +24,8 @@ from photograd.capture.camera import Camera
 from photograd.capture.view import View, display_color
 from photograd.errors import RangeError, message
 from photograd.fitting.model import Model
-from photograd.representation import Array, ImageBatch, RayBatch, RenderOptions
+from photograd.representation import ImageBatch, RayBatch, RenderOptions
+from photograd.types import Array
 
 RAYS_AT_ONCE = 1 << 16
 

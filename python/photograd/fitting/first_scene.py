@@ -9,12 +9,12 @@ from photograd_course.portable_math import norm
 
 from photograd.capture.capture import Capture
 from photograd.fitting.options import FitOptions
-from photograd.representation import Array
 from photograd.splats.clone_split_prune import CloneSplitPrune
 from photograd.splats.density import DensityControl, NoControl, Schedule
 from photograd.splats.markov_chain import MarkovChain
 from photograd.splats.model import GaussianScene
 from photograd.splats.start import start_gaussians
+from photograd.types import Array
 
 FIRST_SHARE = 1 / 3
 """Of the budget, before cloning and splitting; a fixed number begins complete."""

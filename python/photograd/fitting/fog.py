@@ -16,7 +16,7 @@ from photograd.fitting.options import FitOptions
 from photograd.grids.sparse import SparseGrid
 from photograd.grids.vdb import read_vdb
 from photograd.grids.volumes import SUFFIXES, read_volume
-from photograd.representation import Array
+from photograd.types import Array
 
 RAMPS = ("white", "inferno", "viridis", "bone")
 GREY = 0.8

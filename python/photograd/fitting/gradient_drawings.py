@@ -14,7 +14,7 @@ from photograd_course.viz import style
 from photograd_course.viz.scale import nice_limit, signed_scale
 
 from photograd.fitting.view_gradients import ViewGradients
-from photograd.representation import Array
+from photograd.types import Array
 
 PANEL, GAP, LEFT, TOP = 2.3, 0.14, 0.75, 0.62  # inches
 BAR = 1.05  # room of a colour bar beside its panel

@@ -27,7 +27,8 @@ from photograd_course.losses import l2, l2_backward
 from photograd_course.portable_math import log
 
 from photograd.errors import ShapeError, message
-from photograd.representation import Array, Outputs
+from photograd.representation import Outputs
+from photograd.types import Array
 
 LN_10 = 2.302585092994046
 

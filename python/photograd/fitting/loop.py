@@ -64,8 +64,8 @@ from photograd.fitting.start import FittedField, frozen_field, start_field
 from photograd.fitting.surface_points import surface_points
 from photograd.fitting.training_views import TrainingViews
 from photograd.fitting.views import view_slope
-from photograd.representation import Array
 from photograd.splats.model import GaussianScene
+from photograd.types import Array
 
 PRUNE_AT = 0.5  # fraction of the steps; before that, pruning goes along with refining
 

@@ -15,9 +15,9 @@ from photograd.fields.dense_grid import DenseGrid
 from photograd.fields.sparse_sh import SparseSh
 from photograd.fitting.options import FitOptions
 from photograd.fitting.start import HARMONIC_GRIDS
-from photograd.representation import Array
 from photograd.sh import count as sh_count
 from photograd.splats.model import GaussianScene
+from photograd.types import Array
 
 COPIES = 4
 """A parameter, its gradient and two moments; also the 1.1 GB measured for 256³ voxels."""

@@ -15,7 +15,7 @@ from photograd.fitting.checkpoint import Checkpoint, load_checkpoint
 from photograd.fitting.checkpoint_schema import check_checkpoint
 from photograd.fitting.options import FitOptions
 from photograd.fitting.start import FittedField, saved_field
-from photograd.representation import Array
+from photograd.types import Array
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,8 @@ import numpy as np
 
 from photograd.fitting.structural import ssim_backward
 from photograd.fitting.training_views import TrainingView
-from photograd.representation import Array, Outputs
+from photograd.representation import Outputs
+from photograd.types import Array
 
 
 @dataclass(frozen=True, eq=False)

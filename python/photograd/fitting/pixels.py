@@ -13,7 +13,8 @@ from photograd_course.random import uniform_int
 
 from photograd.capture.view import View
 from photograd.errors import IoError, RangeError, message
-from photograd.representation import Array, RayBatch
+from photograd.representation import RayBatch
+from photograd.types import Array
 
 _RAYS_AT_ONCE = 1 << 16
 

@@ -15,7 +15,7 @@ from photograd_course.row_map import RowMap
 
 from photograd.fields.sparse_sh import SparseSh
 from photograd.fitting.pixels import TrainingPixels
-from photograd.representation import Array
+from photograd.types import Array
 
 WEIGHT_RAYS = 1 << 20
 """From all views; what they do not need is dropped."""

@@ -15,7 +15,8 @@ from photograd.fitting.imaging import image_loss, image_loss_backward
 from photograd.fitting.options import FitOptions
 from photograd.fitting.pixels import TrainingPixels
 from photograd.fitting.start import FittedGrid
-from photograd.representation import Array, RenderOptions
+from photograd.representation import RenderOptions
+from photograd.types import Array
 
 
 def ray_slope(

@@ -13,7 +13,7 @@ from photograd_course.optim import Adam, Gradient
 from photograd_course.portable_math import integer_power
 
 from photograd._compiled import _core
-from photograd.representation import Array
+from photograd.types import Array
 
 
 class RowAdam(Adam):

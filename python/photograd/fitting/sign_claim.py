@@ -17,7 +17,7 @@ from photograd.capture.capture import Capture
 from photograd.fitting.density_gradient import density_gradient, voxel_masks
 from photograd.fitting.pixels import TrainingPixels
 from photograd.fitting.start import VoxelField
-from photograd.representation import Array
+from photograd.types import Array
 
 VIEW_COUNTS = (48, 24, 12, 6)  # tried after all of them
 ENOUGH = 30  # voxels of each kind; with fewer, fewer views may leave more

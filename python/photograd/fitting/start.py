@@ -18,9 +18,9 @@ from photograd.fields.octree_sh import OctreeSh
 from photograd.fields.sparse_sh import SparseSh
 from photograd.fitting.first_scene import first_scene, scene_control
 from photograd.fitting.options import FitOptions
-from photograd.representation import Array
 from photograd.splats.model import GaussianScene
 from photograd.splats.splatting import SplatOptions
+from photograd.types import Array
 
 FittedGrid: TypeAlias = DenseGrid | SparseSh
 VoxelField: TypeAlias = FittedGrid | OctreeSh

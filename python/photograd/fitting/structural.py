@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from photograd._compiled import _core
-from photograd.representation import Array
+from photograd.types import Array
 
 
 def ssim(x: Array, y: Array) -> float:

@@ -15,7 +15,7 @@ from photograd.capture.view import View, display_color
 from photograd.errors import SceneError, message
 from photograd.fitting.evaluate import render_camera
 from photograd.fitting.model import Model
-from photograd.representation import Array
+from photograd.types import Array
 
 COVERED = 0.5
 """Opacity of a pixel that is believed to show something."""

@@ -14,7 +14,7 @@ from photograd.capture.camera import Camera
 from photograd.capture.view import View, display_color
 from photograd.errors import RangeError, message
 from photograd.fitting.pixels import digest_of, require_valid_pixels
-from photograd.representation import Array
+from photograd.types import Array
 
 
 @dataclass(frozen=True, eq=False)

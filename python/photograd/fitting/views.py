@@ -17,8 +17,9 @@ from photograd.fitting.imaging import decibels
 from photograd.fitting.options import FitOptions
 from photograd.fitting.picture_loss import picture_loss, picture_loss_backward
 from photograd.fitting.training_views import TrainingView
-from photograd.representation import Array, ImageBatch, RenderOptions
+from photograd.representation import ImageBatch, RenderOptions
 from photograd.splats.model import GaussianScene
+from photograd.types import Array
 
 
 @dataclass(frozen=True, eq=False)

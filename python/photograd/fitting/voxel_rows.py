@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from photograd.fields.dense_grid import DenseGrid
 from photograd.fields.octree_sh import OctreeSh
 from photograd.fitting.start import VoxelField
-from photograd.representation import Array
+from photograd.types import Array
 
 
 def density_rows(field: VoxelField, groups: Mapping[str, Array]) -> Array:

@@ -13,8 +13,9 @@ import numpy as np
 import numpy.typing as npt
 
 from photograd._compiled import _core
-from photograd.geometry.checks import Array, finite_rows
+from photograd.geometry.checks import finite_rows
 from photograd.geometry.mesh import Mesh
+from photograd.types import Array
 
 
 class BspTree:

@@ -16,8 +16,8 @@ from photograd_course.checks import require_number
 
 from photograd.capture.camera import Camera
 from photograd.errors import RangeError, message
-from photograd.geometry.checks import Array
 from photograd.geometry.mesh import Mesh, drop_degenerate
+from photograd.types import Array
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,8 +15,7 @@ import numpy.typing as npt
 
 from photograd._compiled import _core
 from photograd.errors import DtypeError, RangeError, SceneError, ShapeError, message
-
-Array = npt.NDArray[Any]
+from photograd.types import Array
 
 
 @dataclass(frozen=True, eq=False)

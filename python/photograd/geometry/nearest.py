@@ -6,8 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from photograd.geometry.checks import Array, finite_rows
+from photograd.geometry.checks import finite_rows
 from photograd.geometry.mesh import Mesh
+from photograd.types import Array
 
 
 def nearest_on_mesh(points: Any, mesh: Mesh) -> tuple[Array, Array]:

@@ -14,8 +14,9 @@ import numpy as np
 import numpy.typing as npt
 
 from photograd._compiled import _core
-from photograd.geometry.checks import Array, checked_interval, checked_rays
+from photograd.geometry.checks import checked_interval, checked_rays
 from photograd.geometry.mesh import Mesh
+from photograd.types import Array
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,8 +16,9 @@ from photograd_course.checks import require_integer, require_number
 
 from photograd._compiled import _core
 from photograd.errors import RangeError, ShapeError, message
-from photograd.geometry.checks import Array, checked_interval, checked_rays, finite_rows
+from photograd.geometry.checks import checked_interval, checked_rays, finite_rows
 from photograd.geometry.sdf_shapes import KINDS, Shape
+from photograd.types import Array
 
 MISSED, HIT, GAVE_UP = 0, 1, 2
 

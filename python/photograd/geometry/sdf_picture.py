@@ -15,8 +15,8 @@ from photograd_course.checks import require_number
 
 from photograd.capture.camera import Camera
 from photograd.errors import RangeError, ShapeError, message
-from photograd.geometry.checks import Array
 from photograd.geometry.sdf import GAVE_UP, Body
+from photograd.types import Array
 
 OFFSET = 1e-4  # m: where a shadow ray starts, so far above the surface
 

@@ -14,7 +14,7 @@ from photograd._compiled import _core
 from photograd._memory import available_memory, require_room
 from photograd.errors import RangeError, ShapeError, message
 from photograd.grids.sparse import SparseGrid
-from photograd.representation import Array
+from photograd.types import Array
 
 
 class BrickGradients(NamedTuple):

@@ -16,8 +16,8 @@ import numpy.typing as npt
 
 from photograd._compiled import _core
 from photograd.errors import DtypeError, RangeError, ShapeError, message
+from photograd.types import Array
 
-Array = npt.NDArray[Any]
 Classify = Callable[[tuple[int, ...], int], Sequence[float] | None]
 """(lower corner in cells, side in cells) -> channels of a uniform cube, or None to cut it up."""
 

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 from photograd._compiled import _core
 from photograd._memory import require_room
 from photograd.errors import DtypeError, Error, RangeError, ShapeError, message
-from photograd.representation import Array
+from photograd.types import Array
 
 MOST_STEPS = 200
 """Of one dilation: a single voxel becomes a cube of 401^3, 64 million in a few seconds. Time and

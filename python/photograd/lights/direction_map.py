@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from photograd.errors import ShapeError, message
-from photograd.lights.base import Array
 from photograd.lights.environment import checked_rotation
+from photograd.types import Array
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,7 +15,6 @@ in the mean over the sphere, so that `grid_bytes` can be compared at equal error
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,8 +22,7 @@ from numpy.typing import NDArray
 from photograd import sh
 from photograd.errors import RangeError, ShapeError, message
 from photograd.lights.probes import sphere_quadrature
-
-Array = NDArray[Any]
+from photograd.types import Array
 
 
 def table_numbers(rows: int) -> int:

@@ -18,8 +18,7 @@ import numpy.typing as npt
 from photograd._compiled import _core
 from photograd.bsdf import Parameter
 from photograd.errors import RangeError, ShapeError, message
-
-Array = npt.NDArray[Any]
+from photograd.types import Array
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,8 @@ import numpy.typing as npt
 
 from photograd._compiled import _core
 from photograd.errors import DtypeError, RangeError, ShapeError, message
-from photograd.lights.base import Array, Light
+from photograd.lights.base import Light
+from photograd.types import Array
 
 
 def about_y(angle: float) -> Array:

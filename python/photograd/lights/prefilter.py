@@ -30,10 +30,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from photograd.errors import RangeError, ShapeError, message
-from photograd.lights.base import Array, Light
+from photograd.lights.base import Light
 from photograd.lights.dfg import DfgTable, dfg_table
 from photograd.lights.direction_map import DirectionMap
 from photograd.lights.zonal import Kernel, OnRow, zonal_mean
+from photograd.types import Array
 
 ROUGHNESSES = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0)
 LEAST_ROUGHNESS = 0.045

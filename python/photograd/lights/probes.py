@@ -26,8 +26,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from photograd import sh
 from photograd.errors import DtypeError, RangeError, ShapeError, message
-
-Array = NDArray[Any]
+from photograd.types import Array
 
 
 class ProbeGrid:

@@ -12,7 +12,8 @@ import numpy.typing as npt
 from photograd._compiled import _core
 from photograd.bsdf import Parameter
 from photograd.errors import RangeError, ShapeError, message
-from photograd.lights.base import Array, Light, unit_vector
+from photograd.lights.base import Light, unit_vector
+from photograd.types import Array
 
 _DIRECTIONS = {"direction", "axis"}  # made unit vectors here, so that any length may be given
 

@@ -19,10 +19,11 @@ from collections.abc import Callable
 import numpy as np
 
 from photograd.errors import RangeError, message
-from photograd.lights.base import Array, Light
+from photograd.lights.base import Light
 from photograd.lights.direction_map import DirectionMap, cell_directions
 from photograd.lights.environment import EnvironmentMap
 from photograd.lights.registered import ConstantLight, SkyLight
+from photograd.types import Array
 
 Kernel = Callable[[Array], Array]
 """Weights of 1 - cos(angle), an array of numbers from 0 to 2."""

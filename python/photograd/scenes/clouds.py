@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from photograd.scenes.description import Density, Points
-from photograd.scenes.noise import FloatArray, fractal_noise
+from photograd.scenes.noise import fractal_noise
+from photograd.types import FloatArray
 
 
 def cloud_layer(

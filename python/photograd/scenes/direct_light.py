@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from photograd.capture.camera import Camera
 from photograd.lights import SunLight
@@ -17,8 +15,8 @@ from photograd.transport.accumulation import Accumulation
 from photograd.transport.scene import Environment, Material, MeshShape, Scene
 from photograd.transport.texture import Texture, TextureUse
 from photograd.transport.tracer import PathOptions, PathTracer
+from photograd.types import Array
 
-Array = npt.NDArray[Any]
 TWO_SEGMENTS = PathOptions(max_depth=2, roulette_from=None)
 """From the camera to a surface, and on to a light."""
 

@@ -12,9 +12,10 @@ from photograd.scenes.lathe import lathe, rounded_profile
 from photograd.scenes.paints import paint, paints, within_range
 from photograd.scenes.parts import Part, as_meshes
 from photograd.scenes.shapes import ico_sphere
-from photograd.scenes.surface import FloatArray, Surface, joined, rotation_about
+from photograd.scenes.surface import Surface, joined, rotation_about
 from photograd.scenes.textures import painted_tiles
 from photograd.scenes.tube import tube
+from photograd.types import FloatArray
 
 _CROWN = np.array([0.0, 0.12, 0.0])
 """Middle of the leaves, and where the branches fork."""

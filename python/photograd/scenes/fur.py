@@ -11,8 +11,9 @@ from photograd.scenes.noise import fractal_noise
 from photograd.scenes.paints import paint, paints, within_range
 from photograd.scenes.parts import Part, as_meshes
 from photograd.scenes.shapes import sphere
-from photograd.scenes.surface import FloatArray, Surface, from_grid, joined
+from photograd.scenes.surface import Surface, from_grid, joined
 from photograd.scenes.textures import stripes
+from photograd.types import FloatArray
 
 _BODY = 0.38
 _STRANDS = 4000

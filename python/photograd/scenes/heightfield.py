@@ -6,7 +6,8 @@ import numpy as np
 from photograd_course.checks import require_number
 from photograd_course.errors import RangeError, ShapeError, message
 
-from photograd.scenes.surface import FloatArray, Surface, from_grid, joined
+from photograd.scenes.surface import Surface, from_grid, joined
+from photograd.types import FloatArray
 
 
 def net_points(count: int, half_size: float) -> FloatArray:

@@ -7,7 +7,8 @@ from photograd_course.checks import require_integer
 from photograd_course.errors import RangeError, ShapeError, message
 
 from photograd.scenes.curves import smooth_curve
-from photograd.scenes.surface import FloatArray, Surface, from_grid
+from photograd.scenes.surface import Surface, from_grid
+from photograd.types import FloatArray
 
 
 def lathe(profile: FloatArray, *, columns: int = 96) -> Surface:

@@ -7,7 +7,8 @@ from typing import TypeAlias
 
 from photograd.scenes.description import SceneMesh
 from photograd.scenes.paints import Color
-from photograd.scenes.surface import FloatArray, Surface
+from photograd.scenes.surface import Surface
+from photograd.types import FloatArray
 
 Part: TypeAlias = tuple[Surface, Color]
 """A surface and its albedo, as `SceneMesh` takes it."""

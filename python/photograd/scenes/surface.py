@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 from photograd_course.errors import ShapeError, message
 
 from photograd.scenes.description import SceneMesh
-
-FloatArray: TypeAlias = npt.NDArray[np.float64]
+from photograd.types import FloatArray
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,12 +14,13 @@ from photograd.scenes.daylight import blue_sky, warm_sun
 from photograd.scenes.description import SceneDescription
 from photograd.scenes.heightfield import land_block, net_points
 from photograd.scenes.lathe import lathe
-from photograd.scenes.noise import FloatArray, fractal_noise
+from photograd.scenes.noise import fractal_noise
 from photograd.scenes.paints import Color, paint, paints, within_range
 from photograd.scenes.parts import Part, as_meshes, placed
 from photograd.scenes.shapes import sphere
 from photograd.scenes.surface import joined
 from photograd.scenes.textures import bands
+from photograd.types import FloatArray
 
 _HALF = 0.55
 _FLOOR = -0.32

@@ -17,11 +17,10 @@ from photograd_course.errors import ShapeError, message
 
 from photograd.scenes.noise import fractal_noise, gradient_noise
 from photograd.scenes.paints import Color, within_range
+from photograd.types import FloatArray
 
 Size: TypeAlias = tuple[int, int]
 """Height and width in texels."""
-
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 
 def checker(size: Size, counts: Size, colors: Color) -> Color:

@@ -15,9 +15,10 @@ from photograd.scenes.lathe import lathe, rounded_profile
 from photograd.scenes.paints import paint, paints
 from photograd.scenes.parts import Part, as_meshes, placed
 from photograd.scenes.shapes import sphere, torus
-from photograd.scenes.surface import FloatArray, rotation_about
+from photograd.scenes.surface import rotation_about
 from photograd.scenes.textures import checker, stripes
 from photograd.scenes.tube import tube
+from photograd.types import FloatArray
 
 _WIRE = 0.007
 _FLOOR = -0.5

@@ -31,7 +31,6 @@ import numpy as np
 from numpy.typing import NDArray
 from photograd_course.portable_math import exp, log
 
-from photograd.representation import Array
 from photograd.splats.density import (
     Change,
     DensityControl,
@@ -43,6 +42,7 @@ from photograd.splats.density import (
 )
 from photograd.splats.grad2d import Grad2dStatistics
 from photograd.splats.quaternions import rotation_matrices
+from photograd.types import Array
 
 SPLIT = 1.6
 """A part of a split Gaussian is shorter by this, along its longest axis [Kerbl2023]."""

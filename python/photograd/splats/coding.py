@@ -8,17 +8,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from photograd._memory import available_memory
 from photograd.errors import IoError, message
 from photograd.sh import Y_0
 from photograd.splats.splatting import Gaussians
+from photograd.types import Array
 
-Array = NDArray[Any]
 UNITS = {
     "means": "m", "log_scales": "log m", "rotation": "degrees", "opacity": "of 1",
     "color": "display, of 1", "harmonics": "coefficient",

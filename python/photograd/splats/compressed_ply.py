@@ -22,9 +22,10 @@ import numpy as np
 from photograd._ply import Table, read_ply
 from photograd.errors import IoError, message
 from photograd.sh import Y_0
-from photograd.splats.coding import Array, logit_of, require_room, unit_quats
+from photograd.splats.coding import logit_of, require_room, unit_quats
 from photograd.splats.ply_files import REST_COUNTS
 from photograd.splats.splatting import Gaussians
+from photograd.types import Array
 
 _NAME = "read_compressed_ply"
 CHUNK = 256

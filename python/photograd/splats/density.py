@@ -17,8 +17,8 @@ from photograd_course.portable_math import log, log1p, sigmoid
 from photograd_course.row_map import RowMap
 
 from photograd.errors import RangeError, message
-from photograd.representation import Array
 from photograd.splats.grad2d import Grad2dStatistics
+from photograd.types import Array
 
 Params = Mapping[str, Array]
 

@@ -11,8 +11,8 @@ import numpy as np
 from photograd import sh
 from photograd.capture.frames import rotation_from_quaternion
 from photograd.errors import RangeError, message
-from photograd.splats.coding import Array
 from photograd.splats.splatting import Gaussians
+from photograd.types import Array
 
 UP_AXES = ("+x", "-x", "+y", "-y", "+z", "-z")
 USUAL_UP = "-y"

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from photograd.capture.camera import Camera
 from photograd.errors import ShapeError, message
-from photograd.representation import Array
+from photograd.types import Array
 
 
 @dataclass(eq=False)

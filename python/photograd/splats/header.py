@@ -18,8 +18,8 @@ import numpy as np
 from photograd_course.color import srgb_encode
 
 from photograd.errors import IoError, message
-from photograd.splats.coding import Array
 from photograd.splats.frames import UP_AXES
+from photograd.types import Array
 
 MARK = "photograd:"
 _SAID = {"yes": True, "no": False}

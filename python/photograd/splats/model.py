@@ -25,7 +25,6 @@ from photograd.capture.frames import invert_rigid
 from photograd.capture.orbit import orbit_cameras
 from photograd.errors import RangeError, message
 from photograd.representation import (
-    Array,
     ImageBatch,
     Outputs,
     ParamSpec,
@@ -43,6 +42,7 @@ from photograd.splats.splatting import (
     render,
     render_backward,
 )
+from photograd.types import Array
 
 MEAN_RATE = 1.6e-4
 """Adam's rate of the means, in extents of the scene [Kerbl2023]."""

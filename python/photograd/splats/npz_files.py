@@ -17,8 +17,9 @@ from photograd._npz import read_npz
 from photograd.capture.frames import LARGEST_COORDINATE
 from photograd.errors import IoError, message
 from photograd.sh import Y_0
-from photograd.splats.coding import Array, logit_of, require_room
+from photograd.splats.coding import logit_of, require_room
 from photograd.splats.splatting import Gaussians
+from photograd.types import Array
 
 _NAME = "read_point_npz"
 NEEDED = ("means3d", "colors")

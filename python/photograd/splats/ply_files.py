@@ -10,10 +10,8 @@ files that `photograd fit` writes say so (`gaussian_header`).
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from photograd_course.atomic_io import atomic_write
 from plyfile import PlyData, PlyElement
 
@@ -21,8 +19,8 @@ from photograd._ply import read_ply
 from photograd.errors import IoError, message
 from photograd.splats.header import UNSTATED, Presentation
 from photograd.splats.splatting import Gaussians
+from photograd.types import Array
 
-Array = NDArray[Any]
 REQUIRED = {
     "means": ("x", "y", "z"),
     "log_scales": ("scale_0", "scale_1", "scale_2"),

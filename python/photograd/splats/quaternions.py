@@ -6,7 +6,7 @@ import numpy as np
 from photograd_course.portable_math import matmul
 
 from photograd.errors import ShapeError, message
-from photograd.representation import Array
+from photograd.types import Array
 
 
 def rotation_matrices(quats: Array) -> Array:

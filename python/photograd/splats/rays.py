@@ -28,8 +28,7 @@ from photograd._compiled import _core
 from photograd._finite import require_finite
 from photograd.errors import RangeError, ShapeError, message
 from photograd.splats.splatting import Gaussians, filled_cotangents
-
-Array = NDArray[Any]
+from photograd.types import Array
 
 
 @dataclass(frozen=True)

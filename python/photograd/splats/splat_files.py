@@ -17,7 +17,6 @@ from photograd._file_bytes import read_file
 from photograd.errors import IoError, message
 from photograd.sh import Y_0
 from photograd.splats.coding import (
-    Array,
     Coding,
     Codings,
     logit_of,
@@ -27,6 +26,7 @@ from photograd.splats.coding import (
     unit_quats,
 )
 from photograd.splats.splatting import Gaussians
+from photograd.types import Array
 
 _NAME = "read_gaussian_splat"
 RECORD = np.dtype([("mean", "<f4", 3), ("scale", "<f4", 3), ("rgba", "u1", 4), ("quat", "u1", 4)])

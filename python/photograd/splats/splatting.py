@@ -24,8 +24,8 @@ from photograd._finite import require_finite
 from photograd.capture.camera import Camera
 from photograd.capture.frames import invert_rigid
 from photograd.errors import DtypeError, RangeError, ShapeError, message
+from photograd.types import Array
 
-Array = NDArray[Any]
 MAX_DEGREE = 3
 
 

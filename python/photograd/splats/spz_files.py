@@ -24,7 +24,6 @@ from photograd import sh
 from photograd._file_bytes import read_file
 from photograd.errors import RangeError, message
 from photograd.splats.coding import (
-    Array,
     Coding,
     Codings,
     logit_of,
@@ -46,6 +45,7 @@ from photograd.splats.spz_streams import (
     read_header,
     read_streams,
 )
+from photograd.types import Array
 
 LOG_SCALES = (-10.0, 255.0 / 16.0 - 10.0)
 HARMONICS = (-1.0, 127.0 / 128.0)

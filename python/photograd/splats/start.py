@@ -18,9 +18,9 @@ from photograd.capture.capture import Capture
 from photograd.capture.hull import mean_coverage, silhouettes_of
 from photograd.capture.view import View, display_color
 from photograd.errors import RangeError, message
-from photograd.representation import Array
 from photograd.splats.density import logits
 from photograd.splats.splatting import Gaussians
+from photograd.types import Array
 
 NEIGHBOURS = 3
 FEWEST_POINTS = 100

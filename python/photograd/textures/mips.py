@@ -13,7 +13,8 @@ import numpy as np
 
 from photograd._compiled import _core
 from photograd.errors import ShapeError, message
-from photograd.textures.sample import Array, float_array
+from photograd.textures.sample import float_array
+from photograd.types import Array
 
 
 def build_mips(texture: Array) -> list[Array]:

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-from numpy.typing import NDArray
 
 from photograd._compiled import _core
 from photograd.errors import DtypeError, message
-
-Array = NDArray[Any]
+from photograd.types import Array
 
 
 def float_array(function: str, argument: str, value: Array) -> Array:

@@ -9,13 +9,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 from photograd_course.atomic_io import atomic_write
 
 from photograd._npz import read_npz
 from photograd.errors import Error, IoError, RangeError, ShapeError, message
+from photograd.types import Array
 
-Array = npt.NDArray[Any]
 VERSION = 1
 
 

@@ -7,8 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from photograd.transport.scene import Array, Material, MeshShape, Scene, Shape
+from photograd.transport.scene import Material, MeshShape, Scene, Shape
 from photograd.transport.texture import WRAPS
+from photograd.types import Array
 
 Layout = tuple[int, int, int, int, int, bool]
 Use = tuple[int, int, int, int, float, float]

@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from photograd._memory import require_room
 from photograd._npy import read_npy
@@ -20,8 +19,8 @@ from photograd.grids.sparse import SparseGrid
 from photograd.grids.vdb import VdbFile, read_vdb
 from photograd.grids.volumes import SUFFIXES, read_volume
 from photograd.transport.medium import DensityGrid
+from photograd.types import Array
 
-Array = npt.NDArray[Any]
 NAME = "read_density"
 BYTES = 20
 """A voxel takes in a scene: float32 as read, float64 in the medium, and the tracer's own copy."""

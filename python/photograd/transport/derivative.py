@@ -18,8 +18,8 @@ from photograd.capture.camera import Camera
 from photograd.errors import RangeError, ShapeError, message
 from photograd.transport.accumulation import Accumulation
 from photograd.transport.incomplete import changed_names, require_whole
-from photograd.transport.scene import Array
 from photograd.transport.tracer import DEFAULTS, PathOptions, PathTracer
+from photograd.types import Array
 
 SPELLING = re.compile(r"(?P<name>[^\[\]]+)(\[(?P<index>\d+(\s*,\s*\d+)*)\])?")
 STILL = ("shapes", "camera", "lens", "shutter", "sdfs")

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
-Array = npt.NDArray[Any]
+from photograd.types import Array
+
 ZENITH, HORIZON, GROUND = [0.2, 0.36, 0.75], [1.5, 0.9, 0.52], [0.15, 0.12, 0.10]
 SUN = np.array([0.62, 0.26, 0.44])  # towards it, of any length
 SUN_RADIANCE, SUN_SHARPNESS = [700.0, 460.0, 240.0], 900.0  # a lobe of about 2.7 degrees

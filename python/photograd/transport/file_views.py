@@ -13,8 +13,8 @@ from photograd_course.suggest import choose_from
 from photograd.capture.camera import Camera
 from photograd.lights import DirectionalLight, Light, PointLight, SpotLight
 from photograd.transport.mesh_files import ModelFile, read_model
-from photograd.transport.scene import Array
 from photograd.transport.scene_node import Node
+from photograd.types import Array
 
 
 def camera_of_file(node: Node) -> Camera:

@@ -23,8 +23,9 @@ from photograd.lights import (
     SphereLight,
     TriangleLight,
 )
-from photograd.transport.scene import Array, Environment, MeshShape, Scene, Shape, SphereShape
+from photograd.transport.scene import Environment, MeshShape, Scene, Shape, SphereShape
 from photograd.transport.shapes import rectangle
+from photograd.types import Array
 
 SURFACES = (QuadLight, SphereLight, TriangleLight)
 

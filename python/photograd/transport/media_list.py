@@ -13,11 +13,11 @@ from photograd import bsdf
 from photograd.bsdf import specular as delta_bsdf
 from photograd.errors import SceneError, ShapeError, message
 from photograd.transport.medium import BOUNDARY, VACUUM, Medium
+from photograd.types import Array
 
 if TYPE_CHECKING:
     from photograd.transport.scene import Scene, Shape
 
-Array = npt.NDArray[Any]
 NOTHING, UNCHANGED = -1, -2  # interiors that are no medium, as the core counts them
 SOLID = (
     "glass", "rough_dielectric", "dispersive_glass", "dispersive_dielectric", "gltf_refraction",

@@ -11,12 +11,11 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from photograd.bsdf.phase import phase_function
 from photograd.errors import RangeError, ShapeError, message
+from photograd.types import Array
 
-Array = npt.NDArray[Any]
 BOUNDARY = "boundary"
 """In place of a material: a surface that is only the boundary between two media. Light passes
 straight through it, and it is not seen."""

@@ -12,15 +12,14 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import numpy.typing as npt
 
 from photograd.errors import RangeError, SceneError, ShapeError, message
 from photograd.transport.shape_checks import checked_place
+from photograd.types import Array
 
 if TYPE_CHECKING:
     from photograd.transport.scene import MeshShape, Scene, Shape, SphereShape
 
-Array = npt.NDArray[Any]
 FLAT = 1e-9
 """A mesh whose volume has shrunk to less than this part is flat, as far as rounding can tell."""
 

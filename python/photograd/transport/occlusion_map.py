@@ -18,9 +18,10 @@ from photograd_course.suggest import choose_from
 from photograd._compiled import _core
 from photograd.errors import RangeError, SceneError, message
 from photograd.transport.motion import refuse_motion
-from photograd.transport.scene import Array, MeshShape, Scene
+from photograd.transport.scene import MeshShape, Scene
 from photograd.transport.texture import Texture
 from photograd.transport.tracer import PathTracer
+from photograd.types import Array
 
 MARGIN = 8
 """Texels around what is covered that go on as it does at its edge, so that lookups between texels,

@@ -15,8 +15,8 @@ from photograd._compiled import _core
 from photograd.errors import RangeError, ShapeError, message
 from photograd.transport.accumulation import Accumulation
 from photograd.transport.motion import refuse_motion
-from photograd.transport.scene import Array
 from photograd.transport.tracer import NEVER, PathTracer
+from photograd.types import Array
 
 
 @dataclass(frozen=True)

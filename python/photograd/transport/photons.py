@@ -11,8 +11,8 @@ from photograd._compiled import _core
 from photograd.errors import RangeError, ShapeError, message
 from photograd.transport.accumulation import Accumulation
 from photograd.transport.particles import PARTICLES, ParticleOptions, scene_arguments
-from photograd.transport.scene import Array
 from photograd.transport.tracer import DEFAULTS, PathOptions, PathTracer
+from photograd.types import Array
 
 
 class PhotonMap:

@@ -11,16 +11,13 @@ it may follow d_image, which comes from other paths.
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-import numpy.typing as npt
 from numpy.lib.stride_tricks import sliding_window_view
 
 from photograd.errors import RangeError, message
 from photograd.transport.accumulation import Accumulation
+from photograd.types import Array
 
-Array = npt.NDArray[Any]
 SPREADS = ("even", "cotangent")
 EVEN_SHARE = 0.25
 """Of all paths: a pixel may hide a large s_p behind a small d_p, so that none goes without."""

@@ -11,7 +11,6 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 from photograd_course.suggest import choose_from
 
 from photograd import bsdf
@@ -33,8 +32,8 @@ from photograd.transport.shape_checks import (
 )
 from photograd.transport.shutter import Shutter
 from photograd.transport.texture import NormalMap, Texture, TextureUse, checked_uses
+from photograd.types import Array
 
-Array = npt.NDArray[Any]
 MODELS: dict[str, bsdf.BsdfModel | delta_bsdf.DeltaModel] = {
     **bsdf.registry(),
     **delta_bsdf.registry(),

@@ -41,7 +41,7 @@ from photograd.transport.file_views import lights_of
 from photograd.transport.medium import Medium
 from photograd.transport.mesh_files import ModelFile, read_model
 from photograd.transport.mesh_files.model_file import moved
-from photograd.transport.scene import Array, Material, MeshShape
+from photograd.transport.scene import Material, MeshShape
 from photograd.transport.scene_node import Node
 from photograd.transport.texture import (
     ENCODINGS,
@@ -52,6 +52,7 @@ from photograd.transport.texture import (
     TextureUse,
     read_texture,
 )
+from photograd.types import Array
 
 
 def textures_in(root: Node) -> dict[str, Texture]:

@@ -7,17 +7,14 @@ normal is the gradient of the distance.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from photograd.errors import SceneError, message
 from photograd.geometry.sdf import Body
 from photograd.geometry.sdf_shapes import Shape as SdfNode
 from photograd.transport.shape_checks import checked_color
-
-Array = npt.NDArray[Any]
+from photograd.types import Array
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,13 +6,11 @@ import warnings
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from photograd.bsdf import SMOOTH, Parameter
 from photograd.errors import DtypeError, RangeError, ShapeError, message
 from photograd.geometry.mesh import drop_degenerate
-
-Array = npt.NDArray[Any]
+from photograd.types import Array
 
 
 def checked_place(name: str, matrix: Any) -> Array:

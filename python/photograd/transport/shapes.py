@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 
 from photograd.errors import RangeError, message
-from photograd.transport.scene import Array, MeshShape
+from photograd.transport.scene import MeshShape
+from photograd.types import Array
 
 
 def rectangle(

@@ -5,13 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from photograd.capture.camera import Camera
 from photograd.capture.frames import check_pose
 from photograd.errors import RangeError, message
-
-Array = npt.NDArray[np.float64]
+from photograd.types import FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,12 +27,12 @@ class Shutter:
         SceneError, ShapeError: a pose that is not rigid, or not (4, 4).
     """
 
-    closing: Array
+    closing: FloatArray
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "closing", check_pose("Shutter", "closing", self.closing).copy())
 
-    def motion(self, opening: Camera) -> tuple[Array, Array]:
+    def motion(self, opening: Camera) -> tuple[FloatArray, FloatArray]:
         """Way (3,) in metres, and turn (3,), radians along its axis, both in the world.
 
         Raises:

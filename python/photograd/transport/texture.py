@@ -21,13 +21,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 from photograd_course.color import srgb_decode
 
 from photograd.errors import DtypeError, RangeError, ShapeError, message
 from photograd.images.read import read_header, read_image
+from photograd.types import Array
 
-Array = npt.NDArray[Any]
 WRAPS = ("repeat", "mirror", "clamp")
 FILTERS = ("bilinear", "mip")
 ENCODINGS = ("srgb", "linear", "alpha")

@@ -29,8 +29,9 @@ from photograd.transport.light_list import light_shapes, listed_lights
 from photograd.transport.media_list import ListedMedia
 from photograd.transport.motion import closing_arrays, refuse_motion
 from photograd.transport.sample_counts import sample_counts
-from photograd.transport.scene import Array, MeshShape, Scene, Shape, SphereShape
+from photograd.transport.scene import MeshShape, Scene, Shape, SphereShape
 from photograd.transport.sdf_shape import SdfShape
+from photograd.types import Array
 
 STRATEGIES = ("light", "bsdf", "mis")
 HEURISTICS = ("balance", "power")

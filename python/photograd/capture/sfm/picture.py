@@ -9,8 +9,8 @@ from matplotlib.axes import Axes
 from photograd_course.viz import style
 
 from photograd.capture import Capture
-from photograd.capture.frames import FloatArray
 from photograd.capture.view import View
+from photograd.types import FloatArray
 
 WIDTH, HEIGHT = 5.2, 4.6  # inches of a panel
 _FRUSTUM = 0.06  # length of a drawn camera, of the width of the picture

@@ -15,7 +15,8 @@ from typing import Any
 
 import numpy as np
 
-from photograd.grids.volumes.volume import Array, Volume, check_size, make, refuse
+from photograd.grids.volumes.volume import Volume, check_size, make, refuse
+from photograd.types import Array
 
 HEADER_BYTES = 348
 TYPES = {

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from photograd._memory import available_memory
 from photograd.errors import IoError, message
+from photograd.types import Array
 
-Array = NDArray[Any]
 MOST_CELLS = 1 << 40
 """Voxels beyond which a header is taken for damaged, whatever memory there is."""
 

@@ -18,7 +18,8 @@ from pathlib import Path
 
 import numpy as np
 
-from photograd.grids.volumes.volume import Array, Volume, check_size, make, placed, refuse
+from photograd.grids.volumes.volume import Volume, check_size, make, placed, refuse
+from photograd.types import Array
 
 TYPES = {
     "unsigned_char": "u1", "char": "i1", "unsigned_short": ">u2", "short": ">i2",

@@ -11,13 +11,12 @@ Held constant: lo and hi.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 from photograd_course.portable_math import exp, log, log1p, sigmoid
 
-Array = npt.NDArray[Any]
+from photograd.types import Array
+
 KINDS = ("logit", "log")
 MARGIN = 1e-3
 """How far inside of its range a start is kept; at an end, dp/dx is 0 and nothing would move."""

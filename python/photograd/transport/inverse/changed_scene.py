@@ -7,12 +7,9 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from photograd.lights import EnvironmentMap, Light
 from photograd.transport.scene import Environment, Scene
-
-Array = npt.NDArray[Any]
 
 
 def scene_with(scene: Scene, params: Mapping[str, Any]) -> Scene:

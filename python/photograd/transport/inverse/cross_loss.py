@@ -23,10 +23,8 @@ once.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from photograd._compiled import _core
 from photograd.capture.camera import Camera
@@ -35,8 +33,8 @@ from photograd.transport.accumulation import Accumulation
 from photograd.transport.incomplete import WholeGradients, require_whole
 from photograd.transport.sample_counts import pair_counts
 from photograd.transport.tracer import DEFAULTS, PathOptions, PathTracer
+from photograd.types import Array
 
-Array = npt.NDArray[Any]
 PILOT = 16
 """One sample in so many finds out where the others are needed."""
 PILOT_SEED = 0x5DEECE66D  # makes another seed of one

@@ -29,9 +29,10 @@ from photograd.transport.inverse.options import RecoveryOptions
 from photograd.transport.inverse.result import Progress, RecoveryResult
 from photograd.transport.inverse.saved import load_state, save_state
 from photograd.transport.inverse.target import checked_targets, loss_weights
-from photograd.transport.inverse.unknown import Array, Unknown, is_light
+from photograd.transport.inverse.unknown import Unknown, is_light
 from photograd.transport.scene import Scene
 from photograd.transport.tracer import PathTracer
+from photograd.types import Array
 
 FEW = 16  # numbers of an unknown whose curves are kept one by one
 MEMORY = 0.9

@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from photograd_course.color import srgb_encode
@@ -14,8 +13,8 @@ from photograd_course.viz import style
 from photograd_course.viz.curves import running_mean
 
 from photograd.transport.inverse.result import RecoveryResult
+from photograd.types import Array
 
-Array = npt.NDArray[Any]
 CHANNELS = ("#c0392b", "#2e8b57", "#2b6cb0")
 LINES = ("-", "--", ":", "-.")
 

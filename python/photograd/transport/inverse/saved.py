@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import numpy.typing as npt
 
 from photograd.errors import Error, IoError, RangeError, message
 from photograd.fitting.checkpoint import Checkpoint, load_checkpoint, save_checkpoint
@@ -19,11 +18,11 @@ from photograd.fitting.checkpoint_schema import (
     checked_step,
 )
 from photograd.transport.scene_digest import scene_digest
+from photograd.types import Array
 
 if TYPE_CHECKING:
     from photograd.transport.inverse.job import Recovery
 
-Array = npt.NDArray[Any]
 FILE_NAME = "recovery.npz"
 
 

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 from photograd_course.suggest import choose_from
 
 from photograd.errors import RangeError, ShapeError, message
@@ -15,8 +14,7 @@ from photograd.transport.incomplete import require_whole
 from photograd.transport.inverse.activation import KINDS, Activation
 from photograd.transport.scene import Scene
 from photograd.transport.tracer import PathTracer
-
-Array = npt.NDArray[Any]
+from photograd.types import Array
 
 
 @dataclass(frozen=True, eq=False)

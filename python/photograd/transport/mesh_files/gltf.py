@@ -5,10 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from photograd._json_node import JsonNode
 from photograd.errors import IoError, SceneError, message
@@ -22,8 +20,8 @@ from photograd.transport.mesh_files.model_file import ModelFile, Names, placed_s
 from photograd.transport.mesh_files.nodes import mesh_places, placed_nodes
 from photograd.transport.mesh_files.pictures import TRANSFORM, Pictures
 from photograd.transport.scene import MeshShape, Shape
+from photograd.types import Array
 
-Array = npt.NDArray[Any]
 DRACO = "KHR_draco_mesh_compression"
 READABLE = (TRANSFORM, "KHR_mesh_quantization", LIGHTS)
 """Extensions that a file may require, besides those of materials, which are noted one by one."""

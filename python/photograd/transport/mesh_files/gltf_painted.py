@@ -8,7 +8,6 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 from photograd_course.color import srgb_encode
 
 from photograd.errors import SceneError, message
@@ -17,8 +16,8 @@ from photograd.transport.mesh_files.gltf_samplers import Wrap, sampler_words
 from photograd.transport.mesh_files.gltf_words import Words
 from photograd.transport.scene import Material
 from photograd.transport.texture import NormalMap, Texture, TextureUse
+from photograd.types import Array
 
-Array = npt.NDArray[Any]
 _LABEL = re.compile(r" \((srgb|linear|alpha|mask), \d+\)$")
 """What reading adds to the name of an image."""
 _COLOR = ("", "baseColorTexture", "srgb", 0)

@@ -6,14 +6,13 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from photograd.transport.medium import Medium
 from photograd.transport.mesh_files.model_file import ModelFile
 from photograd.transport.scene import Material, MeshShape
 from photograd.transport.texture import NormalMap, Texture, TextureUse
+from photograd.types import Array
 
-Array = npt.NDArray[Any]
 ROUNDING, TEXEL_ROUNDING = 1e-12, 1e-6
 """Relative: what logarithms and roots leave behind in double, decoding in float, is no change."""
 

@@ -6,10 +6,8 @@ import io
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import PurePath
-from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 from PIL import Image
 
 from photograd._json_node import JsonNode
@@ -19,8 +17,8 @@ from photograd.images.pixel_limit import allow_pixels, require_pixels, too_many_
 from photograd.transport.mesh_files.container import NAME, Container, real, whole
 from photograd.transport.mesh_files.gltf_samplers import Wrap, read_sampler
 from photograd.transport.texture import Texture, decode
+from photograd.types import Array
 
-Array = npt.NDArray[Any]
 TRANSFORM = "KHR_texture_transform"
 _LEVELS = np.arange(256, dtype=np.float32) / np.float32(255)
 

@@ -11,7 +11,8 @@ from photograd._file_bytes import read_file
 from photograd.errors import IoError, message
 from photograd.transport.mesh_files.container import NAME
 from photograd.transport.mesh_files.model_file import ModelFile
-from photograd.transport.mesh_files.plain import GREY, Array, Note, plain_model
+from photograd.transport.mesh_files.plain import GREY, Note, plain_model
+from photograd.types import Array
 
 _HEADER = 84
 _TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])

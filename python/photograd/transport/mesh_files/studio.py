@@ -10,8 +10,9 @@ from photograd.capture.orbit import orbit_cameras
 from photograd.errors import SceneError, message
 from photograd.transport.mesh_files.model_camera import ModelCamera
 from photograd.transport.mesh_files.model_file import ModelFile
-from photograd.transport.scene import Array, Environment, Material, MeshShape, Scene
+from photograd.transport.scene import Environment, Material, MeshShape, Scene
 from photograd.transport.shapes import rectangle
+from photograd.types import Array
 
 _TURNS, _SEEN_FROM = 12, 1  # 30 degrees from the front, +Z
 _LAMP = "studio lamp"
