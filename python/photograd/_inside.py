@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from photograd_course.errors import IoError, message
+from photograd.errors import IoError, message
 
 TRUST = "if you trust the capture: --allow-outside, in Python allow_outside=True"
 

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from photograd_course.errors import IoError, RangeError, message
+from photograd_course.input_files import read_text
 
-from photograd._file_bytes import read_text
+from photograd.errors import IoError, RangeError, message
 from photograd.types import FloatArray
 
 

@@ -6,9 +6,9 @@ import math
 from pathlib import Path
 
 import numpy as np
-from photograd_course.errors import DtypeError, IoError, message
+from photograd_course.input_files import require_file
 
-from photograd._file_bytes import require_file
+from photograd.errors import DtypeError, IoError, message
 from photograd.types import FloatArray
 
 

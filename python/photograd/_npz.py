@@ -13,11 +13,11 @@ from collections.abc import Collection
 from pathlib import Path
 
 import numpy as np
-from photograd_course.errors import IoError, message
+from photograd_course.input_files import require_file
 from photograd_course.limits import EXPANSION
 
-from photograd._file_bytes import require_file
 from photograd._memory import available_memory, bytes_text
+from photograd.errors import IoError, message
 from photograd.types import Array
 
 _SUFFIX = ".npy"

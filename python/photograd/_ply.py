@@ -12,9 +12,9 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from photograd_course.input_files import read_file
 from plyfile import PlyData
 
-from photograd._file_bytes import read_file
 from photograd.errors import IoError, message
 
 Table = NDArray[Any]

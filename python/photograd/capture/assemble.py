@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from photograd_course.errors import Error, IoError, SceneError, message
 from photograd_course.portable_math import matmul
 
 from photograd._inside import TRUST, inside
 from photograd.capture.camera import Camera
+from photograd.errors import Error, IoError, SceneError, message
 from photograd.images.kind import LINEAR_SUFFIXES
 from photograd.images.read import IMAGE_SUFFIXES, ColorSpace, ImageHeader, read_header
 from photograd.types import FloatArray

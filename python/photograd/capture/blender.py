@@ -7,8 +7,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from photograd_course.errors import IoError, message
-
 from photograd._json_node import JsonNode, read_json
 from photograd.capture.assemble import (
     Photograph,
@@ -27,6 +25,7 @@ from photograd.capture.frames import OPENGL_FROM_OPENCV, Y_UP_FROM_Z_UP, check_p
 from photograd.capture.intrinsics import read_intrinsics
 from photograd.capture.splits import hold_out
 from photograd.capture.view import View
+from photograd.errors import IoError, message
 from photograd.images.read import ColorSpace
 
 _NAME = "load_blender"

@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from photograd_course.errors import SceneError, message
 from photograd_course.portable_math import matmul, norm
 
 from photograd.capture.capture import Capture
 from photograd.capture.convention import meeting_of_axes
 from photograd.capture.hull import mean_coverage, silhouettes_of, visual_hull_box
 from photograd.capture.visibility import blind_cameras, no_view
+from photograd.errors import SceneError, message
 from photograd.types import FloatArray
 
 PADDING = 0.05

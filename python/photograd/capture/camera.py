@@ -6,10 +6,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
-from photograd_course.errors import DtypeError, RangeError, ShapeError, message
 from photograd_course.portable_math import matmul
 
 from photograd.capture.frames import check_pose, invert_rigid
+from photograd.errors import DtypeError, RangeError, ShapeError, message
 from photograd.types import FloatArray
 
 

@@ -10,10 +10,10 @@ from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
-from photograd_course.errors import IoError, RangeError, ShapeError, message
 
 from photograd.capture.splits import hold_out
 from photograd.capture.view import View
+from photograd.errors import IoError, RangeError, ShapeError, message
 from photograd.images.read import ColorSpace
 from photograd.types import FloatArray
 

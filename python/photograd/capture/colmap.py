@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-from photograd_course.errors import IoError, RangeError, SceneError, message
 
 from photograd.capture.assemble import (
     Photograph,
@@ -30,6 +29,7 @@ from photograd.capture.frames import (
 from photograd.capture.splits import hold_out
 from photograd.capture.undistort import Distortion, distort
 from photograd.capture.view import View
+from photograd.errors import IoError, RangeError, SceneError, message
 from photograd.types import FloatArray
 
 _NAME = "load_colmap"

@@ -17,9 +17,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from photograd_course.errors import IoError, message
+from photograd_course.input_files import read_file
 
-from photograd._file_bytes import read_file
 from photograd.capture.colmap_model import (
     MODELS,
     ColmapCamera,
@@ -27,6 +26,7 @@ from photograd.capture.colmap_model import (
     ColmapModel,
     ColmapPoints,
 )
+from photograd.errors import IoError, message
 
 _OBSERVATION = np.dtype([("x", "<f8"), ("y", "<f8"), ("point", "<i8")])
 _POINT = struct.Struct("<Q3d3BdQ")

@@ -13,9 +13,9 @@ from typing import TypeVar
 
 import numpy as np
 import numpy.typing as npt
-from photograd_course.errors import IoError, RangeError, message
+from photograd_course.input_files import read_text
 
-from photograd._file_bytes import read_text
+from photograd.errors import IoError, RangeError, message
 from photograd.types import FloatArray
 
 MODELS = (

@@ -13,11 +13,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from photograd_course.errors import SceneError, message
 from photograd_course.portable_math import matmul, norm
 
 from photograd.capture.frames import OPENGL_FROM_OPENCV, invert_rigid, mean_camera_up
 from photograd.capture.view import View
+from photograd.errors import SceneError, message
 from photograd.types import FloatArray
 
 FEWEST_CAMERAS = 4

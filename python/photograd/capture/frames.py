@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from photograd_course.errors import RangeError, SceneError, ShapeError, message
 from photograd_course.portable_math import cos, matmul, norm, sin
 
+from photograd.errors import RangeError, SceneError, ShapeError, message
 from photograd.types import FloatArray
 
 OPENGL_FROM_OPENCV: FloatArray = np.diag([1.0, -1.0, -1.0, 1.0])

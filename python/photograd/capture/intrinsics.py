@@ -5,10 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from photograd_course.errors import IoError, RangeError, SceneError, message
-
 from photograd._json_node import JsonNode
 from photograd.capture.undistort import Distortion
+from photograd.errors import IoError, RangeError, SceneError, message
 
 MODELS = {"PINHOLE", "SIMPLE_PINHOLE", "SIMPLE_RADIAL", "RADIAL", "OPENCV"}
 _REFUSED_TERMS = ("k3", "k4", "k5", "k6")

@@ -11,7 +11,6 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-from photograd_course.errors import IoError, RangeError, ShapeError, message
 
 from photograd._npy import read_npy
 from photograd.capture.assemble import (
@@ -27,6 +26,7 @@ from photograd.capture.convention import check_convention
 from photograd.capture.frames import check_pose, world_from_estimated_up
 from photograd.capture.splits import hold_out
 from photograd.capture.view import View
+from photograd.errors import IoError, RangeError, ShapeError, message
 from photograd.images.read import read_header
 from photograd.types import FloatArray
 

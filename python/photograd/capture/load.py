@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from photograd_course.errors import IoError, message
-
 from photograd.capture.assemble import is_file
 from photograd.capture.blender import load_blender
 from photograd.capture.capture import Capture
@@ -13,6 +11,7 @@ from photograd.capture.colmap import find_model, load_colmap
 from photograd.capture.llff import load_llff
 from photograd.capture.nerfstudio import load_nerfstudio
 from photograd.capture.opensfm import load_opensfm
+from photograd.errors import IoError, message
 from photograd.images.read import ColorSpace
 
 _NAME = "load_capture"

@@ -10,7 +10,6 @@ from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
-from photograd_course.errors import IoError, message
 
 from photograd._inside import TRUST, inside
 from photograd._json_node import JsonNode, read_json
@@ -32,6 +31,7 @@ from photograd.capture.intrinsics import read_intrinsics
 from photograd.capture.point_ply import read_point_ply
 from photograd.capture.splits import hold_out
 from photograd.capture.view import View
+from photograd.errors import IoError, message
 from photograd.types import FloatArray
 
 _NAME = "load_nerfstudio"

@@ -11,7 +11,6 @@ from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
-from photograd_course.errors import IoError, SceneError, message
 
 from photograd._json_node import JsonNode, read_json
 from photograd.capture.assemble import (
@@ -34,6 +33,7 @@ from photograd.capture.frames import (
 from photograd.capture.splits import hold_out
 from photograd.capture.undistort import Distortion
 from photograd.capture.view import View
+from photograd.errors import IoError, SceneError, message
 from photograd.types import FloatArray
 
 _NAME = "load_opensfm"

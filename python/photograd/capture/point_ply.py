@@ -10,10 +10,10 @@ from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
-from photograd_course.errors import IoError, message
 
 from photograd._ply import read_ply
 from photograd.capture.frames import LARGEST_COORDINATE
+from photograd.errors import IoError, message
 from photograd.types import FloatArray
 
 _NAME = "read_point_ply"

@@ -13,9 +13,9 @@ from dataclasses import astuple, dataclass
 
 import numpy as np
 import numpy.typing as npt
-from photograd_course.errors import RangeError, ShapeError, message
 
 from photograd.capture.camera import Camera
+from photograd.errors import RangeError, ShapeError, message
 from photograd.types import FloatArray
 
 LARGEST_STEPS = 50

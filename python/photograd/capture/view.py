@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 from photograd_course.color import srgb_encode
-from photograd_course.errors import IoError, message
 from photograd_course.portable_math import matmul
 
 from photograd.capture.camera import Camera
 from photograd.capture.undistort import Distortion, undistort_image
+from photograd.errors import IoError, message
 from photograd.images.read import ColorSpace, ImageArray, downscale_image, read_image
 from photograd.types import FloatArray
 

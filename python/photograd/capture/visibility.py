@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from photograd_course.errors import SceneError, message
 from photograd_course.portable_math import matmul
 
 from photograd.capture.assemble import box_corners
 from photograd.capture.camera import Camera
 from photograd.capture.capture import check_box
 from photograd.capture.view import View
+from photograd.errors import SceneError, message
 from photograd.types import FloatArray
 
 

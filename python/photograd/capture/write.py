@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import TypeAlias
 
 import numpy as np
-from photograd_course.errors import IoError, RangeError, SceneError, ShapeError, message
 
 from photograd.capture.assemble import box_from_source
 from photograd.capture.camera import Camera
@@ -24,6 +23,7 @@ from photograd.capture.written import (
     require_free,
     written_files,
 )
+from photograd.errors import IoError, RangeError, SceneError, ShapeError, message
 from photograd.images.read import ImageArray
 from photograd.images.write import write_exr, write_png
 from photograd.types import FloatArray

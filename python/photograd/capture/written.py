@@ -11,9 +11,8 @@ import shutil
 from collections.abc import Iterable
 from pathlib import Path
 
-from photograd_course.errors import IoError, message
-
 from photograd._inside import leads_outside
+from photograd.errors import IoError, message
 
 MANIFEST = "capture.json"
 HIDDEN = (".photograd.lock", ".capture.partial", ".capture.replaced")

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from photograd._file_bytes import read_file
+from photograd_course.input_files import read_file
+
 from photograd.errors import IoError, message
 from photograd.fitting.checkpoint import FILE_NAME
 from photograd.grids.volumes import SUFFIXES as DENSITIES

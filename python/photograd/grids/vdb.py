@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import BinaryIO
 
 from photograd_course.atomic_io import atomic_write
+from photograd_course.input_files import require_file
 
 from photograd._compiled import _core
-from photograd._file_bytes import require_file
 from photograd._memory import available_memory
 from photograd.errors import IoError, message
 from photograd.grids.sparse import SparseGrid

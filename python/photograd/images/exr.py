@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import OpenEXR
-from photograd_course.errors import IoError, RangeError, message
+from photograd_course.input_files import require_file
 
-from photograd._file_bytes import require_file
+from photograd.errors import IoError, RangeError, message
 from photograd.images.pixel_limit import require_size
 
 _CHANNELS = ("R", "G", "B", "A")

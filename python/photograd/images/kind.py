@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from photograd_course.errors import IoError, message
+from photograd_course.input_files import read_file
 
-from photograd._file_bytes import read_file
+from photograd.errors import IoError, message
 
 _READ = {
     b"\x89PNG\r\n\x1a\n": "PNG", b"\xff\xd8\xff": "JPEG", b"v/1\x01": "EXR", b"#?": "HDR",

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from photograd_course.errors import IoError, message
 from photograd_course.limits import PIXELS
 from PIL import Image
+
+from photograd.errors import IoError, message
 
 LARGEST_SIDE = 1 << 16
 

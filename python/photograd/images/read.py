@@ -17,10 +17,10 @@ from typing import Any, Literal, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
-from photograd_course.errors import IoError, RangeError, message
+from photograd_course.input_files import require_file
 from PIL import Image
 
-from photograd._file_bytes import require_file
+from photograd.errors import IoError, RangeError, message
 from photograd.images import exr
 from photograd.images.kind import LINEAR_KINDS, LINEAR_SUFFIXES, image_kind
 from photograd.images.pfm import read_pfm, read_pfm_header

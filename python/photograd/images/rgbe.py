@@ -12,10 +12,10 @@ from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
-from photograd_course.errors import IoError, RangeError, ShapeError, message
+from photograd_course.input_files import read_file
 
-from photograd._file_bytes import read_file
 from photograd._memory import available_memory
+from photograd.errors import IoError, RangeError, ShapeError, message
 from photograd.images.pixel_limit import require_size
 from photograd.images.rgbe_rows import packed_rows, unpacked_rows
 

@@ -11,9 +11,9 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 from photograd_course.atomic_io import atomic_write
-from photograd_course.errors import IoError, RangeError, ShapeError, message
 from PIL import Image
 
+from photograd.errors import IoError, RangeError, ShapeError, message
 from photograd.images import exr
 from photograd.images.pfm import encode_pfm
 from photograd.images.read import ImageArray

@@ -10,10 +10,10 @@ import numpy as np
 import numpy.typing as npt
 from photograd_course import random
 from photograd_course.checks import require_integer, require_number
-from photograd_course.errors import RangeError, ShapeError, message
 
 from photograd.capture.camera import Camera
 from photograd.capture.orbit import look_at
+from photograd.errors import RangeError, ShapeError, message
 from photograd.scenes.description import Points
 
 LOWEST, HIGHEST = -0.3, 0.92

@@ -10,10 +10,10 @@ import numpy.typing as npt
 from photograd_course import random
 from photograd_course.checks import require_integer
 from photograd_course.color import srgb_encode, unpremultiply
-from photograd_course.errors import RangeError, ShapeError, message
 
 from photograd.capture.camera import Camera
 from photograd.capture.write import Frame
+from photograd.errors import RangeError, ShapeError, message
 from photograd.scenes.cameras import capture_cameras
 from photograd.scenes.description import SceneDescription
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 from photograd_course.checks import require_number
-from photograd_course.errors import RangeError, ShapeError, message
 
+from photograd.errors import RangeError, ShapeError, message
 from photograd.scenes.surface import Surface, from_grid, joined
 from photograd.types import FloatArray
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 from photograd_course.checks import require_integer
-from photograd_course.errors import RangeError, ShapeError, message
 
+from photograd.errors import RangeError, ShapeError, message
 from photograd.scenes.curves import smooth_curve
 from photograd.scenes.surface import Surface, from_grid
 from photograd.types import FloatArray

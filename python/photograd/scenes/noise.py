@@ -13,8 +13,8 @@ from typing import Final
 import numpy as np
 from photograd_course import random
 from photograd_course.checks import require_float_array, require_integer, require_number
-from photograd_course.errors import RangeError, ShapeError, message
 
+from photograd.errors import RangeError, ShapeError, message
 from photograd.types import FloatArray
 
 _TABLE: Final = 256

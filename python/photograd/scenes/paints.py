@@ -7,8 +7,9 @@ from typing import Final, TypeAlias
 import numpy as np
 import numpy.typing as npt
 from photograd_course.color import srgb_decode
-from photograd_course.errors import RangeError, message
 from photograd_course.suggest import choose_from
+
+from photograd.errors import RangeError, message
 
 Color: TypeAlias = npt.NDArray[np.float32]
 

@@ -6,9 +6,9 @@ from collections.abc import Callable
 from typing import Final, TypeAlias
 
 from photograd_course.checks import require_integer
-from photograd_course.errors import SceneError, message
 from photograd_course.suggest import choose_from
 
+from photograd.errors import SceneError, message
 from photograd.scenes.description import SceneDescription
 from photograd.scenes.flat_walls import flat_walls
 from photograd.scenes.foliage import foliage

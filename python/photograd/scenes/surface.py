@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from photograd_course.errors import ShapeError, message
 
+from photograd.errors import ShapeError, message
 from photograd.scenes.description import SceneMesh
 from photograd.types import FloatArray
 

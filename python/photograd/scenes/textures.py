@@ -13,8 +13,8 @@ import numpy as np
 import numpy.typing as npt
 from photograd_course import random
 from photograd_course.checks import require_integer
-from photograd_course.errors import ShapeError, message
 
+from photograd.errors import ShapeError, message
 from photograd.scenes.noise import fractal_noise, gradient_noise
 from photograd.scenes.paints import Color, within_range
 from photograd.types import FloatArray

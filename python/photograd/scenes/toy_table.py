@@ -6,7 +6,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from photograd.scenes import toys
 from photograd.scenes.daylight import blue_sky, warm_sun
 from photograd.scenes.description import SceneDescription, bounds_of
 from photograd.scenes.lathe import lathe, rounded_profile
@@ -15,6 +14,15 @@ from photograd.scenes.parts import Part, as_meshes, placed
 from photograd.scenes.shapes import torus
 from photograd.scenes.surface import rotation_about
 from photograd.scenes.textures import bands, stripes, wood
+from photograd.scenes.toys import (
+    beach_ball,
+    blocks,
+    caterpillar,
+    mug,
+    rainbow,
+    ring_tower,
+    spinning_top,
+)
 
 _TOP = -0.12
 """Height of the table's top; the floor would be at -0.62."""
@@ -26,13 +34,13 @@ def toy_table(seed: int) -> SceneDescription:
     """Toys on a table, within 0.7 m of the origin; `seed` draws the wood, tiles and marble."""
     parts = [
         *table(seed=seed),
-        *placed(toys.ring_tower(), (-0.27, _TOP, -0.2)),
-        *placed(toys.rainbow(), (0.2, _TOP, -0.33), rotation=rotation_about("y", -25.0)),
-        *placed(toys.beach_ball(), (0.39, _TOP, 0.0)),
-        *placed(toys.mug(seed=seed), (-0.36, _TOP, 0.2), rotation=rotation_about("y", 150.0)),
-        *placed(toys.blocks(seed=seed), (0.02, _TOP, 0.03), rotation=rotation_about("y", 30.0)),
-        *placed(toys.spinning_top(seed=seed), (0.34, _TOP, 0.31)),
-        *placed(toys.caterpillar(), (-0.16, _TOP, 0.43), rotation=rotation_about("y", 5.0)),
+        *placed(ring_tower(), (-0.27, _TOP, -0.2)),
+        *placed(rainbow(), (0.2, _TOP, -0.33), rotation=rotation_about("y", -25.0)),
+        *placed(beach_ball(), (0.39, _TOP, 0.0)),
+        *placed(mug(seed=seed), (-0.36, _TOP, 0.2), rotation=rotation_about("y", 150.0)),
+        *placed(blocks(seed=seed), (0.02, _TOP, 0.03), rotation=rotation_about("y", 30.0)),
+        *placed(spinning_top(seed=seed), (0.34, _TOP, 0.31)),
+        *placed(caterpillar(), (-0.16, _TOP, 0.43), rotation=rotation_about("y", 5.0)),
     ]
     meshes = as_meshes(parts)
     return SceneDescription("toy_table", meshes, warm_sun(), blue_sky(), bounds_of(meshes))

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from photograd_course.input_files import read_file
 
-from photograd._file_bytes import read_file
 from photograd._ply import LONGEST_HEADER
 from photograd.errors import IoError, RangeError, message
 from photograd.splats.coding import Coding, Codings

@@ -11,8 +11,8 @@ import zipfile
 from pathlib import Path
 
 import numpy as np
+from photograd_course.input_files import require_file
 
-from photograd._file_bytes import require_file
 from photograd._npz import read_npz
 from photograd.capture.frames import LARGEST_COORDINATE
 from photograd.errors import IoError, message

@@ -12,8 +12,8 @@ from pathlib import Path
 
 import numpy as np
 from photograd_course.atomic_io import atomic_write
+from photograd_course.input_files import read_file
 
-from photograd._file_bytes import read_file
 from photograd.errors import IoError, message
 from photograd.sh import Y_0
 from photograd.splats.coding import (

@@ -19,9 +19,9 @@ from pathlib import Path
 
 import numpy as np
 from photograd_course.atomic_io import atomic_write
+from photograd_course.input_files import read_file
 
 from photograd import sh
-from photograd._file_bytes import read_file
 from photograd.errors import RangeError, message
 from photograd.splats.coding import (
     Coding,

@@ -4,19 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from photograd.geometry.sdf_shapes import (
-    Shape,
-    box,
-    capsule,
-    difference,
-    intersection,
-    placed,
-    rounded_box,
-    smooth_union,
-    sphere,
-    torus,
-    union,
-)
+from photograd.geometry import sdf_shapes as sdf
 from photograd.lights import QuadLight
 from photograd.transport.camera_place import camera_at
 from photograd.transport.scene import Environment, Material, Scene
@@ -27,34 +15,40 @@ HALF = float(np.sqrt(0.5))
 QUARTER = {"x": (HALF, HALF, 0, 0), "z": (HALF, 0, 0, HALF)}  # turns about an axis
 
 
-def carved_cube() -> Shape:
+def carved_cube() -> sdf.Shape:
     """A cube with corners cut by a ball, bored along all three axes, 0.5 m to each side."""
-    rod = capsule(0.7, 0.27)
-    bores = union(rod, placed(rod, quat=QUARTER["x"]), placed(rod, quat=QUARTER["z"]))
-    return difference(intersection(rounded_box([0.5] * 3, 0.04), sphere(0.64)), bores)
+    rod = sdf.capsule(0.7, 0.27)
+    bores = sdf.union(rod, sdf.placed(rod, quat=QUARTER["x"]), sdf.placed(rod, quat=QUARTER["z"]))
+    return sdf.difference(
+        sdf.intersection(sdf.rounded_box([0.5] * 3, 0.04), sdf.sphere(0.64)), bores
+    )
 
 
-def figure() -> Shape:
+def figure() -> sdf.Shape:
     """A body, a head and two arms, grown together; 1.1 m high."""
-    arm = capsule(0.2, 0.09)
-    arms = union(
-        placed(arm, [0.33, 0.55, 0.1], [0.92, 0, 0.1, 0.38]),
-        placed(arm, [-0.33, 0.55, 0.1], [0.92, 0, -0.1, -0.38]),
+    arm = sdf.capsule(0.2, 0.09)
+    arms = sdf.union(
+        sdf.placed(arm, [0.33, 0.55, 0.1], [0.92, 0, 0.1, 0.38]),
+        sdf.placed(arm, [-0.33, 0.55, 0.1], [0.92, 0, -0.1, -0.38]),
     )
-    trunk = smooth_union(
-        placed(capsule(0.2, 0.26), [0, 0.4, 0]), placed(sphere(0.2), [0, 0.9, 0]), 0.2
+    trunk = sdf.smooth_union(
+        sdf.placed(sdf.capsule(0.2, 0.26), [0, 0.4, 0]),
+        sdf.placed(sdf.sphere(0.2), [0, 0.9, 0]),
+        0.2,
     )
-    return intersection(smooth_union(trunk, arms, 0.18), placed(box([2, 1, 2]), [0, 1, 0]))
+    return sdf.intersection(
+        sdf.smooth_union(trunk, arms, 0.18), sdf.placed(sdf.box([2, 1, 2]), [0, 1, 0])
+    )
 
 
 def carved(size: int = 256) -> Scene:
     """A bored cube, a figure of clay and a ring of glass on a table, none of them of triangles."""
-    turned = placed(carved_cube(), [-1.05, 0.5, -0.1], [0.94, 0, 0.34, 0])
-    ring = placed(torus(0.36, 0.15), [1.0, 0.5, 0.2], [0.66, 0.6, 0.3, 0.1])
+    turned = sdf.placed(carved_cube(), [-1.05, 0.5, -0.1], [0.94, 0, 0.34, 0])
+    ring = sdf.placed(sdf.torus(0.36, 0.15), [1.0, 0.5, 0.2], [0.66, 0.6, 0.3, 0.1])
     shapes = (
         rectangle("table", [-4, 0, 3], [8, 0, 0], [0, 0, -7], "table"),
         SdfShape("cube", turned, "bronze"),
-        SdfShape("figure", placed(figure(), [0.05, 0.0, -0.3]), "clay"),
+        SdfShape("figure", sdf.placed(figure(), [0.05, 0.0, -0.3]), "clay"),
         SdfShape("ring", ring, "glass"),
     )
     materials = {

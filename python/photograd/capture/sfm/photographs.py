@@ -11,9 +11,9 @@ import zlib
 from dataclasses import dataclass
 from pathlib import Path
 
+from photograd_course.input_files import read_file
 from PIL import Image, ImageOps
 
-from photograd._file_bytes import read_file
 from photograd.errors import IoError, SceneError, message
 from photograd.images.kind import PILLOW_KINDS, image_kind
 from photograd.images.pixel_limit import allow_pixels, require_pixels, too_many_pixels

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from photograd._file_bytes import require_file
+from photograd_course.input_files import require_file
+
 from photograd.grids.volumes.mitsuba import read_mitsuba
 from photograd.grids.volumes.nifti import read_nifti
 from photograd.grids.volumes.volume import Volume, refuse

@@ -14,9 +14,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from urllib.parse import unquote
 
+from photograd_course.input_files import read_file
 from photograd_course.limits import EXPANSION, MODEL_ELEMENTS, Limit
 
-from photograd._file_bytes import read_file
 from photograd._inside import inside
 from photograd._json_node import JsonNode
 from photograd.errors import IoError, message

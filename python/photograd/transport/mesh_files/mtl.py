@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+from photograd_course.input_files import read_file
 
-from photograd._file_bytes import read_file
 from photograd._inside import inside
 from photograd.errors import Error, RangeError, message
 from photograd.transport.mesh_files.container import NAME

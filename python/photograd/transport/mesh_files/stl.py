@@ -6,8 +6,8 @@ import re
 from pathlib import Path
 
 import numpy as np
+from photograd_course.input_files import read_file
 
-from photograd._file_bytes import read_file
 from photograd.errors import IoError, message
 from photograd.transport.mesh_files.container import NAME
 from photograd.transport.mesh_files.model_file import ModelFile
