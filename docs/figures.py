@@ -9,10 +9,10 @@ import matplotlib.pyplot as plt
 import numpy as np
 from photograd.capture import load_capture
 from photograd.fields import DenseGrid
-from photograd.fitting.density_gradient import density_gradient
+from photograd.fitting.data import TrainingPixels
 from photograd.fitting.evaluate import display_image, truth_image
 from photograd.fitting.model import load_model
-from photograd.fitting.pixels import TrainingPixels
+from photograd.fitting.voxel_gradients import density_gradient
 from photograd_course.viz import signed_projection
 
 PICTURE = Path(__file__).resolve().parent / "images" / "demo.png"

@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from photograd.bsdf import BsdfModel, registry
 from photograd.bsdf.gallery import sphere_directions, sphere_picture
-from photograd.bsdf.metals import METALS
+from photograd.bsdf.models import METALS
 from photograd_course.color import srgb_encode
 from photograd_course.viz import save_figure, style
 

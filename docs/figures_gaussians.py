@@ -17,10 +17,10 @@ from photograd.capture.camera import Camera
 from photograd.capture.capture import Capture
 from photograd.capture.load import load_capture
 from photograd.commands.capture import make_capture
+from photograd.fitting.data import TrainingViews
 from photograd.fitting.gradient_drawings import draw_arrows, draw_gaussian_gradients, draw_picture
 from photograd.fitting.loop import Fit
 from photograd.fitting.options import options_for
-from photograd.fitting.training_views import TrainingViews
 from photograd.fitting.view_gradients import ViewGradients, grad2d_picture, view_gradients
 from photograd.splats.clone_split_prune import CloneSplitPrune
 from photograd.splats.model import GaussianScene

@@ -28,7 +28,7 @@ from photograd.geometry import (
     draw_body,
 )
 from photograd.geometry.mesh import Mesh
-from photograd.geometry.sdf_shapes import (
+from photograd.geometry.sdf import (
     Shape,
     box,
     difference,

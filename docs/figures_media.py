@@ -29,7 +29,7 @@ from photograd.transport import (
     derivative_image,
     read_scene,
 )
-from photograd.transport.camera_place import camera_at
+from photograd.transport.builtin import camera_at
 from photograd.transport.shapes import box, rectangle
 from photograd_course.color import srgb_encode
 from photograd_course.viz import save_figure, style

@@ -16,8 +16,8 @@ from photograd.capture.camera import Camera
 from photograd.capture.orbit import orbit_cameras
 from photograd.capture.view import View
 from photograd.fields import DenseGrid
-from photograd.fitting.density_gradient import density_gradient
-from photograd.fitting.pixels import TrainingPixels
+from photograd.fitting.data import TrainingPixels
+from photograd.fitting.voxel_gradients import density_gradient
 from photograd.grids.octree import Octree, Quadtree
 from photograd_course.color import srgb_encode
 from photograd_course.viz import save_figure, style

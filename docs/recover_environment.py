@@ -28,8 +28,7 @@ from photograd.transport import (
     Unknown,
     scene_with,
 )
-from photograd.transport.builtin import camera_at
-from photograd.transport.evening import map_directions
+from photograd.transport.builtin import camera_at, map_directions
 from photograd.transport.inverse.pictures import display
 from photograd_course.viz import style
 

@@ -32,8 +32,7 @@ from photograd.transport import (
     Unknown,
     read_model,
 )
-from photograd.transport.builtin import camera_at
-from photograd.transport.evening import evening_map
+from photograd.transport.builtin import camera_at, evening_map
 from photograd.transport.inverse.pictures import display
 from photograd.transport.shapes import rectangle
 from photograd.transport.texture import decode

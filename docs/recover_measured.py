@@ -17,7 +17,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from photograd.bsdf import registry
 from photograd.bsdf.gallery import sphere_directions
-from photograd.transport.inverse.activation import Activation
+from photograd.transport.inverse.parameters import Activation
 from photograd_course.optim import Adam
 from photograd_course.random import uniform
 from photograd_course.schedules import exponential

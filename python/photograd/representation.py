@@ -18,7 +18,7 @@ from photograd_course.optim import Gradient
 from photograd_course.row_map import RowMap
 from photograd_course.suggest import nearest
 
-from photograd._finite import require_finite
+from photograd._checks import require_finite
 from photograd.capture.camera import Camera
 from photograd.errors import RangeError, ShapeError, message
 from photograd.types import Array

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from photograd.splats.files import read_gaussians, write_gaussians
-from photograd.splats.header import Presentation
+from photograd.splats.frames import Presentation
 from photograd.splats.orbit import orbit_splats
 from PIL import Image
 

@@ -14,8 +14,7 @@ from photograd.fitting.loop import Fit
 from photograd.fitting.model import load_model
 from photograd.fitting.options import options_for
 from photograd.images.read import read_image
-from photograd.splats.frames import half_turn
-from photograd.splats.header import Presentation
+from photograd.splats.frames import Presentation, half_turn
 from photograd.splats.orbit import orbit_splats
 from photograd.splats.ply_files import read_gaussian_ply
 from photograd.types import Array

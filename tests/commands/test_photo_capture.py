@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from photograd.capture.sfm import reconstruct
-from photograd.commands.photo_capture import beside
+from photograd.commands.capture import beside
 
 from tests.commands.conftest import Photograd
 from tests.sfm.fake import FakeEngine, photographs

@@ -16,7 +16,7 @@ from photograd.capture import (
     require_views_of,
     sees_box,
 )
-from photograd.capture.hull import silhouettes_of, visual_hull_box
+from photograd.capture.bounds import silhouettes_of, visual_hull_box
 from photograd_course.errors import SceneError
 
 from support.capture_files import SPHERE_CENTRE, SPHERE_RADIUS, look_at, orbit, picture

@@ -10,10 +10,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd._npz import read_npz
+from photograd._files import read_npz
 from photograd.errors import IoError
 from photograd.fitting.checkpoint import load_checkpoint
-from photograd.splats.npz_files import read_point_npz
+from photograd.splats.splat_files import read_point_npz
 
 
 def claimed(path: Path, shape: tuple[int, ...], **others: Any) -> Path:

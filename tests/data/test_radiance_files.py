@@ -12,7 +12,7 @@ import pytest
 from photograd.errors import Error, IoError, RangeError, ShapeError
 from photograd.images import read_image
 from photograd.images.read import read_header, read_radiance
-from photograd.images.rgbe_rows import packed_rows, unpacked_rows
+from photograd.images.rgbe import packed_rows, unpacked_rows
 from photograd.images.write import write_exr, write_radiance
 
 RNG = np.random.default_rng(3)

@@ -15,7 +15,7 @@ from photograd._compiled import _core
 from photograd.bsdf.phase import phase_function
 from photograd.errors import DtypeError, RangeError, ShapeError
 from photograd.fields import SunlitMedium
-from photograd.fields.sun_visibility import sun_visibility
+from photograd.fields.sunlit_medium import sun_visibility
 from photograd.geometry.mesh import Bvh, Mesh
 from photograd.representation import Outputs, RayBatch, RenderOptions
 from photograd_course.gradcheck import check_gradient

@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from photograd.fitting.loop import Fit
+from photograd.fitting.loss import picture_loss
 from photograd.fitting.options import DENSITY_CONTROLS, options_for
-from photograd.fitting.picture_loss import picture_loss
 from photograd.representation import ImageBatch, RenderOptions
 from photograd.splats.model import GaussianScene
 

@@ -15,8 +15,8 @@ from photograd.capture.orbit import orbit_cameras
 from photograd.capture.view import View
 from photograd.errors import RangeError
 from photograd.fields import DenseGrid
-from photograd.fitting.density_gradient import density_gradient, voxel_masks
-from photograd.fitting.pixels import TrainingPixels
+from photograd.fitting.data import TrainingPixels
+from photograd.fitting.voxel_gradients import density_gradient, voxel_masks
 from photograd_course.gradcheck import check_gradient
 from photograd_course.viz import sign_report
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from photograd.errors import ShapeError
-from photograd.fitting.backgrounds import (
+from photograd.fitting.data import (
     background_kind,
     constant_background,
     first_background,
@@ -15,7 +15,7 @@ from photograd.fitting.backgrounds import (
     learned_background_backward,
     random_background,
 )
-from photograd.fitting.imaging import image_loss, image_loss_backward
+from photograd.fitting.loss import image_loss, image_loss_backward
 from photograd.representation import Outputs
 from photograd_course.color import srgb_decode, srgb_encode
 from photograd_course.gradcheck import check_gradient, taylor_slope

@@ -13,7 +13,7 @@ from photograd.fitting.compare import parse_contenders, source_of
 from photograd.fitting.evaluate import evaluate
 from photograd.fitting.loop import Fit
 from photograd.fitting.model import Model, load_model
-from photograd.fitting.row_adam import RowAdam
+from photograd.fitting.steps import RowAdam
 from photograd.grids.octree import Octree, tree_of_leaves
 
 from tests.fit import scene

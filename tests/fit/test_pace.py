@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 from photograd.fitting.loop import Fit
-from photograd.fitting.result import Pace, Progress
+from photograd.fitting.options import Pace, Progress
 
 from tests.fit import scene
 

@@ -10,8 +10,8 @@ import pytest
 from photograd.capture.camera import Camera
 from photograd.capture.view import View
 from photograd.errors import RangeError
-from photograd.fitting.picture_loss import picture_loss, picture_loss_backward
-from photograd.fitting.training_views import TrainingView, TrainingViews
+from photograd.fitting.data import TrainingView, TrainingViews
+from photograd.fitting.loss import picture_loss, picture_loss_backward
 from photograd.representation import Outputs
 from photograd_course.gradcheck import check_gradient
 from photograd_course.mutants import check_mutants

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 from photograd.errors import Error, RangeError, SceneError
 from photograd.fitting.checkpoint import load_checkpoint
+from photograd.fitting.data import TrainingPixels
 from photograd.fitting.evaluate import evaluate
 from photograd.fitting.loop import Fit
 from photograd.fitting.options import FitOptions
-from photograd.fitting.pixels import TrainingPixels
 
 from tests.fit import scene
 

@@ -11,7 +11,7 @@ from photograd.capture.load import load_capture
 from photograd.errors import RangeError
 from photograd.fitting.checkpoint import load_checkpoint
 from photograd.fitting.loop import Fit
-from photograd.fitting.snapshots import load_snapshots
+from photograd.fitting.model import load_snapshots
 
 from tests.fit import scene
 

@@ -12,11 +12,9 @@ from photograd.fields.active_voxels import dilated
 from photograd.fitting.checkpoint import load_checkpoint
 from photograd.fitting.evaluate import evaluate
 from photograd.fitting.loop import Fit
-from photograd.fitting.model import load_model
+from photograd.fitting.model import load_model, load_snapshots
 from photograd.fitting.options import FitOptions
-from photograd.fitting.pruning import prune_voxels
-from photograd.fitting.row_adam import RowAdam
-from photograd.fitting.snapshots import load_snapshots
+from photograd.fitting.steps import RowAdam, prune_voxels
 from photograd_course.optim import Adam
 
 from tests.fit import scene

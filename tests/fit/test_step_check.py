@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from photograd.fields import DenseGrid, SparseSh
 from photograd.fields.march import MarchPolicy
+from photograd.fitting.evaluate import VISIBLE, step_change
 from photograd.fitting.loop import Fit
 from photograd.fitting.options import FitOptions
 from photograd.fitting.start import FittedField
-from photograd.fitting.step_check import VISIBLE, step_change
 from photograd.splats.model import GaussianScene
 
 from tests.fit import scene

@@ -10,7 +10,7 @@ import pytest
 from photograd.errors import IoError
 from photograd.sh import Y_0
 from photograd.splats.files import holds_gaussians, read_gaussians
-from photograd.splats.npz_files import neighbour_spacing
+from photograd.splats.splat_files import neighbour_spacing
 
 from tests.gaussian_files.words import ROW, write_words
 

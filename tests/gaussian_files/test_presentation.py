@@ -9,8 +9,15 @@ import numpy as np
 import pytest
 from photograd.errors import IoError, RangeError
 from photograd.splats.files import read_gaussians, write_gaussians
-from photograd.splats.frames import UP_AXES, file_from_upright, half_turn, with_usual_up
-from photograd.splats.header import UNSTATED, Presentation, dropped
+from photograd.splats.frames import (
+    UNSTATED,
+    UP_AXES,
+    Presentation,
+    dropped,
+    file_from_upright,
+    half_turn,
+    with_usual_up,
+)
 from photograd.splats.splatting import render
 from plyfile import PlyData
 

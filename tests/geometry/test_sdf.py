@@ -9,7 +9,7 @@ import pytest
 from photograd._compiled import _core
 from photograd.errors import DtypeError, Error, RangeError, ShapeError
 from photograd.geometry import Body
-from photograd.geometry.sdf_shapes import (
+from photograd.geometry.sdf import (
     KINDS,
     Shape,
     box,

@@ -9,7 +9,7 @@ import pytest
 from photograd import sh
 from photograd.errors import RangeError, ShapeError
 from photograd.fields.dense_grid import DenseGrid
-from photograd.lights.directional_grid import (
+from photograd.lights.probes import (
     best_harmonics,
     best_table,
     blend,
@@ -17,9 +17,9 @@ from photograd.lights.directional_grid import (
     evaluate_backward,
     grid_bytes,
     rows_for,
+    sphere_quadrature,
     table_numbers,
 )
-from photograd.lights.probes import sphere_quadrature
 from photograd_course.gradcheck import check_gradient
 
 pytestmark = pytest.mark.usefixtures("core")

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 from photograd.capture import Camera, sees_box
-from photograd.scenes.cameras import FILL, HIGHEST, LOWEST, capture_cameras
+from photograd.scenes.capture import FILL, HIGHEST, LOWEST, capture_cameras
 from photograd_course.errors import RangeError, ShapeError
 
 Array = npt.NDArray[np.float64]

@@ -16,8 +16,7 @@ from photograd.scenes.description import (
     SkyDescription,
     SunDescription,
 )
-from photograd.scenes.direct_light import DirectLight
-from photograd.scenes.vertex_colors import vertex_color_texture
+from photograd.scenes.direct_light import DirectLight, vertex_color_texture
 from photograd.textures import sample
 
 from geometry.shapes import bumpy_sphere

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from photograd.capture.sfm.pairs import KEYS, NEIGHBOURS, choose_pairs
 from photograd.capture.sfm.photographs import copy_photographs, find_photographs
+from photograd.capture.sfm.reconstruct import KEYS, NEIGHBOURS, choose_pairs
 from photograd.errors import IoError, SceneError
 from PIL import Image, ImageOps
 

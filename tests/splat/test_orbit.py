@@ -12,8 +12,7 @@ from photograd import sh
 from photograd.capture.frames import rotation_from_axis_angle
 from photograd.commands import register
 from photograd.errors import RangeError
-from photograd.splats.frames import UP_AXES, file_from_upright
-from photograd.splats.header import Presentation
+from photograd.splats.frames import UP_AXES, Presentation, file_from_upright
 from photograd.splats.orbit import orbit_splats, scene_box
 from photograd.splats.ply_files import write_gaussian_ply
 from photograd.splats.splatting import Gaussians, render

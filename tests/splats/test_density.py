@@ -7,11 +7,10 @@ from typing import Any
 import numpy as np
 import pytest
 from photograd.capture.orbit import orbit_cameras
-from photograd.fitting.row_adam import RowAdam
+from photograd.fitting.steps import RowAdam
 from photograd.representation import ImageBatch, Outputs, RenderOptions
 from photograd.splats.clone_split_prune import CloneSplitPrune
-from photograd.splats.density import Schedule, opacities
-from photograd.splats.grad2d import Grad2dStatistics
+from photograd.splats.density import Grad2dStatistics, Schedule, opacities
 from photograd.splats.markov_chain import MarkovChain, _coverage
 from photograd.splats.model import GaussianScene
 from photograd.splats.splatting import Gaussians, SplatOptions, render

@@ -5,9 +5,9 @@ from __future__ import annotations
 import sys
 
 import numpy as np
+from photograd.fitting.data import TrainingViews
 from photograd.fitting.loop import Fit
 from photograd.fitting.options import options_for
-from photograd.fitting.training_views import TrainingViews
 from photograd.fitting.view_gradients import view_gradients
 from photograd.splats.model import GaussianScene
 

@@ -7,9 +7,8 @@ from typing import Any
 
 import numpy as np
 from photograd.splats.clone_split_prune import CloneSplitPrune
-from photograd.splats.density import logits, opacities
+from photograd.splats.density import logits, opacities, rotation_matrices
 from photograd.splats.model import GaussianScene
-from photograd.splats.quaternions import rotation_matrices
 from photograd_course.metrics import psnr
 from photograd_course.row_map import FRESH
 

@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 import pytest
 from photograd.capture.camera import Camera
+from photograd.fitting.data import TrainingViews
 from photograd.fitting.gradient_drawings import draw_gaussian_gradients
 from photograd.fitting.loop import Fit
 from photograd.fitting.options import options_for
-from photograd.fitting.training_views import TrainingViews
 from photograd.fitting.view_gradients import (
     grad2d_picture,
     screen_covariances,

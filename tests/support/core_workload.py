@@ -15,12 +15,12 @@ from photograd.bsdf import phase
 from photograd.bsdf import registry as bsdf_registry
 from photograd.bsdf.principled import evaluate, evaluate_backward
 from photograd.bsdf.specular import registry as delta_registry
-from photograd.fitting.row_adam import RowAdam
-from photograd.fitting.structural import ssim, ssim_backward
+from photograd.fitting.loss import ssim, ssim_backward
+from photograd.fitting.steps import RowAdam
 from photograd.geometry import Body, BspTree, ReferenceBvh
+from photograd.geometry.bsp import order_by_distance
 from photograd.geometry.mesh import Bvh, Instance, Mesh
-from photograd.geometry.sdf_shapes import box, placed, smooth_union, sphere
-from photograd.geometry.sorting import order_by_distance
+from photograd.geometry.sdf import box, placed, smooth_union, sphere
 from photograd.grids.bricks import BrickField
 from photograd.grids.octree import Octree, Quadtree
 from photograd.grids.sparse import SparseGrid
@@ -56,7 +56,7 @@ from photograd.transport import (
     emit_particles,
     trace_light,
 )
-from photograd.transport.inverse.cross_loss import loss_and_gradients
+from photograd.transport.inverse.loss import loss_and_gradients
 
 from tests.splat import oracle
 from tests.transport import light_scenes, media_scenes

@@ -11,16 +11,15 @@ PROMISED = (
     *(COURSE + name for name in ("color.py", "losses.py", "optim/", "priors.py", "random.py")),
     *(COURSE + name for name in ("resample.py", "row_map.py", "schedules.py")),
     *(CORE + name for name in ("fields/", "textures/", "transport/inverse/")),
-    *(CORE + "fitting/" + name for name in ("backgrounds.py", "first_scene.py", "imaging.py")),
-    *(CORE + "fitting/" + name for name in ("loop.py", "model.py", "picture_loss.py", "pixels.py")),
-    *(CORE + "fitting/" + name for name in ("rays.py", "row_adam.py", "start.py", "structural.py")),
-    *(CORE + "fitting/" + name for name in ("surface_points.py", "training_views.py", "views.py")),
-    *(CORE + "splats/" + name for name in ("clone_split_prune.py", "density.py", "grad2d.py")),
-    *(CORE + "splats/" + name for name in ("markov_chain.py", "model.py", "quaternions.py")),
-    *(CORE + "splats/" + name for name in ("start.py",)),
-    *(CORE + "capture/" + name for name in ("assemble.py", "bounds.py", "camera.py", "frames.py")),
-    *(CORE + "capture/" + name for name in ("convention.py", "hull.py", "view.py")),
-    *(CORE + "capture/" + name for name in ("visibility.py",)),
+    *(CORE + "fitting/" + name for name in ("data.py", "loop.py", "loss.py", "model.py")),
+    *(CORE + "fitting/" + name for name in ("start.py", "steps.py", "surface_points.py")),
+    *(
+        CORE + "splats/" + name
+        for name in ("clone_split_prune.py", "density.py", "markov_chain.py")
+    ),
+    *(CORE + "splats/" + name for name in ("model.py", "start.py")),
+    *(CORE + "capture/" + name for name in ("assemble.py", "bounds.py", "camera.py")),
+    *(CORE + "capture/" + name for name in ("convention.py", "frames.py", "view.py")),
 )
 """Beginnings of the paths of what a fit, or a recovery of a scene, runs through."""
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from photograd._compiled import _core
 from photograd.errors import RangeError, SceneError, ShapeError
-from photograd.geometry.sdf_shapes import sphere
+from photograd.geometry.sdf import sphere
 from photograd.transport import (
     Accumulation,
     Environment,

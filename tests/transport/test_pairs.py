@@ -17,10 +17,16 @@ from photograd.transport import (
     Scene,
     TextureUse,
 )
+from photograd.transport.accumulation import PAIR_EVEN_SHARE, pair_counts
 from photograd.transport.builtin import cornell_box
-from photograd.transport.inverse import cross_loss, cross_loss_backward, loss_and_gradients
+from photograd.transport.inverse import (
+    cross_loss_backward,
+    loss_and_gradients,
+)
+from photograd.transport.inverse import (
+    loss as cross_loss,
+)
 from photograd.transport.metal_room import metal_room
-from photograd.transport.sample_counts import PAIR_EVEN_SHARE, pair_counts
 
 from tests.transport.media_scenes import fog_box, smoke
 from tests.transport.scenes import any_material, stage

@@ -22,7 +22,7 @@ from photograd.scenes.registry import scene as described_scene
 from photograd.scenes.registry import scenes as described_scenes
 from photograd.splats import rays as splat_rays
 from photograd.splats import splatting as splat
-from photograd.transport.camera_place import camera_at
+from photograd.transport.builtin import camera_at
 
 from fingerprint_cases.case import PRECISIONS, Array, Arrays, Case, unit_rows
 

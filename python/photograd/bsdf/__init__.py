@@ -6,8 +6,8 @@
 
 from __future__ import annotations
 
-from photograd.bsdf.metals import METALS
 from photograd.bsdf.models import (
+    METALS,
     SMOOTH,
     BsdfModel,
     Parameter,

@@ -26,6 +26,21 @@ from photograd._compiled import _core
 from photograd.errors import DtypeError, RangeError, ShapeError, message
 from photograd.types import Array
 
+METALS = {
+    "copper": {"eta": (0.30, 1.02, 1.24), "k": (3.205, 2.577, 2.397)},
+    "gold": {"eta": (0.21, 0.43, 1.38), "k": (3.272, 2.455, 1.914)},
+    "silver": {"eta": (0.06, 0.06, 0.04), "k": (4.152, 3.586, 2.657)},
+}
+"""eta + i k at 617, 549 and 451 nm for red, green and blue, as measured [Johnson1972].
+
+Three wavelengths stand for three channels: a rendering of the whole spectrum would be less
+saturated. Values go into a model as they are: `model.f({"roughness": 0.3, **METALS["gold"]}, ...)`.
+"""
+
+
+# Reflectance models: what part of light from wi a surface sends towards wo, and the derivatives.
+
+
 Parameters = Mapping[str, Any]
 """{name: value}; a value is a number or (3,), or one for each of N rows: (N,) or (N, 3)."""
 SMOOTH = "surfaces without roughness are models of their own: mirror, glass, thin_glass"
@@ -68,7 +83,7 @@ class BsdfModel:
 
         Raises:
             RangeError: a name that is missing or unknown, values that are not finite, or one of 0
-                or less where the model has none: a roughness of 0 is that of `delta_bsdf`.
+                or less where the model has none: a roughness of 0 is that of `specular`.
             ShapeError: a value of another shape, or different numbers of rows.
         """
         return pack_rows(self.name, self.parameters, parameters, dtype)

@@ -7,13 +7,18 @@ box = estimate_bounds(capture).box
 
 from __future__ import annotations
 
-from photograd.capture.bounds import Bounds, estimate_bounds
+from photograd.capture.bounds import (
+    Bounds,
+    blind_cameras,
+    estimate_bounds,
+    require_views_of,
+    sees_box,
+)
 from photograd.capture.camera import Camera
 from photograd.capture.capture import Capture
 from photograd.capture.load import load_capture
 from photograd.capture.undistort import Distortion, distort, undistort, undistort_image
 from photograd.capture.view import View
-from photograd.capture.visibility import blind_cameras, require_views_of, sees_box
 from photograd.capture.write import write_blender_capture
 
 __all__ = [

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from photograd_course.portable_math import matmul
 
-from photograd._inside import TRUST, inside
+from photograd._files import TRUST, inside
 from photograd.capture.camera import Camera
 from photograd.errors import Error, IoError, SceneError, message
 from photograd.images.kind import LINEAR_SUFFIXES

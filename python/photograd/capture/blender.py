@@ -19,11 +19,10 @@ from photograd.capture.assemble import (
     make_camera,
     unused_images,
 )
-from photograd.capture.capture import Capture, check_box
+from photograd.capture.capture import Capture, check_box, hold_out
 from photograd.capture.convention import check_convention
 from photograd.capture.frames import OPENGL_FROM_OPENCV, Y_UP_FROM_Z_UP, check_pose
 from photograd.capture.intrinsics import read_intrinsics
-from photograd.capture.splits import hold_out
 from photograd.capture.view import View
 from photograd.errors import IoError, message
 from photograd.images.read import ColorSpace

@@ -11,11 +11,34 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from photograd.capture.splits import hold_out
 from photograd.capture.view import View
 from photograd.errors import IoError, RangeError, ShapeError, message
 from photograd.images.read import ColorSpace
 from photograd.types import FloatArray
+
+HOLD_OUT_EVERY = 8
+"""Every eighth photograph, starting with the first: the custom since [Mildenhall2019]."""
+
+
+def hold_out(views: Sequence[View]) -> tuple[tuple[View, ...], tuple[View, ...], str]:
+    """Split views into training and test by their rank in the order of names.
+
+    Returns:
+        Training views, test views, and a sentence for the log. A single view is not held out.
+    """
+    ordered = sorted(views, key=lambda view: view.name)
+    if len(ordered) < 2:
+        return tuple(ordered), (), "no view held out: there is only one"
+    test = tuple(ordered[::HOLD_OUT_EVERY])
+    train = tuple(view for index, view in enumerate(ordered) if index % HOLD_OUT_EVERY)
+    line = (
+        f"no split in the file: every {HOLD_OUT_EVERY}th view by name is held out, "
+        f"starting with the first ({len(train)} train, {len(test)} test)"
+    )
+    return train, test, line
+
+
+# What a capture is: posed photographs, split into training and held-out views.
 
 
 @dataclass(frozen=True, eq=False)

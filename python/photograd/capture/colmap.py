@@ -17,16 +17,20 @@ from photograd.capture.assemble import (
     unused_images,
 )
 from photograd.capture.camera import Camera
-from photograd.capture.capture import Capture
-from photograd.capture.colmap_binary import read_binary_model
-from photograd.capture.colmap_model import ColmapCamera, ColmapImage, ColmapModel, read_text_model
+from photograd.capture.capture import Capture, hold_out
+from photograd.capture.colmap_model import (
+    ColmapCamera,
+    ColmapImage,
+    ColmapModel,
+    read_binary_model,
+    read_text_model,
+)
 from photograd.capture.frames import (
     check_pose,
     invert_rigid,
     rotation_from_quaternion,
     world_from_estimated_up,
 )
-from photograd.capture.splits import hold_out
 from photograd.capture.undistort import Distortion, distort
 from photograd.capture.view import View
 from photograd.errors import IoError, RangeError, SceneError, message

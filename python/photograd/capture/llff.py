@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from photograd._npy import read_npy
+from photograd._files import read_npy
 from photograd.capture.assemble import (
     Photograph,
     background_of,
@@ -21,10 +21,9 @@ from photograd.capture.assemble import (
     list_images,
     make_camera,
 )
-from photograd.capture.capture import Capture
+from photograd.capture.capture import Capture, hold_out
 from photograd.capture.convention import check_convention
 from photograd.capture.frames import check_pose, world_from_estimated_up
-from photograd.capture.splits import hold_out
 from photograd.capture.view import View
 from photograd.errors import IoError, RangeError, ShapeError, message
 from photograd.images.read import read_header

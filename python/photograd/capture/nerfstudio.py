@@ -11,8 +11,9 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from photograd._inside import TRUST, inside
+from photograd._files import TRUST, inside
 from photograd._json_node import JsonNode, read_json
+from photograd._ply import read_point_ply
 from photograd.capture.assemble import (
     Photograph,
     background_of,
@@ -24,12 +25,10 @@ from photograd.capture.assemble import (
     transform_points,
     unused_images,
 )
-from photograd.capture.capture import Capture
+from photograd.capture.capture import Capture, hold_out
 from photograd.capture.convention import check_convention
 from photograd.capture.frames import OPENGL_FROM_OPENCV, check_pose, world_from_estimated_up
 from photograd.capture.intrinsics import read_intrinsics
-from photograd.capture.point_ply import read_point_ply
-from photograd.capture.splits import hold_out
 from photograd.capture.view import View
 from photograd.errors import IoError, message
 from photograd.types import FloatArray

@@ -22,7 +22,7 @@ from photograd.capture.assemble import (
     transform_points,
     unused_images,
 )
-from photograd.capture.capture import Capture
+from photograd.capture.capture import Capture, hold_out
 from photograd.capture.convention import check_convention
 from photograd.capture.frames import (
     Y_UP_FROM_Z_UP,
@@ -30,7 +30,6 @@ from photograd.capture.frames import (
     invert_rigid,
     rotation_from_axis_angle,
 )
-from photograd.capture.splits import hold_out
 from photograd.capture.undistort import Distortion
 from photograd.capture.view import View
 from photograd.errors import IoError, SceneError, message

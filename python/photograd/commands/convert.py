@@ -19,8 +19,7 @@ from photograd.splats.files import (
     read_gaussians,
     write_gaussians,
 )
-from photograd.splats.frames import USUAL_UP, with_usual_up
-from photograd.splats.header import dropped
+from photograd.splats.frames import USUAL_UP, dropped, with_usual_up
 
 SPZ_VERSION = 3
 

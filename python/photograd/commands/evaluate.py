@@ -27,10 +27,9 @@ from photograd.commands.shared import (
     use_threads,
 )
 from photograd.errors import RangeError, message
-from photograd.fitting.evaluate import Evaluation, ViewScore, as_result
+from photograd.fitting.evaluate import Evaluation, ViewScore, as_entry, as_result, step_change
 from photograd.fitting.evaluate import evaluate as score
 from photograd.fitting.model import load_model
-from photograd.fitting.step_check import as_entry, step_change
 
 
 def register(app: typer.Typer) -> None:

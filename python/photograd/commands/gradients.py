@@ -33,13 +33,11 @@ from photograd.commands.shared import (
 )
 from photograd.fields.octree_sh import OctreeSh
 from photograd.fitting.checkpoint import make_folder
-from photograd.fitting.density_gradient import DensityGradient, density_gradient
-from photograd.fitting.model import Model, load_model
-from photograd.fitting.pixels import TrainingPixels
-from photograd.fitting.snapshots import load_snapshots
+from photograd.fitting.data import TrainingPixels, TrainingViews
+from photograd.fitting.model import Model, load_model, load_snapshots
 from photograd.fitting.start import VoxelField
-from photograd.fitting.training_views import TrainingViews
 from photograd.fitting.view_gradients import grad2d_picture, view_gradients
+from photograd.fitting.voxel_gradients import DensityGradient, density_gradient
 from photograd.splats.clone_split_prune import CloneSplitPrune
 from photograd.splats.model import GaussianScene
 from photograd.types import Array

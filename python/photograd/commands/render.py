@@ -28,8 +28,7 @@ from photograd.fitting.fog import RAMPS, load_fog
 from photograd.fitting.model import Model, load_model
 from photograd.images.write import write_png
 from photograd.splats.files import holds_gaussians, read_gaussians
-from photograd.splats.frames import UP_AXES, USUAL_UP, WORLD_UP
-from photograd.splats.header import Presentation
+from photograd.splats.frames import UP_AXES, USUAL_UP, WORLD_UP, Presentation
 from photograd.splats.model import GaussianScene
 from photograd.splats.orbit import orbit_splats
 from photograd.types import Array

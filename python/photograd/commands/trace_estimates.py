@@ -16,7 +16,7 @@ from photograd.images.write import write_png, write_radiance
 from photograd.transport.accumulation import Accumulation
 from photograd.transport.derivative import add_derivative_samples, direction_of
 from photograd.transport.incomplete import require_whole
-from photograd.transport.photons import PhotonMap
+from photograd.transport.particles import PhotonMap
 from photograd.transport.tracer import PathOptions, PathTracer
 
 INTEGRATORS = ("path", "direct", "occlusion", "photon")

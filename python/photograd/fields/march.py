@@ -14,8 +14,8 @@ import numpy as np
 from photograd_course.portable_math import norm
 from photograd_course.random import uniform
 
+from photograd._checks import require_finite
 from photograd._compiled import _core
-from photograd._finite import require_finite
 from photograd.errors import DtypeError, Error, RangeError, message
 from photograd.representation import Outputs, RayBatch, RenderOptions
 from photograd.types import Array

@@ -28,8 +28,7 @@ from photograd.fitting.checks import require_startable
 from photograd.fitting.evaluate import Evaluation, ViewScore, display_image, evaluate
 from photograd.fitting.loop import Fit
 from photograd.fitting.model import Model, load_model
-from photograd.fitting.options import DEFAULTS_OF, FitOptions
-from photograd.fitting.result import FitResult
+from photograd.fitting.options import DEFAULTS_OF, FitOptions, FitResult
 from photograd.fitting.start import HARMONIC_GRIDS
 from photograd.splats.model import GaussianScene
 

@@ -12,7 +12,8 @@ others. A view without such a window has no score; it is named and left out of b
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from copy import copy
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -23,6 +24,7 @@ from photograd_course.metrics import psnr, round_to_8_bits, ssim, whole_windows
 from photograd.capture.camera import Camera
 from photograd.capture.view import View, display_color
 from photograd.errors import RangeError, message
+from photograd.fields.march import MarchPolicy
 from photograd.fitting.model import Model
 from photograd.representation import ImageBatch, RayBatch, RenderOptions
 from photograd.types import Array
@@ -189,3 +191,52 @@ def as_result(evaluation: Evaluation) -> dict[str, Any]:
         ],
         "left_out": list(evaluation.left_out),
     }  # fmt: skip
+
+
+# How much the step of the march matters: the same views again, with half the step.
+
+
+VISIBLE = 1e-3
+"""Of white, linear: a quarter of one of 256 levels near white."""
+MOST_VIEWS = 3
+
+
+@dataclass(frozen=True)
+class StepChange:
+    """By how much pixels change when the step is halved: the largest of their three channels."""
+
+    largest: float
+    mean: float
+    share: float  # of the pixels that change by more than VISIBLE
+    views: int
+
+
+def step_change(
+    model: Model, views: Sequence[View], *, most: int = MOST_VIEWS
+) -> StepChange | None:
+    """Compare at most `most` of the views, evenly spaced; None for a field without steps.
+
+    Colors are premultiplied and as the field has them, so that no background takes part; rays are
+    not stopped early.
+    """
+    policy = model.field.policy
+    if not isinstance(policy, MarchPolicy) or not views:
+        return None
+    finer: Any = copy(model.field)  # whose parameters are shared
+    finer.policy = replace(policy, dt=0.5 * policy.dt)
+    chosen = views[:: -(-len(views) // most)]
+    models = model, replace(model, field=finer)
+    changes = []
+    for view in chosen:
+        coarse, fine = (render_camera(each, view.camera, stop=0.0)[0] for each in models)
+        changes.append(np.abs(fine - coarse).max(axis=-1).ravel())
+    change = np.concatenate(changes)
+    return StepChange(
+        float(change.max()), float(change.mean(dtype=np.float64)),
+        float((change > VISIBLE).mean()), len(chosen),
+    )  # fmt: skip
+
+
+def as_entry(change: StepChange | None) -> dict[str, Any]:
+    """{"half_step": ...} for the result of `photograd evaluate`; {} where there is no step."""
+    return {} if change is None else {"half_step": asdict(change)}

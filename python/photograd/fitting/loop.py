@@ -26,14 +26,12 @@ from photograd_course.random import uniform
 from photograd_course.schedules import exponential
 
 from photograd._compiled import _core
-from photograd.capture.bounds import estimate_bounds
+from photograd.capture.bounds import estimate_bounds, require_views_of
 from photograd.capture.capture import Capture
-from photograd.capture.visibility import require_views_of
 from photograd.fields.dense_grid import DenseGrid
 from photograd.fields.dense_sh import DenseSh
 from photograd.fields.octree_sh import OctreeSh
 from photograd.fields.sparse_sh import SparseSh
-from photograd.fitting.backgrounds import background_kind, first_background, raw_background
 from photograd.fitting.checkpoint import (
     FILE_NAME,
     Checkpoint,
@@ -47,23 +45,24 @@ from photograd.fitting.checks import (
     require_finite_loss,
     require_first_model,
     require_pixels_of,
+    require_room_to_refine,
+    require_room_to_start,
     require_split_of,
     require_startable,
 )
-from photograd.fitting.imaging import decibels
-from photograd.fitting.memory import require_room_to_refine, require_room_to_start
-from photograd.fitting.model import Model, model_of
-from photograd.fitting.options import FitOptions
-from photograd.fitting.pixels import TrainingPixels
-from photograd.fitting.pruning import prune_voxels
-from photograd.fitting.rays import background_color, ray_slope
-from photograd.fitting.result import FitResult, Pace, Progress
-from photograd.fitting.row_adam import RowAdam
-from photograd.fitting.snapshots import save_snapshot, snapshot_steps
+from photograd.fitting.data import (
+    TrainingPixels,
+    TrainingViews,
+    background_kind,
+    first_background,
+    raw_background,
+)
+from photograd.fitting.loss import decibels
+from photograd.fitting.model import Model, model_of, save_snapshot, snapshot_steps
+from photograd.fitting.options import FitOptions, FitResult, Pace, Progress
 from photograd.fitting.start import FittedField, frozen_field, start_field
+from photograd.fitting.steps import RowAdam, background_color, prune_voxels, ray_slope, view_slope
 from photograd.fitting.surface_points import surface_points
-from photograd.fitting.training_views import TrainingViews
-from photograd.fitting.views import view_slope
 from photograd.splats.model import GaussianScene
 from photograd.types import Array
 
@@ -84,7 +83,7 @@ class Fit:
         self.capture = capture
         self.options = options
         self.model = model
-        self.background = background  # raw (3,) if learned, see photograd.fitting.backgrounds
+        self.background = background  # raw (3,) if learned, see photograd.fitting.data
         self.pixels = training_set(capture, model)
         method = Adam if isinstance(model, DenseGrid) else RowAdam
         self.optimiser = method(threads=max(1, _core.thread_count()))

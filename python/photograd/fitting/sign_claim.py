@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 from photograd_course.viz import SignReport, sign_report
 
 from photograd.capture.capture import Capture
-from photograd.fitting.density_gradient import density_gradient, voxel_masks
-from photograd.fitting.pixels import TrainingPixels
+from photograd.fitting.data import TrainingPixels
 from photograd.fitting.start import VoxelField
+from photograd.fitting.voxel_gradients import density_gradient, voxel_masks
 from photograd.types import Array
 
 VIEW_COUNTS = (48, 24, 12, 6)  # tried after all of them

@@ -10,12 +10,11 @@ from numpy.typing import NDArray
 from photograd import sh
 from photograd.capture.camera import Camera
 from photograd.capture.frames import invert_rigid
-from photograd.fitting.picture_loss import picture_loss, picture_loss_backward
-from photograd.fitting.training_views import TrainingView, TrainingViews
+from photograd.fitting.data import TrainingView, TrainingViews
+from photograd.fitting.loss import picture_loss, picture_loss_backward
 from photograd.representation import ImageBatch, RenderOptions
-from photograd.splats.grad2d import Grad2dStatistics
+from photograd.splats.density import Grad2dStatistics, rotation_matrices
 from photograd.splats.model import GaussianScene
-from photograd.splats.quaternions import rotation_matrices
 from photograd.splats.splatting import Gaussians, SplatOptions, render
 from photograd.types import Array
 

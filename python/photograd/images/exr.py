@@ -12,7 +12,7 @@ import OpenEXR
 from photograd_course.input_files import require_file
 
 from photograd.errors import IoError, RangeError, message
-from photograd.images.pixel_limit import require_size
+from photograd.images.kind import require_size
 
 _CHANNELS = ("R", "G", "B", "A")
 

@@ -14,7 +14,7 @@ import numpy.typing as npt
 from photograd_course.input_files import read_file
 
 from photograd.errors import IoError, ShapeError, message
-from photograd.images.pixel_limit import require_size
+from photograd.images.kind import require_size
 
 _HEADER = re.compile(rb"P([Ff])\s+(\d{1,9})\s+(\d{1,9})\s+(\S{1,40})\s")
 _LONGEST_HEADER = 128

@@ -22,9 +22,15 @@ from PIL import Image
 
 from photograd.errors import IoError, RangeError, message
 from photograd.images import exr
-from photograd.images.kind import LINEAR_KINDS, LINEAR_SUFFIXES, image_kind
+from photograd.images.kind import (
+    LINEAR_KINDS,
+    LINEAR_SUFFIXES,
+    allow_pixels,
+    image_kind,
+    require_pixels,
+    too_many_pixels,
+)
 from photograd.images.pfm import read_pfm, read_pfm_header
-from photograd.images.pixel_limit import allow_pixels, require_pixels, too_many_pixels
 from photograd.images.rgbe import read_rgbe, read_rgbe_header
 
 ColorSpace: TypeAlias = Literal["display", "linear"]

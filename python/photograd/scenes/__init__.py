@@ -8,8 +8,7 @@ write_blender_capture(folder, splits, aabb=toys.bounds)
 
 from __future__ import annotations
 
-from photograd.scenes.cameras import capture_cameras
-from photograd.scenes.capture import capture_scene
+from photograd.scenes.capture import capture_cameras, capture_scene
 from photograd.scenes.description import (
     SceneDescription,
     SceneMesh,

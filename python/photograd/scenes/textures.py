@@ -16,7 +16,7 @@ from photograd_course.checks import require_integer
 
 from photograd.errors import ShapeError, message
 from photograd.scenes.noise import fractal_noise, gradient_noise
-from photograd.scenes.paints import Color, within_range
+from photograd.scenes.parts import Color, within_range
 from photograd.types import FloatArray
 
 Size: TypeAlias = tuple[int, int]

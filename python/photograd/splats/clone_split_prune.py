@@ -34,14 +34,14 @@ from photograd_course.portable_math import exp, log
 from photograd.splats.density import (
     Change,
     DensityControl,
+    Grad2dStatistics,
     Params,
     Schedule,
     logits,
     opacities,
     rebuilt,
+    rotation_matrices,
 )
-from photograd.splats.grad2d import Grad2dStatistics
-from photograd.splats.quaternions import rotation_matrices
 from photograd.types import Array
 
 SPLIT = 1.6

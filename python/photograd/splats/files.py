@@ -15,11 +15,20 @@ from photograd_course.input_files import read_file
 from photograd._ply import LONGEST_HEADER
 from photograd.errors import IoError, RangeError, message
 from photograd.splats.coding import Coding, Codings
-from photograd.splats.compressed_ply import is_compressed, read_compressed_ply
-from photograd.splats.header import UNSTATED, Presentation, read_presentation
-from photograd.splats.npz_files import is_point_npz, read_point_npz
-from photograd.splats.ply_files import read_gaussian_ply, write_gaussian_ply
-from photograd.splats.splat_files import read_gaussian_splat, splat_codings, write_gaussian_splat
+from photograd.splats.frames import UNSTATED, Presentation, read_presentation
+from photograd.splats.ply_files import (
+    is_compressed,
+    read_compressed_ply,
+    read_gaussian_ply,
+    write_gaussian_ply,
+)
+from photograd.splats.splat_files import (
+    is_point_npz,
+    read_gaussian_splat,
+    read_point_npz,
+    splat_codings,
+    write_gaussian_splat,
+)
 from photograd.splats.splatting import Gaussians
 from photograd.splats.spz_files import read_gaussian_spz, spz_codings, write_gaussian_spz
 from photograd.splats.spz_streams import GZIP, MAGIC

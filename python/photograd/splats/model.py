@@ -32,8 +32,7 @@ from photograd.representation import (
     Representation,
     register,
 )
-from photograd.splats.density import DensityControl, NoControl
-from photograd.splats.grad2d import Grad2dStatistics
+from photograd.splats.density import DensityControl, Grad2dStatistics, NoControl
 from photograd.splats.orbit import scene_box
 from photograd.splats.splatting import (
     Gaussians,

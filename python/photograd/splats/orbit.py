@@ -10,8 +10,7 @@ from photograd_course.metrics import round_to_8_bits
 from photograd.capture.camera import Camera
 from photograd.capture.orbit import orbit_cameras
 from photograd.errors import RangeError, message
-from photograd.splats.frames import USUAL_UP, file_from_upright
-from photograd.splats.header import UNSTATED, Presentation
+from photograd.splats.frames import UNSTATED, USUAL_UP, Presentation, file_from_upright
 from photograd.splats.splatting import Gaussians, SplatOptions, render
 from photograd.types import Array
 

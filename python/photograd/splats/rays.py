@@ -24,8 +24,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from photograd._checks import require_finite
 from photograd._compiled import _core
-from photograd._finite import require_finite
 from photograd.errors import RangeError, ShapeError, message
 from photograd.splats.splatting import Gaussians, filled_cotangents
 from photograd.types import Array

@@ -19,8 +19,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from photograd import sh
+from photograd._checks import require_finite
 from photograd._compiled import _core
-from photograd._finite import require_finite
 from photograd.capture.camera import Camera
 from photograd.capture.frames import invert_rigid
 from photograd.errors import DtypeError, RangeError, ShapeError, message

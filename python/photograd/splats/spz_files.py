@@ -32,8 +32,7 @@ from photograd.splats.coding import (
     turn_of_error,
     unit_quats,
 )
-from photograd.splats.frames import USUAL_UP, half_turn
-from photograd.splats.header import Presentation
+from photograd.splats.frames import USUAL_UP, Presentation, half_turn
 from photograd.splats.splatting import MAX_DEGREE, Gaussians
 from photograd.splats.spz_streams import (
     FLAG_ANTIALIASED,

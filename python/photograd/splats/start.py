@@ -13,9 +13,9 @@ from photograd_course.portable_math import log, root
 from photograd_course.random import uniform
 
 from photograd import sh
+from photograd.capture.bounds import mean_coverage, silhouettes_of
 from photograd.capture.camera import Camera
 from photograd.capture.capture import Capture
-from photograd.capture.hull import mean_coverage, silhouettes_of
 from photograd.capture.view import View, display_color
 from photograd.errors import RangeError, message
 from photograd.splats.density import logits

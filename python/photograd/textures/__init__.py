@@ -13,9 +13,8 @@ from photograd.textures.mips import (
     sample_mips,
     sample_mips_backward,
 )
-from photograd.textures.plan import TexturePlan, loss_and_gradient
 from photograd.textures.recovery import Recovery, recover, stable_learning_rate
-from photograd.textures.sample import sample, sample_backward
+from photograd.textures.sample import TexturePlan, loss_and_gradient, sample, sample_backward
 
 __all__ = [
     "Recovery",

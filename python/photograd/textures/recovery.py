@@ -19,8 +19,7 @@ from numpy.typing import NDArray
 from photograd_course.portable_math import norm
 
 from photograd.errors import Error, RangeError, message
-from photograd.textures.plan import TexturePlan
-from photograd.textures.sample import float_array, sample_backward
+from photograd.textures.sample import TexturePlan, float_array, sample_backward
 from photograd.types import Array
 
 SAFETY = 0.95  # of the bound that keeps descent from diverging

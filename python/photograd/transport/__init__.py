@@ -24,7 +24,7 @@ from photograd.transport.inverse import (
     recover,
     scene_with,
 )
-from photograd.transport.lens import Lens
+from photograd.transport.lens import Lens, Shutter
 from photograd.transport.medium import BOUNDARY, VACUUM, DensityGrid, Medium
 from photograd.transport.mesh_files import (
     ModelCamera,
@@ -37,15 +37,14 @@ from photograd.transport.occlusion_map import bake_ambient_occlusion
 from photograd.transport.particles import (
     Emitted,
     ParticleOptions,
+    PhotonMap,
     Receiver,
     emit_particles,
     trace_light,
 )
-from photograd.transport.photons import PhotonMap
 from photograd.transport.scene import Environment, Material, MeshShape, Scene, SphereShape
 from photograd.transport.scene_file import read_scene
 from photograd.transport.sdf_shape import SdfShape
-from photograd.transport.shutter import Shutter
 from photograd.transport.texture import NormalMap, Texture, TextureUse, read_texture
 from photograd.transport.tracer import PathOptions, PathTracer
 

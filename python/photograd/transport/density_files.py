@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
+from photograd._files import read_npy
 from photograd._memory import require_room
-from photograd._npy import read_npy
 from photograd.errors import IoError, RangeError, message
 from photograd.grids.sparse import SparseGrid
 from photograd.grids.vdb import VdbFile, read_vdb

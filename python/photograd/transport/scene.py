@@ -18,7 +18,7 @@ from photograd.bsdf import specular as delta_bsdf
 from photograd.capture.camera import Camera
 from photograd.errors import DtypeError, RangeError, SceneError, ShapeError, message
 from photograd.lights import Light
-from photograd.transport.lens import PINHOLE, Lens
+from photograd.transport.lens import PINHOLE, Lens, Shutter
 from photograd.transport.media_list import check_media
 from photograd.transport.medium import BOUNDARY, Medium
 from photograd.transport.motion import check_motion, checked_closing_places
@@ -30,7 +30,6 @@ from photograd.transport.shape_checks import (
     float_rows,
     usable_triangles,
 )
-from photograd.transport.shutter import Shutter
 from photograd.transport.texture import NormalMap, Texture, TextureUse, checked_uses
 from photograd.types import Array
 

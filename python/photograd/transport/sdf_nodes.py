@@ -29,8 +29,8 @@ from functools import reduce
 import numpy as np
 
 from photograd.errors import SceneError
-from photograd.geometry import sdf_shapes
-from photograd.geometry.sdf_shapes import Shape
+from photograd.geometry import sdf as sdf_shapes
+from photograd.geometry.sdf import Shape
 from photograd.transport.scene_node import Node
 
 DEEPEST = 64  # names within names

@@ -12,14 +12,14 @@ import numpy as np
 
 from photograd.errors import SceneError, message
 from photograd.geometry.sdf import Body
-from photograd.geometry.sdf_shapes import Shape as SdfNode
+from photograd.geometry.sdf import Shape as SdfNode
 from photograd.transport.shape_checks import checked_color
 from photograd.types import Array
 
 
 @dataclass(frozen=True, eq=False)
 class SdfShape:
-    """What `photograd.geometry.sdf_shapes` builds, with a surface.
+    """What `photograd.geometry.sdf` builds, with a surface.
 
     Attributes:
         name: unique in its scene.
@@ -46,7 +46,7 @@ class SdfShape:
 
     def __post_init__(self) -> None:
         if not isinstance(self.body, SdfNode):
-            expected = "a shape of photograd.geometry.sdf_shapes"
+            expected = "a shape of photograd.geometry.sdf"
             got = type(self.body).__name__
             raise SceneError(message("SdfShape", f"{self.name}.body", expected, got))
         emission = checked_color(self.name, "emission", self.emission)

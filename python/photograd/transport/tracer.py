@@ -15,20 +15,20 @@ import numpy.typing as npt
 from photograd._compiled import _core
 from photograd.capture.camera import Camera
 from photograd.errors import DtypeError, RangeError, ShapeError, message
-from photograd.transport.accumulation import Accumulation
+from photograd.transport.accumulation import Accumulation, sample_counts
 from photograd.transport.core_arrays import (
     blocks_of,
     cutoffs_of,
     glows_of,
     instances_of,
+    light_shapes,
+    listed_lights,
     mean_emission,
     textures_of,
 )
 from photograd.transport.incomplete import WholeGradients, incomplete_derivatives
-from photograd.transport.light_list import light_shapes, listed_lights
 from photograd.transport.media_list import ListedMedia
 from photograd.transport.motion import closing_arrays, refuse_motion
-from photograd.transport.sample_counts import sample_counts
 from photograd.transport.scene import MeshShape, Scene, Shape, SphereShape
 from photograd.transport.sdf_shape import SdfShape
 from photograd.types import Array
@@ -249,7 +249,7 @@ class PathTracer:
             options: how light is looked for.
             camera: None takes the scene's.
             spread: "even" gives each pixel as many paths, "cotangent" more to those that the loss
-                looks at (sample_counts.py); then `seed` must not be that of the picture.
+                looks at (accumulation.py); then `seed` must not be that of the picture.
 
         Raises:
             ShapeError: d_image of another shape than the picture.

@@ -15,8 +15,13 @@ from photograd_course.input_files import read_file
 from PIL import Image, ImageOps
 
 from photograd.errors import IoError, SceneError, message
-from photograd.images.kind import PILLOW_KINDS, image_kind
-from photograd.images.pixel_limit import allow_pixels, require_pixels, too_many_pixels
+from photograd.images.kind import (
+    PILLOW_KINDS,
+    allow_pixels,
+    image_kind,
+    require_pixels,
+    too_many_pixels,
+)
 
 SUFFIXES = (".jpg", ".jpeg", ".png")
 FEWEST = 3

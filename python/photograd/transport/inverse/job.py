@@ -23,13 +23,10 @@ from photograd_course.schedules import exponential
 
 from photograd.errors import Error, RangeError, message
 from photograd.fitting.checkpoint import make_folder
-from photograd.transport.inverse.changed_scene import scene_with
-from photograd.transport.inverse.cross_loss import loss_and_gradients
-from photograd.transport.inverse.options import RecoveryOptions
-from photograd.transport.inverse.result import Progress, RecoveryResult
+from photograd.transport.inverse.loss import checked_targets, loss_and_gradients, loss_weights
+from photograd.transport.inverse.options import Progress, RecoveryOptions, RecoveryResult
+from photograd.transport.inverse.parameters import Unknown, is_light, scene_with
 from photograd.transport.inverse.saved import load_state, save_state
-from photograd.transport.inverse.target import checked_targets, loss_weights
-from photograd.transport.inverse.unknown import Unknown, is_light
 from photograd.transport.scene import Scene
 from photograd.transport.tracer import PathTracer
 from photograd.types import Array

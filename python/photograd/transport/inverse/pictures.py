@@ -12,7 +12,7 @@ from photograd_course.color import srgb_encode
 from photograd_course.viz import style
 from photograd_course.viz.curves import running_mean
 
-from photograd.transport.inverse.result import RecoveryResult
+from photograd.transport.inverse.options import RecoveryResult
 from photograd.types import Array
 
 CHANNELS = ("#c0392b", "#2e8b57", "#2b6cb0")

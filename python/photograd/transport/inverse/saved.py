@@ -10,12 +10,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from photograd.errors import Error, IoError, RangeError, message
-from photograd.fitting.checkpoint import Checkpoint, load_checkpoint, save_checkpoint
-from photograd.fitting.checkpoint_schema import (
+from photograd.fitting.checkpoint import (
+    Checkpoint,
     check_arrays,
     check_history,
     check_optimizer,
     checked_step,
+    load_checkpoint,
+    save_checkpoint,
 )
 from photograd.transport.scene_digest import scene_digest
 from photograd.types import Array

@@ -8,10 +8,9 @@ from typing import Any
 
 from photograd.errors import RangeError, message
 from photograd.transport.inverse.job import Recovery
-from photograd.transport.inverse.options import RecoveryOptions
-from photograd.transport.inverse.result import Progress, RecoveryResult
+from photograd.transport.inverse.options import Progress, RecoveryOptions, RecoveryResult
+from photograd.transport.inverse.parameters import Unknown
 from photograd.transport.inverse.saved import FILE_NAME
-from photograd.transport.inverse.unknown import Unknown
 from photograd.transport.scene import Scene
 
 

@@ -17,7 +17,7 @@ from urllib.parse import unquote
 from photograd_course.input_files import read_file
 from photograd_course.limits import EXPANSION, MODEL_ELEMENTS, Limit
 
-from photograd._inside import inside
+from photograd._files import inside
 from photograd._json_node import JsonNode
 from photograd.errors import IoError, message
 

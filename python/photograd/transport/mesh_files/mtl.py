@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 from photograd_course.input_files import read_file
 
-from photograd._inside import inside
+from photograd._files import inside
 from photograd.errors import Error, RangeError, message
 from photograd.transport.mesh_files.container import NAME
 from photograd.transport.mesh_files.plain import Note

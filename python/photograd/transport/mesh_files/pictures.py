@@ -12,8 +12,7 @@ from PIL import Image
 
 from photograd._json_node import JsonNode
 from photograd.errors import Error, IoError, message
-from photograd.images.kind import PILLOW_KINDS
-from photograd.images.pixel_limit import allow_pixels, require_pixels, too_many_pixels
+from photograd.images.kind import PILLOW_KINDS, allow_pixels, require_pixels, too_many_pixels
 from photograd.transport.mesh_files.container import NAME, Container, real, whole
 from photograd.transport.mesh_files.gltf_samplers import Wrap, read_sampler
 from photograd.transport.texture import Texture, decode
