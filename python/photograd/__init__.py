@@ -11,14 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from photograd import fields as fields
-    from photograd.representation import (
-        Gradients,
-        Outputs,
-        ParamSpec,
-        RayBatch,
-        Representation,
-        representations,
-    )
+    from photograd.fields import representations
+    from photograd.representation import Gradients, Outputs, ParamSpec, RayBatch, Representation
 
 __version__ = "0.1.0"
 

@@ -16,7 +16,6 @@ import numpy as np
 from numpy.typing import NDArray
 from photograd_course.optim import Gradient
 from photograd_course.row_map import RowMap
-from photograd_course.suggest import nearest
 
 from photograd._checks import require_finite
 from photograd.capture.camera import Camera
@@ -209,29 +208,11 @@ class Prior:
     gradient: Callable[..., Array]
 
 
-_REGISTRY: dict[str, type[Representation]] = {}
+REGISTERED: dict[str, type[Representation]] = {}
+"""By name; `photograd.fields.representations` fills it, by importing them all."""
 
 
 def register(cls: type[Representation]) -> type[Representation]:
     """Class decorator: makes a representation known to fit, viewers and proofs under `cls.name`."""
-    _REGISTRY[cls.name] = cls
+    REGISTERED[cls.name] = cls
     return cls
-
-
-def representations() -> dict[str, type[Representation]]:
-    """All registered representations by name."""
-    import photograd.fields  # noqa: F401  registration happens on import
-
-    return dict(_REGISTRY)
-
-
-def representation(name: str) -> type[Representation]:
-    """The representation called `name`; an unknown name is answered with the nearest known one."""
-    known = representations()
-    if name in known:
-        return known[name]
-    near = nearest(name, known)
-    remedy = f"did you mean {near!r}?" if near else "choose one of these"
-    raise RangeError(
-        message("representation", "name", f"one of {sorted(known)}", repr(name), remedy)
-    )

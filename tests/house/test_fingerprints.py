@@ -34,7 +34,7 @@ from photograd.transport import (
     Texture,
     TextureUse,
 )
-from photograd.transport.scene import MODELS
+from photograd.transport.material import MODELS
 from photograd.transport.texture import FILTERS, WRAPS
 from photograd.transport.tracer import HEURISTICS, SAMPLERS, STRATEGIES
 

@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from photograd.errors import Error
-from photograd.representation import RenderOptions, representations
+from photograd.fields import representations
+from photograd.representation import RenderOptions
 from photograd.splats import rays as splat_rays
 from photograd.splats import splatting as splat
 

@@ -16,7 +16,7 @@ from photograd.bsdf import specular as delta_bsdf
 from photograd.lights import EnvironmentMap, RegisteredLight
 from photograd.transport import Medium, PathOptions, PathTracer, Scene
 from photograd.transport.incomplete import TURNING
-from photograd.transport.scene import ALPHA, MODELS
+from photograd.transport.material import ALPHA, MODELS
 
 from tests.transport import difference_scenes as scenes
 from tests.transport import test_glow as glow

@@ -9,8 +9,8 @@ import numpy as np
 from photograd.lights import PointLight
 from photograd.transport import Environment, Material, Medium, Scene, SphereShape, TextureUse
 from photograd.transport.builtin import camera_at
+from photograd.transport.material import MODELS
 from photograd.transport.media_list import transmits
-from photograd.transport.scene import MODELS
 from photograd.transport.shapes import rectangle
 
 from tests.transport.media_scenes import fog_box

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from hypothesis import strategies as st
 from photograd.transport import Material, Medium, ModelFile, NormalMap, Texture, TextureUse
+from photograd.transport.material import MODELS
 from photograd.transport.mesh_files.gltf_painted import SLOTS
-from photograd.transport.scene import MODELS
 from photograd.transport.shapes import box
 from photograd.transport.texture import FILTERS, decode
 

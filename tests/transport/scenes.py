@@ -8,7 +8,7 @@ import numpy as np
 from photograd.capture.camera import Camera
 from photograd.transport import Environment, Material, MeshShape, Scene, SphereShape
 from photograd.transport.builtin import camera_at, cornell_box
-from photograd.transport.scene import MODELS
+from photograd.transport.material import MODELS
 from photograd.transport.shapes import rectangle
 
 Array = Any

@@ -16,7 +16,7 @@ from photograd.bsdf import phase
 from photograd.lights.registered import CLASSES
 from photograd.transport import PathOptions, PathTracer
 from photograd.transport.incomplete import TURNING
-from photograd.transport.scene import MODELS
+from photograd.transport.material import MODELS
 
 from support.tree import ROOT
 from tests.transport import difference_page as page

@@ -30,9 +30,9 @@ from photograd.transport import (
     read_model,
     save_gltf,
 )
+from photograd.transport.material import MODELS
 from photograd.transport.mesh_files.gltf_painted import normals_as_bytes
 from photograd.transport.mesh_files.gltf_words import WRITTEN
-from photograd.transport.scene import MODELS
 from photograd.transport.shapes import box
 
 from support.tree import ROOT

@@ -26,8 +26,7 @@ from photograd.transport import (
     Scene,
 )
 from photograd.transport.builtin import camera_at, furnace_box
-from photograd.transport.scene import Shape
-from photograd.transport.shapes import rectangle
+from photograd.transport.shapes import Shape, rectangle
 
 from tests.transport.scenes import BLACK, FLOOR, GREY, LAMP
 from tests.transport.test_closed_forms import polygon_irradiance

@@ -28,8 +28,8 @@ from photograd.images.kind import LINEAR_SUFFIXES
 from photograd.images.read import read_radiance
 from photograd.images.write import write_exr
 from photograd.transport.inverse import Recovery, RecoveryOptions, RecoveryResult, Target, Unknown
+from photograd.transport.inverse.job import FILE_NAME
 from photograd.transport.inverse.options import LOSSES, Progress
-from photograd.transport.inverse.saved import FILE_NAME
 from photograd.transport.scene_file import read_scene
 from photograd.transport.tracer import PathOptions, PathTracer
 

@@ -16,13 +16,13 @@ from photograd_course.suggest import nearest
 from photograd._memory import available_memory, require_room
 from photograd.capture.capture import Capture
 from photograd.errors import Error, IoError, RangeError, message
+from photograd.fields import representation, representations
 from photograd.fields.dense_grid import DenseGrid
 from photograd.fields.octree_sh import OctreeSh
 from photograd.fields.sparse_sh import SparseSh
 from photograd.fitting.checkpoint import Checkpoint
 from photograd.fitting.options import FitOptions
 from photograd.fitting.start import FITTED, HARMONIC_GRIDS
-from photograd.representation import representation, representations
 from photograd.sh import count as sh_count
 from photograd.splats.model import GaussianScene
 from photograd.types import Array

@@ -13,7 +13,9 @@ from photograd.lights import SunLight
 from photograd.lights.distant import cap_height
 from photograd.scenes.description import SceneDescription, SceneMesh
 from photograd.transport.accumulation import Accumulation
-from photograd.transport.scene import Environment, Material, MeshShape, Scene
+from photograd.transport.material import Material
+from photograd.transport.scene import Environment, Scene
+from photograd.transport.shapes import MeshShape
 from photograd.transport.texture import Texture, TextureUse
 from photograd.transport.tracer import PathOptions, PathTracer
 from photograd.types import Array

@@ -25,6 +25,7 @@ from photograd.transport.inverse import (
     scene_with,
 )
 from photograd.transport.lens import Lens, Shutter
+from photograd.transport.material import Material
 from photograd.transport.medium import BOUNDARY, VACUUM, DensityGrid, Medium
 from photograd.transport.mesh_files import (
     ModelCamera,
@@ -42,9 +43,9 @@ from photograd.transport.particles import (
     emit_particles,
     trace_light,
 )
-from photograd.transport.scene import Environment, Material, MeshShape, Scene, SphereShape
+from photograd.transport.scene import Environment, Scene
 from photograd.transport.scene_file import read_scene
-from photograd.transport.sdf_shape import SdfShape
+from photograd.transport.shapes import MeshShape, SdfShape, SphereShape
 from photograd.transport.texture import NormalMap, Texture, TextureUse, read_texture
 from photograd.transport.tracer import PathOptions, PathTracer
 

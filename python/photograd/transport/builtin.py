@@ -16,11 +16,11 @@ from photograd.capture.orbit import look_at
 from photograd.errors import RangeError, SceneError, message
 from photograd.geometry import sdf
 from photograd.lights import EnvironmentMap, QuadLight
+from photograd.transport.material import Material
 from photograd.transport.medium import BOUNDARY, DensityGrid, Medium
 from photograd.transport.motion import moved_on
-from photograd.transport.scene import Environment, Material, MeshShape, Scene, Shape, SphereShape
-from photograd.transport.sdf_shape import SdfShape
-from photograd.transport.shapes import box, rectangle
+from photograd.transport.scene import Environment, Scene
+from photograd.transport.shapes import MeshShape, SdfShape, Shape, SphereShape, box, rectangle
 from photograd.types import Array
 
 

@@ -23,8 +23,9 @@ from photograd.lights import (
     SphereLight,
     TriangleLight,
 )
-from photograd.transport.scene import Environment, Material, MeshShape, Scene, Shape, SphereShape
-from photograd.transport.shapes import rectangle
+from photograd.transport.material import Material
+from photograd.transport.scene import Environment, Scene
+from photograd.transport.shapes import MeshShape, Shape, SphereShape, rectangle
 from photograd.transport.texture import WRAPS
 from photograd.types import Array
 

@@ -20,7 +20,8 @@ from typing import NamedTuple
 import numpy as np
 
 from photograd.errors import RangeError, message
-from photograd.transport.scene import ALPHA, Scene
+from photograd.transport.material import ALPHA
+from photograd.transport.scene import Scene
 from photograd.types import Array
 
 TURNING = {

@@ -12,8 +12,9 @@ from photograd_course.suggest import choose_from
 
 from photograd.errors import RangeError, message
 from photograd.transport.builtin import camera_at
-from photograd.transport.scene import Material, MeshShape, Scene
-from photograd.transport.shapes import box, rectangle
+from photograd.transport.material import Material
+from photograd.transport.scene import Scene
+from photograd.transport.shapes import MeshShape, box, rectangle
 from photograd.transport.texture import Texture, TextureUse
 from photograd.types import Array
 

@@ -18,7 +18,8 @@ from photograd_course.suggest import choose_from
 from photograd._compiled import _core
 from photograd.errors import RangeError, SceneError, message
 from photograd.transport.motion import refuse_motion
-from photograd.transport.scene import MeshShape, Scene
+from photograd.transport.scene import Scene
+from photograd.transport.shapes import MeshShape
 from photograd.transport.texture import Texture
 from photograd.transport.tracer import PathTracer
 from photograd.types import Array
@@ -65,7 +66,7 @@ class OcclusionBake:
         if not radius > 0:
             raise _wrong("radius", "above 0 m", radius)
         self.points = texel_points(_mesh_named(scene, shape), height, width)
-        refuse_motion(_NAME, scene)
+        refuse_motion(_NAME, scene.shapes)
         self._geometry = PathTracer(scene)._geometry  # media dim no sight of the sky
         self._radius, self._seed = radius, seed
         self._free = np.zeros(len(self.points.points))

@@ -178,7 +178,7 @@ def scene_arguments(function: str, tracer: PathTracer) -> dict[str, Any]:
     Raises:
         SceneError: shapes that move.
     """
-    refuse_motion(function, tracer.scene)
+    refuse_motion(function, tracer.scene.shapes)
     arguments = tracer.wide_arguments()
     del arguments["camera"]
     return arguments

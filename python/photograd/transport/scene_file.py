@@ -58,18 +58,10 @@ from photograd.capture.camera import Camera
 from photograd.geometry.sdf import Shape as SdfNode
 from photograd.transport.builtin import camera_at
 from photograd.transport.lens import PINHOLE, Lens, Shutter
+from photograd.transport.material import ALPHA, MODELS, Material
 from photograd.transport.medium import BOUNDARY
 from photograd.transport.motion import moved_on
-from photograd.transport.scene import (
-    ALPHA,
-    MODELS,
-    Environment,
-    Material,
-    MeshShape,
-    Scene,
-    Shape,
-    SphereShape,
-)
+from photograd.transport.scene import Environment, Scene
 from photograd.transport.scene_meshes import (
     Brought,
     camera_of_file,
@@ -82,9 +74,8 @@ from photograd.transport.scene_meshes import (
 from photograd.transport.scene_node import Node, key_lines
 from photograd.transport.scene_tables import filled, light_of, media_in
 from photograd.transport.sdf_nodes import bodies_in, body_of
-from photograd.transport.sdf_shape import SdfShape
 from photograd.transport.shape_checks import check_range
-from photograd.transport.shapes import box, rectangle
+from photograd.transport.shapes import MeshShape, SdfShape, Shape, SphereShape, box, rectangle
 
 
 def read_scene(path: Path) -> Scene:

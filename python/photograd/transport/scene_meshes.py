@@ -41,11 +41,12 @@ from photograd_course.suggest import choose_from
 from photograd.capture.camera import Camera
 from photograd.images.read import read_image
 from photograd.lights import DirectionalLight, Light, PointLight, SpotLight
+from photograd.transport.material import Material
 from photograd.transport.medium import Medium
 from photograd.transport.mesh_files import ModelFile, read_model
 from photograd.transport.mesh_files.model_file import moved
-from photograd.transport.scene import Material, MeshShape
 from photograd.transport.scene_node import Node
+from photograd.transport.shapes import MeshShape
 from photograd.transport.texture import (
     ENCODINGS,
     FILTERS,

@@ -65,8 +65,8 @@ from photograd.lights.distant import cap_height
 from photograd.lights.registered import CLASSES, RegisteredLight
 from photograd.transport.density_files import is_placed, read_density
 from photograd.transport.medium import VACUUM, DensityGrid, Medium
-from photograd.transport.scene import Shape
 from photograd.transport.scene_node import Node
+from photograd.transport.shapes import Shape
 
 
 def light_of(node: Node) -> Light:

@@ -29,8 +29,8 @@ from photograd.transport.core_arrays import (
 from photograd.transport.incomplete import WholeGradients, incomplete_derivatives
 from photograd.transport.media_list import ListedMedia
 from photograd.transport.motion import closing_arrays, refuse_motion
-from photograd.transport.scene import MeshShape, Scene, Shape, SphereShape
-from photograd.transport.sdf_shape import SdfShape
+from photograd.transport.scene import Scene
+from photograd.transport.shapes import MeshShape, SdfShape, Shape, SphereShape
 from photograd.types import Array
 
 STRATEGIES = ("light", "bsdf", "mis")
@@ -125,7 +125,7 @@ class PathTracer:
         self.scene = scene
         self.incomplete = {} if allow_incomplete else incomplete_derivatives(scene)
         self._lights = listed_lights(scene)
-        self._media = ListedMedia(scene)
+        self._media = ListedMedia(scene.media, scene.materials, scene.world)
         names = {name: number for number, name in enumerate(scene.materials)}
         # (name of the emission among the params, shape, number of its material); lights reflect
         # nothing, by a material that is no parameter, and boundaries have none.
@@ -303,7 +303,7 @@ class PathTracer:
             SceneError: shapes that move.
             ShapeError: sums of another size.
         """
-        refuse_motion("add_occlusion", self.scene)
+        refuse_motion("add_occlusion", self.scene.shapes)
         view = self.scene.camera
         sums.check_call("add_occlusion", (view.height, view.width), spp)
         free = np.zeros((view.height, view.width))

@@ -7,10 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from photograd.errors import RangeError, message
-from photograd.transport.inverse.job import Recovery
+from photograd.transport.inverse.job import FILE_NAME, Recovery
 from photograd.transport.inverse.options import Progress, RecoveryOptions, RecoveryResult
 from photograd.transport.inverse.parameters import Unknown
-from photograd.transport.inverse.saved import FILE_NAME
 from photograd.transport.scene import Scene
 
 

@@ -19,7 +19,7 @@ from photograd.transport.mesh_files.gltf_materials import FileMaterial, read_mat
 from photograd.transport.mesh_files.model_file import ModelFile, Names, placed_shapes
 from photograd.transport.mesh_files.nodes import mesh_places, placed_nodes
 from photograd.transport.mesh_files.pictures import TRANSFORM, Pictures
-from photograd.transport.scene import MeshShape, Shape
+from photograd.transport.shapes import MeshShape, Shape
 from photograd.types import Array
 
 DRACO = "KHR_draco_mesh_compression"

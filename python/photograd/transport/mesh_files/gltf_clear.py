@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from photograd._json_node import JsonNode
+from photograd.transport.material import Material
 from photograd.transport.medium import Medium
 from photograd.transport.mesh_files.container import real
 from photograd.transport.mesh_files.gltf_draft import Draft, finished, metallic_roughness
-from photograd.transport.scene import Material
 
 _LEAST_ROUGHNESS = 0.1
 """Below this a clear surface is drawn as perfectly smooth."""

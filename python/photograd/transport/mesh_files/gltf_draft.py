@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from photograd._json_node import JsonNode
+from photograd.transport.material import MODELS, Material
 from photograd.transport.medium import Medium
 from photograd.transport.mesh_files.container import real
-from photograd.transport.scene import MODELS, Material
 
 FOLLOWED = ("KHR_materials_emissive_strength",)
 """Extensions that no rule has to read."""

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from photograd._json_node import JsonNode
+from photograd.transport.material import Material
 from photograd.transport.medium import Medium
 from photograd.transport.mesh_files.container import real
 from photograd.transport.mesh_files.gltf_clear import transmission
@@ -25,7 +26,6 @@ from photograd.transport.mesh_files.gltf_draft import (
     metallic_roughness,
 )
 from photograd.transport.mesh_files.pictures import Coordinates, Pictures
-from photograd.transport.scene import Material
 from photograd.transport.texture import NormalMap, TextureUse
 
 

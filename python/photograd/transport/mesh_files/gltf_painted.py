@@ -11,10 +11,10 @@ import numpy as np
 from photograd_course.color import srgb_encode
 
 from photograd.errors import SceneError, message
+from photograd.transport.material import Material
 from photograd.transport.mesh_files.gltf_bytes import GltfBytes
 from photograd.transport.mesh_files.gltf_samplers import Wrap, sampler_words
 from photograd.transport.mesh_files.gltf_words import Words
-from photograd.transport.scene import Material
 from photograd.transport.texture import NormalMap, Texture, TextureUse
 from photograd.types import Array
 

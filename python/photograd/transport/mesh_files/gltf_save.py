@@ -24,7 +24,8 @@ from photograd.transport.mesh_files.model_changes import changes
 from photograd.transport.mesh_files.model_file import ModelFile
 from photograd.transport.mesh_files.read import read_model
 from photograd.transport.motion import moves
-from photograd.transport.scene import MeshShape, Scene
+from photograd.transport.scene import Scene
+from photograd.transport.shapes import MeshShape
 
 WRITABLE = (".glb", ".gltf")
 _SURROUNDINGS = ("shutter", "environment", "world")

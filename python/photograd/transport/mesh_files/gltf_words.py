@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
+from photograd.transport.material import Material
 from photograd.transport.medium import Medium
-from photograd.transport.scene import Material
 
 Values = dict[str, Any]
 _LARGEST_DEPTH = 4.0

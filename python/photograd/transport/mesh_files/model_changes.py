@@ -7,9 +7,10 @@ from typing import Any
 
 import numpy as np
 
+from photograd.transport.material import Material
 from photograd.transport.medium import Medium
 from photograd.transport.mesh_files.model_file import ModelFile
-from photograd.transport.scene import Material, MeshShape
+from photograd.transport.shapes import MeshShape
 from photograd.transport.texture import NormalMap, Texture, TextureUse
 from photograd.types import Array
 

@@ -10,9 +10,10 @@ import numpy as np
 
 from photograd.errors import SceneError
 from photograd.lights import Light
+from photograd.transport.material import Material
 from photograd.transport.medium import Medium
 from photograd.transport.mesh_files.model_camera import ModelCamera
-from photograd.transport.scene import Material, MeshShape, Shape
+from photograd.transport.shapes import MeshShape, Shape
 from photograd.transport.texture import Texture
 from photograd.types import Array
 

@@ -8,9 +8,10 @@ from pathlib import Path
 import numpy as np
 
 from photograd.errors import IoError, SceneError, message
+from photograd.transport.material import Material
 from photograd.transport.mesh_files.container import NAME
 from photograd.transport.mesh_files.model_file import Arrays, ModelFile, Names, placed_shapes
-from photograd.transport.scene import Material, Shape
+from photograd.transport.shapes import Shape
 from photograd.transport.texture import Texture
 from photograd.types import Array
 
