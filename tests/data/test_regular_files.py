@@ -9,9 +9,9 @@ from typing import Any
 
 import pytest
 from photograd._files import read_npy, read_npz
-from photograd._ply import read_point_ply
 from photograd.capture import load_capture
 from photograd.capture.colmap_model import read_binary_model, read_text_model
+from photograd.capture.nerfstudio import read_point_ply
 from photograd.capture.sfm.photographs import find_photographs
 from photograd.errors import Error, IoError
 from photograd.fitting.checkpoint import load_checkpoint

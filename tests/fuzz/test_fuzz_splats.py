@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from photograd._ply import read_point_ply
+from photograd.capture.nerfstudio import read_point_ply
 from photograd.errors import IoError
 from photograd.splats.files import read_gaussians, write_gaussians
 from photograd.splats.ply_files import read_gaussian_ply, write_gaussian_ply

@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from photograd._files import TRUST, inside
 from photograd._json_node import JsonNode, read_json
-from photograd._ply import read_point_ply
+from photograd._ply import read_ply
 from photograd.capture.assemble import (
     Photograph,
     background_of,
@@ -27,7 +27,12 @@ from photograd.capture.assemble import (
 )
 from photograd.capture.capture import Capture, hold_out
 from photograd.capture.convention import check_convention
-from photograd.capture.frames import OPENGL_FROM_OPENCV, check_pose, world_from_estimated_up
+from photograd.capture.frames import (
+    LARGEST_COORDINATE,
+    OPENGL_FROM_OPENCV,
+    check_pose,
+    world_from_estimated_up,
+)
 from photograd.capture.intrinsics import read_intrinsics
 from photograd.capture.view import View
 from photograd.errors import IoError, message
@@ -171,3 +176,40 @@ def _split(root: JsonNode, views: list[View]) -> tuple[dict[str, tuple[View, ...
         splits[split] = tuple(chosen)
     counts = ", ".join(f"{len(splits[split])} {split}" for split in _SPLITS)
     return splits, f"split as the file has it ({counts})"
+
+
+# Coloured points in .ply files: what structure from motion hands to what starts from it.
+
+
+_READER = "read_point_ply"
+_POSITION, _COLOR = ("x", "y", "z"), ("red", "green", "blue")
+
+
+def read_point_ply(path: Path) -> tuple[FloatArray, npt.NDArray[np.uint8] | None]:
+    """Positions (N, 3) in the frame of the file and 8-bit display colours (N, 3), or None.
+
+    Raises:
+        IoError: no file, a damaged one, or positions or colours that are none.
+    """
+    elements = read_ply(_READER, path)
+    if "vertex" not in elements:
+        raise IoError(message(_READER, f"{path}", "an element 'vertex'", sorted(elements)))
+    vertex = elements["vertex"]
+    names = set(vertex.dtype.names or ())
+    wanted = _POSITION + (_COLOR if names.issuperset(_COLOR) else ())
+    bad = [name for name in wanted if name not in names or vertex.dtype[name].kind not in "fiu"]
+    if bad:
+        got = f"none in {', '.join(bad)}"
+        raise IoError(message(_READER, f"{path}", "numbers x, y and z for each point", got))
+    positions = np.stack([vertex[name].astype(np.float64) for name in _POSITION], axis=1)
+    outside = ~(np.abs(positions) <= LARGEST_COORDINATE).all(axis=1)
+    if outside.any():
+        row = int(np.flatnonzero(outside)[0])
+        got = f"{positions[row].tolist()} in row {row}"
+        raise IoError(message(_READER, f"{path}", "finite positions up to 1e9", got))
+    if wanted == _POSITION:
+        return positions, None
+    if any(vertex.dtype[name] != np.uint8 for name in _COLOR):
+        got = ", ".join(str(vertex.dtype[name]) for name in _COLOR)
+        raise IoError(message(_READER, f"{path}", "colours as 8-bit numbers (uchar)", got))
+    return positions, np.stack([vertex[name] for name in _COLOR], axis=1)
