@@ -20,11 +20,9 @@ from photograd.transport import (
 from photograd.transport.accumulation import PAIR_EVEN_SHARE, pair_counts
 from photograd.transport.builtin import cornell_box
 from photograd.transport.inverse import (
+    cross_loss,
     cross_loss_backward,
     loss_and_gradients,
-)
-from photograd.transport.inverse import (
-    loss as cross_loss,
 )
 from photograd.transport.metal_room import metal_room
 

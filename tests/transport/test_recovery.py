@@ -23,11 +23,9 @@ from photograd.transport import (
 )
 from photograd.transport.builtin import cornell_box, evening, evening_map
 from photograd.transport.inverse import (
+    cross_loss,
     cross_loss_backward,
     loss_and_gradients,
-)
-from photograd.transport.inverse import (
-    loss as cross_loss,
 )
 from photograd.transport.inverse.parameters import Activation
 from photograd_course.gradcheck import check_gradient

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from photograd_course.suggest import choose_from
 
 from photograd import bsdf
-from photograd.bsdf import specular as delta_bsdf
+from photograd.bsdf import specular
 from photograd.errors import SceneError, ShapeError, message
 from photograd.transport.material import Material
 from photograd.transport.medium import BOUNDARY, VACUUM, Medium
@@ -71,7 +71,7 @@ def _check_interior(
 
 def transmits(model: str) -> bool:
     """Whether light passes a surface of this model."""
-    rough, smooth = bsdf.registry(), delta_bsdf.registry()
+    rough, smooth = bsdf.registry(), specular.registry()
     return rough[model].transmits if model in rough else smooth[model].lobe_count > 1
 
 
