@@ -40,15 +40,12 @@ if TYPE_CHECKING:
     from photograd.capture import Camera, Capture, View, estimate_bounds, load_capture
     from photograd.errors import Error
     from photograd.fields import DenseGrid, GaussianScene, OctreeSh, SparseSh, representations
+    from photograd.fitting import Fit, FitOptions, Model, fit, load_model
     from photograd.fitting.evaluate import evaluate
-    from photograd.fitting.loop import Fit
-    from photograd.fitting.model import Model, load_model
-    from photograd.fitting.options import FitOptions
-    from photograd.fitting.whole import fit
     from photograd.geometry.mesh import Bvh, Mesh
     from photograd.images import read_image
     from photograd.representation import Representation
-    from photograd.splats.splatting import Gaussians
+    from photograd.splats import Gaussians
     from photograd.transport import (
         Material,
         PathOptions,
@@ -71,14 +68,11 @@ _HOME = {
     "photograd.errors": "Error",
     "photograd.fields": "DenseGrid GaussianScene OctreeSh SparseSh representations",
     "photograd.fitting.evaluate": "evaluate",
-    "photograd.fitting.loop": "Fit",
-    "photograd.fitting.model": "Model load_model",
-    "photograd.fitting.options": "FitOptions",
-    "photograd.fitting.whole": "fit",
+    "photograd.fitting": "Fit FitOptions Model fit load_model",
     "photograd.geometry.mesh": "Bvh Mesh",
     "photograd.images": "read_image",
     "photograd.representation": "Representation",
-    "photograd.splats.splatting": "Gaussians",
+    "photograd.splats": "Gaussians",
     "photograd.transport": "Material PathOptions PathTracer Scene builtin_scene read_scene",
     "photograd.transport.inverse": "RecoveryOptions Target Unknown recover",
     "photograd.transport.mesh_files": "read_model",

@@ -79,3 +79,12 @@ def test_a_scene_is_traced() -> None:
     assert not np.array_equal(photograd.render(tracer, spp=4, seed=1), picture)
     with pytest.raises(DtypeError, match=r"^render: what: expected a Model, a Scene or"):
         photograd.render("cornell-box")  # type: ignore[call-overload]
+
+
+def test_files_may_be_named_by_texts(tmp_path: Path) -> None:
+    file = tmp_path / "white.png"
+    photograd.images.write_png(file, np.ones((2, 3, 4), np.float32))
+    assert photograd.read_image(str(file)).shape == (2, 3, 4)
+    for read, name in ((photograd.read_scene, "a.toml"), (photograd.read_model, "a.obj")):
+        with pytest.raises(photograd.Error, match=rf"^{read.__name__}: .*{name}"):
+            read(str(tmp_path / name))

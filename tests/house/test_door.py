@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 import shutil
 import subprocess
 import sys
@@ -13,14 +14,6 @@ import photograd
 import pytest
 
 from support.tree import ROOT
-
-SCRIPT = """
-from photograd import fit, load_capture, render
-capture = load_capture("photos")
-model = fit(capture, "dense_grid", resolution=64)
-picture = render(model, capture.test[0].camera)
-print(picture.shape, photograd.evaluate(model, capture.test).psnr)
-"""
 
 
 def names_for_type_checkers() -> set[str]:
@@ -99,11 +92,16 @@ def test_importing_loads_nothing_yet() -> None:
 
 
 def test_a_users_script_type_checks(tmp_path: Path) -> None:
+    """README's, and that wrong calls are seen."""
+    page = (ROOT / "README.md").read_text(encoding="utf-8")
+    (script,) = re.findall(
+        r"^```python\n(import photograd\n.*?)^```", page, re.DOTALL | re.MULTILINE
+    )
     answer = mypy(
         tmp_path,
-        f"import photograd\n{SCRIPT}\n"
+        f"{script}\n"
         "reveal_type(capture)\nreveal_type(model)\nreveal_type(photograd.read_scene('a').camera)\n"
-        "render(model)\n"
+        "photograd.render(model)\n"
         "photograd.transport.PathTracer(model)\n",
     )
     for revealed in ("capture.capture.Capture", "fitting.model.Model", "capture.camera.Camera"):

@@ -98,7 +98,7 @@ def read_header(path: Path) -> ImageHeader:
         raise _unreadable("read_header", path, error) from error
 
 
-def read_image(path: Path) -> ImageArray:
+def read_image(path: str | Path) -> ImageArray:
     """Pixels of an image file as (H, W, 4) float32, straight alpha (1 where the file has none).
 
     Display-encoded k/255 (or k/65535) for PNG and JPEG, linear radiance for EXR, .hdr and PFM; the
@@ -108,6 +108,7 @@ def read_image(path: Path) -> ImageArray:
     Raises:
         IoError: missing, truncated, damaged, zero-size, non-finite, or of an unsupported mode.
     """
+    path = Path(path)
     _require_file("read_image", path)
     kind = image_kind("read_image", path)
     if kind in LINEAR_KINDS:

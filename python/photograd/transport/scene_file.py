@@ -78,13 +78,14 @@ from photograd.transport.shape_checks import check_range
 from photograd.transport.shapes import MeshShape, SdfShape, Shape, SphereShape, box, rectangle
 
 
-def read_scene(path: Path) -> Scene:
+def read_scene(path: str | Path) -> Scene:
     """The scene that a file describes.
 
     Raises:
         IoError: the file is missing, no regular file, no TOML, or exceeds a limit of `parse_toml`.
         SceneError: what it says is no scene; names the line and the key.
     """
+    path = Path(path)
     text = read_text("read_scene", path)
     root = Node(path, parse_toml("read_scene", f"{path}", text), (), key_lines(text))
     scene = root.built(lambda: _scene(root, path.stem))
