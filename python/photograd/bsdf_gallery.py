@@ -18,6 +18,8 @@ from photograd.bsdf import BsdfModel
 from photograd.bsdf_response import derivatives, furnace_curve
 
 Array = npt.NDArray[Any]
+MANY = 12
+"""Parameters: more of them are labelled in narrower lines."""
 _FRACTIONS = (0.1, 0.4, 0.7, 1.0)
 _COSINES = np.linspace(0.04, 1.0, 9)
 _LIGHT = np.array([-0.5, 0.6, 0.62]) / np.linalg.norm([-0.5, 0.6, 0.62])
@@ -43,7 +45,8 @@ def gallery_picture(model: BsdfModel, path: Path) -> None:
         sphere = figure.add_subplot(grid[0, column])
         sphere.imshow(srgb_encode(np.clip(sphere_picture(model, parameters), 0.0, 1.0)))
         sphere.axis("off")
-        sphere.set_title(_caption(parameters), fontsize=7 if len(parameters) < 6 else 5)
+        size = 7 if len(parameters) < 6 else 3.6 if len(parameters) > MANY else 5
+        sphere.set_title(_caption(parameters), fontsize=size)
         lobe = figure.add_subplot(grid[1, column], projection="polar")
         angle, value = _lobe(model, parameters)
         lobe.plot(np.pi / 2 - angle, value, lw=1.5, color=f"C{column}")
@@ -54,7 +57,7 @@ def gallery_picture(model: BsdfModel, path: Path) -> None:
         curve.plot(_COSINES, furnace_curve(model, parameters, _COSINES).mean(axis=1), lw=1.2)
     _finish_curve(curve, model)
     _draw_derivatives(figure, model, model.at(_FRACTIONS[1]))
-    figure.suptitle(model.name)
+    figure.suptitle(model.name, y=0.995)
     figure.savefig(path, dpi=110, metadata={"Software": None})
 
 
@@ -79,21 +82,21 @@ def _draw_derivatives(figure: Figure, model: BsdfModel, parameters: dict[str, An
         down, column = divmod(number, across)
         rows = -(-len(slopes) // across)
         place = 0.3 + column * 0.68 / across, 0.03 + (rows - 1 - down) * 0.125
-        axes = figure.add_axes((*place, size, 0.18 / rows))
+        many = len(slopes) > MANY
+        axes = figure.add_axes((*place, size, (0.15 if many else 0.18) / rows))
         picture = np.zeros(inside.shape)
         picture[inside] = slope * np.pi * np.clip(wi[:, 2], 0.0, None)
         limit = float(np.quantile(np.abs(picture[inside]), 0.97)) or 1.0
         axes.imshow(picture, cmap="RdBu_r", vmin=-limit, vmax=limit)
-        axes.set_title(
-            f"d / d {name}\n\u00b1{limit:.2g}", fontsize=5 if long or rows > 1 else 6, pad=2
-        )
+        label = "\n".join(name.rsplit("_", 1)) if many else f"d / d {name}"
+        axes.set_title(f"{label}\n\u00b1{limit:.2g}", fontsize=5 if long or rows > 1 else 6, pad=2)
         axes.axis("off")
 
 
 def _caption(parameters: dict[str, Array]) -> str:
     parts = [f"{name} {np.round(np.mean(value), 2):g}" for name, value in parameters.items()]
     # As many names to a line as keep the block below the title.
-    across = 1 + (len(parts) - 1) // 5
+    across = 2 if len(parts) > MANY else 1 + (len(parts) - 1) // 5
     lines = [parts[k : k + across] for k in range(0, len(parts), across)]
     return "\n".join(", ".join(line) for line in lines)
 
@@ -126,8 +129,8 @@ def sphere_picture(model: BsdfModel, parameters: dict[str, Any], size: int = 160
 def _lobe(model: BsdfModel, parameters: dict[str, Array]) -> tuple[Array, Array]:
     """Angles from the normal (A,) and f cos, mean over channels (A,), in the plane of incidence."""
     # In the horizon itself sheen grows without bound.
-    reach = np.pi if model.transmits else 0.499 * np.pi
-    angle = np.linspace(-reach, reach, 361)
+    reach, count = (np.pi, 360) if model.transmits else (0.499 * np.pi, 361)
+    angle = np.linspace(-reach, reach, count)
     wo = np.stack([np.sin(angle), np.zeros_like(angle), np.cos(angle)], axis=1)
     wi = np.broadcast_to([-np.sqrt(0.5), 0.0, np.sqrt(0.5)], wo.shape).copy()
     return angle, model.f(parameters, wo, wi).mean(axis=1) * np.sqrt(0.5)

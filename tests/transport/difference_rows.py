@@ -1,7 +1,8 @@
 """What is differentiated by light transport, and the small scene in which each of it matters.
 
 A case is a scene, a row one number of it: the cases below have one for every parameter of every
-registered model, light and phase function, so that a new one brings its rows along.
+registered model, light and phase function, so that a new one brings its rows along. Of the models
+in `LAYERED` there are some.
 """
 
 from __future__ import annotations
@@ -37,6 +38,15 @@ VEILED = ("lambert", "gltf_refraction", "mirror", "glass")
 """Coverage does not know what it covers: rough and smooth, with and without what lies behind."""
 GRAZING = ("sheen", "sheen_tint")
 """What is hardly seen from above."""
+_LAYERS = ("base_color", "roughness", "transmission")
+LAYERED = {
+    "gltf_layered": (*_LAYERS, "metalness"),
+    "gltf_layered_conserving": (*_LAYERS, "metalness"),
+    "gltf_layered_volume": (*_LAYERS, "eta"),
+    "gltf_layered_volume_conserving": (*_LAYERS, "eta"),
+}
+"""Of models that are other models' layers put together, what has rows: two dozen each would say
+again how paths are differentiated, and nothing of f that tests/registry does not."""
 OTHERS = {"map": "environment map"}
 """Lights whose number of parameters is not fixed: in no registry."""
 
@@ -86,10 +96,12 @@ def models() -> Iterator[Case]:
     """Every parameter of every model, what covers in part, and what is refused of both."""
     for model in MODELS:
         material, (moving, _) = scenes.own(model), TURNING.get(model, ((), ""))
+        named = LAYERED.get(model, [p.name for p in MODELS[model].parameters])
         rows = {
             p.name: tuple(rows_of(model, p.name, f"materials.own.{p.name}",
                                   material.values[p.name], p.lo, p.hi))
             for p in MODELS[model].parameters
+            if p.name in named
         }  # fmt: skip
         still = {name: rows[name] for name in rows if name not in moving}
         smooth = model in delta_bsdf.registry()

@@ -32,6 +32,11 @@ OF_MODELS: dict[str, dict[str, Any]] = {  # what lies on top is seen better over
     },
     "clearcoat": {"base_color": 0.25 * COLOURS, "coat": 0.75},
 }
+# A film's phase turns where the base has its index: no step of eta may cross that.
+OF_MODELS |= {
+    name: {"iridescence_ior": 1.2}
+    for name in ("gltf_layered_volume", "gltf_layered_volume_conserving")
+}
 FRACTIONS = {"eta": 0.3, "dispersion": 0.3}  # of the range; others 0.5
 
 

@@ -156,7 +156,8 @@ class PrefilteredLight:
 
 def shade(
     light: PrefilteredLight, normals: Array, wo: Array, *, base_color: ArrayLike,
-    metalness: ArrayLike, roughness: ArrayLike, reflectance: ArrayLike = 0.5, leaning: bool = True,
+    metalness: ArrayLike, roughness: ArrayLike, reflectance: ArrayLike = 0.5,
+    occlusion: ArrayLike = 1.0, leaning: bool = True,
 ) -> Array:  # fmt: skip
     """Radiance (..., 3) that surfaces of the model `standard` send towards wo, by the split sum.
 
@@ -165,6 +166,8 @@ def shade(
         normals, wo: (..., 3) unit vectors in the world; wo points to the viewer, on the outside.
         base_color: (..., 3) or (3,).
         metalness, roughness, reflectance: (...) or numbers, 0 to 1.
+        occlusion: (...) or a number: the part of this light that reaches the surface, 1 for all, as
+            `OcclusionMap.at` looks it up. All light here is ambient, so all of it is scaled.
         leaning: whether rough lobes lean towards the normal; False is the sum as published.
 
     Raises:
@@ -185,4 +188,4 @@ def shade(
     f0 = (1 - metal) * 0.16 * gloss**2 + metal * color
     diffuse = (1 - metal) * color * light.irradiance.at(n) / np.pi
     specular = light.specular.at(mirrored, roughness) * (f0 * table[..., :1] + table[..., 1:])
-    return np.asarray(diffuse + specular)
+    return np.asarray((diffuse + specular) * np.asarray(occlusion)[..., None])

@@ -46,7 +46,13 @@ from photograd.transport.scene import Environment, Material, MeshShape, Scene, S
 from photograd.transport.scene_file import read_scene
 from photograd.transport.sdf_shape import SdfShape
 from photograd.transport.shutter import Shutter
-from photograd.transport.texture import NormalMap, Texture, TextureUse, read_texture
+from photograd.transport.texture import (
+    NormalMap,
+    OcclusionMap,
+    Texture,
+    TextureUse,
+    read_texture,
+)
 from photograd.transport.tracer import PathOptions, PathTracer
 
 __all__ = [
@@ -64,6 +70,7 @@ __all__ = [
     "ModelCamera",
     "ModelFile",
     "NormalMap",
+    "OcclusionMap",
     "ParticleOptions",
     "PathOptions",
     "PathTracer",

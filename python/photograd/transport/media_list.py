@@ -20,7 +20,7 @@ Array = npt.NDArray[Any]
 NOTHING, UNCHANGED = -1, -2  # interiors that are no medium, as the core counts them
 SOLID = (
     "glass", "rough_dielectric", "dispersive_glass", "dispersive_dielectric", "gltf_refraction",
-    BOUNDARY,
+    "gltf_layered_volume", "gltf_layered_volume_conserving", BOUNDARY,
 )  # fmt: skip
 """Surfaces whose inside is empty unless the shape says otherwise. Others that light can pass are
 taken for thin sheets: on both sides is what is around."""

@@ -3,8 +3,10 @@
 The mathematics is in cpp/photograd/render/ambient_occlusion.h, which texel shows what in
 cpp/photograd/geometry/texel_cover.h. Such a map stands for the shadows of an even sky in renderers
 that cast none: under `ConstantLight`, direct light alone, a Lambertian surface sends albedo times
-map times radiance. A path tracer finds those shadows itself; to multiply its light by a map would
-count them twice, and dims what no sky has sent.
+map times radiance. As an `OcclusionMap` of a material it goes into glTF files and to
+`photograd.lights.prefilter.shade`, which knows of no other shadows. A path tracer finds those
+shadows itself; to multiply its light by a map would count them twice, and dims what no sky has
+sent.
 """
 
 from __future__ import annotations

@@ -31,7 +31,7 @@ from photograd.transport.shape_checks import (
     usable_triangles,
 )
 from photograd.transport.shutter import Shutter
-from photograd.transport.texture import NormalMap, Texture, TextureUse, checked_uses
+from photograd.transport.texture import NormalMap, OcclusionMap, Texture, TextureUse, checked_uses
 
 Array = npt.NDArray[Any]
 MODELS: dict[str, bsdf.BsdfModel | delta_bsdf.DeltaModel] = {
@@ -56,6 +56,7 @@ class Material:
         normal_map: bends the shading normals, or None.
         alpha_cutoff: of a mask, or None: where alpha times its texture is at least this, the
             surface covers all, elsewhere nothing. A mask has no derivative with respect to alpha.
+        occlusion: of ambient light, or None. Paths find what is occluded themselves.
 
     Raises:
         SceneError: no such model, or a cutoff without alpha.
@@ -68,6 +69,7 @@ class Material:
     textures: Mapping[str, TextureUse] = field(default_factory=dict)
     normal_map: NormalMap | None = None
     alpha_cutoff: float | None = None
+    occlusion: OcclusionMap | None = None
 
     def __post_init__(self) -> None:
         if self.model not in MODELS:

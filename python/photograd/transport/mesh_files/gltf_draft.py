@@ -94,6 +94,14 @@ class Draft:
         return PLAIN_IOR if node is None else real(node, "ior", PLAIN_IOR)
 
 
+def usable_ior(draft: Draft) -> float:
+    """Refractive index; an ior of 0, which mirrors everything, is the largest one, and noted."""
+    if draft.ior != 0:
+        return draft.ior
+    draft.note(f"{draft.node.place}: ior 0, which mirrors everything: taken as {LARGEST_IOR}")
+    return LARGEST_IOR
+
+
 def metallic_roughness(draft: Draft) -> dict[str, Any]:
     """The parameters of the core model, and their textures."""
     draft.textured("base_color", draft.core, "baseColorTexture", "srgb")

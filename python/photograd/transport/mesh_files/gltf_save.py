@@ -159,6 +159,8 @@ def _material(model: ModelFile, shape: MeshShape, painted: Painted) -> dict[str,
             entry["alphaCutoff"] = float(material.alpha_cutoff)
     if material.normal_map is not None:
         entry["normalTexture"] = painted.normal_map(material.normal_map)
+    if material.occlusion is not None:
+        entry["occlusionTexture"] = painted.occlusion(material.occlusion)
     if shape.emission.any():
         # A power of two, so that the product is exact.
         strength = max(1.0, 2.0 ** np.ceil(np.log2(shape.emission.max())))
