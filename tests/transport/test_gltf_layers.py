@@ -45,7 +45,7 @@ TINT = {"specularFactor": 0.5, "specularColorFactor": [1, 0.5, 2]}
             "gltf_layered",
             {"anisotropy": 0.5, "metalness": 0, "coat": 0, "sheen_color_factor": [0, 0, 0]},
         ),
-        (layers(clearcoat=COAT, sheen={"sheenRoughnessFactor": 1}), "clearcoat", {"coat": 0.75}),
+        (layers(clearcoat=COAT, sheen={"sheenRoughnessFactor": 1}), "gltf_layered", {"coat": 0.75}),
         (
             core(metallicFactor=0) | clear(0.5, specular=TINT, dispersion={"dispersion": 1}),
             "gltf_layered",

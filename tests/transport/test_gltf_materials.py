@@ -50,7 +50,7 @@ def made(folder: Path, **material: Any) -> tuple[Material, list[str]]:
         ),
         (
             extension("clearcoat", clearcoatFactor=0.75, clearcoatRoughnessFactor=0.25),
-            "clearcoat",
+            "gltf_layered",
             {"coat": 0.75, "coat_roughness": 0.25, "metalness": 1},
         ),
         (

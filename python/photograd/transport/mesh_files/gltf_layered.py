@@ -1,7 +1,8 @@
 """glTF materials with several extensions at once: all of them in one model [Khronos2022].
 
 `gltf_layered` and, of bodies that bend light, `gltf_layered_volume` hold every layer. Materials
-with a single layer keep the smaller model of that layer.
+with a single layer keep the smaller model of that layer, where that is the same; a coat's is not,
+since light passes `clearcoat` twice.
 """
 
 from __future__ import annotations
@@ -65,13 +66,17 @@ def _needs_layers(draft: Draft, thick: bool) -> bool:
     passes = transmission_factor(draft) > 0
     layers = [
         _is_tinted(draft) or (draft.ior != PLAIN_IOR and not passes),
-        _factor(draft, "clearcoat", "clearcoatFactor") > 0,
         _factor(draft, "iridescence", "iridescenceFactor") > 0,
         _factor(draft, "anisotropy", "anisotropyStrength") > 0,
         bool(sheen_color(draft).any()),
         passes,
     ]
-    return sum(layers) > 1 or _brushed_in_part(draft) or (thick and _parts_colors_in_part(draft))
+    return (
+        sum(layers) > 1
+        or _factor(draft, "clearcoat", "clearcoatFactor") > 0
+        or _brushed_in_part(draft)
+        or (thick and _parts_colors_in_part(draft))
+    )
 
 
 def _is_tinted(draft: Draft) -> bool:

@@ -49,20 +49,6 @@ class FileMaterial:
     interior: Medium | None = None
 
 
-def _clearcoat(draft: Draft) -> Material | None:
-    node = draft.extension("clearcoat")
-    if node is None or real(node, "clearcoatFactor", 0.0) <= 0:
-        return None
-    draft.unread(node, "clearcoatNormalTexture")
-    draft.textured("coat", node, "clearcoatTexture", "linear", 0)
-    draft.textured("coat_roughness", node, "clearcoatRoughnessTexture", "linear", 1)
-    values = metallic_roughness(draft) | {
-        "coat": real(node, "clearcoatFactor", 0.0),
-        "coat_roughness": real(node, "clearcoatRoughnessFactor", 0.0),
-    }
-    return finished("clearcoat", values, draft)
-
-
 def _anisotropy(draft: Draft) -> Material | None:
     """Brushed metal, the same everywhere; `layered` has all others."""
     node = draft.extension("anisotropy")
@@ -140,7 +126,7 @@ def _plain(draft: Draft) -> Material:
     return finished("gltf", metallic_roughness(draft), draft)
 
 
-RULES = (layered, transmission, _clearcoat, _anisotropy, _sheen, _iridescence, _specular, _plain)
+RULES = (layered, transmission, _anisotropy, _sheen, _iridescence, _specular, _plain)
 
 
 def read_material(node: JsonNode, pictures: Pictures, note: Callable[[str], None]) -> FileMaterial:
