@@ -9,9 +9,10 @@ import numpy as np
 import numpy.typing as npt
 from photograd.bsdf import BsdfModel
 from photograd_course.gradcheck import check_accumulation, check_gradient, dot_product_error
-from photograd_course.mutants import Mutant, check_overwriting_mutants, make_mutants
+from photograd_course.mutants import check_overwriting_mutants, make_mutants
 from photograd_course.random import uniform
 
+from support.group_mutants import survives
 from support.statistics import chi_square_p, sidak, sphere_cell_masses, sphere_counts
 
 Array = npt.NDArray[Any]
@@ -152,27 +153,6 @@ class Proof:
         return jv
 
 
-def survives(proof: Proof, mutant: Mutant, *, seed: int) -> bool:
-    """Whether a wrong backward function passes for right.
-
-    One that is wrong in one group is looked at there alone. There are fewer probes than for the
-    right one: a mutant is wrong everywhere, not in one place.
-    """
-    group = mutant.name.split()[-1]
-    names = [group] if group in proof.place else list(proof.place)
-    report: Any = check_gradient(
-        lambda part: proof.forward({**proof.place, **part}),
-        lambda part, d_f: {
-            name: value
-            for name, value in mutant.backward({**proof.place, **part}, d_f).items()
-            if name in names
-        },
-        {name: proof.place[name] for name in names},
-        seed=seed, directions=3, coordinates=4, steps=(1e-4, 1e-5, 1e-6),
-    )  # fmt: skip
-    return bool(report)
-
-
 def prove_gradients(model: BsdfModel, *, seed: int = 1) -> None:
     """T1, T3, accumulation, and the death of the automatic mutants."""
     proof = Proof(model, seed=seed)
@@ -184,7 +164,7 @@ def prove_gradients(model: BsdfModel, *, seed: int = 1) -> None:
     report = check_accumulation(proof.accumulate, proof.place, d_f)
     assert report, str(report)
     for mutant in make_mutants(proof.backward, proof.place, d_f):
-        assert not survives(proof, mutant, seed=seed), mutant.name
+        assert not survives(proof.forward, proof.place, mutant, seed=seed), mutant.name
     report = check_overwriting_mutants(
         lambda a: check_accumulation(a, proof.place, d_f), proof.accumulate, proof.place, d_f
     )

@@ -111,6 +111,19 @@ def texels_of(draw: st.DrawFn, encoding: str, height: int, width: int) -> Any:
     return decode(texels) if encoding == "srgb" else texels
 
 
+def with_whole_images(material: Material, uses: dict[str, TextureUse]) -> Material:
+    """One image holds all of these: what has one of them comes back with the others."""
+    names = {p.name for p in material.parameters}
+    for group in ({"metalness", "roughness"}, {"anisotropy", "anisotropy_x", "anisotropy_y"}):
+        if not group & uses.keys():
+            continue
+        name = next(uses[p].texture for p in sorted(group) if p in uses)
+        uses |= {p: TextureUse(name, SLOTS[p][3]) for p in group & names}
+        if "anisotropy_y" in group & names:
+            material = replace(material, values={**material.values, "anisotropy_y": 1.0})
+    return material
+
+
 @st.composite
 def models(draw: st.DrawFn, model: str) -> ModelFile:
     """A cube, bent and in several places, of a material with all textures that it may have."""
@@ -130,16 +143,7 @@ def models(draw: st.DrawFn, model: str) -> ModelFile:
             texels = texels_of(draw, encoding, height, width)
             masks = encoding == "alpha" and material.alpha_cutoff is not None
             textures[name] = Texture(texels, wrap, "bilinear" if masks else looked_up)
-    # One image holds both of these; what has only one of them comes back with the other.
-    both = {"metalness", "roughness"} & {p.name for p in material.parameters}
-    if both & uses.keys():
-        name = next(uses[p].texture for p in both if p in uses)
-        uses |= {p: TextureUse(name, SLOTS[p][3]) for p in both}
-    brushed = {"anisotropy", "anisotropy_x", "anisotropy_y"}
-    if brushed & uses.keys():
-        name = next(uses[p].texture for p in brushed if p in uses)
-        uses |= {p: TextureUse(name, SLOTS[p][3]) for p in brushed}
-        material = replace(material, values={**material.values, "anisotropy_y": 1.0})
+    material = with_whole_images(material, uses)
     if "alpha" in uses and "base_color" not in uses:
         del uses["alpha"]
     bent = None

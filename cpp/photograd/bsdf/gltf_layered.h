@@ -24,7 +24,7 @@
 //
 // With its defaults, gltf_layered is gltf.h; with one layer, gltf_specular.h, gltf_sheen.h,
 // gltf_iridescence.h or gltf_transmission.h. clearcoat.h differs: there light passes the coat
-// twice. The printed formula is not reciprocal because of the coat, and gains light as gltf.h does:
+// twice. The printed formula is not reciprocal because of the coat, and not energy-conserving, like gltf.h:
 // white returned at most 1.91 of the light, a volume 1.83 (smooth, at the horizon; no more than F =
 // 1.28 under a film and a base layer of 0.933 are possible). The conserving variant is reciprocal,
 // and returned at most 1.00, which is matt white without a coating.
@@ -348,7 +348,7 @@ private:
     /// wo is above, `below` whether it was not. A facet that sends light to the wrong side loses
     /// it: a direction in the horizon, of no density.
     Vec3<R> sample_above(const Vec3<R>& o, bool below, Vec2<R> u2) const {
-        const Vec3<R> lost(R(1), R(0), R(0));
+        const Vec3<R> invalid(R(1), R(0), R(0));
         const bool inside = volume && below;
         Vec3<R> i(R(0));
         if (!inside && take_first(coat_share(), u2)) {
@@ -363,10 +363,10 @@ private:
             if (through && volume) return sample_refracted(o, below, u2);
             const Facets facets(*this);
             i = reflect(o, facets.turned_back(facets.sample(facets.turned(o), u2)));
-            if (!(i.z > R(0))) return lost;
+            if (!(i.z > R(0))) return invalid;
             return {i.x, i.y, through ? -i.z : i.z};
         }
-        return i.z > R(0) ? i : lost;
+        return i.z > R(0) ? i : invalid;
     }
     Vec3<R> sample_refracted(const Vec3<R>& o, bool below, Vec2<R> u2) const {
         int channel = 0;

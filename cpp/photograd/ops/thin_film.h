@@ -80,7 +80,7 @@ struct Wave {
 };
 
 /// Of |S| over all psi, in red, green and blue.
-inline constexpr double largest_wave[3] = {1.79, 0.99, 0.97};
+inline constexpr double largest_S[3] = {1.79, 0.99, 0.97};
 
 /// What base and film share: all but R23.
 template <class R>
@@ -92,7 +92,7 @@ struct Film {
     static Film bound_of(R n, R c1) {
         Film film{};
         film.bound = true;
-        for (int c = 0; c < 3; ++c) film.once.S[c] = film.twice.S[c] = R(largest_wave[c]);
+        for (int c = 0; c < 3; ++c) film.once.S[c] = film.twice.S[c] = R(largest_S[c]);
         film.n = n;
         film.c1 = c1;
         film.c2 = sqrt(R(1) - (R(1) - c1 * c1) / (n * n));
