@@ -38,12 +38,12 @@ VEILED = ("lambert", "gltf_refraction", "mirror", "glass")
 """Coverage does not know what it covers: rough and smooth, with and without what lies behind."""
 GRAZING = ("sheen", "sheen_tint")
 """What is hardly seen from above."""
-_LAYERS = ("base_color", "roughness", "transmission")
+_LAYERS = ("base_color", "roughness")
 LAYERED = {
     "gltf_layered": (*_LAYERS, "metalness"),
-    "gltf_layered_conserving": (*_LAYERS, "metalness"),
+    "gltf_layered_conserving": (*_LAYERS, "transmission", "metalness"),
     "gltf_layered_volume": (*_LAYERS, "eta"),
-    "gltf_layered_volume_conserving": (*_LAYERS, "eta"),
+    "gltf_layered_volume_conserving": (*_LAYERS, "transmission", "eta"),
 }
 """Of models that are other models' layers put together, what has rows: two dozen each would say
 again how paths are differentiated, and nothing of f that tests/registry does not."""

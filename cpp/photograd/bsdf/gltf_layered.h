@@ -78,7 +78,7 @@ struct GltfLayeredModel : GltfLayers<R> {
         }
         const Covers covers = covers_of(s, false);
         Vec3<R> below = covers.sheen() * base(s);
-        if (!vanishes(this->sheen_color_factor)) below += fibers().f(s.o, s.i);
+        if (!vanishes(this->sheen_color_factor)) below += fibers().f(lifted(s.o), lifted(s.i));
         Vec3<R> out = covers.coat() * below;
         if (!vanishes(this->coat)) out += Vec3<R>(this->coat * coat_reflectance(s) * coat_lobe(s));
         return out;
@@ -95,11 +95,12 @@ struct GltfLayeredModel : GltfLayers<R> {
             through_backward(s, d_f * (passage * sheen), d);
             return covers.backward(d_both * sheen, d_both * passage, d);
         }
-        const R on_base = dot(d_f, base(s)), on_fibers = dot(d_f, fibers().f(s.o, s.i));
+        const R on_base = dot(d_f, base(s)),
+                on_fibers = dot(d_f, fibers().f(lifted(s.o), lifted(s.i)));
         covers.backward(on_fibers + sheen * on_base, passage * on_base, d);
         base_backward(s, d_f * (passage * sheen), d);
         Sheen<R> d_fibers{Vec3<R>(R(0)), R(0)};
-        fibers().f_backward(s.o, s.i, d_f * passage, d_fibers);
+        fibers().f_backward(lifted(s.o), lifted(s.i), d_f * passage, d_fibers);
         d.sheen_color_factor += d_fibers.color;
         d.sheen_roughness_factor += d_fibers.roughness;
         const R all = d_f.x + d_f.y + d_f.z, F = coat_reflectance(s);
@@ -136,6 +137,8 @@ struct GltfLayeredModel : GltfLayers<R> {
 
 private:
     Sheen<R> fibers() const { return {this->sheen_color_factor, this->sheen_roughness_factor}; }
+    /// In the horizon itself the fit of the fibers' masking grows without bound.
+    static Vec3<R> lifted(const Vec3<R>& w) { return {w.x, w.y, larger(w.z, R(1e-5))}; }
     [[nodiscard]] R rest() const { return R(1) - this->metalness; }
     [[nodiscard]] R passing() const { return rest() * this->transmission; }
     [[nodiscard]] R index_ahead(const Sides& s, int channel) const {
