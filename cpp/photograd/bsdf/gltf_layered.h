@@ -24,10 +24,10 @@
 //
 // With its defaults, gltf_layered is gltf.h; with one layer, gltf_specular.h, gltf_sheen.h,
 // gltf_iridescence.h or gltf_transmission.h. clearcoat.h differs: there light passes the coat
-// twice. The printed formula is not reciprocal because of the coat, and not energy-conserving, like gltf.h:
-// white returned at most 1.91 of the light, a volume 1.83 (smooth, at the horizon; no more than F =
-// 1.28 under a film and a base layer of 0.933 are possible). The conserving variant is reciprocal,
-// and returned at most 1.00, which is matt white without a coating.
+// twice. The printed formula is not reciprocal because of the coat, and not energy-conserving, like
+// gltf.h: white returned at most 1.91 of the light, a volume 1.83 (smooth, at the horizon; no more
+// than F = 1.28 under a film and a base layer of 0.933 are possible). The conserving variant is
+// reciprocal, and returned at most 1.00, which is matt white without a coating.
 //
 //   df/dpassage = color_s DV_s + sheen f_base     df/dsheen = passage f_base     df/dcoat += S DV_c
 //   df_base/dmetalness = F_m DV - f_d
