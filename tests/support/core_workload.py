@@ -84,6 +84,11 @@ def numbers() -> None:
             op.backward(x, np.ones_like(y), np.zeros_like(x))
             if dtype == np.float64:
                 op.jvp(x, x)
+    for name in ("dipole", "normalized_diffusion", "diffusion_cdf", "sample_diffusion_radius"):
+        rows, fit = (G.random((4, 4)), []) if name == "dipole" else (G.random((4, 3)), ["diffuse"])
+        d = np.zeros_like(rows)
+        getattr(_core, name + "_backward")(rows, *fit, getattr(_core, name)(rows, *fit), d)
+    _core.dipole_albedo_backward(rows, _core.dipole_albedo(rows), d)
     _core.philox4x32(np.zeros((3, 4), np.uint32), np.zeros((3, 2), np.uint32))
     _core.uniform(1, 2, np.arange(4, dtype=np.uint32), 3, 4)
     _core.sobol_words(1, 2, 3, np.arange(4, dtype=np.uint32), 0, 4)
