@@ -15,8 +15,9 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
-from photograd.lights import SpotLight
+from photograd.lights import QuadLight, SpotLight
 from photograd.subsurface import (
+    DiffusionFit,
     diffusion_cdf,
     dipole,
     dipole_albedo,
@@ -91,13 +92,18 @@ class Walk:
     errors: Array
 
 
+BEAM = SpotLight([0, 0, 0.1], [0, 0, -1], [1.0, 1.0, 1.0], 1 - 1e-9, 1e-3)
+# A point lit from all sides: a tiny diffuse emitter close above the surface.
+DIFFUSE = QuadLight([-2e-4, 2e-4, 3e-3], [4e-4, 0, 0], [0, -4e-4, 0], [1.0, 1.0, 1.0])
+
+
 def walk(
-    albedo: float, sensor: Receiver, *, particles: int, seed: int, eta: float = 1.0, g: float = 0.0
-) -> Walk:
+    albedo: float, sensor: Receiver, light: Any = BEAM, *, particles: int, seed: int,
+    eta: float = 1.0, g: float = 0.0,
+) -> Walk:  # fmt: skip
     """Particles of the path tracer into a half space, counted in the cells of a sensor."""
-    beam = SpotLight([0, 0, 0.1], [0, 0, -1], [1.0, 1.0, 1.0], 1 - 1e-9, 1e-3)
     inside = medium(albedo, g)
-    tracer = PathTracer(half_space(inside, beam, eta=eta), dtype=np.float64)
+    tracer = PathTracer(half_space(inside, light, eta=eta), dtype=np.float64)
     found = trace_light(tracer, sensor, particles, seed=seed, options=walks(inside))
     power = float(emit_particles(tracer, 1, seed=seed).flux[0, 0])
     scale = sensor.cell_area / (power * (1 - mirrored(eta)))
@@ -124,9 +130,10 @@ def walk_total(
     return float(found.parts[0]) - part, float(found.errors[0])
 
 
-def walk_rings(albedo: float, particles: int, *, seed: int, cells: int = 800) -> Walk:
+def walk_rings(albedo: float, particles: int, light: Any = BEAM, *, seed: int) -> Walk:
     """What leaves between two radii of EDGES."""
-    found = walk(albedo, above(2 * EDGES[-1], cells), particles=particles, seed=seed)
+    cells = 800
+    found = walk(albedo, above(2 * EDGES[-1], cells), light, particles=particles, seed=seed)
     middles = (np.arange(cells) + 0.5) / cells * 2 * EDGES[-1] - EDGES[-1]
     ring = np.digitize(np.hypot(middles[:, None], middles), EDGES).ravel() - 1
     count = len(EDGES) - 1
@@ -143,9 +150,9 @@ def dipole_rings(albedo: float, eta: float = 1.0) -> Array:
     return np.asarray((found * weights).sum(axis=1) * 0.5 * (high - low)[:, 0])
 
 
-def normalized_rings(surface_albedo: float) -> Array:
+def normalized_rings(surface_albedo: float, fit: DiffusionFit = "searchlight") -> Array:
     """(K,) the same of normalized diffusion."""
-    inside = np.append(0.0, diffusion_cdf(EDGES[1:], surface_albedo, 1.0))
+    inside = np.append(0.0, diffusion_cdf(EDGES[1:], surface_albedo, 1.0, fit))
     return surface_albedo * np.diff(inside)
 
 

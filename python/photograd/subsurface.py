@@ -116,8 +116,8 @@ def normalized_diffusion(
 
     Args:
         radius: distance from where the light enters, m; above 0, where R grows as 1 / radius.
-        albedo: of the surface, 0 to 1: the part of the light that comes back, not that of a
-            scattering event (`half_space_albedo` is the one for the other).
+        albedo: of the surface, 0 to 1: the part of the light that comes back. `half_space_albedo`
+            finds it from the albedo of a scattering event.
         mean_free_path: m, in the volume (1 / sigma_t, of reduced coefficients); for the fit
             "diffuse_free_path", the diffuse one along the surface.
         fit: "searchlight", a thin beam along the normal; "diffuse" or "diffuse_free_path", light

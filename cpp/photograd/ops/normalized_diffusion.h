@@ -1,7 +1,7 @@
 // Normalized diffusion: light that leaves a surface at a distance r from where it enters, as a sum
 // of two exponentials that was fitted to random walks [Christensen2015].
 //
-//   R(r) = A / (8 pi D r) (exp(-r / D) + exp(-r / (3 D))),    D = mean_free_path / s(A)    [Eq. 3]
+//   R(r) = A / (8 pi D r) (exp(-r / D) + exp(-r / (3 D))),    D = mean_free_path / s(A)
 //   C(r) = 1 - exp(-r / D) / 4 - (3/4) exp(-r / (3 D))        part of the light within r
 //
 // A is the albedo of the surface: R integrates to A over the plane, whatever D is. There are three
@@ -12,7 +12,7 @@
 //   diffuse             light from all sides; free path in the volume
 //                         s = 1.9 - A + 3.5 (A - 0.8)^2                                    [Eq. 6]
 //   diffuse_free_path   light from all sides; diffuse free path along the surface
-//                         s = 3.5 + 100 (A - 0.33)^4                                       [Eq. 8]
+//                         s = 3.5 + 100 (A - 0.33)^4
 //
 // With y = r / D and d_D = dL/dD,
 //
