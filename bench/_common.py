@@ -117,7 +117,7 @@ def report(
     **more: Any,
 ) -> None:
     """Print the one JSON line of a script; `more` adds fields of its own."""
-    from photograd.core import _core
+    from photograd._compiled import _core
 
     row = {
         "workload": workload,

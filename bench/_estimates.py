@@ -13,7 +13,7 @@ from typing import Any
 import _common
 import numpy as np
 from numpy.typing import NDArray
-from photograd.core import _core
+from photograd._compiled import _core
 from photograd.transport import PathOptions, PathTracer
 from photograd.transport.metal_room import metal_room
 

@@ -16,8 +16,8 @@ import _common
 import _inputs
 import numpy as np
 from numpy.typing import NDArray
-from photograd import principled
-from photograd.core import _core
+from photograd._compiled import _core
+from photograd.bsdf import principled
 
 Array = NDArray[Any]
 KINDS = ("scalar", "texture")

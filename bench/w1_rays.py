@@ -15,10 +15,10 @@ import _bounds
 import _common
 import _inputs
 import numpy as np
-from photograd.core import _core
+from photograd._compiled import _core
 
 try:
-    from photograd.mesh import Bvh, Hits, Mesh
+    from photograd.geometry.mesh import Bvh, Hits, Mesh
 except ImportError as failure:
     sys.stderr.write(f"w1_rays: this photograd cannot trace meshes ({failure})\n")
     sys.exit(2)

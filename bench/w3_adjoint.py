@@ -20,8 +20,8 @@ import _estimates
 import numpy as np
 from numpy.typing import NDArray
 from photograd.transport import PathOptions, PathTracer
-from photograd.transport.recovery import loss_and_gradients
-from photograd.transport.sample_counts import SPREADS
+from photograd.transport.accumulation import SPREADS
+from photograd.transport.inverse import loss_and_gradients
 
 Array = NDArray[Any]
 GOAL = 0.2

@@ -21,7 +21,7 @@ import _common
 import _inputs
 import numpy as np
 from numpy.typing import NDArray
-from photograd.core import _core
+from photograd._compiled import _core
 from photograd.fields.march import MarchPolicy
 
 Array = NDArray[Any]

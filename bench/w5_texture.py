@@ -19,8 +19,8 @@ import _common
 import _inputs
 import numpy as np
 from numpy.typing import NDArray
-from photograd.core import _core
-from photograd.texture import TexturePlan, sample, sample_backward
+from photograd._compiled import _core
+from photograd.textures import TexturePlan, sample, sample_backward
 
 Array = NDArray[Any]
 STEP = np.float32(40_000)

@@ -16,7 +16,7 @@ import _inputs
 import numpy as np
 from numpy.typing import NDArray
 from photograd import sh
-from photograd.core import _core
+from photograd._compiled import _core
 
 Array = NDArray[Any]
 DEGREE = 3

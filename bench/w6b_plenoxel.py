@@ -18,7 +18,7 @@ import _common
 import _inputs
 import numpy as np
 from numpy.typing import NDArray
-from photograd.core import _core
+from photograd._compiled import _core
 from photograd.fields.active_voxels import ActiveVoxels
 from photograd.fields.march import MarchPolicy
 

@@ -16,9 +16,9 @@ import _common
 import _inputs
 import numpy as np
 from numpy.typing import NDArray
-from photograd.core import _core
-from photograd.data.camera import Camera
-from photograd.splat import (
+from photograd._compiled import _core
+from photograd.capture.camera import Camera
+from photograd.splats.splatting import (
     Gaussians,
     SplatContext,
     SplatGradients,

@@ -14,11 +14,10 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
-from photograd.backgrounds import random_background
-from photograd.density_gradient import density_gradient
 from photograd.fields import DenseGrid
-from photograd.imaging import image_loss, image_loss_backward
-from photograd.pixels import TrainingPixels
+from photograd.fitting.data import TrainingPixels, random_background
+from photograd.fitting.loss import image_loss, image_loss_backward
+from photograd.fitting.voxel_gradients import density_gradient
 from photograd.representation import RenderOptions
 from photograd_course.optim import Adam
 from photograd_course.viz import style, write_gif

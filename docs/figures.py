@@ -7,12 +7,12 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
-from photograd.data import load_capture
-from photograd.density_gradient import density_gradient
-from photograd.evaluate import display_image, truth_image
+from photograd.capture import load_capture
 from photograd.fields import DenseGrid
-from photograd.model import load_model
-from photograd.pixels import TrainingPixels
+from photograd.fitting.data import TrainingPixels
+from photograd.fitting.evaluate import display_image, truth_image
+from photograd.fitting.model import load_model
+from photograd.fitting.voxel_gradients import density_gradient
 from photograd_course.viz import signed_projection
 
 PICTURE = Path(__file__).resolve().parent / "images" / "demo.png"

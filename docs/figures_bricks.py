@@ -23,9 +23,9 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.collections import PatchCollection
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
-from photograd.density_gradient import density_gradient
-from photograd.sparse import SparseGrid
-from photograd.voxel_hash import VoxelHash
+from photograd.fitting.voxel_gradients import density_gradient
+from photograd.grids.sparse import SparseGrid
+from photograd.grids.voxel_hash import VoxelHash
 from photograd_course.viz import save_figure, style
 from photograd_course.viz.scale import signed_scale
 

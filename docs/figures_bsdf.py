@@ -15,8 +15,8 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from photograd.bsdf import BsdfModel, registry
-from photograd.bsdf_gallery import sphere_directions, sphere_picture
-from photograd.metals import METALS
+from photograd.bsdf.gallery import sphere_directions, sphere_picture
+from photograd.bsdf.models import METALS
 from photograd_course.color import srgb_encode
 from photograd_course.viz import save_figure, style
 

@@ -14,7 +14,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 from photograd import sh
-from photograd.directional_grid import (
+from photograd.lights.probes import (
     Functions,
     best_harmonics,
     best_table,

@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from photograd.data.camera import Camera
+from photograd.capture.camera import Camera
+from photograd.capture.orbit import look_at
 from photograd.fields import SunlitMedium
-from photograd.mesh import Bvh, Mesh
-from photograd.orbit import look_at
+from photograd.geometry.mesh import Bvh, Mesh
 from photograd.representation import Outputs, RayBatch, RenderOptions
 from photograd_course.color import srgb_encode
 from photograd_course.viz import save_figure, style

@@ -9,7 +9,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from photograd.bsdf import BsdfModel, registry
-from photograd.bsdf_gallery import gallery_picture
+from photograd.bsdf.gallery import gallery_picture
 from PIL import Image
 
 DOCS = Path(__file__).resolve().parent

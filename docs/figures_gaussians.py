@@ -13,18 +13,18 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from photograd.capture.camera import Camera
+from photograd.capture.capture import Capture
+from photograd.capture.load import load_capture
 from photograd.commands.capture import make_capture
-from photograd.data.camera import Camera
-from photograd.data.capture import Capture
-from photograd.data.load import load_capture
-from photograd.fields.gaussians import GaussianScene
-from photograd.fit import Fit
-from photograd.fit_options import options_for
-from photograd.splat import Gaussians, render
+from photograd.fitting.data import TrainingViews
+from photograd.fitting.gradient_drawings import draw_arrows, draw_gaussian_gradients, draw_picture
+from photograd.fitting.loop import Fit
+from photograd.fitting.options import options_for
+from photograd.fitting.view_gradients import ViewGradients, grad2d_picture, view_gradients
 from photograd.splats.clone_split_prune import CloneSplitPrune
-from photograd.splats.drawings import draw_arrows, draw_gaussian_gradients, draw_picture
-from photograd.splats.view_gradients import ViewGradients, grad2d_picture, view_gradients
-from photograd.training_views import TrainingViews
+from photograd.splats.model import GaussianScene
+from photograd.splats.splatting import Gaussians, render
 from photograd_course.viz import save_figure, style, write_gif
 
 Array = NDArray[Any]

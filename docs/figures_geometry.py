@@ -16,7 +16,7 @@ from matplotlib.collections import PatchCollection, PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from numpy.typing import NDArray
-from photograd.data.camera import Camera
+from photograd.capture.camera import Camera
 from photograd.geometry import (
     Body,
     BspTree,
@@ -27,7 +27,8 @@ from photograd.geometry import (
     SdfHits,
     draw_body,
 )
-from photograd.geometry.sdf_shapes import (
+from photograd.geometry.mesh import Mesh
+from photograd.geometry.sdf import (
     Shape,
     box,
     difference,
@@ -38,7 +39,6 @@ from photograd.geometry.sdf_shapes import (
     torus,
     union,
 )
-from photograd.mesh import Mesh
 from photograd.scenes.shapes import torus as torus_mesh
 from photograd.transport.builtin import camera_at
 from photograd_course.color import srgb_encode

@@ -14,8 +14,9 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
+from photograd.grids.sparse import SparseGrid
+from photograd.grids.vdb import write_vdb
 from photograd.lights import SphereLight
-from photograd.sparse import SparseGrid
 from photograd.transport import (
     BOUNDARY,
     Environment,
@@ -28,9 +29,8 @@ from photograd.transport import (
     derivative_image,
     read_scene,
 )
-from photograd.transport.camera_place import camera_at
+from photograd.transport.builtin import camera_at
 from photograd.transport.shapes import box, rectangle
-from photograd.vdb import write_vdb
 from photograd_course.color import srgb_encode
 from photograd_course.viz import save_figure, style
 

@@ -12,13 +12,13 @@ from matplotlib.collections import PatchCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Rectangle
 from numpy.typing import NDArray
-from photograd.data.camera import Camera
-from photograd.data.view import View
-from photograd.density_gradient import density_gradient
+from photograd.capture.camera import Camera
+from photograd.capture.orbit import orbit_cameras
+from photograd.capture.view import View
 from photograd.fields import DenseGrid
-from photograd.octree import Octree, Quadtree
-from photograd.orbit import orbit_cameras
-from photograd.pixels import TrainingPixels
+from photograd.fitting.data import TrainingPixels
+from photograd.fitting.voxel_gradients import density_gradient
+from photograd.grids.octree import Octree, Quadtree
 from photograd_course.color import srgb_encode
 from photograd_course.viz import save_figure, style
 from photograd_course.viz.scale import signed_scale

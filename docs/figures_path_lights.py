@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from photograd.lights import EnvironmentMap
 from photograd.transport import PathOptions, PathTracer, builtin_scene
-from photograd.transport.evening import SUN, evening_map, map_directions
+from photograd.transport.builtin import SUN, evening_map, map_directions
 from photograd_course.color import srgb_encode
 from photograd_course.viz import save_figure, style
 

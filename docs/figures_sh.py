@@ -17,9 +17,9 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 from numpy.typing import NDArray
 from photograd import sh
+from photograd.capture.orbit import orbit_cameras
 from photograd.fields import OctreeSh
-from photograd.octree import Octree
-from photograd.orbit import orbit_cameras
+from photograd.grids.octree import Octree
 from photograd.representation import Outputs, RayBatch, RenderOptions
 from photograd_course.viz import save_figure, style
 

@@ -16,17 +16,17 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
-from photograd.data.camera import Camera
-from photograd.data.capture import Capture
-from photograd.data.view import View
-from photograd.evaluate import evaluate, render_camera
+from photograd.capture.camera import Camera
+from photograd.capture.capture import Capture
+from photograd.capture.orbit import orbit_cameras
+from photograd.capture.view import View
 from photograd.fields import DenseGrid, SparseSh
 from photograd.fields.active_voxels import ActiveVoxels
 from photograd.fields.march import MarchPolicy
-from photograd.fit import Fit
-from photograd.fit_options import FitOptions
-from photograd.model import Model
-from photograd.orbit import orbit_cameras
+from photograd.fitting.evaluate import evaluate, render_camera
+from photograd.fitting.loop import Fit
+from photograd.fitting.model import Model
+from photograd.fitting.options import FitOptions
 from photograd_course.color import srgb_encode, unpremultiply
 from photograd_course.row_map import RowMap
 from photograd_course.viz import save_figure, style

@@ -13,14 +13,14 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
-from photograd.data.camera import Camera
-from photograd.data.exr import read_exr
+from photograd.capture.camera import Camera
+from photograd.images.exr import read_exr
 from photograd.lights import EnvironmentMap, Light
 from photograd.lights.dfg import dfg_table
 from photograd.lights.prefilter import PrefilteredLight, irradiance_map, shade, specular_map
 from photograd.transport import Material, PathOptions, PathTracer, Scene, SphereShape
 from photograd.transport.builtin import camera_at
-from photograd.transport.recovery.pictures import display
+from photograd.transport.inverse.pictures import display
 from photograd_course.viz import style
 
 Array = NDArray[Any]

@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
-from photograd.data.camera import Camera
-from photograd.data.exr import read_exr
+from photograd.capture.camera import Camera
+from photograd.images.exr import read_exr
 from photograd.lights import EnvironmentMap
 from photograd.transport import (
     Material,
@@ -28,9 +28,8 @@ from photograd.transport import (
     Unknown,
     scene_with,
 )
-from photograd.transport.builtin import camera_at
-from photograd.transport.evening import map_directions
-from photograd.transport.recovery.pictures import display
+from photograd.transport.builtin import camera_at, map_directions
+from photograd.transport.inverse.pictures import display
 from photograd_course.viz import style
 
 Array = NDArray[Any]

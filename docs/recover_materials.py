@@ -13,10 +13,10 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
-from photograd.data.camera import Camera
-from photograd.data.images import read_image
+from photograd.capture.camera import Camera
+from photograd.capture.orbit import orbit_cameras
+from photograd.images.read import read_image
 from photograd.lights import EnvironmentMap
-from photograd.orbit import orbit_cameras
 from photograd.transport import (
     Material,
     MeshShape,
@@ -32,9 +32,8 @@ from photograd.transport import (
     Unknown,
     read_model,
 )
-from photograd.transport.builtin import camera_at
-from photograd.transport.evening import evening_map
-from photograd.transport.recovery.pictures import display
+from photograd.transport.builtin import camera_at, evening_map
+from photograd.transport.inverse.pictures import display
 from photograd.transport.shapes import rectangle
 from photograd.transport.texture import decode
 from photograd_course.viz import style

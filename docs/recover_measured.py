@@ -16,8 +16,8 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from photograd.bsdf import registry
-from photograd.bsdf_gallery import sphere_directions
-from photograd.transport.recovery.activation import Activation
+from photograd.bsdf.gallery import sphere_directions
+from photograd.transport.inverse.parameters import Activation
 from photograd_course.optim import Adam
 from photograd_course.random import uniform
 from photograd_course.schedules import exponential

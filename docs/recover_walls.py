@@ -26,8 +26,8 @@ from photograd.transport import (
     recover,
     scene_with,
 )
-from photograd.transport.recovery.pictures import display, draw_loss, draw_values
-from photograd.transport.recovery.target import Target, loss_weights
+from photograd.transport.inverse.loss import Target, loss_weights
+from photograd.transport.inverse.pictures import display, draw_loss, draw_values
 from photograd_course.viz import style
 
 Array = NDArray[Any]

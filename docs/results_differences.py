@@ -20,7 +20,7 @@ from typing import Any
 
 ROOT = Path(__file__).resolve().parent.parent
 sys.path[:0] = [str(ROOT), str(ROOT / "tests")]
-from photograd.core import _core  # noqa: E402
+from photograd._compiled import _core  # noqa: E402
 from tests.transport import difference_page as page  # noqa: E402
 from tests.transport import differences  # noqa: E402
 from tests.transport.difference_rows import cases  # noqa: E402

@@ -14,15 +14,15 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from photograd._compiled import _core
+from photograd.capture.capture import Capture
+from photograd.capture.load import load_capture
 from photograd.commands.fit import run_with_bar
-from photograd.compare import frame_seconds, stored_bytes
-from photograd.core import _core
-from photograd.data.capture import Capture
-from photograd.data.load import load_capture
-from photograd.evaluate import evaluate
-from photograd.fit import PRUNE_AT, Fit
-from photograd.fit_options import options_for
-from photograd.model import Model, load_model
+from photograd.fitting.compare import frame_seconds, stored_bytes
+from photograd.fitting.evaluate import evaluate
+from photograd.fitting.loop import PRUNE_AT, Fit
+from photograd.fitting.model import Model, load_model
+from photograd.fitting.options import options_for
 
 ROOT = Path(__file__).resolve().parent.parent
 RESULTS = ROOT / "docs" / "results.md"

@@ -15,13 +15,13 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from photograd.core import _core
-from photograd.data.camera import Camera
-from photograd.data.gaussian_files import read_gaussians
-from photograd.data.gaussian_frame import file_from_upright
-from photograd.orbit import orbit_cameras
-from photograd.splat import Gaussians, SplatOptions, render
-from photograd.splat_orbit import scene_box
+from photograd._compiled import _core
+from photograd.capture.camera import Camera
+from photograd.capture.orbit import orbit_cameras
+from photograd.splats.files import read_gaussians
+from photograd.splats.frames import file_from_upright
+from photograd.splats.orbit import scene_box
+from photograd.splats.splatting import Gaussians, SplatOptions, render
 from photograd_course.metrics import psnr
 
 ROOT = Path(__file__).resolve().parent.parent

@@ -108,7 +108,7 @@ if slow.any() and rows * columns > 1:
 
 # %%
 try:
-    core = importlib.import_module("photograd.texture")
+    core = importlib.import_module("photograd.textures")
     before = time.perf_counter()
     result = core.recover(places, measured, truth.shape[:2], steps=steps)
 except (ImportError, AttributeError):  # none, or one from before it had textures

@@ -158,7 +158,7 @@ print(f"march: your derivative is {worst:.1e} from differences of your t")
 # %%
 rng = np.random.default_rng(7)
 try:
-    meshes = importlib.import_module("photograd.mesh")
+    meshes = importlib.import_module("photograd.geometry.mesh")
     faces = np.arange(3 * len(corners)).reshape(-1, 3)
     tree = meshes.Bvh(meshes.Mesh(corners.reshape(-1, 3).astype(np.float32), faces))
 except (ImportError, AttributeError, TypeError):  # none, or another than this was written for

@@ -76,8 +76,8 @@ def of_the_core(spp):
     """(direct light (70, 3), its derivative by roughness (70,)) of the table by the core."""
     transport = importlib.import_module("photograd.transport")
     shapes = importlib.import_module("photograd.transport.shapes")
-    camera = importlib.import_module("photograd.data.camera").Camera
-    look_at = importlib.import_module("photograd.orbit").look_at
+    camera = importlib.import_module("photograd.capture.camera").Camera
+    look_at = importlib.import_module("photograd.capture.orbit").look_at
     parts = [shapes.rectangle(f"thing{k}", *(truth[name][k] for name in
                                              ("corners", "edges_u", "edges_v")),
                               f"of{k}", truth["emission"][k]) for k in range(2)]  # fmt: skip

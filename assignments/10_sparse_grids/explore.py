@@ -207,8 +207,8 @@ def core_fit(n, voxels, numbers, rays, target, rounds, steps, threshold):
 
 def through_openvdb(n, voxels, values):
     """The values (V, 4), written to .vdb files and read again, as float32."""
-    sparse = importlib.import_module("photograd.sparse")
-    vdb = importlib.import_module("photograd.vdb")
+    sparse = importlib.import_module("photograd.grids.sparse")
+    vdb = importlib.import_module("photograd.grids.vdb")
     world = np.diag([2 / n, 2 / n, 2 / n, 1.0])
     world[:3, 3] = 1 / n - 1
     grids = []
@@ -230,7 +230,7 @@ def through_openvdb(n, voxels, values):
 
 core_slope = core_found = None
 try:
-    octrees = importlib.import_module("photograd.octree")
+    octrees = importlib.import_module("photograd.grids.octree")
     _, core_slope, core_worth = core_loss_and_grad(n, *guess, parallel, photograph)
 except (ImportError, AttributeError, TypeError):  # none, or another than this was written for
     print("core not installed")

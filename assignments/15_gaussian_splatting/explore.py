@@ -251,8 +251,8 @@ Y0 = 0.28209479177387814
 
 def of_the_core():
     """`picture` by the core; raises where there is none."""
-    splat = importlib.import_module("photograd.splat")
-    cameras = importlib.import_module("photograd.data.camera")
+    splat = importlib.import_module("photograd.splats.splatting")
+    cameras = importlib.import_module("photograd.capture.camera")
 
     def drawn(scene, camera, background):
         pose = np.eye(4)

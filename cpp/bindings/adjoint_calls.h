@@ -32,9 +32,8 @@ inline void trace_backward(const SceneRows& rows, const py::tuple& camera, const
                            std::uint32_t spp, const std::optional<py::array>& counts,
                            const py::array& d_image, GradientArrays gradient) {
     constexpr const char* name = "trace_paths_backward";
-    dispatch_real(name, "parameters", rows.parameters, [&](auto real) {
+    dispatch_real(name, "parameters", rows.parameters, [&](auto real, ArrayArgs& args) {
         using R = decltype(real);
-        ArrayArgs args(name);
         const AdjointCall<R> of(name, args, rows, camera, given, spp, counts, gradient);
         const double* d = args.in<double>("d_image", d_image, picture_axes(of.camera) + " 3");
         const py::gil_scoped_release release;
@@ -49,9 +48,8 @@ inline void trace_dual_buffer(const SceneRows& rows, const py::tuple& camera, co
                               const py::array& weight, py::array pictures,
                               GradientArrays gradient) {
     constexpr const char* name = "dual_buffer_backward";
-    dispatch_real(name, "parameters", rows.parameters, [&](auto real) {
+    dispatch_real(name, "parameters", rows.parameters, [&](auto real, ArrayArgs& args) {
         using R = decltype(real);
-        ArrayArgs args(name);
         const AdjointCall<R> of(name, args, rows, camera, given, spp, counts, gradient);
         const std::string axes = picture_axes(of.camera) + " 3";
         const SquaredError loss{args.in<double>("target", target, axes),

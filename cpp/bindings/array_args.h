@@ -104,13 +104,14 @@ inline void check_samples(const ArrayArgs& args, std::uint32_t first, std::uint3
                    std::to_string(first) + " + " + std::to_string(count));
 }
 
-/// Calls visit(float{}) or visit(double{}) according to the dtype of `array`; refuses others by
-/// name.
+/// Calls visit(float{}, args) or visit(double{}, args) according to the dtype of `array`; refuses
+/// others by name. `args` are those of `function`.
 template <class Visit>
 decltype(auto) dispatch_real(const char* function, const char* argument, const py::array& array,
                              Visit&& visit) {
-    if (array.dtype().is(py::dtype::of<float>())) return visit(float{});
-    if (array.dtype().is(py::dtype::of<double>())) return visit(double{});
+    ArrayArgs args(function);
+    if (array.dtype().is(py::dtype::of<float>())) return visit(float{}, args);
+    if (array.dtype().is(py::dtype::of<double>())) return visit(double{}, args);
     fail(ErrorKind::dtype, function, argument, "dtype float32 or float64",
          "dtype " + std::string(py::str(array.dtype())),
          "convert with numpy.asarray(..., numpy.float32)");

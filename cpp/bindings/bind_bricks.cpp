@@ -1,4 +1,4 @@
-// Brick fields; photograd.bricks is the typed face.
+// Brick fields; photograd.grids.bricks is the typed face.
 #include "array_args.h"
 #include "module.h"
 #include "photograd/grid/brick_field.h"
@@ -34,9 +34,8 @@ struct Call {
 
 void bricks_sample(const BrickTopology& topology, const py::array& values,
                    const py::array& background, const py::array& points, py::array out) {
-    dispatch_real("sample_bricks", "values", values, [&](auto real) {
+    dispatch_real("sample_bricks", "values", values, [&](auto real, ArrayArgs& args) {
         using R = decltype(real);
-        ArrayArgs args("sample_bricks");
         const Call<R> call(args, topology, values, background, points);
         R* to = args.out<R>("out", out, "P C");
         const py::gil_scoped_release release;
@@ -47,9 +46,8 @@ void bricks_sample(const BrickTopology& topology, const py::array& values,
 void backward(const BrickTopology& topology, const py::array& values, const py::array& background,
               const py::array& points, const py::array& d_out, py::array d_values,
               py::array d_background, py::array d_points) {
-    dispatch_real("sample_bricks_backward", "values", values, [&](auto real) {
+    dispatch_real("sample_bricks_backward", "values", values, [&](auto real, ArrayArgs& args) {
         using R = decltype(real);
-        ArrayArgs args("sample_bricks_backward");
         const Call<R> call(args, topology, values, background, points);
         const R* d = args.in<R>("d_out", d_out, "P C");
         R* to_values = args.out<R>("d_values", d_values, "N C");

@@ -35,9 +35,8 @@ py::array_t<double> uniform_numbers(std::uint64_t seed, std::uint32_t step, cons
 
 template <class Function>
 py::array map_real(const char* name, const py::array& x, Function&& function) {
-    return dispatch_real(name, "x", x, [&](auto real) -> py::array {
+    return dispatch_real(name, "x", x, [&](auto real, ArrayArgs& args) -> py::array {
         using R = decltype(real);
-        ArrayArgs args(name);
         const R* in = args.in<R>("x", x, "N");
         py::array_t<R> y(x.shape(0));
         R* out = y.mutable_data();

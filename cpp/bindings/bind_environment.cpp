@@ -8,9 +8,8 @@ namespace photograd {
 namespace {
 
 std::unique_ptr<EnvironmentSampler> make_sampler(const py::array& texels, double uniform_share) {
-    return dispatch_real("EnvironmentSampler", "texels", texels, [&](auto real) {
+    return dispatch_real("EnvironmentSampler", "texels", texels, [&](auto real, ArrayArgs& args) {
         using R = decltype(real);
-        ArrayArgs args("EnvironmentSampler");
         const R* data = args.in<R>("texels", texels, "H W 3");
         const int height = height_of<R>(args, "texels", texels);
         const std::span<const R> all(data, static_cast<std::size_t>(texels.size()));
@@ -19,13 +18,25 @@ std::unique_ptr<EnvironmentSampler> make_sampler(const py::array& texels, double
     });
 }
 
+/// rows(real, args, environment, points, w or u2) as a method.
+template <class Rows>
+auto environment_rows(const char* name, Rows rows) {
+    return [=](const EnvironmentSampler& sampler, const py::array& texels,
+               const py::array& world_from_map, const py::array& points, const py::array& w) {
+        return dispatch_real(name, "texels", texels, [&](auto real, ArrayArgs& args) {
+            const auto light =
+                environment_in<decltype(real)>(args, sampler, texels, world_from_map);
+            return rows(real, args, light, points, w);
+        });
+    };
+}
+
 /// w is enough: an environment is the same from all points.
 py::array backward(const EnvironmentSampler& sampler, const py::array& texels,
                    const py::array& world_from_map, const py::array& points, const py::array& w,
                    const py::array& d_radiance, py::array d_texels) {
-    return dispatch_real("radiance_backward", "texels", texels, [&](auto real) -> py::array {
+    return dispatch_real("radiance_backward", "texels", texels, [&](auto real, ArrayArgs& args) {
         using R = decltype(real);
-        ArrayArgs args("radiance_backward");
         const Environment<R> light = environment_in<R>(args, sampler, texels, world_from_map);
         args.in<R>("points", points, "N 3");
         const R* in = args.in<R>("w", w, "N 3");
@@ -48,43 +59,22 @@ void bind_environment(py::module_& m) {
                                    "Samples directions towards the bright parts of a map.")
         .def(py::init(&make_sampler), t, py::arg("uniform_share"),
              "Texels (H, 2 H, 3); uniform_share of the samples go everywhere alike.")
-        .def(
-            "sample",
-            [](const EnvironmentSampler& sampler, const py::array& texels,
-               const py::array& world_from_map, const py::array& points, const py::array& u2) {
-                return dispatch_real("sample", "texels", texels, [&](auto real) -> py::tuple {
-                    using R = decltype(real);
-                    ArrayArgs args("sample");
-                    const auto light = environment_in<R>(args, sampler, texels, world_from_map);
-                    return sample_rows<R>(args, light, points, u2);
-                });
-            },
-            t, r, py::arg("points"), py::arg("u2"),
-            "(direction (N, 3), distance (N,), radiance (N, 3), pdf (N,)).")
-        .def(
-            "radiance",
-            [](const EnvironmentSampler& sampler, const py::array& texels,
-               const py::array& world_from_map, const py::array& points, const py::array& w) {
-                return dispatch_real("radiance", "texels", texels, [&](auto real) -> py::array {
-                    using R = decltype(real);
-                    ArrayArgs args("radiance");
-                    const auto light = environment_in<R>(args, sampler, texels, world_from_map);
-                    return radiance_rows<R>(args, light, points, w);
-                });
-            },
-            t, r, py::arg("points"), py::arg("w"), "What arrives from w, (N, 3).")
-        .def(
-            "pdf",
-            [](const EnvironmentSampler& sampler, const py::array& texels,
-               const py::array& world_from_map, const py::array& points, const py::array& w) {
-                return dispatch_real("pdf", "texels", texels, [&](auto real) -> py::array {
-                    using R = decltype(real);
-                    ArrayArgs args("pdf");
-                    const auto light = environment_in<R>(args, sampler, texels, world_from_map);
-                    return pdf_rows<R>(args, light, points, w);
-                });
-            },
-            t, r, py::arg("points"), py::arg("w"), "Density of `sample` over solid angle, (N,).")
+        .def("sample",
+             environment_rows(
+                 "sample",
+                 [](auto real, auto&... given) { return sample_rows<decltype(real)>(given...); }),
+             t, r, py::arg("points"), py::arg("u2"),
+             "(direction (N, 3), distance (N,), radiance (N, 3), pdf (N,)).")
+        .def("radiance",
+             environment_rows(
+                 "radiance",
+                 [](auto real, auto&... given) { return radiance_rows<decltype(real)>(given...); }),
+             t, r, py::arg("points"), py::arg("w"), "What arrives from w, (N, 3).")
+        .def("pdf",
+             environment_rows(
+                 "pdf",
+                 [](auto real, auto&... given) { return pdf_rows<decltype(real)>(given...); }),
+             t, r, py::arg("points"), py::arg("w"), "Density of `sample` over solid angle, (N,).")
         .def("radiance_backward", &backward, t, r, py::arg("points"), py::arg("w"),
              py::arg("d_radiance"), py::arg("d_texels"),
              "Adds dL/dtexels to d_texels (H, 2 H, 3) and returns it.")

@@ -79,9 +79,8 @@ private:
 void trace(const Bvh& bvh, const py::array& origins, const py::array& directions,
            const py::array& t_min, const py::array& t_max, py::array t, py::array primitive,
            py::array instance, py::array barycentrics) {
-    dispatch_real("trace", "origins", origins, [&](auto real) {
+    dispatch_real("trace", "origins", origins, [&](auto real, ArrayArgs& args) {
         using R = decltype(real);
-        ArrayArgs args("trace");
         const RayArrays<R> in(args, origins, directions, t_min, t_max);
         const HitSpan<R> hits{args.out<R>("t", t, "R"),
                               args.out<std::int32_t>("primitive", primitive, "R"),
@@ -94,41 +93,42 @@ void trace(const Bvh& bvh, const py::array& origins, const py::array& directions
 
 py::array_t<bool> occluded(const Bvh& bvh, const py::array& origins, const py::array& directions,
                            const py::array& t_min, const py::array& t_max) {
-    return dispatch_real("occluded", "origins", origins, [&](auto real) -> py::array_t<bool> {
-        using R = decltype(real);
-        ArrayArgs args("occluded");
-        const RayArrays<R> in(args, origins, directions, t_min, t_max);
-        py::array_t<bool> blocked(in.rays.count);
-        bool* out = blocked.mutable_data();
-        {
-            const py::gil_scoped_release release;
-            bvh.occluded(in.rays, in.interval, out);
-        }
-        return blocked;
-    });
+    return dispatch_real("occluded", "origins", origins,
+                         [&](auto real, ArrayArgs& args) -> py::array_t<bool> {
+                             using R = decltype(real);
+                             const RayArrays<R> in(args, origins, directions, t_min, t_max);
+                             py::array_t<bool> blocked(in.rays.count);
+                             bool* out = blocked.mutable_data();
+                             {
+                                 const py::gil_scoped_release release;
+                                 bvh.occluded(in.rays, in.interval, out);
+                             }
+                             return blocked;
+                         });
 }
 
 py::tuple surface_points(const Bvh& bvh, const py::array& origins, const py::array& directions,
                          const py::array& primitive, const py::array& instance) {
-    return dispatch_real("surface_points", "origins", origins, [&](auto real) -> py::tuple {
-        using R = decltype(real);
-        ArrayArgs args("surface_points");
-        const RaySpan<R> rays{args.in<R>("origins", origins, "R 3"),
-                              args.in<R>("directions", directions, "R 3"), args.size("R")};
-        const std::int32_t* prim = args.in<std::int32_t>("primitive", primitive, "R");
-        const std::int32_t* inst = args.in<std::int32_t>("instance", instance, "R");
-        bvh.check_numbers("surface_points", {prim, static_cast<std::size_t>(rays.count)}, inst);
-        py::array_t<R> t(rays.count), barycentrics({rays.count, std::int64_t(2)}),
-            uv({rays.count, std::int64_t(2)}), position({rays.count, std::int64_t(3)}),
-            normal({rays.count, std::int64_t(3)});
-        const SurfaceSpan<R> out{t.mutable_data(), barycentrics.mutable_data(), uv.mutable_data(),
-                                 position.mutable_data(), normal.mutable_data()};
-        {
-            const py::gil_scoped_release release;
-            bvh.surface_points(rays, prim, inst, out);
-        }
-        return py::make_tuple(t, barycentrics, uv, position, normal);
-    });
+    return dispatch_real(
+        "surface_points", "origins", origins, [&](auto real, ArrayArgs& args) -> py::tuple {
+            using R = decltype(real);
+            const RaySpan<R> rays{args.in<R>("origins", origins, "R 3"),
+                                  args.in<R>("directions", directions, "R 3"), args.size("R")};
+            const std::int32_t* prim = args.in<std::int32_t>("primitive", primitive, "R");
+            const std::int32_t* inst = args.in<std::int32_t>("instance", instance, "R");
+            bvh.check_numbers("surface_points", {prim, static_cast<std::size_t>(rays.count)}, inst);
+            py::array_t<R> t(rays.count), barycentrics({rays.count, std::int64_t(2)}),
+                uv({rays.count, std::int64_t(2)}), position({rays.count, std::int64_t(3)}),
+                normal({rays.count, std::int64_t(3)});
+            const SurfaceSpan<R> out{t.mutable_data(), barycentrics.mutable_data(),
+                                     uv.mutable_data(), position.mutable_data(),
+                                     normal.mutable_data()};
+            {
+                const py::gil_scoped_release release;
+                bvh.surface_points(rays, prim, inst, out);
+            }
+            return py::make_tuple(t, barycentrics, uv, position, normal);
+        });
 }
 
 }  // namespace

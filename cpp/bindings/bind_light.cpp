@@ -3,7 +3,6 @@
 #include <variant>
 
 #include "light_calls.h"
-#include "method.h"
 #include "module.h"
 #include "photograd/light/registry.h"
 
@@ -51,16 +50,8 @@ int light_parameters(const RegisteredLight<R>& any) {
 struct SampledLight {
     std::string id;
     ParameterRows described, described_constants;
-    RegisteredLight<float> of_float;
-    RegisteredLight<double> of_double;
+    std::tuple<RegisteredLight<float>, RegisteredLight<double>> of;
 
-    template <class R>
-    [[nodiscard]] const RegisteredLight<R>& of() const {
-        if constexpr (std::is_same_v<R, float>)
-            return of_float;
-        else
-            return of_double;
-    }
     template <class R>
     RegisteredLight<R> checked(ArrayArgs& args, const py::array& p, const py::array& c) const {
         return std::visit(
@@ -69,59 +60,30 @@ struct SampledLight {
                 check_light<R>(args, light);
                 return {light};
             },
-            of<R>().model);
+            std::get<RegisteredLight<R>>(of).model);
     }
-
-    py::tuple sample(const py::array& parameters, const py::array& constants,
-                     const py::array& points, const py::array& u2) const;
-    py::array radiance(const py::array& parameters, const py::array& constants,
-                       const py::array& points, const py::array& w) const;
-    py::array pdf(const py::array& parameters, const py::array& constants, const py::array& points,
-                  const py::array& w) const;
-    template <bool of_sample>
-    py::array backward(const py::array& parameters, const py::array& constants,
-                       const py::array& points, const py::array& w, const py::array& d_radiance,
-                       py::array d_parameters) const;
-    py::array jvp(const py::array& parameters, const py::array& constants, const py::array& v,
-                  const py::array& points, const py::array& w) const;
 };
 
-py::tuple SampledLight::sample(const py::array& parameters, const py::array& constants,
-                               const py::array& points, const py::array& u2) const {
-    return dispatch_real("sample", "parameters", parameters, [&](auto real) -> py::tuple {
-        using R = decltype(real);
-        ArrayArgs args("sample");
-        return sample_rows<R>(args, checked<R>(args, parameters, constants), points, u2);
-    });
-}
-
-py::array SampledLight::radiance(const py::array& parameters, const py::array& constants,
-                                 const py::array& points, const py::array& w) const {
-    return dispatch_real("radiance", "parameters", parameters, [&](auto real) -> py::array {
-        using R = decltype(real);
-        ArrayArgs args("radiance");
-        return radiance_rows<R>(args, checked<R>(args, parameters, constants), points, w);
-    });
-}
-
-py::array SampledLight::pdf(const py::array& parameters, const py::array& constants,
-                            const py::array& points, const py::array& w) const {
-    return dispatch_real("pdf", "parameters", parameters, [&](auto real) -> py::array {
-        using R = decltype(real);
-        ArrayArgs args("pdf");
-        return pdf_rows<R>(args, checked<R>(args, parameters, constants), points, w);
-    });
+/// rows(real, args, light, points, w or u2) as a method.
+template <class Rows>
+auto light_rows(const char* name, Rows rows) {
+    return [=](const SampledLight& bound, const py::array& parameters, const py::array& constants,
+               const py::array& points, const py::array& w) {
+        return dispatch_real(name, "parameters", parameters, [&](auto real, ArrayArgs& args) {
+            const auto light = bound.checked<decltype(real)>(args, parameters, constants);
+            return rows(real, args, light, points, w);
+        });
+    };
 }
 
 template <bool of_sample>
-py::array SampledLight::backward(const py::array& parameters, const py::array& constants,
-                                 const py::array& points, const py::array& w,
-                                 const py::array& d_radiance, py::array d_parameters) const {
+py::array light_backward(const SampledLight& bound, const py::array& parameters,
+                         const py::array& constants, const py::array& points, const py::array& w,
+                         const py::array& d_radiance, py::array d_parameters) {
     const char* name = of_sample ? "sample_backward" : "radiance_backward";
-    return dispatch_real(name, "parameters", parameters, [&](auto real) -> py::array {
+    return dispatch_real(name, "parameters", parameters, [&](auto real, ArrayArgs& args) {
         using R = decltype(real);
-        ArrayArgs args(name);
-        const auto light = checked<R>(args, parameters, constants);
+        const auto light = bound.checked<R>(args, parameters, constants);
         add_light_rows<R>(args, light, of_sample, points, w, d_radiance, d_parameters);
         return d_parameters;
     });
@@ -145,20 +107,19 @@ M<Dual<double>> dual_light(const M<double>& light, const double* v) {
 }
 
 /// Of the radiance of samples: L(point, w), or a delta light's irradiance.
-py::array SampledLight::jvp(const py::array& parameters, const py::array& constants,
-                            const py::array& v, const py::array& points, const py::array& w) const {
+py::array light_jvp(const SampledLight& bound, const py::array& parameters,
+                    const py::array& constants, const py::array& v, const py::array& points,
+                    const py::array& w) {
     using D = Dual<double>;
     ArrayArgs args("jvp");
-    const auto any = checked<double>(args, parameters, constants);
+    const auto any = bound.checked<double>(args, parameters, constants);
     const double* tangent = args.in<double>("v", v, std::to_string(light_parameters(any)));
     const double *x = args.in<double>("points", points, "N 3"),
                  *in = args.in<double>("w", w, "N 3");
-    py::array_t<double> out({args.size("N"), std::int64_t(3)});
-    double* value = out.mutable_data();
-    std::visit(
+    return std::visit(
         [&]<template <class> class M>(const M<double>& at) {
             const M<D> dual = dual_light<M>(at, tangent);
-            for_each_row(args.size("N"), [&](std::int64_t n) {
+            return vector_rows<double>(args, [&](std::int64_t n) {
                 const auto vec = [n](const double* p) {
                     return Vec3<D>(D(p[3 * n]), D(p[3 * n + 1]), D(p[3 * n + 2]));
                 };
@@ -167,11 +128,10 @@ py::array SampledLight::jvp(const py::array& parameters, const py::array& consta
                     result = dual.at(vec(x)).radiance;
                 else
                     result = light_radiance(dual, vec(x), vec(in));
-                for (int k = 0; k < 3; ++k) value[3 * n + k] = result[k].tangent;
+                return Vec3<double>(result.x.tangent, result.y.tangent, result.z.tangent);
             });
         },
         any.model);
-    return out;
 }
 
 void bind_sampled_light(py::module_& m) {
@@ -181,20 +141,31 @@ void bind_sampled_light(py::module_& m) {
         m, "SampledLight",
         "A light. parameters (P,), constants (C,); points (N, 3) in the world, directions w "
         "(N, 3) of unit length, from the points.")
-        .def("sample", method<SampledLight>(&SampledLight::sample), p, c, py::arg("points"),
-             py::arg("u2"), "(direction (N, 3), distance (N,), radiance (N, 3), pdf (N,)).")
-        .def("radiance", method<SampledLight>(&SampledLight::radiance), p, c, py::arg("points"),
-             py::arg("w"), "What arrives at the points from w, (N, 3); 0 of delta lights.")
-        .def("pdf", method<SampledLight>(&SampledLight::pdf), p, c, py::arg("points"), py::arg("w"),
+        .def("sample",
+             light_rows(
+                 "sample",
+                 [](auto real, auto&... given) { return sample_rows<decltype(real)>(given...); }),
+             p, c, py::arg("points"), py::arg("u2"),
+             "(direction (N, 3), distance (N,), radiance (N, 3), pdf (N,)).")
+        .def("radiance",
+             light_rows(
+                 "radiance",
+                 [](auto real, auto&... given) { return radiance_rows<decltype(real)>(given...); }),
+             p, c, py::arg("points"), py::arg("w"),
+             "What arrives at the points from w, (N, 3); 0 of delta lights.")
+        .def("pdf",
+             light_rows("pdf", [](auto real,
+                                  auto&... given) { return pdf_rows<decltype(real)>(given...); }),
+             p, c, py::arg("points"), py::arg("w"),
              "Density of `sample` over solid angle, (N,); 0 of delta lights.")
-        .def("radiance_backward", method<SampledLight>(&SampledLight::backward<false>), p, c,
-             py::arg("points"), py::arg("w"), py::arg("d_radiance"), py::arg("d_parameters"),
+        .def("radiance_backward", &light_backward<false>, p, c, py::arg("points"), py::arg("w"),
+             py::arg("d_radiance"), py::arg("d_parameters"),
              "Adds dL/dparameters to d_parameters (P,) and returns it.")
-        .def("sample_backward", method<SampledLight>(&SampledLight::backward<true>), p, c,
-             py::arg("points"), py::arg("w"), py::arg("d_radiance"), py::arg("d_parameters"),
+        .def("sample_backward", &light_backward<true>, p, c, py::arg("points"), py::arg("w"),
+             py::arg("d_radiance"), py::arg("d_parameters"),
              "As radiance_backward, of the radiance of samples whose directions are w.")
-        .def("jvp", method<SampledLight>(&SampledLight::jvp), p, c, py::arg("v"), py::arg("points"),
-             py::arg("w"), "Exact derivative of samples' radiance along v (P,), (N, 3), float64.")
+        .def("jvp", &light_jvp, p, c, py::arg("v"), py::arg("points"), py::arg("w"),
+             "Exact derivative of samples' radiance along v (P,), (N, 3), float64.")
         .def(
             "parameters", [](const SampledLight& light) { return light.described; },
             "(name, scalars, lo, hi, unit) of each differentiated parameter.")
@@ -210,11 +181,11 @@ void bind_light(py::module_& m) {
     bind_sampled_light(m);
     py::dict all;
     const auto add = [&]<template <class> class M>() {
-        all[M<double>::name] = SampledLight{M<double>::name,
-                                            parameter_rows(parameter_infos(M<double>::params)),
-                                            parameter_rows(parameter_infos(M<double>::constants)),
-                                            {M<float>{}},
-                                            {M<double>{}}};
+        all[M<double>::name] = SampledLight{
+            M<double>::name,
+            parameter_rows(parameter_infos(M<double>::params)),
+            parameter_rows(parameter_infos(M<double>::constants)),
+            {RegisteredLight<float>{M<float>{}}, RegisteredLight<double>{M<double>{}}}};
     };
     Lights::for_each(add);
     m.attr("lights") = all.attr("copy")();

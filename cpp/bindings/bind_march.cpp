@@ -10,38 +10,40 @@ namespace {
 
 py::tuple place_rays(const MarchSettings& settings, const py::array& origins,
                      const py::array& directions, const std::optional<py::array>& jitter) {
-    return dispatch_real("place_samples", "origins", origins, [&](auto real) -> py::tuple {
-        using R = decltype(real);
-        ArrayArgs args("place_samples");
-        const R* o = args.within<R>("origins", origins, "R 3", world_limit);
-        const R* d = args.within<R>("directions", directions, "R 3", world_limit);
-        const R* u = jitter ? args.within<R>("jitter", *jitter, "R", 1.0) : nullptr;
-        const std::int64_t count = args.size("R");
-        py::array_t<R> t0(count);
-        py::array_t<std::int32_t> samples(count);
-        R* t0_out = t0.mutable_data();
-        std::int32_t* samples_out = samples.mutable_data();
-        {
-            const py::gil_scoped_release release;
-            parallel_for((count + 4095) / 4096, [&](std::int64_t chunk) {
-                for (std::int64_t ray = chunk * 4096; ray < std::min(count, (chunk + 1) * 4096);
-                     ++ray) {
-                    const RaySamples<R> placed = place_samples(
-                        clip_to_box(o + 3 * ray, d + 3 * ray, settings.field.box),
-                        static_cast<R>(settings.march.dt), settings.lattice, u ? u[ray] : R(0.5));
-                    t0_out[ray] = placed.t0;
-                    samples_out[ray] = placed.count;
-                }
-            });
-        }
-        for (std::int64_t ray = 0; ray < count; ++ray)
-            if (samples_out[ray] > max_samples)
-                args.range(
-                    "settings", "a step of which " + std::to_string(max_samples) + " cross the box",
-                    number_text(settings.march.dt) + " m, too short in row " + std::to_string(ray),
-                    "take longer steps, or a smaller box");
-        return py::make_tuple(t0, samples);
-    });
+    return dispatch_real(
+        "place_samples", "origins", origins, [&](auto real, ArrayArgs& args) -> py::tuple {
+            using R = decltype(real);
+            const R* o = args.within<R>("origins", origins, "R 3", world_limit);
+            const R* d = args.within<R>("directions", directions, "R 3", world_limit);
+            const R* u = jitter ? args.within<R>("jitter", *jitter, "R", 1.0) : nullptr;
+            const std::int64_t count = args.size("R");
+            py::array_t<R> t0(count);
+            py::array_t<std::int32_t> samples(count);
+            R* t0_out = t0.mutable_data();
+            std::int32_t* samples_out = samples.mutable_data();
+            {
+                const py::gil_scoped_release release;
+                parallel_for((count + 4095) / 4096, [&](std::int64_t chunk) {
+                    for (std::int64_t ray = chunk * 4096; ray < std::min(count, (chunk + 1) * 4096);
+                         ++ray) {
+                        const RaySamples<R> placed =
+                            place_samples(clip_to_box(o + 3 * ray, d + 3 * ray, settings.field.box),
+                                          static_cast<R>(settings.march.dt), settings.lattice,
+                                          u ? u[ray] : R(0.5));
+                        t0_out[ray] = placed.t0;
+                        samples_out[ray] = placed.count;
+                    }
+                });
+            }
+            for (std::int64_t ray = 0; ray < count; ++ray)
+                if (samples_out[ray] > max_samples)
+                    args.range("settings",
+                               "a step of which " + std::to_string(max_samples) + " cross the box",
+                               number_text(settings.march.dt) + " m, too short in row " +
+                                   std::to_string(ray),
+                               "take longer steps, or a smaller box");
+            return py::make_tuple(t0, samples);
+        });
 }
 
 using Box = std::array<std::array<double, 3>, 2>;
@@ -118,20 +120,21 @@ void with_field(ArrayArgs& args, const std::string& name, const py::array& param
 
 py::tuple march_any(const std::string& name, const py::array& parameters,
                     const MarchSettings& settings, const RayArrays& ray_arrays, bool fused) {
-    return dispatch_real("march", "parameters", parameters, [&](auto real) -> py::tuple {
-        using R = decltype(real);
-        ArrayArgs args("march");
-        const RayBatch<R> rays = ray_batch<R>(args, ray_arrays);
-        py::tuple image;
-        with_field<R>(args, name, parameters, settings, [&](const auto& field, const char*) {
-            image = filled_image<R, MarchOutputs<R>>({rays.count}, [&](const MarchOutputs<R>& out) {
-                if constexpr (std::is_same_v<std::decay_t<decltype(field)>, DenseGrid<float>>)
-                    if (fused) return march_dense(field, rays, settings.march, out);
-                march(field, rays, settings.march, out);
+    return dispatch_real(
+        "march", "parameters", parameters, [&](auto real, ArrayArgs& args) -> py::tuple {
+            using R = decltype(real);
+            const RayBatch<R> rays = ray_batch<R>(args, ray_arrays);
+            py::tuple image;
+            with_field<R>(args, name, parameters, settings, [&](const auto& field, const char*) {
+                image = filled_image<R, MarchOutputs<R>>({rays.count}, [&](const MarchOutputs<R>&
+                                                                               out) {
+                    if constexpr (std::is_same_v<std::decay_t<decltype(field)>, DenseGrid<float>>)
+                        if (fused) return march_dense(field, rays, settings.march, out);
+                    march(field, rays, settings.march, out);
+                });
             });
+            return image;
         });
-        return image;
-    });
 }
 
 void march_any_backward(const std::string& name, const py::array& parameters,
@@ -139,9 +142,8 @@ void march_any_backward(const std::string& name, const py::array& parameters,
                         const Arrays<3>& outputs, const Arrays<3>& d_outputs,
                         py::array d_parameters, const std::optional<Arrays<2>>& d_rays,
                         bool fused) {
-    dispatch_real("march_backward", "parameters", parameters, [&](auto real) {
+    dispatch_real("march_backward", "parameters", parameters, [&](auto real, ArrayArgs& args) {
         using R = decltype(real);
-        ArrayArgs args("march_backward");
         const RayBatch<R> rays = ray_batch<R>(args, ray_arrays);
         MarchAdjoint<R> adjoint;
         const auto out = MarchCotangentArrays{outputs, d_outputs, d_rays}.read<R>(args, adjoint);

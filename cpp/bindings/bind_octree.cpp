@@ -81,9 +81,10 @@ py::tuple octree_from_dense(const py::array& values, const py::array& background
         if constexpr (C == 1)
             if (values.dtype().is(py::dtype::of<std::uint8_t>()))
                 return build_dense<std::uint8_t, 1, D>(args, values, background, tolerance);
-        return dispatch_real("Octree.from_dense", "values", values, [&](auto real) -> py::tuple {
-            return build_dense<decltype(real), C, D>(args, values, background, tolerance);
-        });
+        return dispatch_real(
+            "Octree.from_dense", "values", values, [&](auto real, ArrayArgs&) -> py::tuple {
+                return build_dense<decltype(real), C, D>(args, values, background, tolerance);
+            });
     });
 }
 
@@ -113,9 +114,8 @@ py::tuple from_function(int depth, const py::function& classify, int channels) {
 
 template <int D>
 void locate(const SpatialTree<D>& tree, const py::array& points, py::array leaf) {
-    dispatch_real("Octree.locate", "points", points, [&](auto real) {
+    dispatch_real("Octree.locate", "points", points, [&](auto real, ArrayArgs& args) {
         using R = decltype(real);
-        ArrayArgs args("Octree.locate");
         const R* at = args.in<R>("points", points, D == 3 ? "N 3" : "N 2");
         auto* out = args.out<std::int32_t>("leaf", leaf, "N");
         const py::gil_scoped_release release;
@@ -126,20 +126,20 @@ void locate(const SpatialTree<D>& tree, const py::array& points, py::array leaf)
 template <int D>
 py::tuple traverse(const SpatialTree<D>& tree, const py::array& origins,
                    const py::array& directions, const py::array& t_min, const py::array& t_max) {
-    return dispatch_real("Octree.traverse", "origins", origins, [&](auto real) -> py::tuple {
-        using R = decltype(real);
-        ArrayArgs args("Octree.traverse");
-        const char* const axes = D == 3 ? "R 3" : "R 2";
-        const R *o = args.finite<R>("origins", origins, axes),
-                *d = args.finite<R>("directions", directions, axes),
-                *from = args.in<R>("t_min", t_min, "R"), *to = args.in<R>("t_max", t_max, "R");
-        const LeafVisits<R> visits = [&] {
-            const py::gil_scoped_release release;
-            return traverse_batch<R, D>(tree, o, d, from, to, args.size("R"));
-        }();
-        return py::make_tuple(array_of(visits.ray_offset), array_of(visits.leaf),
-                              array_of(visits.t0), array_of(visits.t1));
-    });
+    return dispatch_real(
+        "Octree.traverse", "origins", origins, [&](auto real, ArrayArgs& args) -> py::tuple {
+            using R = decltype(real);
+            const char* const axes = D == 3 ? "R 3" : "R 2";
+            const R *o = args.finite<R>("origins", origins, axes),
+                    *d = args.finite<R>("directions", directions, axes),
+                    *from = args.in<R>("t_min", t_min, "R"), *to = args.in<R>("t_max", t_max, "R");
+            const LeafVisits<R> visits = [&] {
+                const py::gil_scoped_release release;
+                return traverse_batch<R, D>(tree, o, d, from, to, args.size("R"));
+            }();
+            return py::make_tuple(array_of(visits.ray_offset), array_of(visits.leaf),
+                                  array_of(visits.t0), array_of(visits.t1));
+        });
 }
 
 template <int D>

@@ -28,9 +28,8 @@ struct OpInfo {
 
 template <class Op>
 py::array op_forward(const py::array& x) {
-    return dispatch_real(Op::name, "x", x, [&](auto real) -> py::array {
+    return dispatch_real(Op::name, "x", x, [&](auto real, ArrayArgs& args) -> py::array {
         using R = decltype(real);
-        ArrayArgs args(Op::name);
         const R* in = args.in<R>("x", x, "I");
         if (args.size("I") != input_count<Op>())
             args.range("x", std::to_string(input_count<Op>()) + " inputs",
@@ -43,7 +42,7 @@ py::array op_forward(const py::array& x) {
 
 template <class Op>
 py::array op_backward(const py::array& x, const py::array& d_y, py::array d_x) {
-    return dispatch_real(Op::name, "x", x, [&](auto real) -> py::array {
+    return dispatch_real(Op::name, "x", x, [&](auto real, ArrayArgs&) -> py::array {
         using R = decltype(real);
         ArrayArgs args(std::string(Op::name) + "_backward");
         const R* in = args.in<R>("x", x, "I");

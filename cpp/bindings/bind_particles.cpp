@@ -6,6 +6,7 @@
 
 #include "bake_calls.h"
 #include "camera_args.h"
+#include "model_args.h"
 #include "photograd/render/light/irradiance_sensor.h"
 #include "photograd/render/light/photon_map.h"
 #include "scene_calls.h"
@@ -47,13 +48,10 @@ py::tuple emit_rows(const SceneRows& scene, std::uint64_t seed, std::uint64_t fi
     double *o = origins.mutable_data(), *d = directions.mutable_data(), *f = flux.mutable_data();
     std::int64_t* e = entries.mutable_data();
     for (std::int64_t n = 0; n < rows; ++n) {
-        const Particle one =
-            emitted_particle(at.scene, seed, first + static_cast<std::uint64_t>(n));
-        for (int c = 0; c < 3; ++c) {
-            o[3 * n + c] = one.origin[c];
-            d[3 * n + c] = one.direction[c];
-            f[3 * n + c] = one.flux[c];
-        }
+        const Particle one = emitted_particle(at.scene, seed, first + std::uint64_t(n));
+        put_vec3(o, n, one.origin);
+        put_vec3(d, n, one.direction);
+        put_vec3(f, n, one.flux);
         e[n] = one.entry;
     }
     return py::make_tuple(origins, directions, flux, entries);
@@ -68,8 +66,8 @@ void sense(const SceneRows& scene, const ParticleNumbers& given, std::uint64_t f
     const double* r = args.within<double>("rectangle", rectangle, "3 3", world_limit);
     const PathSums sums{args.out<double>("irradiance", irradiance, "H W 3"),
                         args.out<double>("squares", squares, "H W 3")};
-    const auto row = [r](int k) { return Vec3<double>(r[3 * k], r[3 * k + 1], r[3 * k + 2]); };
-    const IrradianceSensor sensor{row(0), row(1), row(2), args.size("H"), args.size("W")};
+    const IrradianceSensor sensor{vec3_at(r, 0), vec3_at(r, 1), vec3_at(r, 2), args.size("H"),
+                                  args.size("W")};
     const py::gil_scoped_release release;
     trace_irradiance(at.scene, options, {first, count}, sensor, sums);
 }
@@ -90,20 +88,11 @@ py::array irradiance_rows(const PhotonMap& map, const py::array& points, const p
     ArrayArgs args("PhotonMap.irradiance");
     const double *x = args.within<double>("points", points, "N 3", world_limit),
                  *n = args.finite<double>("normals", normals, "N 3");
-    const std::int64_t count = args.size("N");
-    py::array_t<double> out({count, std::int64_t(3)});
-    double* E = out.mutable_data();
-    const auto at = [](const double* rows, std::int64_t i) {
-        return Vec3<double>(rows[3 * i], rows[3 * i + 1], rows[3 * i + 2]);
-    };
-    for (std::int64_t i = 0; i < count; ++i) {
-        const Vec3<double> found = map.irradiance(at(x, i), at(n, i));
-        for (int c = 0; c < 3; ++c) E[3 * i + c] = found[c];
-    }
-    return out;
+    return vector_rows<double>(
+        args, [&](std::int64_t i) { return map.irradiance(vec3_at(x, i), vec3_at(n, i)); });
 }
 
-void picture(const PhotonMap& map, const SceneRows& scene, const py::tuple& camera_numbers,
+void picture(const SceneRows& scene, const PhotonMap& map, const py::tuple& camera_numbers,
              const Options& given, std::uint32_t first, std::uint32_t count, py::array radiance,
              py::array squares) {
     ArrayArgs args("trace_photons");
@@ -114,17 +103,6 @@ void picture(const PhotonMap& map, const SceneRows& scene, const py::tuple& came
     check_samples(args, first, count);
     const py::gil_scoped_release release;
     trace_photons(at.scene, map, camera, options, {first, count}, sums);
-}
-
-/// `of_scene` for a method of the map.
-template <class... More>
-auto of_map_and_scene(void (*call)(const PhotonMap&, const SceneRows&, More...)) {
-    return [call](const PhotonMap& map, const PathGeometry& geometry, const Models& models,
-                  const py::array& parameters, const py::array& emission, const LightTuples& lights,
-                  const Arrays& textures, const MediumTuples& media, More... more) {
-        call(map, {geometry, models, parameters, emission, lights, textures, media},
-             std::forward<More>(more)...);
-    };
 }
 
 }  // namespace
@@ -141,17 +119,15 @@ void bind_particles(py::module_& m) {
               "Adds what particles bring to a rectangle (corner, edge_x, edge_y) (3, 3) to "
               "irradiance (H, W, 3),\nand its squares, float64. options: (max_depth, "
               "roulette_from, seed).");
-    });
-    with_scene_names([&](auto... scene) {
         py::class_<PhotonMap>(m, "PhotonMap", "Particles where they have hit surfaces.")
             .def(py::init(of_scene(&gather_photons)), scene..., py::arg("options"),
                  py::arg("count"), py::arg("radius"), py::arg("direct"))
             .def("__len__", [](const PhotonMap& map) { return map.photons().size(); })
             .def("irradiance", &irradiance_rows, py::arg("points"), py::arg("normals"),
-                 "(N, 3) W/m^2 at points (N, 3) with geometric normals (N, 3), float64.")
-            .def("trace", of_map_and_scene(&picture), scene..., py::arg("camera"),
-                 py::arg("options"), py::arg("first"), py::arg("count"), py::arg("radiance"),
-                 py::arg("squares"), "Adds samples of a picture, as trace_paths does.");
+                 "(N, 3) W/m^2 at points (N, 3) with geometric normals (N, 3), float64.");
+        m.def("trace_photons", of_scene(&picture), scene..., py::arg("map"), py::arg("camera"),
+              py::arg("options"), py::arg("first"), py::arg("count"), py::arg("radiance"),
+              py::arg("squares"), "Adds samples of a picture, as trace_paths does.");
     });
 }
 

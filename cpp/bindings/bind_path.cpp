@@ -12,26 +12,18 @@
 namespace photograd {
 namespace {
 
-void trace(const PathGeometry& geometry, const Models& models, const py::array& parameters,
-           const std::optional<py::array>& sampling_parameters, const py::array& emission,
-           const LightTuples& lights, const Arrays& textures,
-           const std::optional<Arrays>& sampling_textures, const MediumTuples& media,
+void trace(const SceneRows& rows, const std::optional<py::array>& sampling_parameters,
+           const std::optional<Arrays>& sampling_textures,
            const std::optional<MediumTuples>& sampling_media, const py::tuple& camera_numbers,
            const Options& given, std::uint32_t first, std::uint32_t count, py::array radiance,
            py::array squares, std::optional<py::array> hits) {
-    dispatch_real("trace_paths", "parameters", parameters, [&](auto real) {
-        using R = decltype(real);
-        ArrayArgs args("trace_paths");
-        const SceneNumbers<R> numbers(
-            args, {geometry, models, parameters, emission, lights, textures, media},
-            {sampling_parameters, sampling_textures, sampling_media});
-        for (std::size_t i = 0; i < numbers.sampling_media.size(); ++i)
-            if (!same_phase(numbers.media[i], numbers.sampling_media[i]))
-                args.range("sampling_media", "the same phase functions as media", "others");
+    dispatch_real("trace_paths", "parameters", rows.parameters, [&](auto real, ArrayArgs& args) {
+        const SceneNumbers<decltype(real)> numbers(
+            args, rows, {sampling_parameters, sampling_textures, sampling_media});
+        check_phases<decltype(real)>(args, "sampling_media", numbers.media, numbers.sampling_media);
         const ThinLens camera = thin_lens(camera_numbers);
         const PathSums sums = path_sums(args, camera, radiance, squares);
-        double* counts = nullptr;
-        if (hits) counts = args.out<double>("hits", *hits, picture_axes(camera));
+        double* counts = hits ? args.out<double>("hits", *hits, picture_axes(camera)) : nullptr;
         const PathOptions options = options_of(args, given);
         check_samples(args, first, count);
         const py::gil_scoped_release release;
@@ -67,18 +59,17 @@ void ambient_occlusion(const PathGeometry& geometry, const py::tuple& camera_num
 }  // namespace
 
 void bind_path(py::module_& m) {
-    m.def("trace_paths", &trace, py::arg("geometry"), py::arg("models"), py::arg("parameters"),
-          py::arg("sampling_parameters"), py::arg("emission"), py::arg("lights"),
-          py::arg("textures"), py::arg("sampling_textures"), py::arg("media"),
-          py::arg("sampling_media"), py::arg("camera"), py::arg("options"), py::arg("first"),
-          py::arg("count"), py::arg("radiance"), py::arg("squares"), py::arg("hits") = py::none(),
-          "Adds samples to radiance (H, W, 3) and squares (H, W, 3), float64. options: (strategy, "
-          "heuristic, max_depth, roulette_from, sampler, seed).\nmedia: (phase function or \"\", "
-          "parameters (P,), densities (X, Y, Z) or None, sigma_maj). hits: None, or (H, W) "
-          "float64,\nto which the number of samples is added that see more than the background; "
-          "the others then add nothing.");
     bind_adjoints(m);
     with_scene_names([&](auto... scene) {
+        m.def("trace_paths", of_scene(&trace), scene..., py::arg("sampling_parameters"),
+              py::arg("sampling_textures"), py::arg("sampling_media"), py::arg("camera"),
+              py::arg("options"), py::arg("first"), py::arg("count"), py::arg("radiance"),
+              py::arg("squares"), py::arg("hits") = py::none(),
+              "Adds samples to radiance (H, W, 3) and squares (H, W, 3), float64. options: "
+              "(strategy, heuristic, max_depth, roulette_from, sampler, seed).\nmedia: (phase "
+              "function or \"\", parameters (P,), densities (X, Y, Z) or None, sigma_maj). hits: "
+              "None, or (H, W) float64,\nto which the number of samples is added that see more "
+              "than the background; the others then add nothing.");
         m.def("trace_path", of_scene(&path_rows), scene..., py::arg("camera"), py::arg("options"),
               py::arg("pixel"), py::arg("sample"), "One path, a dictionary a vertex.");
         m.def("trace_reference", of_scene(&trace_to_compare), scene..., py::arg("camera"),

@@ -20,9 +20,7 @@ void trace_tangent(const SceneRows& rows, const py::array& v_parameters,
     for (std::size_t i = 0; i < at.lights.size(); ++i)
         if (at.lights[i].model.index() != along.lights[i].model.index())
             args.range("v_lights", "the same kinds as lights", "others");
-    for (std::size_t m = 0; m < at.media.size(); ++m)
-        if (!same_phase(at.media[m], along.media[m]))
-            args.range("v_media", "the same phase functions as media", "others");
+    check_phases<double>(args, "v_media", at.media, along.media);
     const ThinLens camera = thin_lens(camera_numbers);
     const PathSums picture = path_sums(args, camera, radiance, squares);
     const PathSums tangent = path_sums(args, camera, d_radiance, d_squares, "d_");

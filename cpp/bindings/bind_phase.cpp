@@ -1,5 +1,4 @@
 // Every phase function of medium/registry.h on arrays: {name: PhaseFunction} as _core.phases.
-#include "method.h"
 #include "model_args.h"
 #include "module.h"
 #include "photograd/medium/any_phase_tangent.h"
@@ -19,34 +18,24 @@ struct PhaseFunction {
         phase.for_each([&](R& x) { x = *next++; });
         return phase;
     }
-
-    py::array p(const py::array& parameters, const py::array& cos_theta) const;
-    void p_backward(const py::array& parameters, const py::array& cos_theta, const py::array& d_p,
-                    py::array d_parameters, py::array d_cos_theta) const;
-    py::array jvp(const py::array& parameters, const py::array& cos_theta,
-                  const py::array& v_parameters, const py::array& v_cos_theta) const;
 };
 
-py::array PhaseFunction::p(const py::array& parameters, const py::array& cos_theta) const {
-    return dispatch_real("p", "cos_theta", cos_theta, [&](auto real) -> py::array {
+py::array phase_p(const PhaseFunction& function, const py::array& parameters,
+                  const py::array& cos_theta) {
+    return dispatch_real("p", "cos_theta", cos_theta, [&](auto real, ArrayArgs& args) {
         using R = decltype(real);
-        ArrayArgs args("p");
-        const auto phase = read<R>(args, "parameters", parameters);
+        const auto phase = function.read<R>(args, "parameters", parameters);
         const R* c = args.in<R>("cos_theta", cos_theta, "N");
-        py::array_t<R> out(args.size("N"));
-        R* value = out.mutable_data();
-        for_each_row(args.size("N"), [&](std::int64_t n) { value[n] = phase.p(c[n]); });
-        return out;
+        return value_rows<R>(args, [&](std::int64_t n) { return phase.p(c[n]); });
     });
 }
 
-void PhaseFunction::p_backward(const py::array& parameters, const py::array& cos_theta,
-                               const py::array& d_p, py::array d_parameters,
-                               py::array d_cos_theta) const {
-    dispatch_real("p_backward", "cos_theta", cos_theta, [&](auto real) {
+void phase_p_backward(const PhaseFunction& function, const py::array& parameters,
+                      const py::array& cos_theta, const py::array& d_p, py::array d_parameters,
+                      py::array d_cos_theta) {
+    dispatch_real("p_backward", "cos_theta", cos_theta, [&](auto real, ArrayArgs& args) {
         using R = decltype(real);
-        ArrayArgs args("p_backward");
-        const auto phase = read<R>(args, "parameters", parameters);
+        const auto phase = function.read<R>(args, "parameters", parameters);
         const R *c = args.in<R>("cos_theta", cos_theta, "N"), *d = args.in<R>("d_p", d_p, "N");
         const int size = phase.parameter_count();
         R* d_model = args.out<R>("d_parameters", d_parameters, std::to_string(size));
@@ -61,18 +50,16 @@ void PhaseFunction::p_backward(const py::array& parameters, const py::array& cos
     });
 }
 
-py::array PhaseFunction::jvp(const py::array& parameters, const py::array& cos_theta,
-                             const py::array& v_parameters, const py::array& v_cos_theta) const {
+py::array phase_jvp(const PhaseFunction& function, const py::array& parameters,
+                    const py::array& cos_theta, const py::array& v_parameters,
+                    const py::array& v_cos_theta) {
     ArrayArgs args("jvp");
-    const auto phase = read<double>(args, "parameters", parameters);
-    const auto along = read<double>(args, "v_parameters", v_parameters);
+    const auto phase = function.read<double>(args, "parameters", parameters);
+    const auto along = function.read<double>(args, "v_parameters", v_parameters);
     const double* c = args.in<double>("cos_theta", cos_theta, "N");
     const double* v = args.in<double>("v_cos_theta", v_cos_theta, "N");
-    py::array_t<double> out(args.size("N"));
-    double* value = out.mutable_data();
-    for_each_row(args.size("N"),
-                 [&](std::int64_t n) { value[n] = phase_tangent(phase, along, c[n], v[n]); });
-    return out;
+    return value_rows<double>(
+        args, [&](std::int64_t n) { return phase_tangent(phase, along, c[n], v[n]); });
 }
 
 }  // namespace
@@ -81,13 +68,13 @@ void bind_phase(py::module_& m) {
     py::class_<PhaseFunction>(
         m, "PhaseFunction",
         "A phase function. parameters (P,); cos_theta (N,) of the angle by which light turns.")
-        .def("p", method<PhaseFunction>(&PhaseFunction::p), py::arg("parameters"),
-             py::arg("cos_theta"), "Density over solid angle, (N,) in 1/sr.")
-        .def("p_backward", method<PhaseFunction>(&PhaseFunction::p_backward), py::arg("parameters"),
-             py::arg("cos_theta"), py::arg("d_p"), py::arg("d_parameters"), py::arg("d_cos_theta"),
+        .def("p", &phase_p, py::arg("parameters"), py::arg("cos_theta"),
+             "Density over solid angle, (N,) in 1/sr.")
+        .def("p_backward", &phase_p_backward, py::arg("parameters"), py::arg("cos_theta"),
+             py::arg("d_p"), py::arg("d_parameters"), py::arg("d_cos_theta"),
              "Adds the derivatives to d_parameters (P,) and d_cos_theta (N,).")
-        .def("jvp", method<PhaseFunction>(&PhaseFunction::jvp), py::arg("parameters"),
-             py::arg("cos_theta"), py::arg("v_parameters"), py::arg("v_cos_theta"),
+        .def("jvp", &phase_jvp, py::arg("parameters"), py::arg("cos_theta"),
+             py::arg("v_parameters"), py::arg("v_cos_theta"),
              "Exact derivative of p along v_parameters (P,) and v_cos_theta (N,).")
         .def(
             "parameters", [](const PhaseFunction& function) { return function.described; },

@@ -1,4 +1,4 @@
-// Many evaluations of the principled surface at once; photograd.principled is the typed face.
+// Many evaluations of the principled surface at once; photograd.bsdf.principled is the typed face.
 #include "module.h"
 
 #include "array_args.h"

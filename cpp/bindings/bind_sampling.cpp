@@ -10,9 +10,8 @@ namespace {
 /// out (N, Out) = map(in (N, In)), row by row.
 template <int In, int Out, class Map>
 py::array map_rows(const char* function, const char* argument, const py::array& in, Map&& map) {
-    return dispatch_real(function, argument, in, [&](auto real) -> py::array {
+    return dispatch_real(function, argument, in, [&](auto real, ArrayArgs& args) -> py::array {
         using R = decltype(real);
-        ArrayArgs args(function);
         const R* x = args.in<R>(argument, in, "N " + std::to_string(In));
         py::array_t<R> out({args.size("N"), std::int64_t(Out)});
         R* y = out.mutable_data();
@@ -24,6 +23,13 @@ py::array map_rows(const char* function, const char* argument, const py::array& 
         });
         return out;
     });
+}
+
+template <int In, int Out, class Map>
+void bind_map(py::module_& m, const char* name, const char* argument, Map map, const char* about) {
+    m.def(
+        name, [=](const py::array& in) { return map_rows<In, Out>(name, argument, in, map); },
+        py::arg(argument), about);
 }
 
 py::array_t<std::uint32_t> sobol_words(std::uint64_t seed, std::uint32_t step, std::uint32_t block,
@@ -54,34 +60,20 @@ void bind_sampling(py::module_& m) {
           py::arg("pixel"), py::arg("first"), py::arg("count"),
           "Words (N, count, 4) uint32 of scrambled Sobol' points first, first + 1, ... of pixels "
           "(N,).");
-    m.def(
-        "square_to_disk",
-        [](const py::array& u2) {
-            return map_rows<2, 2>("square_to_disk", "u2", u2,
-                                  [](const auto& u) { return square_to_disk(u); });
-        },
-        py::arg("u2"), "Uniform points (N, 2) of the unit disk from uniform u2 (N, 2).");
-    m.def(
-        "disk_to_square",
-        [](const py::array& p) {
-            return map_rows<2, 2>("disk_to_square", "p", p,
-                                  [](const auto& q) { return disk_to_square(q); });
-        },
-        py::arg("p"), "The inverse of square_to_disk.");
-    m.def(
-        "square_to_cosine_hemisphere",
-        [](const py::array& u2) {
-            return map_rows<2, 3>("square_to_cosine_hemisphere", "u2", u2,
-                                  [](const auto& u) { return square_to_cosine_hemisphere(u); });
-        },
-        py::arg("u2"), "Directions (N, 3) around +Z, density cos / pi, from uniform u2 (N, 2).");
-    m.def(
-        "cosine_hemisphere_to_square",
-        [](const py::array& w) {
-            return map_rows<3, 2>("cosine_hemisphere_to_square", "w", w,
-                                  [](const auto& v) { return cosine_hemisphere_to_square(v); });
-        },
-        py::arg("w"), "The inverse of square_to_cosine_hemisphere.");
+    bind_map<2, 2>(
+        m, "square_to_disk", "u2", [](const auto& u) { return square_to_disk(u); },
+        "Uniform points (N, 2) of the unit disk from uniform u2 (N, 2).");
+    bind_map<2, 2>(
+        m, "disk_to_square", "p", [](const auto& p) { return disk_to_square(p); },
+        "The inverse of square_to_disk.");
+    bind_map<2, 3>(
+        m, "square_to_cosine_hemisphere", "u2",
+        [](const auto& u) { return square_to_cosine_hemisphere(u); },
+        "Directions (N, 3) around +Z, density cos / pi, from uniform u2 (N, 2).");
+    bind_map<3, 2>(
+        m, "cosine_hemisphere_to_square", "w",
+        [](const auto& w) { return cosine_hemisphere_to_square(w); },
+        "The inverse of square_to_cosine_hemisphere.");
     m.def(
         "square_to_cap",
         [](const py::array& u2, double height) {

@@ -46,9 +46,8 @@ constexpr bool has_kernel(int degree, int channels) {
 }
 
 void colors(const py::array& directions, const py::array& coefficients, py::array out, bool fused) {
-    dispatch_real("sh_colors", "directions", directions, [&](auto real) {
+    dispatch_real("sh_colors", "directions", directions, [&](auto real, ArrayArgs& args) {
         using R = decltype(real);
-        ArrayArgs args("sh_colors");
         const ShRows<R> rows = rows_of<R>(args, directions, coefficients);
         R* to = args.out<R>("colors", out, "N C");
         with_sizes(args, [&](auto degree, auto channels) {
@@ -68,9 +67,8 @@ void colors(const py::array& directions, const py::array& coefficients, py::arra
 void colors_backward(const py::array& directions, const py::array& coefficients,
                      const py::array& d_colors, py::array d_directions, py::array d_coefficients,
                      bool add, bool fused) {
-    dispatch_real("sh_colors_backward", "directions", directions, [&](auto real) {
+    dispatch_real("sh_colors_backward", "directions", directions, [&](auto real, ArrayArgs& args) {
         using R = decltype(real);
-        ArrayArgs args("sh_colors_backward");
         const ShRows<R> rows = rows_of<R>(args, directions, coefficients);
         const R* d_out = args.in<R>("d_colors", d_colors, "N C");
         R* to_directions = args.out<R>("d_directions", d_directions, "N 3");

@@ -38,23 +38,24 @@ SparseSh<R> make_field(ArrayArgs& args, const CellTable& table, const FieldArray
 py::tuple march_field(const CellTable& table, const FieldArrays& parameters,
                       const MarchSettings& settings, double color_offset,
                       const RayArrays& ray_arrays, bool fused, bool skip) {
-    return dispatch_real("march_sparse_sh", "density", parameters[0], [&](auto real) -> py::tuple {
-        using R = decltype(real);
-        ArrayArgs args("march_sparse_sh");
-        const RayBatch<R> rays = ray_batch<R>(args, ray_arrays);
-        const auto field = make_field<R>(args, table, parameters, settings, color_offset);
-        auto looked_up = std::accumulate(rays.samples, rays.samples + rays.count, std::int64_t{0});
-        const auto image =
-            filled_image<R, MarchOutputs<R>>({rays.count}, [&](const MarchOutputs<R>& out) {
-                if constexpr (std::is_same_v<R, float>)
-                    if (fused) {
-                        looked_up = march_sparse_sh(field, rays, settings.march, out, skip);
-                        return;
-                    }
-                march(field, rays, settings.march, out);
-            });
-        return py::make_tuple(image[0], image[1], image[2], looked_up);
-    });
+    return dispatch_real(
+        "march_sparse_sh", "density", parameters[0], [&](auto real, ArrayArgs& args) -> py::tuple {
+            using R = decltype(real);
+            const RayBatch<R> rays = ray_batch<R>(args, ray_arrays);
+            const auto field = make_field<R>(args, table, parameters, settings, color_offset);
+            auto looked_up =
+                std::accumulate(rays.samples, rays.samples + rays.count, std::int64_t{0});
+            const auto image =
+                filled_image<R, MarchOutputs<R>>({rays.count}, [&](const MarchOutputs<R>& out) {
+                    if constexpr (std::is_same_v<R, float>)
+                        if (fused) {
+                            looked_up = march_sparse_sh(field, rays, settings.march, out, skip);
+                            return;
+                        }
+                    march(field, rays, settings.march, out);
+                });
+            return py::make_tuple(image[0], image[1], image[2], looked_up);
+        });
 }
 
 void march_field_backward(const CellTable& table, const FieldArrays& parameters,
@@ -62,24 +63,25 @@ void march_field_backward(const CellTable& table, const FieldArrays& parameters,
                           const RayArrays& ray_arrays, const Arrays<3>& outputs,
                           const Arrays<3>& d_outputs, FieldArrays d_parameters,
                           const std::optional<Arrays<2>>& d_rays, bool fused) {
-    dispatch_real("march_sparse_sh_backward", "density", parameters[0], [&](auto real) {
-        using R = decltype(real);
-        ArrayArgs args("march_sparse_sh_backward");
-        const RayBatch<R> rays = ray_batch<R>(args, ray_arrays);
-        const auto field = make_field<R>(args, table, parameters, settings, color_offset);
-        MarchAdjoint<R> adjoint;
-        const auto out = MarchCotangentArrays{outputs, d_outputs, d_rays}.read<R>(args, adjoint);
-        const SparseShGradients<R> gradients{args.out<R>("d_density", d_parameters[0], "N"),
-                                             args.out<R>("d_sh", d_parameters[1], "N K 3"),
-                                             args.out<R>("d_background", d_parameters[2], "B")};
-        const py::gil_scoped_release release;
-        if constexpr (std::is_same_v<R, float>)
-            if (fused && !adjoint.d_origins)
-                return march_sparse_sh_backward(field, rays, settings.march, out, adjoint,
-                                                gradients);
-        typename SparseSh<R>::Sink sink(field, gradients);
-        march_backward(field, rays, settings.march, out, adjoint, sink);
-    });
+    dispatch_real(
+        "march_sparse_sh_backward", "density", parameters[0], [&](auto real, ArrayArgs& args) {
+            using R = decltype(real);
+            const RayBatch<R> rays = ray_batch<R>(args, ray_arrays);
+            const auto field = make_field<R>(args, table, parameters, settings, color_offset);
+            MarchAdjoint<R> adjoint;
+            const auto out =
+                MarchCotangentArrays{outputs, d_outputs, d_rays}.read<R>(args, adjoint);
+            const SparseShGradients<R> gradients{args.out<R>("d_density", d_parameters[0], "N"),
+                                                 args.out<R>("d_sh", d_parameters[1], "N K 3"),
+                                                 args.out<R>("d_background", d_parameters[2], "B")};
+            const py::gil_scoped_release release;
+            if constexpr (std::is_same_v<R, float>)
+                if (fused && !adjoint.d_origins)
+                    return march_sparse_sh_backward(field, rays, settings.march, out, adjoint,
+                                                    gradients);
+            typename SparseSh<R>::Sink sink(field, gradients);
+            march_backward(field, rays, settings.march, out, adjoint, sink);
+        });
 }
 
 void weights(const CellTable& table, const FieldArrays& parameters, const MarchSettings& settings,
@@ -95,9 +97,8 @@ void weights(const CellTable& table, const FieldArrays& parameters, const MarchS
 template <class Use>
 void with_rows(const char* function, const BrickTopology& topology, const py::array& values,
                Use&& use) {
-    dispatch_real(function, "values", values, [&](auto real) {
+    dispatch_real(function, "values", values, [&](auto real, ArrayArgs& args) {
         using R = decltype(real);
-        ArrayArgs args(function);
         const R* from = args.in<R>("values", values, "N C");
         if (args.size("N") != topology.voxels() || args.size("C") < 1)
             args.range("values", std::to_string(topology.voxels()) + " rows, one a voxel",
@@ -131,9 +132,8 @@ void variation_backward(const BrickTopology& topology, const py::array& values, 
 
 void adam(py::array parameter, const py::array& gradient, py::array mean, py::array mean_square,
           const std::array<double, 4>& step) {
-    dispatch_real("sparse_adam", "parameter", parameter, [&](auto real) {
+    dispatch_real("sparse_adam", "parameter", parameter, [&](auto real, ArrayArgs& args) {
         using R = decltype(real);
-        ArrayArgs args("sparse_adam");
         R* p = args.out<R>("parameter", parameter, "N C");
         const R* g = args.in<R>("gradient", gradient, "N C");
         R* m = args.out<R>("mean", mean, "N C");

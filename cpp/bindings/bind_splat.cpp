@@ -1,4 +1,4 @@
-// Gaussian splatting; photograd.splat is the typed face.
+// Gaussian splatting; photograd.splats.splatting is the typed face.
 #include "module.h"
 #include "photograd/render/splat/splat.h"
 #include "splat_args.h"
@@ -9,19 +9,20 @@ namespace {
 py::object prepare(const GaussianArrays& gaussians, const SplatImage& image,
                    const SplatOptions& options, const py::array& camera_from_world,
                    const py::array& background) {
-    return dispatch_real("splat", "means", gaussians[0], [&](auto real) -> py::object {
-        using R = decltype(real);
-        ArrayArgs args("splat");
-        const auto cloud = cloud_of<R>(args, gaussians);
-        const R* view = args.within<R>("camera_from_world", camera_from_world, "3 4", world_limit);
-        const R* behind = args.in<R>("background", background, "3");
-        SplatFrame<R> frame;
-        {
-            const py::gil_scoped_release release;
-            frame = prepare_splats(cloud, image, options, view, behind);
-        }
-        return py::cast(std::move(frame));
-    });
+    return dispatch_real(
+        "splat", "means", gaussians[0], [&](auto real, ArrayArgs& args) -> py::object {
+            using R = decltype(real);
+            const auto cloud = cloud_of<R>(args, gaussians);
+            const R* view =
+                args.within<R>("camera_from_world", camera_from_world, "3 4", world_limit);
+            const R* behind = args.in<R>("background", background, "3");
+            SplatFrame<R> frame;
+            {
+                const py::gil_scoped_release release;
+                frame = prepare_splats(cloud, image, options, view, behind);
+            }
+            return py::cast(std::move(frame));
+        });
 }
 
 template <class R>

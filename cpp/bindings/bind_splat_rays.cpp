@@ -1,4 +1,4 @@
-// Gaussians along rays; photograd.splat_rays is the typed face.
+// Gaussians along rays; photograd.splats.rays is the typed face.
 #include <optional>
 
 #include "photograd/render/splat/splat_rays.h"
@@ -18,27 +18,27 @@ struct PreparedRays {
 py::object prepare(const GaussianArrays& gaussians, const RayOptions& options,
                    const py::array& origins, const py::array& directions,
                    const py::array& background) {
-    return dispatch_real("splat_rays", "means", gaussians[0], [&](auto real) -> py::object {
-        using R = decltype(real);
-        ArrayArgs args("splat_rays");
-        const auto cloud = cloud_of<R>(args, gaussians);
-        const R* from = args.within<R>("origins", origins, "R 3", world_limit);
-        const R* to = args.within<R>("directions", directions, "R 3", world_limit);
-        const R* behind = args.in<R>("background", background, "3");
-        const std::int64_t rays = args.size("R");
-        if (rays >= std::int64_t{1} << 31)
-            args.range("origins", "fewer than 2^31 rays", std::to_string(rays));
-        PreparedRays<R> out{{}, cloud.count};
-        {
-            const py::gil_scoped_release release;
-            out.frame.cloud = prepare_ray_cloud(cloud, options);
-            std::copy_n(behind, 3, out.frame.background);
-            out.frame.origins.assign(from, from + 3 * rays);
-            out.frame.directions.assign(to, to + 3 * rays);
-            out.frame.crossings.resize(static_cast<std::size_t>(rays));
-        }
-        return py::cast(std::move(out));
-    });
+    return dispatch_real(
+        "splat_rays", "means", gaussians[0], [&](auto real, ArrayArgs& args) -> py::object {
+            using R = decltype(real);
+            const auto cloud = cloud_of<R>(args, gaussians);
+            const R* from = args.within<R>("origins", origins, "R 3", world_limit);
+            const R* to = args.within<R>("directions", directions, "R 3", world_limit);
+            const R* behind = args.in<R>("background", background, "3");
+            const std::int64_t rays = args.size("R");
+            if (rays >= std::int64_t{1} << 31)
+                args.range("origins", "fewer than 2^31 rays", std::to_string(rays));
+            PreparedRays<R> out{{}, cloud.count};
+            {
+                const py::gil_scoped_release release;
+                out.frame.cloud = prepare_ray_cloud(cloud, options);
+                std::copy_n(behind, 3, out.frame.background);
+                out.frame.origins.assign(from, from + 3 * rays);
+                out.frame.directions.assign(to, to + 3 * rays);
+                out.frame.crossings.resize(static_cast<std::size_t>(rays));
+            }
+            return py::cast(std::move(out));
+        });
 }
 
 template <class R>

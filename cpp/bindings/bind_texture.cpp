@@ -1,5 +1,5 @@
 // Texture lookups, mip maps and the plan of a texture's recovery. Results are added to, or written
-// into, arrays that the Python face (photograd.texture) makes.
+// into, arrays that the Python face (photograd.textures) makes.
 #include <pybind11/stl.h>
 
 #include <atomic>
@@ -23,18 +23,17 @@ namespace {
 constexpr std::int64_t largest_side = 1 << 16;
 constexpr std::int64_t most_points = std::int64_t{1} << 31;
 
-void check_side(const ArrayArgs& args, std::int64_t height, std::int64_t width) {
+void check_side(const ArrayArgs& args, std::int64_t height, std::int64_t width,
+                const char* name = "shape") {
     if (height < 1 || width < 1 || height > largest_side || width > largest_side)
-        args.range("shape", "1 to " + std::to_string(largest_side) + " texels along each axis",
+        args.range(name, "1 to " + std::to_string(largest_side) + " texels along each axis",
                    std::to_string(height) + " x " + std::to_string(width));
 }
 
 /// The shape that the axes H, W and C of `args` have.
 TextureShape checked_shape(const ArrayArgs& args, const char* name) {
     const std::int64_t h = args.size("H"), w = args.size("W"), c = args.size("C");
-    if (h < 1 || w < 1 || h > largest_side || w > largest_side)
-        args.range(name, "1 to " + std::to_string(largest_side) + " texels along each axis",
-                   std::to_string(h) + " x " + std::to_string(w));
+    check_side(args, h, w, name);
     if (c < 1 || c > max_channels)
         args.range(name, "1 to " + std::to_string(max_channels) + " channels", std::to_string(c));
     return {static_cast<int>(h), static_cast<int>(w)};
@@ -74,9 +73,8 @@ const R* finite_in(ArrayArgs& args, const char* name, const py::array& array, co
 }
 
 void sample_any(const py::array& texture, const py::array& uv, py::array color) {
-    dispatch_real("sample", "texture", texture, [&](auto real) {
+    dispatch_real("sample", "texture", texture, [&](auto real, ArrayArgs& args) {
         using R = decltype(real);
-        ArrayArgs args("sample");
         const ImageView<const R> view = texture_in<R>(args, texture);
         const R* points = args.in<R>("uv", uv, "N 2");
         R* out = args.out<R>("out", color, "N C");
@@ -91,9 +89,8 @@ void sample_any(const py::array& texture, const py::array& uv, py::array color) 
 
 void sample_any_backward(const py::array& texture, const py::array& uv, const py::array& d_color,
                          std::optional<py::array> d_texture, std::optional<py::array> d_uv) {
-    dispatch_real("sample_backward", "texture", texture, [&](auto real) {
+    dispatch_real("sample_backward", "texture", texture, [&](auto real, ArrayArgs& args) {
         using R = decltype(real);
-        ArrayArgs args("sample_backward");
         const ImageView<const R> view = texture_in<R>(args, texture);
         const R* points = finite_in<R>(args, "uv", uv, "N 2");
         const R* d_out = args.in<R>("d_color", d_color, "N C");
@@ -135,7 +132,7 @@ std::vector<ImageView<T>> mips_in(const char* function, const char* name,
 
 void build(std::vector<py::array> mips) {
     if (mips.empty()) fail(ErrorKind::range, "build_mips", "mips", "at least one level", "none");
-    dispatch_real("build_mips", "texture", mips[0], [&](auto real) {
+    dispatch_real("build_mips", "texture", mips[0], [&](auto real, ArrayArgs&) {
         using R = decltype(real);
         const auto views = mips_in<R, R>("build_mips", "mips", mips);
         const py::gil_scoped_release release;
@@ -147,7 +144,7 @@ void build(std::vector<py::array> mips) {
 void build_backward(std::vector<py::array> d_mips) {
     const char* name = "build_mips_backward";
     if (d_mips.empty()) fail(ErrorKind::range, name, "d_mips", "at least one level", "none");
-    dispatch_real(name, "d_mips", d_mips[0], [&](auto real) {
+    dispatch_real(name, "d_mips", d_mips[0], [&](auto real, ArrayArgs&) {
         using R = decltype(real);
         const auto views = mips_in<R, R>(name, "d_mips", d_mips);
         const py::gil_scoped_release release;
@@ -157,24 +154,23 @@ void build_backward(std::vector<py::array> d_mips) {
 }
 
 py::array level_of(std::int64_t height, std::int64_t width, const py::array& footprint) {
-    return dispatch_real("mip_level", "footprint", footprint, [&](auto real) -> py::array {
-        using R = decltype(real);
-        ArrayArgs args("mip_level");
-        const R* d = finite_in<R>(args, "footprint", footprint, "N 2 2");
-        check_side(args, height, width);
-        py::array_t<R> level(args.size("N"));
-        mip_level({static_cast<int>(height), static_cast<int>(width)}, d, args.size("N"),
-                  level.mutable_data());
-        return level;
-    });
+    return dispatch_real("mip_level", "footprint", footprint,
+                         [&](auto real, ArrayArgs& args) -> py::array {
+                             using R = decltype(real);
+                             const R* d = finite_in<R>(args, "footprint", footprint, "N 2 2");
+                             check_side(args, height, width);
+                             py::array_t<R> level(args.size("N"));
+                             mip_level({static_cast<int>(height), static_cast<int>(width)}, d,
+                                       args.size("N"), level.mutable_data());
+                             return level;
+                         });
 }
 
 void sample_mips_any(std::vector<py::array> mips, const py::array& uv, const py::array& level,
                      py::array color) {
-    dispatch_real("sample_mips", "uv", uv, [&](auto real) {
+    dispatch_real("sample_mips", "uv", uv, [&](auto real, ArrayArgs& args) {
         using R = decltype(real);
         const auto views = mips_in<R, const R>("sample_mips", "mips", mips);
-        ArrayArgs args("sample_mips");
         const R* points = finite_in<R>(args, "uv", uv, "N 2");
         const R* levels = finite_in<R>(args, "level", level, "N");
         R* out = args.out<R>("out", color, "N " + std::to_string(views[0].channels));
@@ -187,11 +183,10 @@ void sample_mips_any_backward(std::vector<py::array> mips, const py::array& uv,
                               const py::array& level, const py::array& d_color,
                               std::vector<py::array> d_mips, py::array d_uv, py::array d_level) {
     const char* name = "sample_mips_backward";
-    dispatch_real(name, "uv", uv, [&](auto real) {
+    dispatch_real(name, "uv", uv, [&](auto real, ArrayArgs& args) {
         using R = decltype(real);
         const auto views = mips_in<R, const R>(name, "mips", mips);
         const auto d_views = mips_in<R, R>(name, "d_mips", d_mips);
-        ArrayArgs args(name);
         if (views.size() != d_views.size())
             args.range("d_mips", std::to_string(views.size()) + " levels as in mips",
                        std::to_string(d_views.size()));
@@ -215,9 +210,8 @@ struct BoundPlan {
 
 BoundPlan make_plan(std::int64_t height, std::int64_t width, const py::array& uv,
                     const py::array& target) {
-    return dispatch_real("TexturePlan", "uv", uv, [&](auto real) -> BoundPlan {
+    return dispatch_real("TexturePlan", "uv", uv, [&](auto real, ArrayArgs& args) -> BoundPlan {
         using R = decltype(real);
-        ArrayArgs args("TexturePlan");
         const R* points = finite_in<R>(args, "uv", uv, "N 2");
         const R* colors = args.in<R>("colors", target, "N C");
         const std::int64_t channels = args.size("C"), count = args.size("N");
@@ -261,27 +255,21 @@ std::pair<ImageView<const R>, const R*> pictures_in(ArrayArgs& args, const py::a
 }
 
 double ssim_any(const py::array& x, const py::array& y) {
-    double value = 0;
-    dispatch_real("ssim", "x", x, [&](auto real) {
-        ArrayArgs args("ssim");
+    return dispatch_real("ssim", "x", x, [&](auto real, ArrayArgs& args) -> double {
         const auto [view, other] = pictures_in<decltype(real)>(args, x, y);
         const py::gil_scoped_release release;
-        value = ssim(view, other);
+        return ssim(view, other);
     });
-    return value;
 }
 
 double ssim_any_backward(const py::array& x, const py::array& y, double d_value, py::array d_x) {
-    double value = 0;
-    dispatch_real("ssim_backward", "x", x, [&](auto real) {
+    return dispatch_real("ssim_backward", "x", x, [&](auto real, ArrayArgs& args) -> double {
         using R = decltype(real);
-        ArrayArgs args("ssim_backward");
         const auto [view, other] = pictures_in<R>(args, x, y);
         R* d_pixels = args.out<R>("d_x", d_x, "H W C");
         const py::gil_scoped_release release;
-        value = ssim_backward(view, other, d_value, d_pixels);
+        return ssim_backward(view, other, d_value, d_pixels);
     });
-    return value;
 }
 
 }  // namespace

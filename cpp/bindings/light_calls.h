@@ -79,23 +79,15 @@ template <class R, class L>
 py::array radiance_rows(ArrayArgs& args, const L& light, const py::array& points,
                         const py::array& w) {
     const R *x = args.in<R>("points", points, "N 3"), *in = args.in<R>("w", w, "N 3");
-    py::array_t<R> out({args.size("N"), std::int64_t(3)});
-    R* value = out.mutable_data();
-    for_each_row(args.size("N"), [&](std::int64_t n) {
-        put_vec3(value, n, light_radiance(light, vec3_at(x, n), vec3_at(in, n)));
-    });
-    return out;
+    return vector_rows<R>(
+        args, [&](std::int64_t n) { return light_radiance(light, vec3_at(x, n), vec3_at(in, n)); });
 }
 
 template <class R, class L>
 py::array pdf_rows(ArrayArgs& args, const L& light, const py::array& points, const py::array& w) {
     const R *x = args.in<R>("points", points, "N 3"), *in = args.in<R>("w", w, "N 3");
-    py::array_t<R> out(args.size("N"));
-    R* density = out.mutable_data();
-    for_each_row(args.size("N"), [&](std::int64_t n) {
-        density[n] = light_pdf(light, vec3_at(x, n), vec3_at(in, n));
-    });
-    return out;
+    return value_rows<R>(
+        args, [&](std::int64_t n) { return light_pdf(light, vec3_at(x, n), vec3_at(in, n)); });
 }
 
 /// Adds the derivative of one row to d_row, zeros at first; `of_sample`: w is a direction that

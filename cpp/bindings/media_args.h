@@ -110,11 +110,14 @@ std::vector<Medium<R>> media_of(const PathGeometry& geometry,
     return out;
 }
 
-/// Whether two media scatter by the same kind of phase function, or both by none.
+/// Refuses media that do not scatter by the same kinds of phase functions as others.
 template <class R>
-bool same_phase(const Medium<R>& a, const Medium<R>& b) {
-    return a.phase.has_value() == b.phase.has_value() &&
-           (!a.phase || a.phase->model.index() == b.phase->model.index());
+void check_phases(const ArrayArgs& args, const char* name, std::span<const Medium<R>> media,
+                  std::span<const Medium<R>> others) {
+    const auto kind = [](const Medium<R>& m) { return m.phase ? m.phase->model.index() + 1 : 0; };
+    for (std::size_t i = 0; i < others.size(); ++i)
+        if (kind(media[i]) != kind(others[i]))
+            args.range(name, "the same phase functions as media", "others");
 }
 
 }  // namespace photograd

@@ -70,6 +70,23 @@ void for_each_row(std::int64_t count, Body&& body) {
     });
 }
 
+/// A fresh array (N, 3), row n of which is vector(n).
+template <class R, class Vector>
+py::array vector_rows(const ArrayArgs& args, Vector&& vector) {
+    py::array_t<R> out({args.size("N"), std::int64_t(3)});
+    R* to = out.mutable_data();
+    for_each_row(args.size("N"), [&](std::int64_t n) { put_vec3(to, n, vector(n)); });
+    return out;
+}
+/// A fresh array (N,) of value(n).
+template <class R, class Value>
+py::array value_rows(const ArrayArgs& args, Value&& value) {
+    py::array_t<R> out(args.size("N"));
+    R* to = out.mutable_data();
+    for_each_row(args.size("N"), [&](std::int64_t n) { to[n] = value(n); });
+    return out;
+}
+
 inline constexpr int max_row = 64;  // numbers of one model
 
 /// Adds derivatives to d_parameters, `size` numbers a row: derivative(i, d) adds those of

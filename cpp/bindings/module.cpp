@@ -14,6 +14,7 @@ PYBIND11_MODULE(_core, m) {
     photograd::bind_principled(m);
     photograd::bind_light(m);
     photograd::bind_phase(m);
+    photograd::bind_diffusion(m);
     photograd::bind_scene(m);
     photograd::bind_path(m);
     photograd::bind_path_tangent(m);

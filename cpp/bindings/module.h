@@ -15,6 +15,7 @@ void bind_geometry(py::module_& m);
 void bind_bsdf(py::module_& m);
 void bind_light(py::module_& m);
 void bind_phase(py::module_& m);
+void bind_diffusion(py::module_& m);
 void bind_scene(py::module_& m);
 void bind_path_tangent(py::module_& m);
 void bind_particles(py::module_& m);

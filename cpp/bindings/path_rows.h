@@ -7,11 +7,7 @@
 
 namespace photograd {
 
-inline py::list colors(const Vec3<double>& v) {
-    py::list out;
-    for (int c = 0; c < 3; ++c) out.append(v[c]);
-    return out;
-}
+inline py::list colors(const Vec3<double>& v) { return py::cast(std::array{v.x, v.y, v.z}); }
 
 /// (medium, kind, length, position, value) of each event of a product.
 inline py::list event_rows(const Path<double>& path, const Range& events) {

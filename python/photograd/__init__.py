@@ -1,7 +1,15 @@
 """Recover scenes from photographs by gradient descent: forward and adjoint renderers, proved.
 
-Importing the package needs the compiled core; `photograd.data` and `photograd.errors` do not use
-it.
+    capture = photograd.load_capture("photos")
+    model = photograd.fit(capture, "dense_grid", resolution=64, bar=True)
+    picture = photograd.render(model, capture.test[0].camera)  # (H, W, 3), to be shown
+
+    room = photograd.builtin_scene("cornell-box")  # or read_scene("room.toml"), read_model("a.glb")
+    found = photograd.recover(room, [photograph], ["materials.red.albedo"])
+
+What most need is here; packages have the rest, and are imported when they are first asked for.
+All but `photograd.errors`, `photograd.types`, `photograd.images` and `photograd.capture` need the
+compiled core.
 """
 
 from __future__ import annotations
@@ -10,35 +18,132 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from photograd import fields as fields
-    from photograd.representation import (
-        Gradients,
-        Outputs,
-        ParamSpec,
-        RayBatch,
-        Representation,
-        representations,
+    from photograd import (
+        bsdf,
+        capture,
+        errors,
+        fields,
+        fitting,
+        geometry,
+        grids,
+        images,
+        lights,
+        representation,
+        scenes,
+        sh,
+        splats,
+        textures,
+        transport,
+        types,
+    )
+    from photograd._render import render
+    from photograd.capture import Camera, Capture, View, estimate_bounds, load_capture
+    from photograd.errors import Error
+    from photograd.fields import DenseGrid, GaussianScene, OctreeSh, SparseSh, representations
+    from photograd.fitting import Fit, FitOptions, Model, fit, load_model
+    from photograd.fitting.evaluate import evaluate
+    from photograd.geometry.mesh import Bvh, Mesh
+    from photograd.images import read_image
+    from photograd.representation import Representation
+    from photograd.splats import Gaussians
+    from photograd.transport import (
+        Material,
+        PathOptions,
+        PathTracer,
+        RecoveryOptions,
+        Scene,
+        Target,
+        Unknown,
+        builtin_scene,
+        read_model,
+        read_scene,
+        recover,
     )
 
 __version__ = "0.1.0"
 
-_WHERE = {
-    "Gradients": "photograd.representation",
-    "Outputs": "photograd.representation",
-    "ParamSpec": "photograd.representation",
-    "RayBatch": "photograd.representation",
-    "Representation": "photograd.representation",
-    "representations": "photograd.representation",
+_HOME = {
+    "photograd._render": "render",
+    "photograd.capture": "Camera Capture View estimate_bounds load_capture",
+    "photograd.errors": "Error",
+    "photograd.fields": "DenseGrid GaussianScene OctreeSh SparseSh representations",
+    "photograd.fitting.evaluate": "evaluate",
+    "photograd.fitting": "Fit FitOptions Model fit load_model",
+    "photograd.geometry.mesh": "Bvh Mesh",
+    "photograd.images": "read_image",
+    "photograd.representation": "Representation",
+    "photograd.splats": "Gaussians",
+    "photograd.transport": "Material PathOptions PathTracer Scene builtin_scene read_scene",
+    "photograd.transport.inverse": "RecoveryOptions Target Unknown recover",
+    "photograd.transport.mesh_files": "read_model",
 }
+"""Names at the door, by the module in which each is defined."""
 
 __all__ = [
-    "Gradients", "Outputs", "ParamSpec", "RayBatch", "Representation", "fields", "representations",
-]  # fmt: skip
+    "Bvh",
+    "Camera",
+    "Capture",
+    "DenseGrid",
+    "Error",
+    "Fit",
+    "FitOptions",
+    "GaussianScene",
+    "Gaussians",
+    "Material",
+    "Mesh",
+    "Model",
+    "OctreeSh",
+    "PathOptions",
+    "PathTracer",
+    "RecoveryOptions",
+    "Representation",
+    "Scene",
+    "SparseSh",
+    "Target",
+    "Unknown",
+    "View",
+    "bsdf",
+    "builtin_scene",
+    "capture",
+    "errors",
+    "estimate_bounds",
+    "evaluate",
+    "fields",
+    "fit",
+    "fitting",
+    "geometry",
+    "grids",
+    "images",
+    "lights",
+    "load_capture",
+    "load_model",
+    "read_image",
+    "read_model",
+    "read_scene",
+    "recover",
+    "render",
+    "representation",
+    "representations",
+    "scenes",
+    "sh",
+    "splats",
+    "textures",
+    "transport",
+    "types",
+]
+
+_MODULE_OF = {name: module for module, names in _HOME.items() for name in names.split()}
 
 
 def __getattr__(name: str) -> Any:
-    if name == "fields":
-        return import_module("photograd.fields")
-    if name in _WHERE:
-        return getattr(import_module(_WHERE[name]), name)
-    raise AttributeError(f"module 'photograd' has no attribute {name!r}")
+    if name in _MODULE_OF:
+        globals()[name] = getattr(import_module(_MODULE_OF[name]), name)
+    elif name in __all__:
+        import_module(f"photograd.{name}")  # which becomes an attribute
+    else:
+        raise AttributeError(f"module 'photograd' has no attribute {name!r}")
+    return globals()[name]
+
+
+def __dir__() -> list[str]:
+    return [*__all__, "__version__"]

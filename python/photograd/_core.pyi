@@ -46,6 +46,12 @@ __all__: list[str] = [
     "cosine_hemisphere_to_square",
     "cover_texels",
     "delta_bsdfs",
+    "diffusion_cdf",
+    "diffusion_cdf_backward",
+    "dipole",
+    "dipole_albedo",
+    "dipole_albedo_backward",
+    "dipole_backward",
     "disk_to_square",
     "dual_buffer_backward",
     "emit_particles",
@@ -62,6 +68,8 @@ __all__: list[str] = [
     "max_samples",
     "mip_level",
     "mip_shapes",
+    "normalized_diffusion",
+    "normalized_diffusion_backward",
     "ops",
     "order_by_depth",
     "phases",
@@ -77,6 +85,8 @@ __all__: list[str] = [
     "sample_backward",
     "sample_bricks",
     "sample_bricks_backward",
+    "sample_diffusion_radius",
+    "sample_diffusion_radius_backward",
     "sample_mips",
     "sample_mips_backward",
     "sampled_lights",
@@ -100,6 +110,7 @@ __all__: list[str] = [
     "trace_paths",
     "trace_paths_backward",
     "trace_paths_tangent",
+    "trace_photons",
     "trace_reference",
     "uniform",
     "write_vdb",
@@ -756,39 +767,6 @@ class PhotonMap:
         """
         (N, 3) W/m^2 at points (N, 3) with geometric normals (N, 3), float64.
         """
-    def trace(
-        self,
-        geometry: PathGeometry,
-        models: collections.abc.Sequence[str],
-        parameters: numpy.ndarray,
-        emission: numpy.ndarray,
-        lights: collections.abc.Sequence[tuple[typing.Any, ...]],
-        textures: collections.abc.Sequence[numpy.ndarray],
-        media: collections.abc.Sequence[
-            tuple[
-                str,
-                numpy.ndarray,
-                numpy.ndarray | None,
-                typing.SupportsFloat | typing.SupportsIndex,
-            ]
-        ],
-        camera: tuple[typing.Any, ...],
-        options: tuple[
-            typing.SupportsInt | typing.SupportsIndex,
-            typing.SupportsInt | typing.SupportsIndex,
-            typing.SupportsInt | typing.SupportsIndex,
-            typing.SupportsInt | typing.SupportsIndex,
-            typing.SupportsInt | typing.SupportsIndex,
-            typing.SupportsInt | typing.SupportsIndex,
-        ],
-        first: typing.SupportsInt | typing.SupportsIndex,
-        count: typing.SupportsInt | typing.SupportsIndex,
-        radiance: numpy.ndarray,
-        squares: numpy.ndarray,
-    ) -> None:
-        """
-        Adds samples of a picture, as trace_paths does.
-        """
 
 class TexturePlan:
     """
@@ -1255,6 +1233,40 @@ def cover_texels(
     inside of more than one face) of a mesh with coordinates (V, 2) float32 and faces (F, 3) uint32.
     """
 
+def diffusion_cdf(rows: numpy.ndarray, fit: str) -> numpy.ndarray:
+    """
+    Part of the light within the radius, (N,) of rows (N, 3).
+    """
+
+def diffusion_cdf_backward(
+    rows: numpy.ndarray, fit: str, d_values: numpy.ndarray, d_rows: numpy.ndarray
+) -> None:
+    """
+    Adds to d_rows (N, 3) for d_values (N,).
+    """
+
+def dipole(rows: numpy.ndarray) -> numpy.ndarray:
+    """
+    R_d (N,) in 1/m^2 of rows (N, 4): radius, sigma_s', sigma_a, eta.
+    """
+
+def dipole_albedo(rows: numpy.ndarray) -> numpy.ndarray:
+    """
+    Integrals (N,) of R_d over the plane; rows (N, 3) without the radius.
+    """
+
+def dipole_albedo_backward(
+    rows: numpy.ndarray, d_values: numpy.ndarray, d_rows: numpy.ndarray
+) -> None:
+    """
+    Adds to d_rows (N, 3) for d_values (N,).
+    """
+
+def dipole_backward(rows: numpy.ndarray, d_values: numpy.ndarray, d_rows: numpy.ndarray) -> None:
+    """
+    Adds to d_rows (N, 4) for d_values (N,).
+    """
+
 def disk_to_square(p: numpy.ndarray) -> numpy.ndarray:
     """
     The inverse of square_to_disk.
@@ -1404,6 +1416,18 @@ def mip_shapes(
     Height and width of every level of a mip map.
     """
 
+def normalized_diffusion(rows: numpy.ndarray, fit: str) -> numpy.ndarray:
+    """
+    R (N,) in 1/m^2 of rows (N, 3): radius, albedo, mean free path.
+    """
+
+def normalized_diffusion_backward(
+    rows: numpy.ndarray, fit: str, d_values: numpy.ndarray, d_rows: numpy.ndarray
+) -> None:
+    """
+    Adds to d_rows (N, 3) for d_values (N,).
+    """
+
 def order_by_depth(depth: numpy.ndarray, far_first: bool) -> numpy.typing.NDArray[numpy.uint32]:
     """
     Rows (N,) uint32 by depth (N,) float64, none below 0; equals keep their order.
@@ -1529,6 +1553,18 @@ def sample_bricks_backward(
 ) -> None:
     """
     Adds the derivatives to the last three.
+    """
+
+def sample_diffusion_radius(rows: numpy.ndarray, fit: str) -> numpy.ndarray:
+    """
+    Radii (N,) of rows (N, 3): u, albedo, mean free path.
+    """
+
+def sample_diffusion_radius_backward(
+    rows: numpy.ndarray, fit: str, d_values: numpy.ndarray, d_rows: numpy.ndarray
+) -> None:
+    """
+    Adds to d_rows (N, 3) for d_values (N,).
     """
 
 def sample_mips(
@@ -1724,14 +1760,14 @@ def trace_paths(
     geometry: PathGeometry,
     models: collections.abc.Sequence[str],
     parameters: numpy.ndarray,
-    sampling_parameters: numpy.ndarray | None,
     emission: numpy.ndarray,
     lights: collections.abc.Sequence[tuple[typing.Any, ...]],
     textures: collections.abc.Sequence[numpy.ndarray],
-    sampling_textures: collections.abc.Sequence[numpy.ndarray] | None,
     media: collections.abc.Sequence[
         tuple[str, numpy.ndarray, numpy.ndarray | None, typing.SupportsFloat | typing.SupportsIndex]
     ],
+    sampling_parameters: numpy.ndarray | None,
+    sampling_textures: collections.abc.Sequence[numpy.ndarray] | None,
     sampling_media: collections.abc.Sequence[
         tuple[str, numpy.ndarray, numpy.ndarray | None, typing.SupportsFloat | typing.SupportsIndex]
     ]
@@ -1823,6 +1859,35 @@ def trace_paths_tangent(
     """
     As trace_paths, and adds to d_radiance (H, W, 3) and d_squares how the samples change along v,
     which has the shapes of what it moves. float64.
+    """
+
+def trace_photons(
+    geometry: PathGeometry,
+    models: collections.abc.Sequence[str],
+    parameters: numpy.ndarray,
+    emission: numpy.ndarray,
+    lights: collections.abc.Sequence[tuple[typing.Any, ...]],
+    textures: collections.abc.Sequence[numpy.ndarray],
+    media: collections.abc.Sequence[
+        tuple[str, numpy.ndarray, numpy.ndarray | None, typing.SupportsFloat | typing.SupportsIndex]
+    ],
+    map: PhotonMap,
+    camera: tuple[typing.Any, ...],
+    options: tuple[
+        typing.SupportsInt | typing.SupportsIndex,
+        typing.SupportsInt | typing.SupportsIndex,
+        typing.SupportsInt | typing.SupportsIndex,
+        typing.SupportsInt | typing.SupportsIndex,
+        typing.SupportsInt | typing.SupportsIndex,
+        typing.SupportsInt | typing.SupportsIndex,
+    ],
+    first: typing.SupportsInt | typing.SupportsIndex,
+    count: typing.SupportsInt | typing.SupportsIndex,
+    radiance: numpy.ndarray,
+    squares: numpy.ndarray,
+) -> None:
+    """
+    Adds samples of a picture, as trace_paths does.
     """
 
 def trace_reference(

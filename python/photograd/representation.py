@@ -1,8 +1,8 @@
 """The protocol that every scene representation speaks, and the registry of those that exist.
 
-One optimiser loop (`photograd.fit`), one gradient viewer and one set of proofs serve everything
-that is registered here. Parameters are NumPy arrays; what is expensive to rebuild lives in C++
-objects.
+One optimiser loop (`photograd.fitting.loop`), one gradient viewer and one set of proofs serve
+everything that is registered here. Parameters are NumPy arrays; what is expensive to rebuild lives
+in C++ objects.
 """
 
 from __future__ import annotations
@@ -16,13 +16,12 @@ import numpy as np
 from numpy.typing import NDArray
 from photograd_course.optim import Gradient
 from photograd_course.row_map import RowMap
-from photograd_course.suggest import nearest
 
-from photograd.data.camera import Camera
+from photograd._checks import require_finite
+from photograd.capture.camera import Camera
 from photograd.errors import RangeError, ShapeError, message
-from photograd.finite import require_finite
+from photograd.types import Array
 
-Array: TypeAlias = NDArray[Any]
 Gradients: TypeAlias = Mapping[str, Gradient]
 """dL/d parameter by group: an array of the parameter's shape, or (rows, values): rows (M,) int64
 strictly increasing, values (M, ...), for parameters of which only some rows were touched."""
@@ -209,29 +208,11 @@ class Prior:
     gradient: Callable[..., Array]
 
 
-_REGISTRY: dict[str, type[Representation]] = {}
+REGISTERED: dict[str, type[Representation]] = {}
+"""By name; `photograd.fields.representations` fills it, by importing them all."""
 
 
 def register(cls: type[Representation]) -> type[Representation]:
     """Class decorator: makes a representation known to fit, viewers and proofs under `cls.name`."""
-    _REGISTRY[cls.name] = cls
+    REGISTERED[cls.name] = cls
     return cls
-
-
-def representations() -> dict[str, type[Representation]]:
-    """All registered representations by name."""
-    import photograd.fields  # noqa: F401  registration happens on import
-
-    return dict(_REGISTRY)
-
-
-def representation(name: str) -> type[Representation]:
-    """The representation called `name`; an unknown name is answered with the nearest known one."""
-    known = representations()
-    if name in known:
-        return known[name]
-    near = nearest(name, known)
-    remedy = f"did you mean {near!r}?" if near else "choose one of these"
-    raise RangeError(
-        message("representation", "name", f"one of {sorted(known)}", repr(name), remedy)
-    )

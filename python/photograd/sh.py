@@ -8,15 +8,15 @@ a wrong sign shows in the odd degrees only. [Sloan2008]
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from photograd.core import _core
+from photograd._compiled import _core
 from photograd.errors import RangeError, ShapeError, message
+from photograd.types import Array
 
-Array = NDArray[Any]
 Convention = Literal["splat", "no_phase"]
 MAX_DEGREE = 4
 Y_0 = 0.28209479177387814

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from photograd.core import _core
+from photograd._compiled import _core
 from photograd_course.cli.entry import run
 
 from tests.fit import scene

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from photograd.data.exr import read_exr
+from photograd.images.exr import read_exr
 from photograd.transport import bake_ambient_occlusion, builtin_scene, read_texture
 from PIL import Image
 

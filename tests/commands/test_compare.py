@@ -6,14 +6,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from photograd.checkpoint import load_checkpoint
-from photograd.compare import Contender, Score, markdown, parse_contenders
-from photograd.data.images import read_image
-from photograd.data.load import load_capture
+from photograd.capture.load import load_capture
 from photograd.errors import RangeError
-from photograd.evaluate import evaluate
-from photograd.fit import Fit
-from photograd.model import load_model
+from photograd.fitting.checkpoint import load_checkpoint
+from photograd.fitting.compare import Contender, Score, markdown, parse_contenders
+from photograd.fitting.evaluate import evaluate
+from photograd.fitting.loop import Fit
+from photograd.fitting.model import load_model
+from photograd.images.read import read_image
 
 from tests.commands.conftest import Photograd
 

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from photograd.data.gaussian_files import read_gaussians, write_gaussians
-from photograd.data.gaussian_header import Presentation
-from photograd.splat_orbit import orbit_splats
+from photograd.splats.files import read_gaussians, write_gaussians
+from photograd.splats.frames import Presentation
+from photograd.splats.orbit import orbit_splats
 from PIL import Image
 
 from tests.commands.conftest import Photograd

@@ -20,12 +20,12 @@ kind = "point"
 position = [1, 3, 2]
 intensity = [9, 8, 7]
 [materials.paint]
-model = "clearcoat"
+model = "gltf_sheen"
 base_color = [0.5, 0.25, 0.125]
 metalness = 0
 roughness = 0.5
-coat = 0.75
-coat_roughness = 0.25
+sheen_color_factor = [0.75, 0.5, 0.25]
+sheen_roughness_factor = 0.5
 [[shapes]]
 kind = "box"
 name = "cube"
@@ -47,7 +47,7 @@ def test_a_scene_becomes_gltf(photograd: Photograd, tmp_path: Path) -> None:
     assert [type(light).__name__ for light in model.lights] == ["PointLight"]
     np.testing.assert_allclose(np.degrees(model.cameras[0].field_of_view), 30)
     material = model.materials["paint"]
-    assert material.model == "clearcoat"
+    assert material.model == "gltf_sheen"
     np.testing.assert_array_equal(material.values["base_color"], [0.5, 0.25, 0.125])
     again = photograd("convert", tmp_path / "s.glb", tmp_path / "s.gltf", "--json")
     assert again.code == 0, again.err

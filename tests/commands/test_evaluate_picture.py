@@ -6,12 +6,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from photograd.capture.load import load_capture
 from photograd.commands import compare
 from photograd.commands.evaluate import picked_views
-from photograd.compare import parse_contenders
-from photograd.data.load import load_capture
-from photograd.evaluate import evaluate
-from photograd.model import load_model
+from photograd.fitting.compare import parse_contenders
+from photograd.fitting.evaluate import evaluate
+from photograd.fitting.model import load_model
 from photograd_course import viz
 
 from support import capture_files as files

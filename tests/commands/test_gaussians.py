@@ -7,18 +7,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from photograd.capture.orbit import orbit_cameras
 from photograd.commands.fit import PLY_NAME, exported
-from photograd.data.gaussian_frame import half_turn
-from photograd.data.gaussian_header import Presentation
-from photograd.data.gaussian_ply import read_gaussian_ply
-from photograd.data.images import read_image
-from photograd.evaluate import display_image
-from photograd.fit import Fit
-from photograd.fit_options import options_for
-from photograd.model import load_model
-from photograd.orbit import orbit_cameras
-from photograd.representation import Array
-from photograd.splat_orbit import orbit_splats
+from photograd.fitting.evaluate import display_image
+from photograd.fitting.loop import Fit
+from photograd.fitting.model import load_model
+from photograd.fitting.options import options_for
+from photograd.images.read import read_image
+from photograd.splats.frames import Presentation, half_turn
+from photograd.splats.orbit import orbit_splats
+from photograd.splats.ply_files import read_gaussian_ply
+from photograd.types import Array
 from photograd_course.cli.entry import run
 from PIL import Image
 

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from photograd.data.images import read_image
-from photograd.snapshots import load_snapshots
-from photograd.voxel_rows import active_voxels
+from photograd.fitting.model import load_snapshots
+from photograd.fitting.voxel_gradients import active_voxels
+from photograd.images.read import read_image
 
 from tests.commands.conftest import Photograd
 

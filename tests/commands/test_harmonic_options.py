@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from photograd.checkpoint import load_checkpoint
-from photograd.compare import Contender
-from photograd.fit_options import FitOptions, options_for
+from photograd.fitting.checkpoint import load_checkpoint
+from photograd.fitting.compare import Contender
+from photograd.fitting.options import FitOptions, options_for
 
 from tests.commands.conftest import Photograd
 from tests.commands.test_bad_input import FEW, assert_one_line

@@ -12,10 +12,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.checkpoint import Checkpoint, load_checkpoint
-from photograd.data.load import load_capture
-from photograd.fit import Fit
-from photograd.fit_options import FitOptions
+from photograd.capture.load import load_capture
+from photograd.fitting.checkpoint import Checkpoint, load_checkpoint
+from photograd.fitting.loop import Fit
+from photograd.fitting.options import FitOptions
 from photograd_course.random import uniform
 
 # Levels of 8, 16 and 32 voxels, from steps 0, 180 and 480 on; some seconds in all, so that a kill

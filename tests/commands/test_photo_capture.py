@@ -6,8 +6,8 @@ import sys
 from pathlib import Path
 
 import pytest
-from photograd.commands.photo_capture import beside
-from photograd.sfm import reconstruct
+from photograd.capture.sfm import reconstruct
+from photograd.commands.capture import beside
 
 from tests.commands.conftest import Photograd
 from tests.sfm.fake import FakeEngine, photographs

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from photograd.data.image_write import write_exr
+from photograd.images.write import write_exr
 from PIL import Image
 
 from tests.commands.conftest import Photograd

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from photograd.data.gaussian_files import write_gaussians
+from photograd.splats.files import write_gaussians
 from PIL import Image
 
 from tests.commands.conftest import Photograd

@@ -11,7 +11,7 @@ import time
 from pathlib import Path
 
 import pytest
-from photograd.run_lock import LOCK_NAME, one_run_for, one_run_in
+from photograd._run_lock import LOCK_NAME, one_run_for, one_run_in
 
 from tests.commands.conftest import FIT, Photograd
 from tests.commands.test_interruptions import start
@@ -44,7 +44,7 @@ HOLD = """
 import sys
 import time
 from pathlib import Path
-from photograd.run_lock import one_run_in
+from photograd._run_lock import one_run_in
 with one_run_in("fit", Path(sys.argv[1])):
     print("held", flush=True)
     sys.stdin.readline()

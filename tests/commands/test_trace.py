@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from photograd.data.exr import read_exr
-from photograd.data.images import read_image
+from photograd.images.exr import read_exr
+from photograd.images.read import read_image
 from PIL import Image
 
 from tests.commands.conftest import Photograd

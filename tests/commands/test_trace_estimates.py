@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from photograd.data.exr import read_exr
+from photograd.images.exr import read_exr
 from PIL import Image
 
 from tests.commands.conftest import Photograd

@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from photograd.commands.trace import load_scene
-from photograd.data.exr import read_exr
 from photograd.errors import SceneError
+from photograd.images.exr import read_exr
 
 from tests.commands.conftest import Photograd
 from tests.transport.gltf_samples import core, extension, square

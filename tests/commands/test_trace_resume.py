@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.data.exr import encode_exr, read_exr
+from photograd.images.exr import encode_exr, read_exr
 from photograd.transport import PathTracer
 from PIL import Image
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.core import _core
+from photograd._compiled import _core
 from photograd_course.errors import DtypeError, RangeError, ShapeError
 
 from tests.render.rays import settings

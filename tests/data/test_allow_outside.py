@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from photograd.data import load_capture
+from photograd.capture import load_capture
 from photograd_course.errors import IoError
 from tests.commands.conftest import (
     Photograd,

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.data import load_capture
+from photograd.capture import load_capture
 from photograd_course.errors import Error, IoError, RangeError, SceneError, ShapeError
 
 from support import capture_files as files

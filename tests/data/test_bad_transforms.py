@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.data import load_capture
+from photograd.capture import load_capture
 from photograd_course.errors import Error, IoError, RangeError, SceneError
 from PIL import Image
 
@@ -158,7 +158,7 @@ def test_an_image_that_changed_after_loading(tmp_path: Path) -> None:
 
 
 def test_mixed_colour_spaces(tmp_path: Path) -> None:
-    from photograd.data import write_exr
+    from photograd.images import write_exr
 
     nerfstudio(tmp_path, frame(1, file_path="images/1.exr"))
     write_exr(tmp_path / "images/1.exr", np.ones((20, 24, 3), dtype=np.float32))

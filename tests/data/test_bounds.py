@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from photograd.data import (
+from photograd.capture import (
     Camera,
     Capture,
     View,
@@ -16,7 +16,7 @@ from photograd.data import (
     require_views_of,
     sees_box,
 )
-from photograd.data.hull import silhouettes_of, visual_hull_box
+from photograd.capture.bounds import silhouettes_of, visual_hull_box
 from photograd_course.errors import SceneError
 
 from support.capture_files import SPHERE_CENTRE, SPHERE_RADIUS, look_at, orbit, picture

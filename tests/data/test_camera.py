@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from photograd.data import Camera
+from photograd.capture import Camera
 from photograd_course.errors import DtypeError, Error, RangeError, SceneError, ShapeError
 
 from support.capture_files import orbit

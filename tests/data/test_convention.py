@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from photograd.data import Camera, load_capture
-from photograd.data.convention import meeting_of_axes
+from photograd.capture import Camera, load_capture
+from photograd.capture.convention import meeting_of_axes
 from photograd_course.errors import SceneError
 
 from support import capture_files as files

@@ -8,7 +8,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from photograd.data import Camera, Capture, Distortion, downscale_image, load_capture
+from photograd.capture import Camera, Capture, Distortion, load_capture
+from photograd.images import downscale_image
 from PIL import Image
 
 from support import capture_files as files

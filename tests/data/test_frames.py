@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from photograd.data.frames import (
+from photograd.capture.frames import (
     OPENGL_FROM_OPENCV,
     Y_UP_FROM_Z_UP,
     check_pose,

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from photograd.data.gaussian_ply import read_gaussian_ply, write_gaussian_ply
 from photograd.errors import IoError
-from photograd.splat import Gaussians
+from photograd.splats.ply_files import read_gaussian_ply, write_gaussian_ply
+from photograd.splats.splatting import Gaussians
 from plyfile import PlyData
 from tests.splat import oracle
 

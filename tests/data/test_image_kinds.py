@@ -10,10 +10,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.data import read_image, write_jpeg, write_png
-from photograd.data.images import read_header
+from photograd.capture.sfm.photographs import copy_photographs, find_photographs
 from photograd.errors import IoError
-from photograd.sfm.photographs import copy_photographs, find_photographs
+from photograd.images import read_image, write_jpeg, write_png
+from photograd.images.read import read_header
 from photograd.transport.texture import read_texture
 from PIL import Image
 

@@ -11,9 +11,9 @@ from pathlib import Path
 import numpy as np
 import OpenEXR
 import pytest
-from photograd.data import read_image, write_exr, write_png
-from photograd.data.images import read_header
-from photograd.sfm.photographs import find_photographs
+from photograd.capture.sfm.photographs import find_photographs
+from photograd.images import read_image, write_exr, write_png
+from photograd.images.read import read_header
 from photograd.transport import read_model
 from photograd.transport.texture import read_texture
 from photograd_course.errors import IoError

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from photograd.data import downscale_image, read_image, write_exr, write_jpeg, write_png
-from photograd.data.images import read_header
+from photograd.images import downscale_image, read_image, write_exr, write_jpeg, write_png
+from photograd.images.read import read_header
 from photograd_course.errors import Error, IoError, RangeError, ShapeError
 from PIL import Image
 

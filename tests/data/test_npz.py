@@ -10,10 +10,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.checkpoint import load_checkpoint
-from photograd.data.gaussian_npz import read_point_npz
-from photograd.data.npz import read_npz
+from photograd._files import read_npz
 from photograd.errors import IoError
+from photograd.fitting.checkpoint import load_checkpoint
+from photograd.splats.splat_files import read_point_npz
 
 
 def claimed(path: Path, shape: tuple[int, ...], **others: Any) -> Path:

@@ -9,11 +9,12 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 import pytest
-from photograd.data import Capture, load_capture, read_image
-from photograd.data.colmap import reproject
-from photograd.data.frames import Y_UP_FROM_Z_UP
-from photograd.data.point_ply import read_point_ply
+from photograd.capture import Capture, load_capture
+from photograd.capture.colmap import reproject
+from photograd.capture.frames import Y_UP_FROM_Z_UP
+from photograd.capture.nerfstudio import read_point_ply
 from photograd.errors import IoError, ShapeError
+from photograd.images import read_image
 from plyfile import PlyData, PlyElement
 
 from support import capture_files as files

@@ -9,11 +9,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from photograd.data import read_image
-from photograd.data.image_write import write_exr, write_radiance
-from photograd.data.images import read_header, read_radiance
-from photograd.data.rgbe_rows import packed_rows, unpacked_rows
 from photograd.errors import Error, IoError, RangeError, ShapeError
+from photograd.images import read_image
+from photograd.images.read import read_header, read_radiance
+from photograd.images.rgbe import packed_rows, unpacked_rows
+from photograd.images.write import write_exr, write_radiance
 
 RNG = np.random.default_rng(3)
 HDR = b"#?RADIANCE\n# a comment\nFORMAT=32-bit_rle_rgbe\n"

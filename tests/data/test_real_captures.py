@@ -6,10 +6,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from photograd.data import Capture, View, estimate_bounds, load_capture, read_image
-from photograd.data.colmap import reproject
-from photograd.data.colmap_model import read_text_model
-from photograd.data.frames import invert_rigid
+from photograd.capture import Capture, View, estimate_bounds, load_capture
+from photograd.capture.colmap import reproject
+from photograd.capture.colmap_model import read_text_model
+from photograd.capture.frames import invert_rigid
+from photograd.images import read_image
 
 
 def mean_reprojection_error(capture: Capture, model_folder: Path) -> tuple[float, int]:

@@ -8,22 +8,21 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from photograd.checkpoint import load_checkpoint
-from photograd.data import load_capture, read_image
-from photograd.data.colmap_binary import read_binary_model
-from photograd.data.colmap_model import read_text_model
-from photograd.data.gaussian_files import holds_gaussians, read_gaussians
-from photograd.data.images import read_header
-from photograd.data.npy import read_npy
-from photograd.data.npz import read_npz
-from photograd.data.point_ply import read_point_ply
+from photograd._files import read_npy, read_npz
+from photograd.capture import load_capture
+from photograd.capture.colmap_model import read_binary_model, read_text_model
+from photograd.capture.nerfstudio import read_point_ply
+from photograd.capture.sfm.photographs import find_photographs
 from photograd.errors import Error, IoError
-from photograd.sfm.photographs import find_photographs
+from photograd.fitting.checkpoint import load_checkpoint
+from photograd.grids.vdb import read_vdb
+from photograd.grids.volumes import read_volume
+from photograd.images import read_image
+from photograd.images.read import read_header
+from photograd.splats.files import holds_gaussians, read_gaussians
 from photograd.transport import read_model, read_scene
 from photograd.transport.accumulation import load_accumulation
 from photograd.transport.density_files import read_density
-from photograd.vdb import read_vdb
-from photograd.volumes import read_volume
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="FIFOs are of POSIX systems")
 BOX: dict[str, Any] = {"corner": [0, 0, 0], "size": [1, 1, 1]}

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from photograd.data import Camera, Distortion, distort, undistort, undistort_image
-from photograd.data.undistort import distort_jacobian, inside_fold
+from photograd.capture import Camera, Distortion, distort, undistort, undistort_image
+from photograd.capture.undistort import distort_jacobian, inside_fold
 from photograd_course.errors import RangeError, ShapeError
 
 LENSES = [

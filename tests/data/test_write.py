@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from photograd.data import Camera, load_capture, write_blender_capture
-from photograd.data.write import Frame
+from photograd.capture import Camera, load_capture, write_blender_capture
+from photograd.capture.write import Frame
 from photograd_course.errors import Error, IoError, RangeError, SceneError, ShapeError
 
 from support.capture_files import edit_json, look_at, orbit, picture, write_blender

@@ -6,14 +6,14 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.data.camera import Camera
+from photograd.capture.camera import Camera
 from photograd.errors import DtypeError, ShapeError
 from photograd.fields import Gaussians2D
 from photograd.fields import gaussians_2d as module
 from photograd.representation import CanvasBatch, Outputs, RenderOptions
 from photograd.sh import Y_0
-from photograd.splat import Gaussians, SplatOptions
-from photograd.splat import render as splat
+from photograd.splats.splatting import Gaussians, SplatOptions
+from photograd.splats.splatting import render as splat
 
 
 def drawn(field: Gaussians2D, points: Any) -> Any:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from photograd.errors import RangeError, ShapeError
 from photograd.fields import DenseGrid, OctreeSh
-from photograd.octree import Octree
+from photograd.grids.octree import Octree
 from photograd.representation import Outputs, RayBatch, RenderOptions
 from photograd_course.gradcheck import check_gradient
 from photograd_course.optim import Adam

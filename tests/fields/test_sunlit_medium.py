@@ -11,13 +11,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.core import _core
+from photograd._compiled import _core
+from photograd.bsdf.phase import phase_function
 from photograd.errors import DtypeError, RangeError, ShapeError
 from photograd.fields import SunlitMedium
-from photograd.mesh import Bvh, Mesh
-from photograd.phase import phase_function
+from photograd.fields.sunlit_medium import sun_visibility
+from photograd.geometry.mesh import Bvh, Mesh
 from photograd.representation import Outputs, RayBatch, RenderOptions
-from photograd.sun_visibility import sun_visibility
 from photograd_course.gradcheck import check_gradient
 
 pytestmark = pytest.mark.usefixtures("core")

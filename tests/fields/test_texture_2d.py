@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from photograd.errors import DtypeError, ShapeError
 from photograd.fields import Texture2D
-from photograd.texture import sample, sample_backward
+from photograd.textures import sample, sample_backward
 from photograd_course.gradcheck import check_gradient, dot_product_error
 
 # Row 0: 1 2 3, row 1: 10 20 30; the second channel is minus the first, the third its square.

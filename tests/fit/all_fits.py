@@ -13,11 +13,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from photograd.data.load import load_capture
-from photograd.fields.fitted import FITTED
-from photograd.fit import Fit
-from photograd.fit_options import DENSITY_CONTROLS, options_for
-from photograd.model import Model
+from photograd.capture.load import load_capture
+from photograd.fitting.loop import Fit
+from photograd.fitting.model import Model
+from photograd.fitting.options import DENSITY_CONTROLS, options_for
+from photograd.fitting.start import FITTED
 
 # Few steps, but with every event: levels, pruning, clones, splits, motion of faint Gaussians.
 JOBS: dict[str, dict[str, Any]] = {

@@ -7,16 +7,16 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from photograd.data.camera import Camera
-from photograd.data.capture import Capture
-from photograd.data.view import View
-from photograd.data.write import write_blender_capture
-from photograd.evaluate import render_camera
+from photograd.capture.camera import Camera
+from photograd.capture.capture import Capture
+from photograd.capture.orbit import orbit_cameras
+from photograd.capture.view import View
+from photograd.capture.write import write_blender_capture
 from photograd.fields import DenseGrid
 from photograd.fields.march import MarchPolicy
-from photograd.fit_options import FitOptions
-from photograd.model import Model
-from photograd.orbit import orbit_cameras
+from photograd.fitting.evaluate import render_camera
+from photograd.fitting.model import Model
+from photograd.fitting.options import FitOptions
 from photograd_course.color import srgb_encode, unpremultiply
 
 BOX = np.array([[-0.8, -0.6, -0.7], [0.8, 0.6, 0.7]])

@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from photograd.checkpoint import Checkpoint, load_checkpoint, save_checkpoint
 from photograd.errors import Error, IoError
-from photograd.fit import Fit
-from photograd.model import load_model
+from photograd.fitting.checkpoint import Checkpoint, load_checkpoint, save_checkpoint
+from photograd.fitting.loop import Fit
+from photograd.fitting.model import load_model
 
 from tests.fit import scene
 

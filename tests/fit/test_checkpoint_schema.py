@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 import pytest
 from photograd.errors import DtypeError, Error, IoError, RangeError
-from photograd.fit import Fit
-from photograd.fit_options import FitOptions
-from photograd.model import load_model
+from photograd.fitting.loop import Fit
+from photograd.fitting.model import load_model
+from photograd.fitting.options import FitOptions
 
 from tests.fit import scene
 

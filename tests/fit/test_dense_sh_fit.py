@@ -5,10 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-from photograd.checkpoint import load_checkpoint
 from photograd.fields import DenseSh
-from photograd.fit import Fit
-from photograd.model import load_model
+from photograd.fitting.checkpoint import load_checkpoint
+from photograd.fitting.loop import Fit
+from photograd.fitting.model import load_model
 
 from tests.fit import scene
 from tests.fit.test_resume import assert_same, run

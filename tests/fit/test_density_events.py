@@ -6,11 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from photograd.fields.gaussians import GaussianScene
-from photograd.fit import Fit
-from photograd.fit_options import DENSITY_CONTROLS, options_for
-from photograd.picture_loss import picture_loss
+from photograd.fitting.loop import Fit
+from photograd.fitting.loss import picture_loss
+from photograd.fitting.options import DENSITY_CONTROLS, options_for
 from photograd.representation import ImageBatch, RenderOptions
+from photograd.splats.model import GaussianScene
 
 from tests.splats.scene import cloud_capture
 

@@ -9,14 +9,14 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.data.camera import Camera
-from photograd.data.capture import Capture
-from photograd.data.view import View
-from photograd.density_gradient import density_gradient, voxel_masks
+from photograd.capture.camera import Camera
+from photograd.capture.capture import Capture
+from photograd.capture.orbit import orbit_cameras
+from photograd.capture.view import View
 from photograd.errors import RangeError
 from photograd.fields import DenseGrid
-from photograd.orbit import orbit_cameras
-from photograd.pixels import TrainingPixels
+from photograd.fitting.data import TrainingPixels
+from photograd.fitting.voxel_gradients import density_gradient, voxel_masks
 from photograd_course.gradcheck import check_gradient
 from photograd_course.viz import sign_report
 

@@ -9,13 +9,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd import evaluate as module
-from photograd.data.undistort import Distortion
-from photograd.data.view import View
+from photograd.capture.undistort import Distortion
+from photograd.capture.view import View
 from photograd.errors import RangeError
-from photograd.evaluate import Evaluation, display_image, evaluate, truth_image
 from photograd.fields import DenseGrid
-from photograd.model import Model
+from photograd.fitting import evaluate as module
+from photograd.fitting.evaluate import Evaluation, display_image, evaluate, truth_image
+from photograd.fitting.model import Model
 from photograd_course.metrics import psnr, ssim
 from PIL import Image
 

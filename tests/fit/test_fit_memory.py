@@ -8,13 +8,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from photograd.data import load_capture
+from photograd.capture import load_capture
 from photograd.errors import RangeError
-from photograd.fit import Fit
-from photograd.fit_memory import COPIES, require_room_to_start
-from photograd.fit_options import options_for
-from photograd.pixels import TrainingPixels
-from photograd.training_views import TrainingViews
+from photograd.fitting.checks import COPIES, require_room_to_start
+from photograd.fitting.data import TrainingPixels, TrainingViews
+from photograd.fitting.loop import Fit
+from photograd.fitting.options import options_for
 from PIL import Image
 
 from support import capture_files as files
@@ -55,7 +54,7 @@ def test_the_estimate_of_a_grid_is_what_it_holds(monkeypatch: pytest.MonkeyPatch
     assert held == COPIES * 16 * 32 * 24 * 28  # the box is 1.6 x 1.2 x 1.4 m
     pixels = 48 * 24 * 24 * len(scene.capture().train)
     for room, enough in ((held + pixels + 4800, True), (held + pixels + 4799, False)):
-        monkeypatch.setattr("photograd.fit_memory.available_memory", lambda room=room: room)
+        monkeypatch.setattr("photograd.fitting.checks.available_memory", lambda room=room: room)
         if enough:
             require_room_to_start(scene.capture(), scene.BOX, options)
         else:
@@ -64,7 +63,7 @@ def test_the_estimate_of_a_grid_is_what_it_holds(monkeypatch: pytest.MonkeyPatch
 
 
 def test_photographs_beyond_memory_are_to_be_reduced(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("photograd.fit_memory.available_memory", lambda: 100_000)
+    monkeypatch.setattr("photograd.fitting.checks.available_memory", lambda: 100_000)
     for name in ("dense_grid", "gaussians"):
         options = options_for(name, resolution=8, rays=1, gaussians=1)
         with pytest.raises(RangeError, match=r"capture: .*pixels to learn from.*--downscale"):
@@ -72,7 +71,7 @@ def test_photographs_beyond_memory_are_to_be_reduced(monkeypatch: pytest.MonkeyP
 
 
 def test_the_advice_can_be_followed(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("photograd.fit_memory.available_memory", lambda: 8 << 20)
+    monkeypatch.setattr("photograd.fitting.checks.available_memory", lambda: 8 << 20)
     with pytest.raises(RangeError, match=r"\(--resolution (\d+) takes half") as caught:
         require_room_to_start(scene.capture(), scene.BOX, scene.options(resolution=128, rays=9))
     less = int(str(caught.value).split("--resolution ")[1].split()[0])

@@ -7,13 +7,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from photograd.core import _core
+from photograd._compiled import _core
 from photograd.errors import RangeError, SceneError
-from photograd.evaluate import evaluate
-from photograd.fields.gaussians import GaussianScene
-from photograd.fit import Fit
-from photograd.fit_options import FitOptions, options_for
-from photograd.model import Model, load_model
+from photograd.fitting.evaluate import evaluate
+from photograd.fitting.loop import Fit
+from photograd.fitting.model import Model, load_model
+from photograd.fitting.options import FitOptions, options_for
+from photograd.splats.model import GaussianScene
 
 from tests.splats.scene import cloud_capture
 

@@ -5,15 +5,15 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-from photograd.data.camera import Camera
-from photograd.data.capture import Capture
-from photograd.data.view import View
-from photograd.evaluate import evaluate, render_camera
+from photograd.capture.camera import Camera
+from photograd.capture.capture import Capture
+from photograd.capture.view import View
 from photograd.fields import SparseSh
 from photograd.fields.active_voxels import ActiveVoxels
 from photograd.fields.march import MarchPolicy
-from photograd.fit import Fit
-from photograd.model import load_model
+from photograd.fitting.evaluate import evaluate, render_camera
+from photograd.fitting.loop import Fit
+from photograd.fitting.model import load_model
 from photograd_course.color import srgb_encode, unpremultiply
 
 from tests.fit.scene import BOX, as_model, cameras, options

@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.backgrounds import (
+from photograd.errors import ShapeError
+from photograd.fitting.data import (
     background_kind,
     constant_background,
     first_background,
@@ -14,8 +15,7 @@ from photograd.backgrounds import (
     learned_background_backward,
     random_background,
 )
-from photograd.errors import ShapeError
-from photograd.imaging import image_loss, image_loss_backward
+from photograd.fitting.loss import image_loss, image_loss_backward
 from photograd.representation import Outputs
 from photograd_course.color import srgb_decode, srgb_encode
 from photograd_course.gradcheck import check_gradient, taylor_slope

@@ -6,15 +6,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from photograd.compare import parse_contenders, source_of
-from photograd.data.capture import Capture
+from photograd.capture.capture import Capture
 from photograd.errors import RangeError, ShapeError
-from photograd.evaluate import evaluate
 from photograd.fields import OctreeSh, SparseSh
-from photograd.fit import Fit
-from photograd.model import Model, load_model
-from photograd.octree import Octree, tree_of_leaves
-from photograd.row_adam import RowAdam
+from photograd.fitting.compare import parse_contenders, source_of
+from photograd.fitting.evaluate import evaluate
+from photograd.fitting.loop import Fit
+from photograd.fitting.model import Model, load_model
+from photograd.fitting.steps import RowAdam
+from photograd.grids.octree import Octree, tree_of_leaves
 
 from tests.fit import scene
 from tests.fit.test_resume import assert_same, run

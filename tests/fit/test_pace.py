@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from photograd.fit import Fit
-from photograd.fit_result import Pace, Progress
+from photograd.fitting.loop import Fit
+from photograd.fitting.options import Pace, Progress
 
 from tests.fit import scene
 
@@ -24,10 +24,10 @@ def test_one_long_step_among_short_ones_does_not_hide_their_pace(
         fit.history.append((fit.step_number, 0.5, 3.0))
         return 0.5
 
-    monkeypatch.setattr("photograd.fit.time.perf_counter", lambda: now)
+    monkeypatch.setattr("photograd.fitting.loop.time.perf_counter", lambda: now)
     monkeypatch.setattr(Fit, "step", step)
     monkeypatch.setattr(Fit, "save", lambda *_: None)
-    monkeypatch.setattr("photograd.fit.save_snapshot", lambda *_: None)
+    monkeypatch.setattr("photograd.fitting.loop.save_snapshot", lambda *_: None)
     seen: list[Progress] = []
     fit = Fit.start(scene.capture(), scene.options(steps=200, rays=2048))
     fit.run(tmp_path, on_step=seen.append)

@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.data.camera import Camera
-from photograd.data.view import View
+from photograd.capture.camera import Camera
+from photograd.capture.view import View
 from photograd.errors import RangeError
-from photograd.picture_loss import picture_loss, picture_loss_backward
+from photograd.fitting.data import TrainingView, TrainingViews
+from photograd.fitting.loss import picture_loss, picture_loss_backward
 from photograd.representation import Outputs
-from photograd.training_views import TrainingView, TrainingViews
 from photograd_course.gradcheck import check_gradient
 from photograd_course.mutants import check_mutants
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 from numpy._core import _multiarray_umath as umath
-from photograd.data.write import write_blender_capture
+from photograd.capture.write import write_blender_capture
 from PIL import Image
 
 from tests.fit import scene

@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.core import _core
-from photograd.data.view import View
-from photograd.evaluate import as_result, evaluate
+from photograd._compiled import _core
+from photograd.capture.view import View
 from photograd.fields import DenseGrid
-from photograd.fit import Fit
-from photograd.fit_options import FitOptions
-from photograd.model import Model
+from photograd.fitting.evaluate import as_result, evaluate
+from photograd.fitting.loop import Fit
+from photograd.fitting.model import Model
+from photograd.fitting.options import FitOptions
 from photograd.representation import RayBatch, RenderOptions
 from photograd_course.color import srgb_encode
 from photograd_course.gradcheck import check_gradient

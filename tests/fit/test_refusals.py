@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.checkpoint import load_checkpoint
 from photograd.errors import Error, RangeError, SceneError
-from photograd.evaluate import evaluate
-from photograd.fit import Fit
-from photograd.fit_options import FitOptions
-from photograd.pixels import TrainingPixels
+from photograd.fitting.checkpoint import load_checkpoint
+from photograd.fitting.data import TrainingPixels
+from photograd.fitting.evaluate import evaluate
+from photograd.fitting.loop import Fit
+from photograd.fitting.options import FitOptions
 
 from tests.fit import scene
 
@@ -121,7 +121,7 @@ def test_a_grid_that_does_not_fit_into_memory_is_refused_before_it_is_made(
     coarse = fit.model.resolution
     fit.step()
     fit.step()
-    monkeypatch.setattr("photograd.memory.available_memory", lambda: 100_000)
+    monkeypatch.setattr("photograd._memory.available_memory", lambda: 100_000)
     with pytest.raises(RangeError, match=rf"room for a grid of 16 .*with --resolution {coarse}"):
         fit.step()
     monkeypatch.undo()

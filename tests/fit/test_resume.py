@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.checkpoint import load_checkpoint
-from photograd.data.load import load_capture
+from photograd.capture.load import load_capture
 from photograd.errors import RangeError
-from photograd.fit import Fit
-from photograd.snapshots import load_snapshots
+from photograd.fitting.checkpoint import load_checkpoint
+from photograd.fitting.loop import Fit
+from photograd.fitting.model import load_snapshots
 
 from tests.fit import scene
 

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.data.view import View
-from photograd.orbit import orbit_cameras
-from photograd.sign_claim import sign_claim
+from photograd.capture.orbit import orbit_cameras
+from photograd.capture.view import View
+from photograd.fitting.sign_claim import sign_claim
 
 from tests.fit.test_density_gradient import BOX, ball, photograph, start
 

@@ -7,16 +7,14 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.checkpoint import load_checkpoint
-from photograd.evaluate import evaluate
 from photograd.fields import SparseSh
 from photograd.fields.active_voxels import dilated
-from photograd.fit import Fit
-from photograd.fit_options import FitOptions
-from photograd.fit_pruning import prune_voxels
-from photograd.model import load_model
-from photograd.row_adam import RowAdam
-from photograd.snapshots import load_snapshots
+from photograd.fitting.checkpoint import load_checkpoint
+from photograd.fitting.evaluate import evaluate
+from photograd.fitting.loop import Fit
+from photograd.fitting.model import load_model, load_snapshots
+from photograd.fitting.options import FitOptions
+from photograd.fitting.steps import RowAdam, prune_voxels
 from photograd_course.optim import Adam
 
 from tests.fit import scene
@@ -76,7 +74,7 @@ def test_no_voxel_that_wants_density_is_lost_at_any_pruning_of_a_fit(
         assert not field.active.mask.all()
         return rows
 
-    monkeypatch.setattr("photograd.fit.prune_voxels", spy)
+    monkeypatch.setattr("photograd.fitting.loop.prune_voxels", spy)
     fit = Fit.start(scene.capture(), scene.options(**{**OPTIONS, "rays": 512}))
     assert fit.options.prune == FitOptions().prune == 0.02
     while fit.step_number <= 20:

@@ -7,12 +7,12 @@ from typing import Any
 import numpy as np
 import pytest
 from photograd.fields import DenseGrid, SparseSh
-from photograd.fields.fitted import FittedField
-from photograd.fields.gaussians import GaussianScene
 from photograd.fields.march import MarchPolicy
-from photograd.fit import Fit
-from photograd.fit_options import FitOptions
-from photograd.step_check import VISIBLE, step_change
+from photograd.fitting.evaluate import VISIBLE, step_change
+from photograd.fitting.loop import Fit
+from photograd.fitting.options import FitOptions
+from photograd.fitting.start import FittedField
+from photograd.splats.model import GaussianScene
 
 from tests.fit import scene
 

@@ -8,12 +8,18 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.density_gradient import density_gradient, voxel_masks
 from photograd.fields import DenseGrid, DenseSh, OctreeSh, SparseSh
 from photograd.fields.active_voxels import ActiveVoxels
-from photograd.fields.fitted import VoxelField
-from photograd.pixels import TrainingPixels
-from photograd.voxel_rows import active_voxels, density_rows, to_voxels, voxel_shape
+from photograd.fitting.data import TrainingPixels
+from photograd.fitting.start import VoxelField
+from photograd.fitting.voxel_gradients import (
+    active_voxels,
+    density_gradient,
+    density_rows,
+    to_voxels,
+    voxel_masks,
+    voxel_shape,
+)
 from photograd_course.gradcheck import check_gradient
 from PIL import Image
 

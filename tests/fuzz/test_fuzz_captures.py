@@ -18,14 +18,8 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, Phase, given, seed, settings
 from hypothesis import strategies as st
-from photograd.data import (
-    estimate_bounds,
-    load_capture,
-    read_image,
-    write_exr,
-    write_png,
-    write_radiance,
-)
+from photograd.capture import estimate_bounds, load_capture
+from photograd.images import read_image, write_exr, write_png, write_radiance
 from photograd_course.errors import Error
 from PIL import Image
 

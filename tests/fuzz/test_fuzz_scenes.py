@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, Phase, given, seed, settings
 from hypothesis import strategies as st
-from photograd.data.exr import encode_exr
 from photograd.errors import IoError, SceneError
+from photograd.images.exr import encode_exr
 from photograd.transport import Scene, read_scene
 from PIL import Image
 from tests.transport import test_light_files as lights

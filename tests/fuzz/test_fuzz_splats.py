@@ -9,10 +9,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from photograd.data.gaussian_files import read_gaussians, write_gaussians
-from photograd.data.gaussian_ply import read_gaussian_ply, write_gaussian_ply
-from photograd.data.point_ply import read_point_ply
+from photograd.capture.nerfstudio import read_point_ply
 from photograd.errors import IoError
+from photograd.splats.files import read_gaussians, write_gaussians
+from photograd.splats.ply_files import read_gaussian_ply, write_gaussian_ply
 from tests.gaussian_files.words import ROW, write_words
 from tests.splat import oracle
 

@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, Phase, given, seed, settings
 from hypothesis import strategies as st
-from photograd.vdb import write_vdb
+from photograd.grids.vdb import write_vdb
 
 from grid.solids import spotted_grid
 from support.tree import ROOT
@@ -30,7 +30,7 @@ READER = """
 import sys
 from pathlib import Path
 from photograd.errors import IoError
-from photograd.vdb import read_vdb
+from photograd.grids.vdb import read_vdb
 from support.memory_limit import limit_memory
 limit_memory(4 << 30)
 for line in sys.stdin:

@@ -12,7 +12,7 @@ import pytest
 from hypothesis import HealthCheck, Phase, given, seed, settings
 from hypothesis import strategies as st
 from photograd.errors import IoError
-from photograd.volumes import read_volume
+from photograd.grids.volumes import read_volume
 from tests.volumes.files import mitsuba, nifti, values, vtk
 
 pytestmark = pytest.mark.fuzz

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from photograd.data.gaussian_files import holds_gaussians, read_gaussians
-from photograd.data.gaussian_npz import neighbour_spacing
 from photograd.errors import IoError
 from photograd.sh import Y_0
+from photograd.splats.files import holds_gaussians, read_gaussians
+from photograd.splats.splat_files import neighbour_spacing
 
 from tests.gaussian_files.words import ROW, write_words
 

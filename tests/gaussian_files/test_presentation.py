@@ -7,11 +7,18 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from photograd.data.gaussian_files import read_gaussians, write_gaussians
-from photograd.data.gaussian_frame import UP_AXES, file_from_upright, half_turn, with_usual_up
-from photograd.data.gaussian_header import UNSTATED, Presentation, dropped
 from photograd.errors import IoError, RangeError
-from photograd.splat import render
+from photograd.splats.files import read_gaussians, write_gaussians
+from photograd.splats.frames import (
+    UNSTATED,
+    UP_AXES,
+    Presentation,
+    dropped,
+    file_from_upright,
+    half_turn,
+    with_usual_up,
+)
+from photograd.splats.splatting import render
 from plyfile import PlyData
 
 from tests.splat import oracle

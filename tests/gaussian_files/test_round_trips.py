@@ -7,12 +7,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from photograd.data.gaussian_coding import Difference, differences
-from photograd.data.gaussian_files import codings_of, read_gaussians, write_gaussians
-from photograd.data.gaussian_frame import half_turn
 from photograd.errors import IoError, RangeError
 from photograd.sh import Y_0
-from photograd.splat import Gaussians, render
+from photograd.splats.coding import Difference, differences
+from photograd.splats.files import codings_of, read_gaussians, write_gaussians
+from photograd.splats.frames import half_turn
+from photograd.splats.splatting import Gaussians, render
 
 from tests.splat import oracle
 

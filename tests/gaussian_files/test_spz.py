@@ -8,10 +8,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from photograd.data.gaussian_files import read_gaussians
 from photograd.errors import IoError
 from photograd.sh import Y_0
-from photograd.splat import Gaussians
+from photograd.splats.files import read_gaussians
+from photograd.splats.splatting import Gaussians
 
 
 def three_bytes(value: int) -> bytes:

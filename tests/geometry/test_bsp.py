@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from photograd.errors import RangeError, SceneError, ShapeError
 from photograd.geometry import BspTree
-from photograd.mesh import Mesh
+from photograd.geometry.mesh import Mesh
 from photograd.scenes.shapes import ico_sphere
 from photograd_course.random import uniform
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from photograd.core import _core
-from photograd.mesh import Bvh, Hits, Instance, Mesh
+from photograd._compiled import _core
+from photograd.geometry.mesh import Bvh, Hits, Instance, Mesh
 from photograd_course.random import uniform
 
 from .shapes import Array, brute_force, bumpy_sphere, camera_rays, random_rays

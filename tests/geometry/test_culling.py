@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.data.camera import Camera
+from photograd.capture.camera import Camera
+from photograd.capture.orbit import look_at
 from photograd.errors import RangeError, ShapeError
 from photograd.geometry import CullingTree, Frustum, order_by_distance
-from photograd.mesh import Bvh, Mesh
-from photograd.orbit import look_at
+from photograd.geometry.mesh import Bvh, Mesh
 from photograd_course.random import uniform
 
 from .shapes import Array

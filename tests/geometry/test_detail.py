@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from photograd.data.camera import Camera
+from photograd.capture.camera import Camera
+from photograd.capture.orbit import look_at
 from photograd.errors import RangeError
 from photograd.geometry import LevelsOfDetail, clustered, nearest_on_mesh
-from photograd.mesh import Bvh, Mesh
-from photograd.orbit import look_at
+from photograd.geometry.mesh import Bvh, Mesh
 from photograd.scenes.shapes import torus
 from photograd_course.random import uniform
 

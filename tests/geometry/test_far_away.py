@@ -7,16 +7,16 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from photograd.core import _core
+from photograd._compiled import _core
 from photograd.errors import RangeError, SceneError
-from photograd.mesh import Bvh, Instance, Mesh
+from photograd.geometry.mesh import Bvh, Instance, Mesh
 
 from support.child import answers
 
 BEGIN = """
 import numpy as np
-from photograd.core import _core
-from photograd.mesh import Bvh, Mesh
+from photograd._compiled import _core
+from photograd.geometry.mesh import Bvh, Mesh
 V = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], np.float32)
 F = np.array([[0, 1, 2]])
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from photograd.errors import DtypeError, Error, RangeError, SceneError, ShapeError
-from photograd.mesh import Bvh, Hits, Instance, Mesh, drop_degenerate
+from photograd.geometry.mesh import Bvh, Hits, Instance, Mesh, drop_degenerate
 
 from .shapes import bumpy_sphere, random_rays
 

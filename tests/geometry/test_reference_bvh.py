@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.core import _core
+from photograd._compiled import _core
 from photograd.errors import Error, RangeError, SceneError, ShapeError
 from photograd.geometry import BvhHits, ReferenceBvh
-from photograd.mesh import Bvh, Mesh
+from photograd.geometry.mesh import Bvh, Mesh
 from photograd_course.random import uniform
 
 from .shapes import Array, brute_force, bumpy_sphere, camera_rays, random_rays

@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.core import _core
+from photograd._compiled import _core
 from photograd.errors import DtypeError, Error, RangeError, ShapeError
 from photograd.geometry import Body
-from photograd.geometry.sdf_shapes import (
+from photograd.geometry.sdf import (
     KINDS,
     Shape,
     box,

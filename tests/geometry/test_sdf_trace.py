@@ -6,11 +6,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.core import _core
+from photograd._compiled import _core
 from photograd.errors import RangeError, ShapeError
 from photograd.geometry import Body, SdfHits, draw_body
-from photograd.geometry.sdf import GAVE_UP, HIT, MISSED
-from photograd.geometry.sdf_shapes import box, placed, plane, sphere, union
+from photograd.geometry.sdf import GAVE_UP, HIT, MISSED, box, placed, plane, sphere, union
 from photograd.transport.builtin import camera_at
 from photograd_course.gradcheck import check_gradient
 from photograd_course.mutants import check_mutants

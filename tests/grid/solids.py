@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from photograd.representation import Array
-from photograd.sparse import SparseGrid
+from photograd.grids.sparse import SparseGrid
+from photograd.types import Array
 
 WORLD_FROM_INDEX = np.array(
     [[0.5, 0.1, 0, 1], [0, 0.25, 0, 2], [0, 0.05, 0.125, 3], [0, 0, 0, 1]], np.float64

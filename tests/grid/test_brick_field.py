@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from photograd import _core
-from photograd.bricks import BrickField
 from photograd.errors import RangeError, ShapeError
-from photograd.representation import Array
-from photograd.sparse import SparseGrid
+from photograd.grids.bricks import BrickField
+from photograd.grids.sparse import SparseGrid
+from photograd.types import Array
 
 from grid.solids import ORIGIN, spotted, spotted_grid, trilinear
 

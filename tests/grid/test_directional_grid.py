@@ -7,7 +7,9 @@ from typing import Any
 import numpy as np
 import pytest
 from photograd import sh
-from photograd.directional_grid import (
+from photograd.errors import RangeError, ShapeError
+from photograd.fields.dense_grid import DenseGrid
+from photograd.lights.probes import (
     best_harmonics,
     best_table,
     blend,
@@ -15,11 +17,9 @@ from photograd.directional_grid import (
     evaluate_backward,
     grid_bytes,
     rows_for,
+    sphere_quadrature,
     table_numbers,
 )
-from photograd.errors import RangeError, ShapeError
-from photograd.fields.dense_grid import DenseGrid
-from photograd.probes import sphere_quadrature
 from photograd_course.gradcheck import check_gradient
 
 pytestmark = pytest.mark.usefixtures("core")

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.density_gradient import density_gradient
+from photograd.fitting.voxel_gradients import density_gradient
 
 from support.tree import ROOT
 

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from photograd.commands.render import render
 from photograd.errors import RangeError
-from photograd.fog import GREY, THICK, fog_model
+from photograd.fitting.fog import GREY, THICK, fog_model
+from photograd.grids.sparse import SparseGrid
+from photograd.grids.vdb import write_vdb
 from photograd.representation import RayBatch, RenderOptions
-from photograd.sparse import SparseGrid
-from photograd.vdb import write_vdb
 from PIL import Image
 
 VOXEL = np.diag([0.25, 0.25, 0.25, 1.0])

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import pytest
-from photograd.core import _core
-from photograd.octree import Octree, Quadtree
+from photograd._compiled import _core
+from photograd.grids.octree import Octree, Quadtree
 from photograd_course.random import uniform
 
 Array = npt.NDArray[Any]

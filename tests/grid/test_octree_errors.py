@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 from photograd.errors import DtypeError, Error, RangeError, ShapeError
-from photograd.octree import Octree, Quadtree
+from photograd.grids.octree import Octree, Quadtree
 
 CELLS = np.zeros((4, 4, 4, 2), np.float32)
 TREE = Octree.from_dense(CELLS)

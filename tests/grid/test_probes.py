@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from photograd import sh
 from photograd.errors import DtypeError, RangeError, ShapeError
-from photograd.probes import ProbeGrid, bake, sphere_quadrature
+from photograd.lights.probes import ProbeGrid, bake, sphere_quadrature
 from photograd_course.gradcheck import check_gradient, dot_product_error
 from photograd_course.mutants import check_mutants
 

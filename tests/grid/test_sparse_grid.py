@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from photograd.errors import DtypeError, Error, RangeError, ShapeError
-from photograd.representation import Array
-from photograd.sparse import SparseGrid
+from photograd.grids.sparse import SparseGrid
+from photograd.types import Array
 
 from grid.solids import ORIGIN, WORLD_FROM_INDEX, dilated, spotted, spotted_grid, trilinear
 
@@ -105,7 +105,7 @@ def test_a_dilation_beyond_time_or_memory_is_refused(monkeypatch: pytest.MonkeyP
     for steps in (0, 201, 1000):
         with pytest.raises(RangeError, match=f"steps: expected 1 to 200, got {steps}"):
             grid.dilate(steps)
-    monkeypatch.setattr("photograd.memory.available_memory", lambda: 40_000_000)
+    monkeypatch.setattr("photograd._memory.available_memory", lambda: 40_000_000)
     with pytest.raises(RangeError, match=r"steps: expected room for up to 64,481,201 voxels"):
         grid.dilate(200)
     assert grid.statistics.active_voxels == 1

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from photograd.errors import IoError, RangeError
-from photograd.sparse import SparseGrid
-from photograd.vdb import read_vdb, write_vdb
+from photograd.grids.sparse import SparseGrid
+from photograd.grids.vdb import read_vdb, write_vdb
 
 from grid.solids import ORIGIN, WORLD_FROM_INDEX, spotted, spotted_grid
 

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import pytest
-from photograd.core import _core
+from photograd._compiled import _core
 from photograd.errors import DtypeError, Error, RangeError, ShapeError
-from photograd.voxel_hash import LEAST, MOST, VoxelHash
+from photograd.grids.voxel_hash import LEAST, MOST, VoxelHash
 from photograd_course.random import uniform
 
 Array = npt.NDArray[Any]

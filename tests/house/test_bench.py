@@ -145,7 +145,7 @@ def test_w4_computes_the_workload(w4_row: Row) -> None:
 
 def test_w1_prints_one_line_or_says_that_meshes_are_missing() -> None:
     try:
-        import photograd.mesh  # noqa: F401
+        import photograd.geometry.mesh  # noqa: F401
     except ImportError:
         done = call("w1_rays.py")
         assert (done.returncode, done.stdout) == (2, "")

@@ -9,8 +9,7 @@ from importlib import import_module
 
 import numpy as np
 import pytest
-from photograd import principled
-from photograd.bsdf import registry
+from photograd.bsdf import principled, registry
 
 from support.tree import ROOT
 

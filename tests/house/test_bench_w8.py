@@ -9,8 +9,8 @@ from importlib import import_module
 
 import numpy as np
 import pytest
-from photograd.data.camera import Camera
-from photograd.splat import Gaussians, SplatOptions, render, render_backward
+from photograd.capture.camera import Camera
+from photograd.splats.splatting import Gaussians, SplatOptions, render, render_backward
 from tests.splat import oracle
 
 from support.tree import ROOT

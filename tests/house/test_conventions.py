@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from photograd.data.camera import Camera
-from photograd.data.frames import OPENGL_FROM_OPENCV, Y_UP_FROM_Z_UP, rotation_from_quaternion
+from photograd.capture.camera import Camera
+from photograd.capture.frames import OPENGL_FROM_OPENCV, Y_UP_FROM_Z_UP, rotation_from_quaternion
 
 RIGHT, DOWN, FORWARD = np.eye(3)
 

@@ -13,8 +13,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd import lights, phase
-from photograd.core import _core
+from photograd import lights
+from photograd._compiled import _core
+from photograd.bsdf import phase
 from photograd.transport import (
     DensityGrid,
     Environment,
@@ -33,7 +34,7 @@ from photograd.transport import (
     Texture,
     TextureUse,
 )
-from photograd.transport.scene import MODELS
+from photograd.transport.material import MODELS
 from photograd.transport.texture import FILTERS, WRAPS
 from photograd.transport.tracer import HEURISTICS, SAMPLERS, STRATEGIES
 
@@ -47,7 +48,8 @@ KINDS = (
 )  # fmt: skip
 FUNCTIONS = (
     "trace_paths", "trace_paths_backward", "dual_buffer_backward", "trace_paths_tangent",
-    "trace_path", "emit_particles", "trace_light", "ambient_occlusion", "point_occlusion",
+    "trace_path", "emit_particles", "trace_light", "trace_photons", "ambient_occlusion",
+    "point_occlusion",
 )  # fmt: skip
 
 
@@ -101,6 +103,7 @@ def test_every_part_of_a_scene_is_crossed(tool: Any) -> None:
                 if differs(getattr(part, field.name), field):
                     crossed[type(part)].add(field.name)
     crossed[SdfShape].add("emission")  # refused: signed distance fields do not emit
+    crossed[Material].add("occlusion")  # of ambient light: no path looks at it
     for kind in KINDS:
         assert crossed[kind] == {field.name for field in dataclasses.fields(kind)}, kind
     assert used[Material] == set(MODELS)
@@ -113,7 +116,7 @@ def test_every_part_of_a_scene_is_crossed(tool: Any) -> None:
 
 METHODS = (
     "PathGeometry", "PathGeometry.choose_lights", "PathGeometry.set_media",
-    "PathGeometry.set_textures", "PhotonMap", "PhotonMap.irradiance", "PhotonMap.trace",
+    "PathGeometry.set_textures", "PhotonMap", "PhotonMap.irradiance",
 )  # fmt: skip
 GROUPS = ("path", "call", "irradiance", "emitted", "photons", "occlusion", "occlusion-baked")
 CALLED = (*FUNCTIONS, *METHODS)

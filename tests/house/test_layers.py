@@ -59,6 +59,13 @@ def test_python_imports_what_it_declares_and_the_course_knows_no_core() -> None:
     assert python_breaches(texts, allowed) == []
 
 
+def test_array_types_are_defined_once() -> None:
+    """Floors among packages of photograd are import-linter's (`./run lint`)."""
+    shared = re.compile(r"^(?:Array|FloatArray)\b[^=\n]*=", re.MULTILINE)
+    found = [path for path, text in python_texts().items() if shared.search(text)]
+    assert [path for path in found if path.startswith(CORE)] == [CORE + "types.py"]
+
+
 @pytest.mark.parametrize(
     ("path", "include"),
     [

@@ -12,7 +12,7 @@ from photograd.bsdf import registry
 from photograd.errors import RangeError, ShapeError
 from photograd.lights import ConstantLight, EnvironmentMap, PointLight
 from photograd.lights.dfg import DfgTable, dfg_table, directional_albedo
-from photograd.lights.direction_map import DirectionMap, cell_directions
+from photograd.lights.environment import DirectionMap, cell_directions
 from photograd.lights.prefilter import (
     PrefilteredLight,
     SpecularMap,
@@ -20,10 +20,10 @@ from photograd.lights.prefilter import (
     shade,
     specular_kernel,
     specular_map,
+    zonal_mean,
 )
-from photograd.lights.zonal import zonal_mean
-from photograd.probes import sphere_quadrature
-from photograd.transport.evening import evening_map
+from photograd.lights.probes import sphere_quadrature
+from photograd.transport.builtin import evening_map
 from photograd_course.random import uniform
 
 from support.bsdf_proofs import albedo, towards

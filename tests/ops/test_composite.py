@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.core import _core
+from photograd._compiled import _core
 
 pytestmark = pytest.mark.usefixtures("core")
 SAMPLES, DT = 32, 0.13

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from photograd._compiled import _core
 from photograd.bsdf import registry
-from photograd.core import _core
 
 pytestmark = pytest.mark.usefixtures("core")
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from photograd import sh
-from photograd.core import _core
+from photograd._compiled import _core
 
 from support.instruction_sets import assert_same_bits
 

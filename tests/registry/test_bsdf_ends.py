@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from photograd._compiled import _core
 from photograd.bsdf import registry
-from photograd.bsdf_response import furnace_curve
-from photograd.core import _core
+from photograd.bsdf.gallery import furnace_curve
 from photograd_course.gradcheck import check_gradient
 
 from support.bsdf_proofs import ROWS, Proof, hemisphere, squares, towards

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from photograd.bsdf import registry
-from photograd.metals import METALS
+from photograd.bsdf.models import METALS
 
 from support.bsdf_proofs import hemisphere, squares, towards
 

@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 from matplotlib import image as pictures
 from photograd.bsdf import registry
-from photograd.bsdf_gallery import gallery_picture
-from photograd.bsdf_response import derivatives, furnace_curve
+from photograd.bsdf.gallery import derivatives, furnace_curve, gallery_picture
 
 from support.bsdf_proofs import albedo, hemisphere
 from support.tree import ROOT

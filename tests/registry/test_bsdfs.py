@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from photograd.bsdf import BsdfModel, registry
-from photograd.bsdf_gallery import benchmark_row, gallery_picture
+from photograd.bsdf.gallery import benchmark_row, gallery_picture
 from photograd.errors import DtypeError, RangeError, ShapeError
 from PIL import Image
 

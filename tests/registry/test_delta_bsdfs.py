@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.delta_bsdf import DeltaModel, registry
+from photograd.bsdf.specular import DeltaModel, registry
 from photograd.errors import DtypeError, ShapeError
 from photograd_course.gradcheck import check_accumulation, check_gradient, dot_product_error
 from photograd_course.mutants import check_mutants, check_overwriting_mutants

@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd import bsdf, delta_bsdf
+from photograd import bsdf
+from photograd.bsdf import specular as delta_bsdf
 from photograd.transport import Environment, Material, MeshShape, PathOptions, PathTracer, Scene
 from photograd.transport.builtin import camera_at
 

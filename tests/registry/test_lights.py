@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from photograd.errors import RangeError, ShapeError
-from photograd.light import LightModel, cap_height, registry
+from photograd.lights.distant import LightModel, cap_height, registry
 from photograd_course.random import uniform
 
 from support.statistics import chi_square_p, sidak, sphere_cell_masses, sphere_counts

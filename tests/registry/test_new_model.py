@@ -20,7 +20,7 @@ from types import ModuleType
 import pybind11
 import pytest
 from photograd.bsdf import BsdfModel, registry
-from photograd.bsdf_gallery import benchmark_row, gallery_picture
+from photograd.bsdf.gallery import benchmark_row, gallery_picture
 
 from support.bsdf_proofs import PROOFS
 from support.missing import missing

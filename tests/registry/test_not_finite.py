@@ -6,9 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from photograd import splat, splat_rays
 from photograd.errors import Error
-from photograd.representation import RenderOptions, representations
+from photograd.fields import representations
+from photograd.representation import RenderOptions
+from photograd.splats import rays as splat_rays
+from photograd.splats import splatting as splat
 
 from tests.splat import oracle
 

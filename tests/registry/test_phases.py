@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from photograd.bsdf.phase import phase_function, registry
 from photograd.errors import DtypeError, RangeError, ShapeError
-from photograd.phase import phase_function, registry
 from photograd_course.gradcheck import check_accumulation, check_gradient, dot_product_error
 from photograd_course.mutants import check_mutants, check_overwriting_mutants
 

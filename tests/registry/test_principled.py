@@ -7,9 +7,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd import principled
-from photograd.bsdf import registry
-from photograd.core import _core
+from photograd._compiled import _core
+from photograd.bsdf import principled, registry
 from photograd.errors import DtypeError, RangeError, ShapeError
 
 from support.bsdf_proofs import albedo, hemisphere

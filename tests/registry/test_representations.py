@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 import photograd
 import pytest
-from photograd.core import _core
+from photograd._compiled import _core
 from photograd.errors import RangeError, ShapeError
+from photograd.fields import representation
 from photograd.fields.march import MarchPolicy
 from photograd.representation import (
     CanvasBatch,
@@ -19,7 +20,6 @@ from photograd.representation import (
     RenderOptions,
     Representation,
     dense_gradient,
-    representation,
 )
 from photograd_course.gradcheck import check_gradient, taylor_slope
 from photograd_course.mutants import check_mutants

@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.core import _core
+from photograd._compiled import _core
 from photograd.errors import DtypeError, Error, RangeError, ShapeError
-from photograd.light import cap_height, registry
 from photograd.lights import RegisteredLight
+from photograd.lights.distant import cap_height, registry
 from photograd.lights.registered import CLASSES, from_values
 from photograd_course.gradcheck import check_accumulation, check_gradient, dot_product_error
 from photograd_course.mutants import check_mutants, check_overwriting_mutants

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from photograd.core import _core
+from photograd._compiled import _core
 
 CODES = {"origin": 0, "entry": 1, "alpha": 0, "riemann": 1, "clamp": 0, "zero": 1}
 

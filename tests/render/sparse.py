@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 from photograd import sh
-from photograd.core import _core
+from photograd._compiled import _core
 from photograd.fields.active_voxels import ActiveVoxels
 
 from tests.render.rays import bundle, settings

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.core import _core
+from photograd._compiled import _core
 from photograd_course.gradcheck import check_gradient, taylor_slope
 
 from tests.render.rays import bundle, constant_grid, march, march_backward, settings

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.core import _core
+from photograd._compiled import _core
 
 from support.instruction_sets import assert_same_bits
 from tests.render.rays import bundle, march, march_backward, settings

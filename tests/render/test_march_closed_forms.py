@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from photograd.core import _core
+from photograd._compiled import _core
 
 from tests.render.rays import along_x, bundle, constant_grid, field_grid, march, settings
 

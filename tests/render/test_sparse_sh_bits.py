@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.core import _core
+from photograd._compiled import _core
 from photograd.fields.active_voxels import ActiveVoxels
 
 from support.instruction_sets import assert_same_bits

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from photograd.core import _core
+from photograd._compiled import _core
 from photograd_course.random import uniform
 
 from support.statistics import chi_square_p, sphere_cell_masses, sphere_counts

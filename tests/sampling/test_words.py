@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.core import _core
+from photograd._compiled import _core
 
 from support.statistics import chi_square_p
 

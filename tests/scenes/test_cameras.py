@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 import pytest
-from photograd.data import Camera, sees_box
-from photograd.scenes.cameras import FILL, HIGHEST, LOWEST, capture_cameras
+from photograd.capture import Camera, sees_box
+from photograd.scenes.capture import FILL, HIGHEST, LOWEST, capture_cameras
 from photograd_course.errors import RangeError, ShapeError
 
 Array = npt.NDArray[np.float64]

@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 import pytest
-from photograd.data import Camera, load_capture, write_blender_capture
+from photograd.capture import Camera, load_capture, write_blender_capture
 from photograd.scenes import SceneDescription, SkyDescription, SunDescription, bounds_of
 from photograd.scenes.capture import capture_scene, content_radius, display_image, view_seed
-from photograd.scenes.paints import paint
+from photograd.scenes.parts import paint
 from photograd.scenes.shapes import sphere
 from photograd_course.errors import RangeError, ShapeError
 

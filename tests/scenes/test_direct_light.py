@@ -6,19 +6,18 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.core import _core
-from photograd.data.camera import Camera
+from photograd._compiled import _core
+from photograd.capture.camera import Camera
+from photograd.capture.orbit import look_at
 from photograd.errors import RangeError, ShapeError
-from photograd.orbit import look_at
 from photograd.scenes.description import (
     SceneDescription,
     SceneMesh,
     SkyDescription,
     SunDescription,
 )
-from photograd.scenes.direct_light import DirectLight
-from photograd.scenes.vertex_colors import vertex_color_texture
-from photograd.texture import sample
+from photograd.scenes.direct_light import DirectLight, vertex_color_texture
+from photograd.textures import sample
 
 from geometry.shapes import bumpy_sphere
 

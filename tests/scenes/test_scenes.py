@@ -7,9 +7,9 @@ from functools import cache
 import numpy as np
 import pytest
 from photograd.scenes import DEFAULT_SCENE, SceneDescription, scene, scenes
-from photograd.scenes.clouds import cloud_layer
-from photograd.scenes.paints import BRIGHTEST, DARKEST
+from photograd.scenes.parts import BRIGHTEST, DARKEST
 from photograd.scenes.surface import Surface
+from photograd.scenes.terrain_clouds import cloud_layer
 from photograd_course.errors import DtypeError, RangeError, SceneError
 
 from tests.scenes.solids import open_edges, volume

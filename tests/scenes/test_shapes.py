@@ -7,11 +7,17 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 from photograd.scenes.curves import smooth_curve
-from photograd.scenes.heightfield import land_block, net_points
-from photograd.scenes.lathe import lathe
 from photograd.scenes.shapes import ico_sphere, rounded_box, sphere, superellipsoid, torus
-from photograd.scenes.surface import Surface, from_grid, joined, rotation_about
-from photograd.scenes.tube import tube
+from photograd.scenes.surface import (
+    Surface,
+    from_grid,
+    joined,
+    land_block,
+    lathe,
+    net_points,
+    rotation_about,
+    tube,
+)
 from photograd_course.errors import DtypeError, Error, RangeError, ShapeError
 
 from tests.scenes.solids import open_edges, uv_turn, volume

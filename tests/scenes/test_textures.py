@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 from photograd.scenes import textures
-from photograd.scenes.paints import BRIGHTEST, DARKEST, Color, paint, paint_names, paints
+from photograd.scenes.parts import BRIGHTEST, DARKEST, Color, paint, paint_names, paints
 from photograd.scenes.textures import Size
 from photograd_course.errors import RangeError, ShapeError
 

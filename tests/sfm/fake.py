@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
 import numpy as np
-from photograd.sfm.engine import Reconstructed, Settings
+from photograd.capture.sfm.engine import Reconstructed, Settings
 
 from support import capture_files as files
 

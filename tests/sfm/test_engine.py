@@ -11,10 +11,10 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from photograd.data import load_capture
+from photograd.capture import load_capture
+from photograd.capture.sfm.engine import Settings, _Pycolmap, open_engine
+from photograd.capture.sfm.reconstruct import reconstruct
 from photograd.errors import IoError
-from photograd.sfm.engine import Settings, _Pycolmap, open_engine
-from photograd.sfm.reconstruct import reconstruct
 
 from tests.sfm.fake import photographs, similarity
 

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from photograd.capture.sfm.photographs import copy_photographs, find_photographs
+from photograd.capture.sfm.reconstruct import KEYS, NEIGHBOURS, choose_pairs
 from photograd.errors import IoError, SceneError
-from photograd.sfm.pairs import KEYS, NEIGHBOURS, choose_pairs
-from photograd.sfm.photographs import copy_photographs, find_photographs
 from PIL import Image, ImageOps
 
 TURNS = range(1, 9)

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from photograd.data import load_capture
-from photograd.data.capture import Capture
+from photograd.capture import load_capture
+from photograd.capture.capture import Capture
+from photograd.capture.sfm.engine import Settings
+from photograd.capture.sfm.reconstruct import AGREEING, Report, reconstruct
 from photograd.errors import IoError, SceneError
-from photograd.sfm.engine import Settings
-from photograd.sfm.reconstruct import AGREEING, Report, reconstruct
 from PIL import Image
 
 from tests.sfm.fake import FakeEngine, photographs

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 from photograd import sh
-from photograd.data.camera import Camera
-from photograd.splat import Gaussians, SplatOptions
+from photograd.capture.camera import Camera
+from photograd.splats.splatting import Gaussians, SplatOptions
 
 Array = Any
 

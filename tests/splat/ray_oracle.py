@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 from photograd import sh
-from photograd.splat import Gaussians
-from photograd.splat_rays import RayOptions
+from photograd.splats.rays import RayOptions
+from photograd.splats.splatting import Gaussians
 
 from tests.splat import oracle
 

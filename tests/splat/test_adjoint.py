@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.data.camera import Camera
-from photograd.data.frames import invert_rigid
-from photograd.splat import (
+from photograd.capture.camera import Camera
+from photograd.capture.frames import invert_rigid
+from photograd.splats.splatting import (
     Gaussians,
     SplatOptions,
     render,

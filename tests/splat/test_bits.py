@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.core import _core
-from photograd.splat import SplatOptions, render, render_backward
+from photograd._compiled import _core
+from photograd.splats.splatting import SplatOptions, render, render_backward
 
 from support.instruction_sets import assert_same_bits
 from tests.splat import oracle

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from photograd.errors import DtypeError, RangeError, ShapeError
-from photograd.splat import Gaussians, SplatOptions, render, render_backward
+from photograd.splats.splatting import Gaussians, SplatOptions, render, render_backward
 
 from tests.splat import oracle
 

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.data.camera import Camera
-from photograd.splat import Gaussians, SplatOptions, render
+from photograd.capture.camera import Camera
+from photograd.splats.splatting import Gaussians, SplatOptions, render
 
 from tests.splat import oracle
 

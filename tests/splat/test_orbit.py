@@ -9,14 +9,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 from photograd import sh
+from photograd.capture.frames import rotation_from_axis_angle
 from photograd.commands import register
-from photograd.data.frames import rotation_from_axis_angle
-from photograd.data.gaussian_frame import UP_AXES, file_from_upright
-from photograd.data.gaussian_header import Presentation
-from photograd.data.gaussian_ply import write_gaussian_ply
 from photograd.errors import RangeError
-from photograd.splat import Gaussians, render
-from photograd.splat_orbit import orbit_splats, scene_box
+from photograd.splats.frames import UP_AXES, Presentation, file_from_upright
+from photograd.splats.orbit import orbit_splats, scene_box
+from photograd.splats.ply_files import write_gaussian_ply
+from photograd.splats.splatting import Gaussians, render
 from PIL import Image
 from typer import Typer
 from typer.testing import CliRunner

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.splat import Gaussians
-from photograd.splat_rays import RayOptions, render, render_backward
+from photograd.splats.rays import RayOptions, render, render_backward
+from photograd.splats.splatting import Gaussians
 from photograd_course.gradcheck import check_gradient, taylor_slope
 from photograd_course.mutants import check_mutants
 

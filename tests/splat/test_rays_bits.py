@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.core import _core
-from photograd.splat_rays import RayOptions, render, render_backward
+from photograd._compiled import _core
+from photograd.splats.rays import RayOptions, render, render_backward
 
 from support.instruction_sets import assert_same_bits
 from tests.splat import oracle, ray_oracle

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 from photograd.errors import DtypeError, RangeError, ShapeError
-from photograd.splat import Gaussians
-from photograd.splat_rays import RayOptions, render, render_backward
+from photograd.splats.rays import RayOptions, render, render_backward
+from photograd.splats.splatting import Gaussians
 
 from tests.splat import oracle, ray_oracle
 from tests.splat.test_degenerate import NO_NUMBERS, STRANGE, WEIRD, changed

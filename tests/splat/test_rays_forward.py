@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.data.camera import Camera
-from photograd.splat import Gaussians, SplatOptions
-from photograd.splat import render as splat
-from photograd.splat_rays import RayOptions, render
+from photograd.capture.camera import Camera
+from photograd.splats.rays import RayOptions, render
+from photograd.splats.splatting import Gaussians, SplatOptions
+from photograd.splats.splatting import render as splat
 
 from tests.splat import oracle, ray_oracle
 

@@ -7,10 +7,10 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
-from photograd.data.capture import Capture
-from photograd.data.view import View
-from photograd.orbit import orbit_cameras
-from photograd.splat import Gaussians, render
+from photograd.capture.capture import Capture
+from photograd.capture.orbit import orbit_cameras
+from photograd.capture.view import View
+from photograd.splats.splatting import Gaussians, render
 
 COLOR = (0.8, 0.4, 0.2)
 RADIUS = 0.5

@@ -6,15 +6,14 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.fields.gaussians import GaussianScene
-from photograd.orbit import orbit_cameras
+from photograd.capture.orbit import orbit_cameras
+from photograd.fitting.steps import RowAdam
 from photograd.representation import ImageBatch, Outputs, RenderOptions
-from photograd.row_adam import RowAdam
-from photograd.splat import Gaussians, SplatOptions, render
 from photograd.splats.clone_split_prune import CloneSplitPrune
-from photograd.splats.density import Schedule, opacities
-from photograd.splats.grad2d import Grad2dStatistics
+from photograd.splats.density import Grad2dStatistics, Schedule, opacities
 from photograd.splats.markov_chain import MarkovChain, _coverage
+from photograd.splats.model import GaussianScene
+from photograd.splats.splatting import Gaussians, SplatOptions, render
 from photograd_course.metrics import psnr
 from photograd_course.row_map import FRESH
 

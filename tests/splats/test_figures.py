@@ -5,11 +5,11 @@ from __future__ import annotations
 import sys
 
 import numpy as np
-from photograd.fields.gaussians import GaussianScene
-from photograd.fit import Fit
-from photograd.fit_options import options_for
-from photograd.splats.view_gradients import view_gradients
-from photograd.training_views import TrainingViews
+from photograd.fitting.data import TrainingViews
+from photograd.fitting.loop import Fit
+from photograd.fitting.options import options_for
+from photograd.fitting.view_gradients import view_gradients
+from photograd.splats.model import GaussianScene
 
 from support.tree import ROOT
 

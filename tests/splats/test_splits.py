@@ -6,10 +6,9 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from photograd.fields.gaussians import GaussianScene
-from photograd.quaternions import rotation_matrices
 from photograd.splats.clone_split_prune import CloneSplitPrune
-from photograd.splats.density import logits, opacities
+from photograd.splats.density import logits, opacities, rotation_matrices
+from photograd.splats.model import GaussianScene
 from photograd_course.metrics import psnr
 from photograd_course.row_map import FRESH
 

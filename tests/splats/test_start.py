@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 from photograd import sh
-from photograd.data.bounds import estimate_bounds
-from photograd.data.capture import Capture
+from photograd.capture.bounds import estimate_bounds
+from photograd.capture.capture import Capture
 from photograd.errors import RangeError
 from photograd.splats.start import (
     RANDOM_DISTANCE,

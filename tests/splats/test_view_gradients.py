@@ -6,18 +6,18 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.data.camera import Camera
-from photograd.fields.gaussians import GaussianScene
-from photograd.fit import Fit
-from photograd.fit_options import options_for
-from photograd.splat import Gaussians, SplatOptions, render
-from photograd.splats.drawings import draw_gaussian_gradients
-from photograd.splats.view_gradients import (
+from photograd.capture.camera import Camera
+from photograd.fitting.data import TrainingViews
+from photograd.fitting.gradient_drawings import draw_gaussian_gradients
+from photograd.fitting.loop import Fit
+from photograd.fitting.options import options_for
+from photograd.fitting.view_gradients import (
     grad2d_picture,
     screen_covariances,
     view_gradients,
 )
-from photograd.training_views import TrainingViews
+from photograd.splats.model import GaussianScene
+from photograd.splats.splatting import Gaussians, SplatOptions, render
 
 from tests.splats.scene import cloud_capture
 

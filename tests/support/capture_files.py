@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from photograd.data.camera import Camera
+from photograd.capture.camera import Camera
 from PIL import Image
 
 Array = npt.NDArray[np.float64]

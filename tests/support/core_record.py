@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from photograd.core import _core
+from photograd._compiled import _core
 
 MOST_ALIKE = 2
 """Calls kept of one function with arguments of the same types."""

@@ -9,22 +9,27 @@ from typing import Any
 
 import numpy as np
 import photograd
-from photograd import phase, sh, splat, splat_rays
-from photograd.bricks import BrickField
+from photograd import sh
+from photograd._compiled import _core
+from photograd.bsdf import phase
 from photograd.bsdf import registry as bsdf_registry
-from photograd.core import _core
-from photograd.delta_bsdf import registry as delta_registry
+from photograd.bsdf.principled import evaluate, evaluate_backward
+from photograd.bsdf.specular import registry as delta_registry
+from photograd.fitting.loss import ssim, ssim_backward
+from photograd.fitting.steps import RowAdam
 from photograd.geometry import Body, BspTree, ReferenceBvh
-from photograd.geometry.sdf_shapes import box, placed, smooth_union, sphere
-from photograd.geometry.sorting import order_by_distance
-from photograd.mesh import Bvh, Instance, Mesh
-from photograd.octree import Octree, Quadtree
-from photograd.principled import evaluate, evaluate_backward
+from photograd.geometry.bsp import order_by_distance
+from photograd.geometry.mesh import Bvh, Instance, Mesh
+from photograd.geometry.sdf import box, placed, smooth_union, sphere
+from photograd.grids.bricks import BrickField
+from photograd.grids.octree import Octree, Quadtree
+from photograd.grids.sparse import SparseGrid
+from photograd.grids.vdb import read_vdb, write_vdb
+from photograd.grids.voxel_hash import VoxelHash
 from photograd.representation import Outputs, RenderOptions
-from photograd.row_adam import RowAdam
-from photograd.sparse import SparseGrid
-from photograd.structural import ssim, ssim_backward
-from photograd.texture import (
+from photograd.splats import rays as splat_rays
+from photograd.splats import splatting as splat
+from photograd.textures import (
     TexturePlan,
     build_mips,
     build_mips_backward,
@@ -51,9 +56,7 @@ from photograd.transport import (
     emit_particles,
     trace_light,
 )
-from photograd.transport.recovery.cross_loss import loss_and_gradients
-from photograd.vdb import read_vdb, write_vdb
-from photograd.voxel_hash import VoxelHash
+from photograd.transport.inverse.loss import loss_and_gradients
 
 from tests.splat import oracle
 from tests.transport import light_scenes, media_scenes
@@ -84,6 +87,11 @@ def numbers() -> None:
             op.backward(x, np.ones_like(y), np.zeros_like(x))
             if dtype == np.float64:
                 op.jvp(x, x)
+    for name in ("dipole", "normalized_diffusion", "diffusion_cdf", "sample_diffusion_radius"):
+        rows, fit = (G.random((4, 4)), []) if name == "dipole" else (G.random((4, 3)), ["diffuse"])
+        d = np.zeros_like(rows)
+        getattr(_core, name + "_backward")(rows, *fit, getattr(_core, name)(rows, *fit), d)
+    _core.dipole_albedo_backward(rows, _core.dipole_albedo(rows), d)
     _core.philox4x32(np.zeros((3, 4), np.uint32), np.zeros((3, 2), np.uint32))
     _core.uniform(1, 2, np.arange(4, dtype=np.uint32), 3, 4)
     _core.sobol_words(1, 2, 3, np.arange(4, dtype=np.uint32), 0, 4)

@@ -19,7 +19,7 @@ def assert_same_bits(program: str) -> None:
     """
     seen = {}
     for name in SETS:
-        check = f"from photograd.core import _core; assert _core.instruction_set() == {name!r}\n"
+        check = f"from photograd import _core; assert _core.instruction_set() == {name!r}\n"
         done = subprocess.run(
             [sys.executable, "-c", check + program],
             env={**os.environ, "PHOTOGRAD_ISA": name, "PYTHONPATH": os.pathsep.join(sys.path)},

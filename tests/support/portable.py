@@ -10,15 +10,16 @@ COURSE, CORE = "python/photograd_course/src/photograd_course/", "python/photogra
 PROMISED = (
     *(COURSE + name for name in ("color.py", "losses.py", "optim/", "priors.py", "random.py")),
     *(COURSE + name for name in ("resample.py", "row_map.py", "schedules.py")),
-    *(CORE + name for name in ("backgrounds.py", "fields/", "fit.py", "imaging.py", "model.py")),
-    *(CORE + name for name in ("picture_loss.py", "pixels.py", "quaternions.py", "row_adam.py")),
-    *(CORE + name for name in ("fit_rays.py", "fit_views.py", "structural.py", "texture/")),
-    *(CORE + "splats/" + name for name in ("clone_split_prune.py", "density.py", "first_scene.py")),
-    *(CORE + "splats/" + name for name in ("markov_chain.py", "grad2d.py", "start.py")),
-    *(CORE + "splats/" + name for name in ("surface_points.py",)),
-    *(CORE + "data/" + name for name in ("assemble.py", "bounds.py", "camera.py", "convention.py")),
-    *(CORE + "data/" + name for name in ("frames.py", "hull.py", "view.py", "visibility.py")),
-    *(CORE + name for name in ("training_views.py", "transport/recovery/")),
+    *(CORE + name for name in ("fields/", "textures/", "transport/inverse/")),
+    *(CORE + "fitting/" + name for name in ("data.py", "loop.py", "loss.py", "model.py")),
+    *(CORE + "fitting/" + name for name in ("start.py", "steps.py", "surface_points.py")),
+    *(
+        CORE + "splats/" + name
+        for name in ("clone_split_prune.py", "density.py", "markov_chain.py")
+    ),
+    *(CORE + "splats/" + name for name in ("model.py", "start.py")),
+    *(CORE + "capture/" + name for name in ("assemble.py", "bounds.py", "camera.py")),
+    *(CORE + "capture/" + name for name in ("convention.py", "frames.py", "view.py")),
 )
 """Beginnings of the paths of what a fit, or a recovery of a scene, runs through."""
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from photograd.errors import DtypeError, RangeError, ShapeError
-from photograd.texture import (
+from photograd.textures import (
     build_mips,
     build_mips_backward,
     mip_level,

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from photograd.errors import DtypeError, Error, RangeError, ShapeError
-from photograd.texture import (
+from photograd.textures import (
     TexturePlan,
     loss_and_gradient,
     recover,

@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.core import _core
+from photograd._compiled import _core
 from photograd.errors import DtypeError, RangeError, ShapeError
-from photograd.texture import sample, sample_backward
+from photograd.textures import sample, sample_backward
 from photograd_course.gradcheck import check_gradient, dot_product_error
 
 from tests.texture.oracle import adjoint, lookup, noise, points

@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.core import _core
+from photograd._compiled import _core
 from photograd.errors import DtypeError, RangeError, ShapeError
-from photograd.structural import ssim, ssim_backward
+from photograd.fitting.loss import ssim, ssim_backward
 from photograd_course import metrics
 from photograd_course.gradcheck import check_gradient, taylor_slope
 from photograd_course.mutants import check_mutants

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.core import _core
-from photograd.texture import (
+from photograd._compiled import _core
+from photograd.textures import (
     build_mips,
     build_mips_backward,
     loss_and_gradient,

@@ -1,7 +1,8 @@
 """What is differentiated by light transport, and the small scene in which each of it matters.
 
 A case is a scene, a row one number of it: the cases below have one for every parameter of every
-registered model, light and phase function, so that a new one brings its rows along.
+registered model, light and phase function, so that a new one brings its rows along. Of the models
+in `LAYERED` there are some.
 """
 
 from __future__ import annotations
@@ -11,11 +12,12 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from photograd import delta_bsdf, phase
+from photograd.bsdf import phase
+from photograd.bsdf import specular as delta_bsdf
 from photograd.lights import EnvironmentMap, RegisteredLight
 from photograd.transport import Medium, PathOptions, PathTracer, Scene
 from photograd.transport.incomplete import TURNING
-from photograd.transport.scene import ALPHA, MODELS
+from photograd.transport.material import ALPHA, MODELS
 
 from tests.transport import difference_scenes as scenes
 from tests.transport import test_glow as glow
@@ -37,6 +39,15 @@ VEILED = ("lambert", "gltf_refraction", "mirror", "glass")
 """Coverage does not know what it covers: rough and smooth, with and without what lies behind."""
 GRAZING = ("sheen", "sheen_tint")
 """What is hardly seen from above."""
+_LAYERS = ("base_color", "roughness")
+LAYERED = {
+    "gltf_layered": (*_LAYERS, "metalness"),
+    "gltf_layered_conserving": (*_LAYERS, "transmission", "metalness"),
+    "gltf_layered_volume": (*_LAYERS, "eta"),
+    "gltf_layered_volume_conserving": (*_LAYERS, "transmission", "eta"),
+}
+"""Of models that are other models' layers put together, what has rows: two dozen each would say
+again how paths are differentiated, and nothing of f that tests/registry does not."""
 OTHERS = {"map": "environment map"}
 """Lights whose number of parameters is not fixed: in no registry."""
 
@@ -86,10 +97,12 @@ def models() -> Iterator[Case]:
     """Every parameter of every model, what covers in part, and what is refused of both."""
     for model in MODELS:
         material, (moving, _) = scenes.own(model), TURNING.get(model, ((), ""))
+        named = LAYERED.get(model, [p.name for p in MODELS[model].parameters])
         rows = {
             p.name: tuple(rows_of(model, p.name, f"materials.own.{p.name}",
                                   material.values[p.name], p.lo, p.hi))
             for p in MODELS[model].parameters
+            if p.name in named
         }  # fmt: skip
         still = {name: rows[name] for name in rows if name not in moving}
         smooth = model in delta_bsdf.registry()

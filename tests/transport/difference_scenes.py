@@ -9,8 +9,8 @@ import numpy as np
 from photograd.lights import PointLight
 from photograd.transport import Environment, Material, Medium, Scene, SphereShape, TextureUse
 from photograd.transport.builtin import camera_at
+from photograd.transport.material import MODELS
 from photograd.transport.media_list import transmits
-from photograd.transport.scene import MODELS
 from photograd.transport.shapes import rectangle
 
 from tests.transport.media_scenes import fog_box
@@ -31,6 +31,11 @@ OF_MODELS: dict[str, dict[str, Any]] = {  # what lies on top is seen better over
         "sheen": 0.75,
     },
     "clearcoat": {"base_color": 0.25 * COLOURS, "coat": 0.75},
+}
+# A film's phase turns where the base has its index: no step of eta may cross that.
+OF_MODELS |= {
+    name: {"iridescence_ior": 1.2}
+    for name in ("gltf_layered_volume", "gltf_layered_volume_conserving")
 }
 FRACTIONS = {"eta": 0.3, "dispersion": 0.3}  # of the range; others 0.5
 

@@ -9,14 +9,15 @@ import numpy as np
 import pytest
 from hypothesis import strategies as st
 from photograd.transport import Material, Medium, ModelFile, NormalMap, Texture, TextureUse
+from photograd.transport.material import MODELS
 from photograd.transport.mesh_files.gltf_painted import SLOTS
-from photograd.transport.scene import MODELS
+from photograd.transport.mesh_files.gltf_words import BODIES
 from photograd.transport.shapes import box
 from photograd.transport.texture import FILTERS, decode
 
 LOGS = 1e-12
 """Relative: sigma_t is a logarithm, a rotation an angle of a complex number."""
-UNPAINTED = ("rough_dielectric", "dispersive_dielectric")
+UNPAINTED = ("rough_dielectric", "dispersive_dielectric", "ggx_anisotropic")
 """With a texture of roughness they are read back as another model."""
 
 
@@ -82,6 +83,8 @@ def materials(draw: st.DrawFn, model: str) -> Material:
     for p in MODELS[model].parameters:
         found = [numbers(draw, p.lo, p.hi) for _ in range(p.size)]
         values[p.name] = found if p.size > 1 else found[0]
+    if "anisotropy_x" in values:
+        values |= {"anisotropy_x": 1.0, "anisotropy_y": 0.0}
     if model == "gltf" and draw(st.booleans()):
         values["alpha"] = numbers(draw, 0, 1)
         cutoff = draw(st.sampled_from([None, 0.75]))
@@ -103,7 +106,22 @@ def texels_of(draw: st.DrawFn, encoding: str, height: int, width: int) -> Any:
     texels = bytes_of(draw, height, width, 1 if encoding == "alpha" else 3)
     if encoding == "alpha":
         return np.minimum(texels, np.float32(128) / np.float32(255))
+    if encoding == "direction":
+        texels[..., :2] = 2 * texels[..., :2] - 1
     return decode(texels) if encoding == "srgb" else texels
+
+
+def with_whole_images(material: Material, uses: dict[str, TextureUse]) -> Material:
+    """One image holds all of these: what has one of them comes back with the others."""
+    names = {p.name for p in material.parameters}
+    for group in ({"metalness", "roughness"}, {"anisotropy", "anisotropy_x", "anisotropy_y"}):
+        if not group & uses.keys():
+            continue
+        name = next(uses[p].texture for p in sorted(group) if p in uses)
+        uses |= {p: TextureUse(name, SLOTS[p][3]) for p in group & names}
+        if "anisotropy_y" in group & names:
+            material = replace(material, values={**material.values, "anisotropy_y": 1.0})
+    return material
 
 
 @st.composite
@@ -125,11 +143,7 @@ def models(draw: st.DrawFn, model: str) -> ModelFile:
             texels = texels_of(draw, encoding, height, width)
             masks = encoding == "alpha" and material.alpha_cutoff is not None
             textures[name] = Texture(texels, wrap, "bilinear" if masks else looked_up)
-    # One image holds both of these; what has only one of them comes back with the other.
-    both = {"metalness", "roughness"} & {p.name for p in material.parameters}
-    if both & uses.keys():
-        name = next(uses[p].texture for p in both if p in uses)
-        uses |= {p: TextureUse(name, SLOTS[p][3]) for p in both}
+    material = with_whole_images(material, uses)
     if "alpha" in uses and "base_color" not in uses:
         del uses["alpha"]
     bent = None
@@ -151,7 +165,7 @@ def models(draw: st.DrawFn, model: str) -> ModelFile:
                   [np.zeros((1, 3)), 1.0]]) for _ in range(draw(st.sampled_from([0, 2, 3])))
     )  # fmt: skip
     interior = None
-    thick = model in ("glass", "dispersive_glass", "rough_dielectric", "gltf_refraction")
+    thick = model in BODIES - {"dispersive_dielectric"}
     if thick and draw(st.booleans()):
         interior = "m"
     shape = replace(

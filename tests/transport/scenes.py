@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from photograd.data.camera import Camera
+from photograd.capture.camera import Camera
 from photograd.transport import Environment, Material, MeshShape, Scene, SphereShape
 from photograd.transport.builtin import camera_at, cornell_box
-from photograd.transport.scene import MODELS
+from photograd.transport.material import MODELS
 from photograd.transport.shapes import rectangle
 
 Array = Any
@@ -44,6 +44,8 @@ def any_material(model: str, fraction: float = 0.6) -> Material:
         spread = np.linspace(0.9, 1.1, parameter.size) if parameter.size > 1 else np.ones(1)
         value = parameter.lo + (parameter.hi - parameter.lo) * fraction * spread
         values[parameter.name] = value if parameter.size > 1 else float(value[0])
+    if "dispersion" in values and "metalness" in values:
+        values |= {"metalness": 0.1, "transmission": 0.9}  # else hardly a path goes through
     return Material(model, values)
 
 

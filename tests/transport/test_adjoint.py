@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.core import _core
+from photograd._compiled import _core
 from photograd.errors import DtypeError, RangeError, ShapeError
 from photograd.transport import Accumulation, Material, PathOptions, PathTracer, Scene
 from photograd.transport.builtin import cornell_box, cornell_spheres, furnace_box
-from photograd.transport.scene import MODELS
+from photograd.transport.material import MODELS
 from photograd_course.gradcheck import check_gradient
 from photograd_course.mutants import check_mutants
 

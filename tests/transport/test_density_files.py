@@ -8,7 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 from photograd.errors import IoError, RangeError, SceneError
-from photograd.sparse import SparseGrid
+from photograd.grids.sparse import SparseGrid
+from photograd.grids.vdb import read_vdb, write_vdb
+from photograd.grids.volumes import read_volume
 from photograd.transport import (
     DensityGrid,
     Environment,
@@ -18,8 +20,6 @@ from photograd.transport import (
     read_scene,
 )
 from photograd.transport.shapes import box
-from photograd.vdb import read_vdb, write_vdb
-from photograd.volumes import read_volume
 
 from tests.transport.media_scenes import Medium, pencil, with_interior
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.core import _core
+from photograd._compiled import _core
 from photograd.errors import RangeError, ShapeError
 from photograd.transport import (
     Accumulation,
@@ -20,7 +20,7 @@ from photograd.transport import (
     direction_of,
 )
 from photograd.transport.builtin import cornell_box, furnace_box
-from photograd.transport.scene import MODELS
+from photograd.transport.material import MODELS
 
 from tests.transport import test_textures as textures
 from tests.transport.light_scenes import LIGHTS, TILT, environment_map, lit_by

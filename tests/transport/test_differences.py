@@ -11,16 +11,16 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd import phase
-from photograd.core import _core
+from photograd._compiled import _core
+from photograd.bsdf import phase
 from photograd.lights.registered import CLASSES
 from photograd.transport import PathOptions, PathTracer
 from photograd.transport.incomplete import TURNING
-from photograd.transport.scene import MODELS
+from photograd.transport.material import MODELS
 
 from support.tree import ROOT
 from tests.transport import difference_page as page
-from tests.transport.difference_rows import PATHS, VEILED, Case, Row, cases, check
+from tests.transport.difference_rows import LAYERED, PATHS, VEILED, Case, Row, cases, check
 from tests.transport.differences import LEAST, Bench, Estimate
 
 KNOWN: dict[str, dict[str, Any]] = json.loads((ROOT / "docs/differences.json").read_text("utf-8"))
@@ -43,7 +43,13 @@ def numbers(thing: str, parameters: Any) -> set[str]:
 
 def registered(models: Any, lights: Any, phases: Any) -> set[str]:
     """What the registries say has a derivative, whole or not."""
-    names = {name for model in models for name in numbers(model, models[model].parameters)}
+    names = {
+        name
+        for model in models
+        for name in numbers(
+            model, [p for p in models[model].parameters if p.name in LAYERED.get(model, (p.name,))]
+        )
+    }
     turned = {model: TURNING[model][0] for model in TURNING}
     names -= {f"{model}.{name}" for model in turned for name in turned[model]}
     names |= {f"{model} ball.{name}" for model in turned for name in turned[model]}

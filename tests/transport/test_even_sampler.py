@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from photograd.core import _core
+from photograd._compiled import _core
 from photograd.errors import RangeError
 from photograd.transport import PathOptions, PathTracer
 from photograd.transport.builtin import cornell_box

@@ -30,9 +30,9 @@ from photograd.transport import (
     read_model,
     save_gltf,
 )
+from photograd.transport.material import MODELS
 from photograd.transport.mesh_files.gltf_painted import normals_as_bytes
 from photograd.transport.mesh_files.gltf_words import WRITTEN
-from photograd.transport.scene import MODELS
 from photograd.transport.shapes import box
 
 from support.tree import ROOT
@@ -40,7 +40,8 @@ from tests.transport.gltf_models import models, same
 
 pytestmark = pytest.mark.usefixtures("core")
 DATA = ROOT.parent / "shared" / "data" / "meshes"
-READ_AS_THEMSELVES = sorted(set(WRITTEN) - {"ggx_metal"})
+CONSERVING = {name for name in WRITTEN if name.endswith("_conserving")}
+READ_AS_THEMSELVES = sorted(set(WRITTEN) - {"ggx_metal", "clearcoat"} - CONSERVING)
 EXAMPLES = 5  # of each model and kind of file
 
 
@@ -121,6 +122,11 @@ def test_special_cases_of_other_models_are_named(tmp_path: Path) -> None:
             ),
             "'gltf_specular' is read back as 'lambert'",
         ),
+        (
+            at_half("gltf_layered_conserving"),
+            "'gltf_layered_conserving' is read back as 'gltf_layered'",
+        ),
+        (at_half("clearcoat"), "'clearcoat' is read back as 'gltf_layered'"),
         (at_half("ggx_metal"), "'ggx_metal' is read back as 'gltf'"),
         (Material("glass", {"eta": 1.5, "tint": [1, 1, 1]}), None),
         (
@@ -158,6 +164,29 @@ def test_rounding_is_named(tmp_path: Path) -> None:
     assert [text.split(": ", 1)[1] for text in said] == [
         "shape 'cube': vertices changed", "shape 'cube': places changed"
     ]  # fmt: skip
+
+
+def test_a_film_keeps_its_least_thickness(tmp_path: Path) -> None:
+    g = np.random.default_rng(4)
+    cube = box("cube", [0, 0, 0], [1, 1, 1], "m")
+    shape = replace(cube, uv=g.random((len(cube.vertices), 2)).astype(np.float32))
+    material = replace(
+        at_half("gltf_iridescence"), textures={"iridescence_thickness": TextureUse("t", 1)}
+    )
+    levels = g.integers(0, 256, (3, 3, 3)) / 255
+    for least in (0.25, 0.1, 0.0):
+        film = {"t": Texture(np.asarray(least + (1 - least) * levels, np.float32))}
+        _, said = written(ModelFile((shape,), {"m": material}, film), tmp_path / "m.glb")
+        assert said == []
+        node = json_of(tmp_path / "m.glb")["materials"][0]["extensions"][
+            "KHR_materials_iridescence"
+        ]
+        assert node["iridescenceThicknessMinimum"] == pytest.approx(500 * least, rel=1e-4)
+    _, said = written(
+        ModelFile((shape,), {"m": material}, {"t": Texture(g.random((3, 3, 3)))}),
+        tmp_path / "m.glb",
+    )
+    assert "iridescence_thickness: texture: rounded to eight bits" in said[0]
 
 
 def test_surroundings_and_unused_materials_are_named(tmp_path: Path) -> None:

@@ -8,8 +8,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd import bsdf, delta_bsdf
-from photograd.core import _core
+from photograd import bsdf
+from photograd._compiled import _core
+from photograd.bsdf import specular as delta_bsdf
 from photograd.errors import RangeError
 from photograd.transport import (
     Environment,
@@ -26,7 +27,7 @@ from photograd.transport import (
 )
 from photograd.transport.builtin import camera_at, cornell_spheres
 from photograd.transport.incomplete import TURNING, incomplete_derivatives
-from photograd.transport.recovery import loss_and_gradients
+from photograd.transport.inverse import loss_and_gradients
 from photograd.transport.shapes import rectangle
 
 from tests.transport import difference_page as page

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 
 import numpy as np
-from photograd.transport.evening import SUN
+from photograd.transport.builtin import SUN
 
 from support.tree import ROOT
 

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.data.exr import encode_exr
-from photograd.data.image_write import write_radiance
 from photograd.errors import SceneError
+from photograd.images.exr import encode_exr
+from photograd.images.write import write_radiance
 from photograd.lights import EnvironmentMap, Light, SpotLight, SunLight
 from photograd.transport import PathTracer, builtin_scene, read_scene
 

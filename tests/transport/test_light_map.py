@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.core import _core
-from photograd.data.camera import Camera
+from photograd._compiled import _core
+from photograd.capture.camera import Camera
 from photograd.errors import RangeError, ShapeError
 from photograd.lights import DirectionalLight, PointLight
 from photograd.transport import (

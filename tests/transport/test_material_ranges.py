@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from photograd.errors import RangeError, SceneError
 from photograd.transport import Environment, Material, PathTracer, Scene, SphereShape, read_scene
-from photograd.transport.scene import MODELS
+from photograd.transport.material import MODELS
 
 from tests.transport.gltf_samples import extension, square
 from tests.transport.scenes import any_material, view

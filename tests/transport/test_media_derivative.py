@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from photograd.core import _core
+from photograd._compiled import _core
 from photograd.lights import DirectionalLight, PointLight
 from photograd.transport import (
     Accumulation,

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.core import _core
+from photograd._compiled import _core
 from photograd.errors import RangeError, SceneError, ShapeError
-from photograd.geometry.sdf_shapes import sphere
+from photograd.geometry.sdf import sphere
 from photograd.transport import (
     Accumulation,
     Environment,

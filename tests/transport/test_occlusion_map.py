@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.core import _core
+from photograd._compiled import _core
 from photograd.errors import RangeError, SceneError
-from photograd.texture import sample
+from photograd.textures import sample
 from photograd.transport import (
     Accumulation,
     Environment,

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.core import _core
+from photograd._compiled import _core
 from photograd.errors import Error, RangeError, ShapeError
 from photograd.transport import (
     Accumulation,
@@ -17,10 +17,14 @@ from photograd.transport import (
     Scene,
     TextureUse,
 )
+from photograd.transport.accumulation import PAIR_EVEN_SHARE, pair_counts
 from photograd.transport.builtin import cornell_box
+from photograd.transport.inverse import (
+    cross_loss,
+    cross_loss_backward,
+    loss_and_gradients,
+)
 from photograd.transport.metal_room import metal_room
-from photograd.transport.recovery import cross_loss, cross_loss_backward, loss_and_gradients
-from photograd.transport.sample_counts import PAIR_EVEN_SHARE, pair_counts
 
 from tests.transport.media_scenes import fog_box, smoke
 from tests.transport.scenes import any_material, stage

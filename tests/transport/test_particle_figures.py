@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 
 import numpy as np
-from photograd.data.camera import Camera
+from photograd.capture.camera import Camera
 from photograd.transport import PathTracer
 
 from support.tree import ROOT

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.core import _core
+from photograd._compiled import _core
 from photograd.errors import RangeError, ShapeError
 from photograd.lights import PointLight
 from photograd.transport import (

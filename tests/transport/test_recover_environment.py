@@ -6,7 +6,7 @@ import sys
 
 import numpy as np
 from photograd.transport import RecoveryOptions
-from photograd.transport.evening import evening_map, map_directions
+from photograd.transport.builtin import evening_map, map_directions
 
 from support.tree import ROOT
 

@@ -21,10 +21,13 @@ from photograd.transport import (
     recover,
     scene_with,
 )
-from photograd.transport.builtin import cornell_box, evening
-from photograd.transport.evening import evening_map
-from photograd.transport.recovery import cross_loss, cross_loss_backward, loss_and_gradients
-from photograd.transport.recovery.activation import Activation
+from photograd.transport.builtin import cornell_box, evening, evening_map
+from photograd.transport.inverse import (
+    cross_loss,
+    cross_loss_backward,
+    loss_and_gradients,
+)
+from photograd.transport.inverse.parameters import Activation
 from photograd_course.gradcheck import check_gradient
 from photograd_course.mutants import check_mutants
 

@@ -11,7 +11,7 @@ import pytest
 from photograd.errors import Error, IoError
 from photograd.transport import PathTracer
 from photograd.transport.builtin import cornell_box
-from photograd.transport.recovery import Recovery, RecoveryOptions
+from photograd.transport.inverse import Recovery, RecoveryOptions
 
 NAMES = ["materials.red.albedo", "emission.lamp"]
 OPTIONS = RecoveryOptions(steps=6, spp=1)

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.core import _core
+from photograd._compiled import _core
 from photograd.lights import DirectionalLight, PointLight
 from photograd.transport import BOUNDARY, Accumulation, PathOptions, PathTracer, Scene
 from photograd.transport.builtin import BUILTIN

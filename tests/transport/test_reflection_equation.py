@@ -9,7 +9,7 @@ import pytest
 from photograd.lights import EnvironmentMap, about_y
 from photograd.transport import PathOptions, PathTracer, Scene
 from photograd.transport.builtin import camera_at
-from photograd.transport.scene import MODELS
+from photograd.transport.material import MODELS
 from photograd.transport.shapes import rectangle
 
 from tests.transport.light_scenes import TILT, texels

@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.core import _core
+from photograd._compiled import _core
 from photograd.errors import RangeError
 from photograd.transport import PathOptions, PathTracer
+from photograd.transport.accumulation import EVEN_SHARE, MOST, sample_counts
 from photograd.transport.builtin import cornell_box
-from photograd.transport.sample_counts import EVEN_SHARE, MOST, sample_counts
 
 pytestmark = pytest.mark.usefixtures("core")
 OPTIONS = PathOptions(max_depth=4, roulette_from=None)

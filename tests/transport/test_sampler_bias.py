@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
-from photograd.delta_bsdf import registry
+from photograd.bsdf.specular import registry
 from photograd.lights import PointLight
 from photograd.transport import (
     Environment,
@@ -26,8 +26,7 @@ from photograd.transport import (
     Scene,
 )
 from photograd.transport.builtin import camera_at, furnace_box
-from photograd.transport.scene import Shape
-from photograd.transport.shapes import rectangle
+from photograd.transport.shapes import Shape, rectangle
 
 from tests.transport.scenes import BLACK, FLOOR, GREY, LAMP
 from tests.transport.test_closed_forms import polygon_irradiance

@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.geometry.sdf_shapes import placed, sphere
+from photograd.geometry.sdf import placed, sphere
 from photograd.transport import Scene
 from photograd.transport.builtin import BUILTIN, builtin_scene
 from photograd.transport.scene_digest import scene_digest
-from photograd.transport.sdf_shape import SdfShape
+from photograd.transport.shapes import SdfShape
 
 from tests.transport.light_scenes import LIGHTS, lit_by
 

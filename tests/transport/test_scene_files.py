@@ -20,8 +20,8 @@ from photograd.transport import (
     builtin_scene,
     read_scene,
 )
+from photograd.transport.scene_node import key_lines
 from photograd.transport.shapes import box
-from photograd.transport.toml_lines import key_lines
 
 from tests.transport.scenes import GREY, view
 

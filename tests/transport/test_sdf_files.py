@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from photograd.errors import SceneError
 from photograd.geometry import Body
-from photograd.geometry.sdf_shapes import (
+from photograd.geometry.sdf import (
     box,
     capsule,
     difference,

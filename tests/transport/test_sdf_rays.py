@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 from photograd.geometry import Body
-from photograd.geometry.sdf_shapes import box, placed, sphere
-from photograd.mesh import Hits
+from photograd.geometry.mesh import Hits
+from photograd.geometry.sdf import box, placed, sphere
 from photograd.transport import PathTracer, Scene, SdfShape
 
 from tests.geometry.shapes import random_rays

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.core import _core
+from photograd._compiled import _core
 from photograd.errors import RangeError, SceneError
-from photograd.geometry.sdf_shapes import (
+from photograd.geometry.sdf import (
     box,
     difference,
     intersection,

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.data.camera import Camera
+from photograd.capture.camera import Camera
 from photograd.transport import Accumulation, Material, PathOptions, PathTracer, Scene
 from photograd.transport.builtin import cornell_box
 from photograd.transport.shapes import box, rectangle

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.core import _core
+from photograd._compiled import _core
 from photograd.errors import DtypeError, IoError, RangeError, SceneError, ShapeError
 from photograd.transport import (
     Environment,
@@ -111,7 +111,7 @@ def test_coordinates_outside_of_the_texture(wrap: str, expected: list[int]) -> N
 
 
 def test_a_product_beyond_the_range_is_cut_off_and_has_no_derivative() -> None:
-    from photograd.transport.scene import MODELS
+    from photograd.transport.material import MODELS
 
     parameters = {p.name: p for p in MODELS["gltf"].parameters}
     least = parameters["roughness"].lo

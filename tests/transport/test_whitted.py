@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.data.camera import Camera
+from photograd.capture.camera import Camera
 from photograd.transport import Environment, Material, PathOptions, PathTracer, Scene, SphereShape
 
 from support.glass_ball import fresnel

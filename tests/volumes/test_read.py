@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 from photograd.commands.render import render
 from photograd.errors import IoError, RangeError
-from photograd.fog import fog_model, load_fog
-from photograd.sparse import SparseGrid
-from photograd.volumes import Volume, read_volume
+from photograd.fitting.fog import fog_model, load_fog
+from photograd.grids.sparse import SparseGrid
+from photograd.grids.volumes import Volume, read_volume
 from PIL import Image
 
 from tests.volumes.files import mitsuba, nifti, values, vtk

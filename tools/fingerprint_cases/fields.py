@@ -10,17 +10,19 @@ from typing import Any
 
 import numpy as np
 import photograd
-from photograd import sh, splat, splat_rays
-from photograd.core import _core
+from photograd import sh
+from photograd._compiled import _core
 from photograd.fields import SparseSh
 from photograd.fields.active_voxels import ActiveVoxels
 from photograd.fields.march import MarchPolicy, march, march_backward
-from photograd.mesh import Bvh, Instance, Mesh
+from photograd.geometry.mesh import Bvh, Instance, Mesh
 from photograd.representation import Outputs, RayBatch, RenderOptions, dense_gradient
 from photograd.scenes.direct_light import DirectLight
 from photograd.scenes.registry import scene as described_scene
 from photograd.scenes.registry import scenes as described_scenes
-from photograd.transport.camera_place import camera_at
+from photograd.splats import rays as splat_rays
+from photograd.splats import splatting as splat
+from photograd.transport.builtin import camera_at
 
 from fingerprint_cases.case import PRECISIONS, Array, Arrays, Case, unit_rows
 

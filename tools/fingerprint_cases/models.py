@@ -7,9 +7,11 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from photograd import bsdf, delta_bsdf, phase
-from photograd.core import _core
-from photograd.texture import (
+from photograd import bsdf
+from photograd._compiled import _core
+from photograd.bsdf import phase
+from photograd.bsdf import specular as delta_bsdf
+from photograd.textures import (
     build_mips,
     build_mips_backward,
     mip_level,

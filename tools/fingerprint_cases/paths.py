@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 from photograd.transport import Accumulation, PathOptions, PathTracer, derivative_image
-from photograd.transport.recovery.cross_loss import loss_and_gradients
+from photograd.transport.inverse.loss import loss_and_gradients
 
 from fingerprint_cases.case import PRECISIONS, Array, Arrays, Case, numbers_of
 from fingerprint_cases.scenes import BASIC, Scenes, view, without_unused

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 from photograd import bsdf
-from photograd.core import _core
+from photograd._compiled import _core
 from photograd_course.cli.progress import Progress
 
 from fingerprint_cases.case import Array, Arrays, Case, computed, fingerprint

@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from photograd.data.camera import Camera
+from photograd.capture.camera import Camera
 from photograd.lights import PointLight
 from photograd.transport import (
     BUILTIN,

@@ -6,8 +6,8 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from photograd.geometry.sdf_shapes import box as sdf_box
-from photograd.geometry.sdf_shapes import placed, smooth_union, sphere
+from photograd.geometry.sdf import box as sdf_box
+from photograd.geometry.sdf import placed, smooth_union, sphere
 from photograd.transport import BOUNDARY, Lens, NormalMap, Scene, SdfShape, Shutter, Texture
 
 from fingerprint_cases.scenes import GLASS, GLOSS, Scenes, ball, dome, stage

@@ -15,7 +15,7 @@ from photograd.transport import (
     Texture,
     TextureUse,
 )
-from photograd.transport.scene import MODELS
+from photograd.transport.material import MODELS
 from photograd.transport.shapes import rectangle
 
 from fingerprint_cases.scenes import GLASS, GLOSS, GRAY, Scenes, ball, dome, stage

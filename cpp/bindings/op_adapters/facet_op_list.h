@@ -246,20 +246,29 @@ struct Gtr1Op {
 /// boundary does not jump.
 struct ThinFilmOp {
     static constexpr const char* name = "thin_film";
-    static constexpr std::array<InputGroup, 3> inputs{
-        {{"f0", 3, 0.2, 0.9}, {"index", 1, 1.2, 1.8}, {"thickness", 1, 150.0, 600.0}}};
-    static constexpr int outputs = 3;
+    static constexpr std::array<InputGroup, 4> inputs{{{"f0", 3, 0.2, 0.9},
+                                                       {"index", 1, 1.2, 1.8},
+                                                       {"thickness", 1, 150.0, 600.0},
+                                                       {"cos_theta", 1, 0.3, 0.9}}};
+    static constexpr int outputs = 6;
 
     template <class R>
     static void forward(const R* in, R* out) {
-        const Vec3<R> F = thin_film(Vec3<R>(in[0], in[1], in[2]), in[3], in[4], R(0.7));
-        for (int c = 0; c < 3; ++c) out[c] = F[c];
+        const Vec3<R> f0(in[0], in[1], in[2]), F = thin_film(f0, in[3], in[4], in[5]);
+        const Vec3<R> bound = thin_film_bound(f0, in[3], R(0.7));
+        for (int c = 0; c < 3; ++c) {
+            out[c] = F[c];
+            out[3 + c] = bound[c];
+        }
     }
     template <class R>
     static void backward(const R* in, const R* d_out, R* d_in) {
         Vec3<R> d_f0(R(0));
-        thin_film_backward(Vec3<R>(in[0], in[1], in[2]), in[3], in[4], R(0.7),
-                           Vec3<R>(d_out[0], d_out[1], d_out[2]), d_f0, d_in[3], d_in[4]);
+        const Vec3<R> f0(in[0], in[1], in[2]);
+        thin_film_backward(f0, in[3], in[4], in[5], Vec3<R>(d_out[0], d_out[1], d_out[2]), d_f0,
+                           d_in[3], d_in[4], d_in[5]);
+        thin_film_bound_backward(f0, in[3], R(0.7), Vec3<R>(d_out[3], d_out[4], d_out[5]), d_f0,
+                                 d_in[3]);
         for (int c = 0; c < 3; ++c) d_in[c] += d_f0[c];
     }
 };

@@ -8,6 +8,7 @@
 
 #include <array>
 
+#include "diffusion_op_list.h"
 #include "facet_op_list.h"
 #include "input_group.h"
 #include "photograd/core/params.h"
@@ -249,16 +250,17 @@ struct CompositeOp {
     }
 };
 
-using Ops =
-    TypeList<ActivationOp<Activation::relu>, ActivationOp<Activation::softplus>,
-             ActivationOp<Activation::exp>, ActivationOp<Activation::sigmoid>, BilinearOp<false>,
-             BilinearOp<true>, TrilinearOp<Border::clamp>, TrilinearOp<Border::zero>, CellBlendOp,
-             ShColorOp, ShColorsOp, CompositeOp<Quadrature::alpha>,
-             CompositeOp<Quadrature::riemann>, CovarianceOp, ProjectionOp<false>,
-             ProjectionOp<true>, ConicOp, SplatColorOp, SplatBlendOp, RayGaussianOp, RayColorOp,
-             RayBlendOp, ErfOp, SchlickOp, IndexOp, DielectricOp<false>, DielectricOp<true>,
-             ConductorOp, GgxOp, GgxFastOp, BeckmannOp, CharlieOp, Gtr1Op, RefractOp, ThinFilmOp,
-             PrincipledOp, SdfSphereOp, SdfPlaneOp, SdfTorusOp, SdfBoxOp<false>, SdfBoxOp<true>,
-             SdfCapsuleOp, SmoothUnionOp, ToShapeOp, RaySphereOp<false>, RaySphereOp<true>>;
+using Ops = TypeList<
+    ActivationOp<Activation::relu>, ActivationOp<Activation::softplus>,
+    ActivationOp<Activation::exp>, ActivationOp<Activation::sigmoid>, BilinearOp<false>,
+    BilinearOp<true>, TrilinearOp<Border::clamp>, TrilinearOp<Border::zero>, CellBlendOp, ShColorOp,
+    ShColorsOp, CompositeOp<Quadrature::alpha>, CompositeOp<Quadrature::riemann>, CovarianceOp,
+    ProjectionOp<false>, ProjectionOp<true>, ConicOp, SplatColorOp, SplatBlendOp, RayGaussianOp,
+    RayColorOp, RayBlendOp, ErfOp, SchlickOp, IndexOp, DielectricOp<false>, DielectricOp<true>,
+    ConductorOp, GgxOp, GgxFastOp, BeckmannOp, CharlieOp, Gtr1Op, RefractOp, ThinFilmOp,
+    PrincipledOp, SdfSphereOp, SdfPlaneOp, SdfTorusOp, SdfBoxOp<false>, SdfBoxOp<true>,
+    SdfCapsuleOp, SmoothUnionOp, ToShapeOp, RaySphereOp<false>, RaySphereOp<true>, DipoleOp,
+    NormalizedDiffusionOp<DiffusionFit::searchlight>, NormalizedDiffusionOp<DiffusionFit::diffuse>,
+    NormalizedDiffusionOp<DiffusionFit::diffuse_free_path>>;
 
 }  // namespace photograd

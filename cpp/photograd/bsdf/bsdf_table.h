@@ -14,7 +14,7 @@
 namespace photograd {
 
 /// Capacity of a row. The widest model must fit, which is checked where the table is made.
-inline constexpr int max_bsdf_parameters = 16;
+inline constexpr int max_bsdf_parameters = 25;
 inline constexpr int max_lobes = 4;  // of a specular model
 
 /// Where a path goes on. Models with a density have lobe -1, pdf over solid angle, and value f.

@@ -105,8 +105,9 @@ private:
         d_self.iridescence_thickness +=
             d_w * iridescence_factor * R(6) * x * (R(1) - x) / R(least_thickness);
         schlick_backward(c, d_F * (R(1) - w), d_f0);
+        R fixed_cosine = R(0);
         thin_film_backward(f0, iridescence_ior, iridescence_thickness, c, d_F * w, d_f0,
-                           d_self.iridescence_ior, d_self.iridescence_thickness);
+                           d_self.iridescence_ior, d_self.iridescence_thickness, fixed_cosine);
     }
     Vec3<R> dielectric(R c, R lobe) const {
         const Vec3<R> F_d = fresnel(base_f0(), c);

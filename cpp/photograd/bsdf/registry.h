@@ -15,6 +15,7 @@
 #include "photograd/bsdf/ggx_metal_fast.h"
 #include "photograd/bsdf/gltf.h"
 #include "photograd/bsdf/gltf_iridescence.h"
+#include "photograd/bsdf/gltf_layered.h"
 #include "photograd/bsdf/gltf_refraction.h"
 #include "photograd/bsdf/gltf_sheen.h"
 #include "photograd/bsdf/gltf_specular.h"
@@ -36,6 +37,7 @@ using Bsdfs =
               OrenNayarFull, OrenNayarEnergyPreserving, BurleyDiffuse, CookTorrance, GgxMetal,
               GgxMetalCompensated, GgxMetalFast, GgxConductor, BeckmannConductor, GgxAnisotropic,
               Standard, Gltf, GltfIridescence, GltfSheen, GltfSpecular, Clearcoat, Sheen, Disney,
-              RoughDielectric, DispersiveDielectric, GltfTransmission, GltfRefraction, Principled>;
+              RoughDielectric, DispersiveDielectric, GltfTransmission, GltfRefraction, GltfLayered,
+              GltfLayeredConserving, GltfLayeredVolume, GltfLayeredVolumeConserving, Principled>;
 
 }  // namespace photograd

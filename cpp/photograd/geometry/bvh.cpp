@@ -219,7 +219,7 @@ struct Bvh::Tree {
     /// which saves a level of the hierarchy.
     void add_instance(const Instance& it, unsigned id) {
         const auto m = static_cast<std::size_t>(it.mesh);
-        if (it.world_from_object.is_identity() && !it.moves) {
+        if (!it.is_placed) {
             rtcAttachGeometryByID(scene, geometries[m], id);
             return;
         }
@@ -268,7 +268,8 @@ Bvh::Bvh(std::vector<Mesh> meshes, std::vector<Instance> instances, std::vector<
     }
     tree_->mesh_scenes.resize(meshes_.size(), nullptr);
     for (std::size_t i = 0; i < instances_.size(); ++i) {
-        const Instance& it = instances_[i];
+        Instance& it = instances_[i];
+        it.is_placed = it.moves || !it.world_from_object.is_identity();
         const std::string name = "instance " + std::to_string(i);
         if (it.mesh < 0 || it.mesh >= static_cast<int>(meshes_.size()))
             fail(ErrorKind::scene, "bvh", "instances",
@@ -281,7 +282,7 @@ Bvh::Bvh(std::vector<Mesh> meshes, std::vector<Instance> instances, std::vector<
         const Vec3<double>& extent = extents[static_cast<std::size_t>(it.mesh)];
         check_transform("world_from_object", it.world_from_object, extent, name);
         if (it.moves) check_transform("world_from_object", it.closing, extent, name);
-        if (it.moves || !it.world_from_object.is_identity())
+        if (it.is_placed)
             tree_->reach = std::min(tree_->reach, static_cast<float>(reach_into(it, name)));
         moves_ = moves_ || it.moves;
         tree_->add_instance(it, static_cast<unsigned>(i));

@@ -26,6 +26,7 @@ struct Instance {
     Affine world_from_object;
     bool moves = false;
     Affine closing = {};
+    bool is_placed = false;  // its vertices are not in the world's frame; set by Bvh
 
     [[nodiscard]] Affine at(double time) const {
         return moves ? world_from_object.towards(closing, time) : world_from_object;
@@ -103,14 +104,10 @@ public:
         const Instance& it = instances_[static_cast<std::size_t>(instance)];
         const Mesh& mesh = meshes_[static_cast<std::size_t>(it.mesh)];
         const std::uint32_t* c = mesh.corners(static_cast<std::uint32_t>(primitive));
-        for (int k = 0; k < 3; ++k) {
-            out[k] = mesh.vertex<R>(c[k]);
-            if (it.moves) {
-                out[k] = it.at(time).point(out[k]);
-                continue;
-            }
-            if (!it.world_from_object.is_identity()) out[k] = it.world_from_object.point(out[k]);
-        }
+        for (int k = 0; k < 3; ++k) out[k] = mesh.vertex<R>(c[k]);
+        if (!it.is_placed) return;
+        const Affine world_from_object = it.at(time);
+        for (int k = 0; k < 3; ++k) out[k] = world_from_object.point(out[k]);
     }
     template <class R>
     [[nodiscard]] TrianglePoint<R> surface_point(const Ray<R>& ray, std::int32_t instance,

@@ -63,7 +63,7 @@ Mesh::Mesh(std::span<const float> vertices, std::span<const std::uint32_t> faces
     if (flat > 0)
         fail(ErrorKind::scene, "mesh", "faces", "triangles with an area",
              std::to_string(flat) + " without, the first is " + in_mesh("triangle", first, index),
-             "remove them with photograd.mesh.drop_degenerate");
+             "remove them with photograd.geometry.mesh.drop_degenerate");
 }
 
 }  // namespace photograd

@@ -35,7 +35,7 @@ struct AnyPhase {
         });
         if (!found)
             fail(ErrorKind::scene, "medium", "phase", "a registered phase function",
-                 std::string(name), "photograd.phase.registry()");
+                 std::string(name), "photograd.bsdf.phase.registry()");
         return phase;
     }
     /// visit(each parameter), in their order.

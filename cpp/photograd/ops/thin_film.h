@@ -13,15 +13,20 @@
 //   F = max(R12 + Rs + 2 (Rs - T) H, 0),   H = r s S(psi) + r^2 S(2 psi)
 //
 // s is the sign of the phases that the boundaries turn: -1 where the base is denser than the film
-// (a > 0), else 1. S(psi) is what a wave of this path contributes to red, green and blue: the eye's
-// sensitivities as four Gaussians in frequency, Fourier transformed, sum_k A_k exp(-v_k psi^2)
-// cos(p_k psi), and turned into Rec. 709. Of the waves that bounce more often, the third and later
-// are left out. All of these are approximations: tests say how far from the spectral sum.
+// (a > 0), else 1. So F jumps where both have one index, a = 0, but for views from straight above:
+// R23 is not 0 there. S(psi) is what a wave of this path contributes to red, green and blue: the
+// eye's sensitivities as four Gaussians in frequency, Fourier transformed, sum_k A_k exp(-v_k
+// psi^2) cos(p_k psi), and turned into Rec. 709. Of the waves that bounce more often, the third and
+// later are left out. All of these are approximations: tests say how far from the spectral sum.
 //
 //   dF/dRs = 1 + 2 H     dF/dT = -2 H     dF/dr = 2 (Rs - T) (s S(psi) + 2 r S(2 psi))
 //   dRs/dT = 2 T R23 / D     dRs/dR23 = T^2 / D     dRs/dD = -Rs / D     dr/dR12 = R23 / (2 r)
 //   da/dP = 2 Q / (P + Q)^2     da/dQ = -2 P / (P + Q)^2     dR0/dn = 4 (n - 1) / (n + 1)^3
-//   dc2/dn = (1 - c1^2) / (n^3 c2)
+//   dc2/dn = (1 - c1^2) / (n^3 c2)     dc2/dc1 = c1 / (n^2 c2)
+//   dR12/dc1 = -5 (1 - R0) (1 - c1)^4
+//
+// Whatever the thickness, |S| stays below B = (1.79, 0.99, 0.97), so that F is at most what
+// H = -B (r + r^2) makes of it: `thin_film_bound`, with dH/dr = -B (1 + 2 r).
 //
 // The 1e-4 keeps dg/df0 finite for a black base. D is held at 1e-4 or more: both boundaries are
 // mirrors at the horizon.
@@ -74,22 +79,33 @@ struct Wave {
     }
 };
 
+/// Of |S| over all psi, in red, green and blue.
+inline constexpr double largest_S[3] = {1.79, 0.99, 0.97};
+
 /// What base and film share: all but R23.
 template <class R>
 struct Film {
     R n, d, c1, c2, R0, R12, T, psi;
     Wave<R> once, twice;
+    bool bound;  // H as small as any thickness makes it
 
-    static Film of(R n, R d, R c1) {
+    static Film bound_of(R n, R c1) {
         Film film{};
+        film.bound = true;
+        for (int c = 0; c < 3; ++c) film.once.S[c] = film.twice.S[c] = R(largest_S[c]);
         film.n = n;
-        film.d = d;
         film.c1 = c1;
         film.c2 = sqrt(R(1) - (R(1) - c1 * c1) / (n * n));
         const R step = (n - R(1)) / (n + R(1));
         film.R0 = step * step;
         film.R12 = film.R0 + (R(1) - film.R0) * schlick_ramp(c1);
         film.T = R(1) - film.R12;
+        return film;
+    }
+    static Film of(R n, R d, R c1) {
+        Film film = bound_of(n, c1);
+        film.bound = false;
+        film.d = d;
         film.psi = R(2 * turn) * n * d * film.c2;
         film.once = Wave<R>::of(film.psi);
         film.twice = Wave<R>::of(R(2) * film.psi);
@@ -100,7 +116,7 @@ struct Film {
 /// One channel of the sum.
 template <class R>
 struct Interference {
-    R g, a, ramp2, R23, D, r, Rs, H, s, sum;
+    R g, a, ramp2, R23, D, r, Rs, H, H_by_r, s, sum;
 
     static Interference of(const Film<R>& film, R f0, R once, R twice) {
         Interference x{};
@@ -113,29 +129,24 @@ struct Interference {
         x.r = sqrt(larger(film.R12 * x.R23, R(1e-12)));
         x.Rs = film.T * film.T * x.R23 / x.D;
         x.s = x.a > R(0) ? R(-1) : R(1);
-        x.H = x.r * x.s * once + x.r * x.r * twice;
+        x.H = film.bound ? -x.r * once - x.r * x.r * twice : x.r * x.s * once + x.r * x.r * twice;
+        x.H_by_r = film.bound ? -once - R(2) * x.r * twice : x.s * once + R(2) * x.r * twice;
         x.sum = film.R12 + x.Rs + R(2) * (x.Rs - film.T) * x.H;
         return x;
     }
 };
 
-}  // namespace film_detail
-
 template <class R>
-Vec3<R> thin_film(const Vec3<R>& f0, R n, R d, R cos_theta) {
-    using namespace film_detail;
-    const Film<R> film = Film<R>::of(n, d, cos_theta);
+Vec3<R> reflectance(const Film<R>& film, const Vec3<R>& f0) {
     Vec3<R> F;
     for (int c = 0; c < 3; ++c)
         F[c] = larger(Interference<R>::of(film, f0[c], film.once.S[c], film.twice.S[c]).sum, R(0));
     return F;
 }
-/// The angle is held constant.
 template <class R>
-void thin_film_backward(const Vec3<R>& f0, R n, R d, R cos_theta, const Vec3<R>& d_F, Vec3<R>& d_f0,
-                        R& d_n, R& d_d) {
-    using namespace film_detail;
-    const Film<R> film = Film<R>::of(n, d, cos_theta);
+void reflectance_backward(const Film<R>& film, const Vec3<R>& f0, const Vec3<R>& d_F, Vec3<R>& d_f0,
+                          R& d_n, R& d_d, R& d_cos_theta) {
+    const R n = film.n, d = film.d, c1 = film.c1;
     R d_R12 = R(0), d_T = R(0), d_c2 = R(0), d_psi = R(0);
     for (int c = 0; c < 3; ++c) {
         const R once = film.once.S[c], twice = film.twice.S[c];
@@ -143,7 +154,7 @@ void thin_film_backward(const Vec3<R>& f0, R n, R d, R cos_theta, const Vec3<R>&
         if (!(x.sum > R(0))) continue;
         const R rest = R(2) * (x.Rs - film.T) * d_F[c];
         const R d_Rs = d_F[c] * (R(1) + R(2) * x.H);
-        const R d_r = rest * (x.s * once + R(2) * x.r * twice);
+        const R d_r = rest * x.H_by_r;
         const R d_D = R(1) - film.R12 * x.R23 > R(1e-4) ? -d_Rs * x.Rs / x.D : R(0);
         d_psi += rest * (x.r * x.s * film.once.slope[c] + R(2) * x.r * x.r * film.twice.slope[c]);
         d_T += d_Rs * R(2) * film.T * x.R23 / x.D - R(2) * x.H * d_F[c];
@@ -160,11 +171,40 @@ void thin_film_backward(const Vec3<R>& f0, R n, R d, R cos_theta, const Vec3<R>&
     }
     d_R12 -= d_T;
     d_c2 += d_psi * R(2 * turn) * n * d;
-    d_n += d_R12 * (R(1) - schlick_ramp(cos_theta)) * R(4) * (n - R(1)) /
+    d_n += d_R12 * (R(1) - schlick_ramp(c1)) * R(4) * (n - R(1)) /
                ((n + R(1)) * (n + R(1)) * (n + R(1))) +
-           d_psi * R(2 * turn) * d * film.c2 +
-           d_c2 * (R(1) - cos_theta * cos_theta) / (n * n * n * film.c2);
+           d_psi * R(2 * turn) * d * film.c2 + d_c2 * (R(1) - c1 * c1) / (n * n * n * film.c2);
     d_d += d_psi * R(2 * turn) * n * film.c2;
+    const R m = R(1) - c1;
+    d_cos_theta +=
+        d_c2 * c1 / (n * n * film.c2) - d_R12 * (R(1) - film.R0) * R(5) * (m * m) * (m * m);
+}
+
+}  // namespace film_detail
+
+template <class R>
+Vec3<R> thin_film(const Vec3<R>& f0, R n, R d, R cos_theta) {
+    return film_detail::reflectance(film_detail::Film<R>::of(n, d, cos_theta), f0);
+}
+template <class R>
+void thin_film_backward(const Vec3<R>& f0, R n, R d, R cos_theta, const Vec3<R>& d_F, Vec3<R>& d_f0,
+                        R& d_n, R& d_d, R& d_cos_theta) {
+    film_detail::reflectance_backward(film_detail::Film<R>::of(n, d, cos_theta), f0, d_F, d_f0, d_n,
+                                      d_d, d_cos_theta);
+}
+
+/// The most that a film of any thickness reflects.
+template <class R>
+Vec3<R> thin_film_bound(const Vec3<R>& f0, R n, R cos_theta) {
+    return film_detail::reflectance(film_detail::Film<R>::bound_of(n, cos_theta), f0);
+}
+/// The angle is held constant.
+template <class R>
+void thin_film_bound_backward(const Vec3<R>& f0, R n, R cos_theta, const Vec3<R>& d_F,
+                              Vec3<R>& d_f0, R& d_n) {
+    R fixed_thickness = R(0), fixed_cosine = R(0);
+    film_detail::reflectance_backward(film_detail::Film<R>::bound_of(n, cos_theta), f0, d_F, d_f0,
+                                      d_n, fixed_thickness, fixed_cosine);
 }
 
 }  // namespace PHOTOGRAD_ISA

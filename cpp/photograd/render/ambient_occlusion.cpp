@@ -110,9 +110,7 @@ void add_point_occlusion(const PathGeometry& scene, const SurfacePoints& points,
     });
 }
 
-template void trace_ambient_occlusion<float>(const PathGeometry&, const Pinhole&, double,
-                                             std::uint64_t, const SampleRange&, double*);
-template void trace_ambient_occlusion<double>(const PathGeometry&, const Pinhole&, double,
-                                              std::uint64_t, const SampleRange&, double*);
+template decltype(trace_ambient_occlusion<float>) trace_ambient_occlusion<float>;
+template decltype(trace_ambient_occlusion<double>) trace_ambient_occlusion<double>;
 
 }  // namespace photograd

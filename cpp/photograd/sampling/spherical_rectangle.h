@@ -10,10 +10,9 @@
 //
 // with r = |(x, y, z)|, + for the corners (x1, y0) and (x0, y1) and - for the other two. Written
 // so, no angle near 0 comes from a cosine near 1. Angles add up where complex numbers multiply, so
-// the four need one arc tangent, not four:
+// the four need one arc tangent, not four, and lengths of the factors do not matter:
 //
-//   e^(i g) = (+-x y - i z r) / (|(x, z)| |(y, z)|)
-//       since (x y)^2 + (z r)^2 = (x^2 + z^2) (y^2 + z^2)
+//   g = arg(+-x y - i z r)
 #pragma once
 
 #include "photograd/core/atan.h"
@@ -23,16 +22,16 @@
 
 namespace photograd {
 
-/// A point of the unit circle, for its angle.
+/// An angle, as that of a complex number.
 struct Turn {
-    double cos, sin;
+    double re, im;
 
-    /// Their angles add up.
+    /// The angles add up.
     friend Turn operator*(const Turn& a, const Turn& b) {
-        return {a.cos * b.cos - a.sin * b.sin, a.cos * b.sin + a.sin * b.cos};
+        return {a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re};
     }
     /// Whether the angle, in [0, 2 pi), is above 3 pi / 2.
-    [[nodiscard]] bool nearly_full() const { return cos > 0 && sin < 0; }
+    [[nodiscard]] bool nearly_full() const { return re > 0 && im < 0; }
 };
 
 /// Perpendicular edges: their directions and lengths, and the normal.
@@ -59,18 +58,14 @@ struct SphericalRectangle {
         depth = dot(corner, z);
         x1 = x0 + axes.width;
         y1 = y0 + axes.height;
-        const double to_x0 = over_depth(x0), to_x1 = over_depth(x1);
-        to_y0 = over_depth(y0);
-        to_y1 = over_depth(y1);
-        far_side = corner_turn(x0, y1, 1, to_x0 * to_y1) * corner_turn(x0, y0, -1, to_x0 * to_y0);
-        const Turn near_side =
-            corner_turn(x1, y0, 1, to_x1 * to_y0) * corner_turn(x1, y1, -1, to_x1 * to_y1);
+        far_side = corner_turn(x0, y1, 1) * corner_turn(x0, y0, -1);
+        const Turn near_side = corner_turn(x1, y0, 1) * corner_turn(x1, y1, -1);
         // Solid angles above pi come out negative, and so may those near 0, by rounding. The latter
         // look like those above 3/2 pi; only there, both sides have angles above 3/2 pi.
         const Turn all = far_side * near_side;
-        solid_angle = polar_angle(all.sin, all.cos);
+        solid_angle = polar_angle(all.im, all.re);
         const bool full = far_side.nearly_full() && near_side.nearly_full();
-        if (solid_angle < 0 && (all.cos < 0 || full)) solid_angle += 2 * pi;
+        if (solid_angle < 0 && (all.re < 0 || full)) solid_angle += 2 * pi;
     }
 
     /// A point of the rectangle, uniform as seen from the origin.
@@ -78,21 +73,23 @@ struct SphericalRectangle {
     /// The part of the rectangle left of x has a solid angle too: its two new angles are acos(-c
     /// b0) and acos(-c b1) with b0 = -y0 / sqrt(y0^2 + z^2), b1 = y1 / sqrt(y1^2 + z^2), c = x /
     /// sqrt(x^2 + z^2). Where they add up to `sum`,
-    ///   c f = sqrt(1 - b0^2 c^2),   f = (b0 cos(sum) - b1) / sin(sum),   so
-    ///       c = sign(f) / sqrt(f^2 + b0^2).
+    ///   c f = sqrt(1 - b0^2 c^2),   f = (b0 cos(sum) - b1) / sin(sum).
+    /// With C + i S the product whose angle is -sum, of the length (x0^2 + z^2) sqrt((y0^2 + z^2)
+    /// (y1^2 + z^2)), this is
+    ///   x = +-z S sqrt((y0^2 + z^2) / (G^2 - z^2 S^2)),
+    ///       G = y0 C + y1 (x0^2 + z^2) (y0^2 + z^2).
     /// Up the line at x, the solid angle of its points below y grows as y / sqrt(d^2 + y^2), d^2 =
     /// x^2 + z^2.
     [[nodiscard]] Vec3<double> sample(const Vec2<double>& u2) const {
-        const double b0 = -y0 * to_y0, b1 = y1 * to_y1;
+        const double z2 = depth * depth, y02 = y0 * y0 + z2;
         // -sum = far_side - part, where part = u solid_angle in [0, 2 pi]; sin and cos change sign
         // with pi.
         const SinCos<double> part = sin_cos(u2.x * solid_angle - pi);
         const Turn back = far_side * Turn{-part.cos, part.sin};
-        const double f = (b0 * back.cos - b1) / -back.sin;
-        const double c = (f > 0 ? 1 : -1) / sqrt(f * f + b0 * b0);
-        const double rest = 1 - c * c;
-        double at_x = rest > 0 ? -c * depth / sqrt(rest) : c * 1e300;
-        at_x = larger(x0, smaller(x1, at_x));
+        const double G = y0 * back.re + y1 * (x0 * x0 + z2) * y02, S = depth * back.im;
+        const double rest = (G - S) * (G + S);
+        double at_x = rest > 0 ? std::abs(S) * sqrt(y02 / rest) : 1e300;
+        at_x = larger(x0, smaller(x1, G * S < 0 ? at_x : -at_x));
         const double d2 = at_x * at_x + depth * depth;
         const double low = y0 / sqrt(d2 + y0 * y0), high = y1 / sqrt(d2 + y1 * y1);
         const double h = low + u2.y * (high - low);
@@ -103,15 +100,12 @@ struct SphericalRectangle {
 
     Vec3<double> x, y, z;
     double x0, x1, y0, y1, depth;
-    double to_y0, to_y1;  // 1 / |(y, z)|
-    Turn far_side;        // both angles at x0
+    Turn far_side;  // both angles at x0
     double solid_angle;
 
 private:
-    [[nodiscard]] double over_depth(double a) const { return 1 / sqrt(a * a + depth * depth); }
-    [[nodiscard]] Turn corner_turn(double cx, double cy, double sign, double scale) const {
-        const double r = sqrt(cx * cx + cy * cy + depth * depth);
-        return {sign * cx * cy * scale, -depth * r * scale};
+    [[nodiscard]] Turn corner_turn(double cx, double cy, double sign) const {
+        return {sign * cx * cy, -depth * sqrt(cx * cx + cy * cy + depth * depth)};
     }
 };
 

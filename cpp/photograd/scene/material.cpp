@@ -16,7 +16,7 @@ Material<R> Material<R>::read(std::string_view name, const R* row) {
     const auto found = std::ranges::find(bsdf_infos, name, &BsdfInfo::name);
     if (found == bsdf_infos.end())
         fail(ErrorKind::scene, "material", "model", "a registered reflectance model",
-             std::string(name), "photograd.bsdf.registry() and photograd.delta_bsdf.registry()");
+             std::string(name), "photograd.bsdf.registry() and photograd.bsdf.specular.registry()");
     material.model = static_cast<std::uint16_t>(found - bsdf_infos.begin());
     material.set(row);
     return material;

@@ -136,7 +136,7 @@ void shade(const PathGeometry& scene, std::int32_t instance, std::int32_t primit
     if (!(length(sum) > R(1e-3))) return;  // normals that cancel
     if (placed.moves)
         sum = world_normal(placed.at(time), sum);
-    else if (!placed.world_from_object.is_identity())
+    else if (placed.is_placed)
         sum = world_normal(placed.world_from_object, sum);
     const R size = length(sum);
     if (!(size > R(0))) return;

@@ -20,11 +20,12 @@ from photograd.commands.shared import (
     use_threads,
 )
 from photograd.commands.trace import SceneArgument, load_scene
-from photograd.data.image_kind import LINEAR_SUFFIXES
-from photograd.data.image_write import write_png, write_radiance
 from photograd.errors import SceneError, message
+from photograd.images.kind import LINEAR_SUFFIXES
+from photograd.images.write import write_png, write_radiance
 from photograd.transport.occlusion_map import OcclusionBake
-from photograd.transport.scene import MeshShape, Scene
+from photograd.transport.scene import Scene
+from photograd.transport.shapes import MeshShape
 
 PASS_SPP = 16
 ShapeOption = Annotated[

@@ -11,6 +11,9 @@ from photograd_course.atomic_io import atomic_write
 from photograd_course.cli import DebugOption, JsonOption, SeedOption, ThreadsOption, emit, note
 from photograd_course.suggest import choose_from
 
+from photograd._run_lock import one_run_in
+from photograd.capture.capture import Capture
+from photograd.capture.load import load_capture
 from photograd.commands.capture import make_capture
 from photograd.commands.evaluate import draw_strips
 from photograd.commands.fit import run_with_bar
@@ -22,7 +25,8 @@ from photograd.commands.shared import (
     stop_on_signals,
     use_threads,
 )
-from photograd.compare import (
+from photograd.errors import RangeError, SceneError, message
+from photograd.fitting.compare import (
     Contender,
     Score,
     compare_one,
@@ -31,12 +35,8 @@ from photograd.compare import (
     source_of,
     worst_view,
 )
-from photograd.data.capture import Capture
-from photograd.data.load import load_capture
-from photograd.errors import RangeError, SceneError, message
-from photograd.evaluate import Evaluation
-from photograd.fit_options import FitOptions
-from photograd.run_lock import one_run_in
+from photograd.fitting.evaluate import Evaluation
+from photograd.fitting.options import FitOptions
 from photograd.scenes.registry import scenes
 
 DEFAULTS = FitOptions()
@@ -126,7 +126,7 @@ def draw_ranking(scores: list[Score], path: Path) -> Path:
     """All scores beside each other."""
     from photograd_course.viz import save_figure
 
-    from photograd.ranking import ranking
+    from photograd.fitting.ranking import ranking
 
     return save_figure(ranking(scores), path)
 

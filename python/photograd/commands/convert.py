@@ -10,17 +10,16 @@ from photograd_course.cli import DebugOption, JsonOption, emit
 
 from photograd.commands.convert_model import READABLE, convert_model
 from photograd.commands.convert_model import WRITABLE as GLTF
-from photograd.data.gaussian_coding import differences
-from photograd.data.gaussian_files import (
+from photograd.errors import IoError, RangeError, message
+from photograd.splats.coding import differences
+from photograd.splats.files import (
     SUFFIXES,
     WRITABLE,
     codings_of,
     read_gaussians,
     write_gaussians,
 )
-from photograd.data.gaussian_frame import USUAL_UP, with_usual_up
-from photograd.data.gaussian_header import dropped
-from photograd.errors import IoError, RangeError, message
+from photograd.splats.frames import USUAL_UP, dropped, with_usual_up
 
 SPZ_VERSION = 3
 

@@ -8,8 +8,9 @@ from typing import Any
 
 from photograd.transport.mesh_files import SUFFIXES, ModelFile, read_model, save_gltf
 from photograd.transport.mesh_files.gltf_save import WRITABLE
-from photograd.transport.scene import MeshShape, Scene
+from photograd.transport.scene import Scene
 from photograd.transport.scene_file import read_scene
+from photograd.transport.shapes import MeshShape
 
 READABLE = (".toml", *SUFFIXES)
 __all__ = ["READABLE", "WRITABLE", "convert_model"]

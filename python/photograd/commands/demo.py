@@ -10,18 +10,18 @@ from typing import Annotated
 import typer
 from photograd_course.cli import DebugOption, JsonOption, SeedOption, ThreadsOption, emit, note
 
+from photograd._run_lock import one_run_in
+from photograd.capture.load import load_capture
+from photograd.capture.orbit import orbit_cameras
 from photograd.commands.capture import DEFAULT_SCENE, make_capture
 from photograd.commands.evaluate import draw_picked
 from photograd.commands.fit import run_with_bar
 from photograd.commands.gradients import draw_gradients
 from photograd.commands.shared import out_option, stop_on_signals, use_threads
-from photograd.data.load import load_capture
-from photograd.evaluate import display_image, evaluate
-from photograd.fit import Fit
-from photograd.fit_options import FitOptions
-from photograd.model import load_model
-from photograd.orbit import orbit_cameras
-from photograd.run_lock import one_run_in
+from photograd.fitting.evaluate import display_image, evaluate
+from photograd.fitting.loop import Fit
+from photograd.fitting.model import load_model
+from photograd.fitting.options import FitOptions
 
 
 def register(app: typer.Typer) -> None:

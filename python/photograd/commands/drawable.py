@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from photograd.checkpoint import FILE_NAME
-from photograd.data.file_bytes import read_file
-from photograd.data.gaussian_files import SUFFIXES as GAUSSIANS
+from photograd_course.input_files import read_file
+
 from photograd.errors import IoError, message
+from photograd.fitting.checkpoint import FILE_NAME
+from photograd.grids.volumes import SUFFIXES as DENSITIES
+from photograd.splats.files import SUFFIXES as GAUSSIANS
 from photograd.transport.builtin import BUILTIN
 from photograd.transport.mesh_files import SUFFIXES as MESHES
-from photograd.volumes import SUFFIXES as DENSITIES
 
 VOLUMES = (".vdb", *DENSITIES)
 TRACED = (".toml", *MESHES)

@@ -17,6 +17,7 @@ from photograd_course.cli import (
     note,
 )
 
+from photograd.capture.load import load_capture
 from photograd.commands.shared import (
     AllowOutsideOption,
     CaptureArgument,
@@ -25,12 +26,10 @@ from photograd.commands.shared import (
     out_option,
     use_threads,
 )
-from photograd.data.load import load_capture
 from photograd.errors import RangeError, message
-from photograd.evaluate import Evaluation, ViewScore, as_result
-from photograd.evaluate import evaluate as score
-from photograd.model import load_model
-from photograd.step_check import as_entry, step_change
+from photograd.fitting.evaluate import Evaluation, ViewScore, as_entry, as_result, step_change
+from photograd.fitting.evaluate import evaluate as score
+from photograd.fitting.model import load_model
 
 
 def register(app: typer.Typer) -> None:

@@ -20,7 +20,9 @@ from photograd_course.cli import (
     note,
 )
 
-from photograd.checkpoint import make_folder
+from photograd._run_lock import one_run_in
+from photograd.capture.capture import Capture
+from photograd.capture.load import load_capture
 from photograd.commands.shared import (
     AllowOutsideOption,
     CaptureArgument,
@@ -29,25 +31,21 @@ from photograd.commands.shared import (
     out_option,
     use_threads,
 )
-from photograd.data.capture import Capture
-from photograd.data.load import load_capture
-from photograd.density_gradient import DensityGradient, density_gradient
-from photograd.fields.fitted import VoxelField
-from photograd.fields.gaussians import GaussianScene
 from photograd.fields.octree_sh import OctreeSh
-from photograd.model import Model, load_model
-from photograd.pixels import TrainingPixels
-from photograd.representation import Array
-from photograd.run_lock import one_run_in
-from photograd.snapshots import load_snapshots
+from photograd.fitting.checkpoint import make_folder
+from photograd.fitting.data import TrainingPixels, TrainingViews
+from photograd.fitting.model import Model, load_model, load_snapshots
+from photograd.fitting.start import VoxelField
+from photograd.fitting.view_gradients import grad2d_picture, view_gradients
+from photograd.fitting.voxel_gradients import DensityGradient, density_gradient
 from photograd.splats.clone_split_prune import CloneSplitPrune
-from photograd.splats.view_gradients import grad2d_picture, view_gradients
-from photograd.training_views import TrainingViews
+from photograd.splats.model import GaussianScene
+from photograd.types import Array
 
 if TYPE_CHECKING:
     from photograd_course import viz
 
-    from photograd.sign_claim import SignClaim
+    from photograd.fitting.sign_claim import SignClaim
 
 EXPLAIN = "Blue: more density lowers the loss. Red: less density does. White: no effect."
 
@@ -137,7 +135,7 @@ def explanation(steps: StepGradients) -> str:
 
 def claim_of(start: VoxelField, capture: Capture, rays: int, seed: int) -> SignClaim | None:
     """The signs of the first gradient, weighed; None, with a note, where nothing can be claimed."""
-    from photograd.sign_claim import sign_claim
+    from photograd.fitting.sign_claim import sign_claim
 
     if isinstance(start, OctreeSh):
         note("leaves begin with the matter of another model: signs are shown, not weighed")
@@ -152,7 +150,7 @@ def draw_gaussians(model: Model, folder: Path, capture: Capture, out: Path) -> d
     """The picture of a fit of Gaussians at three of its steps, and its curves."""
     from photograd_course import viz
 
-    from photograd.splats.drawings import draw_gaussian_gradients
+    from photograd.fitting.gradient_drawings import draw_gaussian_gradients
 
     views = TrainingViews(capture.train)
     found: dict[int, Any] = load_snapshots(folder) or {int(model.meta["step"]): model.field}

@@ -9,11 +9,11 @@ import numpy as np
 import typer
 from photograd_course.cli import DebugOption, JsonOption, emit
 
+from photograd.capture.bounds import estimate_bounds
+from photograd.capture.load import load_capture
 from photograd.commands.shared import AllowOutsideOption
-from photograd.data.bounds import estimate_bounds
-from photograd.data.load import load_capture
 from photograd.fields.march import MarchPolicy
-from photograd.model import Model, load_model
+from photograd.fitting.model import Model, load_model
 
 
 def register(app: typer.Typer) -> None:

@@ -20,17 +20,16 @@ from photograd_course.cli import (
 )
 from photograd_course.cli import Progress as Bar
 
+from photograd._run_lock import one_run_in
 from photograd.commands.shared import StopRequest, out_option, stop_on_signals, use_threads
 from photograd.commands.trace import SceneArgument, load_scene
-from photograd.data.image_kind import LINEAR_SUFFIXES
-from photograd.data.image_write import write_exr
-from photograd.data.images import read_radiance
 from photograd.errors import IoError, RangeError, message
-from photograd.run_lock import one_run_in
-from photograd.transport.recovery import Recovery, RecoveryOptions, RecoveryResult, Target, Unknown
-from photograd.transport.recovery.options import LOSSES
-from photograd.transport.recovery.result import Progress
-from photograd.transport.recovery.saved import FILE_NAME
+from photograd.images.kind import LINEAR_SUFFIXES
+from photograd.images.read import read_radiance
+from photograd.images.write import write_exr
+from photograd.transport.inverse import Recovery, RecoveryOptions, RecoveryResult, Target, Unknown
+from photograd.transport.inverse.job import FILE_NAME
+from photograd.transport.inverse.options import LOSSES, Progress
 from photograd.transport.scene_file import read_scene
 from photograd.transport.tracer import PathOptions, PathTracer
 
@@ -187,7 +186,7 @@ def write_result(job: Recovery, result: RecoveryResult, out: Path) -> dict[str, 
     """Values, pictures and curves in `out`; what the last line says."""
     from photograd_course.viz import save_figure
 
-    from photograd.transport.recovery.pictures import comparison_figure, curves_figure
+    from photograd.transport.inverse.pictures import comparison_figure, curves_figure
 
     found: dict[str, Any] = {}
     for name, value in result.params.items():

@@ -19,20 +19,19 @@ from photograd_course.cli import (
     note,
 )
 
+from photograd.capture.orbit import orbit_cameras
 from photograd.commands.drawable import check_rendered, is_volume
 from photograd.commands.shared import check_output_name, use_threads
-from photograd.data.gaussian_files import holds_gaussians, read_gaussians
-from photograd.data.gaussian_frame import UP_AXES, USUAL_UP, WORLD_UP
-from photograd.data.gaussian_header import Presentation
-from photograd.data.image_write import write_png
 from photograd.errors import RangeError, message
-from photograd.evaluate import display_image
-from photograd.fields.gaussians import GaussianScene
-from photograd.fog import RAMPS, load_fog
-from photograd.model import Model, load_model
-from photograd.orbit import orbit_cameras
-from photograd.representation import Array
-from photograd.splat_orbit import orbit_splats
+from photograd.fitting.evaluate import display_image
+from photograd.fitting.fog import RAMPS, load_fog
+from photograd.fitting.model import Model, load_model
+from photograd.images.write import write_png
+from photograd.splats.files import holds_gaussians, read_gaussians
+from photograd.splats.frames import UP_AXES, USUAL_UP, WORLD_UP, Presentation
+from photograd.splats.model import GaussianScene
+from photograd.splats.orbit import orbit_splats
+from photograd.types import Array
 
 AUTO = "auto"
 STILL = ".png"

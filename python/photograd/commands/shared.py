@@ -13,9 +13,9 @@ from typing import Annotated, Any
 
 import typer
 
-from photograd.core import _core
-from photograd.data.image_kind import LINEAR_SUFFIXES
+from photograd._compiled import _core
 from photograd.errors import IoError, message
+from photograd.images.kind import LINEAR_SUFFIXES
 
 PICTURES = (*LINEAR_SUFFIXES, ".png")
 SIGNED_PICTURES = tuple(suffix for suffix in PICTURES if suffix != ".hdr")

@@ -23,6 +23,7 @@ from photograd_course.cli import (
 )
 from photograd_course.color import srgb_encode
 
+from photograd._run_lock import one_run_for
 from photograd.commands.drawable import check_traced
 from photograd.commands.shared import (
     PICTURES,
@@ -33,7 +34,6 @@ from photograd.commands.shared import (
     stop_on_signals,
     use_threads,
 )
-from photograd.commands.trace_camera import CameraOption, check_has_cameras
 from photograd.commands.trace_estimates import (
     INTEGRATORS,
     DerivativeOption,
@@ -41,17 +41,39 @@ from photograd.commands.trace_estimates import (
     PhotonsOption,
     write_derivative,
 )
-from photograd.data.image_kind import LINEAR_SUFFIXES
-from photograd.data.image_write import write_png, write_radiance
-from photograd.data.pixel_limit import LARGEST_SIDE
-from photograd.run_lock import one_run_for
+from photograd.errors import SceneError, message
+from photograd.images.kind import LARGEST_SIDE, LINEAR_SUFFIXES
+from photograd.images.write import write_png, write_radiance
 from photograd.transport.accumulation import Accumulation, load_accumulation
 from photograd.transport.builtin import BUILTIN, builtin_scene
-from photograd.transport.mesh_files import SUFFIXES, model_scene, read_model
+from photograd.transport.mesh_files import STUDIO, SUFFIXES, model_scene, read_model
 from photograd.transport.scene import Scene
 from photograd.transport.scene_digest import scene_digest
 from photograd.transport.scene_file import read_scene
 from photograd.transport.tracer import HEURISTICS, STRATEGIES, PathOptions, PathTracer
+
+CameraOption = Annotated[
+    str | None,
+    typer.Option(
+        "--camera",
+        help=f"Of a mesh file: its camera of this name, by default its first, or '{STUDIO}'.",
+    ),
+]
+
+
+def check_has_cameras(scene: str, camera: str | None) -> None:
+    """Only mesh files have cameras of several names.
+
+    Raises:
+        SceneError: a camera of another scene.
+    """
+    if camera is not None and not scene.lower().endswith(SUFFIXES):
+        expected = f"a mesh file ({', '.join(SUFFIXES)}) with --camera"
+        raise SceneError(message("trace", "SCENE", expected, scene, "leave the option out"))
+
+
+# `photograd trace`: a picture of a described scene, by path tracing.
+
 
 PASS_SPP = 8
 """Samples between two looks at the clock; a resumed picture is cut at the same places."""

@@ -10,13 +10,13 @@ from typing import Annotated
 import numpy as np
 import typer
 
-from photograd.data.image_kind import LINEAR_SUFFIXES
-from photograd.data.image_write import write_png, write_radiance
 from photograd.errors import RangeError, message
+from photograd.images.kind import LINEAR_SUFFIXES
+from photograd.images.write import write_png, write_radiance
 from photograd.transport.accumulation import Accumulation
 from photograd.transport.derivative import add_derivative_samples, direction_of
 from photograd.transport.incomplete import require_whole
-from photograd.transport.photons import PhotonMap
+from photograd.transport.particles import PhotonMap
 from photograd.transport.tracer import PathOptions, PathTracer
 
 INTEGRATORS = ("path", "direct", "occlusion", "photon")

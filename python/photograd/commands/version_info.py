@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from photograd.core import _core
+from photograd._compiled import _core
 
 
 def describe_core() -> dict[str, object]:

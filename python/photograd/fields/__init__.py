@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from photograd_course.suggest import nearest
+
+from photograd.errors import RangeError, message
 from photograd.fields.dense_grid import DenseGrid
 from photograd.fields.dense_sh import DenseSh
-from photograd.fields.gaussians import GaussianScene
 from photograd.fields.gaussians_2d import Gaussians2D
 from photograd.fields.octree_sh import OctreeSh
 from photograd.fields.points import Points
@@ -13,6 +15,8 @@ from photograd.fields.sunlit_medium import SunlitMedium
 from photograd.fields.texture_2d import Texture2D
 from photograd.fields.tiny_network import TinyNetwork
 from photograd.fields.toy_blobs import ToyBlobs
+from photograd.representation import REGISTERED, Representation
+from photograd.splats.model import GaussianScene
 
 __all__ = [
     "DenseGrid",
@@ -26,4 +30,23 @@ __all__ = [
     "Texture2D",
     "TinyNetwork",
     "ToyBlobs",
+    "representation",
+    "representations",
 ]
+
+
+def representations() -> dict[str, type[Representation]]:
+    """All registered representations by name."""
+    return dict(REGISTERED)
+
+
+def representation(name: str) -> type[Representation]:
+    """The representation called `name`; an unknown name is answered with the nearest known one."""
+    known = representations()
+    if name in known:
+        return known[name]
+    near = nearest(name, known)
+    remedy = f"did you mean {near!r}?" if near else "choose one of these"
+    raise RangeError(
+        message("representation", "name", f"one of {sorted(known)}", repr(name), remedy)
+    )

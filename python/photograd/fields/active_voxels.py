@@ -11,10 +11,10 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from photograd.core import _core
+from photograd._compiled import _core
+from photograd._memory import available_memory
 from photograd.errors import Error, RangeError, ShapeError, message
-from photograd.memory import available_memory
-from photograd.representation import Array
+from photograd.types import Array
 
 SIDE = 8
 

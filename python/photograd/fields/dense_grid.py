@@ -13,11 +13,10 @@ from photograd_course.portable_math import expm1, log
 from photograd_course.random import uniform
 from photograd_course.resample import upsample_trilinear
 
+from photograd._memory import require_room
 from photograd.errors import DtypeError, Error, RangeError, ShapeError, message
 from photograd.fields.march import MarchContext, MarchPolicy, march, march_backward
-from photograd.memory import require_room
 from photograd.representation import (
-    Array,
     Outputs,
     ParamSpec,
     Prior,
@@ -26,6 +25,7 @@ from photograd.representation import (
     Representation,
     register,
 )
+from photograd.types import Array
 
 START_COLOR = 0.18
 """Linear colour of empty space before a fit: middle grey, 0.46 of display white.

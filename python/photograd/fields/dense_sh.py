@@ -17,7 +17,8 @@ from photograd.errors import RangeError, message
 from photograd.fields.active_voxels import ActiveVoxels
 from photograd.fields.march import MarchPolicy
 from photograd.fields.sparse_sh import SparseSh
-from photograd.representation import Array, register
+from photograd.representation import register
+from photograd.types import Array
 
 
 @register

@@ -32,7 +32,6 @@ from photograd_course.random import uniform
 
 from photograd.errors import DtypeError, ShapeError, message
 from photograd.representation import (
-    Array,
     CanvasBatch,
     Outputs,
     ParamSpec,
@@ -40,6 +39,7 @@ from photograd.representation import (
     Representation,
     register,
 )
+from photograd.types import Array
 
 SLAB = 1 << 17  # pairs of point and Gaussian at a time: arrays that stay in the cache
 

@@ -14,10 +14,11 @@ import numpy as np
 from photograd_course.portable_math import norm
 from photograd_course.random import uniform
 
-from photograd.core import _core
+from photograd._checks import require_finite
+from photograd._compiled import _core
 from photograd.errors import DtypeError, Error, RangeError, message
-from photograd.finite import require_finite
-from photograd.representation import Array, Outputs, RayBatch, RenderOptions
+from photograd.representation import Outputs, RayBatch, RenderOptions
+from photograd.types import Array
 
 LATTICES = {"origin": 0, "entry": 1}
 QUADRATURES = {"alpha": 0, "riemann": 1}

@@ -34,12 +34,19 @@ from photograd_course.random import uniform
 from photograd import sh
 from photograd.errors import RangeError, ShapeError, message
 from photograd.fields.dense_grid import DenseGrid
-from photograd.fields.frozen_leaves import Leaves, TreePolicy, leaves_of_grid, leaves_of_voxels
-from photograd.fields.leaf_segments import Borders, Segments, border_gradients, segments_of
+from photograd.fields.octree_leaves import (
+    Borders,
+    Leaves,
+    Segments,
+    TreePolicy,
+    border_gradients,
+    leaves_of_grid,
+    leaves_of_voxels,
+    segments_of,
+)
 from photograd.fields.sparse_sh import SparseSh
-from photograd.octree import Octree, tree_of_leaves
+from photograd.grids.octree import Octree, tree_of_leaves
 from photograd.representation import (
-    Array,
     Outputs,
     ParamSpec,
     RayBatch,
@@ -47,6 +54,7 @@ from photograd.representation import (
     Representation,
     register,
 )
+from photograd.types import Array
 
 
 @dataclass(frozen=True)

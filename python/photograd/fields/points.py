@@ -6,7 +6,7 @@ A ray sees a point by the distance at which it passes: with r = exp(log_radius),
 
 and blends what it sees front to back, in the order in which it passes the middles. The falloff is
 Gaussian, so that a point is a round Gaussian whose three scales are one number, whose rotation
-means nothing, and whose opacity is given: everything below is `photograd.splat_rays`. A hard disc
+means nothing, and whose opacity is given: everything below is `photograd.splats.rays`. A hard disc
 would have no derivative by position or radius anywhere but at its rim.
 
     d log_radius = sum of d log_scales over the axes (and over the points, of a shared radius)
@@ -25,7 +25,6 @@ from photograd_course.random import uniform
 
 from photograd.errors import DtypeError, RangeError, ShapeError, message
 from photograd.representation import (
-    Array,
     Outputs,
     ParamSpec,
     RayBatch,
@@ -34,8 +33,9 @@ from photograd.representation import (
     register,
 )
 from photograd.sh import Y_0
-from photograd.splat import Gaussians
-from photograd.splat_rays import RayContext, RayOptions, render, render_backward
+from photograd.splats.rays import RayContext, RayOptions, render, render_backward
+from photograd.splats.splatting import Gaussians
+from photograd.types import Array
 
 
 @dataclass(frozen=True)
@@ -122,7 +122,7 @@ class Points(Representation):
         }
 
     def gaussians(self) -> Gaussians:
-        """The same points as round Gaussians, for `photograd.splat` and `photograd.splat_rays`."""
+        """The same points as round Gaussians, for the renderers of `photograd.splats`."""
         position, color = self.params["position"], self.params["color"]
         count, dtype = len(position), position.dtype
         log_scales = np.broadcast_to(self.params["log_radius"][:, None], (count, 3))

@@ -17,7 +17,8 @@ from photograd_course.random import uniform
 from photograd_course.row_map import RowMap
 
 from photograd import sh
-from photograd.core import _core
+from photograd._compiled import _core
+from photograd._memory import require_room
 from photograd.errors import DtypeError, RangeError, ShapeError, message
 from photograd.fields.active_voxels import ActiveVoxels, dilated, resampled_mask
 from photograd.fields.dense_grid import START_COLOR, DenseGrid, cubic_voxels, finer_voxels
@@ -28,9 +29,7 @@ from photograd.fields.march import (
     checked_values,
     require_finite_image,
 )
-from photograd.memory import require_room
 from photograd.representation import (
-    Array,
     Outputs,
     ParamSpec,
     Prior,
@@ -39,6 +38,7 @@ from photograd.representation import (
     Representation,
     register,
 )
+from photograd.types import Array
 
 MOST_DEGREE = 3
 

@@ -29,15 +29,14 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 from photograd_course.portable_math import norm
 
+from photograd.bsdf.phase import phase_function
 from photograd.errors import DtypeError, RangeError, ShapeError, message
 from photograd.fields.march import MarchContext, MarchPolicy, march, march_backward
-from photograd.mesh import Bvh
-from photograd.phase import phase_function
+from photograd.geometry.mesh import Bvh
 from photograd.representation import (
-    Array,
     Outputs,
     ParamSpec,
     RayBatch,
@@ -45,7 +44,46 @@ from photograd.representation import (
     Representation,
     register,
 )
-from photograd.sun_visibility import sun_visibility, voxel_centres
+from photograd.types import Array
+
+
+def voxel_centres(box: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.float64]:
+    """(X, Y, Z, 3) middles of the equal voxels that fill a box (2, 3)."""
+    corners = np.asarray(box, np.float64)
+    axes = [
+        lo + (np.arange(n) + 0.5) * (hi - lo) / n
+        for n, lo, hi in zip(shape, *corners.tolist(), strict=True)
+    ]
+    return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
+
+
+def sun_visibility(
+    solids: Bvh, box: ArrayLike, shape: tuple[int, ...], sun: ArrayLike, *, samples: int = 2
+) -> NDArray[np.float64]:
+    """(X, Y, Z) share of samples^3 points of each voxel from which the sun is seen.
+
+    Args:
+        solids: what throws shadows.
+        box: (2, 3) of the world, metres.
+        shape: (X, Y, Z).
+        sun: (3,) unit, towards the sun.
+        samples: points a side, spread evenly; more of them make edges softer, not sharper.
+
+    Raises:
+        RangeError: samples below 1.
+    """
+    if samples < 1:
+        raise RangeError(message("sun_visibility", "samples", "at least 1", samples))
+    fine = tuple(int(n) * samples for n in shape)
+    origins = voxel_centres(box, fine).reshape(-1, 3)
+    towards = np.ascontiguousarray(np.broadcast_to(np.asarray(sun, np.float64), origins.shape))
+    seen = ~solids.occluded(origins, towards)
+    x, y, z = shape
+    cells = seen.reshape(x, samples, y, samples, z, samples)
+    return np.asarray(cells.mean(axis=(1, 3, 5)))
+
+
+# Fog in the sun: single scattering in a medium, with shadows and their shafts of light.
 
 
 @dataclass(frozen=True)
@@ -93,7 +131,7 @@ class SunlitMedium(Representation):
             box: (2, 3), metres; beyond it there is no medium.
             dt: step of both marches, metres; half a voxel or less.
             sun: (3,) direction towards the sun, of any length.
-            phase: of photograd.phase.registry.
+            phase: of photograd.bsdf.phase.registry.
             visibility: by default what the solids leave of it, `sun_visibility`; 1 without any.
             solids: rays end where they meet them.
 

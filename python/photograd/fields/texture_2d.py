@@ -2,7 +2,7 @@
 
 Texel (row, column) has its centre at ((column + 0.5) / W, (row + 0.5) / H) of the canvas, v points
 down, and outside of the outermost centres the border value continues. Lookup and adjoint are those
-of `photograd.texture`, derived in cpp/photograd/ops/bilinear.h.
+of `photograd.textures`, derived in cpp/photograd/ops/bilinear.h.
 """
 
 from __future__ import annotations
@@ -16,7 +16,6 @@ from photograd_course.random import uniform
 
 from photograd.errors import DtypeError, ShapeError, message
 from photograd.representation import (
-    Array,
     CanvasBatch,
     Outputs,
     ParamSpec,
@@ -24,7 +23,8 @@ from photograd.representation import (
     Representation,
     register,
 )
-from photograd.texture import sample, sample_backward
+from photograd.textures import sample, sample_backward
+from photograd.types import Array
 
 
 @dataclass(frozen=True)

@@ -8,11 +8,10 @@ from typing import Any, ClassVar
 import numpy as np
 from photograd_course.random import uniform
 
-from photograd.core import _core
+from photograd._compiled import _core
 from photograd.errors import ShapeError, message
 from photograd.fields.march import MarchContext, MarchPolicy, march, march_backward
 from photograd.representation import (
-    Array,
     Outputs,
     ParamSpec,
     RayBatch,
@@ -20,6 +19,7 @@ from photograd.representation import (
     Representation,
     register,
 )
+from photograd.types import Array
 
 HIDDEN = 16
 

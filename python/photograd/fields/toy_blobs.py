@@ -28,7 +28,6 @@ from photograd_course.row_map import RowMap
 
 from photograd.errors import DtypeError, RangeError, ShapeError, message
 from photograd.representation import (
-    Array,
     CanvasBatch,
     Outputs,
     ParamSpec,
@@ -37,6 +36,7 @@ from photograd.representation import (
     Representation,
     register,
 )
+from photograd.types import Array
 
 
 @dataclass(frozen=True)

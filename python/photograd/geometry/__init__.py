@@ -1,4 +1,4 @@
-"""Geometry that is written to be read, beside what is written to be fast (`photograd.mesh`).
+"""Geometry that is written to be read, beside what is written to be fast (`mesh`).
 
 A hierarchy of boxes that counts what a ray costs, a partition of space that puts polygons in an
 order, octrees that drop what a camera cannot see, coarser meshes with a bound on what they get
@@ -7,14 +7,13 @@ wrong, and bodies of signed distances, whose hits have derivatives.
 
 from __future__ import annotations
 
-from photograd.geometry.bsp import BspTree
+from photograd.geometry.bsp import BspTree, order_by_distance
 from photograd.geometry.culling import CullingTree, Frustum
 from photograd.geometry.detail import Level, LevelsOfDetail, clustered
-from photograd.geometry.nearest import nearest_on_mesh
+from photograd.geometry.mesh import nearest_on_mesh
 from photograd.geometry.reference_bvh import BvhHits, ReferenceBvh
 from photograd.geometry.sdf import Body, SdfHits
 from photograd.geometry.sdf_picture import BodyPicture, draw_body
-from photograd.geometry.sorting import order_by_distance
 
 __all__ = [
     "Body",

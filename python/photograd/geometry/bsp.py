@@ -1,8 +1,11 @@
-"""Polygons in an order in which they can be painted over each other, from any eye [Fuchs1980].
+"""What is nearer to an eye: polygons in an order to paint them in, objects by distance.
 
 Sorting triangles by distance fails where they overlap in a circle or pierce each other. A binary
 space partition cuts them until an order exists, once for all eyes
 (cpp/photograd/geometry/reference/bsp.h).
+
+Objects are sorted by the stable radix sort that puts Gaussians in order
+(cpp/photograd/splat/sort.h).
 """
 
 from __future__ import annotations
@@ -12,9 +15,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from photograd.core import _core
-from photograd.geometry.checks import Array, finite_rows
-from photograd.mesh import Mesh
+from photograd._compiled import _core
+from photograd.errors import ShapeError, message
+from photograd.geometry.checks import finite_rows
+from photograd.geometry.mesh import Mesh
+from photograd.types import Array
 
 
 class BspTree:
@@ -40,7 +45,7 @@ class BspTree:
             max_polygons: an error where more are made; n triangles can fall into n^2 parts.
 
         Raises:
-            SceneError: as `photograd.mesh.Bvh`: no triangle, no number, no area.
+            SceneError: as `photograd.geometry.mesh.Bvh`: no triangle, no number, no area.
             RangeError: an option below 1, or more polygons than allowed.
         """
         self._core = _core.BspTree(mesh.vertices, mesh.faces, candidates, max_polygons)
@@ -62,3 +67,24 @@ class BspTree:
             finite_rows("back_to_front", "eyes", eyes)
         )
         return order
+
+
+# Things by their distance from an eye, for blending (far ones first) or early tests (near ones).
+
+
+def order_by_distance(points: Any, eye: Any, *, far_first: bool = False) -> npt.NDArray[np.uint32]:
+    """Row numbers (N,) of points (N, 3), sorted by their distance from `eye` (3,).
+
+    Equally distant points keep the order of their rows, whichever end comes first.
+
+    Raises:
+        ShapeError: points that are not (N, 3), an eye that is not (3,).
+        RangeError: numbers that are not finite.
+    """
+    rows = finite_rows("order_by_distance", "points", points)
+    if np.shape(eye) != (3,):
+        raise ShapeError(message("order_by_distance", "eye", "shape (3,)", np.shape(eye)))
+    (place,) = finite_rows("order_by_distance", "eye", [eye])
+    squared = ((rows - place) ** 2).sum(axis=1)
+    order: npt.NDArray[np.uint32] = _core.order_by_depth(squared, far_first)
+    return order

@@ -5,11 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from photograd.errors import RangeError, ShapeError, message
-
-Array = npt.NDArray[Any]
+from photograd.types import Array
 
 
 def finite_rows(function: str, argument: str, value: Any, columns: int = 3) -> Array:

@@ -15,10 +15,10 @@ import numpy as np
 import numpy.typing as npt
 from photograd_course.checks import require_integer, require_number
 
-from photograd.data.camera import Camera
-from photograd.data.frames import invert_rigid
+from photograd.capture.camera import Camera
+from photograd.capture.frames import invert_rigid
 from photograd.errors import RangeError, ShapeError, message
-from photograd.geometry.checks import Array
+from photograd.types import Array
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,10 +14,10 @@ from itertools import pairwise
 import numpy as np
 from photograd_course.checks import require_number
 
-from photograd.data.camera import Camera
+from photograd.capture.camera import Camera
 from photograd.errors import RangeError, message
-from photograd.geometry.checks import Array
-from photograd.mesh import Mesh, drop_degenerate
+from photograd.geometry.mesh import Mesh, drop_degenerate
+from photograd.types import Array
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,8 +1,8 @@
 """A bounding volume hierarchy that can be looked into, and what each ray costs in it.
 
 Built by the surface area heuristic (cpp/photograd/geometry/reference/bvh_build.h) and walked with a
-stack, one ray at a time (bvh_walk.h). `photograd.mesh.Bvh` gives the same answers many times
-faster; this one is there to be read, drawn and counted.
+stack, one ray at a time (bvh_walk.h). `photograd.geometry.mesh.Bvh` gives the same answers many
+times faster; this one is there to be read, drawn and counted.
 """
 
 from __future__ import annotations
@@ -13,9 +13,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from photograd.core import _core
-from photograd.geometry.checks import Array, checked_interval, checked_rays
-from photograd.mesh import Mesh
+from photograd._compiled import _core
+from photograd.geometry.checks import checked_interval, checked_rays
+from photograd.geometry.mesh import Mesh
+from photograd.types import Array
 
 
 @dataclass(frozen=True, eq=False)

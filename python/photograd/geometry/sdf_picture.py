@@ -13,10 +13,10 @@ import numpy as np
 import numpy.typing as npt
 from photograd_course.checks import require_number
 
-from photograd.data.camera import Camera
+from photograd.capture.camera import Camera
 from photograd.errors import RangeError, ShapeError, message
-from photograd.geometry.checks import Array
 from photograd.geometry.sdf import GAVE_UP, Body
+from photograd.types import Array
 
 OFFSET = 1e-4  # m: where a shadow ray starts, so far above the surface
 

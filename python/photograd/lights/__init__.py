@@ -5,7 +5,7 @@ All are objects of numbers and arrays; `sample(points, u2)` draws one direction 
 and a light is the tracer's business. Derivatives are by emission and texels, and for a spot by
 the shape of its cone; places are constants, since moving them moves the edges of shadows.
 
-`photograd.light` has the lights at infinity as functions of direction alone;
+`photograd.lights.distant` has the lights at infinity as functions of direction alone;
 `photograd.lights.prefilter` averages them beforehand, for shading by lookups.
 """
 

@@ -10,8 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from photograd.errors import DtypeError, RangeError, ShapeError, message
-
-Array = npt.NDArray[Any]
+from photograd.types import Array
 
 
 @dataclass(frozen=True)

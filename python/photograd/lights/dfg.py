@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from photograd.errors import RangeError, ShapeError, message
-from photograd.lights.base import Array
+from photograd.types import Array
 
 HEIGHTS, TURNS = 64, 48
 """As many points are right to 2e-4, and more only at the horizon."""

@@ -5,7 +5,7 @@ a product of lookups of it [Karis2013]:
 
     irradiance E(n) = integral of L(wi) <n,wi>+ dwi, W/m^2: the cosine is in it, 1 / pi is not
     specular   S(r) = mean of L(wi) with the weight D(h) <n,wi>+, for n = wo = r
-    dfg        A, B = the lobe's albedo for an even sky (dfg.py), the cosine in it
+    dfg        A, B = the lobe's albedo for an even sky (`dfg`), the cosine in it
 
     L(wo) = (1 - metalness) base_color E(n) / pi + S(r) (f0 A + B)
     f0 = (1 - metalness) 0.16 reflectance^2 + metalness base_color       the model `standard`
@@ -22,7 +22,7 @@ and without are in docs/results.md).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -30,10 +30,92 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from photograd.errors import RangeError, ShapeError, message
-from photograd.lights.base import Array, Light
+from photograd.lights.base import Light
 from photograd.lights.dfg import DfgTable, dfg_table
-from photograd.lights.direction_map import DirectionMap
-from photograd.lights.zonal import Kernel, OnRow, zonal_mean
+from photograd.lights.environment import DirectionMap, EnvironmentMap, cell_directions
+from photograd.lights.registered import ConstantLight, SkyLight
+from photograd.types import Array
+
+Kernel = Callable[[Array], Array]
+"""Weights of 1 - cos(angle), an array of numbers from 0 to 2."""
+OnRow = Callable[[int, int], None]
+"""Called with the number of rows that are done, and of all."""
+AROUND = (EnvironmentMap, ConstantLight, SkyLight)
+"""Lights that come from everywhere and have no edges; a sun is painted on a map."""
+LEAST_ROWS = 128
+"""Fewer cells than this are too few for any light."""
+MOST_ROWS = 1 << 13
+
+
+def zonal_mean(
+    light: Light, kernel: Kernel, width: float, rows: int, on_row: OnRow | None = None
+) -> DirectionMap:
+    """Means (rows, 2 rows, 3) of the radiance around every direction.
+
+    Args:
+        light: from all around, one of `AROUND`. Cells follow the texels of an `EnvironmentMap`.
+        kernel: the weight.
+        width: radians within which it changes by no more than a small factor; cells are no wider.
+        rows: of the result.
+        on_row: progress.
+
+    Raises:
+        RangeError: another light, no rows or too many, or a width that asks for more than
+            `MOST_ROWS` rows of cells.
+    """
+    if not isinstance(light, AROUND):
+        expected, got = f"one of {', '.join(c.__name__ for c in AROUND)}", type(light).__name__
+        raise RangeError(message("zonal_mean", "light", expected, got))
+    if not 2 <= rows <= MOST_ROWS:
+        raise RangeError(message("zonal_mean", "rows", f"2 to {MOST_ROWS}", rows))
+    turn = light.world_from_map if isinstance(light, EnvironmentMap) else np.eye(3)
+    texels = light.texels.shape[0] if isinstance(light, EnvironmentMap) else LEAST_ROWS
+    count = _source_rows(texels, width, rows)
+    if count > MOST_ROWS:
+        expected, remedy = f"at most {MOST_ROWS} rows of cells", "take a wider lobe"
+        raise RangeError(message("zonal_mean", "width", expected, count, remedy))
+    w = cell_directions(count).reshape(-1, 3) @ turn.T
+    radiance = light.L(np.zeros_like(w), w).reshape(count, 2 * count, 3)
+    spectrum = np.fft.rfft(radiance, axis=1)
+    found = np.empty((rows, 2 * rows, 3))
+    for row in range(rows):
+        found[row] = _row(spectrum, kernel, (row + 0.5) / rows * np.pi, 2 * rows)
+        if on_row is not None:
+            on_row(row + 1, rows)
+    return DirectionMap(found, turn)
+
+
+def _source_rows(texels: int, width: float, rows: int) -> int:
+    """Rows of cells: a multiple of the result's and, unless there are twice as many, of the texels.
+
+    Between texels radiance is a tent; cells that are wider than half of one must stand in the
+    middles, or the sum over a bright texel would depend on where it is.
+    """
+    least = max(texels, LEAST_ROWS, int(np.ceil(np.pi / width)))
+    if texels % rows == 0:
+        return texels * -(-least // texels)
+    return rows * -(-max(least, 2 * texels) // rows)
+
+
+def _row(spectrum: Array, kernel: Kernel, theta: float, columns: int) -> Array:
+    """(columns, 3): the means in the row at the height theta."""
+    count = len(spectrum)
+    step = 2 * count // columns
+    heights = (np.arange(count) + 0.5) / count * np.pi
+    # From the middle of a column of the result to the middles of the columns of cells.
+    shift = 0.5 if step % 2 == 0 else 0.0
+    turns = (np.arange(2 * count) + shift) * np.pi / count
+    drop = 2 * np.sin(0.5 * (theta - heights))[:, None] ** 2
+    drop = drop + 2 * np.sin(theta) * np.sin(heights)[:, None] * np.sin(0.5 * turns) ** 2
+    weights = kernel(drop) * np.sin(heights)[:, None]  # solid angles but for a factor
+    transformed = np.conj(np.fft.rfft(weights, axis=1))
+    sums = np.fft.irfft(np.einsum("jf,jfc->fc", transformed, spectrum), 2 * count, axis=0)
+    picked = sums[step // 2 :: step]
+    return np.asarray(np.maximum(picked, 0) / weights.sum())
+
+
+# Image-based light in real time: maps that are averaged beforehand, and the split sum.
+
 
 ROUGHNESSES = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0)
 LEAST_ROUGHNESS = 0.045
@@ -156,7 +238,8 @@ class PrefilteredLight:
 
 def shade(
     light: PrefilteredLight, normals: Array, wo: Array, *, base_color: ArrayLike,
-    metalness: ArrayLike, roughness: ArrayLike, reflectance: ArrayLike = 0.5, leaning: bool = True,
+    metalness: ArrayLike, roughness: ArrayLike, reflectance: ArrayLike = 0.5,
+    occlusion: ArrayLike = 1.0, leaning: bool = True,
 ) -> Array:  # fmt: skip
     """Radiance (..., 3) that surfaces of the model `standard` send towards wo, by the split sum.
 
@@ -165,6 +248,8 @@ def shade(
         normals, wo: (..., 3) unit vectors in the world; wo points to the viewer, on the outside.
         base_color: (..., 3) or (3,).
         metalness, roughness, reflectance: (...) or numbers, 0 to 1.
+        occlusion: (...) or a number: the part of this light that reaches the surface, 1 for all, as
+            `OcclusionMap.at` looks it up. All light here is ambient, so all of it is scaled.
         leaning: whether rough lobes lean towards the normal; False is the sum as published.
 
     Raises:
@@ -185,4 +270,4 @@ def shade(
     f0 = (1 - metal) * 0.16 * gloss**2 + metal * color
     diffuse = (1 - metal) * color * light.irradiance.at(n) / np.pi
     specular = light.specular.at(mirrored, roughness) * (f0 * table[..., :1] + table[..., 1:])
-    return np.asarray(diffuse + specular)
+    return np.asarray((diffuse + specular) * np.asarray(occlusion)[..., None])

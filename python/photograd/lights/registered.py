@@ -9,10 +9,11 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
+from photograd._compiled import _core
 from photograd.bsdf import Parameter
-from photograd.core import _core
 from photograd.errors import RangeError, ShapeError, message
-from photograd.lights.base import Array, Light, unit_vector
+from photograd.lights.base import Light, unit_vector
+from photograd.types import Array
 
 _DIRECTIONS = {"direction", "axis"}  # made unit vectors here, so that any length may be given
 
@@ -129,7 +130,7 @@ class ConstantLight(RegisteredLight):
 
 @dataclass(frozen=True, eq=False)
 class SkyLight(RegisteredLight):
-    """A dome whose radiance (3,) each, W/(m^2 sr), blends by height (photograd.light)."""
+    """A dome whose radiance (3,) each, W/(m^2 sr), blends by height (photograd.lights.distant)."""
 
     zenith: Any
     horizon: Any
@@ -142,7 +143,7 @@ class SunLight(RegisteredLight):
     """A disc at infinity around `direction` (3,) of equal `radiance` (3,), W/(m^2 sr).
 
     Attributes:
-        height: 1 - cos(angular radius), as `photograd.light.cap_height` makes it.
+        height: 1 - cos(angular radius), as `photograd.lights.distant.cap_height` makes it.
     """
 
     direction: Any

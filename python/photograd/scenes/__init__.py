@@ -8,10 +8,15 @@ write_blender_capture(folder, splits, aabb=toys.bounds)
 
 from __future__ import annotations
 
-from .cameras import capture_cameras
-from .capture import capture_scene
-from .description import SceneDescription, SceneMesh, SkyDescription, SunDescription, bounds_of
-from .registry import DEFAULT_SCENE, scene, scenes
+from photograd.scenes.capture import capture_cameras, capture_scene
+from photograd.scenes.description import (
+    SceneDescription,
+    SceneMesh,
+    SkyDescription,
+    SunDescription,
+    bounds_of,
+)
+from photograd.scenes.registry import DEFAULT_SCENE, scene, scenes
 
 __all__ = [
     "DEFAULT_SCENE",

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TypeAlias
-
 import numpy as np
-import numpy.typing as npt
 from photograd_course.checks import require_integer
-from photograd_course.errors import RangeError, ShapeError, message
 
-FloatArray: TypeAlias = npt.NDArray[np.float64]
+from photograd.errors import RangeError, ShapeError, message
+from photograd.types import FloatArray
 
 
 def smooth_curve(points: FloatArray, count: int, *, closed: bool = False) -> FloatArray:

@@ -13,7 +13,8 @@ from typing import Literal, TypeAlias
 import numpy as np
 import numpy.typing as npt
 from photograd_course.checks import require_number
-from photograd_course.errors import DtypeError, RangeError, SceneError, ShapeError, message
+
+from photograd.errors import DtypeError, RangeError, SceneError, ShapeError, message
 
 Points: TypeAlias = npt.NDArray[np.float64]
 """(N, 3) positions in the world, or a (3,) vector."""

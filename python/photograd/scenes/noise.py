@@ -8,15 +8,14 @@ gradients define are blended with weights whose first and second derivatives van
 from __future__ import annotations
 
 from itertools import product
-from typing import Final, TypeAlias
+from typing import Final
 
 import numpy as np
-import numpy.typing as npt
 from photograd_course import random
 from photograd_course.checks import require_float_array, require_integer, require_number
-from photograd_course.errors import RangeError, ShapeError, message
 
-FloatArray: TypeAlias = npt.NDArray[np.float64]
+from photograd.errors import RangeError, ShapeError, message
+from photograd.types import FloatArray
 
 _TABLE: Final = 256
 """Length of the table of hashes: without a `period` the noise repeats after 256 units."""

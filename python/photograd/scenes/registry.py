@@ -6,17 +6,13 @@ from collections.abc import Callable
 from typing import Final, TypeAlias
 
 from photograd_course.checks import require_integer
-from photograd_course.errors import SceneError, message
 from photograd_course.suggest import choose_from
 
+from photograd.errors import SceneError, message
 from photograd.scenes.description import SceneDescription
-from photograd.scenes.flat_walls import flat_walls
-from photograd.scenes.foliage import foliage
-from photograd.scenes.fur import fur
-from photograd.scenes.smooth_curves import smooth_curves
+from photograd.scenes.fine_structures import foliage, fur, thin_structures
+from photograd.scenes.still_lifes import flat_walls, smooth_curves, textured
 from photograd.scenes.terrain_clouds import terrain_clouds
-from photograd.scenes.textured import textured
-from photograd.scenes.thin_structures import thin_structures
 from photograd.scenes.toy_table import toy_table
 
 Builder: TypeAlias = Callable[[int], SceneDescription]

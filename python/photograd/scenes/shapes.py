@@ -10,7 +10,8 @@ import numpy as np
 import numpy.typing as npt
 from photograd_course.checks import require_integer, require_number
 
-from photograd.scenes.surface import FloatArray, Surface, from_grid, joined
+from photograd.scenes.surface import Surface, from_grid, joined
+from photograd.types import FloatArray
 
 
 def sphere(radius: float, *, rows: int = 48, columns: int = 96) -> Surface:

@@ -1,17 +1,17 @@
-"""Triangulated surfaces before they are painted, and what can be done with any of them."""
+"""Triangulated surfaces before they are painted: from nets, heights, lathes and tubes."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
-from photograd_course.errors import ShapeError, message
+from photograd_course.checks import require_integer, require_number
 
+from photograd.errors import RangeError, ShapeError, message
+from photograd.scenes.curves import smooth_curve, untwisted_frames
 from photograd.scenes.description import SceneMesh
-
-FloatArray: TypeAlias = npt.NDArray[np.float64]
+from photograd.types import FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,3 +111,158 @@ def rotation_about(axis: str, angle: float) -> FloatArray:
     matrix[first, first] = matrix[second, second] = cosine
     matrix[first, second], matrix[second, first] = -sine, sine
     return matrix
+
+
+# A block of land: heights on a square net, with upright sides and a flat bottom.
+
+
+def net_points(count: int, half_size: float) -> FloatArray:
+    """(count, count, 2) positions (x, z) of a net: rows towards +Z, columns towards +X."""
+    line = np.linspace(-half_size, half_size, count)
+    x, z = np.meshgrid(line, line)
+    return np.stack([x, z], axis=-1)
+
+
+def land_block(
+    heights: FloatArray, half_size: float, floor: float, *, layers: int = 24
+) -> tuple[Surface, Surface]:
+    """The top, and the sides with the bottom; together they are watertight.
+
+    Args:
+        heights: (M, M) metres at `net_points(M, half_size)`, M >= 2.
+        half_size: metres from the middle to each side.
+        floor: height of the bottom, below all heights.
+        layers: number of faces between top and bottom.
+
+    Returns:
+        Two surfaces. The top keeps the order of `heights`: vertex row * M + column.
+
+    Raises:
+        ShapeError, RangeError, DtypeError: heights not square, not finite or not above the floor.
+    """
+    heights = np.asarray(heights, dtype=np.float64)
+    if heights.ndim != 2 or heights.shape[0] != heights.shape[1] or len(heights) < 2:
+        expected = "shape (M, M) with M >= 2"
+        raise ShapeError(message("land_block", "heights", expected, heights.shape))
+    require_number("land_block", "half_size", half_size, least=0.0, open_ends=True)
+    if not bool((np.isfinite(heights) & (heights > floor)).all()):
+        expected = f"finite heights above the floor at {floor:g}"
+        raise RangeError(message("land_block", "heights", expected, float(heights.min())))
+    plan = net_points(len(heights), half_size)
+    top = np.stack([plan[..., 0], heights, plan[..., 1]], axis=-1)
+    bottom = top.copy()
+    bottom[..., 1] = floor
+    share = np.linspace(0.0, 1.0, layers + 1)[:, None, None]
+    edge_top, edge_bottom = _edge(top), _edge(bottom)
+    # Written so that both ends are the very numbers of top and bottom.
+    walls = (1.0 - share) * edge_top + share * edge_bottom
+    walls[..., [0, 2]] = edge_top[:, [0, 2]]
+    sides = from_grid(walls, closed_columns=True)
+    return from_grid(top), joined([sides, from_grid(bottom[::-1])])
+
+
+def _edge(points: FloatArray) -> FloatArray:
+    """The net's outermost points (4 M - 4, 3), to the right as seen from outside, from (-X, +Z)."""
+    front, right = points[-1, :-1], points[:0:-1, -1]
+    back, left = points[0, :0:-1], points[:-1, 0]
+    return np.concatenate([front, right, back, left])
+
+
+# Solids turned on a lathe, and profiles for them.
+
+
+def lathe(profile: FloatArray, *, columns: int = 96) -> Surface:
+    """The solid that a profile sweeps around the +Y axis.
+
+    Args:
+        profile: (M, 2) of (radius, height), from top to bottom on the outside, both ends on the
+            axis (radius 0). A vessel starts on the floor inside, rises along the inner wall and
+            comes down outside. u runs around, v along the profile.
+        columns: number of faces around, at least 3.
+
+    Raises:
+        ShapeError, RangeError, DtypeError: not (M, 2), negative radii, ends off the axis, fewer
+            than 3 columns.
+    """
+    profile = np.asarray(profile, dtype=np.float64)
+    require_integer("lathe", "columns", columns, least=3)
+    if profile.ndim != 2 or profile.shape[1] != 2 or len(profile) < 3:
+        raise ShapeError(message("lathe", "profile", "shape (M, 2), M >= 3", profile.shape))
+    radius, height = profile.T
+    if not bool(np.isfinite(profile).all()) or float(radius.min()) < 0.0:
+        raise RangeError(message("lathe", "profile", "finite, radii of at least 0", "others"))
+    if radius[0] != 0.0 or radius[-1] != 0.0:
+        got = f"radii {radius[0]:g} and {radius[-1]:g}"
+        raise RangeError(message("lathe", "profile", "both ends on the axis", got))
+    angle = 2.0 * np.pi * np.arange(columns) / columns
+    ring = np.stack([np.sin(angle), np.zeros(columns), np.cos(angle)], axis=-1)
+    points = radius[:, None, None] * ring
+    points[..., 1] = height[:, None]
+    return from_grid(points, closed_columns=True)
+
+
+def rounded_profile(corners: list[tuple[float, float]], *, count: int = 96) -> FloatArray:
+    """A profile (count, 2) for `lathe` through `corners` (radius, height), both ends on the axis.
+
+    A corner given twice stays sharp; all others are rounded.
+    """
+    profile = smooth_curve(np.array(corners, dtype=np.float64), count)
+    profile[:, 0] = np.clip(profile[:, 0], 0.0, None)
+    profile[[0, -1], 0] = 0.0
+    return profile
+
+
+# Tubes along curves: wires, handles, branches.
+
+
+_CAP_RINGS = 4
+
+
+def tube(
+    curve: FloatArray, radius: float | FloatArray, *, sides: int = 16, closed: bool = False
+) -> Surface:
+    """A round tube, watertight: closed upon itself, or with half a ball at both ends.
+
+    u runs around, v along the curve. The curve is expected to bend by less than 1 / radius.
+
+    Args:
+        curve: (N, 3), neighbours different.
+        radius: metres, one number or (N,).
+        sides: number of faces around, at least 3.
+        closed: whether the last point is followed by the first.
+
+    Raises:
+        ShapeError, RangeError, DtypeError: a curve that `untwisted_frames` refuses, radii of
+            another count or not positive, fewer than 3 sides.
+    """
+    require_integer("tube", "sides", sides, least=3)
+    tangents, normals = untwisted_frames(curve, closed=closed)
+    centres = np.asarray(curve, dtype=np.float64)
+    radii = np.asarray(radius, dtype=np.float64)
+    if radii.shape not in ((), (len(centres),)):
+        expected = f"one number or shape ({len(centres)},)"
+        raise ShapeError(message("tube", "radius", expected, radii.shape))
+    radii = np.broadcast_to(radii, len(centres)).copy()
+    if not bool((np.isfinite(radii) & (radii > 0.0)).all()):
+        raise RangeError(message("tube", "radius", "positive numbers", radii.min()))
+    if not closed:
+        centres, radii, tangents, normals = _with_caps(centres, radii, tangents, normals)
+    angle = 2.0 * np.pi * np.arange(sides) / sides
+    # Seen from outside with the curve running down, the right-hand side is normal x tangent.
+    across = np.cross(normals, tangents)
+    ring = np.cos(angle)[:, None] * normals[:, None] + np.sin(angle)[:, None] * across[:, None]
+    points = centres[:, None] + radii[:, None, None] * ring
+    return from_grid(points, closed_rows=closed, closed_columns=True)
+
+
+def _with_caps(
+    centres: FloatArray, radii: FloatArray, tangents: FloatArray, normals: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Rings of half a ball before the first and after the last, down to a pole of radius 0."""
+    angle = 0.5 * np.pi * np.arange(_CAP_RINGS) / _CAP_RINGS
+    rise, shrink = np.cos(angle), np.sin(angle)
+    start = centres[0] - radii[0] * rise[:, None] * tangents[0]
+    end = (centres[-1] + radii[-1] * rise[:, None] * tangents[-1])[::-1]
+    index = np.pad(np.arange(len(centres)), _CAP_RINGS, mode="edge")
+    all_radii = np.concatenate([radii[0] * shrink, radii, radii[-1] * shrink[::-1]])
+    return np.concatenate([start, centres, end]), all_radii, tangents[index], normals[index]

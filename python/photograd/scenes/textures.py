@@ -13,15 +13,14 @@ import numpy as np
 import numpy.typing as npt
 from photograd_course import random
 from photograd_course.checks import require_integer
-from photograd_course.errors import ShapeError, message
 
+from photograd.errors import ShapeError, message
 from photograd.scenes.noise import fractal_noise, gradient_noise
-from photograd.scenes.paints import Color, within_range
+from photograd.scenes.parts import Color, within_range
+from photograd.types import FloatArray
 
 Size: TypeAlias = tuple[int, int]
 """Height and width in texels."""
-
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 
 def checker(size: Size, counts: Size, colors: Color) -> Color:

@@ -31,18 +31,18 @@ import numpy as np
 from numpy.typing import NDArray
 from photograd_course.portable_math import exp, log
 
-from photograd.quaternions import rotation_matrices
-from photograd.representation import Array
 from photograd.splats.density import (
     Change,
     DensityControl,
+    Grad2dStatistics,
     Params,
     Schedule,
     logits,
     opacities,
     rebuilt,
+    rotation_matrices,
 )
-from photograd.splats.grad2d import Grad2dStatistics
+from photograd.types import Array
 
 SPLIT = 1.6
 """A part of a split Gaussian is shorter by this, along its longest axis [Kerbl2023]."""

@@ -1,5 +1,15 @@
 """Density control: what decides how many Gaussians there are, and where.
 
+A Gaussian whose mean gets large gradients from every picture covers something that one Gaussian
+cannot explain. The measure is |dL/d mean| on the screen, averaged over the pictures that show it,
+in units of half the picture's longer side:
+
+    p_n = mean over pictures of  |dL/d(u, v)_n| max(W, H) / 2          (u, v) in pixels
+
+The loss is a mean over pixels, so a Gaussian's share of it does not depend on the picture's size,
+while moving by a pixel means half as much at twice the size. With the factor, a threshold means the
+same at every resolution: `threshold` divided by max(W, H) / 2 is the one per pixel [Kerbl2023].
+
 Gradients move what is there; they cannot add a Gaussian where one is missing, or remove one that
 nobody needs. A `DensityControl` does, at some steps of a fit, and says what the optimiser must
 know: which rows came from where, and which groups begin anew.
@@ -13,12 +23,73 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from photograd_course.portable_math import log, log1p, sigmoid
+from numpy.typing import NDArray
+from photograd_course.portable_math import log, log1p, matmul, sigmoid
 from photograd_course.row_map import RowMap
 
-from photograd.errors import RangeError, message
-from photograd.representation import Array
-from photograd.splats.grad2d import Grad2dStatistics
+from photograd.capture.camera import Camera
+from photograd.errors import RangeError, ShapeError, message
+from photograd.types import Array
+
+
+def rotation_matrices(quats: Array) -> Array:
+    """(N, 3, 3) float64 of quaternions (N, 4) as (w, x, y, z), of any length; zero ones turn
+    nothing.
+
+    R = I + 2 w [v]x + 2 [v]x [v]x for a unit quaternion (w, v). [Shoemake1985]
+
+    Raises:
+        ShapeError: `quats` is not (N, 4).
+    """
+    if quats.ndim != 2 or quats.shape[1] != 4:
+        raise ShapeError(message("rotation_matrices", "quats", "shape (N, 4)", f"{quats.shape}"))
+    q = quats.astype(np.float64)
+    length = np.linalg.norm(q, axis=1, keepdims=True)
+    w, x, y, z = (np.where(length > 0, q / np.where(length > 0, length, 1), [1, 0, 0, 0])).T
+    zero = np.zeros_like(w)
+    cross = np.stack([zero, -z, y, z, zero, -x, -y, x, zero], axis=-1).reshape(-1, 3, 3)
+    turned: Array = np.eye(3) + 2 * w[:, None, None] * cross + 2 * matmul(cross, cross)
+    return turned
+
+
+# Positional gradient statistics (grad2d): the criterion of density control.
+
+
+@dataclass(eq=False)
+class Grad2dStatistics:
+    """Sums since the last refinement: total (N,) float64 of p_n, count (N,) int64 of pictures."""
+
+    total: Array
+    count: NDArray[np.int64]
+
+    @classmethod
+    def zero(cls, count: int) -> Grad2dStatistics:
+        """Of `count` Gaussians that no picture has shown."""
+        return cls(np.zeros(count), np.zeros(count, np.int64))
+
+    def checked(self, count: int) -> Grad2dStatistics:
+        """Itself. Raises ShapeError unless it belongs to `count` Gaussians."""
+        for name, array in (("total", self.total), ("count", self.count)):
+            if array.shape != (count,):
+                raise ShapeError(
+                    message("Grad2dStatistics", name, f"shape ({count},)", f"{array.shape}")
+                )
+        return self
+
+    def add(self, screen: Array, visible: NDArray[np.bool_], camera: Camera) -> None:
+        """Add a picture: dL/d projected means (N, 2) per pixel, and which were in it (N,)."""
+        half = max(camera.width, camera.height) / 2
+        self.total += half * np.linalg.norm(screen.astype(np.float64), axis=1)
+        self.count += visible
+
+    def mean(self) -> Array:
+        """The measure p (N,); 0 for Gaussians that no picture has shown."""
+        found: Array = self.total / np.maximum(self.count, 1)
+        return found
+
+
+# Density control: what decides how many Gaussians there are, and where.
+
 
 Params = Mapping[str, Array]
 

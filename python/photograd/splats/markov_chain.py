@@ -29,10 +29,17 @@ from photograd_course.portable_math import exp, expm1, log, log1p, sigmoid
 from photograd_course.random import normal_vectors, uniform
 from photograd_course.row_map import RowMap
 
-from photograd.quaternions import rotation_matrices
-from photograd.representation import Array
-from photograd.splats.density import Change, DensityControl, Params, Schedule, logits, opacities
-from photograd.splats.grad2d import Grad2dStatistics
+from photograd.splats.density import (
+    Change,
+    DensityControl,
+    Grad2dStatistics,
+    Params,
+    Schedule,
+    logits,
+    opacities,
+    rotation_matrices,
+)
+from photograd.types import Array
 
 MOST_COPIES = 51
 """At so many copies of a Gaussian the formula ends, as in the authors' code."""

@@ -13,14 +13,14 @@ from photograd_course.portable_math import log, root
 from photograd_course.random import uniform
 
 from photograd import sh
-from photograd.data.camera import Camera
-from photograd.data.capture import Capture
-from photograd.data.hull import mean_coverage, silhouettes_of
-from photograd.data.view import View, display_color
+from photograd.capture.bounds import mean_coverage, silhouettes_of
+from photograd.capture.camera import Camera
+from photograd.capture.capture import Capture
+from photograd.capture.view import View, display_color
 from photograd.errors import RangeError, message
-from photograd.representation import Array
-from photograd.splat import Gaussians
 from photograd.splats.density import logits
+from photograd.splats.splatting import Gaussians
+from photograd.types import Array
 
 NEIGHBOURS = 3
 FEWEST_POINTS = 100

@@ -15,7 +15,17 @@ from photograd.transport.derivative import (
     derivative_image,
     direction_of,
 )
-from photograd.transport.lens import Lens
+from photograd.transport.inverse import (
+    Recovery,
+    RecoveryOptions,
+    RecoveryResult,
+    Target,
+    Unknown,
+    recover,
+    scene_with,
+)
+from photograd.transport.lens import Lens, Shutter
+from photograd.transport.material import Material
 from photograd.transport.medium import BOUNDARY, VACUUM, DensityGrid, Medium
 from photograd.transport.mesh_files import (
     ModelCamera,
@@ -28,25 +38,21 @@ from photograd.transport.occlusion_map import bake_ambient_occlusion
 from photograd.transport.particles import (
     Emitted,
     ParticleOptions,
+    PhotonMap,
     Receiver,
     emit_particles,
     trace_light,
 )
-from photograd.transport.photons import PhotonMap
-from photograd.transport.recovery import (
-    Recovery,
-    RecoveryOptions,
-    RecoveryResult,
-    Target,
-    Unknown,
-    recover,
-    scene_with,
-)
-from photograd.transport.scene import Environment, Material, MeshShape, Scene, SphereShape
+from photograd.transport.scene import Environment, Scene
 from photograd.transport.scene_file import read_scene
-from photograd.transport.sdf_shape import SdfShape
-from photograd.transport.shutter import Shutter
-from photograd.transport.texture import NormalMap, Texture, TextureUse, read_texture
+from photograd.transport.shapes import MeshShape, SdfShape, SphereShape
+from photograd.transport.texture import (
+    NormalMap,
+    OcclusionMap,
+    Texture,
+    TextureUse,
+    read_texture,
+)
 from photograd.transport.tracer import PathOptions, PathTracer
 
 __all__ = [
@@ -64,6 +70,7 @@ __all__ = [
     "ModelCamera",
     "ModelFile",
     "NormalMap",
+    "OcclusionMap",
     "ParticleOptions",
     "PathOptions",
     "PathTracer",

@@ -11,17 +11,16 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
-from photograd.data.npy import read_npy
+from photograd._files import read_npy
+from photograd._memory import require_room
 from photograd.errors import IoError, RangeError, message
-from photograd.memory import require_room
-from photograd.sparse import SparseGrid
+from photograd.grids.sparse import SparseGrid
+from photograd.grids.vdb import VdbFile, read_vdb
+from photograd.grids.volumes import SUFFIXES, read_volume
 from photograd.transport.medium import DensityGrid
-from photograd.vdb import VdbFile, read_vdb
-from photograd.volumes import SUFFIXES, read_volume
+from photograd.types import Array
 
-Array = npt.NDArray[Any]
 NAME = "read_density"
 BYTES = 20
 """A voxel takes in a scene: float32 as read, float64 in the medium, and the tracer's own copy."""
@@ -45,7 +44,7 @@ def read_density(
     interpolated values then are those of OpenVDB's own sampler, everywhere.
 
     Args:
-        path: .npy of numbers (X, Y, Z), .vdb, or what `photograd.volumes.read_volume` reads.
+        path: .npy of numbers (X, Y, Z), .vdb, or what `photograd.grids.volumes.read_volume` reads.
         grid: of a .vdb: the name; None takes the first grid of scalars.
         corner, size: (3,) metres, both or neither: what the box around the voxels is moved and
             stretched to. A .npy needs them; other files lie where they say, in metres.

@@ -13,13 +13,13 @@ from collections.abc import Mapping
 import numpy as np
 from photograd_course.suggest import choose_from
 
-from photograd.core import _core
-from photograd.data.camera import Camera
+from photograd._compiled import _core
+from photograd.capture.camera import Camera
 from photograd.errors import RangeError, ShapeError, message
 from photograd.transport.accumulation import Accumulation
 from photograd.transport.incomplete import changed_names, require_whole
-from photograd.transport.scene import Array
 from photograd.transport.tracer import DEFAULTS, PathOptions, PathTracer
+from photograd.types import Array
 
 SPELLING = re.compile(r"(?P<name>[^\[\]]+)(\[(?P<index>\d+(\s*,\s*\d+)*)\])?")
 STILL = ("shapes", "camera", "lens", "shutter", "sdfs")

@@ -15,15 +15,15 @@ as a pane of glass in front of a uniform environment.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from photograd.errors import RangeError, message
-from photograd.transport.scene import ALPHA, Scene
+from photograd.transport.material import ALPHA
+from photograd.transport.scene import Scene
+from photograd.types import Array
 
-Array = npt.NDArray[Any]
 TURNING = {
     "glass": (("eta",), "rough_dielectric"),
     "dispersive_glass": (("eta", "dispersion"), "dispersive_dielectric"),

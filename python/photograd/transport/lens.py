@@ -1,4 +1,4 @@
-"""A lens: what does not lie in its plane of focus is blurred."""
+"""A lens that blurs what is out of focus, and a shutter that stays open while the camera moves."""
 
 from __future__ import annotations
 
@@ -6,7 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from photograd.capture.camera import Camera
+from photograd.capture.frames import check_pose
 from photograd.errors import RangeError, message
+from photograd.types import FloatArray
 
 
 @dataclass(frozen=True)
@@ -32,3 +35,46 @@ class Lens:
 
 
 PINHOLE = Lens(0.0, 1.0)
+
+
+# A shutter that stays open while the camera moves: what is sharp in no moment is blurred.
+
+
+@dataclass(frozen=True, eq=False)
+class Shutter:
+    """The camera moves from its pose to `closing` at one speed, straight on and about one axis.
+
+    A picture is the mean over all moments in between (cpp/photograd/camera/camera_motion.h).
+    Shapes may move as well (motion.py); what does not, stands still.
+
+    Attributes:
+        closing: world_from_camera (4, 4) when the shutter closes; camera axes +X right, +Y down, +Z
+            forward.
+
+    Raises:
+        SceneError, ShapeError: a pose that is not rigid, or not (4, 4).
+    """
+
+    closing: FloatArray
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "closing", check_pose("Shutter", "closing", self.closing).copy())
+
+    def motion(self, opening: Camera) -> tuple[FloatArray, FloatArray]:
+        """Way (3,) in metres, and turn (3,), radians along its axis, both in the world.
+
+        Raises:
+            RangeError: half a turn, whose axis nobody can tell.
+        """
+        start = opening.world_from_camera
+        turned = self.closing[:3, :3] @ start[:3, :3].T
+        axis = 0.5 * np.array([
+            turned[2, 1] - turned[1, 2], turned[0, 2] - turned[2, 0], turned[1, 0] - turned[0, 1]
+        ])  # fmt: skip
+        sine, cosine = float(np.linalg.norm(axis)), 0.5 * (float(np.trace(turned)) - 1)
+        angle = float(np.arctan2(sine, cosine))
+        if angle > np.pi - 1e-3:
+            expected = "less than half a turn"
+            raise RangeError(message("Shutter", "closing", expected, f"{angle:.4f} radians"))
+        turn = axis * (angle / sine if sine > 0 else 1.0)
+        return self.closing[:3, 3] - start[:3, 3], turn

@@ -3,64 +3,66 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 from photograd_course.suggest import choose_from
 
-from photograd import bsdf, delta_bsdf
+from photograd import bsdf
+from photograd.bsdf import specular
 from photograd.errors import SceneError, ShapeError, message
+from photograd.transport.material import Material
 from photograd.transport.medium import BOUNDARY, VACUUM, Medium
+from photograd.transport.shapes import MeshShape, Shape
+from photograd.types import Array
 
-if TYPE_CHECKING:
-    from photograd.transport.scene import Scene, Shape
-
-Array = npt.NDArray[Any]
 NOTHING, UNCHANGED = -1, -2  # interiors that are no medium, as the core counts them
 SOLID = (
     "glass", "rough_dielectric", "dispersive_glass", "dispersive_dielectric", "gltf_refraction",
-    BOUNDARY,
+    "gltf_layered_volume", "gltf_layered_volume_conserving", BOUNDARY,
 )  # fmt: skip
 """Surfaces whose inside is empty unless the shape says otherwise. Others that light can pass are
 taken for thin sheets: on both sides is what is around."""
 
 
-def check_media(scene: Scene) -> None:
+def check_media(
+    shapes: Sequence[Shape],
+    materials: Mapping[str, Material],
+    media: Mapping[str, Medium],
+    world: str | None,
+) -> None:
     """Raise SceneError for names that do not exist, and interiors that no light could enter."""
     for name in (BOUNDARY, VACUUM):
-        if name in scene.materials or name in scene.media:
+        if name in materials or name in media:
             expected = "another name, this one has a meaning of its own"
             raise SceneError(message("Scene", "materials and media", expected, name))
-    if scene.world is not None and scene.world not in scene.media:
-        known = choose_from(scene.world, scene.media)
-        raise SceneError(message("Scene", "world", "one of the scene's media", scene.world, known))
-    for shape in scene.shapes:
+    if world is not None and world not in media:
+        known = choose_from(world, media)
+        raise SceneError(message("Scene", "world", "one of the scene's media", world, known))
+    for shape in shapes:
         if shape.material == BOUNDARY and shape.emission.any():
             expected = "none, for a boundary cannot be seen"
             raise SceneError(message("Scene", f"{shape.name}.emission", expected, shape.emission))
         if shape.interior is not None:
-            _check_interior(scene, shape)
+            _check_interior(shape, shape.interior, materials, media)
 
 
-def has_media(scene: Scene) -> bool:
-    """Whether there is anything between or beside surfaces: media, or boundaries of some."""
-    return bool(scene.media) or any(shape.material == BOUNDARY for shape in scene.shapes)
-
-
-def _check_interior(scene: Scene, shape: Shape) -> None:
+def _check_interior(
+    shape: Shape, interior: str, materials: Mapping[str, Material], media: Mapping[str, Medium]
+) -> None:
     argument = f"{shape.name}.interior"
-    if shape.interior != VACUUM and shape.interior not in scene.media:
-        known = choose_from(str(shape.interior), scene.media)
+    if interior != VACUUM and interior not in media:
+        known = choose_from(interior, media)
         expected = f"one of the scene's media, or {VACUUM}"
-        raise SceneError(message("Scene", argument, expected, shape.interior, known))
+        raise SceneError(message("Scene", argument, expected, interior, known))
     if not is_closed(shape):
         expected = "a closed mesh, counter-clockwise seen from outside"
         remedy = "give it back and sides, or turn its faces around"
         raise SceneError(message("Scene", argument, expected, f"'{shape.name}' is not", remedy))
     if shape.material == BOUNDARY:
         return
-    material = scene.materials[shape.material]
+    material = materials[shape.material]
     if not (transmits(material.model) or material.sheer):
         expected = f"a surface that lets light in, or {BOUNDARY}"
         got = f"'{material.model}'"
@@ -69,17 +71,17 @@ def _check_interior(scene: Scene, shape: Shape) -> None:
 
 def transmits(model: str) -> bool:
     """Whether light passes a surface of this model."""
-    rough, smooth = bsdf.registry(), delta_bsdf.registry()
+    rough, smooth = bsdf.registry(), specular.registry()
     return rough[model].transmits if model in rough else smooth[model].lobe_count > 1
 
 
-def is_closed(shape: Any) -> bool:
+def is_closed(shape: Shape) -> bool:
     """Whether a shape has an inside: every edge of a mesh is passed once in each direction.
 
     Vertices at one place count as one. The volume within has to be positive: outside is where
     faces are counter-clockwise.
     """
-    if not hasattr(shape, "faces"):  # a sphere
+    if not isinstance(shape, MeshShape):  # spheres and signed distance fields have one
         return True
     places, same = np.unique(shape.vertices, axis=0, return_inverse=True)
     faces = same.reshape(-1)[shape.faces.astype(np.int64)]
@@ -96,14 +98,17 @@ def is_closed(shape: Any) -> bool:
 class ListedMedia:
     """The media of a scene, numbered, and where they are."""
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(
+        self, media: Mapping[str, Medium], materials: Mapping[str, Material], world: str | None
+    ) -> None:
         """Of a scene that has been checked."""
-        self.media: Mapping[str, Medium] = scene.media
-        self._numbers = {name: number for number, name in enumerate(scene.media)}
-        self._scene = scene
+        self.media = media
+        self._numbers = {name: number for number, name in enumerate(media)}
+        self._materials = materials
+        self._world = world
         self.start = {
             f"media.{name}.{key}": value
-            for name, medium in scene.media.items()
+            for name, medium in media.items()
             for key, value in medium.start.items()
         }
 
@@ -112,7 +117,6 @@ class ListedMedia:
 
         `shapes` are the tracer's, `owner` (S,) says which of them each of the core's is of.
         """
-        scene = self._scene
         boundary = np.array([shape.material == BOUNDARY for shape in shapes])
         if not self.media and not boundary.any():
             return None
@@ -123,7 +127,7 @@ class ListedMedia:
             else (medium.density.values.shape, medium.density.box_from_world)
             for medium in self.media.values()
         ]
-        world = NOTHING if scene.world is None else self._numbers[scene.world]
+        world = NOTHING if self._world is None else self._numbers[self._world]
         return {
             "interior": interior[owner], "boundary": boundary[owner], "world": world,
             "grids": grids,
@@ -132,7 +136,7 @@ class ListedMedia:
     def _interior(self, shape: Shape) -> int:
         if shape.interior is not None:
             return NOTHING if shape.interior == VACUUM else self._numbers[shape.interior]
-        known = self._scene.materials
+        known = self._materials
         solid = shape.material == BOUNDARY or (
             shape.material in known and known[shape.material].model in SOLID
         )

@@ -11,12 +11,11 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from photograd.bsdf.phase import phase_function
 from photograd.errors import RangeError, ShapeError, message
-from photograd.phase import phase_function
+from photograd.types import Array
 
-Array = npt.NDArray[Any]
 BOUNDARY = "boundary"
 """In place of a material: a surface that is only the boundary between two media. Light passes
 straight through it, and it is not seen."""
@@ -94,7 +93,8 @@ class Medium:
             makes a medium that only absorbs; unlike one with an albedo of 0, nothing is drawn
             there by chance, and there is no derivative by the albedo. More than 1 would create
             light and is refused.
-        phase: the phase function, a name of `photograd.phase.registry()`; unused without albedo.
+        phase: the phase function, a name of `photograd.bsdf.phase.registry()`;
+            unused without albedo.
         values: {parameter of the phase function: number}; g lies between -1 and 1.
         density: scales sigma_t, or None: the same everywhere.
 

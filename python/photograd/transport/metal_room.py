@@ -12,9 +12,11 @@ from photograd_course.suggest import choose_from
 
 from photograd.errors import RangeError, message
 from photograd.transport.builtin import camera_at
-from photograd.transport.scene import Array, Material, MeshShape, Scene
-from photograd.transport.shapes import box, rectangle
+from photograd.transport.material import Material
+from photograd.transport.scene import Scene
+from photograd.transport.shapes import MeshShape, box, rectangle
 from photograd.transport.texture import Texture, TextureUse
+from photograd.types import Array
 
 COPPER = {"eta": [0.2004, 0.9240, 1.1022], "k": [3.9129, 2.4528, 2.1421]}
 ALUMINIUM = {"eta": [1.6574, 0.8803, 0.5212], "k": [9.2238, 6.2695, 4.8370]}

@@ -3,8 +3,10 @@
 The mathematics is in cpp/photograd/render/ambient_occlusion.h, which texel shows what in
 cpp/photograd/geometry/texel_cover.h. Such a map stands for the shadows of an even sky in renderers
 that cast none: under `ConstantLight`, direct light alone, a Lambertian surface sends albedo times
-map times radiance. A path tracer finds those shadows itself; to multiply its light by a map would
-count them twice, and dims what no sky has sent.
+map times radiance. As an `OcclusionMap` of a material it goes into glTF files and to
+`photograd.lights.prefilter.shade`, which knows of no other shadows. A path tracer finds those
+shadows itself; to multiply its light by a map would count them twice, and dims what no sky has
+sent.
 """
 
 from __future__ import annotations
@@ -15,12 +17,14 @@ from dataclasses import dataclass
 import numpy as np
 from photograd_course.suggest import choose_from
 
-from photograd.core import _core
+from photograd._compiled import _core
 from photograd.errors import RangeError, SceneError, message
 from photograd.transport.motion import refuse_motion
-from photograd.transport.scene import Array, MeshShape, Scene
+from photograd.transport.scene import Scene
+from photograd.transport.shapes import MeshShape
 from photograd.transport.texture import Texture
 from photograd.transport.tracer import PathTracer
+from photograd.types import Array
 
 MARGIN = 8
 """Texels around what is covered that go on as it does at its edge, so that lookups between texels,
@@ -64,7 +68,7 @@ class OcclusionBake:
         if not radius > 0:
             raise _wrong("radius", "above 0 m", radius)
         self.points = texel_points(_mesh_named(scene, shape), height, width)
-        refuse_motion(_NAME, scene)
+        refuse_motion(_NAME, scene.shapes)
         self._geometry = PathTracer(scene)._geometry  # media dim no sight of the sky
         self._radius, self._seed = radius, seed
         self._free = np.zeros(len(self.points.points))

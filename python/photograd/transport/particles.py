@@ -1,7 +1,8 @@
-"""Light tracing: particles from the lights, and the irradiance of what they land on.
+"""Light tracing: particles from the lights, the irradiance where they land, and photon maps.
 
 The mathematics is in cpp/photograd/scene/emit.h (how they leave), render/path/scatter.h (what
-surfaces do to them), tracer.h (how they travel) and render/light/irradiance_sensor.h.
+surfaces do to them), tracer.h (how they travel) and render/light/irradiance_sensor.h;
+that of photon maps in render/light/photon_map.h.
 """
 
 from __future__ import annotations
@@ -11,12 +12,12 @@ from typing import Any
 
 import numpy as np
 
-from photograd.core import _core
+from photograd._compiled import _core
 from photograd.errors import RangeError, ShapeError, message
 from photograd.transport.accumulation import Accumulation
 from photograd.transport.motion import refuse_motion
-from photograd.transport.scene import Array
-from photograd.transport.tracer import NEVER, PathTracer
+from photograd.transport.tracer import DEFAULTS, NEVER, PathOptions, PathTracer
+from photograd.types import Array
 
 
 @dataclass(frozen=True)
@@ -177,7 +178,7 @@ def scene_arguments(function: str, tracer: PathTracer) -> dict[str, Any]:
     Raises:
         SceneError: shapes that move.
     """
-    refuse_motion(function, tracer.scene)
+    refuse_motion(function, tracer.scene.shapes)
     arguments = tracer.wide_arguments()
     del arguments["camera"]
     return arguments
@@ -186,3 +187,94 @@ def scene_arguments(function: str, tracer: PathTracer) -> dict[str, Any]:
 def _check_count(function: str, particles: int) -> None:
     if particles < 1:
         raise RangeError(message(function, "particles", "at least 1", particles))
+
+
+# Photon mapping: particles kept where they land, and pictures read off their density.
+
+
+class PhotonMap:
+    """What particles brought to the surfaces of a scene that are not specular.
+
+    The estimate is biased by a blur of the radius, whatever the number of particles; in a smaller
+    radius fewer of them count, and it is noisier.
+
+    Attributes:
+        tracer: the scene. A map does not change with its params: build another one.
+        radius: of the disc over which photons are counted, metres.
+    """
+
+    def __init__(
+        self, tracer: PathTracer, particles: int, *, radius: float, seed: int,
+        options: ParticleOptions = PARTICLES, direct: bool = True,
+    ) -> None:  # fmt: skip
+        """Follow the particles.
+
+        Args:
+            tracer: the scene, at its present params.
+            particles: how many leave the lights.
+            radius: metres.
+            seed: of all random numbers; the same one gives the same bits on any threads.
+            options: how far particles are followed.
+            direct: whether to keep what comes straight from a light.
+
+        Raises:
+            RangeError: particles below 1, a radius that is not above 0 and finite, or a scene
+                without lights.
+            SceneError: shapes that move.
+        """
+        if particles < 1:
+            raise RangeError(message("PhotonMap", "particles", "at least 1", particles))
+        self.tracer = tracer
+        self.radius = radius
+        self._map = _core.PhotonMap(
+            **scene_arguments("PhotonMap", tracer),
+            options=options.numbers(seed), count=particles, radius=radius, direct=direct,
+        )  # fmt: skip
+
+    def __len__(self) -> int:
+        """Number of photons kept."""
+        return len(self._map)
+
+    def irradiance(self, points: Array, normals: Array) -> Array:
+        """(N, 3) W/m^2 at points (N, 3) of surfaces with geometric normals (N, 3), in the world.
+
+        Raises:
+            ShapeError: arrays of other shapes.
+        """
+        places, sides = (np.ascontiguousarray(rows, np.float64) for rows in (points, normals))
+        for name, rows in (("points", places), ("normals", sides)):
+            if rows.ndim != 2 or rows.shape[1] != 3 or len(rows) != len(places):
+                expected = "shape (N, 3)"
+                raise ShapeError(message("PhotonMap.irradiance", name, expected, rows.shape))
+        found: Array = self._map.irradiance(places, sides)
+        return found
+
+    def add_samples(
+        self, sums: Accumulation, spp: int, *, seed: int, options: PathOptions = DEFAULTS
+    ) -> None:
+        """Add the next `spp` samples of the scene's camera to `sums` (H, W, 3), in place.
+
+        A camera path goes through specular surfaces, and through media, to the first surface that
+        is not specular; all the light there is read from the map. Light that media scatter is path
+        traced.
+
+        Raises:
+            RangeError: spp below 1.
+            ShapeError: sums of another size than the picture.
+            Error: radiance that is not finite; names the pixel.
+        """
+        view = self.tracer.scene.camera
+        sums.check_call("PhotonMap.add_samples", (view.height, view.width), spp)
+        _core.trace_photons(
+            map=self._map, **self.tracer.wide_arguments(), options=options.numbers(seed),
+            first=sums.count, count=spp, radiance=sums.radiance, squares=sums.squares,
+        )  # fmt: skip
+        sums.count += spp
+        sums.check_finite("PhotonMap.add_samples")
+
+    def render(self, *, spp: int, seed: int, options: PathOptions = DEFAULTS) -> Accumulation:
+        """A picture of `spp` samples a pixel; arguments and errors as `add_samples`."""
+        view = self.tracer.scene.camera
+        sums = Accumulation.empty(view.height, view.width)
+        self.add_samples(sums, spp, seed=seed, options=options)
+        return sums

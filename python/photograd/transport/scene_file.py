@@ -32,13 +32,13 @@ closing = { translate = [0.1, 0, 0] }   # optional: how it moves while the shutt
                               # of `places` in `scene_meshes`, each point goes straight on
 glow = "sign"                 # optional: the texture that scales it, where there are coordinates
 
-[[lights]]                    # optional; kinds and keys: light_nodes.py
+[[lights]]                    # optional; kinds and keys: scene_tables.py
 kind = "directional"
 direction = [0.3, 1, 0.2]     # towards the light
 irradiance = 2
 
 Textures, and meshes from files, are described in `scene_meshes`; fog, milk and coloured glass in
-`media_nodes`; bodies of signed distances in `sdf_nodes`.
+`scene_tables`; bodies of signed distances in `sdf_nodes`.
 """
 
 from __future__ import annotations
@@ -54,49 +54,38 @@ from photograd_course.input_files import read_text
 from photograd_course.toml_limits import parse_toml
 
 from photograd.bsdf import Parameter, pack_rows
-from photograd.data.camera import Camera
-from photograd.geometry.sdf_shapes import Shape as SdfNode
+from photograd.capture.camera import Camera
+from photograd.geometry.sdf import Shape as SdfNode
 from photograd.transport.builtin import camera_at
-from photograd.transport.file_views import camera_of_file
-from photograd.transport.lens import PINHOLE, Lens
-from photograd.transport.light_nodes import light_of
-from photograd.transport.media_nodes import filled, media_in
+from photograd.transport.lens import PINHOLE, Lens, Shutter
+from photograd.transport.material import ALPHA, MODELS, Material
 from photograd.transport.medium import BOUNDARY
 from photograd.transport.motion import moved_on
-from photograd.transport.scene import (
-    ALPHA,
-    MODELS,
-    Environment,
-    Material,
-    MeshShape,
-    Scene,
-    Shape,
-    SphereShape,
-)
+from photograd.transport.scene import Environment, Scene
 from photograd.transport.scene_meshes import (
     Brought,
+    camera_of_file,
     matrix_of,
     mesh_shapes,
     pictures_of,
     texture_use,
     textures_in,
 )
-from photograd.transport.scene_node import Node
+from photograd.transport.scene_node import Node, key_lines
+from photograd.transport.scene_tables import filled, light_of, media_in
 from photograd.transport.sdf_nodes import bodies_in, body_of
-from photograd.transport.sdf_shape import SdfShape
 from photograd.transport.shape_checks import check_range
-from photograd.transport.shapes import box, rectangle
-from photograd.transport.shutter import Shutter
-from photograd.transport.toml_lines import key_lines
+from photograd.transport.shapes import MeshShape, SdfShape, Shape, SphereShape, box, rectangle
 
 
-def read_scene(path: Path) -> Scene:
+def read_scene(path: str | Path) -> Scene:
     """The scene that a file describes.
 
     Raises:
         IoError: the file is missing, no regular file, no TOML, or exceeds a limit of `parse_toml`.
         SceneError: what it says is no scene; names the line and the key.
     """
+    path = Path(path)
     text = read_text("read_scene", path)
     root = Node(path, parse_toml("read_scene", f"{path}", text), (), key_lines(text))
     scene = root.built(lambda: _scene(root, path.stem))

@@ -29,8 +29,8 @@ from functools import reduce
 import numpy as np
 
 from photograd.errors import SceneError
-from photograd.geometry import sdf_shapes
-from photograd.geometry.sdf_shapes import Shape
+from photograd.geometry import sdf
+from photograd.geometry.sdf import Shape
 from photograd.transport.scene_node import Node
 
 DEEPEST = 64  # names within names
@@ -114,30 +114,28 @@ def _half_sizes(node: Node) -> list[float]:
 
 
 def _plane(node: Node) -> Shape:
-    return sdf_shapes.plane(node.numbers("normal", 3), node.number("height"))
+    return sdf.plane(node.numbers("normal", 3), node.number("height"))
 
 
 SHAPES: dict[str, Callable[[Node], Shape]] = {
-    "sphere": lambda node: sdf_shapes.sphere(_length(node, "radius")),
-    "box": lambda node: sdf_shapes.box(_half_sizes(node)),
-    "rounded_box": lambda node: sdf_shapes.rounded_box(_half_sizes(node), _length(node, "radius")),
-    "torus": lambda node: sdf_shapes.torus(_length(node, "ring"), _length(node, "tube")),
-    "capsule": lambda node: sdf_shapes.capsule(
-        _length(node, "half_length"), _length(node, "radius")
-    ),
+    "sphere": lambda node: sdf.sphere(_length(node, "radius")),
+    "box": lambda node: sdf.box(_half_sizes(node)),
+    "rounded_box": lambda node: sdf.rounded_box(_half_sizes(node), _length(node, "radius")),
+    "torus": lambda node: sdf.torus(_length(node, "ring"), _length(node, "tube")),
+    "capsule": lambda node: sdf.capsule(_length(node, "half_length"), _length(node, "radius")),
     "plane": _plane,
 }
 
 
 def _combined(node: Node, kind: str, parts: list[Shape]) -> Shape:
     if kind == "rounded":
-        return sdf_shapes.rounded(parts[0], _length(node, "radius"))
+        return sdf.rounded(parts[0], _length(node, "radius"))
     if kind == "union":
-        return sdf_shapes.union(*parts)
+        return sdf.union(*parts)
     if kind == "smooth_union":
         width = _length(node, "width")
-        return reduce(lambda a, b: sdf_shapes.smooth_union(a, b, width), parts)
-    pair = sdf_shapes.intersection if kind == "intersection" else sdf_shapes.difference
+        return reduce(lambda a, b: sdf.smooth_union(a, b, width), parts)
+    pair = sdf.intersection if kind == "intersection" else sdf.difference
     return reduce(pair, parts)
 
 
@@ -146,11 +144,11 @@ def _placed(node: Node, shape: Shape) -> Shape:
         factor = node.number("scale")
         if not factor > 0:
             raise node.wrong("scale", "one factor above 0, the same along all axes", factor)
-        shape = sdf_shapes.scaled(shape, factor)
+        shape = sdf.scaled(shape, factor)
     turn, shift = (node.numbers(key, 3, [0.0] * 3) for key in ("rotate", "translate"))
     if not (node.has("rotate") or node.has("translate")):
         return shape
-    return sdf_shapes.placed(shape, shift, quaternion_of(turn))
+    return sdf.placed(shape, shift, quaternion_of(turn))
 
 
 def quaternion_of(degrees: list[float]) -> list[float]:

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from photograd.bsdf import SMOOTH, Parameter
 from photograd.errors import DtypeError, RangeError, ShapeError, message
-from photograd.mesh import drop_degenerate
+from photograd.geometry.mesh import drop_degenerate
+from photograd.types import Array
 
-Array = npt.NDArray[Any]
+FLAT = 1e-9
+"""A mesh whose volume has shrunk to less than this part is flat, as far as rounding can tell."""
 
 
 def checked_place(name: str, matrix: Any) -> Array:
@@ -31,6 +33,44 @@ def checked_place(name: str, matrix: Any) -> Array:
         expected = "a positive determinant"
         raise RangeError(message("MeshShape", f"{name}.places", expected, volume))
     return place
+
+
+def checked_closing_places(
+    name: str, places: Sequence[Array], closing: Sequence[Any]
+) -> tuple[Array, ...]:
+    """World_from_object (4, 4) of each instance when the shutter closes.
+
+    Raises:
+        ShapeError: another number of them than of places, or what `checked_place` refuses.
+        RangeError: a mesh that would be flat or mirrored at some moment in between.
+    """
+    ends = tuple(checked_place(name, matrix) for matrix in closing)
+    starts = list(places) or [np.eye(4)]
+    if ends and len(ends) != len(starts):
+        expected = f"{len(starts)}, one for each place"
+        raise ShapeError(message("MeshShape", f"{name}.closing_places", expected, len(ends)))
+    for start, end in zip(starts, ends, strict=False):
+        least = _least_volume(start[:3, :3], end[:3, :3])
+        if not least > FLAT:
+            expected = "a positive determinant at every moment"
+            remedy = "turn by less, points move straight on"
+            raise RangeError(
+                message("MeshShape", f"{name}.closing_places", expected, least, remedy)
+            )
+    return ends
+
+
+def _least_volume(a: Array, b: Array) -> float:
+    """The least determinant of (1 - s) a + s b, s in [0, 1], as a part of the largest; a cubic."""
+    s = np.array([0.0, 1 / 3, 2 / 3, 1.0])
+    volume = [np.linalg.det((1 - x) * a + x * b) for x in s]
+    cubic = np.linalg.solve(np.vander(s, increasing=True), volume)
+    # Both roots of the derivative, also where it is of lower degree; or the end nearby.
+    c0, c1, c2 = cubic[1:] * [1, 2, 3]
+    q = -0.5 * (c1 + np.copysign(np.sqrt(max(c1 * c1 - 4 * c0 * c2, 0.0)), c1))
+    turning = [x / y for x, y in ((q, c2), (c0, q)) if abs(y) > 0]
+    found = np.polyval(cubic[::-1], np.clip([0.0, 1.0, *turning], 0, 1))
+    return float(found.min() / np.abs(found).max())
 
 
 def usable_triangles(name: str, vertices: Array, faces: Array) -> tuple[Array, Array]:

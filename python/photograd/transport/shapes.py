@@ -1,13 +1,217 @@
-"""Rectangles and boxes as triangle meshes."""
+"""Shapes of a scene: triangle meshes, spheres, signed distance fields; rectangles and boxes.
+
+A ray meets a signed distance field by steps of the distance (cpp/photograd/geometry/sdf_solid.h)
+[Hart1996]: no triangles, and smooth at any distance; the normal is the gradient of the distance.
+"""
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-from photograd.errors import RangeError, message
-from photograd.transport.scene import Array, MeshShape
+from photograd.errors import DtypeError, RangeError, SceneError, ShapeError, message
+from photograd.geometry.sdf import Body
+from photograd.geometry.sdf import Shape as SdfNode
+from photograd.transport.shape_checks import (
+    checked_closing_places,
+    checked_color,
+    checked_place,
+    float_rows,
+    usable_triangles,
+)
+from photograd.transport.texture import TextureUse
+from photograd.types import Array
+
+
+@dataclass(frozen=True, eq=False)
+class MeshShape:
+    """A triangle mesh in the world.
+
+    Triangles without area, or with corners that are not finite, are dropped with a warning that
+    counts them.
+
+    Attributes:
+        name: unique in its scene.
+        vertices: (V, 3) floating point, metres; kept as float32.
+        faces: (F, 3) integers, counter-clockwise seen from the side that emits.
+        material: name of one of the scene's materials, or `medium.BOUNDARY`: it is not seen.
+        emission: (3,) radiance of the front; 0 for all that does not shine.
+        normals: (V, 3) shading normals of any length, or None for flat triangles.
+        uv: (V, 2) texture coordinates, v downwards, or None.
+        places: world_from_object, (4, 4) each, of instances of this mesh; none places it once,
+            where it is. All shine and reflect alike, and are kept in memory once.
+        glow: the texture that scales `emission`, three channels of it, or None.
+        interior: name of the medium that fills the mesh, which has to be closed, or
+            `medium.VACUUM`. None: nothing in glass, and whatever is around in other surfaces.
+        closing_places: world_from_object of each of `places` (of the mesh itself, where there are
+            none) when the shutter closes: in between, each point moves straight on. None of them:
+            it stands still.
+
+    Raises:
+        DtypeError, ShapeError: arrays of other types or shapes.
+        RangeError: vertex numbers out of range, negative emission, or a place that mirrors or
+            flattens.
+        SceneError: no triangle is left; for a shape that shines, a light without area.
+    """
+
+    name: str
+    vertices: Array
+    faces: Array
+    material: str
+    emission: Array = field(default_factory=lambda: np.zeros(3))
+    normals: Array | None = None
+    uv: Array | None = None
+    places: tuple[Array, ...] = ()
+    glow: TextureUse | None = None
+    interior: str | None = None
+    closing_places: tuple[Array, ...] = ()
+
+    def __post_init__(self) -> None:
+        vertices = float_rows(self.name, "vertices", self.vertices)
+        faces = np.asarray(self.faces)
+        if faces.dtype.kind not in "iu":
+            raise DtypeError(message("MeshShape", f"{self.name}.faces", "integers", faces.dtype))
+        if faces.ndim != 2 or faces.shape[1] != 3:
+            expected = "shape (F, 3)"
+            raise ShapeError(message("MeshShape", f"{self.name}.faces", expected, faces.shape))
+        if faces.size and not (int(faces.min()) >= 0 and int(faces.max()) < len(vertices)):
+            expected = f"vertex numbers 0 to {len(vertices) - 1}"
+            got = f"{int(faces.min())} to {int(faces.max())}"
+            raise RangeError(message("MeshShape", f"{self.name}.faces", expected, got))
+        emission = checked_color(self.name, "emission", self.emission)
+        vertices, faces = usable_triangles(self.name, vertices, faces)
+        if not len(faces):
+            shines = bool(emission.any())
+            expected = "a light with an area" if shines else "a triangle with an area"
+            raise SceneError(message("MeshShape", f"{self.name}.faces", expected, "none"))
+        object.__setattr__(self, "vertices", vertices)
+        object.__setattr__(self, "faces", np.ascontiguousarray(faces, np.uint32))
+        object.__setattr__(self, "emission", emission)
+        if self.normals is not None:
+            normals = float_rows(self.name, "normals", self.normals)
+            if normals.shape != vertices.shape or not np.isfinite(normals).all():
+                expected = f"finite numbers, shape {vertices.shape}"
+                wrong = f"shape {normals.shape}"
+                raise ShapeError(message("MeshShape", f"{self.name}.normals", expected, wrong))
+            object.__setattr__(self, "normals", normals)
+        if self.uv is not None:
+            uv = np.asarray(self.uv)
+            if uv.dtype.kind != "f" or uv.shape != (len(vertices), 2) or not np.isfinite(uv).all():
+                expected = f"finite floating point numbers, shape ({len(vertices)}, 2)"
+                got = f"{uv.dtype}, shape {uv.shape}"
+                raise ShapeError(message("MeshShape", f"{self.name}.uv", expected, got))
+            object.__setattr__(self, "uv", np.ascontiguousarray(uv, np.float32))
+        object.__setattr__(self, "places", tuple(checked_place(self.name, m) for m in self.places))
+        closing = checked_closing_places(self.name, self.places, self.closing_places)
+        object.__setattr__(self, "closing_places", closing)
+
+    @property
+    def box(self) -> Array:
+        """(2, 3) lower and upper corner of all instances at all times, metres."""
+        corners = self.vertices[self.faces.reshape(-1)].astype(np.float64)
+        if not self.places and not self.closing_places:
+            return np.array([corners.min(axis=0), corners.max(axis=0)])
+        ends = np.array([corners.min(axis=0), corners.max(axis=0)])
+        matrices = (*(self.places or (np.eye(4),)), *self.closing_places)
+        eight = np.array([[ends[i, 0], ends[j, 1], ends[k, 2]] for i, j, k in np.ndindex(2, 2, 2)])
+        world = np.concatenate([eight @ m[:3, :3].T + m[:3, 3] for m in matrices])
+        return np.array([world.min(axis=0), world.max(axis=0)])
+
+
+@dataclass(frozen=True, eq=False)
+class SphereShape:
+    """A perfect sphere; its outside emits.
+
+    Attributes:
+        name: unique in its scene.
+        center: (3,) metres.
+        radius: metres, above 0.
+        material, interior: as for `MeshShape`.
+        emission: (3,) radiance.
+        closing: (3,) the centre when the shutter closes, metres: it moves there straight on. None
+            stands still.
+
+    Raises:
+        RangeError, ShapeError: numbers that are not finite, a radius of 0, negative emission.
+    """
+
+    name: str
+    center: Array
+    radius: float
+    material: str
+    emission: Array = field(default_factory=lambda: np.zeros(3))
+    interior: str | None = None
+    closing: Array | None = None
+
+    def __post_init__(self) -> None:
+        for key in ("center", "closing"):
+            given = getattr(self, key)
+            if key == "closing" and given is None:
+                continue
+            point = np.asarray(given, np.float64)
+            if point.shape != (3,) or not np.isfinite(point).all():
+                expected = "three finite numbers"
+                raise ShapeError(message("SphereShape", f"{self.name}.{key}", expected, given))
+            object.__setattr__(self, key, point)
+        emission = checked_color(self.name, "emission", self.emission)
+        if not (np.isfinite(self.radius) and np.float32(self.radius) > 0):
+            expected = "above 0 m (a light needs an area)" if emission.any() else "above 0 m"
+            raise RangeError(message("SphereShape", f"{self.name}.radius", expected, self.radius))
+        object.__setattr__(self, "emission", emission)
+
+    @property
+    def box(self) -> Array:
+        """(2, 3) lower and upper corner at all times, metres."""
+        ends = np.array([self.center, self.center if self.closing is None else self.closing])
+        return np.array([ends.min(axis=0) - self.radius, ends.max(axis=0) + self.radius])
+
+
+@dataclass(frozen=True, eq=False)
+class SdfShape:
+    """What `photograd.geometry.sdf` builds, with a surface.
+
+    Attributes:
+        name: unique in its scene.
+        body: a tree of spheres, boxes, tori, ... and of what combines them, in metres of the world.
+            It is closed, so that it may be of glass, or filled with a medium. It must end on all
+            sides: planes only cut.
+        material, interior: as for `MeshShape`. Materials with textures need coordinates, which a
+            body has none of.
+        emission: 0. Where on such a surface a light sample would go is not known in closed form.
+
+    Raises:
+        SceneError: a body that is none, is empty, has no end or nests too deeply; one that shines.
+        RangeError: negative emission.
+    """
+
+    name: str
+    body: SdfNode
+    material: str
+    emission: Array = field(default_factory=lambda: np.zeros(3))
+    interior: str | None = None
+    ready: Body = field(init=False, repr=False)
+    box: Array = field(init=False, repr=False)
+    """(2, 3) lower and upper corner of a box around the body, metres."""
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.body, SdfNode):
+            expected = "a shape of photograd.geometry.sdf"
+            got = type(self.body).__name__
+            raise SceneError(message("SdfShape", f"{self.name}.body", expected, got))
+        emission = checked_color(self.name, "emission", self.emission)
+        if emission.any():
+            expected, remedy = "0", "let a mesh or a sphere shine"
+            raise SceneError(
+                message("SdfShape", f"{self.name}.emission", expected, emission, remedy)
+            )
+        object.__setattr__(self, "emission", emission)
+        object.__setattr__(self, "ready", Body(self.body))
+        object.__setattr__(self, "box", self.ready.box)
+
+
+Shape = MeshShape | SphereShape | SdfShape
 
 
 def rectangle(

@@ -21,13 +21,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 from photograd_course.color import srgb_decode
 
-from photograd.data.images import read_header, read_image
 from photograd.errors import DtypeError, RangeError, ShapeError, message
+from photograd.images.read import read_header, read_image
+from photograd.textures import sample
+from photograd.types import Array
 
-Array = npt.NDArray[Any]
 WRAPS = ("repeat", "mirror", "clamp")
 FILTERS = ("bilinear", "mip")
 ENCODINGS = ("srgb", "linear", "alpha")
@@ -104,6 +104,50 @@ class NormalMap:
         """Of an image (H, W, 3 or more) that holds (n + 1) / 2; `scale` is of the tilt."""
         values = 2 * np.asarray(image, np.float32)[..., :3] - 1
         return cls(values * np.array([scale, scale, 1], np.float32), wrap)
+
+
+@dataclass(frozen=True, eq=False)
+class OcclusionMap:
+    """How much of the ambient light reaches a surface: 1 + strength (values - 1).
+
+    For what approximates ambient light, such as `photograd.lights.prefilter.shade`. It is no
+    parameter, and paths do not look at it: they find what is occluded themselves.
+
+    Attributes:
+        values: (H, W, 1), 1 where nothing is occluded; `bake_ambient_occlusion` makes them.
+        strength: 0 to 1.
+        wrap: as of `Texture`.
+
+    Raises:
+        DtypeError, ShapeError, RangeError: as `Texture`; a strength outside of 0..1.
+    """
+
+    values: Array
+    strength: float = 1.0
+    wrap: tuple[str, str] = ("repeat", "repeat")
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "values", _picture("OcclusionMap", self.values, (1,)))
+        if len(self.wrap) != 2 or any(kind not in WRAPS for kind in self.wrap):
+            raise RangeError(message("OcclusionMap", "wrap", f"two of {WRAPS}", self.wrap))
+        if not 0 <= self.strength <= 1:
+            raise RangeError(message("OcclusionMap", "strength", "0 to 1", self.strength))
+
+    def at(self, uv: Array) -> Array:
+        """The factor (N,) of ambient light at texture coordinates (N, 2), bilinear, float32.
+
+        Raises:
+            ShapeError, RangeError: as `photograd.textures.sample`.
+        """
+        inside = np.array(uv, np.float32)
+        for axis, wrap in enumerate(self.wrap if inside.ndim == 2 and inside.shape[1] == 2 else ()):
+            x = inside[:, axis]
+            if wrap == "repeat":
+                inside[:, axis] = x - np.floor(x)
+            elif wrap == "mirror":
+                inside[:, axis] = 1 - np.abs(1 - (x - 2 * np.floor(0.5 * x)))
+        found = sample(self.values, np.ascontiguousarray(inside))[:, 0]
+        return np.asarray(1 + np.float32(self.strength) * (found - 1), np.float32)
 
 
 def read_texture(

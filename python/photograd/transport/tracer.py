@@ -12,25 +12,26 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from photograd.core import _core
-from photograd.data.camera import Camera
+from photograd._compiled import _core
+from photograd.capture.camera import Camera
 from photograd.errors import DtypeError, RangeError, ShapeError, message
-from photograd.transport.accumulation import Accumulation
+from photograd.transport.accumulation import Accumulation, sample_counts
 from photograd.transport.core_arrays import (
     blocks_of,
     cutoffs_of,
     glows_of,
     instances_of,
+    light_shapes,
+    listed_lights,
     mean_emission,
     textures_of,
 )
 from photograd.transport.incomplete import WholeGradients, incomplete_derivatives
-from photograd.transport.light_list import light_shapes, listed_lights
 from photograd.transport.media_list import ListedMedia
 from photograd.transport.motion import closing_arrays, refuse_motion
-from photograd.transport.sample_counts import sample_counts
-from photograd.transport.scene import Array, MeshShape, Scene, Shape, SphereShape
-from photograd.transport.sdf_shape import SdfShape
+from photograd.transport.scene import Scene
+from photograd.transport.shapes import MeshShape, SdfShape, Shape, SphereShape
+from photograd.types import Array
 
 STRATEGIES = ("light", "bsdf", "mis")
 HEURISTICS = ("balance", "power")
@@ -124,7 +125,7 @@ class PathTracer:
         self.scene = scene
         self.incomplete = {} if allow_incomplete else incomplete_derivatives(scene)
         self._lights = listed_lights(scene)
-        self._media = ListedMedia(scene)
+        self._media = ListedMedia(scene.media, scene.materials, scene.world)
         names = {name: number for number, name in enumerate(scene.materials)}
         # (name of the emission among the params, shape, number of its material); lights reflect
         # nothing, by a material that is no parameter, and boundaries have none.
@@ -248,7 +249,7 @@ class PathTracer:
             options: how light is looked for.
             camera: None takes the scene's.
             spread: "even" gives each pixel as many paths, "cotangent" more to those that the loss
-                looks at (sample_counts.py); then `seed` must not be that of the picture.
+                looks at (accumulation.py); then `seed` must not be that of the picture.
 
         Raises:
             ShapeError: d_image of another shape than the picture.
@@ -302,7 +303,7 @@ class PathTracer:
             SceneError: shapes that move.
             ShapeError: sums of another size.
         """
-        refuse_motion("add_occlusion", self.scene)
+        refuse_motion("add_occlusion", self.scene.shapes)
         view = self.scene.camera
         sums.check_call("add_occlusion", (view.height, view.width), spp)
         free = np.zeros((view.height, view.width))

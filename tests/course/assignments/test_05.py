@@ -206,7 +206,7 @@ def test_generated_questions_have_the_answers_that_their_reasons_give() -> None:
 
 
 def test_rays_of_the_camera_are_those_of_the_core(solution) -> None:
-    cameras = pytest.importorskip("photograd.data.camera")
+    cameras = pytest.importorskip("photograd.capture.camera")
     turn, _ = np.linalg.qr(np.random.default_rng(4).normal(size=(3, 3)))
     pose = np.eye(4)
     pose[:3, :3], pose[:3, 3] = turn * np.linalg.det(turn), [1, -2, 3]
@@ -216,7 +216,7 @@ def test_rays_of_the_camera_are_those_of_the_core(solution) -> None:
 
 
 def test_the_tree_finds_what_embree_finds(solution, checks) -> None:
-    meshes = pytest.importorskip("photograd.mesh")
+    meshes = pytest.importorskip("photograd.geometry.mesh")
     corners = checks.ring()
     faces = np.arange(3 * len(corners)).reshape(-1, 3)
     tree = meshes.Bvh(meshes.Mesh(corners.reshape(-1, 3).astype(np.float32), faces))

@@ -197,8 +197,8 @@ def test_the_kit_runs_without_the_solution() -> None:
 
 
 def core_camera(origin, direction):
-    camera = pytest.importorskip("photograd.data.camera").Camera
-    pose = pytest.importorskip("photograd.orbit").look_at(origin, origin + direction)
+    camera = pytest.importorskip("photograd.capture.camera").Camera
+    pose = pytest.importorskip("photograd.capture.orbit").look_at(origin, origin + direction)
     return camera(1, 1, 1e5, 1e5, 0.5, 0.5, pose)
 
 

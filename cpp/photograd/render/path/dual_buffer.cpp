@@ -102,13 +102,7 @@ void dual_buffer_backward(const PathScene<R>& scene, const ThinLens& camera,
     add_chunks<R>(scene, pixels, counts.most_of(0, pixels), true, work, blocks);
 }
 
-template void dual_buffer_backward(const PathScene<float>&, const ThinLens&, const PathOptions&,
-                                   const std::array<std::uint64_t, 2>&, std::uint32_t,
-                                   const std::uint32_t*, const SquaredError&,
-                                   std::span<const GradientBlock<float>>, double*);
-template void dual_buffer_backward(const PathScene<double>&, const ThinLens&, const PathOptions&,
-                                   const std::array<std::uint64_t, 2>&, std::uint32_t,
-                                   const std::uint32_t*, const SquaredError&,
-                                   std::span<const GradientBlock<double>>, double*);
+template decltype(dual_buffer_backward<float>) dual_buffer_backward<float>;
+template decltype(dual_buffer_backward<double>) dual_buffer_backward<double>;
 
 }  // namespace photograd

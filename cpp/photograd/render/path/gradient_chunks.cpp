@@ -133,9 +133,7 @@ void add_chunks(const PathScene<R>& scene, std::int64_t pixels, std::uint32_t mo
     }
 }
 
-template void add_chunks(const PathScene<float>&, std::int64_t, std::uint32_t, bool,
-                         const ChunkWork<float>&, std::span<const GradientBlock<float>>);
-template void add_chunks(const PathScene<double>&, std::int64_t, std::uint32_t, bool,
-                         const ChunkWork<double>&, std::span<const GradientBlock<double>>);
+template decltype(add_chunks<float>) add_chunks<float>;
+template decltype(add_chunks<double>) add_chunks<double>;
 
 }  // namespace photograd

@@ -66,17 +66,10 @@ Path<R> trace_path(const PathScene<R>& scene, const ThinLens& camera, const Path
     return found;
 }
 
-template void trace_paths(const PathScene<float>&, const ThinLens&, const PathOptions&,
-                          const SampleRange&, const PathSums&, double*);
-template void trace_paths(const PathScene<double>&, const ThinLens&, const PathOptions&,
-                          const SampleRange&, const PathSums&, double*);
-template void trace_paths_backward(const PathScene<float>&, const ThinLens&, const PathOptions&,
-                                   std::uint32_t, const std::uint32_t*, const double*,
-                                   std::span<const GradientBlock<float>>);
-template void trace_paths_backward(const PathScene<double>&, const ThinLens&, const PathOptions&,
-                                   std::uint32_t, const std::uint32_t*, const double*,
-                                   std::span<const GradientBlock<double>>);
-template Path<double> trace_path(const PathScene<double>&, const ThinLens&, const PathOptions&,
-                                 std::uint32_t, std::uint32_t);
+template decltype(trace_paths<float>) trace_paths<float>;
+template decltype(trace_paths<double>) trace_paths<double>;
+template decltype(trace_paths_backward<float>) trace_paths_backward<float>;
+template decltype(trace_paths_backward<double>) trace_paths_backward<double>;
+template decltype(trace_path<double>) trace_path<double>;
 
 }  // namespace photograd

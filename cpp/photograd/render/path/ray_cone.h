@@ -51,7 +51,7 @@ R curvature(const PathGeometry& scene, const SurfaceHit<R>& hit, double time = 0
     for (int k = 0; k < 3; ++k) {
         const float* row = normals.data() + 3 * static_cast<std::size_t>(corner[k]);
         n[k] = Vec3<R>(R(row[0]), R(row[1]), R(row[2]));
-        if (!world_from_object.is_identity()) n[k] = world_normal(world_from_object, n[k]);
+        if (instance.is_placed) n[k] = world_normal(world_from_object, n[k]);
         const R size = length(n[k]);
         if (!(size > R(0))) return R(0);
         n[k] *= (dot(n[k], hit.outside) < R(0) ? R(-1) : R(1)) / size;

@@ -36,11 +36,7 @@ void for_each_chunk(const Pinhole& camera,
     });
 }
 
-template void for_each_path(const PathScene<float>&, const ThinLens&, const PathOptions&,
-                            const SampleRange&, const SampleCounts&, bool, std::int64_t,
-                            std::int64_t, const VisitPath<float>&);
-template void for_each_path(const PathScene<double>&, const ThinLens&, const PathOptions&,
-                            const SampleRange&, const SampleCounts&, bool, std::int64_t,
-                            std::int64_t, const VisitPath<double>&);
+template decltype(for_each_path<float>) for_each_path<float>;
+template decltype(for_each_path<double>) for_each_path<double>;
 
 }  // namespace photograd

@@ -21,47 +21,6 @@
 
 namespace photograd {
 
-/// A value and its change.
-struct Dual3 {
-    Vec3<double> value{0.0}, tangent{0.0};
-};
-
-/// L and its directional derivative along `along`, a scene of the same geometry that holds the
-/// tangents of the numbers of `scene`.
-class RadianceTangent {
-public:
-    RadianceTangent(const PathScene<double>& scene, const PathScene<double>& along);
-
-    [[nodiscard]] Dual3 radiance(const Path<double>& path) const;
-
-private:
-    /// A material at one point, and how it changes there.
-    struct PointMaterial {
-        Material<double> value, change;
-    };
-    [[nodiscard]] PointMaterial at(std::size_t material, const Vec2<double>& uv,
-                                   const Footprint<double>& footprint) const;
-    [[nodiscard]] Vec3<double> emission(std::int32_t shape, const Vec2<double>& uv,
-                                        const Vec3<double>& direction) const;
-    [[nodiscard]] Vec3<double> emitter(const EmitterSample<double>& nee) const;
-    [[nodiscard]] double alpha_transmittance(const Path<double>& path,
-                                             const EmitterSample<double>& nee) const;
-    [[nodiscard]] Vec3<double> product(const Path<double>& path,
-                                       const EventProduct<double>& events) const;
-    /// T^l L^l without occluders; 0 without a sample.
-    [[nodiscard]] Dual3 direct(const Path<double>& path, const EmitterSample<double>& nee) const;
-    /// t(f) Li s + t(f^l) T^l L^l w^l, at a surface and at a scattering event.
-    [[nodiscard]] Vec3<double> reflected(const PathVertex<double>& v, const PointMaterial& material,
-                                         const Vec3<double>& Li, const Vec3<double>& direct) const;
-    [[nodiscard]] Vec3<double> scattered(const PathVertex<double>& v, const Vec3<double>& Li,
-                                         const Vec3<double>& direct) const;
-    [[nodiscard]] Dual3 outgoing(const Path<double>& path, const PathVertex<double>& v,
-                                 const Dual3& Li) const;
-
-    const PathScene<double>&scene_, &along_;
-    std::vector<bool> moving_;  // of each material: whether anything of it changes
-};
-
 /// Adds samples to both sums: of the picture, and of its change along `along`.
 void trace_paths_tangent(const PathScene<double>& scene, const PathScene<double>& along,
                          const ThinLens& camera, const PathOptions& options,

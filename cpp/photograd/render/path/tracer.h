@@ -56,6 +56,19 @@ public:
     /// Samples the paths of `count` <= 16 starts; they are then in path(0), path(1), ...
     void trace(const PathStart<R>* starts, int count, ParticleVisitor* visitor = nullptr) {
         visitor_ = visitor;
+        if constexpr (std::is_same_v<R, float> && radiance && !Media)
+            trace_inlined(starts, count);
+        else
+            trace_all(starts, count);
+    }
+    [[nodiscard]] const Path<R>& path(int k) const { return lanes_[k].path; }
+    /// Where path k has ended.
+    [[nodiscard]] const Lane<R>& lane(int k) const { return lanes_[k]; }
+
+private:
+    const PathGeometry& geometry() const { return *scene_.geometry; }
+
+    void trace_all(const PathStart<R>* starts, int count) {
         for (int k = 0; k < width; ++k) {
             lanes_[k].alive = k < count && starts[k].exists;
             if (lanes_[k].alive) start(lanes_[k], starts[k]);
@@ -67,12 +80,11 @@ public:
                 if (lane.alive && lane.at_vertex) continue_path(lane);
         }
     }
-    [[nodiscard]] const Path<R>& path(int k) const { return lanes_[k].path; }
-    /// Where path k has ended.
-    [[nodiscard]] const Lane<R>& lane(int k) const { return lanes_[k]; }
-
-private:
-    const PathGeometry& geometry() const { return *scene_.geometry; }
+    /// Everything inline. gcc stops by itself when a function has become large, which costs a
+    /// seventh of the time; this takes 10 s to compile, so only the usual pictures have it.
+    [[gnu::flatten]] void trace_inlined(const PathStart<R>* starts, int count) {
+        trace_all(starts, count);
+    }
 
     void start(Lane<R>& lane, const PathStart<R>& at) {
         lane.path.clear();

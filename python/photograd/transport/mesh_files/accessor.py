@@ -9,13 +9,12 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
-from photograd.data.json_node import JsonNode
+from photograd._json_node import JsonNode
 from photograd.errors import IoError, message
 from photograd.transport.mesh_files.container import NAME, Container, whole
+from photograd.types import Array
 
-Array = npt.NDArray[Any]
 COMPONENTS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
 

@@ -14,11 +14,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from urllib.parse import unquote
 
+from photograd_course.input_files import read_file
 from photograd_course.limits import EXPANSION, MODEL_ELEMENTS, Limit
 
-from photograd.data.file_bytes import read_file
-from photograd.data.inside import inside
-from photograd.data.json_node import JsonNode
+from photograd._files import inside
+from photograd._json_node import JsonNode
 from photograd.errors import IoError, message
 
 NAME = "read_model"

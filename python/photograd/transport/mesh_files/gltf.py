@@ -5,12 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
-from photograd.data.json_node import JsonNode
+from photograd._json_node import JsonNode
 from photograd.errors import IoError, SceneError, message
 from photograd.transport.mesh_files.accessor import read_floats, read_indices
 from photograd.transport.mesh_files.container import NAME, Container, open_container, whole
@@ -21,9 +19,9 @@ from photograd.transport.mesh_files.gltf_materials import FileMaterial, read_mat
 from photograd.transport.mesh_files.model_file import ModelFile, Names, placed_shapes
 from photograd.transport.mesh_files.nodes import mesh_places, placed_nodes
 from photograd.transport.mesh_files.pictures import TRANSFORM, Pictures
-from photograd.transport.scene import MeshShape, Shape
+from photograd.transport.shapes import MeshShape, Shape
+from photograd.types import Array
 
-Array = npt.NDArray[Any]
 DRACO = "KHR_draco_mesh_compression"
 READABLE = (TRANSFORM, "KHR_mesh_quantization", LIGHTS)
 """Extensions that a file may require, besides those of materials, which are noted one by one."""

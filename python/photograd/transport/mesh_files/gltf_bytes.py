@@ -9,10 +9,10 @@ import struct
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 from PIL import Image
 
-Array = npt.NDArray[Any]
+from photograd.types import Array
+
 _ARRAYS, _INDICES = 34962, 34963  # what a view holds, as OpenGL numbers it
 _COMPONENTS = {"<u2": 5123, "<u4": 5125, "<f4": 5126}
 _TYPES = {1: "SCALAR", 2: "VEC2", 3: "VEC3"}

@@ -11,17 +11,16 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
-from photograd.data.frames import LARGEST_COORDINATE, OPENGL_FROM_OPENCV, RIGID_TOLERANCE
-from photograd.data.json_node import JsonNode
+from photograd._json_node import JsonNode
+from photograd.capture.frames import LARGEST_COORDINATE, OPENGL_FROM_OPENCV, RIGID_TOLERANCE
 from photograd.errors import IoError, message
 from photograd.transport.mesh_files.container import NAME, Container, whole
 from photograd.transport.mesh_files.model_camera import ModelCamera
 from photograd.transport.mesh_files.model_file import Names
 from photograd.transport.mesh_files.nodes import PlacedNode
+from photograd.types import Array
 
-Array = npt.NDArray[Any]
 ZNEAR = 0.01  # metres
 
 

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from photograd.data.json_node import JsonNode
+from photograd._json_node import JsonNode
+from photograd.transport.material import MODELS, Material
 from photograd.transport.medium import Medium
 from photograd.transport.mesh_files.container import real
-from photograd.transport.scene import MODELS, Material
 
 FOLLOWED = ("KHR_materials_emissive_strength",)
 """Extensions that no rule has to read."""
@@ -92,6 +92,14 @@ class Draft:
         """Refractive index."""
         node = self.extension("ior")
         return PLAIN_IOR if node is None else real(node, "ior", PLAIN_IOR)
+
+
+def usable_ior(draft: Draft) -> float:
+    """Refractive index; an ior of 0, which mirrors everything, is the largest one, and noted."""
+    if draft.ior != 0:
+        return draft.ior
+    draft.note(f"{draft.node.place}: ior 0, which mirrors everything: taken as {LARGEST_IOR}")
+    return LARGEST_IOR
 
 
 def metallic_roughness(draft: Draft) -> dict[str, Any]:

@@ -8,7 +8,7 @@ from dataclasses import replace
 from photograd.transport.media_list import is_closed
 from photograd.transport.medium import Medium
 from photograd.transport.mesh_files.gltf_materials import FileMaterial
-from photograd.transport.scene import Shape
+from photograd.transport.shapes import Shape
 
 
 def filled_shapes(

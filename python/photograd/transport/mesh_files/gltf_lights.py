@@ -21,16 +21,15 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
-from photograd.data.frames import LARGEST_COORDINATE
-from photograd.data.json_node import JsonNode
+from photograd._json_node import JsonNode
+from photograd.capture.frames import LARGEST_COORDINATE
 from photograd.errors import IoError, message
 from photograd.lights import DirectionalLight, Light, PointLight, SpotLight
 from photograd.transport.mesh_files.container import NAME, Container, real, whole
 from photograd.transport.mesh_files.nodes import PlacedNode
+from photograd.types import Array
 
-Array = npt.NDArray[Any]
 LIGHTS = "KHR_lights_punctual"
 KINDS = ("point", "spot", "directional")
 BRIGHTEST = 1e30

@@ -1,8 +1,8 @@
 """Materials of a glTF file, by the reflectance models there are [Khronos2021, Khronos2022].
 
 A rule looks at the extensions of a material and answers with a model that speaks for them, or with
-nothing; the first that answers is taken. What it did not read is named in a note, never dropped in
-silence.
+nothing; the first that answers is taken. `layered` comes first: it has whatever takes more than one
+layer. What no model can say is named in a note, never dropped in silence.
 """
 
 from __future__ import annotations
@@ -13,19 +13,25 @@ from typing import Any
 
 import numpy as np
 
-from photograd.data.json_node import JsonNode
+from photograd._json_node import JsonNode
+from photograd.transport.material import Material
 from photograd.transport.medium import Medium
 from photograd.transport.mesh_files.container import real
 from photograd.transport.mesh_files.gltf_clear import transmission
 from photograd.transport.mesh_files.gltf_draft import (
-    LARGEST_IOR,
     PLAIN_IOR,
     Draft,
     finished,
     metallic_roughness,
+    usable_ior,
+)
+from photograd.transport.mesh_files.gltf_layered import (
+    film_thickness,
+    layered,
+    rotation,
+    sheen_color,
 )
 from photograd.transport.mesh_files.pictures import Coordinates, Pictures
-from photograd.transport.scene import Material
 from photograd.transport.texture import NormalMap, TextureUse
 
 
@@ -43,35 +49,17 @@ class FileMaterial:
     interior: Medium | None = None
 
 
-def _clearcoat(draft: Draft) -> Material | None:
-    node = draft.extension("clearcoat")
-    if node is None or real(node, "clearcoatFactor", 0.0) <= 0:
-        return None
-    draft.take("clearcoat")
-    draft.unread(node, "clearcoatNormalTexture")
-    draft.textured("coat", node, "clearcoatTexture", "linear", 0)
-    draft.textured("coat_roughness", node, "clearcoatRoughnessTexture", "linear", 1)
-    values = metallic_roughness(draft) | {
-        "coat": real(node, "clearcoatFactor", 0.0),
-        "coat_roughness": real(node, "clearcoatRoughnessFactor", 0.0),
-    }
-    return finished("clearcoat", values, draft)
-
-
 def _anisotropy(draft: Draft) -> Material | None:
-    """Brushed metal; there is no model of a brushed dielectric."""
+    """Brushed metal, the same everywhere; `layered` has all others."""
     node = draft.extension("anisotropy")
-    if node is None or draft.metalness < 0.5 or real(node, "anisotropyStrength", 0.0) <= 0:
+    if node is None or real(node, "anisotropyStrength", 0.0) <= 0:
         return None
-    draft.take("anisotropy")
-    draft.unread(node, "anisotropyTexture")
     draft.textured("f0", draft.core, "baseColorTexture", "srgb")
-    draft.textured("roughness", draft.core, "metallicRoughnessTexture", "linear", 1)
     values = {
         "f0": draft.base_color,
         "roughness": draft.roughness,
         "anisotropy": real(node, "anisotropyStrength", 0.0),
-        "rotation": float(np.angle(np.exp(1j * real(node, "anisotropyRotation", 0.0)))),
+        "rotation": rotation(draft),
     }
     return finished("ggx_anisotropic", values, draft)
 
@@ -81,34 +69,27 @@ def _sheen(draft: Draft) -> Material | None:
     node = draft.extension("sheen")
     if node is None:
         return None
-    draft.take("sheen")
-    if "sheenColorFactor" not in node or not node["sheenColorFactor"].numbers((3,)).any():
-        return None  # black sheen is none
-    draft.unread(node, "sheenRoughnessTexture")
+    if not sheen_color(draft).any():
+        return None
     draft.textured("sheen_color_factor", node, "sheenColorTexture", "srgb")
+    draft.textured("sheen_roughness_factor", node, "sheenRoughnessTexture", "alpha")
     values = metallic_roughness(draft) | {
-        "sheen_color_factor": node["sheenColorFactor"].numbers((3,)),
+        "sheen_color_factor": sheen_color(draft),
         "sheen_roughness_factor": real(node, "sheenRoughnessFactor", 0.0),
     }
     return finished("gltf_sheen", values, draft)
 
 
 def _iridescence(draft: Draft) -> Material | None:
-    """A thin film; a texture can scale its thickness if it starts at nothing."""
+    """A thin film."""
     node = draft.extension("iridescence")
     if node is None or real(node, "iridescenceFactor", 0.0) <= 0:
         return None
-    draft.take("iridescence")
     draft.textured("iridescence_factor", node, "iridescenceTexture", "linear", 0)
-    if real(node, "iridescenceThicknessMinimum", 100.0) == 0:
-        key = "iridescenceThicknessTexture"
-        draft.textured("iridescence_thickness", node, key, "linear", 1)
-    else:
-        draft.unread(node, "iridescenceThicknessTexture")
     values = metallic_roughness(draft) | {
         "iridescence_factor": real(node, "iridescenceFactor", 0.0),
         "iridescence_ior": real(node, "iridescenceIor", 1.3),
-        "iridescence_thickness": real(node, "iridescenceThicknessMaximum", 400.0),
+        "iridescence_thickness": film_thickness(draft),
     }
     return finished("gltf_iridescence", values, draft)
 
@@ -119,7 +100,6 @@ def _specular(draft: Draft) -> Material | None:
     The strength scales the reflection at all angles [Khronos2022]: at 0 light meets the base alone.
     """
     node, ior = draft.extension("specular"), draft.ior
-    draft.take("specular", "ior")
     strength, color, painted = 1.0, np.ones(3), False
     if node is not None:
         strength = real(node, "specularFactor", 1.0)
@@ -135,13 +115,10 @@ def _specular(draft: Draft) -> Material | None:
         draft.textured("specular_factor", node, "specularTexture", "alpha")
         draft.textured("specular_color_factor", node, "specularColorTexture", "srgb")
     values = metallic_roughness(draft) | {
-        "eta": ior,
+        "eta": usable_ior(draft),
         "specular_factor": strength,
         "specular_color_factor": color,
     }
-    if ior == 0:
-        draft.note(f"{draft.node.place}: ior 0, which mirrors everything: taken as {LARGEST_IOR}")
-        values["eta"] = LARGEST_IOR
     return finished("gltf_specular", values, draft)
 
 
@@ -149,7 +126,7 @@ def _plain(draft: Draft) -> Material:
     return finished("gltf", metallic_roughness(draft), draft)
 
 
-RULES = (transmission, _clearcoat, _anisotropy, _sheen, _iridescence, _specular, _plain)
+RULES = (layered, transmission, _anisotropy, _sheen, _iridescence, _specular, _plain)
 
 
 def read_material(node: JsonNode, pictures: Pictures, note: Callable[[str], None]) -> FileMaterial:
@@ -167,9 +144,6 @@ def read_material(node: JsonNode, pictures: Pictures, note: Callable[[str], None
         for name, extension in node["extensions"].members():
             if name not in draft.read:
                 note(f"{extension.place}: not supported by the model '{material.model}', left out")
-    if "occlusionTexture" in node:
-        # It stands for shadows of a light that has none; light that is traced has its own.
-        note(f"{node.place}: occlusionTexture: left out: paths find what is occluded")
     material = _covering(draft, material)
     return _with_pictures(draft, material, pictures)
 
@@ -193,30 +167,39 @@ def _covering(draft: Draft, material: Material) -> Material:
     return Material(material.model, values, alpha_cutoff=cutoff)
 
 
+class _Places:
+    """The coordinates that the textures of a material share: those of the first."""
+
+    def __init__(self, draft: Draft, pictures: Pictures) -> None:
+        self.first: Coordinates | None = None
+        self._note, self._pictures = draft.note, pictures
+
+    def add(self, info: JsonNode) -> None:
+        """Of a texture that is used."""
+        place = self._pictures.coordinates(info)
+        self.first = self.first or place
+        if place != self.first:
+            self._note(f"{info.place}: other coordinates than the first texture's; those are used")
+
+
 def _with_pictures(draft: Draft, material: Material, pictures: Pictures) -> FileMaterial:
     """The material with its textures, which must share one set of coordinates."""
-    node, uses = draft.node, {}
-    first: Coordinates | None = None
+    node, uses, places = draft.node, {}, _Places(draft, pictures)
     for parameter, (info, encoding, channel) in draft.wanted.items():
         name = pictures.texture(info, encoding)
-        if name is None:
-            continue
-        place = pictures.coordinates(info)
-        first = first or place
-        if place != first:
-            draft.note(f"{info.place}: other coordinates than the first texture's; those are used")
-        uses[parameter] = TextureUse(name, channel)
-    bent = None
+        if name is not None:
+            places.add(info)
+            uses[parameter] = TextureUse(name, channel)
+    bent = occlusion = None
     if "normalTexture" in node:
         info = node["normalTexture"]
         found = pictures.normal_map(info)
         if found is not None:
-            place = pictures.coordinates(info)
-            first = first or place
-            if place != first:
-                draft.note(f"{info.place}: other coordinates than the first texture's")
+            places.add(info)
             bent = NormalMap.from_image(found[0], real(info, "scale", 1.0), found[1])
     values, cutoff, alpha = dict(material.values), material.alpha_cutoff, draft.alpha
+    if "anisotropy_y" in values and "anisotropy_y" not in uses:
+        values["anisotropy_y"] = 0.0  # its texture is missing: along the tangent
     if material.sheer and "alpha" not in uses and alpha >= (1 if cutoff is None else cutoff):
         del values["alpha"]  # it covers everything
         cutoff = None
@@ -226,12 +209,14 @@ def _with_pictures(draft: Draft, material: Material, pictures: Pictures) -> File
         name = pictures.glow(info)
         if name is not None:
             glow = TextureUse(name)
-            place = pictures.coordinates(info)
-            first = first or place
-            if place != first:
-                draft.note(f"{info.place}: other coordinates than the first texture's")
-    whole = Material(material.model, values, uses, bent, cutoff)
-    return FileMaterial(whole, emission, first or Coordinates(), glow, draft.interior)
+            places.add(info)
+    if "occlusionTexture" in node:
+        info = node["occlusionTexture"]
+        occlusion = pictures.occlusion(info)
+        if occlusion is not None:
+            places.add(info)
+    whole = Material(material.model, values, uses, bent, cutoff, occlusion)
+    return FileMaterial(whole, emission, places.first or Coordinates(), glow, draft.interior)
 
 
 def _radiance(draft: Draft) -> Any:

@@ -8,18 +8,17 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 from photograd_course.color import srgb_encode
 
 from photograd.errors import SceneError, message
+from photograd.transport.material import Material
 from photograd.transport.mesh_files.gltf_bytes import GltfBytes
 from photograd.transport.mesh_files.gltf_samplers import Wrap, sampler_words
 from photograd.transport.mesh_files.gltf_words import Words
-from photograd.transport.scene import Material
-from photograd.transport.texture import NormalMap, Texture, TextureUse
+from photograd.transport.texture import NormalMap, OcclusionMap, Texture, TextureUse
+from photograd.types import Array
 
-Array = npt.NDArray[Any]
-_LABEL = re.compile(r" \((srgb|linear|alpha|mask), \d+\)$")
+_LABEL = re.compile(r" \((srgb|linear|alpha|mask|direction|span [^,]*), \d+\)$")
 """What reading adds to the name of an image."""
 _COLOR = ("", "baseColorTexture", "srgb", 0)
 SLOTS = {
@@ -30,9 +29,13 @@ SLOTS = {
     "alpha": ("", "baseColorTexture", "alpha", 3),
     "metalness": ("", "metallicRoughnessTexture", "linear", 2),
     "roughness": ("", "metallicRoughnessTexture", "linear", 1),
+    "anisotropy_x": ("anisotropy", "anisotropyTexture", "direction", 0),
+    "anisotropy_y": ("anisotropy", "anisotropyTexture", "direction", 1),
+    "anisotropy": ("anisotropy", "anisotropyTexture", "direction", 2),
     "coat": ("clearcoat", "clearcoatTexture", "linear", 0),
     "coat_roughness": ("clearcoat", "clearcoatRoughnessTexture", "linear", 1),
     "sheen_color_factor": ("sheen", "sheenColorTexture", "srgb", 0),
+    "sheen_roughness_factor": ("sheen", "sheenRoughnessTexture", "alpha", 3),
     "iridescence_factor": ("iridescence", "iridescenceTexture", "linear", 0),
     "iridescence_thickness": ("iridescence", "iridescenceThicknessTexture", "linear", 1),
     "specular_factor": ("specular", "specularTexture", "alpha", 3),
@@ -64,12 +67,21 @@ class Painted:
         members: dict[tuple[str, str], list[tuple[str, int, TextureUse]]] = {}
         for parameter, use in material.textures.items():
             extension, key, encoding, channel = SLOTS[parameter]
-            if encoding == "alpha" and material.alpha_cutoff is not None:
+            if key == "baseColorTexture" and channel == 3 and material.alpha_cutoff is not None:
                 encoding = "mask"
+            if parameter == "iridescence_thickness":
+                encoding = self._span(words, material, use)
             members.setdefault((extension, key), []).append((encoding, channel, use))
         for (extension, key), uses in members.items():
             node = words.extensions[extension] if extension else words.core
             node[key] = {"index": self._shared(key, uses)}
+
+    def _span(self, words: Words, material: Material, use: TextureUse) -> str:
+        """The encoding of a film's thickness, whose least is written into its words."""
+        low = least_of(self.textures[use.texture].values[..., use.channel])
+        most = float(material.values["iridescence_thickness"])
+        words.extensions["iridescence"]["iridescenceThicknessMinimum"] = low * most
+        return f"span {low!r} 1.0" if low > 0 else "linear"
 
     def color(self, use: TextureUse) -> int:
         """The number of a texture of colours."""
@@ -82,6 +94,15 @@ class Painted:
         if key not in self._numbers:
             self._numbers[key] = self._texture("normals", pixels, bent.wrap, "bilinear")
         return {"index": self._numbers[key], "scale": scale}
+
+    def occlusion(self, map_: OcclusionMap) -> dict[str, Any]:
+        """An occlusionTexture: gray, of which red counts."""
+        pixels = np.asarray(np.rint(255 * np.clip(map_.values, 0, 1)), np.uint8)
+        key = ("occlusion", pixels.tobytes(), pixels.shape, map_.wrap)
+        if key not in self._numbers:
+            gray = np.repeat(pixels, 3, axis=2)
+            self._numbers[key] = self._texture("occlusion", gray, map_.wrap, "bilinear")
+        return {"index": self._numbers[key], "strength": map_.strength}
 
     def _shared(self, member: str, uses: list[tuple[str, int, TextureUse]]) -> int:
         key = tuple(uses)
@@ -115,12 +136,47 @@ class Painted:
         return self.file.entry("textures", entry)
 
 
+def least_of(values: Array) -> float:
+    """What byte 0 stands for, if 255 stands for 1 and equal steps lie between: as far above 0 as
+    the values come back from bytes; 0 if they do not.
+    """
+    levels = np.unique(values.astype(np.float64))
+    if levels[0] <= 0 or levels[-1] > 1 or len(levels) > 256:
+        return 0.0
+    gaps = np.diff(np.append(levels[levels < 1 - _SAME], 1.0))
+    step = float(gaps.min(initial=1.0))
+    span = 1.0 - float(levels[0])
+    for divisor in range(1, 256):
+        count = round(span * divisor / step)
+        if not 0 < count <= 255:
+            break
+        low = 1.0 - 255.0 * span / count  # from all the levels: the smallest gap is rounded
+        if abs(low) < _SAME:
+            return 0.0
+        bytes_ = 255.0 * (levels - low) / (1.0 - low)
+        if low > 0 and np.abs(bytes_ - np.rint(bytes_)).max() < 1e-3:
+            return low
+    return 0.0
+
+
+_SAME = 1e-6
+"""Texels closer than this are one level."""
+
+
 def _pixels(uses: list[tuple[str, int, TextureUse]], textures: list[Texture]) -> Array:
     """(H, W, 3 or 4) bytes; channels that nobody wants are those of a texture, or white."""
     height, width = textures[0].values.shape[:2]
     image = np.full((height, width, 4), 255, np.uint8)
+    if any(encoding == "direction" for encoding, _, _ in uses):
+        image[..., 1] = 128  # along the tangent, as nearly as bytes say it
     for (encoding, channel, use), texture in zip(uses, textures, strict=True):
-        values = np.clip(texture.values.astype(np.float64), 0, 1)
+        values = texture.values.astype(np.float64)
+        if encoding == "direction" and channel < 2:
+            values = 0.5 * (values + 1)
+        if encoding.startswith("span"):
+            low = float(encoding.split()[1])
+            values = (values - low) / (1 - low)
+        values = np.clip(values, 0, 1)
         read, written, wide = use.channel, channel, 3 if encoding == "srgb" else 1
         if encoding == "linear" and read == written and values.shape[2] == 3:
             read, written, wide = 0, 0, 3

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from photograd.data.json_node import JsonNode
+from photograd._json_node import JsonNode
 from photograd.transport.mesh_files.container import whole
 
 Wrap = tuple[str, str]

@@ -24,7 +24,8 @@ from photograd.transport.mesh_files.model_changes import changes
 from photograd.transport.mesh_files.model_file import ModelFile
 from photograd.transport.mesh_files.read import read_model
 from photograd.transport.motion import moves
-from photograd.transport.scene import MeshShape, Scene
+from photograd.transport.scene import Scene
+from photograd.transport.shapes import MeshShape
 
 WRITABLE = (".glb", ".gltf")
 _SURROUNDINGS = ("shutter", "environment", "world")
@@ -159,6 +160,8 @@ def _material(model: ModelFile, shape: MeshShape, painted: Painted) -> dict[str,
             entry["alphaCutoff"] = float(material.alpha_cutoff)
     if material.normal_map is not None:
         entry["normalTexture"] = painted.normal_map(material.normal_map)
+    if material.occlusion is not None:
+        entry["occlusionTexture"] = painted.occlusion(material.occlusion)
     if shape.emission.any():
         # A power of two, so that the product is exact.
         strength = max(1.0, 2.0 ** np.ceil(np.log2(shape.emission.max())))

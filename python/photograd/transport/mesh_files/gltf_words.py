@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
+from photograd.transport.material import Material
 from photograd.transport.medium import Medium
-from photograd.transport.scene import Material
 
 Values = dict[str, Any]
 _LARGEST_DEPTH = 4.0
@@ -126,6 +126,27 @@ def _refraction(v: Values) -> Words:
     return words
 
 
+def _layered(v: Values) -> Words:
+    """All layers, those of factor 0 as well: their other numbers come back."""
+    words = _gltf(v)
+    turn = v["rotation"] + float(np.arctan2(v["anisotropy_y"], v["anisotropy_x"]))
+    directed = (v["anisotropy_x"], v["anisotropy_y"]) == (1.0, 1.0)  # of a texture
+    words.extensions |= _specular(v).extensions | _sheen(v).extensions | _clearcoat(v).extensions
+    words.extensions |= _iridescence(v).extensions | _transmission(v).extensions
+    words.extensions["anisotropy"] = {
+        "anisotropyStrength": v["anisotropy"],
+        "anisotropyRotation": v["rotation"] if directed else turn,
+    }
+    return words
+
+
+def _layered_volume(v: Values) -> Words:
+    words = _layered(v)
+    words.extensions["volume"] = {"thicknessFactor": 1.0}
+    words.extensions["dispersion"] = {"dispersion": v["dispersion"]}
+    return words
+
+
 WRITTEN: dict[str, Callable[[Values], Words]] = {
     "gltf": _gltf,
     "gltf_specular": _specular,
@@ -140,11 +161,17 @@ WRITTEN: dict[str, Callable[[Values], Words]] = {
     "dispersive_dielectric": _thick,
     "gltf_transmission": _transmission,
     "gltf_refraction": _refraction,
+    "gltf_layered": _layered,
+    "gltf_layered_conserving": _layered,
+    "gltf_layered_volume": _layered_volume,
+    "gltf_layered_volume_conserving": _layered_volume,
     "lambert": _lambert,
     "ggx_metal": _metal,
 }
 """Models that glTF has words for."""
-BODIES = {name for name, words in WRITTEN.items() if words in (_thick, _refraction)}
+BODIES = {
+    name for name, words in WRITTEN.items() if words in (_thick, _refraction, _layered_volume)
+}
 """Those with a volume, which may swallow light."""
 
 

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
-from photograd.data.camera import Camera
+from photograd.capture.camera import Camera
 from photograd.errors import RangeError, message
-
-Array = npt.NDArray[Any]
+from photograd.types import Array
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,14 +6,14 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from photograd.transport.material import Material
 from photograd.transport.medium import Medium
 from photograd.transport.mesh_files.model_file import ModelFile
-from photograd.transport.scene import Material, MeshShape
-from photograd.transport.texture import NormalMap, Texture, TextureUse
+from photograd.transport.shapes import MeshShape
+from photograd.transport.texture import NormalMap, OcclusionMap, Texture, TextureUse
+from photograd.types import Array
 
-Array = npt.NDArray[Any]
 ROUNDING, TEXEL_ROUNDING = 1e-12, 1e-6
 """Relative: what logarithms and roots leave behind in double, decoding in float, is no change."""
 
@@ -118,18 +118,25 @@ def _of_material(before: Material, after: Material) -> Iterator[str]:
             yield f"{name}: {_said(mine)} is read back as {_said(its)}"
     if before.alpha_cutoff != after.alpha_cutoff:
         yield f"alpha_cutoff: {before.alpha_cutoff} is read back as {after.alpha_cutoff}"
-    yield from _of_normals(before.normal_map, after.normal_map)
+    yield from _of_map("normal map", before.normal_map, after.normal_map)
+    yield from _of_map("occlusion map", before.occlusion, after.occlusion)
+    if before.occlusion is not None and after.occlusion is not None:
+        mine, its = before.occlusion.strength, after.occlusion.strength
+        if not _same(mine, its, ROUNDING):
+            yield f"occlusion map: strength {mine} is read back as {its}"
 
 
-def _of_normals(before: NormalMap | None, after: NormalMap | None) -> Iterator[str]:
+def _of_map(
+    name: str, before: NormalMap | OcclusionMap | None, after: NormalMap | OcclusionMap | None
+) -> Iterator[str]:
     if before is None or after is None:
         if before is not after:
-            yield "normal map: lost" if after is None else "normal map: new"
+            yield f"{name}: lost" if after is None else f"{name}: new"
         return
     if not _same(before.values, after.values, TEXEL_ROUNDING):
-        yield f"normal map: {_rounded(before.values, after.values)}"
+        yield f"{name}: {_rounded(before.values, after.values)}"
     if before.wrap != after.wrap:
-        yield f"normal map: wrap {before.wrap} is read back as {after.wrap}"
+        yield f"{name}: wrap {before.wrap} is read back as {after.wrap}"
 
 
 def _of_use(

@@ -7,16 +7,16 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from photograd.errors import SceneError
 from photograd.lights import Light
+from photograd.transport.material import Material
 from photograd.transport.medium import Medium
 from photograd.transport.mesh_files.model_camera import ModelCamera
-from photograd.transport.scene import Material, MeshShape, Shape
+from photograd.transport.shapes import MeshShape, Shape
 from photograd.transport.texture import Texture
+from photograd.types import Array
 
-Array = npt.NDArray[Any]
 Arrays = tuple[Array, Array, Array | None, Array | None]
 """Vertices (V, 3), faces (F, 3), shading normals (V, 3) or None, uv (V, 2) or None."""
 LARGEST_COORDINATE = 1e9

@@ -5,13 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+from photograd_course.input_files import read_file
 
-from photograd.data.file_bytes import read_file
-from photograd.data.inside import inside
+from photograd._files import inside
 from photograd.errors import Error, RangeError, message
+from photograd.transport.material import Material
 from photograd.transport.mesh_files.container import NAME
 from photograd.transport.mesh_files.plain import Note
-from photograd.transport.scene import Material
 from photograd.transport.texture import Texture, TextureUse, read_texture
 
 _BLACK_MEANS_NOTHING = ("Ks", "Ke", "Tf")

@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
-from photograd.data.json_node import JsonNode
+from photograd._json_node import JsonNode
 from photograd.errors import IoError, message
 from photograd.transport.mesh_files.container import NAME, Container, whole
-
-Array = npt.NDArray[Any]
-
+from photograd.types import Array
 
 PlacedNode = tuple[JsonNode, Array]
 """A node and world_from_node (4, 4)."""

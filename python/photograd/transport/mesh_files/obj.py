@@ -10,13 +10,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
+from photograd_course.input_files import read_file
 
-from photograd.data.file_bytes import read_file
 from photograd.errors import IoError, message
 from photograd.transport.mesh_files.container import NAME
 from photograd.transport.mesh_files.model_file import Arrays, ModelFile
 from photograd.transport.mesh_files.mtl import read_libraries
-from photograd.transport.mesh_files.plain import GREY, Array, Note, plain_model, sound
+from photograd.transport.mesh_files.plain import GREY, Note, plain_model, sound
+from photograd.types import Array
 
 _KINDS = {"v": 3, "vt": 2, "vn": 3}
 Corner = tuple[int, int, int]

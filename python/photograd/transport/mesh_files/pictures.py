@@ -6,23 +6,30 @@ import io
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import PurePath
-from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 from PIL import Image
 
-from photograd.data.image_kind import PILLOW_KINDS
-from photograd.data.json_node import JsonNode
-from photograd.data.pixel_limit import allow_pixels, require_pixels, too_many_pixels
+from photograd._json_node import JsonNode
 from photograd.errors import Error, IoError, message
+from photograd.images.kind import PILLOW_KINDS, allow_pixels, require_pixels, too_many_pixels
 from photograd.transport.mesh_files.container import NAME, Container, real, whole
 from photograd.transport.mesh_files.gltf_samplers import Wrap, read_sampler
-from photograd.transport.texture import Texture, decode
+from photograd.transport.texture import OcclusionMap, Texture, decode
+from photograd.types import Array
 
-Array = npt.NDArray[Any]
 TRANSFORM = "KHR_texture_transform"
 _LEVELS = np.arange(256, dtype=np.float32) / np.float32(255)
+
+
+def _levels(encoding: str) -> Array:
+    """(256,) float32: what bytes stand for."""
+    if encoding == "srgb":
+        return decode(_LEVELS)
+    if encoding.startswith("span"):
+        low, high = (float(end) for end in encoding.split()[1:])
+        return np.asarray(low + (high - low) * _LEVELS.astype(np.float64), np.float32)
+    return _LEVELS
 
 
 @dataclass(frozen=True)
@@ -70,7 +77,8 @@ class Pictures:
         """The name of the texture that a textureInfo object points at; None, with a note, if the
         image is missing or damaged. Of the encoding "alpha" it is its opacity, (H, W, 1), and
         None without a note if that is 1 everywhere. "mask" is opacity that is compared with a
-        cutoff, point by point: the mean over a net of wires is above or below it as a whole.
+        cutoff, point by point: the mean over a net of wires is above or below it as a whole. Of
+        "direction", red and green go from -1 to 1; "span a b" goes from a to b.
         """
         number = whole(info, 0, 1 << 31, "index")
         found = self._pixels(info)
@@ -84,9 +92,10 @@ class Pictures:
             self._sees_points(info)
             looked_up = "bilinear"
         if name not in self.textures:
-            parts = {"srgb": slice(0, 3), "linear": slice(0, 3)}
-            levels = decode(_LEVELS) if encoding == "srgb" else _LEVELS
-            color = levels[image[..., parts.get(encoding, slice(3, 4))]]
+            part = slice(3, 4) if encoding in ("alpha", "mask") else slice(0, 3)
+            color = _levels(encoding)[image[..., part]]
+            if encoding == "direction":
+                color[..., :2] = 2 * color[..., :2] - 1
             self.textures[name] = Texture(color, wrap, looked_up)
         return name
 
@@ -106,6 +115,17 @@ class Pictures:
         if looked_up == "mip":
             self._sees_points(info)
         return _LEVELS[image[..., :3]], wrap
+
+    def occlusion(self, info: JsonNode) -> OcclusionMap | None:
+        """The map that an occlusionTextureInfo object points at: the image's red channel."""
+        found = self._pixels(info)
+        if found is None:
+            return None
+        image, (wrap, _), _ = found
+        strength = real(info, "strength", 1.0)
+        if not 0 <= strength <= 1:
+            self.note(f"{info.place}: strength: {strength} is taken as {min(max(strength, 0), 1)}")
+        return OcclusionMap(_LEVELS[image[..., :1]], min(max(strength, 0.0), 1.0), wrap)
 
     def _sees_points(self, info: JsonNode) -> None:
         self.note(f"{info.place}: mip maps of its sampler: not supported, seen point by point")

@@ -4,18 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from photograd.errors import IoError, SceneError, message
+from photograd.transport.material import Material
 from photograd.transport.mesh_files.container import NAME
 from photograd.transport.mesh_files.model_file import Arrays, ModelFile, Names, placed_shapes
-from photograd.transport.scene import Material, Shape
+from photograd.transport.shapes import Shape
 from photograd.transport.texture import Texture
+from photograd.types import Array
 
-Array = npt.NDArray[Any]
 Note = Callable[[str], None]
 GREY = Material("lambert", {"albedo": [0.7, 0.7, 0.7]})
 """Of surfaces whose file says nothing about their colour."""

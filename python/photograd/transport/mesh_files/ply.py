@@ -6,11 +6,12 @@ from pathlib import Path
 
 import numpy as np
 
-from photograd.data.ply_elements import read_ply
+from photograd._ply import read_ply
 from photograd.errors import IoError, SceneError, message
 from photograd.transport.mesh_files.container import NAME
 from photograd.transport.mesh_files.model_file import ModelFile
-from photograd.transport.mesh_files.plain import GREY, Array, Note, plain_model, sound
+from photograd.transport.mesh_files.plain import GREY, Note, plain_model, sound
+from photograd.types import Array
 
 
 def read_ply_mesh(path: Path, note: Note) -> ModelFile:

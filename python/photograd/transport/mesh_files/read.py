@@ -30,7 +30,7 @@ NOTES = 40
 """So many things left out are named; a damaged file has no end of them."""
 
 
-def read_model(path: Path) -> ModelFile:
+def read_model(path: str | Path) -> ModelFile:
     """The shapes, materials and textures of a mesh file; of .glb and .gltf cameras and lights, too.
 
     Positions are metres, +Y up, as glTF has it; files that say nothing of units or axes are taken
@@ -43,6 +43,7 @@ def read_model(path: Path) -> ModelFile:
         RangeError: numbers in a glTF file that are not finite.
         SceneError: nothing that can be drawn.
     """
+    path = Path(path)
     suffix = path.suffix.lower()
     if suffix not in READERS:
         known = choose_from(suffix, READERS)

@@ -6,12 +6,13 @@ import re
 from pathlib import Path
 
 import numpy as np
+from photograd_course.input_files import read_file
 
-from photograd.data.file_bytes import read_file
 from photograd.errors import IoError, message
 from photograd.transport.mesh_files.container import NAME
 from photograd.transport.mesh_files.model_file import ModelFile
-from photograd.transport.mesh_files.plain import GREY, Array, Note, plain_model
+from photograd.transport.mesh_files.plain import GREY, Note, plain_model
+from photograd.types import Array
 
 _HEADER = 84
 _TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])

@@ -5,13 +5,15 @@ from __future__ import annotations
 import numpy as np
 from photograd_course.suggest import choose_from
 
-from photograd.data.camera import Camera
+from photograd.capture.camera import Camera
+from photograd.capture.orbit import orbit_cameras
 from photograd.errors import SceneError, message
-from photograd.orbit import orbit_cameras
+from photograd.transport.material import Material
 from photograd.transport.mesh_files.model_camera import ModelCamera
 from photograd.transport.mesh_files.model_file import ModelFile
-from photograd.transport.scene import Array, Environment, Material, MeshShape, Scene
-from photograd.transport.shapes import rectangle
+from photograd.transport.scene import Environment, Scene
+from photograd.transport.shapes import MeshShape, rectangle
+from photograd.types import Array
 
 _TURNS, _SEEN_FROM = 12, 1  # 30 degrees from the front, +Z
 _LAMP = "studio lamp"

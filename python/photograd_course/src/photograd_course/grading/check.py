@@ -4,16 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from ..errors import RangeError, message
 from .tolerance import Tolerance
-
-if TYPE_CHECKING:
-    from .trial import Trial
+from .trial import Trial
 
 VISIBILITIES = ("public", "hidden", "secret")
-Body = Callable[["Trial"], None]
+Body = Callable[[Trial], None]
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,6 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .check import Check
 from .failures import CheckFailed, GraderFault, StudentFailure
 from .specs import Spec
 from .tolerance import Tolerance
@@ -31,6 +30,26 @@ class Student(Protocol):
         """End it, and all that it has started."""
 
 
+class CheckLike(Protocol):
+    """What a trial knows of the check that it runs; `Check` has more."""
+
+    @property
+    def id(self) -> str:
+        """For messages."""
+
+    @property
+    def visibility(self) -> str:
+        """Only of a public check are expected values shown."""
+
+    @property
+    def tolerance(self) -> Tolerance | None:
+        """Of comparisons that name no other."""
+
+    @property
+    def seconds(self) -> float:
+        """Wall-clock limit of one call."""
+
+
 class Trial:
     """What the body of a check gets.
 
@@ -43,7 +62,7 @@ class Trial:
 
     def __init__(
         self,
-        check: Check,
+        check: CheckLike,
         student: Student,
         *,
         seed: Sequence[int],

@@ -1,0 +1,109 @@
+"""Checks that several packages share: finite renderings, and dataclasses of plain values.
+
+What a JSON text held may be of any type; `from_plain` makes a dataclass of it or says which field
+is wrong. Ranges are the business of the dataclass itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import MISSING, fields
+from typing import Any, Literal, TypeVar, get_args, get_origin, get_type_hints
+
+import numpy as np
+from numpy.typing import NDArray
+
+from photograd.errors import DtypeError, Error, RangeError, message
+
+Place = Callable[[tuple[int, ...]], str]
+
+
+def require_finite(function: str, outputs: Mapping[str, NDArray[Any] | None], place: Place) -> None:
+    """Check what a renderer returns.
+
+    Args:
+        function: the renderer, for the error.
+        outputs: arrays by name; None is skipped.
+        place: what an index of an array is called, such as a pixel.
+
+    Raises:
+        Error: an array with NaN or infinity, and where the first one is.
+    """
+    for name, array in outputs.items():
+        if array is None:
+            continue
+        with np.errstate(over="ignore", invalid="ignore"):
+            if np.isfinite(array.sum()):  # one pass; the sum alone may overflow, too
+                continue
+        bad = np.argwhere(~np.isfinite(array))
+        if len(bad):
+            got = f"{len(bad)} that are not, the first in {place(tuple(bad[0].tolist()))}"
+            remedy = "a parameter holds NaN, infinity, or a number too large to add up"
+            raise Error(message(function, name, "finite values", got, remedy))
+
+
+# Dataclasses of plain values, such as options and policies, checked against their annotations.
+
+
+T = TypeVar("T")
+
+
+def from_plain(function: str, kind: type[T], data: object) -> T:
+    """A dataclass from the object that `dataclasses.asdict` and JSON made of it.
+
+    Args:
+        function: on whose behalf errors speak.
+        kind: a dataclass of numbers, texts, `Literal`s and tuples of those.
+        data: {field: value}, lists in the place of tuples.
+
+    Raises:
+        DtypeError: no object, or a value of another type.
+        RangeError: a field that is unknown or missing, and whatever `kind` itself refuses.
+    """
+    if not isinstance(data, Mapping):
+        raise DtypeError(message(function, kind.__name__, "an object", _told(data)))
+    hints = get_type_hints(kind)
+    known: Any = kind
+    needed = {f.name for f in fields(known) if f.default is MISSING}
+    odd = sorted(map(str, needed - set(data))) + sorted(map(str, set(data) - set(hints)))
+    if odd:
+        got = f"missing or unknown {', '.join(odd[:5])}"
+        raise RangeError(message(function, kind.__name__, "its fields", got))
+    return kind(**{name: typed(function, name, hints[name], value) for name, value in data.items()})
+
+
+def require_types(options: Any) -> None:
+    """Raise DtypeError or RangeError for a field of a dataclass that is not what it is declared."""
+    kind = type(options)
+    for name, hint in get_type_hints(kind).items():
+        typed(kind.__name__, name, hint, getattr(options, name))
+
+
+def typed(function: str, name: str, hint: Any, value: Any) -> Any:
+    """The value if it is of the annotated type, lists as tuples.
+
+    Raises:
+        DtypeError: it is not. RangeError: none of the names of a `Literal`.
+    """
+    if get_origin(hint) is Literal:
+        if not isinstance(value, str) or value not in get_args(hint):
+            expected = f"one of {list(get_args(hint))}"
+            raise RangeError(message(function, name, expected, _told(value)))
+        return value
+    if get_origin(hint) is tuple:
+        members = get_args(hint)
+        if not isinstance(value, list | tuple) or len(value) != len(members):
+            raise DtypeError(message(function, name, f"{len(members)} values", _told(value)))
+        return tuple(
+            typed(function, name, member, each) for member, each in zip(members, value, strict=True)
+        )
+    accepted = (int, float) if hint is float else hint
+    if not isinstance(value, accepted) or (isinstance(value, bool) and hint is not bool):
+        words = {int: "a whole number", float: "a number", bool: "true or false"}
+        raise DtypeError(message(function, name, words.get(hint, "a text"), _told(value)))
+    return value
+
+
+def _told(value: object) -> str:
+    text = repr(value)
+    return text if len(text) < 60 else text[:57] + "..."

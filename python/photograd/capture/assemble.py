@@ -1,0 +1,184 @@
+"""What all readers share: find the photographs and check them against their cameras."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from photograd_course.portable_math import matmul
+
+from photograd._files import TRUST, inside
+from photograd.capture.camera import Camera
+from photograd.errors import Error, IoError, SceneError, message
+from photograd.images.kind import LINEAR_SUFFIXES
+from photograd.images.read import IMAGE_SUFFIXES, ColorSpace, ImageHeader, read_header
+from photograd.types import FloatArray
+
+
+@dataclass(frozen=True)
+class Photograph:
+    """An image file that a capture refers to, and its header."""
+
+    file: Path
+    header: ImageHeader
+
+
+def find_photograph(
+    function: str,
+    frame: str,
+    folder: Path,
+    reference: str,
+    color_space: ColorSpace = "display",
+    *,
+    allow_outside: bool = False,
+) -> Photograph:
+    """The image file that `reference` names relative to `folder`.
+
+    Without a suffix (the Blender convention), those of `IMAGE_SUFFIXES` are tried in this order, or
+    the linear ones first when linear radiance is asked for.
+
+    Raises:
+        IoError: there is none, or it is no image, or `reference` leads out of `folder` without
+            `allow_outside`; the text names the frame.
+    """
+    path = inside(function, frame, folder, reference, allow_outside=allow_outside, remedy=TRUST)
+    suffixes = (
+        sorted(IMAGE_SUFFIXES, key=lambda s: s not in LINEAR_SUFFIXES)
+        if color_space == "linear"
+        else None
+    )
+    candidates = [path]
+    if path.suffix.lower() not in IMAGE_SUFFIXES:
+        candidates = [path.parent / (path.name + suffix) for suffix in suffixes or IMAGE_SUFFIXES]
+    for candidate in candidates:
+        if is_file(candidate):
+            return Photograph(candidate, read_header(candidate))
+    tried = ", ".join(candidate.name for candidate in candidates)
+    got = f"none of {tried} in {path.parent}" if len(candidates) > 1 else f"no file {path}"
+    raise IoError(message(function, frame, "an image file", got))
+
+
+def is_file(path: Path) -> bool:
+    """Whether `path` is an existing file; False also for names that no file can have."""
+    try:
+        return path.is_file()
+    except (OSError, ValueError):
+        return False
+
+
+def check_size(
+    function: str, frame: str, photograph: Photograph, expected: tuple[int, int]
+) -> None:
+    """Refuse an image that is not of the (width, height) that its camera was calibrated for.
+
+    Raises:
+        IoError: sizes differ.
+    """
+    header = photograph.header
+    if (header.width, header.height) != expected:
+        got = f"{header.width} x {header.height} in {photograph.file.name}"
+        remedy = "intrinsics and images must be of one size; use `downscale` to reduce both"
+        size = f"an image of {expected[0]} x {expected[1]}"
+        raise IoError(message(function, frame, size, got, remedy))
+
+
+def check_same_size(function: str, photographs: Sequence[tuple[str, Photograph]]) -> None:
+    """Refuse images of different sizes in a format that has one size for all.
+
+    Raises:
+        IoError: names the first image that differs.
+    """
+    for frame, photograph in photographs:
+        first = photographs[0][1].header
+        check_size(function, frame, photograph, (first.width, first.height))
+
+
+def make_camera(
+    function: str,
+    frame: str,
+    size: tuple[int, int],
+    pixels: tuple[float, float, float, float],
+    pose: FloatArray,
+) -> Camera:
+    """Camera of (width, height) and (fx, fy, cx, cy) whose errors name the frame.
+
+    Raises:
+        RangeError, SceneError, ShapeError: as `Camera` does.
+    """
+    try:
+        return Camera(*size, *pixels, pose)
+    except Error as error:
+        raise type(error)(f"{function}: {frame}: {error}") from error
+
+
+def unused_images(photographs: Sequence[Photograph]) -> list[str]:
+    """A sentence for the log if images lie beside the used ones that no pose belongs to.
+
+    Another form of a used image, such as its radiance beside its PNG, does not count.
+    """
+    used = {photograph.file.with_suffix("") for photograph in photographs}
+    folders = sorted({photograph.file.parent for photograph in photographs})
+    left = [x for folder in folders for x in list_images(folder) if x.with_suffix("") not in used]
+    if not left:
+        return []
+    names = ", ".join(path.name for path in left[:4]) + (", ..." if len(left) > 4 else "")
+    return [f"{len(left)} images without a pose, not used: {names}"]
+
+
+def list_images(folder: Path) -> list[Path]:
+    """Image files of a folder in the order of their names."""
+    entries = (entry for entry in folder.iterdir() if entry.is_file())
+    return sorted(entry for entry in entries if entry.suffix.lower() in IMAGE_SUFFIXES)
+
+
+def common_color(
+    function: str, photographs: Sequence[Photograph]
+) -> tuple[ColorSpace, bool, list[str]]:
+    """Colour space and alpha of all images together, and sentences for the log.
+
+    Raises:
+        IoError: no images at all.
+        SceneError: EXR and 8-bit images mixed.
+    """
+    if not photographs:
+        raise IoError(message(function, "images", "at least one", "an empty capture"))
+    spaces = {photograph.header.color_space for photograph in photographs}
+    if len(spaces) > 1:
+        got = "EXR beside PNG or JPEG"
+        raise SceneError(message(function, "images", "one colour space for all", got))
+    color_space = spaces.pop()
+    with_alpha = sum(photograph.header.has_alpha for photograph in photographs)
+    has_alpha = with_alpha == len(photographs)
+    kind = "linear Rec. 709, premultiplied" if color_space == "linear" else "sRGB-encoded, straight"
+    lines = [f"images: {kind} alpha assumed"]
+    if with_alpha and not has_alpha:
+        lines.append(f"{with_alpha} of {len(photographs)} images carry alpha: counted as without")
+    if has_alpha:
+        lines.append("background: white assumed, as the images carry alpha")
+    return color_space, has_alpha, lines
+
+
+def box_from_source(world_from_source: FloatArray, box: FloatArray) -> FloatArray:
+    """The axis-aligned (2, 3) box around a turned box.
+
+    Exact for the quarter turn from +Z up to +Y up.
+    """
+    corners = transform_points(world_from_source, box_corners(box))
+    return np.stack([corners.min(axis=0), corners.max(axis=0)])
+
+
+def box_corners(box: FloatArray) -> FloatArray:
+    """The eight corners (8, 3) of a (2, 3) box, z fastest."""
+    return np.stack(np.meshgrid(*box.T, indexing="ij"), axis=-1).reshape(8, 3)
+
+
+def transform_points(world_from_source: FloatArray, points: FloatArray) -> FloatArray:
+    """Points (N, 3) of the file's world in ours."""
+    return matmul(points, world_from_source[:3, :3].T) + world_from_source[:3, 3]
+
+
+def background_of(has_alpha: bool) -> tuple[float, float, float] | None:
+    """White, by the custom of evaluation, for captures with alpha; None for photographs."""
+    return (1.0, 1.0, 1.0) if has_alpha else None

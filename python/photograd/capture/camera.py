@@ -1,0 +1,141 @@
+"""A pinhole camera: where each pixel looks, and where each point lands."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+from photograd_course.portable_math import matmul
+
+from photograd.capture.frames import check_pose, invert_rigid
+from photograd.errors import DtypeError, RangeError, ShapeError, message
+from photograd.types import FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class Camera:
+    """Pinhole camera in the world frame of the project (right-handed, +Y up).
+
+    Attributes:
+        width, height: image size in pixels.
+        fx, fy: focal lengths in pixels.
+        cx, cy: principal point in pixels; the centre of the top left pixel is (0.5, 0.5).
+        world_from_camera: (4, 4) float64 rigid pose; camera axes +X right, +Y down, +Z forward.
+
+    Raises:
+        RangeError: empty image, focal length not positive, or anything non-finite.
+        SceneError, ShapeError: the pose is not rigid, or not (4, 4).
+    """
+
+    width: int
+    height: int
+    fx: float
+    fy: float
+    cx: float
+    cy: float
+    world_from_camera: FloatArray
+
+    def __post_init__(self) -> None:
+        for name in ("width", "height"):
+            size = getattr(self, name)
+            if not isinstance(size, int | np.integer) or isinstance(size, bool):
+                raise DtypeError(message("Camera", name, "an integer", type(size).__name__))
+            if not 0 < size < 1 << 20:
+                raise RangeError(message("Camera", name, "1 to 2^20 pixels", size))
+        for name in ("fx", "fy"):
+            focal = getattr(self, name)
+            if not 1e-6 < focal < 1e9:
+                raise RangeError(message("Camera", name, "a positive focal length", focal))
+        for name in ("cx", "cy"):
+            centre = getattr(self, name)
+            if not abs(centre) < 1e9:
+                raise RangeError(message("Camera", name, "a finite pixel position", centre))
+        pose = check_pose("Camera", "world_from_camera", self.world_from_camera).copy()
+        pose.setflags(write=False)
+        object.__setattr__(self, "world_from_camera", pose)
+
+    @property
+    def position(self) -> FloatArray:
+        """Centre of projection, (3,), in the world."""
+        return self.world_from_camera[:3, 3]
+
+    @property
+    def forward(self) -> FloatArray:
+        """Unit viewing direction, (3,), in the world."""
+        return self.world_from_camera[:3, 2]
+
+    def rays(
+        self, pixel_ids: npt.NDArray[np.integer] | None = None
+    ) -> tuple[FloatArray, FloatArray]:
+        """Rays through pixel centres: pixel (column u, row v) looks along
+        ((u + 0.5 - cx) / fx, (v + 0.5 - cy) / fy, 1) in the camera frame.
+
+        Args:
+            pixel_ids: (R,) integers, row * width + column; None means all, row by row.
+
+        Returns:
+            Origins (R, 3) and unit directions (R, 3), float64, in the world.
+
+        Raises:
+            ShapeError, DtypeError, RangeError: pixel_ids not (R,), not integers, outside the image.
+        """
+        count = self.width * self.height
+        ids = np.arange(count) if pixel_ids is None else np.asarray(pixel_ids)
+        if ids.ndim != 1:
+            raise ShapeError(message("rays", "pixel_ids", "shape (R,)", ids.shape))
+        if not np.issubdtype(ids.dtype, np.integer):
+            raise DtypeError(message("rays", "pixel_ids", "integers", ids.dtype))
+        if ids.size and not (int(ids.min()) >= 0 and int(ids.max()) < count):
+            got = f"{int(ids.min())} to {int(ids.max())}"
+            raise RangeError(message("rays", "pixel_ids", f"0 to {count - 1}", got))
+        x = (ids % self.width + 0.5 - self.cx) / self.fx
+        y = (ids // self.width + 0.5 - self.cy) / self.fy
+        local = np.stack([x, y, np.ones_like(x)], axis=-1)
+        local /= np.linalg.norm(local, axis=-1, keepdims=True)
+        directions = matmul(local, self.world_from_camera[:3, :3].T)
+        origins = np.broadcast_to(self.position, directions.shape).copy()
+        return origins, directions
+
+    def project(self, points: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Pixel positions (N, 2) and depths (N,) along +Z of world points (N, 3).
+
+        Points at or behind the camera plane get NaN positions and their depth, which is <= 0.
+
+        Raises:
+            ShapeError: points not (N, 3).
+        """
+        points = np.asarray(points, dtype=np.float64)
+        if points.ndim != 2 or points.shape[1] != 3:
+            raise ShapeError(message("project", "points", "shape (N, 3)", points.shape))
+        camera_from_world = invert_rigid(self.world_from_camera)
+        local = matmul(points, camera_from_world[:3, :3].T) + camera_from_world[:3, 3]
+        depth = local[:, 2]
+        safe = np.where(depth > 0.0, depth, np.nan)
+        pixels = np.stack(
+            [self.fx * local[:, 0] / safe + self.cx, self.fy * local[:, 1] / safe + self.cy],
+            axis=-1,
+        )
+        return pixels, depth
+
+    def downscaled(self, factor: int) -> Camera:
+        """The camera of the image reduced by an integer box filter.
+
+        Intrinsics divide exactly, as pixel centres sit at +0.5; a remainder of columns or rows that
+        does not fill a box is cut off at the right and bottom, which moves nothing else.
+
+        Raises:
+            RangeError: factor below 1 or larger than the image.
+        """
+        if not 1 <= factor <= min(self.width, self.height):
+            expected = f"1 to {min(self.width, self.height)}"
+            raise RangeError(message("downscaled", "factor", expected, factor))
+        return replace(
+            self,
+            width=self.width // factor,
+            height=self.height // factor,
+            fx=self.fx / factor,
+            fy=self.fy / factor,
+            cx=self.cx / factor,
+            cy=self.cy / factor,
+        )

@@ -1,0 +1,106 @@
+"""Intrinsics as `transforms.json` files write them, shared by all frames or frame by frame."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from photograd._json_node import JsonNode
+from photograd.capture.undistort import Distortion
+from photograd.errors import IoError, RangeError, SceneError, message
+
+MODELS = {"PINHOLE", "SIMPLE_PINHOLE", "SIMPLE_RADIAL", "RADIAL", "OPENCV"}
+_REFUSED_TERMS = ("k3", "k4", "k5", "k6")
+
+
+@dataclass(frozen=True)
+class Intrinsics:
+    """Image size, focal lengths and principal point in pixels (centres at +0.5), and the lens."""
+
+    width: int
+    height: int
+    fx: float
+    fy: float
+    cx: float
+    cy: float
+    distortion: Distortion | None
+
+    @property
+    def pixels(self) -> tuple[float, float, float, float]:
+        """(fx, fy, cx, cy)."""
+        return self.fx, self.fy, self.cx, self.cy
+
+
+def read_intrinsics(shared: JsonNode, frame: JsonNode, image_size: tuple[int, int]) -> Intrinsics:
+    """Intrinsics of one frame; what the frame does not say, the file says for all.
+
+    `fl_x` is the focal length in pixels, else `camera_angle_x` is the full horizontal angle of view
+    in radians: fx = (w / 2) / tan(angle / 2). Missing: fy = fx, principal point in the middle, size
+    that of the image.
+
+    Raises:
+        IoError: members missing or of the wrong type, or a camera model that is not supported.
+        RangeError: not finite, not positive, or an angle outside (0, pi).
+        SceneError: distortion beyond k1, k2, p1, p2.
+    """
+
+    def lookup(key: str) -> JsonNode | None:
+        for node in (frame, shared):
+            if key in node:
+                return node[key]
+        return None
+
+    def number(key: str, default: float) -> float:
+        node = lookup(key)
+        return default if node is None else node.number()
+
+    _check_model(lookup("camera_model"))
+    width = node.count() if (node := lookup("w")) else image_size[0]
+    height = node.count() if (node := lookup("h")) else image_size[1]
+    fx = _focal(lookup("fl_x"), lookup("camera_angle_x"), width)
+    fy = _focal(lookup("fl_y"), lookup("camera_angle_y"), height)
+    if fx is None:
+        known = "a member 'fl_x' or 'camera_angle_x'"
+        raise IoError(message(frame.function, frame.place, known, "neither"))
+    for key in _REFUSED_TERMS:
+        if number(key, 0.0) != 0.0:
+            remedy = "undistort the images first"
+            got = number(key, 0.0)
+            raise SceneError(message(frame.function, f"{frame.place}: {key}", 0, got, remedy))
+    terms = Distortion(*(number(key, 0.0) for key in ("k1", "k2", "p1", "p2")))
+    return Intrinsics(
+        width=width,
+        height=height,
+        fx=fx,
+        fy=fx if fy is None else fy,
+        cx=number("cx", 0.5 * width),
+        cy=number("cy", 0.5 * height),
+        distortion=None if terms.is_identity else terms,
+    )
+
+
+def _focal(pixels: JsonNode | None, angle: JsonNode | None, size: int) -> float | None:
+    if pixels is not None:
+        focal = pixels.number()
+        if not 0.0 < focal < 1e9:
+            expected = "a positive focal length in pixels"
+            raise RangeError(message(pixels.function, pixels.place, expected, focal))
+        return focal
+    if angle is None:
+        return None
+    radians = angle.number()
+    if not 1e-6 < radians < math.pi - 1e-6:
+        raise RangeError(
+            message(angle.function, angle.place, "an angle in (0, pi) radians", radians)
+        )
+    return 0.5 * size / math.tan(0.5 * radians)
+
+
+def _check_model(node: JsonNode | None) -> None:
+    if node is None:
+        return
+    model = node.text()
+    if model not in MODELS:
+        expected = "one of " + ", ".join(sorted(MODELS))
+        remedy = "undistort the images to a pinhole first"
+        raise IoError(message(node.function, node.place, expected, model, remedy))

@@ -1,0 +1,208 @@
+"""Different representations of the same scene, side by side: quality, bytes and seconds.
+
+No representation is best for every scene: leaves, smooth curves, fur and flat walls ask for
+different ones. Here that is measured: each contender is fitted to the same photographs with the
+same number of steps, scored on the same held-out views, and drawn at the same camera. (A step of a
+grid draws rays at random, a step of Gaussians a whole view; the seconds of both are in the table.)
+"""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from photograd_course.atomic_io import atomic_write
+
+from photograd._compiled import _core
+from photograd.capture.capture import Capture
+from photograd.errors import RangeError, message
+from photograd.fields.dense_grid import DenseGrid
+from photograd.fields.octree_sh import OctreeSh
+from photograd.fitting.checkpoint import FILE_NAME
+from photograd.fitting.checks import require_startable
+from photograd.fitting.evaluate import Evaluation, ViewScore, display_image, evaluate
+from photograd.fitting.loop import Fit
+from photograd.fitting.model import Model, load_model
+from photograd.fitting.options import DEFAULTS_OF, FitOptions, FitResult
+from photograd.fitting.start import HARMONIC_GRIDS
+from photograd.splats.model import GaussianScene
+
+FRAMES = 5
+"""Frames that are timed; the median counts."""
+
+_SECONDS = "seconds.json"
+
+Run = Callable[[Fit, Path], FitResult]
+"""Runs a fit in a folder, usually under a progress bar."""
+
+
+@dataclass(frozen=True)
+class Contender:
+    """A representation at a resolution, written `sparse_sh:128`, or so many `gaussians:20000`."""
+
+    representation: str
+    resolution: int
+
+    def options(self, shared: FitOptions) -> FitOptions:
+        """Its own options, with what `shared` says on the rest."""
+        size = "gaussians" if self.representation == GaussianScene.name else "resolution"
+        own = DEFAULTS_OF.get(self.representation, {})
+        rest = {name: value for name, value in own.items() if name != "steps"}
+        return replace(
+            shared, representation=self.representation, **{**rest, size: self.resolution}
+        )
+
+    @property
+    def label(self) -> str:
+        """As it is written on a command line."""
+        return f"{self.representation}:{self.resolution}"
+
+
+@dataclass(frozen=True)
+class Score:
+    """One line of the table."""
+
+    capture: str
+    contender: str
+    psnr: float  # dB, mean over held-out views
+    ssim: float
+    parameter_bytes: int  # of all parameter arrays and what state they need beside them
+    train_seconds: float
+    frame_ms: float  # median, at the size of the first held-out view
+    threads: int
+    protocol: str
+
+
+def parse_contenders(text: str) -> list[Contender]:
+    """The contenders of "dense_grid:64,sparse_sh:128".
+
+    Raises RangeError for another form, a resolution below 8, one that is given twice, a
+    representation that a capture cannot start, or an octree without a grid to be cut from.
+    """
+    contenders = []
+    for word in text.split(","):
+        name, colon, size = word.strip().partition(":")
+        if not (colon and size.isdecimal() and int(size) >= 8):
+            raise RangeError(
+                message("compare", "contenders", "NAME:RESOLUTION with a resolution of 8 or more",
+                        repr(word.strip()), "for example dense_grid:128,sparse_sh:128")
+            )  # fmt: skip
+        require_startable(name)
+        contenders.append(Contender(name, int(size)))
+    if len(set(contenders)) < len(contenders):
+        raise RangeError(message("compare", "contenders", "each only once", text))
+    for contender in contenders:
+        source_of(contender, contenders)
+    return contenders
+
+
+def source_of(contender: Contender, contenders: Sequence[Contender]) -> Contender | None:
+    """The contender whose model an octree is cut from; None for what starts by itself.
+
+    It is the nearest before it of the same resolution. Raises RangeError if there is none.
+    """
+    if contender.representation != OctreeSh.name:
+        return None
+    before = contenders[: contenders.index(contender)]
+    grids = (DenseGrid.name, *HARMONIC_GRIDS)
+    for other in reversed(before):
+        if other.representation in grids and other.resolution == contender.resolution:
+            return other
+    raise RangeError(
+        message("compare", "contenders", f"a grid of {contender.resolution} before the octree that "
+                "is cut from it", contender.label, f"put sparse_sh:{contender.resolution} first")
+    )  # fmt: skip
+
+
+def compare_one(
+    name: str, capture: Capture, contender: Contender, folder: Path, options: FitOptions, run: Run,
+    *, source: Path | None = None,
+) -> tuple[Score, Evaluation] | None:  # fmt: skip
+    """Fit `contender` to `capture` in `folder`, or continue there, and score it.
+
+    `name` is what the table calls the capture; `options` holds what all contenders share; `source`
+    is the folder of the model that the fit starts from, whose seconds count, too. Returns None if
+    `run` ended before the fit did: the same call continues it, and its seconds add up.
+    """
+    if (folder / FILE_NAME).exists():
+        job = Fit.resume(capture, folder)
+        wanted = asdict(options)
+        if asdict(job.options) != wanted:
+            raise RangeError(
+                message("compare", "out", "a folder of the same options", f"{folder}",
+                        "choose another folder, or give the options that it was made with")
+            )  # fmt: skip
+    else:
+        first = None if source is None else load_model(source)
+        job = Fit.start(capture, options, start_from=first)
+    spent = _spent(folder)
+    if job.step_number < options.steps:
+        result = run(job, folder)
+        spent += result.seconds
+        atomic_write(folder / _SECONDS, json.dumps({"seconds": spent}).encode())
+        if not result.finished:
+            return None
+    model = load_model(folder)
+    evaluation = evaluate(model, capture.test)
+    if source is not None:
+        spent += _spent(source)
+    score = Score(
+        name, contender.label, evaluation.psnr, evaluation.ssim, stored_bytes(model), spent,
+        1000 * frame_seconds(model, capture), max(1, _core.thread_count()), evaluation.protocol,
+    )  # fmt: skip
+    return score, evaluation
+
+
+def stored_bytes(model: Model) -> int:
+    """Bytes of a model's parameters and of the arrays that say where they belong."""
+    arrays: list[Any] = list(model.field.params.values())
+    if not isinstance(model.field, GaussianScene):  # whose state serves the fit alone
+        arrays += model.field.state().values()
+    return sum(a.nbytes for a in arrays if isinstance(a, np.ndarray))
+
+
+def frame_seconds(model: Model, capture: Capture) -> float:
+    """Median time to draw the first held-out view."""
+    camera = capture.test[0].camera
+    times = []
+    for _ in range(FRAMES):
+        before = time.perf_counter()
+        display_image(model, camera)
+        times.append(time.perf_counter() - before)
+    return float(np.median(times))
+
+
+def worst_view(evaluations: Sequence[Evaluation]) -> list[ViewScore]:
+    """What each evaluation says of the view with the lowest mean PSNR over all of them."""
+    scores = np.array([[view.psnr for view in e.views] for e in evaluations])
+    index = int(scores.mean(axis=0).argmin())
+    return [e.views[index] for e in evaluations]
+
+
+def markdown(scores: Sequence[Score]) -> str:
+    """The table as text, best PSNR of each capture in bold, and the protocols below it."""
+    best = {s.capture: max(t.psnr for t in scores if t.capture == s.capture) for s in scores}
+    lines = [
+        "| capture | representation | PSNR, dB | SSIM | MiB | training, s | frame, ms |",
+        "|---|---|---|---|---|---|---|",
+    ]
+    for s in scores:
+        psnr = f"{s.psnr:.2f}" if s.psnr < best[s.capture] else f"**{s.psnr:.2f}**"
+        lines.append(
+            f"| {s.capture} | {s.contender} | {psnr} | {s.ssim:.3f} "
+            f"| {s.parameter_bytes / 2**20:.1f} | {s.train_seconds:.0f} | {s.frame_ms:.0f} |"
+        )
+    threads = ", ".join(str(n) for n in sorted({s.threads for s in scores}))
+    lines += ["", f"{threads} threads."]
+    lines += [f"{text}." for text in sorted({s.protocol for s in scores})]
+    return "\n".join(lines) + "\n"
+
+
+def _spent(folder: Path) -> float:
+    path = folder / _SECONDS
+    return float(json.loads(path.read_text())["seconds"]) if path.exists() else 0.0

@@ -1,0 +1,242 @@
+"""How good a model is: PSNR and SSIM on held-out views, under a protocol that is printed with them.
+
+Rankings move with the background, the resolution and the rounding, so there is one protocol: full
+resolution of the capture, truth and rendering composited over white in display (sRGB) values,
+clipped and rounded to 8 bits, PSNR and SSIM averaged over views.
+
+Only what was photographed is scored. Undistortion leaves a border without truth, and a mask says
+which pixels are none: PSNR is that of the valid pixels, SSIM that of the windows that hold no
+others. A view without such a window has no score; it is named and left out of both means.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from copy import copy
+from dataclasses import asdict, dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from photograd_course.color import srgb_encode, unpremultiply
+from photograd_course.metrics import psnr, round_to_8_bits, ssim, whole_windows
+
+from photograd.capture.camera import Camera
+from photograd.capture.view import View, display_color
+from photograd.errors import RangeError, message
+from photograd.fields.march import MarchPolicy
+from photograd.fitting.model import Model
+from photograd.representation import ImageBatch, RayBatch, RenderOptions
+from photograd.types import Array
+
+RAYS_AT_ONCE = 1 << 16
+
+
+@dataclass(frozen=True)
+class ViewScore:
+    """One view's score and pictures (H, W, 3), display values in multiples of 1/255.
+
+    Scored are the pixels that `valid` (H, W) says the photograph has.
+    """
+
+    name: str
+    psnr: float
+    ssim: float
+    truth: Array
+    render: Array
+    valid: NDArray[np.bool_]
+
+    @property
+    def valid_share(self) -> float:
+        """Valid pixels, as a fraction of all of the view."""
+        return float(self.valid.mean())
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """Scores of all views, their means, and the protocol they hold under.
+
+    `left_out` names the views that have no 11 x 11 window of valid pixels.
+    """
+
+    views: tuple[ViewScore, ...]
+    protocol: str
+    left_out: tuple[str, ...] = ()
+
+    @property
+    def psnr(self) -> float:
+        """Mean PSNR in dB."""
+        return float(np.mean([view.psnr for view in self.views]))
+
+    @property
+    def ssim(self) -> float:
+        """Mean SSIM."""
+        return float(np.mean([view.ssim for view in self.views]))
+
+
+def render_camera(
+    model: Model, camera: Camera, *, stop: float = 1e-4
+) -> tuple[Array, Array, Array]:
+    """Premultiplied colour (H, W, 3), opacity (H, W) and depth (H, W) seen by a camera.
+
+    Colours are linear or display values, as the field's `color_space` says.
+    """
+    options = RenderOptions(stop=stop)
+    size = (camera.height, camera.width)
+    field: Any = model.field
+    if "rays" not in field.capabilities:
+        whole, _ = field.render(ImageBatch(camera), seed=0, step=0, options=options)
+        return whole.color.reshape(*size, 3), whole.opacity.reshape(size), whole.depth.reshape(size)
+    parts = []
+    for start in range(0, camera.width * camera.height, RAYS_AT_ONCE):
+        ids = np.arange(start, min(start + RAYS_AT_ONCE, camera.width * camera.height))
+        origins, directions = camera.rays(ids)
+        batch = RayBatch(origins, directions, ids.astype(np.uint32))
+        outputs, _ = field.render(batch, seed=0, step=0, options=options)
+        parts.append((outputs.color, outputs.opacity, outputs.depth))
+    color, opacity, depth = (np.concatenate(part) for part in zip(*parts, strict=True))
+    return color.reshape(*size, 3), opacity.reshape(size), depth.reshape(size)
+
+
+def display_image(model: Model, camera: Camera) -> Array:
+    """The model (H, W, 3) in display values, over white or its learned background."""
+    color, opacity, _ = render_camera(model, camera)
+    if model.field.color_space == "display":
+        behind = 1.0 if model.background is None else srgb_encode(model.background)
+        over = color + (1 - opacity[..., None]) * behind
+        return round_to_8_bits(over.astype(np.float64))
+    if model.background is not None:
+        over = color + (1 - opacity[..., None]) * model.background
+        return round_to_8_bits(srgb_encode(over.astype(np.float64)))
+    straight = unpremultiply(color.astype(np.float64), opacity.astype(np.float64))
+    return over_white(srgb_encode(straight), opacity)
+
+
+def truth_image(view: View) -> Array:
+    """The photograph (H, W, 3) under the same protocol."""
+    rgba = view.rgba().astype(np.float64)
+    color = display_color(rgba[..., :3], view.color_space)
+    return over_white(color, rgba[..., 3])
+
+
+def over_white(encoded: Array, alpha: Array) -> Array:
+    """Straight display values over white, clipped and rounded to 8 bits."""
+    alpha = alpha[..., None]
+    return round_to_8_bits(np.clip(encoded, 0, 1) * alpha + (1 - alpha))
+
+
+def score_view(model: Model, view: View) -> ViewScore | None:
+    """Score the model on one photograph; None if that has no 11 x 11 window of valid pixels."""
+    valid = view.valid_mask()
+    if not whole_windows(valid).any():
+        return None
+    truth, render = truth_image(view), display_image(model, view.camera)
+    scores = psnr(render, truth, valid=valid), ssim(render, truth, valid=valid)
+    return ViewScore(view.name, *scores, truth, render, valid)
+
+
+def evaluate(
+    model: Model, views: Sequence[View], *, on_view: Callable[[int], None] | None = None
+) -> Evaluation:
+    """Score the model on `views`, normally the test split.
+
+    Raises RangeError if there are none, or none with an 11 x 11 window of valid pixels; IoError for
+    a photograph or a mask that cannot be read.
+    """
+    if not views:
+        raise RangeError(
+            message("evaluate", "views", "at least one held-out view", "none",
+                    "the capture has no test split")
+        )  # fmt: skip
+    found = []
+    for number, view in enumerate(views):
+        found.append(score_view(model, view))
+        if on_view:
+            on_view(number + 1)
+    scores = tuple(score for score in found if score is not None)
+    left_out = tuple(v.name for v, score in zip(views, found, strict=True) if score is None)
+    if not scores:
+        expected = "a view with an 11x11 window of valid pixels"
+        got = f"none in {', '.join(left_out)}"
+        remedy = "look at their masks and their lens"
+        raise RangeError(message("evaluate", "views", expected, got, remedy))
+    return Evaluation(scores, protocol(model, scores, left_out), left_out)
+
+
+def protocol(model: Model, scores: Sequence[ViewScore], left_out: Sequence[str] = ()) -> str:
+    """The sentence that belongs next to every number."""
+    sizes = sorted({(score.valid.shape[1], score.valid.shape[0]) for score in scores})
+    size = ", ".join(f"{w}x{h}" for w, h in sizes)
+    behind = "white" if model.background is None else "white, render over its learned background"
+    sentence = (
+        f"{len(scores)} held-out views at {size}, composited over {behind} in sRGB, "
+        "rounded to 8 bits; mean of per-view PSNR and SSIM (11x11 Gaussian window)"
+    )
+    valid = sum(int(score.valid.sum()) for score in scores)
+    pixels = sum(score.valid.size for score in scores)
+    if valid < pixels:
+        sentence += f" over valid pixels, {100 * valid / pixels:.1f} % of all"
+    if left_out:
+        sentence += f"; left out, without a window of valid pixels: {', '.join(left_out)}"
+    return sentence
+
+
+def as_result(evaluation: Evaluation) -> dict[str, Any]:
+    """The evaluation for tables and the machine-readable last line."""
+    return {
+        "psnr": evaluation.psnr, "ssim": evaluation.ssim, "protocol": evaluation.protocol,
+        "views": [
+            {"name": v.name, "psnr": v.psnr, "ssim": v.ssim, "valid_share": v.valid_share}
+            for v in evaluation.views
+        ],
+        "left_out": list(evaluation.left_out),
+    }  # fmt: skip
+
+
+# How much the step of the march matters: the same views again, with half the step.
+
+
+VISIBLE = 1e-3
+"""Of white, linear: a quarter of one of 256 levels near white."""
+MOST_VIEWS = 3
+
+
+@dataclass(frozen=True)
+class StepChange:
+    """By how much pixels change when the step is halved: the largest of their three channels."""
+
+    largest: float
+    mean: float
+    share: float  # of the pixels that change by more than VISIBLE
+    views: int
+
+
+def step_change(
+    model: Model, views: Sequence[View], *, most: int = MOST_VIEWS
+) -> StepChange | None:
+    """Compare at most `most` of the views, evenly spaced; None for a field without steps.
+
+    Colors are premultiplied and as the field has them, so that no background takes part; rays are
+    not stopped early.
+    """
+    policy = model.field.policy
+    if not isinstance(policy, MarchPolicy) or not views:
+        return None
+    finer: Any = copy(model.field)  # whose parameters are shared
+    finer.policy = replace(policy, dt=0.5 * policy.dt)
+    chosen = views[:: -(-len(views) // most)]
+    models = model, replace(model, field=finer)
+    changes = []
+    for view in chosen:
+        coarse, fine = (render_camera(each, view.camera, stop=0.0)[0] for each in models)
+        changes.append(np.abs(fine - coarse).max(axis=-1).ravel())
+    change = np.concatenate(changes)
+    return StepChange(
+        float(change.max()), float(change.mean(dtype=np.float64)),
+        float((change > VISIBLE).mean()), len(chosen),
+    )  # fmt: skip
+
+
+def as_entry(change: StepChange | None) -> dict[str, Any]:
+    """{"half_step": ...} for the result of `photograd evaluate`; {} where there is no step."""
+    return {} if change is None else {"half_step": asdict(change)}

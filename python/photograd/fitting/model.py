@@ -1,0 +1,93 @@
+"""A recovered scene, ready to be rendered: the field, its background, the fit's record."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from photograd._checks import from_plain
+from photograd.errors import Error, IoError, message
+from photograd.fitting.checkpoint import (
+    Checkpoint,
+    check_checkpoint,
+    load_checkpoint,
+    make_folder,
+    save_checkpoint,
+)
+from photograd.fitting.data import learned_background
+from photograd.fitting.options import FitOptions
+from photograd.fitting.start import FittedField, saved_field
+from photograd.types import Array
+
+
+@dataclass(frozen=True)
+class Model:
+    """A field with the linear background (3,) that was learned with it, or None."""
+
+    field: FittedField
+    background: Array | None
+    options: FitOptions
+    meta: dict[str, Any]
+    history: Array  # (n, 3): step, loss, PSNR of the batch
+
+
+def load_model(path: str | Path) -> Model:
+    """Load the model that a fit left in `path` (its folder, or the file). Raises IoError."""
+    return model_of(load_checkpoint(path), Path(path))
+
+
+def model_of(saved: Checkpoint, path: Path) -> Model:
+    """The model in a checkpoint.
+
+    Raises IoError if its contents, the optimizer's state included, do not fit together.
+    """
+    try:
+        options = from_plain("checkpoint", FitOptions, saved.meta.get("options"))
+        check_checkpoint(saved, options)
+        field = saved_field(saved.params, saved.state, saved.meta.get("policy"), options)
+    except Error as failure:
+        remedy = "the file is from another version or damaged"
+        expected = "a checkpoint of a fit"
+        raise IoError(message("load_model", f"{path}", expected, failure, remedy)) from failure
+    raw = saved.params.get("background")
+    background = None if raw is None else learned_background(raw.astype(np.float64))
+    return Model(field, background, options, saved.meta, saved.history)
+
+
+# The model at a few chosen steps of a fit, for pictures of how it came about.
+
+
+FRACTIONS = (0.0, 0.03, 0.1, 0.3, 1.0)
+
+
+def snapshot_steps(options: FitOptions) -> set[int]:
+    """The steps after which a fit keeps a snapshot; step 0 is the start."""
+    return {int(fraction * options.steps) for fraction in FRACTIONS}
+
+
+def snapshot_file(folder: Path, step: int) -> Path:
+    """Where the snapshot of a step lies."""
+    return folder / "snapshots" / f"step_{step:06d}.npz"
+
+
+def save_snapshot(folder: Path, field: FittedField, options: FitOptions, step: int) -> None:
+    """Write the field as it is now."""
+    meta = {"policy": asdict(field.policy), "options": asdict(options), "step": step}
+    make_folder(folder / "snapshots")
+    save_checkpoint(
+        snapshot_file(folder, step),
+        Checkpoint(meta, dict(field.params), {}, field.state(), np.zeros((0, 3))),
+    )
+
+
+def load_snapshots(folder: Path) -> dict[int, FittedField]:
+    """{step: field} of all snapshots of a fit, in order; empty if it kept none."""
+    place = folder if folder.is_dir() else folder.parent
+    found = {}
+    for file in sorted((place / "snapshots").glob("step_*.npz")):
+        saved = load_checkpoint(file)
+        found[int(saved.meta["step"])] = model_of(saved, file).field
+    return found

@@ -1,0 +1,346 @@
+"""Triangle meshes and the rays that meet them: what was hit, and where.
+
+The answer to *which* triangle comes from a bounding volume hierarchy in float32, robust at shared
+edges; *where* is recomputed in the dtype of the rays (cpp/photograd/geometry/).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from photograd._compiled import _core
+from photograd.errors import DtypeError, RangeError, SceneError, ShapeError, message
+from photograd.geometry.checks import finite_rows
+from photograd.types import Array
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """A triangle mesh in its own object space, metres.
+
+    Attributes:
+        vertices: (V, 3) floating point; kept as float32, as the tracer has them.
+        faces: (F, 3) integer vertex numbers, counter-clockwise seen from outside; kept as uint32.
+        uv: (V, 2) texture coordinates, v downwards, or None; kept as float32.
+
+    Raises:
+        DtypeError, ShapeError: other types or shapes.
+        RangeError: a negative vertex number.
+    """
+
+    vertices: Array
+    faces: Array
+    uv: Array | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "vertices", _floats("vertices", self.vertices, 3))
+        object.__setattr__(self, "faces", _vertex_numbers(self.faces))
+        if self.uv is not None:
+            uv = _floats("uv", self.uv, 2)
+            if len(uv) != len(self.vertices):
+                expected = f"shape ({len(self.vertices)}, 2), a row a vertex"
+                raise ShapeError(message("Mesh", "uv", expected, uv.shape))
+            object.__setattr__(self, "uv", uv)
+
+
+@dataclass(frozen=True, eq=False)
+class Instance:
+    """One placement of a mesh.
+
+    Attributes:
+        mesh: number of the mesh in the list given to `Bvh`.
+        world_from_object: (3, 4) or (4, 4) affine matrix; the identity is faster than any other.
+    """
+
+    mesh: int
+    world_from_object: Array = field(default_factory=lambda: np.eye(4))
+
+
+@dataclass(frozen=True, eq=False)
+class Hits:
+    """Nearest hits of R rays.
+
+    Attributes:
+        t: (R,) distance in lengths of the ray's direction; infinite where nothing was hit.
+        primitive: (R,) int32 triangle number in its mesh, or -1.
+        instance: (R,) int32 instance number, or -1.
+        barycentrics: (R, 2) weights u, v of the triangle's second and third corner.
+    """
+
+    t: Array
+    primitive: npt.NDArray[np.int32]
+    instance: npt.NDArray[np.int32]
+    barycentrics: Array
+
+    @classmethod
+    def empty(cls, count: int, dtype: npt.DTypeLike) -> Hits:
+        """Arrays of unwritten memory for `count` rays of `dtype`."""
+        return cls(
+            np.empty(count, dtype),
+            np.empty(count, np.int32),
+            np.empty(count, np.int32),
+            np.empty((count, 2), dtype),
+        )
+
+    @property
+    def hit(self) -> npt.NDArray[np.bool_]:
+        """(R,) whether anything was hit."""
+        return self.primitive >= 0
+
+
+@dataclass(frozen=True, eq=False)
+class SurfacePoints:
+    """Where rays met surfaces, in the dtype of the rays; rows without a hit hold zeros.
+
+    Attributes:
+        t: (R,) distance in lengths of the direction, infinite without a hit.
+        barycentrics: (R, 2).
+        uv: (R, 2) texture coordinates; the barycentrics in a mesh without any.
+        position: (R, 3) in the world.
+        normal: (R, 3) unit geometric normal of the side from which the corners run
+            counter-clockwise, whichever side the ray came from.
+    """
+
+    t: Array
+    barycentrics: Array
+    uv: Array
+    position: Array
+    normal: Array
+
+
+class Bvh:
+    """Meshes and their instances, ready to be traced; built once, read by any number of calls."""
+
+    def __init__(
+        self, meshes: Mesh | Sequence[Mesh], instances: Sequence[Instance] | None = None
+    ) -> None:
+        """Build the hierarchy.
+
+        Args:
+            meshes: one mesh or several.
+            instances: placements; None places every mesh once, where it is.
+
+        Raises:
+            SceneError: no mesh or instance; vertices that are not finite, vertex numbers out of
+                range, triangles without area (each named); a matrix that is not invertible.
+            ShapeError: a matrix that is neither (3, 4) nor (4, 4).
+        """
+        parts = [meshes] if isinstance(meshes, Mesh) else list(meshes)
+        if not parts:
+            raise SceneError(message("Bvh", "meshes", "at least one mesh", "none"))
+        if instances is None:
+            instances = [Instance(number) for number in range(len(parts))]
+        numbers = np.array([int(instance.mesh) for instance in instances], np.int32)
+        matrices = [_rows(place.world_from_object) for place in instances]
+        self._core = _core.Bvh(
+            [(mesh.vertices, mesh.faces, mesh.uv) for mesh in parts],
+            numbers,
+            np.array(matrices, np.float64).reshape(-1, 3, 4),
+        )
+
+    @property
+    def core(self) -> Any:
+        """The core's object, for functions of this package."""
+        return self._core
+
+    @property
+    def bounds(self) -> npt.NDArray[np.float32]:
+        """(2, 3) lower and upper corner of everything, in the world."""
+        corners: npt.NDArray[np.float32] = self._core.bounds
+        return corners
+
+    def trace(
+        self,
+        origins: Array,
+        directions: Array,
+        t_min: float | Array = 0.0,
+        t_max: float | Array = np.inf,
+        *,
+        out: Hits | None = None,
+    ) -> Hits:
+        """Nearest hit of each ray within [t_min, t_max].
+
+        Rays may come in any order. Neighbouring camera rays are fastest row by row, as a camera
+        makes them; rays in random directions are reordered inside, at the call's own expense. The
+        result has the order of the input and the same bits for any number of threads. Which of two
+        triangles is named where both are hit at one place (an edge) may depend on the other rays.
+
+        Args:
+            origins, directions: (R, 3), float32 (used in place if C-contiguous) or float64;
+                directions of any length but zero.
+            t_min, t_max: a number, or (R,) of the same dtype; t counts in lengths of the direction.
+            out: hits of an earlier call with as many rays, whose arrays are filled and returned;
+                fresh memory for millions of rays costs as much as a tenth of their tracing.
+
+        Raises:
+            DtypeError, ShapeError: arrays of other or different types or shapes.
+            RangeError: rays that are not finite or have no direction, counted.
+        """
+        origins, directions = _rays("trace", origins, directions)
+        low, high = _interval("trace", origins, t_min, t_max)
+        hits = Hits.empty(len(origins), origins.dtype) if out is None else out
+        results = (hits.t, hits.primitive, hits.instance, hits.barycentrics)
+        self._core.trace(origins, directions, low, high, *results)
+        return hits
+
+    def occluded(
+        self,
+        origins: Array,
+        directions: Array,
+        t_min: float | Array = 0.0,
+        t_max: float | Array = np.inf,
+    ) -> npt.NDArray[np.bool_]:
+        """Whether anything at all lies within [t_min, t_max] of each ray: (R,) bool.
+
+        Arguments and errors as for `trace`, which it is faster than.
+        """
+        origins, directions = _rays("occluded", origins, directions)
+        low, high = _interval("occluded", origins, t_min, t_max)
+        blocked: npt.NDArray[np.bool_] = self._core.occluded(origins, directions, low, high)
+        return blocked
+
+    def surface_points(self, origins: Array, directions: Array, hits: Hits) -> SurfacePoints:
+        """Where the rays met the triangles that `trace` named.
+
+        Args:
+            origins, directions: (R, 3), the rays that were traced; the dtype may be another one.
+            hits: of the same R rays.
+
+        Raises:
+            DtypeError, ShapeError: as for `trace`.
+            RangeError: numbers that name no triangle of these meshes.
+        """
+        origins, directions = _rays("surface_points", origins, directions)
+        return SurfacePoints(
+            *self._core.surface_points(origins, directions, hits.primitive, hits.instance)
+        )
+
+
+def drop_degenerate(vertices: Array, faces: Array) -> Array:
+    """The rows of `faces` (F, 3) whose triangles have an area; vertices (V, 3) are left alone.
+
+    A triangle counts as flat where twice its area is at most 1e-9 of its longest edge squared, as
+    `Bvh` has it.
+    """
+    corners = np.asarray(vertices, np.float32).astype(np.float64)[np.asarray(faces)]
+    first, second, third = corners[:, 0], corners[:, 1], corners[:, 2]
+    normal = np.cross(second - first, third - first)
+    edges = np.stack([second - first, third - first, third - second])
+    longest = np.square(edges).sum(axis=-1).max(axis=0)
+    kept: Array = np.asarray(faces)[np.square(normal).sum(axis=-1) > 1e-18 * longest**2]
+    return kept
+
+
+def _floats(argument: str, value: Array, columns: int) -> Array:
+    array = np.asarray(value)
+    if array.dtype.kind != "f":
+        raise DtypeError(message("Mesh", argument, "floating point numbers", array.dtype))
+    if array.ndim != 2 or array.shape[1] != columns:
+        raise ShapeError(message("Mesh", argument, f"shape (V, {columns})", array.shape))
+    return np.ascontiguousarray(array, np.float32)
+
+
+def _vertex_numbers(value: Array) -> Array:
+    faces = np.asarray(value)
+    if faces.dtype.kind not in "iu":
+        raise DtypeError(message("Mesh", "faces", "integer vertex numbers", faces.dtype))
+    if faces.ndim != 2 or faces.shape[1] != 3:
+        raise ShapeError(message("Mesh", "faces", "shape (F, 3)", faces.shape))
+    if faces.size and (int(faces.min()) < 0 or int(faces.max()) >= 2**32):
+        row = int(np.argmax((faces < 0).any(axis=1) | (faces >= 2**32).any(axis=1)))
+        got = f"{faces[row].tolist()} in triangle {row}"
+        raise RangeError(message("Mesh", "faces", "vertex numbers from 0", got))
+    return np.ascontiguousarray(faces, np.uint32)
+
+
+def _rows(matrix: Array) -> Array:
+    rows = np.asarray(matrix, np.float64)
+    if rows.shape not in ((3, 4), (4, 4)):
+        raise ShapeError(message("Instance", "world_from_object", "shape (3, 4)", rows.shape))
+    return rows[:3]
+
+
+def _rays(function: str, origins: Array, directions: Array) -> tuple[Array, Array]:
+    for name, array in (("origins", origins), ("directions", directions)):
+        if not isinstance(array, np.ndarray) or array.dtype not in (np.float32, np.float64):
+            got = getattr(array, "dtype", type(array).__name__)
+            remedy = "use numpy.asarray(..., numpy.float32)"
+            raise DtypeError(message(function, name, "a float32 or float64 array", got, remedy))
+        if array.ndim != 2 or array.shape[1] != 3 or array.shape != np.shape(origins):
+            expected = "shape (R, 3), the same for origins and directions"
+            raise ShapeError(message(function, name, expected, array.shape))
+    if origins.dtype != directions.dtype:
+        got = f"{origins.dtype} and {directions.dtype}"
+        raise DtypeError(message(function, "origins, directions", "one dtype", got))
+    return np.ascontiguousarray(origins), np.ascontiguousarray(directions)
+
+
+def _interval(
+    function: str, origins: Array, t_min: float | Array, t_max: float | Array
+) -> tuple[Array, Array]:
+    ends = []
+    for name, value in (("t_min", t_min), ("t_max", t_max)):
+        end = np.asarray(value, origins.dtype if np.ndim(value) == 0 else None)
+        if end.ndim > 0 and end.shape != (len(origins),):
+            expected = f"a number or shape ({len(origins)},)"
+            raise ShapeError(message(function, name, expected, end.shape))
+        if end.dtype != origins.dtype:
+            raise DtypeError(message(function, name, f"{origins.dtype} like origins", end.dtype))
+        if np.isnan(end).any():
+            raise RangeError(message(function, name, "numbers", "NaN"))
+        ends.append(np.ascontiguousarray(end.reshape(-1)))
+    return ends[0], ends[1]
+
+
+# The point of a mesh that is nearest to a point.
+
+
+def nearest_on_mesh(points: Any, mesh: Mesh) -> tuple[Array, Array]:
+    """Distances (N,) and nearest points (N, 3) of points (N, 3), by a look at every triangle.
+
+    Where the foot of the perpendicular lies in the triangle, it is the nearest point; otherwise one
+    of the three edges has it.
+
+    Raises:
+        ShapeError, RangeError: points that are not (N, 3) or not finite.
+    """
+    rows = finite_rows("nearest_on_mesh", "points", points)
+    if not len(rows):
+        return np.zeros(0), np.zeros((0, 3))
+    corners = mesh.vertices.astype(np.float64)[mesh.faces]
+    step = max(1, 100_000 // len(corners))  # pairs at a time: 2.4 MB a vector
+    parts = [_nearest(rows[i : i + step], corners) for i in range(0, len(rows), step)]
+    distance, place = (np.concatenate(part) for part in zip(*parts, strict=True))
+    return distance, place
+
+
+def _nearest(points: Array, corners: Array) -> tuple[Array, Array]:
+    p = points[:, None]
+    a, b, c = (corners[None, :, k] for k in range(3))
+    candidates = [_on_segment(p, *edge) for edge in ((a, b), (b, c), (c, a))]
+    ab, ac = b - a, c - a
+    normal = np.cross(ab, ac)
+    square = (normal**2).sum(axis=-1)
+    v = (np.cross(p - a, ac) * normal).sum(axis=-1) / square  # weight of b
+    w = (np.cross(ab, p - a) * normal).sum(axis=-1) / square  # weight of c
+    foot = a + v[..., None] * ab + w[..., None] * ac
+    inside = (v >= 0) & (w >= 0) & (v + w <= 1)
+    candidates.append(np.where(inside[..., None], foot, np.inf))
+    gaps = np.array([((q - p) ** 2).sum(axis=-1) for q in candidates])  # (4, N, F)
+    least = gaps.swapaxes(0, 1).reshape(len(points), -1).argmin(axis=1)
+    kind, face = np.divmod(least, len(corners))
+    row = np.arange(len(points))
+    place = np.array(candidates)[kind, row, face]
+    return np.sqrt(gaps[kind, row, face]), place
+
+
+def _on_segment(p: Array, a: Array, b: Array) -> Array:
+    along = b - a
+    share = ((p - a) * along).sum(axis=-1) / (along**2).sum(axis=-1)
+    place: Array = a + share.clip(0.0, 1.0)[..., None] * along
+    return place

@@ -1,0 +1,125 @@
+"""A hash table from integer voxels to rows of payload arrays, for scenes of unknown extent.
+
+The table answers one question: which row of an array (N, C) belongs to voxel (x, y, z)? The arrays
+stay the caller's: `row_limit` says how many rows they must have. [Niessner2013]
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from photograd._compiled import _core
+from photograd.errors import DtypeError, RangeError, ShapeError, message
+
+Rows = npt.NDArray[np.int32]
+LEAST, MOST = -(1 << 20), (1 << 20) - 1
+"""Coordinates of a voxel: three times 21 bits make a key."""
+
+
+@dataclass(frozen=True)
+class VoxelHashStatistics:
+    """How full the table is.
+
+    Attributes:
+        count: voxels.
+        row_limit: one more than the largest row in use.
+        slots: places for voxels; at most half of them are in use.
+        bytes: of the slots.
+        longest_probe: slots that the longest search for a voxel looks at.
+        mean_probe: the same on average over all voxels.
+    """
+
+    count: int
+    row_limit: int
+    slots: int
+    bytes: int
+    longest_probe: int
+    mean_probe: float
+
+    @property
+    def load(self) -> float:
+        """Part of the slots in use."""
+        return self.count / self.slots if self.slots else 0.0
+
+
+class VoxelHash:
+    """Voxels and the row that each of them has.
+
+    Threads may share a table. From one thread, rows depend on nothing but the calls: new voxels
+    get rows in the order of the list, the rows freed last first and then new ones, on any number of
+    cores. Distinct voxels in an empty table get 0, 1, 2 and so on. Threads that insert at the same
+    time race for rows, but none is given twice and no voxel is lost.
+    """
+
+    def __init__(self, voxels: npt.NDArray[np.integer[Any]] | None = None) -> None:
+        """Raises what `insert` raises for the voxels (N, 3) to start with."""
+        self._core = _core.VoxelHash()
+        if voxels is not None:
+            self.insert(voxels)
+
+    def insert(self, voxels: npt.NDArray[np.integer[Any]]) -> Rows:
+        """Rows (N,) of voxels (N, 3), which are given one where they have none.
+
+        Raises:
+            DtypeError, ShapeError: not integers, not (N, 3).
+            RangeError: coordinates outside of -2^20 .. 2^20 - 1, counted. Nothing is inserted then.
+        """
+        checked, rows = _checked("VoxelHash.insert", voxels)
+        self._core.insert(checked, rows)
+        return rows
+
+    def find(self, voxels: npt.NDArray[np.integer[Any]]) -> Rows:
+        """Rows (N,) of voxels (N, 3), -1 for those without; raises as `insert` does."""
+        checked, rows = _checked("VoxelHash.find", voxels)
+        self._core.find(checked, rows)
+        return rows
+
+    def erase(self, voxels: npt.NDArray[np.integer[Any]]) -> Rows:
+        """Forget voxels (N, 3).
+
+        Returns:
+            The rows (N,) that are free now, -1 for voxels that had none or were erased further up
+            in the list. New voxels will get them.
+
+        Raises:
+            DtypeError, ShapeError, RangeError: as for `insert`.
+        """
+        checked, rows = _checked("VoxelHash.erase", voxels)
+        self._core.erase(checked, rows)
+        return rows
+
+    def items(self) -> tuple[npt.NDArray[np.int32], Rows]:
+        """All voxels (M, 3) and their rows (M,), by ascending row."""
+        voxels, rows = self._core.items()
+        return voxels, rows
+
+    def statistics(self) -> VoxelHashStatistics:
+        """How full the table is, and how far searches go."""
+        return VoxelHashStatistics(*self._core.statistics())
+
+    def __len__(self) -> int:
+        """Number of voxels."""
+        return self.statistics().count
+
+
+def _checked(name: str, voxels: npt.NDArray[np.integer[Any]]) -> tuple[Rows, Rows]:
+    """Voxels as contiguous int32, none of them wrapped around, and rows to fill."""
+    array = np.asarray(voxels)
+    if not np.issubdtype(array.dtype, np.integer):
+        raise DtypeError(
+            message(name, "voxels", "integers", array.dtype, "use numpy.floor(...).astype('i4')")
+        )
+    if array.ndim != 2 or array.shape[1] != 3:
+        raise ShapeError(message(name, "voxels", "shape (N, 3)", f"shape {array.shape}"))
+    bad = ((array < LEAST) | (array > MOST)).any(axis=1)
+    if bad.any():
+        first = int(np.argmax(bad))
+        got = f"{int(bad.sum())} beyond, the first in row {first}: {array[first].tolist()}"
+        remedy = "shift the origin or use larger voxels"
+        expected = "coordinates from -2^20 to 2^20 - 1"
+        raise RangeError(message(name, "voxels", expected, got, remedy))
+    return np.ascontiguousarray(array, np.int32), np.empty(len(array), np.int32)

@@ -1,0 +1,126 @@
+"""Writing photographs: PNG with 8 or 16 bits, JPEG, EXR, Radiance .hdr and PFM, atomically."""
+
+from __future__ import annotations
+
+import struct
+import zlib
+from collections.abc import Callable
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+import numpy.typing as npt
+from photograd_course.atomic_io import atomic_write
+from PIL import Image
+
+from photograd.errors import IoError, RangeError, ShapeError, message
+from photograd.images import exr
+from photograd.images.pfm import encode_pfm
+from photograd.images.read import ImageArray
+from photograd.images.rgbe import encode_rgbe
+
+
+def write_png(path: Path, image: ImageArray, *, bits: Literal[8, 16] = 8) -> None:
+    """Write display-encoded (H, W, 3 or 4) values in 0..1, straight alpha, as PNG; atomic.
+
+    Raises:
+        ShapeError, RangeError: wrong channels, empty, non-finite or outside 0..1 (clip first).
+        IoError: the file cannot be written.
+    """
+    samples = _quantised("write_png", image, bits)
+    if bits == 16:
+        atomic_write(path, _encode_png16(samples))
+        return
+    picture = Image.fromarray(samples.astype(np.uint8))
+    atomic_write(path, lambda stream: picture.save(stream, format="PNG"))
+
+
+def write_jpeg(path: Path, image: ImageArray, *, quality: int = 95) -> None:
+    """Write display-encoded (H, W, 3) values in 0..1 as JPEG without chroma subsampling; atomic.
+
+    Raises:
+        ShapeError, RangeError: not three channels, empty, non-finite or outside 0..1.
+        IoError: the file cannot be written.
+    """
+    samples = _quantised("write_jpeg", image, 8)
+    if samples.shape[2] != 3:
+        raise ShapeError(message("write_jpeg", "image", "shape (H, W, 3)", image.shape))
+    picture = Image.fromarray(samples.astype(np.uint8))
+    atomic_write(
+        path, lambda stream: picture.save(stream, format="JPEG", quality=quality, subsampling=0)
+    )
+
+
+def write_exr(path: Path, image: ImageArray, *, half: bool = False) -> None:
+    """Write linear (H, W, 3) or premultiplied (H, W, 4) radiance as float or half EXR; atomic.
+
+    Raises:
+        ShapeError, RangeError: wrong channels, empty, non-finite, beyond 65504 in half.
+        IoError: the file cannot be written.
+    """
+    _check_pixels("write_exr", image)
+    atomic_write(path, exr.encode_exr(image, half=half))
+
+
+def write_radiance(path: Path, image: ImageArray) -> None:
+    """Write linear (H, W, 3) radiance as the name's end says: .exr, .hdr or .pfm; atomic.
+
+    .exr and .pfm keep float32; .hdr rounds, by 1/256 of a pixel's largest channel at most.
+
+    Raises:
+        ShapeError, RangeError: wrong channels, empty, non-finite, below 0 in .hdr.
+        IoError: another end of the name, or the file cannot be written.
+    """
+    encoders: dict[str, Callable[[ImageArray], bytes]] = {
+        ".exr": lambda pixels: exr.encode_exr(pixels, half=False),
+        ".hdr": encode_rgbe,
+        ".pfm": encode_pfm,
+    }
+    suffix = path.suffix.lower()
+    if suffix not in encoders:
+        expected = f"a name that ends in {' or '.join(encoders)}"
+        raise IoError(message("write_radiance", "path", expected, path.name))
+    _check_pixels("write_radiance", image)
+    atomic_write(path, encoders[suffix](image))
+
+
+def _check_pixels(function: str, image: ImageArray) -> None:
+    if image.ndim != 3 or image.shape[2] not in (3, 4) or image.size == 0:
+        raise ShapeError(message(function, "image", "shape (H, W, 3) or (H, W, 4)", image.shape))
+    if not bool(np.isfinite(image).all()):
+        count = int((~np.isfinite(image)).any(axis=2).sum())
+        raise RangeError(message(function, "image", "finite values", f"{count} bad pixels"))
+
+
+def _quantised(function: str, image: ImageArray, bits: int) -> npt.NDArray[np.uint16]:
+    _check_pixels(function, image)
+    low, high = float(image.min()), float(image.max())
+    if low < 0.0 or high > 1.0:
+        got = f"{low:.6g} to {high:.6g}"
+        raise RangeError(message(function, "image", "values in 0..1", got, "clip first"))
+    levels: npt.NDArray[np.uint16] = np.rint(image.astype(np.float64) * (2**bits - 1)).astype(
+        np.uint16
+    )
+    return levels
+
+
+def _encode_png16(samples: npt.NDArray[np.uint16]) -> bytes:
+    """PNG with 16 bits a sample, which Pillow cannot write for colour: header, rows, end.
+
+    Every row is stored as the difference to the row above (filter 2), which compresses well.
+    """
+    height, width, channels = samples.shape
+    rows = samples.astype(">u2").view(np.uint8).reshape(height, -1)
+    filtered = np.diff(rows, axis=0, prepend=np.zeros_like(rows[:1]))
+    stream = np.concatenate([np.full((height, 1), 2, dtype=np.uint8), filtered], axis=1).tobytes()
+    color_type = 2 if channels == 3 else 6
+    header = struct.pack(">IIBBBBB", width, height, 16, color_type, 0, 0, 0)
+
+    def chunk(kind: bytes, body: bytes) -> bytes:
+        return (
+            struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
+        )
+
+    signature = b"\x89PNG\r\n\x1a\n"
+    data = chunk(b"IDAT", zlib.compress(stream, 6))
+    return signature + chunk(b"IHDR", header) + data + chunk(b"IEND", b"")

@@ -1,0 +1,94 @@
+"""Gaussians seen from a circle of cameras."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from photograd_course.metrics import round_to_8_bits
+
+from photograd.capture.camera import Camera
+from photograd.capture.orbit import orbit_cameras
+from photograd.errors import RangeError, message
+from photograd.splats.frames import UNSTATED, USUAL_UP, Presentation, file_from_upright
+from photograd.splats.splatting import Gaussians, SplatOptions, render
+from photograd.types import Array
+
+WHITE = (1.0, 1.0, 1.0)
+PADDING = 0.05
+"""Share of the extent that is added on each side."""
+SIGMAS = 3.0
+"""Standard deviations in the radius of a Gaussian that is drawn alone."""
+POINT = 0.1
+"""A splat of so many pixels is a point."""
+NEAR = 0.01
+"""The near plane, at most so many meters and that share of the distance to the scene."""
+
+
+def scene_box(gaussians: Gaussians) -> Array:
+    """(2, 3) corners of what holds 96 % of the means along each axis, padded by 5 %; fitted scenes
+    have strays. Means that are all in one place have a cube of the widest Gaussian around them.
+
+    Raises:
+        RangeError: there are no Gaussians.
+    """
+    if not len(gaussians):
+        raise RangeError(message("scene_box", "gaussians", "at least one", 0))
+    low, high = np.percentile(gaussians.means.astype(np.float64), [2, 98], axis=0)
+    # What float32 still resolves there.
+    least = 1e-4 * float(np.abs([low, high]).max())
+    if float((high - low).max()) > least:
+        pad = PADDING * (high - low)
+        return np.stack([low - pad, high + pad])
+    # Half an edge of the cube in a sphere: cameras stand so that the sphere fills the picture.
+    half = max(SIGMAS * _widest(gaussians) / np.sqrt(3.0), least) or 1.0
+    middle = 0.5 * (low + high)
+    return np.stack([middle - half, middle + half])
+
+
+def orbit_splats(
+    gaussians: Gaussians,
+    count: int,
+    *,
+    size: int,
+    elevation: float = 25.0,
+    presentation: Presentation = UNSTATED,
+) -> Iterator[Array]:
+    """Pictures (size, size, 3) in display values, from `count` cameras around the scene.
+
+    The Gaussians' colors are taken for display colors, as scenes that others fitted have them.
+
+    Args:
+        gaussians: the scene; far strays are left outside of the picture.
+        count: cameras on the circle.
+        size: pixels along an edge.
+        elevation: of the cameras, in degrees above the horizon.
+        presentation: where it says nothing, -y is up, the background white, and splats are
+            antialiased unless all are far thinner than a pixel: points, which would vanish.
+
+    Raises:
+        RangeError: no Gaussians, or no such axis.
+    """
+    behind = WHITE if presentation.background is None else presentation.background
+    turn = file_from_upright(presentation.up or USUAL_UP)
+    box = scene_box(gaussians) @ turn  # corners in the upright frame, in any order
+    upright = np.stack([box.min(axis=0), box.max(axis=0)])
+    for camera in orbit_cameras(upright, count, size=size, elevation=elevation):
+        distance = float(np.linalg.norm(camera.position - upright.mean(axis=0)))
+        antialiased = presentation.antialiased
+        if antialiased is None:
+            antialiased = _widest(gaussians) > POINT * distance / camera.fx
+        near = max(1e-6, NEAR * min(1.0, distance))
+        options = SplatOptions(antialiased=antialiased, near=near)
+        pose = camera.world_from_camera.copy()
+        pose[:3] = turn @ pose[:3]
+        turned = Camera(
+            camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy, pose
+        )
+        picture, _ = render(gaussians, turned, background=behind, options=options)
+        yield round_to_8_bits(np.clip(picture.color.astype(np.float64), 0, 1))
+
+
+def _widest(gaussians: Gaussians) -> float:
+    """The largest standard deviation of all, in meters."""
+    return float(np.exp(min(float(gaussians.log_scales.max()), 80.0)))

@@ -1,0 +1,108 @@
+"""Mip maps: a texture and its averages over ever larger squares, and lookups between them.
+
+A mip map is a list of arrays (H, W, C), level 0 the texture itself, each next level half as high
+and wide, rounded down, and at least one texel. Texels of the next level are means over the area
+that they cover, also where the size is odd (cpp/photograd/texture/mip_chain.h).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from photograd._compiled import _core
+from photograd.errors import ShapeError, message
+from photograd.textures.sample import float_array
+from photograd.types import Array
+
+
+def build_mips(texture: Array) -> list[Array]:
+    """All levels of a texture (H, W, C), down to a single texel; level 0 is `texture` itself.
+
+    Raises:
+        DtypeError, ShapeError, RangeError: no such texture.
+    """
+    mips = [_texture("build_mips", "texture", texture)]
+    height, width, channels = mips[0].shape
+    for shape in _core.mip_shapes(height, width)[1:]:
+        mips.append(np.empty((*shape, channels), mips[0].dtype))
+    _core.build_mips(mips)
+    return mips
+
+
+def build_mips_backward(d_mips: Sequence[Array]) -> Array:
+    """dL/dtexture (H, W, C) for dL/dlevel of every level, as `sample_mips_backward` gives them.
+
+    Raises:
+        DtypeError, ShapeError, RangeError: arrays that are no mip map.
+    """
+    name = "build_mips_backward"
+    copies = [_texture(name, f"d_mips[{k}]", level).copy() for k, level in enumerate(d_mips)]
+    _core.build_mips_backward(copies)
+    return copies[0]
+
+
+def mip_level(shape: Sequence[int], footprint: Array) -> Array:
+    """The level (N,) whose texels are as large as the longer side of each footprint.
+
+    Args:
+        shape: (H, W, ...) of level 0.
+        footprint: (N, 2, 2), footprint[:, 0] = (du/dx, dv/dx) and footprint[:, 1] = (du/dy, dv/dy),
+            derivatives of the texture coordinates along the picture's axes, in pixels.
+
+    Returns:
+        (N,) log2 of the longer side in texels, 0 for footprints smaller than one. It is not limited
+        to the levels that there are; `sample_mips` does that.
+
+    Raises:
+        DtypeError, ShapeError, RangeError: other arrays, or numbers that are not finite.
+    """
+    footprint = float_array("mip_level", "footprint", footprint)
+    level: Array = _core.mip_level(int(shape[0]), int(shape[1]), footprint)
+    return level
+
+
+def sample_mips(mips: Sequence[Array], uv: Array, level: Array) -> Array:
+    """Look up points (N, 2) at levels (N,): bilinear in two levels, linear between them.
+
+    Levels are limited to those that there are. Returns (N, C).
+
+    Raises:
+        DtypeError, ShapeError, RangeError: no mip map, arrays that do not fit it, or points or
+            levels that are not finite.
+    """
+    levels = [_texture("sample_mips", f"mips[{k}]", part) for k, part in enumerate(mips)]
+    uv, level = (float_array("sample_mips", n, a) for n, a in (("uv", uv), ("level", level)))
+    out = np.empty((len(uv) if uv.ndim else 0, levels[0].shape[2] if levels else 0), uv.dtype)
+    _core.sample_mips(levels, uv, level, out)
+    return out
+
+
+def sample_mips_backward(
+    mips: Sequence[Array], uv: Array, level: Array, d_color: Array
+) -> tuple[list[Array], Array, Array]:
+    """The adjoint of `sample_mips`.
+
+    Returns:
+        dL/dlevel of every level of the mip map, dL/duv (N, 2), and dL/dlevel (N,), zero where the
+        level is limited. `build_mips_backward` carries the first on to the texture.
+
+    Raises:
+        DtypeError, ShapeError, RangeError: as for `sample_mips`.
+    """
+    name = "sample_mips_backward"
+    levels = [_texture(name, f"mips[{k}]", part) for k, part in enumerate(mips)]
+    uv, level = float_array(name, "uv", uv), float_array(name, "level", level)
+    d_mips = [np.zeros_like(part) for part in levels]
+    d_uv, d_level = np.zeros_like(uv), np.zeros_like(level)
+    d_color = float_array(name, "d_color", d_color)
+    _core.sample_mips_backward(levels, uv, level, d_color, d_mips, d_uv, d_level)
+    return d_mips, d_uv, d_level
+
+
+def _texture(function: str, argument: str, value: Array) -> Array:
+    array = float_array(function, argument, value)
+    if array.ndim != 3:
+        raise ShapeError(message(function, argument, "shape (H, W, C)", array.shape))
+    return array

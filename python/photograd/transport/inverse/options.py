@@ -1,0 +1,101 @@
+"""What a recovery can be told, and what it reports."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from photograd.errors import RangeError, message
+from photograd.transport.scene import Scene
+from photograd.transport.tracer import PathOptions
+from photograd.types import Array
+
+LOSSES = ("relative", "squared")
+
+
+@dataclass(frozen=True)
+class RecoveryOptions:
+    """How unknowns are looked for.
+
+    Attributes:
+        steps: of gradient descent.
+        spp: samples a pixel of each of the two halves of a step (see `cross_loss`); powers of two
+            are spread most evenly.
+        learning_rate: of Adam, in units of logits and logarithms: about what a step changes at
+            first.
+        final_rate: the part of it that is left at the last step; in between it falls evenly, by a
+            factor a step. What noise moves the result about is in proportion to it.
+        loss: "squared" difference of radiance, or "relative": divided by the target plus its
+            channel's mean.
+        views: pictures that a step looks at, drawn at random; 0 looks at all.
+        resample_every: steps after which the tracer is built again where a light is unknown, so
+            that lights and texels are asked as often as their brightness now warrants.
+        path: how light is looked for.
+        seed: of all random numbers, 0 to 2^64 - 1.
+
+    Raises:
+        RangeError: counts below 1, rates that are not positive, an unknown loss.
+    """
+
+    steps: int = 200
+    spp: int = 8
+    learning_rate: float = 0.2
+    final_rate: float = 0.02
+    loss: str = "relative"
+    views: int = 0
+    resample_every: int = 50
+    path: PathOptions = field(default_factory=lambda: PathOptions(max_depth=8))
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        for name, least in (("steps", 1), ("spp", 1), ("views", 0), ("resample_every", 1)):
+            if getattr(self, name) < least:
+                got = getattr(self, name)
+                raise RangeError(message("RecoveryOptions", name, f"at least {least}", got))
+        if not self.learning_rate > 0:
+            got = self.learning_rate
+            raise RangeError(message("RecoveryOptions", "learning_rate", "above 0", got))
+        if not 0 < self.final_rate <= 1:
+            got = self.final_rate
+            raise RangeError(message("RecoveryOptions", "final_rate", "above 0, at most 1", got))
+        if self.loss not in LOSSES:
+            raise RangeError(message("RecoveryOptions", "loss", LOSSES, self.loss))
+        if not 0 <= self.seed < 2**64:
+            raise RangeError(message("RecoveryOptions", "seed", "0 to 2^64 - 1", self.seed))
+
+
+# What a recovery reports: after each step, and when it ends.
+
+
+@dataclass(frozen=True)
+class Progress:
+    """What a progress display gets after a step; `loss` is the running mean of the last ones."""
+
+    step: int
+    steps: int
+    loss: float
+
+
+@dataclass(frozen=True, eq=False)
+class RecoveryResult:
+    """What was found.
+
+    Attributes:
+        params: {name: value} of the unknowns, float64.
+        scene: with these values.
+        history: (steps, 3): step, loss, learning rate. The loss is that of two half pictures: right
+            on average, and below 0 now and then near the end.
+        curves: {name: (steps + 1, k)}, the value before the first and after each step; of more than
+            16 numbers the mean of each channel.
+        step: how many steps were done.
+        finished: whether that is all of them.
+        seconds: of the last run.
+    """
+
+    params: Mapping[str, Array]
+    scene: Scene
+    history: Array
+    curves: Mapping[str, Array]
+    step: int
+    finished: bool
+    seconds: float

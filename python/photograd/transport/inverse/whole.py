@@ -1,0 +1,78 @@
+"""A recovery from beginning to end, in one call."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from photograd.errors import RangeError, message
+from photograd.transport.inverse.job import FILE_NAME, Recovery
+from photograd.transport.inverse.options import Progress, RecoveryOptions, RecoveryResult
+from photograd.transport.inverse.parameters import Unknown
+from photograd.transport.scene import Scene
+
+
+def recover(
+    scene: Scene, targets: Any, unknowns: Sequence[Unknown | str], *,
+    options: RecoveryOptions | None = None, folder: Path | None = None, resume: bool = False,
+    bar: bool = False,
+) -> RecoveryResult:  # fmt: skip
+    """Find parameters of a scene from pictures of it, through all bounces of light.
+
+    Minimises the squared difference of the path traced pictures and the targets with Adam
+    [Kingma2015]. A path traced picture is noisy, and the derivative of a squared error is a product
+    of two things that both contain that noise: how wrong a pixel is, and what changes it. If both
+    come from the same random numbers, the mean of their product is not the product of their means,
+    and the search walks to a place where the picture is darker or smoother than the target, not to
+    the target. Each step therefore draws two half pictures with independent seeds, and each half's
+    derivative is taken of the other half's difference: the gradient is right on average, at any
+    number of samples (`cross_loss`). Inverse path tracing: [Azinovic2019]; the adjoint of a path:
+    [Vicini2021].
+
+    Geometry is not among the unknowns: edges of shadows and silhouettes have no derivative here.
+    Neither is what has an incomplete one (`incomplete.py`): a search would walk away from the
+    truth. For eta of smooth glass, take the rough model, `rough_dielectric`.
+
+    Args:
+        scene: with shapes, cameras and all that is known; for the unknowns a first guess.
+        targets: (H, W, 3) linear radiance as the scene's camera sees it, or `Target`s with cameras
+            of their own, or several of either.
+        unknowns: names among `PathTracer.params`, or `Unknown`s with a start, bounds and rate.
+        options: steps, samples, rates, seed.
+        folder: for the checkpoint, DIR/recovery.npz, written every 30 s and at the end.
+        resume: go on from the checkpoint in `folder`, to the same bits as without interruption.
+        bar: show progress on stderr.
+
+    Returns:
+        Values, the scene with them, losses and curves.
+
+    Raises:
+        RangeError: unknowns that the scene does not have or whose derivative is incomplete, starts
+            out of bounds, a checkpoint of
+            another recovery, a folder that holds one already without `resume`.
+        ShapeError: pictures that their cameras do not take.
+        IoError: a checkpoint that cannot be written, or is not there to resume from.
+        Error: a loss or derivative that is not finite.
+    """
+    job = Recovery(scene, targets, unknowns, options)
+    if folder is not None and not resume and (folder / FILE_NAME).exists():
+        remedy = "resume it, or choose another folder"
+        got = f"one with {FILE_NAME}"
+        raise RangeError(message("recover", "folder", "a folder without a recovery", got, remedy))
+    if resume:
+        if folder is None:
+            raise RangeError(message("recover", "resume", "a folder to resume from", "none"))
+        job.load(folder)
+    if not bar:
+        return job.run(folder)
+    from photograd_course.cli import Column
+    from photograd_course.cli import Progress as Bar
+
+    columns = [Column("loss", "{:.2e}".format)]
+    with Bar("recover", job.options.steps, columns, start=job.step_number) as shown:
+
+        def on_step(now: Progress) -> None:
+            shown.update(now.step, loss=now.loss)
+
+        return job.run(folder, on_step=on_step)

@@ -1,8 +1,0 @@
-"""Files of regular volumes, as scanners and simulations write them; see `read_volume`."""
-
-from __future__ import annotations
-
-from photograd.volumes.read import SUFFIXES, read_volume
-from photograd.volumes.volume import Volume
-
-__all__ = ["SUFFIXES", "Volume", "read_volume"]
