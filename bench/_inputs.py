@@ -290,9 +290,12 @@ def gaussians(count: int) -> dict[str, Array]:
     flat = 0.6 * g.standard_normal((count, 1, 3))
     sh = np.concatenate([flat, 0.08 * g.standard_normal((count, 15, 3))], axis=1)
     arrays = {
-        "means": means, "log_scales": log_scales, "quats": quats,
-        "opacity_logits": opacity_logits, "sh": sh,
-    }  # fmt: skip
+        "means": means,
+        "log_scales": log_scales,
+        "quats": quats,
+        "opacity_logits": opacity_logits,
+        "sh": sh,
+    }
     return {name: np.ascontiguousarray(array, np.float32) for name, array in arrays.items()}
 
 

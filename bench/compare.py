@@ -46,12 +46,14 @@ PEERS = [
     Peer("W1", "open3d", "w1_rays_open3d.py", "o3d"),
     Peer("W2", "mitsuba-llvm", "w2_path_mitsuba.py", "mi", ("--rr-depth", "5")),
     Peer(
-        "W2", "mitsuba-scalar", "w2_path_mitsuba.py", "mi",
+        "W2",
+        "mitsuba-scalar",
+        "w2_path_mitsuba.py",
+        "mi",
         ("--rr-depth", "5", "--variant", "scalar_rgb"),
     ),
     Peer(
-        "W3", "mitsuba-llvm-prb", "w3_adjoint_mitsuba.py", "mi",
-        ("--rr-depth", "5", "--spp", "32"),
+        "W3", "mitsuba-llvm-prb", "w3_adjoint_mitsuba.py", "mi", ("--rr-depth", "5", "--spp", "32")
     ),
     Peer("W4", "numba", "w4_volume_numba.py", "numba"),
     Peer("W4", "drjit-llvm", "w4_volume_drjit.py", "mi"),
@@ -69,7 +71,7 @@ PEERS = [
     Peer("W10", "mitsuba-llvm", "w10_bsdf_mitsuba.py", "mi"),
     Peer("W10", "torch", "w10_bsdf_torch.py", "torch"),
     Peer("W10", "torch-compile", "w10_bsdf_torch.py", "torch", ("--compile", "1")),
-]  # fmt: skip
+]
 VARIANTS: dict[str, list[tuple[str, ...]]] = {
     "w2_path": [("--sphere", ball) for ball in ("principled", "simple")],
     "w3_adjoint": [("--sphere", ball) for ball in ("principled", "simple")],

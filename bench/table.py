@@ -46,12 +46,17 @@ def program_row(runs: Runs, line: Row | None) -> list[str]:
 def part_table(lines: Sequence[Row]) -> str | None:
     """Parts of the forward time, such as primary and bounce rays."""
     rows = [
-        [key, line["peer"], number(time["ours"]), number(time["theirs"]),
-         time["ratio"] if isinstance(time["ratio"], str) else f"{time['ratio']:.2f}"]
+        [
+            key,
+            line["peer"],
+            number(time["ours"]),
+            number(time["theirs"]),
+            time["ratio"] if isinstance(time["ratio"], str) else f"{time['ratio']:.2f}",
+        ]
         for line in lines
         for key, time in line["times"].items()
         if not key.startswith("seconds")
-    ]  # fmt: skip
+    ]
     head = ["part", "program", "ours s", "theirs s", "times ours"]
     return markdown_table(head, rows) if rows else None
 

@@ -37,9 +37,14 @@ def main() -> None:
             "seconds_x_mse": mse * forward["median"],
         }
     _common.report(
-        "W2", args, _estimates.size(args), quality, forward=forward,
-        roulette=args.roulette, sampler=args.sampler,
-    )  # fmt: skip
+        "W2",
+        args,
+        _estimates.size(args),
+        quality,
+        forward=forward,
+        roulette=args.roulette,
+        sampler=args.sampler,
+    )
 
 
 if __name__ == "__main__":

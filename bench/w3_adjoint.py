@@ -34,9 +34,14 @@ def gradient(
     """The loss, its derivative by the texels (64, 64, 3), and by the block's alpha."""
     shape = (tracer.scene.camera.height, tracer.scene.camera.width, 3)
     loss, found = loss_and_gradients(
-        tracer, np.full(shape, GOAL), np.ones(shape), spp=spp, seeds=(2 * seed, 2 * seed + 1),
-        options=replace(options, roulette_from=ROULETTE), spread=spread,
-    )  # fmt: skip
+        tracer,
+        np.full(shape, GOAL),
+        np.ones(shape),
+        spp=spp,
+        seeds=(2 * seed, 2 * seed + 1),
+        options=replace(options, roulette_from=ROULETTE),
+        spread=spread,
+    )
     roughness = float(tracer.params["materials.block.roughness"])
     by_alpha = float(found["materials.block.roughness"]) / (2 * roughness)
     return loss, found["textures.picture"], by_alpha
@@ -58,8 +63,9 @@ def main() -> None:
     found: list[tuple[float, Array, float]] = []
     both, _ = _common.measure(
         lambda: found.append(gradient(tracer, options, args.spp, next(seeds), args.spread)),
-        args.reps, args.warmup,
-    )  # fmt: skip
+        args.reps,
+        args.warmup,
+    )
     quality: dict[str, Any] = {"loss": found[-1][0], "alpha_grad": [row[2] for row in found]}
     truth = _estimates.reference(args.reference, "_texture")
     if truth is not None:
@@ -73,9 +79,16 @@ def main() -> None:
             "alpha_grad_rms_error": float(np.sqrt(np.mean([(a - alpha) ** 2 for *_, a in found]))),
         }
     _common.report(
-        "W3", args, _estimates.size(args), quality, forward=forward, both=both,
-        roulette=args.roulette, sampler=args.sampler, spread=args.spread,
-    )  # fmt: skip
+        "W3",
+        args,
+        _estimates.size(args),
+        quality,
+        forward=forward,
+        both=both,
+        roulette=args.roulette,
+        sampler=args.sampler,
+        spread=args.spread,
+    )
 
 
 if __name__ == "__main__":

@@ -36,9 +36,14 @@ class Volume:
         other = _inputs.volume_grid(n, 0.6)
         self.origins, self.directions = _inputs.orbit_rays(res, views)
         policy = MarchPolicy(
-            CUBE, 1 / n, lattice="entry", quadrature="riemann", border="clamp",
-            density_activation="identity", color_activation="identity",
-        )  # fmt: skip
+            CUBE,
+            1 / n,
+            lattice="entry",
+            quadrature="riemann",
+            border="clamp",
+            density_activation="identity",
+            color_activation="identity",
+        )
         self.settings = policy.settings(0.0)  # no early stop
         self.t0, self.samples = _core.place_samples(self.settings, *self.reversed_rays())
         self.gradient = np.zeros_like(self.grid)

@@ -40,9 +40,14 @@ class Plenoxel:
         i, j, k = self.active.voxels.T
         self.order = number[k, j, i]
         policy = MarchPolicy(
-            CUBE, 1 / n, lattice="entry", quadrature="riemann", border="zero",
-            density_activation="relu", color_activation="relu",
-        )  # fmt: skip
+            CUBE,
+            1 / n,
+            lattice="entry",
+            quadrature="riemann",
+            border="zero",
+            density_activation="relu",
+            color_activation="relu",
+        )
         self.settings = policy.settings(0.0)  # no early stop
         placed = _core.place_samples(self.settings, origins, directions)
         self.rays = (origins, directions, *placed)
@@ -103,13 +108,17 @@ def main() -> None:
         "grad_norm_sh": float(np.linalg.norm(sh)),
     }
     samples = int(work.rays[3].sum(dtype=np.int64))
-    size = {
-        "n": args.n, "voxels": len(work.active), "rays": len(work.target), "samples": samples
-    }  # fmt: skip
+    size = {"n": args.n, "voxels": len(work.active), "rays": len(work.target), "samples": samples}
     _common.report(
-        "W6b", args, size, quality, forward=forward, both=both, inputs=work.inputs,
+        "W6b",
+        args,
+        size,
+        quality,
+        forward=forward,
+        both=both,
+        inputs=work.inputs,
         looked_up=outputs[3],
-    )  # fmt: skip
+    )
 
 
 if __name__ == "__main__":

@@ -104,8 +104,10 @@ def main() -> None:
     more: dict[str, Any] = {
         "bound": _bounds.splat_bound(contributions),
         "unit": {"name": "Gaussian-pixel pair", "count": contributions},
-        "inputs": work.inputs, "pairs": context.prepared.pairs, "grad_norms": norms
-    }  # fmt: skip
+        "inputs": work.inputs,
+        "pairs": context.prepared.pairs,
+        "grad_norms": norms,
+    }
     if args.breakdown:
         more["breakdown"] = breakdown(work, args.reps)
     _common.report("W8", args, size, quality, forward=forward, both=both, **more)

@@ -57,10 +57,13 @@ def frame(number: int, sigma_t: Array, gradient: Array) -> Figure:
         shown = (
             (sigma_t, style.MAGNITUDE_MAP, Normalize(0.0, OPAQUE), r"$\sigma_t$  [1/m]", "max"),
             (
-                gradient, style.signed_colour_map(), style.symmetric_scale(limit),
-                f"{style.GRADIENT} / {style.power_text(limit)}", "both",
+                gradient,
+                style.signed_colour_map(),
+                style.symmetric_scale(limit),
+                f"{style.GRADIENT} / {style.power_text(limit)}",
+                "both",
             ),
-        )  # fmt: skip
+        )
         for k, (values, colors, norm, label, extend) in enumerate(shown):
             left = 0.15 + k * (PANEL + 0.85)
             axes = style.place_axes(figure, left, 0.45, PANEL, PANEL)

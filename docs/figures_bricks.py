@@ -83,9 +83,10 @@ def draw_cells(axes: Axes, cells: Array, gradient: Array, count: int, limit: flo
         PatchCollection(
             squares(cells[met, :2] * side - 1.0, np.full(int(met.sum()), side)),
             facecolors=style.signed_colour_map()(style.symmetric_scale(limit)(gradient[met])),
-            edgecolors=style.FRAME, linewidths=0.35,
+            edgecolors=style.FRAME,
+            linewidths=0.35,
         )
-    )  # fmt: skip
+    )
 
 
 def bricks_figure() -> Figure:
@@ -110,9 +111,12 @@ def bricks_figure() -> Figure:
             axes.set_title(f"{words}: {len(cells):,} cells")
         mappable = ScalarMappable(style.symmetric_scale(limit), style.signed_colour_map())
         style.colour_bar(
-            figure, (4 * PANEL + 0.77, 0.35, 0.12, PANEL), mappable,
-            style.GRADIENT + " a voxel", extend="both",
-        )  # fmt: skip
+            figure,
+            (4 * PANEL + 0.77, 0.35, 0.12, PANEL),
+            mappable,
+            style.GRADIENT + " a voxel",
+            extend="both",
+        )
         style.write_caption(
             figure,
             "The same slice of the same gradient: blue wants matter, red wants less of it, grey is "
@@ -120,8 +124,9 @@ def bricks_figure() -> Figure:
             "wish for the ball that it lacks (dashed) reaches no parameter and is lost. A hash "
             "table with levels covers everything coarsely, and holds finer cells only where voxels "
             "ask for them: the wish is heard first and located later.",
-            left=0.15, right=0.15,
-        )  # fmt: skip
+            left=0.15,
+            right=0.15,
+        )
     return figure
 
 

@@ -39,33 +39,69 @@ BALLS: tuple[tuple[str, str, dict[str, Any]], ...] = (
     ("plastic", "gltf", {**PLASTIC, "roughness": 0.35}),
     ("coated", "clearcoat", {**PLASTIC, "roughness": 0.8, "coat": 1.0, "coat_roughness": 0.15}),
     ("gold", "ggx_conductor", {**METALS["gold"], "roughness": 0.45}),
-    ("brushed", "ggx_anisotropic",
-     {"f0": [0.8, 0.8, 0.85], "roughness": 0.35, "anisotropy": 0.8, "rotation": 0.0}),
+    (
+        "brushed",
+        "ggx_anisotropic",
+        {"f0": [0.8, 0.8, 0.85], "roughness": 0.35, "anisotropy": 0.8, "rotation": 0.0},
+    ),
     ("velvet", "sheen", {"color": [0.3, 0.4, 0.9], "roughness": 0.5}),
     ("plaster, all terms", "oren_nayar_full", {"albedo": [0.7, 0.66, 0.6], "sigma": 0.6}),
-    ("draining film", "gltf_iridescence",
-     {"base_color": [0.3] * 3, "metalness": 1.0, "roughness": 0.7, "iridescence_factor": 1.0,
-      "iridescence_ior": 1.8, "iridescence_thickness": draining_film()}),
+    (
+        "draining film",
+        "gltf_iridescence",
+        {
+            "base_color": [0.3] * 3,
+            "metalness": 1.0,
+            "roughness": 0.7,
+            "iridescence_factor": 1.0,
+            "iridescence_ior": 1.8,
+            "iridescence_thickness": draining_film(),
+        },
+    ),
     ("rough gold, lossy", "ggx_metal", {"f0": GOLD, "roughness": 1.0}),
     ("given back", "ggx_metal_compensated", {"f0": GOLD, "roughness": 1.0}),
-    ("cloth", "gltf_sheen",
-     {"base_color": [0.25, 0.03, 0.04], "metalness": 0.0, "roughness": 0.8,
-      "sheen_color_factor": [0.9, 0.6, 0.6], "sheen_roughness_factor": 0.4}),
-    ("principled", "disney",
-     {"base_color": [0.05, 0.2, 0.35], "subsurface": 0.0, "metalness": 0.3, "specular": 0.5,
-      "specular_tint": 0.5, "roughness": 0.5, "anisotropic": 0.6, "sheen": 0.5,
-      "sheen_tint": 0.5, "clearcoat": 1.0, "clearcoat_gloss": 0.8}),
-)  # fmt: skip
+    (
+        "cloth",
+        "gltf_sheen",
+        {
+            "base_color": [0.25, 0.03, 0.04],
+            "metalness": 0.0,
+            "roughness": 0.8,
+            "sheen_color_factor": [0.9, 0.6, 0.6],
+            "sheen_roughness_factor": 0.4,
+        },
+    ),
+    (
+        "principled",
+        "disney",
+        {
+            "base_color": [0.05, 0.2, 0.35],
+            "subsurface": 0.0,
+            "metalness": 0.3,
+            "specular": 0.5,
+            "specular_tint": 0.5,
+            "roughness": 0.5,
+            "anisotropic": 0.6,
+            "sheen": 0.5,
+            "sheen_tint": 0.5,
+            "clearcoat": 1.0,
+            "clearcoat_gloss": 0.8,
+        },
+    ),
+)
 WHITE: tuple[tuple[str, str, dict[str, Any]], ...] = (
     ("Lambert", "lambert", {"albedo": [1.0] * 3}),
     ("Burley, roughness 1", "burley_diffuse", {"albedo": [1.0] * 3, "roughness": 1.0}),
-    ("glTF, white plastic, 0.5", "gltf",
-     {"base_color": [1.0] * 3, "metalness": 0.0, "roughness": 0.5}),
+    (
+        "glTF, white plastic, 0.5",
+        "gltf",
+        {"base_color": [1.0] * 3, "metalness": 0.0, "roughness": 0.5},
+    ),
     ("GGX mirror, roughness 0.5", "ggx_metal", {"f0": [1.0] * 3, "roughness": 0.5}),
     ("GGX mirror, roughness 1", "ggx_metal", {"f0": [1.0] * 3, "roughness": 1.0}),
     ("the same, given back", "ggx_metal_compensated", {"f0": [1.0] * 3, "roughness": 1.0}),
     ("sheen, roughness 0.5", "sheen", {"color": [1.0] * 3, "roughness": 0.5}),
-)  # fmt: skip
+)
 
 
 def hemisphere(heights: int = 64, turns: int = 512) -> tuple[Array, Array]:
@@ -144,8 +180,9 @@ def bsdf_figure() -> Figure:
             "grazing angles. Right: more roughness would dim the middle of the highlight (blue) "
             "and light a ring around it (red); an error in the picture pulls roughness one way "
             "or the other by where it lies.",
-            left=left, right=left,
-        )  # fmt: skip
+            left=left,
+            right=left,
+        )
     return figure
 
 

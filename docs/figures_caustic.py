@@ -75,9 +75,11 @@ def caustic_figure() -> Figure:
     landed = table_irradiance(PathTracer(scene(8)), SIZE, 4 * PARTICLES).mean
     panels.append(np.clip(landed / np.quantile(landed, 0.995), 0, 1))
     titles = (
-        "camera paths", f"photons within {100 * BLURS[0]:.0f} cm",
-        f"photons within {100 * BLURS[1]:.0f} cm", "irradiance of the table",
-    )  # fmt: skip
+        "camera paths",
+        f"photons within {100 * BLURS[0]:.0f} cm",
+        f"photons within {100 * BLURS[1]:.0f} cm",
+        "irradiance of the table",
+    )
     with style.house_style():
         figure = style.new_figure(4 * side + 3 * gap + 2 * left, 3.3)
         for column, (title, image) in enumerate(zip(titles, panels, strict=True)):
@@ -93,8 +95,9 @@ def caustic_figure() -> Figure:
             "from the lamp, and in the middle of the shadow they bring several times the light of "
             "the open table. A wide radius blurs that patch, a small one shows how few photons are "
             "left.",
-            left=left, right=left,
-        )  # fmt: skip
+            left=left,
+            right=left,
+        )
     return figure
 
 

@@ -20,8 +20,10 @@ Array = NDArray[Any]
 IMAGES = Path(__file__).with_name("images")
 SIZE, SPP = 128, 96
 WALL, TINT, ROUGHNESS = (
-    "materials.red.albedo[0]", "materials.glass.tint", "materials.copper.roughness",
-)  # fmt: skip
+    "materials.red.albedo[0]",
+    "materials.glass.tint",
+    "materials.copper.roughness",
+)
 
 
 def derivatives(size: int = SIZE, spp: int = SPP) -> tuple[Array, dict[str, Array]]:
@@ -59,8 +61,9 @@ def derivative_figure() -> Figure:
             "darkens nothing; glass counts where it is seen through, in its shadow and its bright "
             "patch. Rougher copper takes light from the middle of its highlights and gives it to "
             "their surroundings.",
-            left=left, right=left,
-        )  # fmt: skip
+            left=left,
+            right=left,
+        )
     return figure
 
 

@@ -68,9 +68,14 @@ def half_space(inside: Medium, light: Any, *, eta: float = 1.0) -> Scene:
     glass = {"surface": Material("glass", {"eta": eta, "tint": [1.0, 1.0, 1.0]})}
     seen = camera_at([0, 0, 1], [0, 0, 0], 1.0, 1, 1)  # nothing is seen: particles are counted
     return Scene(
-        "half space", (slab,), {} if eta == 1 else glass, seen, None, (light,),
+        "half space",
+        (slab,),
+        {} if eta == 1 else glass,
+        seen,
+        None,
+        (light,),
         media={"inside": inside},
-    )  # fmt: skip
+    )
 
 
 def walks(inside: Medium) -> ParticleOptions:
@@ -98,9 +103,15 @@ DIFFUSE = QuadLight([-2e-4, 2e-4, 3e-3], [4e-4, 0, 0], [0, -4e-4, 0], [1.0, 1.0,
 
 
 def walk(
-    albedo: float, sensor: Receiver, light: Any = BEAM, *, particles: int, seed: int,
-    eta: float = 1.0, g: float = 0.0,
-) -> Walk:  # fmt: skip
+    albedo: float,
+    sensor: Receiver,
+    light: Any = BEAM,
+    *,
+    particles: int,
+    seed: int,
+    eta: float = 1.0,
+    g: float = 0.0,
+) -> Walk:
     """Particles of the path tracer into a half space, counted in the cells of a sensor."""
     inside = medium(albedo, g)
     tracer = PathTracer(half_space(inside, light, eta=eta), dtype=np.float64)
@@ -265,9 +276,15 @@ def curves(axes: Any, albedo: float, found: Walk) -> None:
     # The mean over a ring stands where such a profile has its mean, not in the middle.
     places = np.interp(-normalized_rings(surface) / areas, -fitted, r)
     axes.errorbar(
-        places, found.parts / areas, 2 * found.errors / areas, fmt="o", color="0.15", ms=3,
-        lw=1, label="random walk",
-    )  # fmt: skip
+        places,
+        found.parts / areas,
+        2 * found.errors / areas,
+        fmt="o",
+        color="0.15",
+        ms=3,
+        lw=1,
+        label="random walk",
+    )
     axes.set(xscale="log", yscale="log", xlim=(0.05, 11), ylim=(1e-6, 10))
     axes.set_title(f"albedo {albedo}")
     axes.set_xlabel("distance, mean free paths")

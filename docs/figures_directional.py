@@ -61,13 +61,21 @@ def draw(axes: Axes, functions: Functions) -> None:
     harmonics = [best_harmonics(functions, degree) for degree in DEGREES]
     tables = [best_table(functions, rows) for rows in ROWS]
     axes.loglog(
-        [table_numbers(rows) for rows in ROWS], tables, "s-", color=style.GREY, markersize=3,
+        [table_numbers(rows) for rows in ROWS],
+        tables,
+        "s-",
+        color=style.GREY,
+        markersize=3,
         label="table",
-    )  # fmt: skip
+    )
     axes.loglog(
-        [sh.count(degree) for degree in DEGREES], harmonics, "o-", color=style.BLUE, markersize=3,
+        [sh.count(degree) for degree in DEGREES],
+        harmonics,
+        "o-",
+        color=style.BLUE,
+        markersize=3,
         label="harmonics",
-    )  # fmt: skip
+    )
     axes.set(
         ylim=(0.01, 1), xlabel="numbers a channel", xticks=[1, 4, 16, 64], yticks=[0.01, 0.1, 1]
     )
@@ -92,8 +100,9 @@ def draw_all() -> None:
             "Error of the best table (1 to 10 rows, twice as many columns, blended) and of the "
             "best harmonics (degree 0 to 4): root mean square over the sphere, in shares of the "
             "function's. Both are slow with what is sharp.",
-            left=0.15, right=0.15,
-        )  # fmt: skip
+            left=0.15,
+            right=0.15,
+        )
         save_figure(figure, IMAGES / "directional_grid.png")
 
 

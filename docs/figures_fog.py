@@ -56,9 +56,14 @@ def hall() -> Bvh:
 def rays(size: int) -> RayBatch:
     """From the open front into the far left corner."""
     camera = Camera(
-        size, size, 0.82 * size, 0.82 * size, size / 2, size / 2,
+        size,
+        size,
+        0.82 * size,
+        0.82 * size,
+        size / 2,
+        size / 2,
         look_at(np.array([3.1, 1.5, 6.2]), np.array([-1.3, 1.75, -1.2])),
-    )  # fmt: skip
+    )
     origins, directions = camera.rays()
     return RayBatch(origins, directions, np.arange(len(origins), dtype=np.uint32))
 
@@ -81,9 +86,16 @@ def dusty_hall(solids: Bvh, voxel: float) -> SunlitMedium:
     """The same dust everywhere in the hall."""
     x, y, z = np.round((HALL[1] - HALL[0]) / voxel).astype(int).tolist()
     return SunlitMedium.homogeneous(
-        SIGMA_T, (x, y, z), HALL, voxel / 2, albedo=(0.95, 0.95, 0.95), g=0.55,
-        irradiance=IRRADIANCE, sun=SUN, solids=solids,
-    )  # fmt: skip
+        SIGMA_T,
+        (x, y, z),
+        HALL,
+        voxel / 2,
+        albedo=(0.95, 0.95, 0.95),
+        g=0.55,
+        irradiance=IRRADIANCE,
+        sun=SUN,
+        solids=solids,
+    )
 
 
 def computed(size: int = SIZE, voxel: float = VOXEL) -> dict[str, Array]:
@@ -103,9 +115,10 @@ def computed(size: int = SIZE, voxel: float = VOXEL) -> dict[str, Array]:
     d_sigma_t = medium.render_backward(context, mean)["sigma_t"]
     middle = d_sigma_t.shape[2] // 2
     pictures = {
-        "clear": behind, "scattered": outputs.color,
+        "clear": behind,
+        "scattered": outputs.color,
         "dusty": outputs.color + (1 - outputs.opacity)[:, None] * behind,
-    }  # fmt: skip
+    }
     slices = {"light": medium.light()[0], "derivative": d_sigma_t / voxel**3}
     return {name: image.reshape(size, size, 3) for name, image in pictures.items()} | {
         name: volume[:, :, middle] for name, volume in slices.items()
@@ -124,10 +137,13 @@ def main() -> None:
         for axes, name in zip(panels, ("clear", "dusty"), strict=False):
             axes.imshow(srgb_encode(np.clip(found[name], 0, 1)), interpolation="nearest")
         panels[2].imshow(
-            layer.T, origin="lower", extent=(-4, 4, 0, 4), cmap=style.signed_colour_map(),
+            layer.T,
+            origin="lower",
+            extent=(-4, 4, 0, 4),
+            cmap=style.signed_colour_map(),
             norm=style.symmetric_scale(float(np.quantile(np.abs(layer), 0.995))),
             interpolation="nearest",
-        )  # fmt: skip
+        )
         titles = "clear air", "dust in the air", "where more dust brightens or dims"
         for axes, title in zip(panels, titles, strict=True):
             axes.set(xticks=[], yticks=[], title=title)
@@ -137,8 +153,9 @@ def main() -> None:
             "the camera. Right: the derivative of the picture's mean scattered light by sigma_t "
             "(red: positive, blue: negative), in the upright plane through the middle window. Dust "
             "in a shaft brightens; dust in the dark can only dim what lies behind it.",
-            left=0.15, right=0.15,
-        )  # fmt: skip
+            left=0.15,
+            right=0.15,
+        )
         save_figure(figure, PICTURE)
 
 

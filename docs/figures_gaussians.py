@@ -88,8 +88,9 @@ def main(folder: Path = IMAGES) -> None:
             found = view_gradients(scene, views, VIEW)
             if fit.step_number in SHOWN:
                 rows[fit.step_number] = (
-                    found, grad2d_picture(scene.gaussians, found.grad2d, camera),
-                )  # fmt: skip
+                    found,
+                    grad2d_picture(scene.gaussians, found.grad2d, camera),
+                )
             frames.append(frame(fit.step_number, found, blobs(scene.gaussians, camera)))
         if fit.step_number == STEPS:
             break

@@ -102,8 +102,10 @@ def computed(
         field = fit(picture, count=count, steps=duration, batch=batch, round_ones=name == "round")
         image = draw(field, len(picture))
         found[name] = {
-            "field": field, "picture": image, "psnr": psnr(image, picture.astype(image.dtype))
-        }  # fmt: skip
+            "field": field,
+            "picture": image,
+            "psnr": psnr(image, picture.astype(image.dtype)),
+        }
     return found
 
 
@@ -114,10 +116,16 @@ def outline(axes: Axes, field: Gaussians2D) -> None:
     color = np.clip(field.params["color"][seen], 0, 1)
     axes.set(xlim=(0, 1), ylim=(1, 0), aspect="equal", facecolor="black")
     ellipses = EllipseCollection(
-        2 * scale[:, 0], 2 * scale[:, 1], np.degrees(angle), units="xy",
-        offsets=field.params["mean"][seen], offset_transform=axes.transData,
-        facecolors="none", edgecolors=color, linewidths=0.6,
-    )  # fmt: skip
+        2 * scale[:, 0],
+        2 * scale[:, 1],
+        np.degrees(angle),
+        units="xy",
+        offsets=field.params["mean"][seen],
+        offset_transform=axes.transData,
+        facecolors="none",
+        edgecolors=color,
+        linewidths=0.6,
+    )
     axes.add_collection(ellipses)
 
 
@@ -160,8 +168,9 @@ def main() -> None:
             f"down along edges; as many that must stay round reach {found['round']['psnr']:.1f} "
             "dB. In three dimensions the formula is the same; a camera makes the ellipses, and "
             "depth the order.",
-            left=0.15, right=0.15,
-        )  # fmt: skip
+            left=0.15,
+            right=0.15,
+        )
         save_figure(figure, PICTURE)
 
 

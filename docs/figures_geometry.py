@@ -137,9 +137,11 @@ def draw_culling(axes: Axes) -> None:
             PatchCollection(patches, facecolors=color, edgecolors=edge, linewidths=width)
         )
     far = camera.position + 14.0 * np.array(
-        [camera.forward + side * np.tan(np.radians(20)) * camera.world_from_camera[:3, 0]
-         for side in (-1, 1)]
-    )  # fmt: skip
+        [
+            camera.forward + side * np.tan(np.radians(20)) * camera.world_from_camera[:3, 0]
+            for side in (-1, 1)
+        ]
+    )
     view = np.array([camera.position, *far])[:, [0, 2]]
     axes.add_collection(PolyCollection([view], facecolors="none", edgecolors=style.INK))
     axes.set(xlim=(-11, 11), ylim=(11, -11), aspect="equal")
@@ -229,8 +231,9 @@ def geometry_figure() -> Figure:
             "have no order until they are cut. An octree drops whole cells (thin lines) that lie "
             "beside the view. Far away, fewer triangles do. A body of signed distances has a "
             "derivative at every hit: where the seam is wider, the surface comes nearer (blue).",
-            left=LEFT, right=LEFT,
-        )  # fmt: skip
+            left=LEFT,
+            right=LEFT,
+        )
     return figure
 
 

@@ -89,9 +89,10 @@ def floor(light: Light | ByArea, samples: int = 64) -> Array:
 def sky() -> Array:
     """A made-up map (HEIGHT, 2 HEIGHT, 3): evening sky, low sun, a lit window, a dark ground."""
     v, u = np.meshgrid(
-        (np.arange(HEIGHT) + 0.5) / HEIGHT, (np.arange(2 * HEIGHT) + 0.5) / (2 * HEIGHT),
+        (np.arange(HEIGHT) + 0.5) / HEIGHT,
+        (np.arange(2 * HEIGHT) + 0.5) / (2 * HEIGHT),
         indexing="ij",
-    )  # fmt: skip
+    )
     up = np.clip(1.0 - 2.0 * v, 0.0, 1.0)[..., None]
     image = (1 - up) * np.array([0.9, 0.55, 0.35]) + up * np.array([0.15, 0.3, 0.7])
     image = np.where((v > 0.5)[..., None], np.array([0.12, 0.1, 0.08]), image)
@@ -188,10 +189,13 @@ def lights_figure() -> Figure:
         for at, wide, title, image, extent in (
             (3.85, low, "spot by softness", by_softness(), None),
             (
-                5.7, 1.5, "a point by texels", by_texels(light, np.array([0.0, 0.6, 0.8])),
+                5.7,
+                1.5,
+                "a point by texels",
+                by_texels(light, np.array([0.0, 0.6, 0.8])),
                 (0, 2, 1, 0),
             ),
-        ):  # fmt: skip
+        ):
             scale = style.symmetric_scale(float(np.quantile(np.abs(image), 0.999)))
             high = wide if extent is None else wide / 2
             axes = style.place_axes(figure, left + at, 2.35, wide, high)
@@ -207,8 +211,9 @@ def lights_figure() -> Figure:
             "where it is bright (a fifth goes everywhere), and a ball lit by them. Where a softer "
             "spot would lose light (blue). What one point, facing up and towards the middle of the "
             "map, asks of the texels: the cosine's lobe, found by samples.",
-            left=left, right=left,
-        )  # fmt: skip
+            left=left,
+            right=left,
+        )
     return figure
 
 

@@ -100,9 +100,14 @@ def fog(size: int, *, clear: bool = False) -> Scene:
     camera = camera_at([0.0, 1.1, 4.6], [0.0, 0.8, 0.0], 38.0, size, size)
     media = {} if clear else {"fog": Medium(0.16, 0.95, values={"g": 0.4})}
     return Scene(
-        "fog", shapes if clear else (*shapes, air), {"stone": stone}, camera,
-        Environment.constant([0.02, 0.03, 0.05]), (lamp,), media=media,
-    )  # fmt: skip
+        "fog",
+        shapes if clear else (*shapes, air),
+        {"stone": stone},
+        camera,
+        Environment.constant([0.02, 0.03, 0.05]),
+        (lamp,),
+        media=media,
+    )
 
 
 def billows(n: int = 56) -> SparseGrid:
@@ -215,8 +220,9 @@ def media_figure() -> Figure:
             "dims the lit stone behind. A cloud takes light from the field; a denser one is "
             "brighter. Light that has come through wax is redder than the lamp behind; if wax "
             "scatters more, no pixel falls.",
-            left=left, right=left,
-        )  # fmt: skip
+            left=left,
+            right=left,
+        )
     return figure
 
 

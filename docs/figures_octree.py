@@ -74,9 +74,11 @@ def draw_quadtree(axes: Axes, depth: int) -> None:
     axes.add_collection(
         PatchCollection(
             squares(lower * cell, side * cell),
-            facecolors=colors, edgecolors=style.GUIDE, linewidths=0.8 if depth < 6 else 0.4,
+            facecolors=colors,
+            edgecolors=style.GUIDE,
+            linewidths=0.8 if depth < 6 else 0.4,
         )
-    )  # fmt: skip
+    )
     axes.set(xlim=(0, 1), ylim=(0, 1), xticks=[], yticks=[], aspect="equal")
     axes.set_title(f"{1 << depth} × {1 << depth} cells: {len(side)} leaves")
 
@@ -112,8 +114,9 @@ def quadtree_figure() -> Figure:
             "A square is cut into four until it is empty (white) or full (blue), or one cell. "
             "Small squares are needed along the outline alone: twice the resolution takes twice "
             "as many leaves, but four times as many cells.",
-            left=0.15, right=0.15,
-        )  # fmt: skip
+            left=0.15,
+            right=0.15,
+        )
     return figure
 
 
@@ -156,8 +159,9 @@ def draw_slice(axes: Axes, tree: Octree, gradient: Array, limit: float, layer: i
     collection = PatchCollection(
         squares(lower[met, :2] * cell - 1.0, side[met] * cell),
         facecolors=style.signed_colour_map()(style.symmetric_scale(limit)(gradient[met])),
-        edgecolors=style.FRAME, linewidths=0.35,
-    )  # fmt: skip
+        edgecolors=style.FRAME,
+        linewidths=0.35,
+    )
     axes.add_collection(collection)
 
 
@@ -167,9 +171,15 @@ def outline_balls(axes: Axes, z: float, color: str = style.INK, *, all_known: bo
         cut = np.sqrt(max(radius**2 - (z - centre[2]) ** 2, 0.0))
         lacking = number == len(BALLS) - 1 and not all_known
         axes.add_patch(
-            Circle(centre[:2], cut, fill=False, edgecolor=color, linewidth=1.1,
-                   linestyle="--" if lacking else "-")
-        )  # fmt: skip
+            Circle(
+                centre[:2],
+                cut,
+                fill=False,
+                edgecolor=color,
+                linewidth=1.1,
+                linestyle="--" if lacking else "-",
+            )
+        )
 
 
 def photographs(size: int) -> TrainingPixels:
@@ -200,9 +210,12 @@ def octree_figure() -> Figure:
             for k in range(3)
         ]
         panels[0].imshow(
-            d_sigma_t[:, :, layer, 0].T, origin="lower", extent=(-1, 1, -1, 1),
-            cmap=style.signed_colour_map(), norm=style.symmetric_scale(limit),
-        )  # fmt: skip
+            d_sigma_t[:, :, layer, 0].T,
+            origin="lower",
+            extent=(-1, 1, -1, 1),
+            cmap=style.signed_colour_map(),
+            norm=style.symmetric_scale(limit),
+        )
         panels[0].set_title(f"by voxel: {RESOLUTION**3:,} numbers")
         for axes, tree, words in (
             (panels[1], known, "leaves of the model"),
@@ -217,9 +230,12 @@ def octree_figure() -> Figure:
             axes.set(xlim=(-1, 1), ylim=(-1, 1), xticks=[], yticks=[], aspect="equal")
         mappable = ScalarMappable(style.symmetric_scale(limit), style.signed_colour_map())
         style.colour_bar(
-            figure, (3 * PANEL + 0.62, 0.35, 0.12, PANEL), mappable,
-            style.GRADIENT + " a voxel", extend="both",
-        )  # fmt: skip
+            figure,
+            (3 * PANEL + 0.62, 0.35, 0.12, PANEL),
+            mappable,
+            style.GRADIENT + " a voxel",
+            extend="both",
+        )
         style.write_caption(
             figure,
             "A slice through the gradient of a loss: blue wants matter, red wants less of it. The "
@@ -227,8 +243,9 @@ def octree_figure() -> Figure:
             "octree has only large, empty leaves there; the gradient of a leaf is the sum over its "
             "voxels, in which wishes of both signs cancel. Where topology is fixed, it takes the "
             "voxels' own gradient to see where to cut.",
-            left=0.15, right=0.15,
-        )  # fmt: skip
+            left=0.15,
+            right=0.15,
+        )
     return figure
 
 

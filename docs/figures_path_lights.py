@@ -91,8 +91,9 @@ def path_lights_figure() -> Figure:
             "the sky. Where the sun should be (circle) it asks for more light (blue), where it is "
             "(cross) for less (red). What lies below the table's horizon is seen by reflections "
             "alone, and says little.",
-            left=left, right=left,
-        )  # fmt: skip
+            left=left,
+            right=left,
+        )
     return figure
 
 

@@ -129,9 +129,14 @@ def sh_figure() -> Figure:
         axes.set(xlim=(-1.1, 1.1), ylim=(-0.55, 0.55), xticks=[], yticks=[], aspect="equal")
         axes.set_title("gradient of the harmonics of degree 0 and 1, one slice")
         axes.annotate(
-            "brighter\nfrom here", (-0.04, 0.0), (0.11, -0.1), color=style.INK, ha="center",
-            va="top", arrowprops={"arrowstyle": "->", "color": style.INK, "relpos": (0.5, 1.0)},
-        )  # fmt: skip
+            "brighter\nfrom here",
+            (-0.04, 0.0),
+            (0.11, -0.1),
+            color=style.INK,
+            ha="center",
+            va="top",
+            arrowprops={"arrowstyle": "->", "color": style.INK, "relpos": (0.5, 1.0)},
+        )
         style.write_caption(
             figure,
             "Each glyph shows dL/dcolour of one cell by the direction of the viewer: a blue lobe "
@@ -140,8 +145,9 @@ def sh_figure() -> Figure:
             "ask for just that: those on its right to look brighter, those on its left darker, for "
             "each hears only from the cameras that see it. Cells inside are seen by no ray and "
             "stay silent. The right ball looks the same from everywhere, as the model has it.",
-            left=0.15, right=0.15,
-        )  # fmt: skip
+            left=0.15,
+            right=0.15,
+        )
     return figure
 
 

@@ -116,9 +116,15 @@ def prune(fit: Fit, *, dilate: bool) -> None:
 def run(name: str, photographs: Capture, policy: str) -> Curve:
     """Fit under one policy: "keep", "prune" or "dilate"."""
     options = FitOptions(
-        representation="sparse_sh", resolution=RESOLUTION, steps=STEPS, rays=2048, degree=0,
-        refine_at=(0.0, 0.0), prune=0.0, total_variation=0.0,
-    )  # fmt: skip
+        representation="sparse_sh",
+        resolution=RESOLUTION,
+        steps=STEPS,
+        rays=2048,
+        degree=0,
+        refine_at=(0.0, 0.0),
+        prune=0.0,
+        total_variation=0.0,
+    )
     fit = Fit.start(photographs, options)
     steps, psnr, share = [], [], []
     while True:
@@ -179,8 +185,9 @@ def figure(found: list[Curve]) -> Figure:
             f"growing by a voxel every {AGAIN} steps, ends at {grown.psnr[-1]:.1f} dB with "
             f"{100 * grown.share[-1]:.0f} % of the voxels. Second row: those that exist at the "
             "end, seen along Z.",
-            left=0.15, right=0.15,
-        )  # fmt: skip
+            left=0.15,
+            right=0.15,
+        )
     return page
 
 

@@ -116,8 +116,9 @@ def texture_maps_figure() -> Figure:
             "texels of their maps, or of every pixel by 256 rays; the boxes have no map. "
             "Below: a checkerboard out to the horizon. Between the levels of a mip map one sample "
             "is grey where many would be; a little nearer it is blurred where they are not.",
-            left=left, right=left,
-        )  # fmt: skip
+            left=left,
+            right=left,
+        )
     return figure
 
 

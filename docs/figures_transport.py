@@ -52,10 +52,12 @@ def transport_figure() -> Figure:
     above = (
         ("all bounces", picture("cornell-box", SPP)),
         ("direct light", picture("cornell-box", SPP, max_depth=2)),
-        ("added by bounces, doubled",
-         2 * (picture("cornell-box", SPP) - picture("cornell-box", SPP, max_depth=2))),
+        (
+            "added by bounces, doubled",
+            2 * (picture("cornell-box", SPP) - picture("cornell-box", SPP, max_depth=2)),
+        ),
         ("copper and glass", picture("cornell-spheres", 4 * SPP)),
-    )  # fmt: skip
+    )
     below = tuple(
         (title, picture("cornell-spheres", FEW, strategy=strategy))
         for title, strategy in (
@@ -87,8 +89,9 @@ def transport_figure() -> Figure:
             "in the copper ball's highlight alone; what only a path through glass can find (the "
             "bright patch under the ball) is noisy for all. Right: a redder wall brightens itself "
             "most, and through its light all that faces it.",
-            left=left, right=left,
-        )  # fmt: skip
+            left=left,
+            right=left,
+        )
     return figure
 
 

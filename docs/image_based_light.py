@@ -32,8 +32,11 @@ SKIES = ("studio", "city")
 IMAGE = "image_based_light.png"
 
 WHITE: dict[str, Any] = {"base_color": np.ones(3), "metalness": 0.0, "reflectance": 0.0}
-SILVER: dict[str, Any] = {"base_color": np.array([0.95, 0.93, 0.88]), "metalness": 1.0,
-                          "reflectance": 0.5}  # fmt: skip
+SILVER: dict[str, Any] = {
+    "base_color": np.array([0.95, 0.93, 0.88]),
+    "metalness": 1.0,
+    "reflectance": 0.5,
+}
 VARNISH: dict[str, Any] = {"base_color": np.zeros(3), "metalness": 0.0, "reflectance": 0.5}
 """A dielectric's lobe over black."""
 
@@ -92,9 +95,13 @@ def on_ball(camera: Camera, points: int = 6) -> tuple[Array, NDArray[np.bool_]]:
 
 
 def split_sum(
-    tables: PrefilteredLight, values: dict[str, Any], roughness: float, size: int, *,
+    tables: PrefilteredLight,
+    values: dict[str, Any],
+    roughness: float,
+    size: int,
+    *,
     leaning: bool = True,
-) -> Any:  # fmt: skip
+) -> Any:
     """The picture from the tables, (H, W, 3)."""
     camera = ball_camera(size)
     n, _ = on_ball(camera)
@@ -126,9 +133,13 @@ class Comparison:
 
 
 def compare(
-    light: Light, tables: PrefilteredLight, values: dict[str, Any], roughness: float,
-    size: int = SIZE, spp: int = SPP,
-) -> Comparison:  # fmt: skip
+    light: Light,
+    tables: PrefilteredLight,
+    values: dict[str, Any],
+    roughness: float,
+    size: int = SIZE,
+    spp: int = SPP,
+) -> Comparison:
     """Path traced, and from the tables."""
     material = Material("standard", {**values, "roughness": roughness})
     brute, noise = traced(light, material, size, spp)
@@ -208,9 +219,12 @@ def figure_of(shown: list[tuple[str, Comparison]]) -> Figure:
             rows: tuple[tuple[str, Array, dict[str, Any]], ...] = (
                 ("all directions", display(np.where(inside, exposure * found.brute, 1.0)), {}),
                 ("three tables", display(np.where(inside, exposure * found.split, 1.0)), {}),
-                ("difference", np.where(masks[column], gap_of, 0.0), {
-                    "norm": style.symmetric_scale(limit), "cmap": style.signed_colour_map()}),
-            )  # fmt: skip
+                (
+                    "difference",
+                    np.where(masks[column], gap_of, 0.0),
+                    {"norm": style.symmetric_scale(limit), "cmap": style.signed_colour_map()},
+                ),
+            )
             for row, (name, image, options) in enumerate(rows):
                 x, y = left + column * (side + gap), 0.35 + row * (side + gap)
                 axes = style.place_axes(figure, x, y, side, side)
@@ -228,6 +242,7 @@ def figure_of(shown: list[tuple[str, Comparison]]) -> Figure:
             " of the ball's mean. Matt surfaces agree, and a smooth one nearly does. The true lobe "
             "of rougher ones is long and thin towards the rim, where the table's is round. That "
             "the roughest lean from the mirrored view towards the normal is allowed for.",
-            left=left, right=0.15,
-        )  # fmt: skip
+            left=left,
+            right=0.15,
+        )
     return figure

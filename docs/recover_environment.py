@@ -87,10 +87,11 @@ def targets_of(scene: Scene, views: list[Camera], spp: int) -> list[Target]:
     return [
         Target(
             tracer.render(spp=spp, seed=200 + k, options=PATH, camera=view).mean,
-            view, shows_ball(view),
+            view,
+            shows_ball(view),
         )
         for k, view in enumerate(views)
-    ]  # fmt: skip
+    ]
 
 
 def search(truth: Array, count: int, options: RecoveryOptions, size: int, spp: int) -> Recovery:
@@ -175,8 +176,9 @@ def measure(data: Path) -> tuple[list[str], Figure]:
     mean = [float(share[band].mean() / share.mean()) for band in bands(ROWS)]
     lines.append(
         "| light that one view shows, by solid angle, of the mean | "
-        + " | ".join(f"{x:.2f}" for x in mean) + " | 1 | |"
-    )  # fmt: skip
+        + " | ".join(f"{x:.2f}" for x in mean)
+        + " | 1 | |"
+    )
     return lines, environment_figure(truth, jobs[1], first_gradient(jobs[1]), results)
 
 
@@ -217,6 +219,7 @@ def environment_figure(
             "the first step asks for light (blue) where the lamps are and for less (red) where it "
             "is dark. It is silent at the edges: one picture says nothing of the lamp straight "
             "behind the ball, and the map found from it does not have it. Two more pictures do.",
-            left=left, right=left,
-        )  # fmt: skip
+            left=left,
+            right=left,
+        )
     return figure

@@ -110,9 +110,13 @@ def painted(shape: MeshShape, model: str, texels: Array, cameras: Any, **values:
     )
     light = EnvironmentMap(evening_map(32), uniform_share=0.1)
     scene = Scene(
-        shape.name, (replace(shape, material="paint"),), {"paint": material}, cameras[0],
-        lights=(light,), textures={"paint": Texture(texels, ("clamp", "clamp"))},
-    )  # fmt: skip
+        shape.name,
+        (replace(shape, material="paint"),),
+        {"paint": material},
+        cameras[0],
+        lights=(light,),
+        textures={"paint": Texture(texels, ("clamp", "clamp"))},
+    )
     return Case(shape.name, scene, tuple(cameras))
 
 
@@ -121,9 +125,13 @@ def tile(data: Path, size: int = SIZE) -> Case:
     shape = rectangle("tile", [-0.5, 0, 0.5], [1, 0, 0], [0, 0, -1], "paint")
     # Three of them across from the sun, where the varnish shows it.
     eyes = (
-        [0.9, 0.7, 0.9], [-1.1, 0.5, 0.4], [-0.3, 0.9, -1.0],
-        [-1.0, 0.55, -0.7], [-0.8, 0.45, -1.0], [-1.15, 0.65, -0.35],
-    )  # fmt: skip
+        [0.9, 0.7, 0.9],
+        [-1.1, 0.5, 0.4],
+        [-0.3, 0.9, -1.0],
+        [-1.0, 0.55, -0.7],
+        [-0.8, 0.45, -1.0],
+        [-1.15, 0.65, -0.35],
+    )
     cameras = [camera_at(eye, [0, 0, 0], 42.0, size, size) for eye in eyes]
     texels = photograph(data / "textures" / "coffee.png", 32)
     return painted(shape, "standard", texels, cameras, metalness=0.0, roughness=0.35)
@@ -133,9 +141,10 @@ def globe(data: Path, size: int = SIZE) -> Case:
     """A painted metal globe."""
     shape = globe_mesh()
     cameras = [
-        camera for elevation in (15.0, 50.0)
+        camera
+        for elevation in (15.0, 50.0)
         for camera in orbit_cameras(shape.box, 5, size=size, elevation=elevation)
-    ]  # fmt: skip
+    ]
     texels = photograph(data / "textures" / "chelsea.png", 32)
     return painted(shape, "gltf", texels, cameras, metalness=1.0, roughness=0.45)
 
@@ -265,6 +274,7 @@ def materials_figure(drawn: list[tuple[Case, Array, Array, RecoveryResult]]) -> 
             "under a known sky. The derivative of the loss by each texel before the first step "
             "already draws the texture: blue asks for more, red for less. Texels that no "
             "camera sees are white, and stay as they were (grey in the found textures).",
-            left=left, right=left,
-        )  # fmt: skip
+            left=left,
+            right=left,
+        )
     return figure

@@ -27,8 +27,12 @@ Array = NDArray[Any]
 Reflectance = Callable[[Array, Array], Array]
 """(wo, wi), (N, 3) each, to (N, 3), without the cosine."""
 MODELS = registry()
-FITTED = {"blinn_phong": "Blinn-Phong", "cook_torrance": "Cook-Torrance",
-          "ggx_metal": "GGX metal", "disney": "principled (2012)"}  # fmt: skip
+FITTED = {
+    "blinn_phong": "Blinn-Phong",
+    "cook_torrance": "Cook-Torrance",
+    "ggx_metal": "GGX metal",
+    "disney": "principled (2012)",
+}
 MATERIALS = ("nickel", "gold-metallic-paint", "red-plastic", "blue-rubber")
 FIXED = {"disney": {"anisotropic": 0.0, "sheen_tint": 0.5}}
 PAIRS, STEPS, RATE = 4096, 500, 0.1
@@ -43,10 +47,12 @@ def measured(data: Path, name: str) -> Reflectance:
     with np.load(data / "materials" / "merl_nbrdf.npz") as file:
         number = list(file["names"]).index(name)
         layers = [
-            (file[f"kernel__dense_{k}"][number].astype(np.float64),
-             file[f"bias__dense_{k}"][number].astype(np.float64))
+            (
+                file[f"kernel__dense_{k}"][number].astype(np.float64),
+                file[f"bias__dense_{k}"][number].astype(np.float64),
+            )
             for k in (1, 2, 3)
-        ]  # fmt: skip
+        ]
 
     def value(wo: Array, wi: Array) -> Array:
         x = half_difference(wo, wi)
@@ -179,7 +185,7 @@ def pull(fit: Fit, target: Reflectance, angles: int = 30) -> Array:
         np.radians((np.arange(angles) + 0.5) * HALF_END / angles),
         np.radians((np.arange(angles) + 0.5) * DIFFERENCE_END / angles),
         indexing="ij",
-    )  # fmt: skip
+    )
     flat = theta_h.reshape(-1)
     wo, wi = directions(flat, theta_d.reshape(-1), np.full_like(flat, 0.5 * np.pi))
     above = np.minimum(wo[:, 2], wi[:, 2]) > np.sin(np.radians(5.0))
@@ -219,8 +225,10 @@ def measure(data: Path) -> tuple[list[str], Figure]:
 
 def _found(fits: dict[str, dict[str, Fit]]) -> list[str]:
     """What the principled model and the metals say, in numbers."""
-    lines = ["| material | GGX roughness | Beckmann slope | Blinn exponent | principled |",
-             "|---|---|---|---|---|"]  # fmt: skip
+    lines = [
+        "| material | GGX roughness | Beckmann slope | Blinn exponent | principled |",
+        "|---|---|---|---|---|",
+    ]
     for name, row in fits.items():
         sliders = row["disney"].values
         told = ", ".join(
@@ -250,10 +258,14 @@ def measured_figure(data: Path, fits: dict[str, dict[str, Fit]]) -> Figure:
         for k, (model, image) in enumerate(maps.items()):
             axes = style.place_axes(figure, left + k * (wide + gap), 2.85, wide, 1.5)
             axes.imshow(
-                image.T, origin="lower", aspect="auto", extent=(0, HALF_END, 0, DIFFERENCE_END),
+                image.T,
+                origin="lower",
+                aspect="auto",
+                extent=(0, HALF_END, 0, DIFFERENCE_END),
                 interpolation="nearest",
-                norm=style.symmetric_scale(limit), cmap=style.signed_colour_map(),
-            )  # fmt: skip
+                norm=style.symmetric_scale(limit),
+                cmap=style.signed_colour_map(),
+            )
             axes.set_facecolor("#dfe3e6")
             axes.set_title(FITTED[model])
             axes.set_xlabel("half angle, degrees")
@@ -266,8 +278,9 @@ def measured_figure(data: Path, fits: dict[str, dict[str, Fit]]) -> Figure:
             "parameter, and are still there: no slider serves them without hurting others. Towards "
             "grazing light (above) Blinn and Phong's model has no Fresnel term and lacks light; "
             "Schlick's ramp to white, which all others have, brings too much.",
-            left=0.15, right=0.15,
-        )  # fmt: skip
+            left=0.15,
+            right=0.15,
+        )
     return figure
 
 
@@ -277,13 +290,19 @@ def _draw_lobes(axes: Any, target: Reflectance, row: dict[str, Fit]) -> None:
         [np.sin(np.radians(angle)), np.zeros_like(angle), np.cos(np.radians(angle))], axis=1
     )
     wi = np.broadcast_to([-np.sqrt(0.5), 0.0, np.sqrt(0.5)], wo.shape).copy()
-    axes.semilogy(angle, np.maximum(target(wo, wi).mean(axis=1), 1e-5) * wi[0, 2],
-                  color="black", lw=2.0, label="measured")  # fmt: skip
+    axes.semilogy(
+        angle,
+        np.maximum(target(wo, wi).mean(axis=1), 1e-5) * wi[0, 2],
+        color="black",
+        lw=2.0,
+        label="measured",
+    )
     colors = (style.BLUE, style.ORANGE, style.RED, "#2e8b57")
     for color, (model, fit) in zip(colors, row.items(), strict=True):
         f = MODELS[model].f(fit.values, wo, wi).mean(axis=1)
-        axes.semilogy(angle, np.maximum(f, 1e-5) * wi[0, 2], color=color, lw=1.0,
-                      label=FITTED[model])  # fmt: skip
+        axes.semilogy(
+            angle, np.maximum(f, 1e-5) * wi[0, 2], color=color, lw=1.0, label=FITTED[model]
+        )
     axes.set_xlabel("view, degrees")
     axes.set_ylim(3e-3, None)
     axes.grid(visible=True)

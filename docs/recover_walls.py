@@ -182,6 +182,7 @@ def walls_figure(scene: Scene, target: Array, result: RecoveryResult) -> Figure:
             "the wall itself want more of it (blue). Those of the right wall want less (red): they "
             "are too bright in red, because that wall is not green yet, and blame all who send "
             "red light there. What is said wrongly at first is taken back as other colours settle.",
-            left=left, right=left,
-        )  # fmt: skip
+            left=left,
+            right=left,
+        )
     return figure

@@ -20,9 +20,14 @@ ROOT = Path(__file__).resolve().parent.parent
 RESULTS = ROOT / "docs" / "results.md"
 CAPTURES = {"nerf_synthetic_chair": 1, "banana": 2, "opensfm_berlin": 8}  # name -> downscale
 CONTENDERS = (
-    "dense_grid:64", "dense_grid:128", "dense_grid:192",
-    "sparse_sh:128", "sparse_sh:192", "sparse_sh:256", "gaussians:30000",
-)  # fmt: skip
+    "dense_grid:64",
+    "dense_grid:128",
+    "dense_grid:192",
+    "sparse_sh:128",
+    "sparse_sh:192",
+    "sparse_sh:256",
+    "gaussians:30000",
+)
 """Representations with their voxels along the longest edge, or their number of Gaussians."""
 
 
@@ -56,9 +61,17 @@ def fit_row(data: Path, out: Path, name: str, contender: str) -> str:
     representation, size = contender.split(":")
     option = "--gaussians" if representation == "gaussians" else "--resolution"
     fit = command(
-        "fit", str(data / name), "--out", str(model_folder(out, name, contender)),
-        "--downscale", str(CAPTURES[name]), "--representation", representation, option, size,
-    )  # fmt: skip
+        "fit",
+        str(data / name),
+        "--out",
+        str(model_folder(out, name, contender)),
+        "--downscale",
+        str(CAPTURES[name]),
+        "--representation",
+        representation,
+        option,
+        size,
+    )
     return (
         f"| {name} | {representation} | {int(size):,} | {fit['step']} | {fit['seconds']:.0f} "
         f"| {fit['gib']:.2f} |"
@@ -69,9 +82,14 @@ def score(data: Path, out: Path, name: str, contender: str) -> str:
     """The rest of the row."""
     model = model_folder(out, name, contender)
     found = command(
-        "evaluate", str(model), str(data / name), "--downscale", str(CAPTURES[name]),
-        "--out", str(model / "comparison.png"),
-    )  # fmt: skip
+        "evaluate",
+        str(model),
+        str(data / name),
+        "--downscale",
+        str(CAPTURES[name]),
+        "--out",
+        str(model / "comparison.png"),
+    )
     return f" {found['psnr']:.2f} | {found['ssim']:.3f} | {len(found['views'])} |"
 
 
@@ -111,12 +129,15 @@ def main() -> None:
             rows |= stored_rows(row)
             print(row, flush=True)  # noqa: T201  a long run says what it has
     lines = [
-        "", f"Measured on {platform.machine()}, {os.cpu_count()} cores.", "",
+        "",
+        f"Measured on {platform.machine()}, {os.cpu_count()} cores.",
+        "",
         "| capture | representation | voxels, or number | steps | fit, s | peak, GiB | PSNR, dB "
         "| SSIM | test views |",
         "|---|---|---|---|---|---|---|---|---|",
-        *(row for name in CAPTURES for key, row in rows.items() if key[0] == name), "",
-    ]  # fmt: skip
+        *(row for name in CAPTURES for key, row in rows.items() if key[0] == name),
+        "",
+    ]
     RESULTS.write_text(head + "<!-- table -->" + "\n".join(lines) + "<!-- end -->" + tail)
 
 

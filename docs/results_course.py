@@ -26,9 +26,11 @@ def examined(quick: bool) -> dict[str, Any]:
     """What the doctor found, from a run."""
     words = ["course", "doctor", "--json", *(["--quick"] if quick else [])]
     done = subprocess.run(
-        [sys.executable, "-m", "photograd_course", *words], stdout=subprocess.PIPE, text=True,
+        [sys.executable, "-m", "photograd_course", *words],
+        stdout=subprocess.PIPE,
+        text=True,
         check=False,
-    )  # fmt: skip
+    )
     found: dict[str, Any] = json.loads(done.stdout.strip().splitlines()[-1])
     return found
 

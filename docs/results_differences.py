@@ -59,8 +59,11 @@ def measure(task: tuple[str, dict[str, Any], float, int]) -> tuple[str, dict[str
 def paths_left(row: dict[str, Any], enough: float, most: int) -> float:
     """How many batches are wanted still, about; 0 for a row that has enough."""
     size = abs(row["differences"][0])
-    limits = {"adjoint": enough * abs(row["adjoint"][0]), "differences": enough * size,
-              "cut": 0.4 * enough * size}  # fmt: skip
+    limits = {
+        "adjoint": enough * abs(row["adjoint"][0]),
+        "differences": enough * size,
+        "cut": 0.4 * enough * size,
+    }
     left = {
         way: min(most, row[way][2] * (row[way][1] / limit) ** 2) - row[way][2]
         for way, limit in limits.items()

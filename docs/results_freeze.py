@@ -44,9 +44,13 @@ class Row:
 def scored(representation: str, moment: str, model: Model, capture: Capture, seconds: float) -> Row:
     """What a model is worth on the held-out views."""
     return Row(
-        representation, moment, evaluate(model, capture.test).psnr, stored_bytes(model) / 2**20,
-        1000 * frame_seconds(model, capture), seconds,
-    )  # fmt: skip
+        representation,
+        moment,
+        evaluate(model, capture.test).psnr,
+        stored_bytes(model) / 2**20,
+        1000 * frame_seconds(model, capture),
+        seconds,
+    )
 
 
 def here(fit: Fit) -> Model:

@@ -120,13 +120,16 @@ def main() -> None:
     garden = read_gaussians(given.data / "test_garden.npz").gaussians
     ball = cloud(200_000)
     lines = [
-        f"{_core.thread_count()} threads, {os.cpu_count()} cores.", "",
-        "| scene | Gaussians | pixels | ms a frame | frames a second |", "|---|---|---|---|---|",
+        f"{_core.thread_count()} threads, {os.cpu_count()} cores.",
+        "",
+        "| scene | Gaussians | pixels | ms a frame | frames a second |",
+        "|---|---|---|---|---|",
         row("biker.ply", biker, views(biker, FRAMES)),
         row("test_garden.npz", garden, garden_views(given.data / "test_garden.npz")),
         row("a ball of random ones, degree 3", ball, views(ball, FRAMES)),
-        "", *agreement(given.data),
-    ]  # fmt: skip
+        "",
+        *agreement(given.data),
+    ]
     text = RESULTS.read_text(encoding="utf-8")
     head, rest = text.split(BEGIN, 1)
     tail = rest.split(END, 1)[1]

@@ -13,9 +13,15 @@ from pathlib import Path
 from typing import Any
 
 REQUIREMENTS = [
-    "numpy>=1.26", "matplotlib>=3.7", "rich>=13", "typer>=0.12", "pillow>=10", "OpenEXR>=3.3",
-    "plyfile>=1.0", "zstandard>=0.22",
-]  # fmt: skip
+    "numpy>=1.26",
+    "matplotlib>=3.7",
+    "rich>=13",
+    "typer>=0.12",
+    "pillow>=10",
+    "OpenEXR>=3.3",
+    "plyfile>=1.0",
+    "zstandard>=0.22",
+]
 
 
 def dynamic_metadata(

@@ -25,9 +25,10 @@ from fingerprint_cases.run import FAILED, compute_all, save_seeds
 def parser() -> argparse.ArgumentParser:
     """The command line."""
     made = argparse.ArgumentParser(
-        prog="fingerprints.py", description=__doc__,
+        prog="fingerprints.py",
+        description=__doc__,
         formatter_class=argparse.RawDescriptionHelpFormatter,
-    )  # fmt: skip
+    )
     commands = made.add_subparsers(dest="command", required=True)
     write = commands.add_parser("write", help="compute all results and write their hashes")
     against = commands.add_parser("compare", help="compute again; exit status 1 on a difference")
@@ -38,25 +39,34 @@ def parser() -> argparse.ArgumentParser:
             "--jobs", type=int, default=1, metavar="N", help="processes (default: 1)"
         )
         command.add_argument(
-            "--threads", type=int, default=0, metavar="N",
+            "--threads",
+            type=int,
+            default=0,
+            metavar="N",
             help="threads of the core in each process; 0 takes all (default: 0)",
-        )  # fmt: skip
+        )
         command.add_argument(
             "--save", type=Path, metavar="FOLDER", help="keep the arrays in FOLDER, a .npz each"
         )
         command.add_argument(
-            "--seeds", type=int, default=8, metavar="K",
+            "--seeds",
+            type=int,
+            default=8,
+            metavar="K",
             help="other seeds whose estimates --save keeps for the z-test (default: 8)",
-        )  # fmt: skip
+        )
     for command in commands.choices.values():
         command.add_argument(
-            "--only", metavar="PATTERN",
+            "--only",
+            metavar="PATTERN",
             help="results whose names contain PATTERN, or match it as a file name would (fog*)",
-        )  # fmt: skip
+        )
     against.add_argument(
-        "--against", type=Path, metavar="FOLDER",
+        "--against",
+        type=Path,
+        metavar="FOLDER",
         help="arrays that `write --save` kept: say by how much results differ",
-    )  # fmt: skip
+    )
     return made
 
 

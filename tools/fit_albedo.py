@@ -41,9 +41,12 @@ def ggx_loss(cosine: float, roughness: float, heights: int = 32, turns: int = 24
     z = 1.0 - (1.0 + v[2]) * q
     s = np.sqrt(np.maximum(1.0 - z * z, 0.0))
     phi = np.pi * (np.arange(turns) + 0.5) / turns  # the other half is its mirror image
-    h = np.stack(np.broadcast_arrays(
-        s[:, None] * np.cos(phi) + v[0], s[:, None] * np.sin(phi), z[:, None] + v[2]), axis=-1
-    ) * [alpha, alpha, 1.0]  # fmt: skip
+    h = np.stack(
+        np.broadcast_arrays(
+            s[:, None] * np.cos(phi) + v[0], s[:, None] * np.sin(phi), z[:, None] + v[2]
+        ),
+        axis=-1,
+    ) * [alpha, alpha, 1.0]
     h /= np.linalg.norm(h, axis=-1, keepdims=True)
     wi = 2.0 * (h @ wo)[..., None] * h - wo
     up = np.maximum(wi[..., 2], 0.0)
@@ -122,8 +125,12 @@ def charlie_albedo(cosine: float, roughness: float, heights: int = 32, turns: in
 def fit_charlie() -> dict[str, Array]:
     """Coefficients of the albedo in 2 cosine^(1/4) - 1 and 2 roughness - 1."""
     low = [0.003, 0.006, 0.01, 0.015, 0.02]
-    r, mu = (a.ravel() for a in np.meshgrid(
-        np.linspace(0.3, 1.0, 12), np.concatenate([low, np.linspace(0.03, 1.0, 20)])))  # fmt: skip
+    r, mu = (
+        a.ravel()
+        for a in np.meshgrid(
+            np.linspace(0.3, 1.0, 12), np.concatenate([low, np.linspace(0.03, 1.0, 20)])
+        )
+    )
     value = np.array([charlie_albedo(*place) for place in zip(mu, r, strict=True)])
     terms = powers(2 * mu**0.25 - 1, 2 * r - 1, (5, 3))
     return {"albedo": np.linalg.lstsq(terms, value, rcond=None)[0]}

@@ -11,10 +11,15 @@ ROUNDING = Tolerance(
 )
 
 
-@check("00.1.differences", task="00.1", points=1, calls=("loss_gradient",),
-       kills=("sign", "not_doubled", "sum_not_mean", "squared", "first_row_only"),
-       hint="handout, section 1: derive one square, divide as the mean does",
-       sole="the derivative itself; the step below shows the same mistakes at work")  # fmt: skip
+@check(
+    "00.1.differences",
+    task="00.1",
+    points=1,
+    calls=("loss_gradient",),
+    kills=("sign", "not_doubled", "sum_not_mean", "squared", "first_row_only"),
+    hint="handout, section 1: derive one square, divide as the mean does",
+    sole="the derivative itself; the step below shows the same mistakes at work",
+)
 def agrees_with_differences(t):
     """Raising one pixel by a little changes the loss by as much as your derivative says."""
     picture, photograph = t.rng.uniform(0.0, 1.0, (2, 3, 4))
@@ -26,9 +31,15 @@ def agrees_with_differences(t):
     require_gradients(t, {"picture": gradient}, forward, {"picture": picture}, np.ones(()))
 
 
-@check("00.1.step", task="00.1", points=1, calls=("loss_gradient",), tolerance=ROUNDING,
-       kills=("sign", "not_doubled", "sum_not_mean", "squared", "first_row_only"),
-       sole="the same mistakes as a step downhill shows them: why they matter")  # fmt: skip
+@check(
+    "00.1.step",
+    task="00.1",
+    points=1,
+    calls=("loss_gradient",),
+    tolerance=ROUNDING,
+    kills=("sign", "not_doubled", "sum_not_mean", "squared", "first_row_only"),
+    sole="the same mistakes as a step downhill shows them: why they matter",
+)
 def one_step_reaches_the_photograph(t):
     """A step of half as many units as there are pixels lands on the photograph itself."""
     picture, photograph = t.rng.uniform(0.0, 1.0, (2, 5, 7))

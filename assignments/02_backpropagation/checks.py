@@ -20,8 +20,7 @@ from photograd_course.grading import (
 )
 
 EXACT = Tolerance(
-    1e-12,
-    "three ways to write the gates differ by 2e-16; the nearest wrong slope is off by 0.1",
+    1e-12, "three ways to write the gates differ by 2e-16; the nearest wrong slope is off by 0.1"
 )
 DIFFERENCES = Tolerance(
     1e-6,
@@ -46,9 +45,14 @@ RUN = "adapters.run_graph"
 
 # Mutants that fail the same checks.
 WRONG_SLOPES = (
-    "sum_one_sided", "sum_subtracts", "sum_shares_the_slope", "sum_like_a_product",
-    "product_of_slopes_one", "product_one_sided", "product_of_itself",
-)  # fmt: skip
+    "sum_one_sided",
+    "sum_subtracts",
+    "sum_shares_the_slope",
+    "sum_like_a_product",
+    "product_of_slopes_one",
+    "product_one_sided",
+    "product_of_itself",
+)
 WRONG_ROUTES = ("max_to_both", "max_to_the_smaller", "max_slope_is_value")
 WRONG_TIES = ("max_tie_to_first", "max_tie_to_none", "max_halves_a_tie")
 WRONG_EXP = ("exp_slope_one", "exp_like_a_power", "exp_slope_is_input")
@@ -87,9 +91,15 @@ def away(rng, low, high, n):
     return rng.uniform(low, high, n) * rng.choice([-1.0, 1.0], n)
 
 
-@check("02.1.values", task="02.1", points=2, calls=("Value.__add__", "Value.__mul__"),
-       tolerance=EXACT, kills=("sum_of_absolutes",),
-       sole="tells a wrong value from a wrong slope")  # fmt: skip
+@check(
+    "02.1.values",
+    task="02.1",
+    points=2,
+    calls=("Value.__add__", "Value.__mul__"),
+    tolerance=EXACT,
+    kills=("sum_of_absolutes",),
+    sole="tells a wrong value from a wrong slope",
+)
 def sums_and_products_have_their_value(t):
     """Sums and products have the right value, with a plain number on either side too."""
     a, b = away(t.rng, 0.5, 3.0, 6), away(t.rng, 0.5, 3.0, 6)
@@ -98,9 +108,14 @@ def sums_and_products_have_their_value(t):
         t.close(f"values of {op}", found["values"], right, reveal=True)
 
 
-@check("02.1.slopes", task="02.1", points=4, calls=("Value.__add__", "Value.__mul__"),
-       kills=(*WRONG_SLOPES, "sum_of_absolutes", "product_no_swap"),
-       sole="names the gate; whole graphs fail too")  # fmt: skip
+@check(
+    "02.1.slopes",
+    task="02.1",
+    points=4,
+    calls=("Value.__add__", "Value.__mul__"),
+    kills=(*WRONG_SLOPES, "sum_of_absolutes", "product_no_swap"),
+    sole="names the gate; whole graphs fail too",
+)
 def slopes_of_sums_and_products(t):
     """A sum and a product note the slope towards each input (against differences)."""
     a, b = away(t.rng, 0.5, 3.0, 6), away(t.rng, 4.0, 6.0, 6)
@@ -108,9 +123,15 @@ def slopes_of_sums_and_products(t):
         require_slopes(t, op, a, b)
 
 
-@check("02.1.square", task="02.1", points=3, calls=("Value.__add__", "Value.__mul__"),
-       tolerance=EXACT, kills=(*WRONG_SLOPES, "square_counts_once"),
-       sole="the same value on both sides; the worked graph fails too, for its x * x")  # fmt: skip
+@check(
+    "02.1.square",
+    task="02.1",
+    points=3,
+    calls=("Value.__add__", "Value.__mul__"),
+    tolerance=EXACT,
+    kills=(*WRONG_SLOPES, "square_counts_once"),
+    sole="the same value on both sides; the worked graph fails too, for its x * x",
+)
 def the_same_value_twice(t):
     """x + x has the slope 2 towards x, and x * x has the slope 2 x."""
     x = float(t.rng.uniform(1.5, 3.0))
@@ -120,9 +141,15 @@ def the_same_value_twice(t):
     t.close("slope of x * x", found["slopes"].sum(), 2 * x, reveal=True)
 
 
-@check("02.2.routes", task="02.2", points=4, calls=("Value.maximum",), tolerance=EXACT,
-       kills=(*WRONG_ROUTES, "max_is_min"),
-       sole="names the gate; whole graphs fail too")  # fmt: skip
+@check(
+    "02.2.routes",
+    task="02.2",
+    points=4,
+    calls=("Value.maximum",),
+    tolerance=EXACT,
+    kills=(*WRONG_ROUTES, "max_is_min"),
+    sole="names the gate; whole graphs fail too",
+)
 def the_larger_input_takes_all(t):
     """maximum has the larger value, and only the larger input gets a slope."""
     a = away(t.rng, 0.5, 3.0, 8)
@@ -132,8 +159,14 @@ def the_larger_input_takes_all(t):
     require_slopes(t, "max", a, b)
 
 
-@check("02.2.tie", task="02.2", points=3, calls=("Value.maximum",), tolerance=EXACT,
-       kills=(*WRONG_ROUTES, *WRONG_TIES))  # fmt: skip
+@check(
+    "02.2.tie",
+    task="02.2",
+    points=3,
+    calls=("Value.maximum",),
+    tolerance=EXACT,
+    kills=(*WRONG_ROUTES, *WRONG_TIES),
+)
 def a_tie_is_settled(t):
     """At a tie the second input takes all; no differences here, they would give 1/2 and 1/2."""
     x = float(t.rng.uniform(1.5, 3.0))
@@ -143,8 +176,15 @@ def a_tie_is_settled(t):
     t.close("slope of maximum(x, x)", found["slopes"].sum(), 1.0, reveal=True)
 
 
-@check("02.3.exp", task="02.3", points=3, calls=("Value.exp",), tolerance=EXACT, kills=WRONG_EXP,
-       sole="names the gate; whole graphs fail too")  # fmt: skip
+@check(
+    "02.3.exp",
+    task="02.3",
+    points=3,
+    calls=("Value.exp",),
+    tolerance=EXACT,
+    kills=WRONG_EXP,
+    sole="names the gate; whole graphs fail too",
+)
 def the_exponential(t):
     """exp(0) = 1 and exp(log 7) = 7; its slope agrees with differences."""
     found = t.call("adapters.gates", "exp", np.log([1.0, 7.0]), None, returns=gates_spec(2))
@@ -152,8 +192,15 @@ def the_exponential(t):
     require_slopes(t, "exp", t.rng.uniform(-2.0, 2.0, 6))
 
 
-@check("02.3.log", task="02.3", points=3, calls=("Value.log",), tolerance=EXACT, kills=WRONG_LOG,
-       sole="names the gate; whole graphs fail too")  # fmt: skip
+@check(
+    "02.3.log",
+    task="02.3",
+    points=3,
+    calls=("Value.log",),
+    tolerance=EXACT,
+    kills=WRONG_LOG,
+    sole="names the gate; whole graphs fail too",
+)
 def the_logarithm(t):
     """log 1 = 0 and log e = 1; its slope agrees with differences."""
     found = t.call("adapters.gates", "log", np.exp([0.0, 1.0]), None, returns=gates_spec(2))
@@ -161,8 +208,14 @@ def the_logarithm(t):
     require_slopes(t, "log", t.rng.uniform(0.3, 3.0, 6))
 
 
-@check("02.3.power", task="02.3", points=4, calls=("Value.__pow__",), tolerance=EXACT,
-       kills=(*WRONG_POW, "pow_divides"))  # fmt: skip
+@check(
+    "02.3.power",
+    task="02.3",
+    points=4,
+    calls=("Value.__pow__",),
+    tolerance=EXACT,
+    kills=(*WRONG_POW, "pow_divides"),
+)
 def powers(t):
     """Powers agree with differences, at negative numbers and at zero too."""
     for n in (2, 3, -1):
@@ -236,11 +289,17 @@ def require_order(t, edges, root):
     graph = f"in the graph {in_words(edges, root)} with the root {named(root)} (inputs in brackets)"
     where = f"{graph} your order is {yours}" if t.check.visibility == "public" else "your order"
     twice = [named(k) for k in needed if order.count(k) > 1]
-    t.require(not twice, f"{where}: {', '.join(twice)} more than once",
-              hint="mark each value that you have expanded, and pass over marked ones")  # fmt: skip
+    t.require(
+        not twice,
+        f"{where}: {', '.join(twice)} more than once",
+        hint="mark each value that you have expanded, and pass over marked ones",
+    )
     missing = [named(k) for k in needed if k not in order]
-    t.require(not missing, f"{where}: without {', '.join(missing)}",
-              hint="everything that the root depends on, and the root itself")  # fmt: skip
+    t.require(
+        not missing,
+        f"{where}: without {', '.join(missing)}",
+        hint="everything that the root depends on, and the root itself",
+    )
     t.require(len(order) == len(needed), f"{where}: the root does not depend on all of these")
     place = {node: at for at, node in enumerate(order)}
     early = [(k, j) for k in needed for j, _ in edges[k] if place[k] < place[j]]
@@ -248,9 +307,14 @@ def require_order(t, edges, root):
     t.require(not early, said, hint=EARLY)
 
 
-@check("02.4.order", task="02.4", points=5, calls=("topo_order",),
-       kills=("order_root_first", "order_breadth_first", "order_with_repeats", "order_leaves_out"),
-       sole="`backward` gets its order given, so this alone looks at it in detail")  # fmt: skip
+@check(
+    "02.4.order",
+    task="02.4",
+    points=5,
+    calls=("topo_order",),
+    kills=("order_root_first", "order_breadth_first", "order_with_repeats", "order_leaves_out"),
+    sole="`backward` gets its order given, so this alone looks at it in detail",
+)
 def inputs_stand_before_their_users(t):
     """Every value that the root needs stands in the order once, after its own inputs."""
     # From small to large, so that the graph of a message is a small one.
@@ -296,25 +360,34 @@ UNMARKED = "read the inputs of each value once: mark what you have seen"
 
 def require_work(t, edges, what):
     found = t.call("adapters.work", edges, len(edges) - 1, returns=WORK)
-    t.require(not found["too_deep"], f"{what} of {len(edges)} nodes: topo_order: RecursionError",
-              hint=TOO_DEEP)  # fmt: skip
+    t.require(
+        not found["too_deep"],
+        f"{what} of {len(edges)} nodes: topo_order: RecursionError",
+        hint=TOO_DEEP,
+    )
     each = (found["reads"] + found["comparisons"]) / len(edges)
-    t.require(each <= WORK_PER_NODE,
-              f"{what} of {len(edges)} nodes: {each:.0f} reads and comparisons a node, allowed "
-              f"{WORK_PER_NODE}",
-              hint=LISTED if found["comparisons"] > found["reads"] else UNMARKED)  # fmt: skip
+    t.require(
+        each <= WORK_PER_NODE,
+        f"{what} of {len(edges)} nodes: {each:.0f} reads and comparisons a node, allowed "
+        f"{WORK_PER_NODE}",
+        hint=LISTED if found["comparisons"] > found["reads"] else UNMARKED,
+    )
 
 
-@check("02.4.chain", task="02.4", points=4, calls=("topo_order",), seconds=20.0,
-       kills=("order_root_first", "order_list_of_seen", "order_recursive", "order_leaves_out"),
-       )  # fmt: skip
+@check(
+    "02.4.chain",
+    task="02.4",
+    points=4,
+    calls=("topo_order",),
+    seconds=20.0,
+    kills=("order_root_first", "order_list_of_seen", "order_recursive", "order_leaves_out"),
+)
 def a_chain_of_a_hundred_thousand(t):
     """A chain of 100,000 values is put in order, without a recursion error."""
     require_work(t, chain(1500), "a chain")
     n = 100_000
     order = t.call("adapters.chain", n, returns=ordered(n))["order"]
-    t.require(order[0] != -3, "a chain of 100,000 nodes: topo_order: RecursionError",
-              hint=TOO_DEEP)  # fmt: skip
+    t.require(order[0] != -3, "a chain of 100,000 nodes: topo_order: RecursionError", hint=TOO_DEEP)
     length = int((order != -2).sum())
     t.require(length == n, f"the order holds {length} values, not 100,000")
     in_order = np.array_equal(order[:n], np.arange(n))
@@ -335,11 +408,25 @@ WORKED = (  # program, inputs, value, gradients by the inputs
 )
 
 
-@check("02.5.worked", task="02.5", points=2, calls=("backward",), tolerance=EXACT,
-       kills=(*WRONG_SLOPES, *WRONG_ROUTES, *WRONG_LOOPS, "product_no_swap",
-              "square_counts_once", "max_is_min", "order_root_first", "overwrite",
-              "once_for_each_input"),
-       sole="the numbers of the handout's figures, to compare by hand")  # fmt: skip
+@check(
+    "02.5.worked",
+    task="02.5",
+    points=2,
+    calls=("backward",),
+    tolerance=EXACT,
+    kills=(
+        *WRONG_SLOPES,
+        *WRONG_ROUTES,
+        *WRONG_LOOPS,
+        "product_no_swap",
+        "square_counts_once",
+        "max_is_min",
+        "order_root_first",
+        "overwrite",
+        "once_for_each_input",
+    ),
+    sole="the numbers of the handout's figures, to compare by hand",
+)
 def the_graphs_of_the_handout(t):
     """(x + y) z of Figure 1 and four more graphs of the handout have the printed gradients."""
     for program, inputs, value, gradients in WORKED:
@@ -347,19 +434,32 @@ def the_graphs_of_the_handout(t):
         answer = Record({"values": Array((n,)), "gradients": Array((n,))})
         found = t.call(RUN, program, inputs, returns=answer)
         t.close(f"value {value:g}", found["values"][-1], value, reveal=True)
-        t.close(f"gradients of {value:g}", found["gradients"][: len(inputs)], gradients,
-                reveal=True)  # fmt: skip
+        t.close(
+            f"gradients of {value:g}", found["gradients"][: len(inputs)], gradients, reveal=True
+        )
 
 
 def run_by_hand(t, edges, roots, seeds, default_seed=False):
     orders = [reachable(edges, root) for root in roots]
-    return t.call("adapters.run_by_hand", edges, orders, seeds, default_seed,
-                  returns=Array((len(roots), len(edges))))  # fmt: skip
+    return t.call(
+        "adapters.run_by_hand",
+        edges,
+        orders,
+        seeds,
+        default_seed,
+        returns=Array((len(roots), len(edges))),
+    )
 
 
-@check("02.5.adds", task="02.5", points=4, calls=("backward",), tolerance=EXACT,
-       kills=(*WRONG_LOOPS, "overwrite", "once_for_each_input"),
-       sole="gates and order are given here, so that the loop alone is at fault")  # fmt: skip
+@check(
+    "02.5.adds",
+    task="02.5",
+    points=4,
+    calls=("backward",),
+    tolerance=EXACT,
+    kills=(*WRONG_LOOPS, "overwrite", "once_for_each_input"),
+    sole="gates and order are given here, so that the loop alone is at fault",
+)
 def contributions_of_all_uses_are_added(t):
     """Through each use of a value its gradient grows by slope times the user's gradient."""
     for _ in range(5):
@@ -368,8 +468,14 @@ def contributions_of_all_uses_are_added(t):
         t.close("gradients", got[0], path_sums(edges, 13, 1.0))
 
 
-@check("02.5.seed", task="02.5", points=2, calls=("backward",), tolerance=EXACT,
-       kills=(*WRONG_LOOPS, "overwrite", "seed_ignored"))  # fmt: skip
+@check(
+    "02.5.seed",
+    task="02.5",
+    points=2,
+    calls=("backward",),
+    tolerance=EXACT,
+    kills=(*WRONG_LOOPS, "overwrite", "seed_ignored"),
+)
 def gradients_are_proportional_to_the_seed(t):
     """The seed multiplies all gradients, and a seed of zero gives zero."""
     edges = [[], [], [[0, 2.0], [1, -3.0]], [[2, 0.5], [0, 1.0]]]
@@ -380,8 +486,14 @@ def gradients_are_proportional_to_the_seed(t):
     t.require(not got.any(), "a seed of zero leaves gradients that are not zero")
 
 
-@check("02.5.again", task="02.5", points=3, calls=("backward",), tolerance=EXACT,
-       kills=("leaks", "leaks_in_leaves"))  # fmt: skip
+@check(
+    "02.5.again",
+    task="02.5",
+    points=3,
+    calls=("backward",),
+    tolerance=EXACT,
+    kills=("leaks", "leaks_in_leaves"),
+)
 def a_second_call_starts_from_zero(t):
     """Called again, or from another root, backward gives what it gives the first time."""
     edges = random_edges(t.rng, 14)
@@ -392,8 +504,10 @@ def a_second_call_starts_from_zero(t):
     t.close("gradients of the second call", got[1], got[0])
     t.close("gradients from another root", got[2][needed], alone[0][needed])
     left = [k for k in range(14) if k not in needed]
-    t.require(np.array_equal(got[2][left], got[1][left]),
-              "values on which the root does not depend have changed")  # fmt: skip
+    t.require(
+        np.array_equal(got[2][left], got[1][left]),
+        "values on which the root does not depend have changed",
+    )
 
 
 # Random expressions, and a forward evaluation of the grader's own.
@@ -495,11 +609,28 @@ def trusted_program(rng):
             return program, x, found, right
 
 
-@check("02.5.expressions", task="02.5", points=3, calls=("backward",),
-       kills=(*WRONG_SLOPES, *WRONG_ROUTES, *WRONG_EXP, *WRONG_LOG, *WRONG_POW,
-              *WRONG_LOOPS, "sum_of_absolutes", "product_no_swap", "max_is_min",
-              "order_root_first", "order_breadth_first", "order_with_repeats", "overwrite"),
-       sole="whole graphs through all gates, where students can look at them")  # fmt: skip
+@check(
+    "02.5.expressions",
+    task="02.5",
+    points=3,
+    calls=("backward",),
+    kills=(
+        *WRONG_SLOPES,
+        *WRONG_ROUTES,
+        *WRONG_EXP,
+        *WRONG_LOG,
+        *WRONG_POW,
+        *WRONG_LOOPS,
+        "sum_of_absolutes",
+        "product_no_swap",
+        "max_is_min",
+        "order_root_first",
+        "order_breadth_first",
+        "order_with_repeats",
+        "overwrite",
+    ),
+    sole="whole graphs through all gates, where students can look at them",
+)
 def expressions_agree_with_differences(t):
     """Gradients of ten random expressions agree with differences of your own forward values."""
     for _ in range(10):
@@ -511,15 +642,25 @@ def expressions_agree_with_differences(t):
         def forward(points, program=program):
             return t.call("adapters.forward_values", program, points, returns=Array((len(points),)))
 
-        t.close("gradients by the inputs", found["gradients"][: len(x)], central(forward, x),
-                DIFFERENCES)  # fmt: skip
+        t.close(
+            "gradients by the inputs",
+            found["gradients"][: len(x)],
+            central(forward, x),
+            DIFFERENCES,
+        )
 
 
 # >>> hidden
-@check("02.1.many", task="02.1", points=3, calls=("Value.__add__", "Value.__mul__"),
-       visibility="hidden", tolerance=EXACT,
-       kills=(*WRONG_SLOPES, "sum_of_absolutes", "product_no_swap"),
-       sole="the same mistakes, to rounding, at places not known beforehand")  # fmt: skip
+@check(
+    "02.1.many",
+    task="02.1",
+    points=3,
+    calls=("Value.__add__", "Value.__mul__"),
+    visibility="hidden",
+    tolerance=EXACT,
+    kills=(*WRONG_SLOPES, "sum_of_absolutes", "product_no_swap"),
+    sole="the same mistakes, to rounding, at places not known beforehand",
+)
 def sums_and_products_at_random(t):
     """Values and slopes of sums and products are right at 100 random places."""
     a, b = t.rng.normal(0.0, 3.0, (2, 100))
@@ -530,9 +671,16 @@ def sums_and_products_at_random(t):
         t.close(f"slopes of {op}", found["slopes"], np.stack(slopes, 1))
 
 
-@check("02.2.many", task="02.2", points=2, calls=("Value.maximum",), visibility="hidden",
-       tolerance=EXACT, kills=(*WRONG_ROUTES, "max_is_min"),
-       sole="the same mistakes at places not known beforehand")  # fmt: skip
+@check(
+    "02.2.many",
+    task="02.2",
+    points=2,
+    calls=("Value.maximum",),
+    visibility="hidden",
+    tolerance=EXACT,
+    kills=(*WRONG_ROUTES, "max_is_min"),
+    sole="the same mistakes at places not known beforehand",
+)
 def maximum_at_random(t):
     """maximum is right at 100 random places."""
     a, b = t.rng.normal(0.0, 3.0, (2, 100))
@@ -541,40 +689,79 @@ def maximum_at_random(t):
     t.close("slopes of maximum", found["slopes"], np.stack([a > b, a < b], 1).astype(float))
 
 
-@check("02.3.many", task="02.3", points=3, calls=("Value.exp", "Value.log", "Value.__pow__"),
-       visibility="hidden", tolerance=EXACT, kills=(*WRONG_EXP, *WRONG_LOG, *WRONG_POW),
-       sole="the same mistakes, to rounding, at places not known beforehand")  # fmt: skip
+@check(
+    "02.3.many",
+    task="02.3",
+    points=3,
+    calls=("Value.exp", "Value.log", "Value.__pow__"),
+    visibility="hidden",
+    tolerance=EXACT,
+    kills=(*WRONG_EXP, *WRONG_LOG, *WRONG_POW),
+    sole="the same mistakes, to rounding, at places not known beforehand",
+)
 def gates_of_one_input_at_random(t):
     """exp, log and powers are right at 100 random places."""
     a, n = t.rng.uniform(0.05, 4.0, 100), t.rng.uniform(-2.5, 2.5, 100)
-    cases = (("exp", None, np.exp(a), np.exp(a)), ("log", None, np.log(a), 1 / a),
-             ("pow", n, a**n, n * a ** (n - 1)))  # fmt: skip
+    cases = (
+        ("exp", None, np.exp(a), np.exp(a)),
+        ("log", None, np.log(a), 1 / a),
+        ("pow", n, a**n, n * a ** (n - 1)),
+    )
     for op, b, values, slopes in cases:
         found = t.call("adapters.gates", op, a, b, returns=gates_spec(100))
         t.close(f"values of {op}", found["values"], values)
         t.close(f"slopes of {op}", found["slopes"][:, 0], slopes)
 
 
-@check("02.4.work", task="02.4", points=4, calls=("topo_order",), visibility="hidden",
-       kills=("order_root_first", "order_with_repeats", "order_walks_all_paths",
-              "order_list_of_seen", "order_leaves_out"))  # fmt: skip
+@check(
+    "02.4.work",
+    task="02.4",
+    points=4,
+    calls=("topo_order",),
+    visibility="hidden",
+    kills=(
+        "order_root_first",
+        "order_with_repeats",
+        "order_walks_all_paths",
+        "order_list_of_seen",
+        "order_leaves_out",
+    ),
+)
 def each_value_is_visited_once(t):
     """A ladder of diamonds, with 4096 paths through 37 values, costs what 37 values cost."""
     require_order(t, ladder(4), 12)
     require_work(t, ladder(12), "a ladder")
 
 
-@check("02.5.random", task="02.5", points=4, calls=("backward",), visibility="hidden",
-       kills=(*WRONG_SLOPES, *WRONG_ROUTES, *WRONG_EXP, *WRONG_LOG, *WRONG_POW,
-              *WRONG_LOOPS, "sum_of_absolutes", "product_no_swap", "max_is_min",
-              "order_root_first", "order_breadth_first", "order_with_repeats", "overwrite"),
-       sole="fifty expressions, against differences and complex steps of ours")  # fmt: skip
+@check(
+    "02.5.random",
+    task="02.5",
+    points=4,
+    calls=("backward",),
+    visibility="hidden",
+    kills=(
+        *WRONG_SLOPES,
+        *WRONG_ROUTES,
+        *WRONG_EXP,
+        *WRONG_LOG,
+        *WRONG_POW,
+        *WRONG_LOOPS,
+        "sum_of_absolutes",
+        "product_no_swap",
+        "max_is_min",
+        "order_root_first",
+        "order_breadth_first",
+        "order_with_repeats",
+        "overwrite",
+    ),
+    sole="fifty expressions, against differences and complex steps of ours",
+)
 def fifty_random_expressions(t):
     """Values and gradients of fifty random expressions are right."""
     cases = [trusted_program(t.rng) for _ in range(50)]
-    answer = Record({
-        "values": Array((50,)), "gradients": Items(*[Array((len(x),)) for _, x, _, _ in cases]),
-    })  # fmt: skip
+    answer = Record(
+        {"values": Array((50,)), "gradients": Items(*[Array((len(x),)) for _, x, _, _ in cases])}
+    )
     programs, inputs = [p for p, _, _, _ in cases], [x for _, x, _, _ in cases]
     found = t.call("adapters.run_graphs", programs, inputs, returns=answer)
     right = [evaluate(program, x)[-1] for program, x in zip(programs, inputs, strict=True)]
@@ -584,8 +771,16 @@ def fifty_random_expressions(t):
         t.close("gradients", got, exact, ANALYTIC)
 
 
-@check("02.5.chain", task="02.5", points=2, calls=("backward",), visibility="hidden",
-       tolerance=EXACT, kills=(*WRONG_LOOPS, "recursive_paths"), seconds=20.0)  # fmt: skip
+@check(
+    "02.5.chain",
+    task="02.5",
+    points=2,
+    calls=("backward",),
+    visibility="hidden",
+    tolerance=EXACT,
+    kills=(*WRONG_LOOPS, "recursive_paths"),
+    seconds=20.0,
+)
 def a_long_chain_backward(t):
     """backward passes a chain of 50,000 values."""
     slope = float(1.0 + t.rng.uniform(1e-6, 1e-5))
@@ -612,9 +807,20 @@ def smooth(rng, n):
     return f, rng.uniform(0.3, 1.5, n)
 
 
-@check("02.6.accepts", task="02.6", points=2, calls=("grad_check",),
-       kills=("check_one_sided", "check_calls_too_often", "check_half",
-              "check_leaves_steps", "check_all_at_once", "check_moves_x"))  # fmt: skip
+@check(
+    "02.6.accepts",
+    task="02.6",
+    points=2,
+    calls=("grad_check",),
+    kills=(
+        "check_one_sided",
+        "check_calls_too_often",
+        "check_half",
+        "check_leaves_steps",
+        "check_all_at_once",
+        "check_moves_x",
+    ),
+)
 def right_gradients_are_accepted(t):
     """Right gradients of smooth functions have an error close to 0, and x stays as it is."""
     for n in (1, 4, 7):
@@ -632,15 +838,35 @@ def right_gradients_are_accepted(t):
         same = np.array_equal(asked[:calls], asked[calls:])
         t.require(same, "grad_check has changed the x that it was given", hint=COPIES)
         numbers = "1 number" if n == 1 else f"{n} numbers"
-        t.close(f"error of a right gradient by {numbers}", errors[0], 0.0, ACCEPTED,
-                reveal=True, hint=ONE_BY_ONE)  # fmt: skip
+        t.close(
+            f"error of a right gradient by {numbers}",
+            errors[0],
+            0.0,
+            ACCEPTED,
+            reveal=True,
+            hint=ONE_BY_ONE,
+        )
         t.require(calls <= 2 * n + 1, f"{calls} calls of f, {2 * n + 1} are enough")
 
 
-@check("02.6.rejects", task="02.6", points=3, calls=("grad_check",), tolerance=REPORTED,
-       kills=("check_one_sided", "check_half", "check_leaves_steps", "check_all_at_once",
-              "check_lengths_only", "check_angle_only", "check_absolute",
-              "check_by_the_differences", "check_moves_x"))  # fmt: skip
+@check(
+    "02.6.rejects",
+    task="02.6",
+    points=3,
+    calls=("grad_check",),
+    tolerance=REPORTED,
+    kills=(
+        "check_one_sided",
+        "check_half",
+        "check_leaves_steps",
+        "check_all_at_once",
+        "check_lengths_only",
+        "check_angle_only",
+        "check_absolute",
+        "check_by_the_differences",
+        "check_moves_x",
+    ),
+)
 def wrong_gradients_are_measured(t):
     """The error of a wrong gradient is reported as Eq. (16) has it."""
     f, x = smooth(t.rng, 5)
@@ -666,10 +892,21 @@ def wrong_gradients_are_measured(t):
     t.close(f"errors of gradients that are {', '.join(wrong)}", reported, expected, reveal=True)
 
 
-@check("02.6.large", task="02.6", points=1, calls=("grad_check",),
-       kills=("check_one_sided", "check_half", "check_all_at_once", "check_moves_x",
-              "check_leaves_steps", "check_fixed_step"),
-       sole="Eq. (15) where students can see it; the hidden check measures the steps")  # fmt: skip
+@check(
+    "02.6.large",
+    task="02.6",
+    points=1,
+    calls=("grad_check",),
+    kills=(
+        "check_one_sided",
+        "check_half",
+        "check_all_at_once",
+        "check_moves_x",
+        "check_leaves_steps",
+        "check_fixed_step",
+    ),
+    sole="Eq. (15) where students can see it; the hidden check measures the steps",
+)
 def large_coordinates_move_further(t):
     """Right gradients at coordinates of 1e8 have an error close to 0: steps follow Eq. (15)."""
     f, x = smooth(t.rng, 3)
@@ -681,35 +918,58 @@ def large_coordinates_move_further(t):
 
     found = t.call("adapters.checked", stretched, x * size, returns=VERDICT)
     where = ", ".join(f"{number:.1e}" for number in x * size)
-    t.close(f"error of a right gradient at x = ({where})", found, 0.0, ACCEPTED,
-            reveal=True, hint="the step of Eq. (15) grows with the coordinate")  # fmt: skip
+    t.close(
+        f"error of a right gradient at x = ({where})",
+        found,
+        0.0,
+        ACCEPTED,
+        reveal=True,
+        hint="the step of Eq. (15) grows with the coordinate",
+    )
 
 
-@check("02.6.not_finite", task="02.6", points=1, calls=("grad_check",),
-       kills=("check_takes_nan",))  # fmt: skip
+@check("02.6.not_finite", task="02.6", points=1, calls=("grad_check",), kills=("check_takes_nan",))
 def not_a_number_is_refused(t):
     """What is not finite gives infinity, and a constant's gradient of zero the error 0."""
     f, x = smooth(t.rng, 3)
     finite = "ask whether all numbers are finite before you compare"
     for bad in (np.nan, np.inf):
-        found = t.call("adapters.checked",
-                       lambda x, bad=bad: (f(np.asarray(x))[0], np.array([bad, 0.0, 0.0])), x,
-                       returns=VERDICT)  # fmt: skip
-        t.require(found == np.inf, f"{bad} in the gradient does not give infinity",
-                  hint=finite)  # fmt: skip
+        found = t.call(
+            "adapters.checked",
+            lambda x, bad=bad: (f(np.asarray(x))[0], np.array([bad, 0.0, 0.0])),
+            x,
+            returns=VERDICT,
+        )
+        t.require(found == np.inf, f"{bad} in the gradient does not give infinity", hint=finite)
     found = t.call("adapters.checked", lambda _: (np.nan, np.ones(3)), x, returns=VERDICT)
-    t.require(found == np.inf, "a value that is not a number does not give infinity",
-              hint=finite)  # fmt: skip
+    t.require(found == np.inf, "a value that is not a number does not give infinity", hint=finite)
     found = t.call("adapters.checked", lambda _: (1.0, np.zeros(3)), x, returns=VERDICT)
-    t.require(found == 0.0, "a constant's gradient of zero does not give 0",
-              hint="with both lengths zero there is nothing to divide by")  # fmt: skip
+    t.require(
+        found == 0.0,
+        "a constant's gradient of zero does not give 0",
+        hint="with both lengths zero there is nothing to divide by",
+    )
 
 
 # >>> hidden
-@check("02.6.scale", task="02.6", points=1, calls=("grad_check",), visibility="hidden",
-       kills=("check_one_sided", "check_half", "check_leaves_steps", "check_all_at_once",
-              "check_angle_only", "check_absolute", "check_fixed_step", "check_moves_x"),
-       sole="the steps themselves, and gradients of 1e-9")  # fmt: skip
+@check(
+    "02.6.scale",
+    task="02.6",
+    points=1,
+    calls=("grad_check",),
+    visibility="hidden",
+    kills=(
+        "check_one_sided",
+        "check_half",
+        "check_leaves_steps",
+        "check_all_at_once",
+        "check_angle_only",
+        "check_absolute",
+        "check_fixed_step",
+        "check_moves_x",
+    ),
+    sole="the steps themselves, and gradients of 1e-9",
+)
 def large_and_small_numbers(t):
     """Coordinates of 1e8 and gradients of 1e-9 are judged like others; steps follow Eq. (15)."""
     f, x = smooth(t.rng, 3)

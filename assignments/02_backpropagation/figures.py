@@ -59,16 +59,35 @@ def circle(axes, at, label, value="", gradient=""):
 
 def arrow(axes, start, end, label="", bend=0.0, colour=FRAME, where=0.5, lift=-0.1):
     """An arrow from an input to its user, with a text beside it."""
-    axes.add_patch(FancyArrowPatch(
-        start, end, connectionstyle=f"arc3,rad={bend}", arrowstyle="-|>", mutation_scale=10,
-        shrinkA=13, shrinkB=13, lw=1.1, color=colour, zorder=1,
-    ))  # fmt: skip
+    axes.add_patch(
+        FancyArrowPatch(
+            start,
+            end,
+            connectionstyle=f"arc3,rad={bend}",
+            arrowstyle="-|>",
+            mutation_scale=10,
+            shrinkA=13,
+            shrinkB=13,
+            lw=1.1,
+            color=colour,
+            zorder=1,
+        )
+    )
     if label:
         x = start[0] + where * (end[0] - start[0])
         # The middle of an arc lies half its bend to the side of the chord (y points down).
         y = start[1] + where * (end[1] - start[1]) - bend * 0.5 * (end[0] - start[0]) + lift
-        axes.text(x, y, label, ha="center", va="center", fontsize=SMALL, color=colour,
-                  bbox={"fc": "white", "ec": "none", "pad": 0.6}, zorder=2)  # fmt: skip
+        axes.text(
+            x,
+            y,
+            label,
+            ha="center",
+            va="center",
+            fontsize=SMALL,
+            color=colour,
+            bbox={"fc": "white", "ec": "none", "pad": 0.6},
+            zorder=2,
+        )
 
 
 def key(axes, x, y):
@@ -141,8 +160,12 @@ def fig2_cost(module):
         left = place_axes(figure, 0.65, 0.4, 2.45, 1.95)
         left.loglog(counts, 2.0 * np.array(counts), "s--", color=GREY, ms=5, label="differences")
         left.loglog(counts, share, "o-", color=ORANGE, ms=5, label="backward")
-        left.set(title="work for a gradient", xlabel="inputs",
-                 ylabel="operations for each value", ylim=(0.3, 2000))  # fmt: skip
+        left.set(
+            title="work for a gradient",
+            xlabel="inputs",
+            ylabel="operations for each value",
+            ylim=(0.3, 2000),
+        )
         right = place_axes(figure, 3.95, 0.4, 2.45, 1.95)
         right.semilogy(rungs, paths, "s--", color=GREY, ms=5, label="paths")
         right.semilogy(rungs, ladder, "o-", color=ORANGE, ms=5, label="contributions added")
@@ -189,8 +212,13 @@ def fig3_kink(module):
         right.plot([2.0], [steps[50]], "s", color=GREY, ms=6)
         right.text(2.1, slopes[50] + 0.06, f"at the tie: {slopes[50]:g}", fontsize=SMALL)
         right.text(2.16, steps[50] - 0.04, f"at the tie: {steps[50]:g}", fontsize=SMALL)
-        right.set(title="its derivative by x", xlabel="x", xticks=[1, 2, 3], yticks=[0, 0.5, 1],
-                  ylim=(-0.12, 1.45))  # fmt: skip
+        right.set(
+            title="its derivative by x",
+            xlabel="x",
+            xticks=[1, 2, 3],
+            yticks=[0, 0.5, 1],
+            ylim=(-0.12, 1.45),
+        )
         right.legend(loc="upper left", fontsize=8, ncol=2, handlelength=1.5, columnspacing=1.0)
     far = np.abs(where - 2) > h + 1e-9
     facts = {
@@ -245,13 +273,16 @@ def fig4_order(module):
     theirs, mine = ranks["level by level"], ranks["every user first"]
     facts = {
         "the engine's gradient agrees with differences": (
-            gradients["every user first"]["x"] / right, 1 - 1e-6, 1 + 1e-6),
+            gradients["every user first"]["x"] / right,
+            1 - 1e-6,
+            1 + 1e-6,
+        ),
         "in the engine's order users come first": all(mine[end] < mine[at] for at, end in uses),
         "level by level a is visited before c, which uses it": theirs["a"] < theirs["c"],
         "and x gets 4 only": (gradients["level by level"]["x"], 4.0, 4.0),
         "a ends with 257 all the same": gradients["level by level"]["a"] == 257.0,
         "every user first x gets 1028": gradients["every user first"]["x"] == 1028.0,
-    }  # fmt: skip
+    }
     return figure, facts
 
 
@@ -293,8 +324,9 @@ def fig5_uses_add_up(module):
         arrow(axes, places["×"], places["f"])
         arrow(axes, places["x"], places["+"], f"{by_sum:g}", colour=ORANGE, lift=0.0)
         for bend, amount in zip((-0.35, 0.35), by_square, strict=True):
-            arrow(axes, places["x"], places["×"], f"{amount:g}", bend=-bend, colour=ORANGE,
-                  lift=0.0)  # fmt: skip
+            arrow(
+                axes, places["x"], places["×"], f"{amount:g}", bend=-bend, colour=ORANGE, lift=0.0
+            )
         for name, node in (("x", x), ("y", y), ("+", total), ("×", square), ("f", f)):
             label = "+" if name == "f" else name
             circle(axes, places[name], label, f"{node.data:g}", f"{node.grad:g}")
@@ -328,8 +360,14 @@ def fig6_steps(module):
 
     def f(x, factor=1.0):
         s = np.sin(x[0] * x[1]) + np.exp(x[2]) * x[3]
-        slopes = np.array([x[1] * np.cos(x[0] * x[1]), x[0] * np.cos(x[0] * x[1]),
-                           np.exp(x[2]) * x[3], np.exp(x[2])])  # fmt: skip
+        slopes = np.array(
+            [
+                x[1] * np.cos(x[0] * x[1]),
+                x[0] * np.cos(x[0] * x[1]),
+                np.exp(x[2]) * x[3],
+                np.exp(x[2]),
+            ]
+        )
         return s, factor * slopes
 
     steps = 10.0 ** np.arange(-12, 0.1, 0.5)
@@ -357,9 +395,12 @@ def fig6_steps(module):
         "at 1e-5 a right gradient is a thousand times below the limit": right[at[-5]] < 1e-9,
         "a step of 1e-12 would refuse it": right[at[-12]] > 1e-6,
         "ten times the step, a hundred times the truncation": (
-            right[at[-2]] / right[at[-3]], 90.0, 110.0),
+            right[at[-2]] / right[at[-3]],
+            90.0,
+            110.0,
+        ),
         "1 % off is reported as 1 %": (wrong[at[-5]], 0.0098, 0.0101),
-    }  # fmt: skip
+    }
     return figure, facts
 
 
@@ -368,8 +409,9 @@ def blurred(texels):
     rows = []
     for row in texels:
         padded = [row[0], *row, row[-1]]
-        rows.append([padded[k] * 0.25 + padded[k + 1] * 0.5 + padded[k + 2] * 0.25
-                     for k in range(len(row))])  # fmt: skip
+        rows.append(
+            [padded[k] * 0.25 + padded[k + 1] * 0.5 + padded[k + 2] * 0.25 for k in range(len(row))]
+        )
     return rows
 
 
@@ -399,8 +441,9 @@ def fig7_picture(module):
     slope = (loss_of(start + step)[0].data - loss_of(start - step)[0].data) / 2e-5
     with house_style():
         figure = new_figure(WIDTH, 1.85)
-        for k, (name, picture) in enumerate((("texels", start), ("should be seen", target),
-                                             ("after one step", after))):  # fmt: skip
+        for k, (name, picture) in enumerate(
+            (("texels", start), ("should be seen", target), ("after one step", after))
+        ):
             axes = place_axes(figure, 0.1 + (5.2 if k == 2 else 1.27 * k), 0.4, 1.2, 0.9)
             axes.imshow(picture, cmap="gray", vmin=0, vmax=1, interpolation="nearest")
             axes.set_title(name, fontsize=SMALL)
@@ -410,12 +453,14 @@ def fig7_picture(module):
             (("dL / d seen", by_pixel), ("dL / d texels", by_texel))
         ):
             axes = place_axes(figure, 2.7 + 1.25 * k, 0.4, 1.2, 0.9)
-            image = axes.imshow(picture, cmap=signed_colour_map(), vmin=-top, vmax=top,
-                                interpolation="nearest")  # fmt: skip
+            image = axes.imshow(
+                picture, cmap=signed_colour_map(), vmin=-top, vmax=top, interpolation="nearest"
+            )
             axes.set_title(name, fontsize=SMALL)
             axes.set(xticks=[], yticks=[])
-        bar = figure.colorbar(image, cax=place_axes(figure, 2.9, 1.44, 2.15, 0.09),
-                              orientation="horizontal")  # fmt: skip
+        bar = figure.colorbar(
+            image, cax=place_axes(figure, 2.9, 1.44, 2.15, 0.09), orientation="horizontal"
+        )
         bar.set_ticks([-0.5, 0.0, 0.5])
         bar.ax.tick_params(labelsize=8)
     facts = {

@@ -54,11 +54,22 @@ def sampling_matrix(t, shape, uv):
 # 03.1 ---------------------------------------------------------------------------------------------
 
 
-@check("03.1.centres", task="03.1", points=2, calls=("bilinear_sample",), tolerance=EXACT,
-       kills=("swapped_axes_everywhere",
-              "half_texel", "corner_centres", "swapped_axes", "mirrored_weights",),
-       hint="handout, equation (3): which u belongs to column 0?",
-       sole="says that the coordinates are right, whatever the weights")  # fmt: skip
+@check(
+    "03.1.centres",
+    task="03.1",
+    points=2,
+    calls=("bilinear_sample",),
+    tolerance=EXACT,
+    kills=(
+        "swapped_axes_everywhere",
+        "half_texel",
+        "corner_centres",
+        "swapped_axes",
+        "mirrored_weights",
+    ),
+    hint="handout, equation (3): which u belongs to column 0?",
+    sole="says that the coordinates are right, whatever the weights",
+)
 def a_centre_gives_its_texel(t):
     """At the centre of a texel, the sample is that texel."""
     T = t.rng.uniform(-1.0, 1.0, (3, 5, 2))
@@ -66,12 +77,25 @@ def a_centre_gives_its_texel(t):
     t.close("samples", got, T.reshape(15, 2), reveal=True)
 
 
-@check("03.1.ramp", task="03.1", points=3, calls=("bilinear_sample",), tolerance=EXACT,
-       kills=("swapped_axes_everywhere",
-              "half_texel", "corner_centres", "swapped_axes", "swapped_weights",
-              "mirrored_weights", "nearest", "opposite_index",),
-       hint="handout, equation (6): which texel belongs to which weight?",
-       sole="says that the weights are right, on a picture one can draw")  # fmt: skip
+@check(
+    "03.1.ramp",
+    task="03.1",
+    points=3,
+    calls=("bilinear_sample",),
+    tolerance=EXACT,
+    kills=(
+        "swapped_axes_everywhere",
+        "half_texel",
+        "corner_centres",
+        "swapped_axes",
+        "swapped_weights",
+        "mirrored_weights",
+        "nearest",
+        "opposite_index",
+    ),
+    hint="handout, equation (6): which texel belongs to which weight?",
+    sole="says that the weights are right, on a picture one can draw",
+)
 def a_ramp_stays_a_ramp(t):
     """A texture that rises evenly to the right and downwards is sampled without error."""
     shape = (4, 7)
@@ -82,12 +106,26 @@ def a_ramp_stays_a_ramp(t):
     t.close("samples", got[:, 0], uv @ [across, down], reveal=True)
 
 
-@check("03.1.product", task="03.1", points=2, calls=("bilinear_sample",), tolerance=EXACT,
-       kills=("swapped_axes_everywhere",
-              "half_texel", "corner_centres", "swapped_axes", "swapped_weights",
-              "mirrored_weights", "nearest", "triangles", "opposite_index",),
-       hint="handout, equation (6): four products of weights, and the texel of each",
-       sole="what separates four weights from three")  # fmt: skip
+@check(
+    "03.1.product",
+    task="03.1",
+    points=2,
+    calls=("bilinear_sample",),
+    tolerance=EXACT,
+    kills=(
+        "swapped_axes_everywhere",
+        "half_texel",
+        "corner_centres",
+        "swapped_axes",
+        "swapped_weights",
+        "mirrored_weights",
+        "nearest",
+        "triangles",
+        "opposite_index",
+    ),
+    hint="handout, equation (6): four products of weights, and the texel of each",
+    sole="what separates four weights from three",
+)
 def a_product_stays_a_product(t):
     """The texture u v is sampled without error: the surface between four texels is twisted."""
     shape = (5, 3)
@@ -97,10 +135,16 @@ def a_product_stays_a_product(t):
     t.close("samples", got[:, 0], np.prod(uv, axis=1), reveal=True)
 
 
-@check("03.1.constant", task="03.1", points=2, calls=("bilinear_sample",), tolerance=EXACT,
-       kills=("dark_border",),
-       hint="the four weights sum to 1 everywhere, at the border too",
-       sole="a constant sees nothing but the sum of the weights")  # fmt: skip
+@check(
+    "03.1.constant",
+    task="03.1",
+    points=2,
+    calls=("bilinear_sample",),
+    tolerance=EXACT,
+    kills=("dark_border",),
+    hint="the four weights sum to 1 everywhere, at the border too",
+    sole="a constant sees nothing but the sum of the weights",
+)
 def a_constant_stays_constant(t):
     """A constant texture gives its constant everywhere."""
     value = t.rng.uniform(1.0, 2.0, 3)
@@ -110,12 +154,25 @@ def a_constant_stays_constant(t):
     t.close("samples", got, np.tile(value, (80, 1)), reveal=True)
 
 
-@check("03.1.edge", task="03.1", points=3, calls=("bilinear_sample",), tolerance=EXACT,
-       kills=("swapped_axes_everywhere",
-              "half_texel", "corner_centres", "swapped_axes", "mirrored_weights",
-              "wrap", "extrapolated", "dark_border",),
-       hint="handout, equation (4): clamp the coordinate, then split it",
-       sole="says that only the border is wrong")  # fmt: skip
+@check(
+    "03.1.edge",
+    task="03.1",
+    points=3,
+    calls=("bilinear_sample",),
+    tolerance=EXACT,
+    kills=(
+        "swapped_axes_everywhere",
+        "half_texel",
+        "corner_centres",
+        "swapped_axes",
+        "mirrored_weights",
+        "wrap",
+        "extrapolated",
+        "dark_border",
+    ),
+    hint="handout, equation (4): clamp the coordinate, then split it",
+    sole="says that only the border is wrong",
+)
 def the_border_holds(t):
     """Beyond the outermost centres, and beyond the texture, the value at the border holds."""
     shape = (3, 4)
@@ -133,13 +190,25 @@ def the_border_holds(t):
 # 03.2 ---------------------------------------------------------------------------------------------
 
 
-@check("03.2.single", task="03.2", points=3, calls=("bilinear_sample_adjoint",), tolerance=EXACT,
-       kills=("swapped_axes_everywhere",
-              "adjoint_swapped_axes", "adjoint_half_texel", "adjoint_swapped_weights",
-              "adjoint_without_g", "adjoint_averaged", "adjoint_nearest",
-              "opposite_index",),
-       hint="handout, equation (7): g times the weight that the texel had",
-       sole="asks about one sample, without the forward function")  # fmt: skip
+@check(
+    "03.2.single",
+    task="03.2",
+    points=3,
+    calls=("bilinear_sample_adjoint",),
+    tolerance=EXACT,
+    kills=(
+        "swapped_axes_everywhere",
+        "adjoint_swapped_axes",
+        "adjoint_half_texel",
+        "adjoint_swapped_weights",
+        "adjoint_without_g",
+        "adjoint_averaged",
+        "adjoint_nearest",
+        "opposite_index",
+    ),
+    hint="handout, equation (7): g times the weight that the texel had",
+    sole="asks about one sample, without the forward function",
+)
 def one_sample_is_spread_around_its_place(t):
     """What one sample hands out sums to g, and is balanced around the sample's place."""
     shape = (4, 6)
@@ -149,17 +218,32 @@ def one_sample_is_spread_around_its_place(t):
         d_T = t.call("bilinear_sample_adjoint", shape, uv, g, returns=Array((4, 6, 1))).ravel()
         t.close("sum over all texels", d_T.sum(), g[0, 0], reveal=True)
         t.close("balance (u, v)", d_T @ centres(shape) / g[0, 0], uv[0], reveal=True)
-        t.require(bool((d_T >= 0).all()) and np.count_nonzero(d_T) <= 4,
-                  "a positive g must reach at most four texels, none negatively")  # fmt: skip
+        t.require(
+            bool((d_T >= 0).all()) and np.count_nonzero(d_T) <= 4,
+            "a positive g must reach at most four texels, none negatively",
+        )
 
 
-@check("03.2.transpose", task="03.2", points=5, calls=("bilinear_sample_adjoint",),
-       needs=("bilinear_sample",), tolerance=EXACT,
-       kills=("adjoint_swapped_axes", "adjoint_half_texel", "adjoint_last_wins",
-              "adjoint_swapped_weights", "adjoint_wrap", "adjoint_without_g",
-              "adjoint_averaged", "adjoint_nearest",),
-       hint="handout, section 2: the same weights as forwards, from sample to texel",
-       sole="the definition of an adjoint")  # fmt: skip
+@check(
+    "03.2.transpose",
+    task="03.2",
+    points=5,
+    calls=("bilinear_sample_adjoint",),
+    needs=("bilinear_sample",),
+    tolerance=EXACT,
+    kills=(
+        "adjoint_swapped_axes",
+        "adjoint_half_texel",
+        "adjoint_last_wins",
+        "adjoint_swapped_weights",
+        "adjoint_wrap",
+        "adjoint_without_g",
+        "adjoint_averaged",
+        "adjoint_nearest",
+    ),
+    hint="handout, section 2: the same weights as forwards, from sample to texel",
+    sole="the definition of an adjoint",
+)
 def is_the_transpose(t):
     """<S x, g> = <x, S* g> for any texture x and any g: on textures that are not square."""
     for shape in ((3, 7), (6, 2), (1, 5)):
@@ -168,39 +252,61 @@ def is_the_transpose(t):
         back = t.call("bilinear_sample_adjoint", shape, uv, g, returns=Array((*shape, 2)))
         forth = t.call("bilinear_sample", x, uv, returns=Array((25, 2)))
         size = float(np.linalg.norm(forth) * np.linalg.norm(g))
-        t.close("<x, S* g>", np.vdot(x, back), np.vdot(forth, g),
-                Tolerance(EXACT.relative, EXACT.evidence, floor=size))  # fmt: skip
+        t.close(
+            "<x, S* g>",
+            np.vdot(x, back),
+            np.vdot(forth, g),
+            Tolerance(EXACT.relative, EXACT.evidence, floor=size),
+        )
         matrix = sampling_matrix(t, shape, uv)
         t.close("S* g", back.reshape(-1, 2), matrix.T @ g)
     nothing = t.call("bilinear_sample_adjoint", shape, uv, 0 * g, returns=Array((*shape, 2)))
     require_zero_for_zero(t, {"T": nothing})
 
 
-@check("03.2.repeated", task="03.2", points=4, calls=("bilinear_sample_adjoint",), tolerance=EXACT,
-       kills=("adjoint_last_wins", "adjoint_without_g", "adjoint_averaged",),
-       hint="d_T[rows, columns] += values adds once where an index occurs twice",
-       sole="names the mistake of a scatter that forgets")  # fmt: skip
+@check(
+    "03.2.repeated",
+    task="03.2",
+    points=4,
+    calls=("bilinear_sample_adjoint",),
+    tolerance=EXACT,
+    kills=("adjoint_last_wins", "adjoint_without_g", "adjoint_averaged"),
+    hint="d_T[rows, columns] += values adds once where an index occurs twice",
+    sole="names the mistake of a scatter that forgets",
+)
 def repeated_places_add_up(t):
     """A place measured ten times hands out the sum of its ten numbers."""
     shape = (5, 3)
     uv = t.rng.uniform(0.0, 1.0, (4, 2))
     g = t.rng.uniform(0.5, 1.5, (40, 2))
-    many = t.call("bilinear_sample_adjoint", shape, np.tile(uv, (10, 1)), g,
-                  returns=Array((5, 3, 2)))  # fmt: skip
+    many = t.call(
+        "bilinear_sample_adjoint", shape, np.tile(uv, (10, 1)), g, returns=Array((5, 3, 2))
+    )
     total = np.zeros((5, 3, 2))
     for k in range(4):
         summed = g[k::4].sum(axis=0)[None]
-        total += t.call("bilinear_sample_adjoint", shape, uv[k : k + 1], summed,
-                        returns=Array((5, 3, 2)))  # fmt: skip
+        total += t.call(
+            "bilinear_sample_adjoint", shape, uv[k : k + 1], summed, returns=Array((5, 3, 2))
+        )
     t.close("d_T", many, total)
 
 
-@check("03.2.edge", task="03.2", points=2, calls=("bilinear_sample_adjoint",), tolerance=EXACT,
-       kills=("swapped_axes_everywhere",
-              "adjoint_swapped_axes", "adjoint_half_texel", "adjoint_wrap",
-              "adjoint_without_g",),
-       hint="clamp as forwards (which of u, v with which side?); equal indices add up",
-       sole="says that only the border is wrong")  # fmt: skip
+@check(
+    "03.2.edge",
+    task="03.2",
+    points=2,
+    calls=("bilinear_sample_adjoint",),
+    tolerance=EXACT,
+    kills=(
+        "swapped_axes_everywhere",
+        "adjoint_swapped_axes",
+        "adjoint_half_texel",
+        "adjoint_wrap",
+        "adjoint_without_g",
+    ),
+    hint="clamp as forwards (which of u, v with which side?); equal indices add up",
+    sole="says that only the border is wrong",
+)
 def a_corner_gets_it_all(t):
     """A sample in a corner of the texture, or beyond it, belongs to one texel alone."""
     shape, g = (3, 4), t.rng.uniform(0.5, 1.5, (4, 1))
@@ -214,11 +320,17 @@ def a_corner_gets_it_all(t):
 # 03.3 ---------------------------------------------------------------------------------------------
 
 
-@check("03.3.value", task="03.3", points=3, calls=("loss_and_grad",), needs=("bilinear_sample",),
-       tolerance=EXACT,
-       kills=("loss_not_divided", "loss_over_channels", "loss_half",),
-       hint="handout, equation (9): sum over channels, divide by N",
-       sole="asks about the loss alone")  # fmt: skip
+@check(
+    "03.3.value",
+    task="03.3",
+    points=3,
+    calls=("loss_and_grad",),
+    needs=("bilinear_sample",),
+    tolerance=EXACT,
+    kills=("loss_not_divided", "loss_over_channels", "loss_half"),
+    hint="handout, equation (9): sum over channels, divide by N",
+    sole="asks about the loss alone",
+)
 def the_loss_of_a_constant(t):
     """Constant texture, constant measurements: the loss is the squared distance of two colours."""
     is_, should = t.rng.uniform(0.0, 1.0, (2, 3))
@@ -229,13 +341,26 @@ def the_loss_of_a_constant(t):
     t.close("L", loss, np.sum((is_ - should) ** 2), reveal=True)
 
 
-@check("03.3.differences", task="03.3", points=5, calls=("loss_and_grad",), tolerance=QUADRATIC,
-       needs=("bilinear_sample", "bilinear_sample_adjoint"),
-       kills=("grad_missing_two", "grad_not_divided", "grad_missing_two_over_n",
-              "grad_sign", "grad_of_values", "grad_squared", "grad_per_texel",
-              "grad_one_channel",),
-       hint="handout, equation (10): 2/N times the adjoint of the residuals",
-       sole="the gradient itself, without the reference")  # fmt: skip
+@check(
+    "03.3.differences",
+    task="03.3",
+    points=5,
+    calls=("loss_and_grad",),
+    tolerance=QUADRATIC,
+    needs=("bilinear_sample", "bilinear_sample_adjoint"),
+    kills=(
+        "grad_missing_two",
+        "grad_not_divided",
+        "grad_missing_two_over_n",
+        "grad_sign",
+        "grad_of_values",
+        "grad_squared",
+        "grad_per_texel",
+        "grad_one_channel",
+    ),
+    hint="handout, equation (10): 2/N times the adjoint of the residuals",
+    sole="the gradient itself, without the reference",
+)
 def the_gradient_agrees_with_differences(t):
     """Raising one texel by a little changes your loss by as much as your gradient says."""
     T = t.rng.uniform(0.0, 1.0, (3, 4, 2))
@@ -252,12 +377,22 @@ def the_gradient_agrees_with_differences(t):
 # 03.4 ---------------------------------------------------------------------------------------------
 
 
-@check("03.4.rounds", task="03.4", points=4, calls=("largest_curvature",), tolerance=EXACT,
-       needs=("bilinear_sample", "bilinear_sample_adjoint", "loss_and_grad"),
-       kills=("curvature_missing_two", "curvature_one_round_less",
-              "curvature_of_length", "curvature_mean",),
-       hint="handout, equations (11) to (13): what stands after 0 rounds, after 1?",
-       sole="says which round or factor is wrong; the estimate alone would not")  # fmt: skip
+@check(
+    "03.4.rounds",
+    task="03.4",
+    points=4,
+    calls=("largest_curvature",),
+    tolerance=EXACT,
+    needs=("bilinear_sample", "bilinear_sample_adjoint", "loss_and_grad"),
+    kills=(
+        "curvature_missing_two",
+        "curvature_one_round_less",
+        "curvature_of_length",
+        "curvature_mean",
+    ),
+    hint="handout, equations (11) to (13): what stands after 0 rounds, after 1?",
+    sole="says which round or factor is wrong; the estimate alone would not",
+)
 def rounds_are_as_counted(t):
     """Samples at texel centres only: the estimate after n rounds is known in closed form."""
     shape = (3, 4)
@@ -269,11 +404,17 @@ def rounds_are_as_counted(t):
         t.close(f"estimate after {n} rounds", got, 2 * mean / len(uv), reveal=True)
 
 
-@check("03.4.bound", task="03.4", points=3, calls=("largest_curvature",), tolerance=ESTIMATE,
-       needs=("bilinear_sample", "bilinear_sample_adjoint", "loss_and_grad"),
-       kills=("curvature_missing_two", "curvature_grows", "curvature_mean",),
-       hint="keep x at length 1: 300 rounds make anything else 0 or infinite",
-       sole="asks what the function is for, after many rounds")  # fmt: skip
+@check(
+    "03.4.bound",
+    task="03.4",
+    points=3,
+    calls=("largest_curvature",),
+    tolerance=ESTIMATE,
+    needs=("bilinear_sample", "bilinear_sample_adjoint", "loss_and_grad"),
+    kills=("curvature_missing_two", "curvature_grows", "curvature_mean"),
+    hint="keep x at length 1: 300 rounds make anything else 0 or infinite",
+    sole="asks what the function is for, after many rounds",
+)
 def many_rounds_find_the_largest_eigenvalue(t):
     """After 300 rounds the estimate is the Hessian's largest eigenvalue within 2 %."""
     shape = (8, 7)
@@ -305,12 +446,24 @@ def recover(t, T0, uv, target, n):
 EARLIER = ("bilinear_sample", "bilinear_sample_adjoint", "loss_and_grad", "largest_curvature")
 
 
-@check("03.5.step", task="03.5", points=3, calls=("recover_texture",), needs=EARLIER,
-       tolerance=FIRST_STEP,
-       kills=("step_whole", "step_half", "step_uphill", "step_ignored", "one_step_less",
-              "losses_late",),
-       hint="handout, equations (14) and (15)",
-       sole="asks about the first step alone")  # fmt: skip
+@check(
+    "03.5.step",
+    task="03.5",
+    points=3,
+    calls=("recover_texture",),
+    needs=EARLIER,
+    tolerance=FIRST_STEP,
+    kills=(
+        "step_whole",
+        "step_half",
+        "step_uphill",
+        "step_ignored",
+        "one_step_less",
+        "losses_late",
+    ),
+    hint="handout, equations (14) and (15)",
+    sole="asks about the first step alone",
+)
 def the_first_step(t):
     """One step goes against the gradient, by 0.95 of the largest stable step."""
     shape = (5, 4, 2)
@@ -325,11 +478,17 @@ def the_first_step(t):
     t.close("losses", losses, [before, after], CHAINED)
 
 
-@check("03.5.chain", task="03.5", points=2, calls=("recover_texture",), needs=EARLIER,
-       tolerance=CHAINED,
-       kills=("step_uphill", "steps_shrink", "one_step_less", "losses_late",),
-       hint="the same step from first to last; losses of T0 to T",
-       sole="counts steps and losses, whatever the step's length")  # fmt: skip
+@check(
+    "03.5.chain",
+    task="03.5",
+    points=2,
+    calls=("recover_texture",),
+    needs=EARLIER,
+    tolerance=CHAINED,
+    kills=("step_uphill", "steps_shrink", "one_step_less", "losses_late"),
+    hint="the same step from first to last; losses of T0 to T",
+    sole="counts steps and losses, whatever the step's length",
+)
 def steps_can_be_chained(t):
     """Seven steps are three steps and then four more, and their losses fall."""
     shape = (3, 5, 1)
@@ -345,8 +504,15 @@ def steps_can_be_chained(t):
     t.require(bool((np.diff(seven[1]) < 0).all()), "the loss must fall with each step")
 
 
-@check("03.5.start", task="03.5", points=1, calls=("recover_texture",), needs=EARLIER,
-       kills=("start_overwritten",), hint="T0 itself has changed: copy it first")  # fmt: skip
+@check(
+    "03.5.start",
+    task="03.5",
+    points=1,
+    calls=("recover_texture",),
+    needs=EARLIER,
+    kills=("start_overwritten",),
+    hint="T0 itself has changed: copy it first",
+)
 def the_start_is_left_alone(t):
     """A second descent from the same array T0 finds what the first one found."""
     shape = (4, 3, 2)
@@ -357,10 +523,16 @@ def the_start_is_left_alone(t):
     t.require(agree(again, once), "recover_texture has written into its argument T0")
 
 
-@check("03.5.unseen", task="03.5", points=2, calls=("recover_texture",), needs=EARLIER,
-       kills=("unseen_by_gradient", "unseen_inverted", "unseen_little", "unseen_filled",),
-       hint="which texels does any sample give weight? that does not depend on values",
-       sole="asks about what no measurement reaches")  # fmt: skip
+@check(
+    "03.5.unseen",
+    task="03.5",
+    points=2,
+    calls=("recover_texture",),
+    needs=EARLIER,
+    kills=("unseen_by_gradient", "unseen_inverted", "unseen_little", "unseen_filled"),
+    hint="which texels does any sample give weight? that does not depend on values",
+    sole="asks about what no measurement reaches",
+)
 def unseen_texels_stay(t):
     """Texels without any sample keep their value to the last bit, and are reported."""
     shape = (6, 5, 2)
@@ -370,9 +542,11 @@ def unseen_texels_stay(t):
     for target in (t.rng.uniform(0.0, 1.0, (40, 2)), fits):
         T, _, unseen = recover(t, T0, uv, target, 3)
         t.require(bool((T[nowhere] == T0[nowhere]).all()), "a texel without samples has changed")
-        t.require(bool((unseen == nowhere).all()),
-                  f"unseen: {int(unseen.sum())} texels marked, {int(nowhere.sum())} expected, "
-                  f"{int((unseen != nowhere).sum())} differ")  # fmt: skip
+        t.require(
+            bool((unseen == nowhere).all()),
+            f"unseen: {int(unseen.sum())} texels marked, {int(nowhere.sum())} expected, "
+            f"{int((unseen != nowhere).sum())} differ",
+        )
 
 
 # 03.6 ---------------------------------------------------------------------------------------------
@@ -404,10 +578,16 @@ def mips(t, T):
         raise StudentFailure(failure.reason, said, failure.private, failure.line) from failure
 
 
-@check("03.6.mean", task="03.6", points=3, calls=("build_mips",), tolerance=EXACT,
-       kills=("mips_picked", "mips_summed", "mips_stop_early", "mips_without_first",),
-       hint="handout, equation (16): each texel is the mean of those it replaces",
-       sole="what a pyramid is for: the same light at each size")  # fmt: skip
+@check(
+    "03.6.mean",
+    task="03.6",
+    points=3,
+    calls=("build_mips",),
+    tolerance=EXACT,
+    kills=("mips_picked", "mips_summed", "mips_stop_early", "mips_without_first"),
+    hint="handout, equation (16): each texel is the mean of those it replaces",
+    sole="what a pyramid is for: the same light at each size",
+)
 def each_level_has_the_same_mean(t):
     """Levels shrink by halves down to one texel, and all have the same mean."""
     for shape in ((8, 8, 3), (2, 16, 1), (4, 1, 2)):
@@ -423,11 +603,23 @@ def each_level_has_the_same_mean(t):
             t.close(f"mean of level {k}", level.mean(axis=(0, 1)), T.mean(axis=(0, 1)), hint=said)
 
 
-@check("03.6.spot", task="03.6", points=2, calls=("build_mips",), tolerance=EXACT,
-       kills=("mips_picked", "mips_summed", "mips_shifted", "mips_halves",
-              "mips_stop_early", "mips_without_first",),
-       hint="rows 2 i and 2 i + 1 become row i",
-       sole="where a texel goes; a mean does not see that")  # fmt: skip
+@check(
+    "03.6.spot",
+    task="03.6",
+    points=2,
+    calls=("build_mips",),
+    tolerance=EXACT,
+    kills=(
+        "mips_picked",
+        "mips_summed",
+        "mips_shifted",
+        "mips_halves",
+        "mips_stop_early",
+        "mips_without_first",
+    ),
+    hint="rows 2 i and 2 i + 1 become row i",
+    sole="where a texel goes; a mean does not see that",
+)
 def a_spot_keeps_its_place(t):
     """A single bright texel grows fainter from level to level, and stays where it was."""
     for _ in range(3):
@@ -443,13 +635,29 @@ def a_spot_keeps_its_place(t):
 
 
 # >>> hidden
-@check("03.1.hidden", task="03.1", points=3, calls=("bilinear_sample",), visibility="hidden",
-       tolerance=EXACT,
-       kills=("swapped_axes_everywhere",
-              "half_texel", "corner_centres", "swapped_axes", "swapped_weights",
-              "mirrored_weights", "nearest", "triangles", "wrap", "extrapolated",
-              "dark_border", "opposite_index",),
-       sole="the same mistakes at places that are not known beforehand")  # fmt: skip
+@check(
+    "03.1.hidden",
+    task="03.1",
+    points=3,
+    calls=("bilinear_sample",),
+    visibility="hidden",
+    tolerance=EXACT,
+    kills=(
+        "swapped_axes_everywhere",
+        "half_texel",
+        "corner_centres",
+        "swapped_axes",
+        "swapped_weights",
+        "mirrored_weights",
+        "nearest",
+        "triangles",
+        "wrap",
+        "extrapolated",
+        "dark_border",
+        "opposite_index",
+    ),
+    sole="the same mistakes at places that are not known beforehand",
+)
 def samples_at_random_places(t):
     """Samples are right at random places of random textures, one texel wide ones included."""
     for shape in ((6, 3, 2), (1, 9, 1), (7, 1, 3), (1, 1, 2), (16, 11, 3)):
@@ -458,13 +666,27 @@ def samples_at_random_places(t):
         t.close("samples", got, t.reference.bilinear_sample(T, uv))
 
 
-@check("03.2.hidden", task="03.2", points=4, calls=("bilinear_sample_adjoint",),
-       visibility="hidden", tolerance=EXACT,
-       kills=("swapped_axes_everywhere",
-              "adjoint_swapped_axes", "adjoint_half_texel", "adjoint_last_wins",
-              "adjoint_swapped_weights", "adjoint_wrap", "adjoint_without_g",
-              "adjoint_averaged", "adjoint_nearest", "opposite_index",),
-       sole="the same mistakes at places that are not known beforehand")  # fmt: skip
+@check(
+    "03.2.hidden",
+    task="03.2",
+    points=4,
+    calls=("bilinear_sample_adjoint",),
+    visibility="hidden",
+    tolerance=EXACT,
+    kills=(
+        "swapped_axes_everywhere",
+        "adjoint_swapped_axes",
+        "adjoint_half_texel",
+        "adjoint_last_wins",
+        "adjoint_swapped_weights",
+        "adjoint_wrap",
+        "adjoint_without_g",
+        "adjoint_averaged",
+        "adjoint_nearest",
+        "opposite_index",
+    ),
+    sole="the same mistakes at places that are not known beforehand",
+)
 def the_adjoint_at_random_places(t):
     """The adjoint is right at random places, one texel wide textures included."""
     for shape in ((6, 3), (1, 9), (7, 1), (1, 1), (16, 11)):
@@ -473,13 +695,28 @@ def the_adjoint_at_random_places(t):
         t.close("d_T", got, t.reference.bilinear_sample_adjoint(shape, uv, g))
 
 
-@check("03.2.cost", task="03.2", points=2, calls=("bilinear_sample_adjoint",),
-       needs=("bilinear_sample",), visibility="hidden", tolerance=EXACT,
-       kills=("swapped_axes_everywhere",
-              "adjoint_swapped_axes", "adjoint_half_texel", "adjoint_last_wins",
-              "adjoint_swapped_weights", "adjoint_wrap", "adjoint_without_g",
-              "adjoint_averaged", "adjoint_nearest", "adjoint_differences",
-              "opposite_index",))  # fmt: skip
+@check(
+    "03.2.cost",
+    task="03.2",
+    points=2,
+    calls=("bilinear_sample_adjoint",),
+    needs=("bilinear_sample",),
+    visibility="hidden",
+    tolerance=EXACT,
+    kills=(
+        "swapped_axes_everywhere",
+        "adjoint_swapped_axes",
+        "adjoint_half_texel",
+        "adjoint_last_wins",
+        "adjoint_swapped_weights",
+        "adjoint_wrap",
+        "adjoint_without_g",
+        "adjoint_averaged",
+        "adjoint_nearest",
+        "adjoint_differences",
+        "opposite_index",
+    ),
+)
 def the_adjoint_is_cheap(t):
     """With 2,208 texels the adjoint is right, and costs a few forward calls."""
     uv, g = t.rng.uniform(0.0, 1.0, (3000, 2)), t.rng.uniform(-1.0, 1.0, (3000, 1))
@@ -493,12 +730,29 @@ def the_adjoint_is_cheap(t):
     )
 
 
-@check("03.3.hidden", task="03.3", points=4, calls=("loss_and_grad",), visibility="hidden",
-       needs=("bilinear_sample", "bilinear_sample_adjoint"), tolerance=EXACT,
-       kills=("loss_not_divided", "loss_over_channels", "loss_half", "grad_missing_two",
-              "grad_not_divided", "grad_missing_two_over_n", "grad_sign",
-              "grad_of_values", "grad_squared", "grad_per_texel", "grad_one_channel",),
-       sole="the same mistakes at values that are not known beforehand")  # fmt: skip
+@check(
+    "03.3.hidden",
+    task="03.3",
+    points=4,
+    calls=("loss_and_grad",),
+    visibility="hidden",
+    needs=("bilinear_sample", "bilinear_sample_adjoint"),
+    tolerance=EXACT,
+    kills=(
+        "loss_not_divided",
+        "loss_over_channels",
+        "loss_half",
+        "grad_missing_two",
+        "grad_not_divided",
+        "grad_missing_two_over_n",
+        "grad_sign",
+        "grad_of_values",
+        "grad_squared",
+        "grad_per_texel",
+        "grad_one_channel",
+    ),
+    sole="the same mistakes at values that are not known beforehand",
+)
 def loss_and_gradient_of_random_textures(t):
     """Loss and gradient are right, cheap or not, on random textures and measurements."""
     for shape, n in (((4, 6, 3), 50), ((5, 2, 1), 7)):
@@ -511,12 +765,22 @@ def loss_and_gradient_of_random_textures(t):
         t.close("d_T", d_T, right[1])
 
 
-@check("03.4.hidden", task="03.4", points=3, calls=("largest_curvature",), visibility="hidden",
-       needs=("bilinear_sample", "bilinear_sample_adjoint", "loss_and_grad"),
-       tolerance=CHAINED,
-       kills=("curvature_missing_two", "curvature_one_round_less",
-              "curvature_of_length", "curvature_mean",),
-       sole="the same mistakes at places that are not known beforehand")  # fmt: skip
+@check(
+    "03.4.hidden",
+    task="03.4",
+    points=3,
+    calls=("largest_curvature",),
+    visibility="hidden",
+    needs=("bilinear_sample", "bilinear_sample_adjoint", "loss_and_grad"),
+    tolerance=CHAINED,
+    kills=(
+        "curvature_missing_two",
+        "curvature_one_round_less",
+        "curvature_of_length",
+        "curvature_mean",
+    ),
+    sole="the same mistakes at places that are not known beforehand",
+)
 def the_estimate_at_random_places(t):
     """The estimate is right after any number of rounds."""
     for shape, n in (((4, 6), 0), ((5, 2), 1), ((3, 9), 7)):
@@ -525,11 +789,17 @@ def the_estimate_at_random_places(t):
         t.close(f"after {n} rounds", got, t.reference.largest_curvature(shape, uv, n))
 
 
-@check("03.5.recovers", task="03.5", points=4, calls=("recover_texture",), needs=EARLIER,
-       visibility="hidden",
-       kills=("step_whole", "step_uphill", "step_ignored", "unseen_inverted",),
-       seconds=20.0,
-       sole="the whole: a texture that nobody has seen, recovered from samples")  # fmt: skip
+@check(
+    "03.5.recovers",
+    task="03.5",
+    points=4,
+    calls=("recover_texture",),
+    needs=EARLIER,
+    visibility="hidden",
+    kills=("step_whole", "step_uphill", "step_ignored", "unseen_inverted"),
+    seconds=20.0,
+    sole="the whole: a texture that nobody has seen, recovered from samples",
+)
 def a_texture_is_recovered(t):
     """Fifty steps recover an unknown texture from 1,500 samples to 55 dB or better."""
     shape = (7, 6, 1)
@@ -542,11 +812,23 @@ def a_texture_is_recovered(t):
     t.require(not unseen.any(), "texels are called unseen although each has samples")
 
 
-@check("03.6.hidden", task="03.6", points=1, calls=("build_mips",), visibility="hidden",
-       tolerance=EXACT,
-       kills=("mips_picked", "mips_summed", "mips_shifted", "mips_halves",
-              "mips_stop_early", "mips_without_first",),
-       sole="the same mistakes on textures not known")  # fmt: skip
+@check(
+    "03.6.hidden",
+    task="03.6",
+    points=1,
+    calls=("build_mips",),
+    visibility="hidden",
+    tolerance=EXACT,
+    kills=(
+        "mips_picked",
+        "mips_summed",
+        "mips_shifted",
+        "mips_halves",
+        "mips_stop_early",
+        "mips_without_first",
+    ),
+    sole="the same mistakes on textures not known",
+)
 def pyramids_of_random_textures(t):
     """All levels are right for random textures."""
     for shape in ((4, 32, 2), (8, 2, 1), (1, 1, 3)):

@@ -124,9 +124,13 @@ def fig2_adjoint(module: ModuleType) -> tuple[Figure, Facts]:
         image = panels[1].imshow(back, extent=(0, 1, 1, 0), aspect=4 / 6, **colours)
         for i, j in np.argwhere(back != 0):
             panels[1].text(
-                (j + 0.5) / 6, (i + 0.5) / 4, f"{back[i, j]:+.2f}".replace("-", "−"), ha="center",
-                va="center", color="white" if abs(back[i, j]) > 0.55 else INK,
-            )  # fmt: skip
+                (j + 0.5) / 6,
+                (i + 0.5) / 4,
+                f"{back[i, j]:+.2f}".replace("-", "−"),
+                ha="center",
+                va="center",
+                color="white" if abs(back[i, j]) > 0.55 else INK,
+            )
         figure.colorbar(image, ax=panels[1], ticks=[-1, 0, 1], shrink=0.8)
     return figure, facts
 
@@ -173,9 +177,13 @@ def fig3_residual(module: ModuleType) -> tuple[Figure, Facts]:
         for axes in panels.flat:
             axes.set(xticks=[], yticks=[])
         figure.colorbar(
-            image, ax=panels, ticks=[-top, 0, top], shrink=0.45, anchor=(0, 0.03),
+            image,
+            ax=panels,
+            ticks=[-top, 0, top],
+            shrink=0.45,
+            anchor=(0, 0.03),
             label="mean of channels",
-        )  # fmt: skip
+        )
     return figure, facts
 
 
@@ -211,9 +219,13 @@ def fig4_step(module: ModuleType) -> tuple[Figure, Facts]:
             axes.plot(values, color=colour, linestyle=dashes, label=f"{share:g}")
             place = {0.3: -3, 0.6: -3, 0.95: 3, 1.05: -3}[share]
             axes.annotate(
-                f"{share:g} · 2/λ", (steps, values[-1]), (4, place),
-                textcoords="offset points", color=colour if share != 0.3 else INK, va="center",
-            )  # fmt: skip
+                f"{share:g} · 2/λ",
+                (steps, values[-1]),
+                (4, place),
+                textcoords="offset points",
+                color=colour if share != 0.3 else INK,
+                va="center",
+            )
         axes.set(xlabel="step", ylabel="PSNR of the texture [dB]", xlim=(0, 74))
         axes.grid(visible=True)
         axes.spines[["top", "right"]].set_visible(False)

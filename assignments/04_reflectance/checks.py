@@ -19,8 +19,7 @@ from photograd_course.grading.adjoint_gate import (
 # Evidence: worst of the solution and three alternatives, against the nearest of 92 named wrong
 # solutions.
 EXACT = Tolerance(
-    1e-11,
-    "right ones differ by at most 2e-14, the nearest wrong one (back_differences) by 1e-9",
+    1e-11, "right ones differ by at most 2e-14, the nearest wrong one (back_differences) by 1e-9"
 )
 SHARP = Tolerance(
     1e-8,
@@ -91,27 +90,50 @@ def room(t, value, channels, cosines):
     """`furnace` of the hand-in for a model, which looks at the directions that it is asked for."""
 
     def model(wo, wi):
-        t.require(isinstance(wo, np.ndarray) and isinstance(wi, np.ndarray)
-                  and wo.ndim == 2 and wo.shape == wi.shape and wo.shape[1] == 3,
-                  "f must be asked for wo and wi as arrays of one shape (M, 3)")  # fmt: skip
+        t.require(
+            isinstance(wo, np.ndarray)
+            and isinstance(wi, np.ndarray)
+            and wo.ndim == 2
+            and wo.shape == wi.shape
+            and wo.shape[1] == 3,
+            "f must be asked for wo and wi as arrays of one shape (M, 3)",
+        )
         length = np.stack([np.linalg.norm(w, axis=1) for w in (wo, wi)])
         t.require(bool((np.abs(length - 1) < 1e-9).all()), "f must be asked for unit vectors")
         near = np.abs(wo[:, 2:] - cosines).min(axis=1)
-        t.require(bool((near < 1e-12).all() and (np.abs(wo[:, 1]) < 1e-12).all()
-                       and (wo[:, 0] > -1e-12).all()),
-                  "wo, the first argument of f, must be a viewer: in the plane y = 0, on the side "
-                  "of +x, its z one of the cosines")  # fmt: skip
+        t.require(
+            bool(
+                (near < 1e-12).all()
+                and (np.abs(wo[:, 1]) < 1e-12).all()
+                and (wo[:, 0] > -1e-12).all()
+            ),
+            "wo, the first argument of f, must be a viewer: in the plane y = 0, on the side "
+            "of +x, its z one of the cosines",
+        )
         t.require(bool((wi[:, 2] > 0).all()), "wi must be above the surface")
         return value(wo, wi)
 
     return t.call("furnace", model, cosines, returns=Array((len(cosines), channels)))
 
 
-@check("04.1.matte", task="04.1", points=3, calls=("furnace",), tolerance=EXACT,
-       kills=("furnace_mean", "furnace_no_cosine", "furnace_not_unit", "furnace_over_pi",
-              "furnace_sine", "furnace_swapped", "furnace_viewer_cosine",),
-       hint="equation (5): each direction has its own solid angle; one row (C,) for each viewer",
-       sole="the one model whose albedo everybody knows")  # fmt: skip
+@check(
+    "04.1.matte",
+    task="04.1",
+    points=3,
+    calls=("furnace",),
+    tolerance=EXACT,
+    kills=(
+        "furnace_mean",
+        "furnace_no_cosine",
+        "furnace_not_unit",
+        "furnace_over_pi",
+        "furnace_sine",
+        "furnace_swapped",
+        "furnace_viewer_cosine",
+    ),
+    hint="equation (5): each direction has its own solid angle; one row (C,) for each viewer",
+    sole="the one model whose albedo everybody knows",
+)
 def a_matte_surface_returns_its_albedo(t):
     """f = albedo / pi returns the albedo, whoever looks."""
     albedo, cosines = t.rng.uniform(0.2, 1.0, 3), t.rng.uniform(0.1, 1.0, 4)
@@ -119,12 +141,26 @@ def a_matte_surface_returns_its_albedo(t):
     t.close("albedo", got, np.tile(albedo, (4, 1)), reveal=True)
 
 
-@check("04.1.shapes", task="04.1", points=3, calls=("furnace",), tolerance=EXACT,
-       kills=("furnace_first_viewer", "furnace_mean", "furnace_no_cosine", "furnace_not_unit",
-              "furnace_over_pi", "furnace_sine", "furnace_swapped", "furnace_viewer_cosine",),
-       hint="the cosine is that of the light, wi; each direction has its own solid angle; one row "
-            "for each viewer, whose wo is the same in all pairs of the sum",
-       sole="each of the four sums wants another power of wi")  # fmt: skip
+@check(
+    "04.1.shapes",
+    task="04.1",
+    points=3,
+    calls=("furnace",),
+    tolerance=EXACT,
+    kills=(
+        "furnace_first_viewer",
+        "furnace_mean",
+        "furnace_no_cosine",
+        "furnace_not_unit",
+        "furnace_over_pi",
+        "furnace_sine",
+        "furnace_swapped",
+        "furnace_viewer_cosine",
+    ),
+    hint="the cosine is that of the light, wi; each direction has its own solid angle; one row "
+    "for each viewer, whose wo is the same in all pairs of the sum",
+    sole="each of the four sums wants another power of wi",
+)
 def models_with_a_known_integral(t):
     """Polynomials of the directions, integrated by hand."""
     cosines = t.rng.uniform(0.1, 1.0, 5)
@@ -133,16 +169,30 @@ def models_with_a_known_integral(t):
         across = wo[:, 0] * wi[:, 0] + wo[:, 1] * wi[:, 1]
         return np.stack([wo[:, 2] ** 2, wo[:, 2] * wi[:, 2] ** 2, across**2, across + 1], axis=1)
 
-    right = np.stack([np.pi * cosines**2, np.pi / 2 * cosines,
-                      np.pi / 4 * (1 - cosines**2), np.full(5, np.pi)], axis=1)  # fmt: skip
+    right = np.stack(
+        [np.pi * cosines**2, np.pi / 2 * cosines, np.pi / 4 * (1 - cosines**2), np.full(5, np.pi)],
+        axis=1,
+    )
     t.close("integrals", room(t, value, 4, cosines), right, reveal=True)
 
 
-@check("04.1.burley", task="04.1", points=2, calls=("furnace",), tolerance=EXACT,
-       kills=("furnace_mean", "furnace_no_cosine", "furnace_over_pi", "furnace_sine",
-              "furnace_swapped", "furnace_viewer_cosine",),
-       hint="mend the checks above first",
-       sole="the first discovery: a famous model that makes light")  # fmt: skip
+@check(
+    "04.1.burley",
+    task="04.1",
+    points=2,
+    calls=("furnace",),
+    tolerance=EXACT,
+    kills=(
+        "furnace_mean",
+        "furnace_no_cosine",
+        "furnace_over_pi",
+        "furnace_sine",
+        "furnace_swapped",
+        "furnace_viewer_cosine",
+    ),
+    hint="mend the checks above first",
+    sole="the first discovery: a famous model that makes light",
+)
 def a_fit_that_makes_light(t):
     """Burley's white rough surface, seen from the horizon, returns 1.5575 times the light."""
 
@@ -159,10 +209,16 @@ def a_fit_that_makes_light(t):
 # 04.2 ---------------------------------------------------------------------------------------------
 
 
-@check("04.2.peak", task="04.2", points=2, calls=("ggx_lobe",), tolerance=EXACT,
-       kills=("lobe_alpha_once", "lobe_half", "lobe_no_pi", "lobe_not_squared", "lobe_printed",),
-       hint="equations (8) and (10): alpha is the roughness squared; straight on q is 1 and L is 2",
-       sole="one number that can be worked out by head")  # fmt: skip
+@check(
+    "04.2.peak",
+    task="04.2",
+    points=2,
+    calls=("ggx_lobe",),
+    tolerance=EXACT,
+    kills=("lobe_alpha_once", "lobe_half", "lobe_no_pi", "lobe_not_squared", "lobe_printed"),
+    hint="equations (8) and (10): alpha is the roughness squared; straight on q is 1 and L is 2",
+    sole="one number that can be worked out by head",
+)
 def straight_back(t):
     """Light that comes from and goes to straight above: 1 / (4 pi roughness^4)."""
     up = viewer(1.0, 1)
@@ -170,11 +226,26 @@ def straight_back(t):
         t.close("lobe straight back", lobes(t, up, up, r), [1 / (4 * np.pi * r**4)], reveal=True)
 
 
-@check("04.2.ball", task="04.2", points=2, calls=("ggx_lobe",), tolerance=EXACT,
-       kills=("lobe_beckmann", "lobe_cosine", "lobe_half", "lobe_no_masking", "lobe_no_pi",
-              "lobe_not_halfway", "lobe_one_axis", "lobe_printed", "lobe_uncorrelated",),
-       hint="at roughness 1 stretching changes nothing: q = 1, and both lengths are 1",
-       sole="the roughest surface in closed form, from all sides")  # fmt: skip
+@check(
+    "04.2.ball",
+    task="04.2",
+    points=2,
+    calls=("ggx_lobe",),
+    tolerance=EXACT,
+    kills=(
+        "lobe_beckmann",
+        "lobe_cosine",
+        "lobe_half",
+        "lobe_no_masking",
+        "lobe_no_pi",
+        "lobe_not_halfway",
+        "lobe_one_axis",
+        "lobe_printed",
+        "lobe_uncorrelated",
+    ),
+    hint="at roughness 1 stretching changes nothing: q = 1, and both lengths are 1",
+    sole="the roughest surface in closed form, from all sides",
+)
 def the_roughest_surface(t):
     """At roughness 1 facets lie as on a ball: the lobe is 1 / (2 pi (o_z + i_z))."""
     wo, wi = directions(t.rng, 20), directions(t.rng, 20)
@@ -182,10 +253,16 @@ def the_roughest_surface(t):
     t.close("lobe at roughness 1", lobes(t, wo, wi, 1.0), right, reveal=True)
 
 
-@check("04.2.symmetry", task="04.2", points=2, calls=("ggx_lobe",), tolerance=EXACT,
-       kills=("lobe_cosine", "lobe_one_axis",),
-       hint="every formula of section 2 treats wo and wi alike",
-       sole="reciprocity: light could go the other way")  # fmt: skip
+@check(
+    "04.2.symmetry",
+    task="04.2",
+    points=2,
+    calls=("ggx_lobe",),
+    tolerance=EXACT,
+    kills=("lobe_cosine", "lobe_one_axis"),
+    hint="every formula of section 2 treats wo and wi alike",
+    sole="reciprocity: light could go the other way",
+)
 def light_could_go_the_other_way(t):
     """Exchanging wo and wi, or turning both around the normal, changes nothing."""
     for r in t.rng.uniform(0.3, 1.0, 3):
@@ -193,15 +270,21 @@ def light_could_go_the_other_way(t):
         there = lobes(t, wo, wi, r)
         t.close("lobe with wo and wi exchanged", lobes(t, wi, wo, r), there)
         angle = float(t.rng.uniform(0.5, 3.0))
-        t.close("lobe of turned directions",
-                lobes(t, turned(wo, angle), turned(wi, angle), r), there)  # fmt: skip
+        t.close(
+            "lobe of turned directions", lobes(t, turned(wo, angle), turned(wi, angle), r), there
+        )
 
 
-@check("04.2.below", task="04.2", points=1, calls=("ggx_lobe",),
-       kills=("lobe_light_below",),
-       hint="where a direction is not above the surface the lobe is exactly 0 (0 times infinity "
-            "is not 0: choose with np.where)",
-       sole="half of all directions")  # fmt: skip
+@check(
+    "04.2.below",
+    task="04.2",
+    points=1,
+    calls=("ggx_lobe",),
+    kills=("lobe_light_below",),
+    hint="where a direction is not above the surface the lobe is exactly 0 (0 times infinity "
+    "is not 0: choose with np.where)",
+    sole="half of all directions",
+)
 def nothing_below_the_surface(t):
     """A direction below the surface, and opposite ones: exactly 0. Above: more than 0."""
     wo, wi = buried(t.rng, 12)
@@ -212,18 +295,42 @@ def nothing_below_the_surface(t):
 
 # What a surface of perfect mirrors returns: roughness, cosine of the viewer, albedo.
 MIRRORS = (
-    (0.5, 1.0, 0.915812), (0.5, 0.6, 0.871721), (0.7, 1.0, 0.697750), (0.7, 0.3, 0.748997),
-    (0.85, 0.6, 0.550531), (1.0, 1.0, 1 - math.log(2)), (1.0, 0.3, 0.560099),
-)  # fmt: skip
+    (0.5, 1.0, 0.915812),
+    (0.5, 0.6, 0.871721),
+    (0.7, 1.0, 0.697750),
+    (0.7, 0.3, 0.748997),
+    (0.85, 0.6, 0.550531),
+    (1.0, 1.0, 1 - math.log(2)),
+    (1.0, 0.3, 0.560099),
+)
 
 
-@check("04.2.energy", task="04.2", points=4, calls=("ggx_lobe",), tolerance=TABLE,
-       kills=("lobe_alpha_once", "lobe_beckmann", "lobe_cosine", "lobe_facets_stretched",
-              "lobe_half", "lobe_no_masking", "lobe_no_pi", "lobe_no_roots", "lobe_not_halfway",
-              "lobe_not_squared", "lobe_one_axis", "lobe_own_cosines", "lobe_printed",
-              "lobe_q_once", "lobe_uncorrelated",),
-       hint="handout, section 2: D must cover the surface once, V divides by 4 o_z i_z",
-       sole="the furnace decides: what each roughness returns, 1 - ln 2 among it")  # fmt: skip
+@check(
+    "04.2.energy",
+    task="04.2",
+    points=4,
+    calls=("ggx_lobe",),
+    tolerance=TABLE,
+    kills=(
+        "lobe_alpha_once",
+        "lobe_beckmann",
+        "lobe_cosine",
+        "lobe_facets_stretched",
+        "lobe_half",
+        "lobe_no_masking",
+        "lobe_no_pi",
+        "lobe_no_roots",
+        "lobe_not_halfway",
+        "lobe_not_squared",
+        "lobe_one_axis",
+        "lobe_own_cosines",
+        "lobe_printed",
+        "lobe_q_once",
+        "lobe_uncorrelated",
+    ),
+    hint="handout, section 2: D must cover the surface once, V divides by 4 o_z i_z",
+    sole="the furnace decides: what each roughness returns, 1 - ln 2 among it",
+)
 def what_mirrors_return(t):
     """What surfaces of perfect mirrors return: 1 - ln 2 at roughness 1, seen from above."""
     wi, solid_angles = dome(64, 160)
@@ -231,19 +338,38 @@ def what_mirrors_return(t):
     for r, z, _ in MIRRORS:
         got.append(solid_angles @ (wi[:, 2] * lobes(t, viewer(z, len(wi)), wi, r)))
     places = ", ".join(f"({r:g}, {z:g})" for r, z, _ in MIRRORS)
-    t.close(f"albedo at (roughness, cosine) {places}", np.array(got),
-            [row[2] for row in MIRRORS], reveal=True)  # fmt: skip
+    t.close(
+        f"albedo at (roughness, cosine) {places}",
+        np.array(got),
+        [row[2] for row in MIRRORS],
+        reveal=True,
+    )
 
 
 # 04.3 ---------------------------------------------------------------------------------------------
 
 
-@check("04.3.ball", task="04.3", points=2, calls=("ggx_pdf",), needs=("ggx_lobe",),
-       tolerance=EXACT,
-       kills=("pdf_all_facets", "pdf_by_height", "pdf_by_light", "pdf_four_alone",
-              "pdf_half", "pdf_is_value", "pdf_no_masking", "pdf_of_facets", "pdf_twice",),
-       hint="at roughness 1: D = 1 / pi, and wo sees 2 o_z / (1 + o_z) of the facets turned to it",
-       sole="the roughest surface in closed form")  # fmt: skip
+@check(
+    "04.3.ball",
+    task="04.3",
+    points=2,
+    calls=("ggx_pdf",),
+    needs=("ggx_lobe",),
+    tolerance=EXACT,
+    kills=(
+        "pdf_all_facets",
+        "pdf_by_height",
+        "pdf_by_light",
+        "pdf_four_alone",
+        "pdf_half",
+        "pdf_is_value",
+        "pdf_no_masking",
+        "pdf_of_facets",
+        "pdf_twice",
+    ),
+    hint="at roughness 1: D = 1 / pi, and wo sees 2 o_z / (1 + o_z) of the facets turned to it",
+    sole="the roughest surface in closed form",
+)
 def a_ball_spreads_evenly(t):
     """At roughness 1 a viewer's mirrored directions are spread evenly: 1 / (2 pi (1 + o_z))."""
     wo, wi = directions(t.rng, 20), directions(t.rng, 20)
@@ -251,12 +377,25 @@ def a_ball_spreads_evenly(t):
     t.close("density at roughness 1", densities(t, wo, wi, 1.0), right, reveal=True)
 
 
-@check("04.3.mass", task="04.3", points=3, calls=("ggx_pdf",), needs=("ggx_lobe",),
-       tolerance=TABLE,
-       kills=("pdf_by_light", "pdf_four_alone", "pdf_half", "pdf_is_value", "pdf_not_squared",
-              "pdf_of_facets", "pdf_twice",),
-       hint="turning a facet by an angle turns the mirrored direction by two: equation (12)",
-       sole="a density is known by its integral")  # fmt: skip
+@check(
+    "04.3.mass",
+    task="04.3",
+    points=3,
+    calls=("ggx_pdf",),
+    needs=("ggx_lobe",),
+    tolerance=TABLE,
+    kills=(
+        "pdf_by_light",
+        "pdf_four_alone",
+        "pdf_half",
+        "pdf_is_value",
+        "pdf_not_squared",
+        "pdf_of_facets",
+        "pdf_twice",
+    ),
+    hint="turning a facet by an angle turns the mirrored direction by two: equation (12)",
+    sole="a density is known by its integral",
+)
 def what_stays_above(t):
     """Seen from straight above, facets steeper than 45 degrees mirror downwards: the rest stays."""
     wi, solid_angles = dome(96, 16)
@@ -265,28 +404,54 @@ def what_stays_above(t):
         t.close("share of directions above", mass, 1 / (1 + r**4), reveal=True)
 
 
-@check("04.3.weight", task="04.3", points=3, calls=("ggx_pdf",), needs=("ggx_lobe",),
-       tolerance=EXACT,
-       kills=("pdf_all_facets", "pdf_by_height", "pdf_by_light", "pdf_four_alone",
-              "pdf_half", "pdf_no_masking", "pdf_of_facets", "pdf_twice",),
-       hint="a sample's weight is the share of the facets seen that the light sees, too",
-       sole="what the sampler is good for: no sample counts more than 1")  # fmt: skip
+@check(
+    "04.3.weight",
+    task="04.3",
+    points=3,
+    calls=("ggx_pdf",),
+    needs=("ggx_lobe",),
+    tolerance=EXACT,
+    kills=(
+        "pdf_all_facets",
+        "pdf_by_height",
+        "pdf_by_light",
+        "pdf_four_alone",
+        "pdf_half",
+        "pdf_no_masking",
+        "pdf_of_facets",
+        "pdf_twice",
+    ),
+    hint="a sample's weight is the share of the facets seen that the light sees, too",
+    sole="what the sampler is good for: no sample counts more than 1",
+)
 def weights_are_shares(t):
     """A sample's weight, lobe times cosine over density, is at most 1, and 1 for light from +z."""
     for r in t.rng.uniform(0.3, 1.0, 3):
         wo, wi = directions(t.rng, 60, 0.02), directions(t.rng, 60, 0.02)
         lobe, pdf = lobes(t, wo, wi, r), densities(t, wo, wi, r)
-        t.require(bool((lobe * wi[:, 2] <= pdf * (1 + 1e-9)).all()),
-                  "no weight f cos / pdf of a perfect mirror may be more than 1")  # fmt: skip
+        t.require(
+            bool((lobe * wi[:, 2] <= pdf * (1 + 1e-9)).all()),
+            "no weight f cos / pdf of a perfect mirror may be more than 1",
+        )
         up = viewer(1.0, 60)
-        t.close("density of wi = +z, which every facet sees", densities(t, wo, up, r),
-                lobes(t, wo, up, r), reveal=True)  # fmt: skip
+        t.close(
+            "density of wi = +z, which every facet sees",
+            densities(t, wo, up, r),
+            lobes(t, wo, up, r),
+            reveal=True,
+        )
 
 
-@check("04.3.below", task="04.3", points=1, calls=("ggx_pdf",), needs=("ggx_lobe",),
-       kills=("pdf_floor",),
-       hint="where a direction is not above the surface the density is exactly 0",
-       sole="half of all directions")  # fmt: skip
+@check(
+    "04.3.below",
+    task="04.3",
+    points=1,
+    calls=("ggx_pdf",),
+    needs=("ggx_lobe",),
+    kills=("pdf_floor",),
+    hint="where a direction is not above the surface the density is exactly 0",
+    sole="half of all directions",
+)
 def no_density_below(t):
     """A direction below the surface, and opposite ones: exactly 0. Above: more than 0."""
     wo, wi = buried(t.rng, 12)
@@ -373,12 +538,25 @@ def compare_samples(t, wo, r, shares):
     )
 
 
-@check("04.4.mirror", task="04.4", points=2, calls=("sample_ggx",), tolerance=EXACT,
-       kills=("sample_all_facets", "sample_cap_alone", "sample_not_stretched_back",
-              "sample_squeezed_back", "sample_stretched_mirror", "sample_through",
-              "sample_v_not_unit", "sample_whole_ball",),
-       hint="mirror: wi = 2 (wo . h) h - wo, with h a unit vector that has z > 0 and wo . h > 0",
-       sole="what every single sample must satisfy")  # fmt: skip
+@check(
+    "04.4.mirror",
+    task="04.4",
+    points=2,
+    calls=("sample_ggx",),
+    tolerance=EXACT,
+    kills=(
+        "sample_all_facets",
+        "sample_cap_alone",
+        "sample_not_stretched_back",
+        "sample_squeezed_back",
+        "sample_stretched_mirror",
+        "sample_through",
+        "sample_v_not_unit",
+        "sample_whole_ball",
+    ),
+    hint="mirror: wi = 2 (wo . h) h - wo, with h a unit vector that has z > 0 and wo . h > 0",
+    sole="what every single sample must satisfy",
+)
 def samples_are_mirrored_at_facets(t):
     """Unit vectors, each mirrored at a facet of the surface that the viewer sees."""
     for r in (0.1, 0.5, 1.0):
@@ -390,26 +568,54 @@ def samples_are_mirrored_at_facets(t):
         t.require(bool(((wo * h).sum(axis=1) > 0).all()), "the viewer must see the facet")
 
 
-@check("04.4.rows", task="04.4", points=1, calls=("sample_ggx",), tolerance=EXACT,
-       kills=("sample_own_numbers",),
-       hint="nothing may be drawn in the function: the two numbers of a row decide about it",
-       sole="the same numbers, the same directions: what debugging rests upon")  # fmt: skip
+@check(
+    "04.4.rows",
+    task="04.4",
+    points=1,
+    calls=("sample_ggx",),
+    tolerance=EXACT,
+    kills=("sample_own_numbers",),
+    hint="nothing may be drawn in the function: the two numbers of a row decide about it",
+    sole="the same numbers, the same directions: what debugging rests upon",
+)
 def numbers_decide(t):
     """The same rows of u2 give the same directions, in any order."""
     wo, u2 = directions(t.rng, 50), t.rng.random((50, 2))
     order = t.rng.permutation(50)
-    t.close("directions in another order", drawn(t, wo[order], 0.6, u2[order]),
-            drawn(t, wo, 0.6, u2)[order])  # fmt: skip
+    t.close(
+        "directions in another order",
+        drawn(t, wo[order], 0.6, u2[order]),
+        drawn(t, wo, 0.6, u2)[order],
+    )
 
 
-@check("04.4.chi", task="04.4", points=4, calls=("sample_ggx",), needs=("ggx_lobe", "ggx_pdf"),
-       kills=("sample_all_facets", "sample_cap_alone", "sample_even_angles", "sample_facets",
-              "sample_half_ball", "sample_half_turn", "sample_no_root", "sample_not_squared",
-              "sample_not_stretched_back", "sample_not_stretched_first", "sample_one_number",
-              "sample_squeezed_back", "sample_stretched_mirror", "sample_through",
-              "sample_v_not_unit", "sample_whole_ball",),
-       hint="handout, equations (14) to (16); compare your samples with Figure 3",
-       sole="the definition: samples lie as densely as the density says")  # fmt: skip
+@check(
+    "04.4.chi",
+    task="04.4",
+    points=4,
+    calls=("sample_ggx",),
+    needs=("ggx_lobe", "ggx_pdf"),
+    kills=(
+        "sample_all_facets",
+        "sample_cap_alone",
+        "sample_even_angles",
+        "sample_facets",
+        "sample_half_ball",
+        "sample_half_turn",
+        "sample_no_root",
+        "sample_not_squared",
+        "sample_not_stretched_back",
+        "sample_not_stretched_first",
+        "sample_one_number",
+        "sample_squeezed_back",
+        "sample_stretched_mirror",
+        "sample_through",
+        "sample_v_not_unit",
+        "sample_whole_ball",
+    ),
+    hint="handout, equations (14) to (16); compare your samples with Figure 3",
+    sole="the definition: samples lie as densely as the density says",
+)
 def samples_have_the_density(t):
     """10,000 samples fall into 64 cells as often as your density says (chi-square)."""
     for r, z in ((0.6, 0.35), (0.5, 0.9), (0.9, 0.6)):
@@ -425,14 +631,32 @@ def samples_have_the_density(t):
         t.require(good, "samples do not lie as your density says")
 
 
-@check("04.4.mean", task="04.4", points=2, calls=("sample_ggx",), needs=("ggx_lobe", "ggx_pdf"),
-       kills=("sample_all_facets", "sample_cap_alone", "sample_even_angles", "sample_facets",
-              "sample_half_ball", "sample_no_root", "sample_not_squared",
-              "sample_not_stretched_back", "sample_not_stretched_first", "sample_one_number",
-              "sample_squeezed_back", "sample_stretched_mirror", "sample_through",
-              "sample_v_not_unit", "sample_whole_ball",),
-       hint="mend 04.4.chi first",
-       sole="what it is for: the mean of the weights is the furnace's albedo")  # fmt: skip
+@check(
+    "04.4.mean",
+    task="04.4",
+    points=2,
+    calls=("sample_ggx",),
+    needs=("ggx_lobe", "ggx_pdf"),
+    kills=(
+        "sample_all_facets",
+        "sample_cap_alone",
+        "sample_even_angles",
+        "sample_facets",
+        "sample_half_ball",
+        "sample_no_root",
+        "sample_not_squared",
+        "sample_not_stretched_back",
+        "sample_not_stretched_first",
+        "sample_one_number",
+        "sample_squeezed_back",
+        "sample_stretched_mirror",
+        "sample_through",
+        "sample_v_not_unit",
+        "sample_whole_ball",
+    ),
+    hint="mend 04.4.chi first",
+    sole="what it is for: the mean of the weights is the furnace's albedo",
+)
 def weights_average_to_the_albedo(t):
     """The mean weight of 5,000 samples is the albedo that the lobe has in the furnace (z-test)."""
     wi, solid_angles = dome(64, 128)
@@ -463,30 +687,60 @@ def shaded(t, wo, wi, color, m, r):
     return t.call("gltf", wo, wi, color, m, r, returns=Array((len(wo), 3)))
 
 
-@check("04.5.straight", task="04.5", points=3, calls=("gltf",), needs=("ggx_lobe",),
-       tolerance=EXACT,
-       kills=("gltf_ground_keeps_all", "gltf_index", "gltf_metal_keeps_ground",
-              "gltf_metalness_reversed", "gltf_no_pi", "gltf_roughness_twice",
-              "gltf_tinted_varnish", "gltf_varnish_added",),
-       hint="straight on Schlick's ramp is 0: F is 0.04 for the varnish, the base colour for metal",
-       sole="ground, varnish and metal, each with a number of its own")  # fmt: skip
+@check(
+    "04.5.straight",
+    task="04.5",
+    points=3,
+    calls=("gltf",),
+    needs=("ggx_lobe",),
+    tolerance=EXACT,
+    kills=(
+        "gltf_ground_keeps_all",
+        "gltf_index",
+        "gltf_metal_keeps_ground",
+        "gltf_metalness_reversed",
+        "gltf_no_pi",
+        "gltf_roughness_twice",
+        "gltf_tinted_varnish",
+        "gltf_varnish_added",
+    ),
+    hint="straight on Schlick's ramp is 0: F is 0.04 for the varnish, the base colour for metal",
+    sole="ground, varnish and metal, each with a number of its own",
+)
 def straight_on(t):
     """Straight back, dielectric and metal can be worked out by head."""
     up = viewer(1.0, 6)
     color, _, r = material(t.rng, 6)
     height = (1 / (4 * np.pi * r**4))[:, None]
-    t.close("dielectric", shaded(t, up, up, color, np.zeros(6), r),
-            0.96 * color / np.pi + 0.04 * height, reveal=True)  # fmt: skip
+    t.close(
+        "dielectric",
+        shaded(t, up, up, color, np.zeros(6), r),
+        0.96 * color / np.pi + 0.04 * height,
+        reveal=True,
+    )
     t.close("metal", shaded(t, up, up, color, np.ones(6), r), color * height, reveal=True)
 
 
-@check("04.5.mirror", task="04.5", points=2, calls=("gltf",), needs=("ggx_lobe",),
-       tolerance=EXACT,
-       kills=("gltf_by_facet", "gltf_by_viewer", "gltf_cosine", "gltf_flat_metal",
-              "gltf_metal_keeps_ground", "gltf_metalness_reversed", "gltf_roughness_twice",
-              "gltf_varnish_added",),
-       hint="a white metal reflects all at every angle: what is left is the lobe",
-       sole="all angles, where Schlick's ramp has nothing to say")  # fmt: skip
+@check(
+    "04.5.mirror",
+    task="04.5",
+    points=2,
+    calls=("gltf",),
+    needs=("ggx_lobe",),
+    tolerance=EXACT,
+    kills=(
+        "gltf_by_facet",
+        "gltf_by_viewer",
+        "gltf_cosine",
+        "gltf_flat_metal",
+        "gltf_metal_keeps_ground",
+        "gltf_metalness_reversed",
+        "gltf_roughness_twice",
+        "gltf_varnish_added",
+    ),
+    hint="a white metal reflects all at every angle: what is left is the lobe",
+    sole="all angles, where Schlick's ramp has nothing to say",
+)
 def white_metal_is_the_lobe(t):
     """White metal is `ggx_lobe`; black metal reflects only what Schlick's ramp gives it."""
     wo, wi = directions(t.rng, 20), directions(t.rng, 20)
@@ -499,52 +753,92 @@ def white_metal_is_the_lobe(t):
     t.close("black metal", got, np.tile((twist**5 * lobe)[:, None], 3), reveal=True)
 
 
-@check("04.5.blend", task="04.5", points=2, calls=("gltf",), needs=("ggx_lobe",),
-       tolerance=EXACT,
-       kills=("gltf_premixed",),
-       hint="equation (20): blend the finished values, not what goes into them",
-       sole="the trap of section 5")  # fmt: skip
+@check(
+    "04.5.blend",
+    task="04.5",
+    points=2,
+    calls=("gltf",),
+    needs=("ggx_lobe",),
+    tolerance=EXACT,
+    kills=("gltf_premixed",),
+    hint="equation (20): blend the finished values, not what goes into them",
+    sole="the trap of section 5",
+)
 def half_metal_is_half_of_each(t):
     """f is linear in the metalness: half metal is half of each, in each channel."""
     wo, wi = directions(t.rng, 20), directions(t.rng, 20)
     color, m, r = material(t.rng, 20)
     ends = [shaded(t, wo, wi, color, np.full(20, k), r) for k in (0.0, 1.0)]
-    t.close("blend", shaded(t, wo, wi, color, m, r),
-            (1 - m)[:, None] * ends[0] + m[:, None] * ends[1])  # fmt: skip
+    t.close(
+        "blend", shaded(t, wo, wi, color, m, r), (1 - m)[:, None] * ends[0] + m[:, None] * ends[1]
+    )
 
 
-@check("04.5.symmetry", task="04.5", points=1, calls=("gltf",), needs=("ggx_lobe",),
-       tolerance=EXACT,
-       kills=("gltf_by_viewer", "gltf_cosine", "gltf_ground_below",),
-       hint="the angle of Fresnel's factor is that to the half vector; below the surface all is 0",
-       sole="reciprocity, and nothing below")  # fmt: skip
+@check(
+    "04.5.symmetry",
+    task="04.5",
+    points=1,
+    calls=("gltf",),
+    needs=("ggx_lobe",),
+    tolerance=EXACT,
+    kills=("gltf_by_viewer", "gltf_cosine", "gltf_ground_below"),
+    hint="the angle of Fresnel's factor is that to the half vector; below the surface all is 0",
+    sole="reciprocity, and nothing below",
+)
 def reciprocal_and_above(t):
     """Exchanging wo and wi changes nothing; below the surface everything is exactly 0."""
     wo, wi = directions(t.rng, 20), directions(t.rng, 20)
     given = material(t.rng, 20)
     t.close("f with wo and wi exchanged", shaded(t, wi, wo, *given), shaded(t, wo, wi, *given))
     wo, wi = buried(t.rng, 12)
-    t.require(not shaded(t, wo, wi, *material(t.rng, 12)).any(),
-              "below the surface f must be exactly 0")  # fmt: skip
+    t.require(
+        not shaded(t, wo, wi, *material(t.rng, 12)).any(), "below the surface f must be exactly 0"
+    )
 
 
-@check("04.5.energy", task="04.5", points=1, calls=("gltf",), needs=("ggx_lobe",),
-       tolerance=TABLE,
-       kills=("gltf_by_facet", "gltf_by_viewer", "gltf_cosine", "gltf_ground_keeps_all",
-              "gltf_index", "gltf_metal_keeps_ground", "gltf_metalness_reversed", "gltf_no_pi",
-              "gltf_premixed", "gltf_roughness_twice", "gltf_varnish_added",),
-       hint="mend the checks above first",
-       sole="what the furnace says: half metal lies between its ends")  # fmt: skip
+@check(
+    "04.5.energy",
+    task="04.5",
+    points=1,
+    calls=("gltf",),
+    needs=("ggx_lobe",),
+    tolerance=TABLE,
+    kills=(
+        "gltf_by_facet",
+        "gltf_by_viewer",
+        "gltf_cosine",
+        "gltf_ground_keeps_all",
+        "gltf_index",
+        "gltf_metal_keeps_ground",
+        "gltf_metalness_reversed",
+        "gltf_no_pi",
+        "gltf_premixed",
+        "gltf_roughness_twice",
+        "gltf_varnish_added",
+    ),
+    hint="mend the checks above first",
+    sole="what the furnace says: half metal lies between its ends",
+)
 def what_white_returns(t):
     """White of roughness 0.5, seen from 0.6: dielectric 1.0024, half metal 0.9371, metal 0.8717."""
     wi, solid_angles = dome(64, 128)
     got = []
     for m in (0.0, 0.5, 1.0):
-        f = shaded(t, viewer(0.6, len(wi)), wi, np.ones((len(wi), 3)), np.full(len(wi), m),
-                   np.full(len(wi), 0.5))  # fmt: skip
+        f = shaded(
+            t,
+            viewer(0.6, len(wi)),
+            wi,
+            np.ones((len(wi), 3)),
+            np.full(len(wi), m),
+            np.full(len(wi), 0.5),
+        )
         got.append((solid_angles * wi[:, 2]) @ f[:, 1])
-    t.close("albedo of dielectric, half metal and metal", np.array(got),
-            [1.002399, 0.937060, 0.871721], reveal=True)  # fmt: skip
+    t.close(
+        "albedo of dielectric, half metal and metal",
+        np.array(got),
+        [1.002399, 0.937060, 0.871721],
+        reveal=True,
+    )
 
 
 # 04.6 ---------------------------------------------------------------------------------------------
@@ -570,16 +864,42 @@ def near_mirrors(rng, n):
     return wo, wi / np.linalg.norm(wi, axis=1, keepdims=True)
 
 
-@check("04.6.differences", task="04.6", points=5, calls=("gltf_backward",),
-       needs=("ggx_lobe", "gltf"), tolerance=SMOOTH,
-       kills=("back_V_added", "back_color_mixed", "back_color_no_ground", "back_color_no_metal",
-              "back_color_no_ramp", "back_color_of_f", "back_lengths_swapped", "back_metal_alone",
-              "back_metal_mean", "back_metal_one_channel", "back_metal_sign", "back_no_D",
-              "back_no_V", "back_no_fresnel", "back_no_varnish", "back_of_alpha", "back_one_length",
-              "back_peak_alone", "back_q_once", "back_q_sign", "back_relative", "back_rows_summed",
-              "back_two_forgotten", "back_without_loss",),
-       hint="handout, section 6: first colour and metalness, then the logarithm of D V",
-       sole="the derivative itself, without the reference")  # fmt: skip
+@check(
+    "04.6.differences",
+    task="04.6",
+    points=5,
+    calls=("gltf_backward",),
+    needs=("ggx_lobe", "gltf"),
+    tolerance=SMOOTH,
+    kills=(
+        "back_V_added",
+        "back_color_mixed",
+        "back_color_no_ground",
+        "back_color_no_metal",
+        "back_color_no_ramp",
+        "back_color_of_f",
+        "back_lengths_swapped",
+        "back_metal_alone",
+        "back_metal_mean",
+        "back_metal_one_channel",
+        "back_metal_sign",
+        "back_no_D",
+        "back_no_V",
+        "back_no_fresnel",
+        "back_no_varnish",
+        "back_of_alpha",
+        "back_one_length",
+        "back_peak_alone",
+        "back_q_once",
+        "back_q_sign",
+        "back_relative",
+        "back_rows_summed",
+        "back_two_forgotten",
+        "back_without_loss",
+    ),
+    hint="handout, section 6: first colour and metalness, then the logarithm of D V",
+    sole="the derivative itself, without the reference",
+)
 def agrees_with_differences(t):
     """Moving one parameter a little moves your f as your derivatives say."""
     wo, wi = near_mirrors(t.rng, 6)
@@ -594,13 +914,27 @@ def agrees_with_differences(t):
     require_gradients(t, got, forward, here, g, SMOOTH)
 
 
-@check("04.6.straight", task="04.6", points=2, calls=("gltf_backward",),
-       needs=("ggx_lobe", "gltf"), tolerance=EXACT,
-       kills=("back_differences", "back_no_D", "back_no_fresnel", "back_no_varnish",
-              "back_of_alpha", "back_relative", "back_rows_summed", "back_two_forgotten",
-              "back_without_loss",),
-       hint="roughness^-4 has the derivative -4 roughness^-5; alpha is the roughness squared",
-       sole="the roughness alone, where it can be worked out by head")  # fmt: skip
+@check(
+    "04.6.straight",
+    task="04.6",
+    points=2,
+    calls=("gltf_backward",),
+    needs=("ggx_lobe", "gltf"),
+    tolerance=EXACT,
+    kills=(
+        "back_differences",
+        "back_no_D",
+        "back_no_fresnel",
+        "back_no_varnish",
+        "back_of_alpha",
+        "back_relative",
+        "back_rows_summed",
+        "back_two_forgotten",
+        "back_without_loss",
+    ),
+    hint="roughness^-4 has the derivative -4 roughness^-5; alpha is the roughness squared",
+    sole="the roughness alone, where it can be worked out by head",
+)
 def the_peak_sinks(t):
     """Straight back the lobe is 1 / (4 pi roughness^4), and so is its derivative known."""
     up = viewer(1.0, 5)
@@ -612,13 +946,27 @@ def the_peak_sinks(t):
         t.close("d_roughness straight back", got["roughness"], right, reveal=True)
 
 
-@check("04.6.linear", task="04.6", points=3, calls=("gltf_backward",),
-       needs=("ggx_lobe", "gltf"), tolerance=EXACT,
-       kills=("back_color_mixed", "back_color_no_ground", "back_color_no_metal",
-              "back_color_no_ramp", "back_color_of_f", "back_metal_alone", "back_metal_mean",
-              "back_metal_one_channel", "back_metal_sign",),
-       hint="f is a constant plus something times the base colour; and linear in the metalness",
-       sole="all digits, where differences have nine")  # fmt: skip
+@check(
+    "04.6.linear",
+    task="04.6",
+    points=3,
+    calls=("gltf_backward",),
+    needs=("ggx_lobe", "gltf"),
+    tolerance=EXACT,
+    kills=(
+        "back_color_mixed",
+        "back_color_no_ground",
+        "back_color_no_metal",
+        "back_color_no_ramp",
+        "back_color_of_f",
+        "back_metal_alone",
+        "back_metal_mean",
+        "back_metal_one_channel",
+        "back_metal_sign",
+    ),
+    hint="f is a constant plus something times the base colour; and linear in the metalness",
+    sole="all digits, where differences have nine",
+)
 def color_and_metalness_are_linear(t):
     """f is linear in colour and in metalness: any step, not only a small one, fits."""
     wo, wi = near_mirrors(t.rng, 20)
@@ -633,11 +981,17 @@ def color_and_metalness_are_linear(t):
     t.close("step times d_metalness", got["metalness"] * step, np.sum((there - here) * g, axis=1))
 
 
-@check("04.6.zero", task="04.6", points=2, calls=("gltf_backward",),
-       needs=("ggx_lobe", "gltf"), tolerance=EXACT,
-       kills=("back_below", "back_without_loss",),
-       hint="below the surface f is 0 whatever the parameters; rows do not know of each other",
-       sole="what must not leak: below the surface, and from row to row")  # fmt: skip
+@check(
+    "04.6.zero",
+    task="04.6",
+    points=2,
+    calls=("gltf_backward",),
+    needs=("ggx_lobe", "gltf"),
+    tolerance=EXACT,
+    kills=("back_below", "back_without_loss"),
+    hint="below the surface f is 0 whatever the parameters; rows do not know of each other",
+    sole="what must not leak: below the surface, and from row to row",
+)
 def nothing_leaks(t):
     """No derivative below the surface or of no loss; each row minds its own."""
     wo, wi = buried(t.rng, 12)
@@ -655,11 +1009,25 @@ def nothing_leaks(t):
 
 
 # >>> hidden
-@check("04.1.hidden", task="04.1", points=2, calls=("furnace",), visibility="hidden",
-       tolerance=EXACT,
-       kills=("furnace_first_viewer", "furnace_mean", "furnace_no_cosine", "furnace_not_unit",
-              "furnace_over_pi", "furnace_sine", "furnace_swapped", "furnace_viewer_cosine",),
-       sole="the same mistakes with models that are not known beforehand")  # fmt: skip
+@check(
+    "04.1.hidden",
+    task="04.1",
+    points=2,
+    calls=("furnace",),
+    visibility="hidden",
+    tolerance=EXACT,
+    kills=(
+        "furnace_first_viewer",
+        "furnace_mean",
+        "furnace_no_cosine",
+        "furnace_not_unit",
+        "furnace_over_pi",
+        "furnace_sine",
+        "furnace_swapped",
+        "furnace_viewer_cosine",
+    ),
+    sole="the same mistakes with models that are not known beforehand",
+)
 def other_models(t):
     """A model that nobody has seen is integrated rightly."""
     a, b = t.rng.uniform(0.5, 2.0, (3, 2)), t.rng.uniform(0.3, 1.0, (1, 2))
@@ -672,13 +1040,32 @@ def other_models(t):
     t.close("albedo", room(t, value, 2, cosines), right)
 
 
-@check("04.2.hidden", task="04.2", points=3, calls=("ggx_lobe",), visibility="hidden",
-       tolerance=SHARP,
-       kills=("lobe_alpha_once", "lobe_beckmann", "lobe_cosine", "lobe_facets_stretched",
-              "lobe_half", "lobe_no_masking", "lobe_no_pi", "lobe_no_roots", "lobe_not_halfway",
-              "lobe_not_squared", "lobe_one_axis", "lobe_own_cosines", "lobe_printed",
-              "lobe_q_once", "lobe_uncorrelated",),
-       sole="the same mistakes at unknown directions, and on polished surfaces")  # fmt: skip
+@check(
+    "04.2.hidden",
+    task="04.2",
+    points=3,
+    calls=("ggx_lobe",),
+    visibility="hidden",
+    tolerance=SHARP,
+    kills=(
+        "lobe_alpha_once",
+        "lobe_beckmann",
+        "lobe_cosine",
+        "lobe_facets_stretched",
+        "lobe_half",
+        "lobe_no_masking",
+        "lobe_no_pi",
+        "lobe_no_roots",
+        "lobe_not_halfway",
+        "lobe_not_squared",
+        "lobe_one_axis",
+        "lobe_own_cosines",
+        "lobe_printed",
+        "lobe_q_once",
+        "lobe_uncorrelated",
+    ),
+    sole="the same mistakes at unknown directions, and on polished surfaces",
+)
 def lobes_anywhere(t):
     """The lobe is right anywhere, and where it is sharp."""
     wo, wi = directions(t.rng, 60, 0.02), directions(t.rng, 60, 0.02)
@@ -692,12 +1079,28 @@ def lobes_anywhere(t):
         t.close(f"lobe at roughness {sharp}", lobes(t, wo, wi, sharp), right)
 
 
-@check("04.3.hidden", task="04.3", points=2, calls=("ggx_pdf",), needs=("ggx_lobe",),
-       visibility="hidden", tolerance=SHARP,
-       kills=("pdf_all_facets", "pdf_by_height", "pdf_by_light", "pdf_four_alone",
-              "pdf_half", "pdf_is_value", "pdf_no_masking", "pdf_not_squared", "pdf_of_facets",
-              "pdf_twice",),
-       sole="the same mistakes at directions that are not known beforehand")  # fmt: skip
+@check(
+    "04.3.hidden",
+    task="04.3",
+    points=2,
+    calls=("ggx_pdf",),
+    needs=("ggx_lobe",),
+    visibility="hidden",
+    tolerance=SHARP,
+    kills=(
+        "pdf_all_facets",
+        "pdf_by_height",
+        "pdf_by_light",
+        "pdf_four_alone",
+        "pdf_half",
+        "pdf_is_value",
+        "pdf_no_masking",
+        "pdf_not_squared",
+        "pdf_of_facets",
+        "pdf_twice",
+    ),
+    sole="the same mistakes at directions that are not known beforehand",
+)
 def densities_anywhere(t):
     """The density is right anywhere."""
     wo, wi = directions(t.rng, 60, 0.02), directions(t.rng, 60, 0.02)
@@ -706,13 +1109,32 @@ def densities_anywhere(t):
     t.close("density", got, t.reference.ggx_pdf(wo, wi, r))
 
 
-@check("04.4.hidden", task="04.4", points=3, calls=("sample_ggx",), visibility="hidden",
-       kills=("sample_all_facets", "sample_cap_alone", "sample_even_angles", "sample_facets",
-              "sample_half_ball", "sample_half_turn", "sample_no_root", "sample_not_squared",
-              "sample_not_stretched_back", "sample_not_stretched_first", "sample_one_number",
-              "sample_squeezed_back", "sample_stretched_mirror", "sample_through",
-              "sample_v_not_unit", "sample_whole_ball",),
-       sole="the right density, whatever that of the hand-in is")  # fmt: skip
+@check(
+    "04.4.hidden",
+    task="04.4",
+    points=3,
+    calls=("sample_ggx",),
+    visibility="hidden",
+    kills=(
+        "sample_all_facets",
+        "sample_cap_alone",
+        "sample_even_angles",
+        "sample_facets",
+        "sample_half_ball",
+        "sample_half_turn",
+        "sample_no_root",
+        "sample_not_squared",
+        "sample_not_stretched_back",
+        "sample_not_stretched_first",
+        "sample_one_number",
+        "sample_squeezed_back",
+        "sample_stretched_mirror",
+        "sample_through",
+        "sample_v_not_unit",
+        "sample_whole_ball",
+    ),
+    sole="the right density, whatever that of the hand-in is",
+)
 def samples_have_the_right_density(t):
     """Samples at random views fall into cells as often as they should (chi-square)."""
     for low, high in ((0.2, 0.5), (0.5, 1.0)):
@@ -729,13 +1151,31 @@ def samples_have_the_right_density(t):
         twice(t, judge, "samples do not lie as they should")
 
 
-@check("04.5.hidden", task="04.5", points=3, calls=("gltf",), needs=("ggx_lobe",),
-       visibility="hidden", tolerance=EXACT,
-       kills=("gltf_by_facet", "gltf_by_viewer", "gltf_cosine", "gltf_flat_metal",
-              "gltf_ground_keeps_all", "gltf_index", "gltf_metal_keeps_ground",
-              "gltf_metalness_reversed", "gltf_no_pi", "gltf_premixed", "gltf_roughness_twice",
-              "gltf_tinted_varnish", "gltf_varnish_added",),
-       sole="the same mistakes with materials that are not known beforehand")  # fmt: skip
+@check(
+    "04.5.hidden",
+    task="04.5",
+    points=3,
+    calls=("gltf",),
+    needs=("ggx_lobe",),
+    visibility="hidden",
+    tolerance=EXACT,
+    kills=(
+        "gltf_by_facet",
+        "gltf_by_viewer",
+        "gltf_cosine",
+        "gltf_flat_metal",
+        "gltf_ground_keeps_all",
+        "gltf_index",
+        "gltf_metal_keeps_ground",
+        "gltf_metalness_reversed",
+        "gltf_no_pi",
+        "gltf_premixed",
+        "gltf_roughness_twice",
+        "gltf_tinted_varnish",
+        "gltf_varnish_added",
+    ),
+    sole="the same mistakes with materials that are not known beforehand",
+)
 def materials_anywhere(t):
     """Random materials, the ends of all parameters among them."""
     wo, wi = directions(t.rng, 60, 0.02), directions(t.rng, 60, 0.02)
@@ -744,15 +1184,43 @@ def materials_anywhere(t):
     t.close("f", shaded(t, wo, wi, color, m, r), t.reference.gltf(wo, wi, color, m, r))
 
 
-@check("04.6.hidden", task="04.6", points=4, calls=("gltf_backward",),
-       needs=("ggx_lobe", "gltf"), visibility="hidden", tolerance=EXACT,
-       kills=("back_V_added", "back_color_mixed", "back_color_no_ground", "back_color_no_metal",
-              "back_color_no_ramp", "back_color_of_f", "back_differences", "back_lengths_swapped",
-              "back_metal_alone", "back_metal_mean", "back_metal_one_channel", "back_metal_sign",
-              "back_no_D", "back_no_V", "back_no_fresnel", "back_no_varnish", "back_of_alpha",
-              "back_one_length", "back_peak_alone", "back_q_once", "back_q_sign", "back_relative",
-              "back_rows_summed", "back_two_forgotten", "back_without_loss",),
-       sole="eleven digits, which differences do not have")  # fmt: skip
+@check(
+    "04.6.hidden",
+    task="04.6",
+    points=4,
+    calls=("gltf_backward",),
+    needs=("ggx_lobe", "gltf"),
+    visibility="hidden",
+    tolerance=EXACT,
+    kills=(
+        "back_V_added",
+        "back_color_mixed",
+        "back_color_no_ground",
+        "back_color_no_metal",
+        "back_color_no_ramp",
+        "back_color_of_f",
+        "back_differences",
+        "back_lengths_swapped",
+        "back_metal_alone",
+        "back_metal_mean",
+        "back_metal_one_channel",
+        "back_metal_sign",
+        "back_no_D",
+        "back_no_V",
+        "back_no_fresnel",
+        "back_no_varnish",
+        "back_of_alpha",
+        "back_one_length",
+        "back_peak_alone",
+        "back_q_once",
+        "back_q_sign",
+        "back_relative",
+        "back_rows_summed",
+        "back_two_forgotten",
+        "back_without_loss",
+    ),
+    sole="eleven digits, which differences do not have",
+)
 def derivatives_anywhere(t):
     """Every part of the adjoint is right to eleven digits."""
     wo, wi = near_mirrors(t.rng, 60)

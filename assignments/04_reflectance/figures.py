@@ -46,20 +46,26 @@ def fig1_furnace(module):
     plastic = module.furnace(_white(module, 0.0, 0.6), np.array([0.1]))[0, 0]
     facts = {
         "mirrors of roughness 1 return 1 - ln 2 straight up": (
-            float(mirrors[1.0][-1] - 1 + np.log(2)), -1e-9, 1e-9,
+            float(mirrors[1.0][-1] - 1 + np.log(2)),
+            -1e-9,
+            1e-9,
         ),
         "no mirror returns more than came": (
-            max(float(values.max()) for values in mirrors.values()), 0.3, 1.0,
+            max(float(values.max()) for values in mirrors.values()),
+            0.3,
+            1.0,
         ),
         "Burley's, roughness 1, returns 1.46 at 0.05": (float(burley[1.0][1]), 1.46, 1.47),
         "Burley's, roughness 1, is above 1 everywhere": (float(burley[1.0].min()), 1.0, 1.1),
         "Burley's, roughness 0.3, is nowhere above 1": (float(burley[0.3].max()), 0.5, 1.0),
         "as printed, Cook and Torrance's returns four times as much": (
-            float(np.abs(printed / right - 4).max()), 0, 1e-9,
+            float(np.abs(printed / right - 4).max()),
+            0,
+            1e-9,
         ),
         "repaired it nowhere returns more than came": (float(right.max()), 0.8, 1.0),
         "white plastic of roughness 0.6 returns 1.06 at 0.1": (float(plastic), 1.055, 1.065),
-    }  # fmt: skip
+    }
     with house_style():
         figure = Figure(figsize=(7.0, 3.2), layout="constrained")
         panels = figure.subplots(1, 2, width_ratios=(1.5, 1))
@@ -70,8 +76,9 @@ def fig1_furnace(module):
         for (r, values), look in zip(burley.items(), (":", "-"), strict=True):
             axes.plot(cosines, values, look, color=INK, label=f"Burley, roughness {r:g}")
         axes.plot(1.0, 1 - np.log(2), "o", color=CRIMSON, markersize=5, clip_on=False)
-        axes.annotate("1 − ln 2", (1.0, 1 - np.log(2)), (-8, -14), textcoords="offset points",
-                      ha="right")  # fmt: skip
+        axes.annotate(
+            "1 − ln 2", (1.0, 1 - np.log(2)), (-8, -14), textcoords="offset points", ha="right"
+        )
         axes.set(title="facets that mirror all, and Burley's white", ylim=(0, 1.6))
         axes.legend(loc="lower left", fontsize=6.5)
         axes = panels[1]
@@ -102,15 +109,19 @@ def fig2_lobes(module):
     peaks = {r: float(np.degrees(angle[np.argmax(values)])) for r, values in curves.items()}
     facts = {
         "Phong's peak lies in the mirror direction": (
-            float(np.degrees(angle[np.argmax(highlight)])), 44.4, 45.6,
+            float(np.degrees(angle[np.argmax(highlight)])),
+            44.4,
+            45.6,
         ),
         "at roughness 0.4 the peak lies within 3 degrees of it": (peaks[0.4], 44, 48),
         "at roughness 0.6 it lies 11.5 degrees beyond": (peaks[0.6], 56.4, 56.6),
         "at roughness 0.8 it is brightest from the horizon": (peaks[0.8], 89, 90),
         "40 degrees away GGX has 1000 times Phong's light or more": (
-            float((curves[0.4][away] / matched[away]).min()), 1000, 1e6,
+            float((curves[0.4][away] / matched[away]).min()),
+            1000,
+            1e6,
         ),
-    }  # fmt: skip
+    }
     with house_style():
         figure = Figure(figsize=(7.0, 2.9), layout="constrained")
         panels = figure.subplots(1, 2)
@@ -150,15 +161,21 @@ def fig3_samples(module):
     facts = {
         "no weight is above 1": (float(weights.max()), 0.5, 1 + 1e-9),
         "the mean weight is the albedo within four standard errors": (
-            float(abs(weights.mean() - right) / spread), 0, 4,
+            float(abs(weights.mean() - right) / spread),
+            0,
+            4,
         ),
         "directions drawn evenly are more than three times as noisy": (
-            float(plain.std() / weights.std()), 3, 100,
+            float(plain.std() / weights.std()),
+            3,
+            100,
         ),
         "for both viewers about a tenth leads below the surface": (
-            float(np.abs(np.array(below) - 0.1).max()), 0, 0.02,
+            float(np.abs(np.array(below) - 0.1).max()),
+            0,
+            0.02,
         ),
-    }  # fmt: skip
+    }
     with house_style():
         figure = Figure(figsize=(7.0, 2.7), layout="constrained")
         panels = figure.subplots(1, 3)
@@ -208,9 +225,11 @@ def fig4_blend(module):
         "premixed it returns 0.698": (float(mixed[5]), 0.6975, 0.6985),
         "blended it is a straight line": (float(np.abs(blended - straight).max()), 0, 1e-12),
         "premixed it is darker than both ends": (
-            float(mixed[5] / min(mixed[0], mixed[-1])), 0.5, 0.9,
+            float(mixed[5] / min(mixed[0], mixed[-1])),
+            0.5,
+            0.9,
         ),
-    }  # fmt: skip
+    }
     with house_style():
         figure = Figure(figsize=(6.0, 2.7), layout="constrained")
         axes = figure.subplots()
@@ -229,21 +248,27 @@ def fig5_chart(module):
     roughs, metals = (0.15, 0.3, 0.45, 0.65, 1.0), (0.0, 0.5, 1.0)
     size = 124
     balls = {(m, r): _ball(module, size, color, m, r) for m in metals for r in roughs}
-    peak = {key: ball[np.unravel_index(np.nanargmax(ball.sum(axis=2)), ball.shape[:2])]
-            for key, ball in balls.items()}  # fmt: skip
+    peak = {
+        key: ball[np.unravel_index(np.nanargmax(ball.sum(axis=2)), ball.shape[:2])]
+        for key, ball in balls.items()
+    }
     off = [np.nanmax(np.abs(balls[0.5, r] - (balls[0.0, r] + balls[1.0, r]) / 2)) for r in roughs]
     gold, white = peak[1.0, 0.3], peak[0.0, 0.15]
     falls = [peak[1.0, r].max() for r in roughs]
     facts = {
         "each pixel of half metal is the mean of those above and below": (
-            float(np.max(off)), 0, 1e-12,
+            float(np.max(off)),
+            0,
+            1e-12,
         ),
         "the metal's highlight has the base colour": (
-            float(np.abs(gold / gold[0] - color / color[0]).max()), 0, 0.05,
+            float(np.abs(gold / gold[0] - color / color[0]).max()),
+            0,
+            0.05,
         ),
         "the varnish's highlight is nearly white": (float(white[2] / white[0]), 0.75, 1.0),
         "the metal's highlight gets darker to the right": bool((np.diff(falls) < 0).all()),
-    }  # fmt: skip
+    }
     with house_style():
         figure = Figure(figsize=(7.0, 4.4))
         for row, m in enumerate(metals):
@@ -283,16 +308,19 @@ def fig6_by_roughness(module):
         "the middle of the highlight gets darker": (float(slope[middle]), -1e9, -1),
         "the ring around it gets brighter": (float((slope[ring] > 0).mean()), 0.95, 1),
         "a step of 0.02 differs by up to 13 % of the largest derivative": (
-            float(np.abs(told - change).max() / np.abs(told).max()), 0.12, 0.13,
+            float(np.abs(told - change).max() / np.abs(told).max()),
+            0.12,
+            0.13,
         ),
         "in the shadow it is exactly zero": (float(np.abs(slope[dark]).max()), 0, 0),
-    }  # fmt: skip
+    }
     with house_style():
         figure = Figure(figsize=(7.0, 2.6), layout="constrained")
         panels = figure.subplots(1, 3)
         picture = np.ones((size, size, 3))
-        picture[inside] = srgb_encode(np.clip(module.gltf(wo, wi, *given, np.full(n, r))
-                                              * cosine, 0, 1))  # fmt: skip
+        picture[inside] = srgb_encode(
+            np.clip(module.gltf(wo, wi, *given, np.full(n, r)) * cosine, 0, 1)
+        )
         panels[0].imshow(picture)
         panels[0].set_title("plastic, roughness 0.35")
         top = float(np.quantile(np.abs(slope), 0.99))

@@ -32,8 +32,10 @@ class Distances:
             )
         if not (value > 0).all():
             at = int(np.argwhere(~(value > 0))[0, 0])
-            raise CheckFailed(f"{where}: t at index {at} is {value[at]}; "
-                              "it is above 0, and infinite where nothing is met")  # fmt: skip
+            raise CheckFailed(
+                f"{where}: t at index {at} is {value[at]}; "
+                "it is above 0, and infinite where nothing is met"
+            )
 
 
 class Distance:
@@ -78,8 +80,11 @@ def same_hits(t, got, right, tolerance=None, hint=""):
     if wrong.any():
         at = int(np.argwhere(wrong)[0, 0])
         told = "meets nothing" if np.isinf(got[at]) else "meets something"
-        t.require(False, f"{int(wrong.sum())} of {len(got)} rays are wrong: number {at} {told}, "
-                         "which is not so", hint=hint)  # fmt: skip
+        t.require(
+            False,
+            f"{int(wrong.sum())} of {len(got)} rays are wrong: number {at} {told}, which is not so",
+            hint=hint,
+        )
     met = np.isfinite(right)
     if met.any():
         t.close("t", got[met], right[met], tolerance, hint=hint)
@@ -104,8 +109,9 @@ def sphere(t):
 
 
 def hit(t, origins, directions, center, radius):
-    return t.call("hit_sphere", origins, directions, center, radius,
-                  returns=Distances(len(origins)))  # fmt: skip
+    return t.call(
+        "hit_sphere", origins, directions, center, radius, returns=Distances(len(origins))
+    )
 
 
 def rays_onto(t, count, center, radius):
@@ -126,11 +132,23 @@ def rays_within(t, count, center, radius):
     return origins, d, (1 - share) * chord
 
 
-@check("05.1.outside", task="05.1", points=3, calls=("hit_sphere",), tolerance=EXACT,
-       kills=("sphere_backwards", "sphere_centre_added", "sphere_far_root", "sphere_half_of_two",
-              "sphere_radius", "sphere_unit_direction"),
-       hint="handout, equation (5): from where the ray is nearest, h back",
-       sole="where most rays come from")  # fmt: skip
+@check(
+    "05.1.outside",
+    task="05.1",
+    points=3,
+    calls=("hit_sphere",),
+    tolerance=EXACT,
+    kills=(
+        "sphere_backwards",
+        "sphere_centre_added",
+        "sphere_far_root",
+        "sphere_half_of_two",
+        "sphere_radius",
+        "sphere_unit_direction",
+    ),
+    hint="handout, equation (5): from where the ray is nearest, h back",
+    sole="where most rays come from",
+)
 def spheres_from_outside(t):
     """Rays aimed at a place of a sphere from outside meet it there, whatever their length."""
     for _ in range(3):
@@ -139,11 +157,24 @@ def spheres_from_outside(t):
         same_hits(t, hit(t, origins, directions, center, radius), right)
 
 
-@check("05.1.inside", task="05.1", points=2, calls=("hit_sphere",), tolerance=EXACT,
-       kills=("sphere_backwards", "sphere_centre_added", "sphere_half_of_two", "sphere_near_only",
-              "sphere_radius", "sphere_starts_on_itself", "sphere_unit_direction"),
-       hint="handout, equation (6): where the first of the two does not count, take the second",
-       sole="what refraction and shadows need")  # fmt: skip
+@check(
+    "05.1.inside",
+    task="05.1",
+    points=2,
+    calls=("hit_sphere",),
+    tolerance=EXACT,
+    kills=(
+        "sphere_backwards",
+        "sphere_centre_added",
+        "sphere_half_of_two",
+        "sphere_near_only",
+        "sphere_radius",
+        "sphere_starts_on_itself",
+        "sphere_unit_direction",
+    ),
+    hint="handout, equation (6): where the first of the two does not count, take the second",
+    sole="what refraction and shadows need",
+)
 def spheres_from_inside(t):
     """Rays that start inside meet the far side; rays that start on the sphere, not their start."""
     for _ in range(3):
@@ -152,13 +183,29 @@ def spheres_from_inside(t):
         same_hits(t, hit(t, origins, directions, center, radius), right)
 
 
-@check("05.1.misses", task="05.1", points=2, calls=("hit_sphere",), tolerance=EXACT,
-       kills=("sphere_absolute", "sphere_backwards", "sphere_behind", "sphere_centre_added",
-              "sphere_far_root", "sphere_half_of_two", "sphere_near_only", "sphere_never_misses",
-              "sphere_radius", "sphere_starts_on_itself", "sphere_touch_misses",
-              "sphere_unit_direction"),
-       hint="nothing behind the origin is met, nor where h² < 0; a ray that touches meets",
-       sole="what is not there must not be seen")  # fmt: skip
+@check(
+    "05.1.misses",
+    task="05.1",
+    points=2,
+    calls=("hit_sphere",),
+    tolerance=EXACT,
+    kills=(
+        "sphere_absolute",
+        "sphere_backwards",
+        "sphere_behind",
+        "sphere_centre_added",
+        "sphere_far_root",
+        "sphere_half_of_two",
+        "sphere_near_only",
+        "sphere_never_misses",
+        "sphere_radius",
+        "sphere_starts_on_itself",
+        "sphere_touch_misses",
+        "sphere_unit_direction",
+    ),
+    hint="nothing behind the origin is met, nor where h² < 0; a ray that touches meets",
+    sole="what is not there must not be seen",
+)
 def spheres_missed(t):
     """Rays past a sphere and away from it meet nothing; one that touches it does."""
     cases = (
@@ -184,9 +231,15 @@ def spheres_missed(t):
         same_hits(t, got, np.array([right]), hint="T_MIN itself does not count, what is above does")
 
 
-@check("05.1.far", task="05.1", points=1, calls=("hit_sphere",), tolerance=FAR,
-       kills=("sphere_backwards", "sphere_half_of_two", "sphere_quadratic"),
-       hint="handout, end of section 1: subtract places before you square them")  # fmt: skip
+@check(
+    "05.1.far",
+    task="05.1",
+    points=1,
+    calls=("hit_sphere",),
+    tolerance=FAR,
+    kills=("sphere_backwards", "sphere_half_of_two", "sphere_quadratic"),
+    hint="handout, end of section 1: subtract places before you square them",
+)
 def a_sphere_far_away(t):
     """A sphere of radius 1 is met on its surface from ten million metres away as well."""
     n = units(t, 30)
@@ -237,12 +290,24 @@ def outer_parts(t, count):
     return inner[:, 1:]
 
 
-@check("05.2.inside", task="05.2", points=4, calls=("hit_triangle",), tolerance=EXACT,
-       kills=("triangle_back_culled", "triangle_front_culled", "triangle_other_weights",
-              "triangle_t_of_plane_corner", "triangle_unit_direction", "triangle_volumes",
-              "triangle_weights_swapped"),
-       hint="handout, equations (8) and (9): volumes over their sum are the weights",
-       sole="t and the weights, from both sides")  # fmt: skip
+@check(
+    "05.2.inside",
+    task="05.2",
+    points=4,
+    calls=("hit_triangle",),
+    tolerance=EXACT,
+    kills=(
+        "triangle_back_culled",
+        "triangle_front_culled",
+        "triangle_other_weights",
+        "triangle_t_of_plane_corner",
+        "triangle_unit_direction",
+        "triangle_volumes",
+        "triangle_weights_swapped",
+    ),
+    hint="handout, equations (8) and (9): volumes over their sum are the weights",
+    sole="t and the weights, from both sides",
+)
 def places_inside_triangles(t):
     """A ray through a known place of a triangle meets it there, from either side."""
     for _ in range(3):
@@ -253,13 +318,27 @@ def places_inside_triangles(t):
         t.close("weights", weights, parts, hint="the first is that of b, the second that of c")
 
 
-@check("05.2.misses", task="05.2", points=3, calls=("hit_triangle",), tolerance=EXACT,
-       kills=("triangle_back_culled", "triangle_behind", "triangle_front_culled",
-              "triangle_one_edge_open", "triangle_plane", "triangle_quad",
-              "triangle_t_of_plane_corner", "triangle_unit_direction", "triangle_volumes",
-              "triangle_weights_left"),
-       hint="all three volumes have one sign, and t is above T_MIN",
-       sole="what is not there must not be seen")  # fmt: skip
+@check(
+    "05.2.misses",
+    task="05.2",
+    points=3,
+    calls=("hit_triangle",),
+    tolerance=EXACT,
+    kills=(
+        "triangle_back_culled",
+        "triangle_behind",
+        "triangle_front_culled",
+        "triangle_one_edge_open",
+        "triangle_plane",
+        "triangle_quad",
+        "triangle_t_of_plane_corner",
+        "triangle_unit_direction",
+        "triangle_volumes",
+        "triangle_weights_left",
+    ),
+    hint="all three volumes have one sign, and t is above T_MIN",
+    sole="what is not there must not be seen",
+)
 def places_outside_triangles(t):
     """Beside a triangle, behind the origin, along its plane and without area: nothing is met."""
     for _ in range(3):
@@ -298,12 +377,24 @@ def sheet(t, n, jitter):
     return both.reshape(-1, 3, 3), v
 
 
-@check("05.2.edges", task="05.2", points=4, calls=("hit_triangle",),
-       kills=("triangle_back_culled", "triangle_cramer", "triangle_front_culled",
-              "triangle_one_edge_open", "triangle_plane", "triangle_quad", "triangle_strict",
-              "triangle_volumes"),
-       hint="handout, section 2: on an edge both have one number with two signs, and 0 counts",
-       sole="light must not leak between two triangles")  # fmt: skip
+@check(
+    "05.2.edges",
+    task="05.2",
+    points=4,
+    calls=("hit_triangle",),
+    kills=(
+        "triangle_back_culled",
+        "triangle_cramer",
+        "triangle_front_culled",
+        "triangle_one_edge_open",
+        "triangle_plane",
+        "triangle_quad",
+        "triangle_strict",
+        "triangle_volumes",
+    ),
+    hint="handout, section 2: on an edge both have one number with two signs, and 0 counts",
+    sole="light must not leak between two triangles",
+)
 def no_light_between_triangles(t):
     """Rays onto edges and corners of a sheet meet it; rays onto its faces meet one triangle."""
     n = 5
@@ -332,9 +423,13 @@ def no_light_between_triangles(t):
 
 def refracted(t, directions, normals, eta):
     count = len(directions)
-    return t.call("refract", directions, normals, eta,
-                  returns=Items(Array((count, 3)), Array((count,), "bool"),
-                                names=("out", "through")))  # fmt: skip
+    return t.call(
+        "refract",
+        directions,
+        normals,
+        eta,
+        returns=Items(Array((count, 3)), Array((count,), "bool"), names=("out", "through")),
+    )
 
 
 def arrivals(t, count, most=1.5, inside=False):
@@ -346,34 +441,69 @@ def arrivals(t, count, most=1.5, inside=False):
     return np.sin(angle) * s + (1 if inside else -1) * np.cos(angle) * n, n
 
 
-@check("05.3.snell", task="05.3", points=4, calls=("refract",), tolerance=EXACT,
-       kills=("refract_always_mirrors", "refract_eta_upside_down", "refract_from_inside_alike",
-              "refract_goes_back", "refract_never_through", "refract_normal_twice",
-              "refract_not_unit", "refract_paraxial"),
-       hint="handout, equations (10) and (11): the part along the surface is divided by the ratio",
-       sole="the law itself, from both sides")  # fmt: skip
+@check(
+    "05.3.snell",
+    task="05.3",
+    points=4,
+    calls=("refract",),
+    tolerance=EXACT,
+    kills=(
+        "refract_always_mirrors",
+        "refract_eta_upside_down",
+        "refract_from_inside_alike",
+        "refract_goes_back",
+        "refract_never_through",
+        "refract_normal_twice",
+        "refract_not_unit",
+        "refract_paraxial",
+    ),
+    hint="handout, equations (10) and (11): the part along the surface is divided by the ratio",
+    sole="the law itself, from both sides",
+)
 def snells_law(t):
     """The part along the surface changes by the ratio, the length stays 1, the side changes."""
-    for eta, inside, most in ((1.5, False, 1.5), (1.5, True, 0.7), (0.75, False, 0.8),
-                              (0.75, True, 1.5), (1.0, False, 1.5)):  # fmt: skip
+    for eta, inside, most in (
+        (1.5, False, 1.5),
+        (1.5, True, 0.7),
+        (0.75, False, 0.8),
+        (0.75, True, 1.5),
+        (1.0, False, 1.5),
+    ):
         d, n = arrivals(t, 15, most, inside)
         out, through = refracted(t, d, n, eta)
-        t.require(bool(through.all()), "light is held back that should get through",
-                  hint="through is True where equation (11) has a root")  # fmt: skip
+        t.require(
+            bool(through.all()),
+            "light is held back that should get through",
+            hint="through is True where equation (11) has a root",
+        )
         t.close("length", np.linalg.norm(out, axis=1), np.ones(15))
-        t.require(bool((np.sum(out * n, axis=1) * np.sum(d * n, axis=1) > 0).all()),
-                  "refracted light goes on to the other side of the surface")  # fmt: skip
+        t.require(
+            bool((np.sum(out * n, axis=1) * np.sum(d * n, axis=1) > 0).all()),
+            "refracted light goes on to the other side of the surface",
+        )
         before, after = np.cross(n, d), np.cross(n, out)
         ends = (before, after * eta) if not inside else (before * eta, after)
         t.close("part along the surface", ends[1], ends[0])
 
 
-@check("05.3.back", task="05.3", points=2, calls=("refract",), tolerance=EXACT,
-       kills=("refract_eta_upside_down", "refract_from_inside_alike", "refract_goes_back",
-              "refract_never_through", "refract_normal_twice", "refract_not_unit",
-              "refract_paraxial"),
-       hint="the way back is the way there: from inside the ratio is 1 / eta",
-       sole="light goes back the way it came")  # fmt: skip
+@check(
+    "05.3.back",
+    task="05.3",
+    points=2,
+    calls=("refract",),
+    tolerance=EXACT,
+    kills=(
+        "refract_eta_upside_down",
+        "refract_from_inside_alike",
+        "refract_goes_back",
+        "refract_never_through",
+        "refract_normal_twice",
+        "refract_not_unit",
+        "refract_paraxial",
+    ),
+    hint="the way back is the way there: from inside the ratio is 1 / eta",
+    sole="light goes back the way it came",
+)
 def light_goes_back(t):
     """What leaves the other way round arrives where it came from."""
     for eta in (1.33, 2.4):
@@ -384,11 +514,23 @@ def light_goes_back(t):
         t.close("way back", again, -d)
 
 
-@check("05.3.total", task="05.3", points=3, calls=("refract",), tolerance=EXACT,
-       kills=("refract_always_through", "refract_eta_upside_down", "refract_from_inside_alike",
-              "refract_mirror_sign", "refract_never_through", "refract_normal_twice"),
-       hint="handout, equation (12): where (11) has no root everything is mirrored",
-       sole="the critical angle")  # fmt: skip
+@check(
+    "05.3.total",
+    task="05.3",
+    points=3,
+    calls=("refract",),
+    tolerance=EXACT,
+    kills=(
+        "refract_always_through",
+        "refract_eta_upside_down",
+        "refract_from_inside_alike",
+        "refract_mirror_sign",
+        "refract_never_through",
+        "refract_normal_twice",
+    ),
+    hint="handout, equation (12): where (11) has no root everything is mirrored",
+    sole="the critical angle",
+)
 def total_reflection(t):
     """Beyond the critical angle, and only there, light from inside is mirrored."""
     eta = 1.5
@@ -403,8 +545,9 @@ def total_reflection(t):
     t.require(bool((through == (more < 0)).all()), "through is wrong near the critical angle")
     back = more > 0
     t.close("mirrored, along the surface", np.cross(n, out)[back], np.cross(n, d)[back])
-    t.close("mirrored, along the normal", np.sum(out * n, axis=1)[back],
-            -np.sum(d * n, axis=1)[back])  # fmt: skip
+    t.close(
+        "mirrored, along the normal", np.sum(out * n, axis=1)[back], -np.sum(d * n, axis=1)[back]
+    )
     _, through = refracted(t, *arrivals(t, 8, 1.5), eta)
     t.require(bool(through.all()), "from outside into glass some light always gets through")
     flat = np.array([[1.0, 0, 0]]), np.array([[0.0, 1, 0]])
@@ -494,11 +637,24 @@ def past_ball(t, count, center, radius):
     return center + s - t.rng.uniform(1, 4, (count, 1)) * d, d
 
 
-@check("05.4.met", task="05.4", points=4, calls=("march_sdf",), tolerance=MARCHED,
-       kills=("march_all_are_hits", "march_all_rays", "march_ends_early", "march_fixed_step",
-              "march_from_origin", "march_signed_inside", "march_twice_as_far"),
-       hint="handout, equation (13): go ahead by |f|, from inside too; nothing can be nearer",
-       sole="that the surface is found, and only it")  # fmt: skip
+@check(
+    "05.4.met",
+    task="05.4",
+    points=4,
+    calls=("march_sdf",),
+    tolerance=MARCHED,
+    kills=(
+        "march_all_are_hits",
+        "march_all_rays",
+        "march_ends_early",
+        "march_fixed_step",
+        "march_from_origin",
+        "march_signed_inside",
+        "march_twice_as_far",
+    ),
+    hint="handout, equation (13): go ahead by |f|, from inside too; nothing can be nearer",
+    sole="that the surface is found, and only it",
+)
 def surfaces_are_met(t):
     """Rays meet a ball, from outside and inside, and what stands behind it; others pass."""
     for _ in range(2):
@@ -534,12 +690,26 @@ def differences(t, make, origins, directions, eps=1e-2):
     return (8 * (safe[1] - safe[-1]) - (safe[2] - safe[-2])) / (12 * eps), kept
 
 
-@check("05.4.derivative", task="05.4", points=5, calls=("march_sdf",), tolerance=SLOPES,
-       kills=("march_all_rays", "march_d_no_cosine", "march_d_sign", "march_d_times_cosine",
-              "march_d_zero", "march_ends_early", "march_fixed_step", "march_from_origin",
-              "march_twice_as_far"),
-       hint="handout, equation (15): the place is held on the surface while p changes",
-       sole="the gate: differences of the hand-in's own march")  # fmt: skip
+@check(
+    "05.4.derivative",
+    task="05.4",
+    points=5,
+    calls=("march_sdf",),
+    tolerance=SLOPES,
+    kills=(
+        "march_all_rays",
+        "march_d_no_cosine",
+        "march_d_sign",
+        "march_d_times_cosine",
+        "march_d_zero",
+        "march_ends_early",
+        "march_fixed_step",
+        "march_from_origin",
+        "march_twice_as_far",
+    ),
+    hint="handout, equation (15): the place is held on the surface while p changes",
+    sole="the gate: differences of the hand-in's own march",
+)
 def the_derivative_of_a_hit(t):
     """d_t is what differences of t by p say: a radius, a place, a height."""
     center, radius = sphere(t)
@@ -557,18 +727,35 @@ def the_derivative_of_a_hit(t):
         got, d_t, _ = marched(t, make(0.0), o, d)
         right, kept = differences(t, make, o, d)
         kept &= np.isfinite(got)
-        t.require(int(kept.sum()) * 2 > len(o) > 0, "half of the rays or more miss",
-                  hint="05.4.met looks at what is met")  # fmt: skip
+        t.require(
+            int(kept.sum()) * 2 > len(o) > 0,
+            "half of the rays or more miss",
+            hint="05.4.met looks at what is met",
+        )
         t.require(float(np.abs(right[kept]).max()) > 0.1, "t does not depend on p")
         t.close("d_t", d_t[kept], right[kept])
 
 
-@check("05.4.cost", task="05.4", points=3, calls=("march_sdf",),
-       kills=("march_all_are_hits", "march_all_rays", "march_ends_early", "march_fixed_step",
-              "march_from_origin", "march_limit_open", "march_no_limit", "march_one_step_more",
-              "march_smallest_of_all", "march_twice_as_far"),
-       hint="ask only for rays that are neither there nor beyond t_max, at most `steps` times",
-       sole="questions are counted, not seconds")  # fmt: skip
+@check(
+    "05.4.cost",
+    task="05.4",
+    points=3,
+    calls=("march_sdf",),
+    kills=(
+        "march_all_are_hits",
+        "march_all_rays",
+        "march_ends_early",
+        "march_fixed_step",
+        "march_from_origin",
+        "march_limit_open",
+        "march_no_limit",
+        "march_one_step_more",
+        "march_smallest_of_all",
+        "march_twice_as_far",
+    ),
+    hint="ask only for rays that are neither there nor beyond t_max, at most `steps` times",
+    sole="questions are counted, not seconds",
+)
 def few_questions(t):
     """A ray straight onto a wall needs two questions, no ray has more than `steps`."""
     up = np.array([0.0, 0, 1])
@@ -612,16 +799,20 @@ def built(t, low, high):
     boxes, first, count, order = t.call("build_bvh", low, high, returns=parts)
     nodes = len(boxes)
     t.require(nodes == len(first) == len(count) > 0, "boxes, first and count differ in length")
-    t.require(np.array_equal(np.sort(order), np.arange(len(low))),
-              "order must hold the number of each thing once")  # fmt: skip
+    t.require(
+        np.array_equal(np.sort(order), np.arange(len(low))),
+        "order must hold the number of each thing once",
+    )
     t.require(bool(((count >= 0) & (count <= LEAF)).all()), f"a leaf holds 1 to {LEAF} things")
     waiting, used, owned = [0], np.zeros(nodes, np.int64), np.zeros(len(low), np.int64)
     while waiting:
         node = waiting.pop()
         used[node] += 1
         at, things = int(first[node]), int(count[node])
-        t.require(at >= 0 and at + (things or 2) <= (len(low) if things else nodes),
-                  "first points beyond the end")  # fmt: skip
+        t.require(
+            at >= 0 and at + (things or 2) <= (len(low) if things else nodes),
+            "first points beyond the end",
+        )
         owned[at : at + things] += 1
         if not things:
             t.require(not used[at : at + 2].any(), "two nodes share a child, or one is its own")
@@ -648,11 +839,21 @@ def held(tree):
 SIZES = (1, 2, 3, 7, 40)
 
 
-@check("05.5.boxes", task="05.5", points=4, calls=("build_bvh",), tolerance=EXACT,
-       kills=("build_boxes_low_twice", "build_boxes_of_middles", "build_boxes_too_large",
-              "build_leaf_lost"),
-       hint="handout, equation (16): the smallest corner of all, and the largest",
-       sole="a box that is too small loses things, one too large costs")  # fmt: skip
+@check(
+    "05.5.boxes",
+    task="05.5",
+    points=4,
+    calls=("build_bvh",),
+    tolerance=EXACT,
+    kills=(
+        "build_boxes_low_twice",
+        "build_boxes_of_middles",
+        "build_boxes_too_large",
+        "build_leaf_lost",
+    ),
+    hint="handout, equation (16): the smallest corner of all, and the largest",
+    sole="a box that is too small loses things, one too large costs",
+)
 def boxes_fit(t):
     """Every thing is in one leaf, and every box is the smallest that holds what is below it."""
     for count in SIZES:
@@ -663,10 +864,15 @@ def boxes_fit(t):
         t.close(f"boxes of {count} things", tree[0], right)
 
 
-@check("05.5.halves", task="05.5", points=2, calls=("build_bvh",),
-       kills=("build_leaf_lost", "build_leaves_of_one", "build_one_and_rest"),
-       hint="handout, equation (17): half of the things to each side, down to LEAF",
-       sole="no path is longer than the logarithm")  # fmt: skip
+@check(
+    "05.5.halves",
+    task="05.5",
+    points=2,
+    calls=("build_bvh",),
+    kills=("build_leaf_lost", "build_leaves_of_one", "build_one_and_rest"),
+    hint="handout, equation (17): half of the things to each side, down to LEAF",
+    sole="no path is longer than the logarithm",
+)
 def halves_are_equal(t):
     """Siblings hold equally many things, up to one; and nothing is cut that fits into a leaf."""
     for count in SIZES:
@@ -679,11 +885,21 @@ def halves_are_equal(t):
         t.require(bool((apart <= 1).all()), "siblings differ by more than one thing")
 
 
-@check("05.5.axis", task="05.5", points=3, calls=("build_bvh",),
-       kills=("build_first_axis", "build_leaf_lost", "build_longest_box", "build_sorted_by_low",
-              "build_unsorted"),
-       hint="cut across the axis on which the middles of the boxes are spread most",
-       sole="halves that lie apart are what lets a ray skip one")  # fmt: skip
+@check(
+    "05.5.axis",
+    task="05.5",
+    points=3,
+    calls=("build_bvh",),
+    kills=(
+        "build_first_axis",
+        "build_leaf_lost",
+        "build_longest_box",
+        "build_sorted_by_low",
+        "build_unsorted",
+    ),
+    hint="cut across the axis on which the middles of the boxes are spread most",
+    sole="halves that lie apart are what lets a ray skip one",
+)
 def halves_lie_apart(t):
     """The middles of siblings are apart along the axis on which they are spread most."""
     for stretch in ((1, 1, 1), (1, 9, 1), (1, 1, 9), (9, 1, 1)):
@@ -766,8 +982,9 @@ def first_met(t, scene, tree, origin, direction):
     scene.ray(origin, direction)
     parts = Items(Distance(), WholeNumber(), names=("t", "number"))
     _, first, count, order = tree
-    return t.call("traverse", first, count, order, scene.box, scene.meet, origin, direction,
-                  returns=parts)  # fmt: skip
+    return t.call(
+        "traverse", first, count, order, scene.box, scene.meet, origin, direction, returns=parts
+    )
 
 
 def right_answer(t, scene, got, hint=""):
@@ -785,13 +1002,26 @@ def right_answer(t, scene, got, hint=""):
     t.require(0 <= got[1] < len(every) and every[got[1]] == nearest, "t is right, number is not")
 
 
-@check("05.6.nearest", task="05.6", points=4, calls=("traverse",), needs=("build_bvh",),
-       kills=("traverse_any_hit", "traverse_entry_is_hit", "traverse_far_child_lost",
-              "traverse_first_leaf", "traverse_flat_missed", "traverse_negative_missed",
-              "traverse_number_in_leaf", "traverse_starts_outside"),
-       hint="handout, equation (19): a box may be skipped only if it is missed or begins behind "
-            "the best so far",
-       sole="the same answer as from asking everything")  # fmt: skip
+@check(
+    "05.6.nearest",
+    task="05.6",
+    points=4,
+    calls=("traverse",),
+    needs=("build_bvh",),
+    kills=(
+        "traverse_any_hit",
+        "traverse_entry_is_hit",
+        "traverse_far_child_lost",
+        "traverse_first_leaf",
+        "traverse_flat_missed",
+        "traverse_negative_missed",
+        "traverse_number_in_leaf",
+        "traverse_starts_outside",
+    ),
+    hint="handout, equation (19): a box may be skipped only if it is missed or begins behind "
+    "the best so far",
+    sole="the same answer as from asking everything",
+)
 def the_nearest_of_all(t):
     """The first thing that rays meet is the one found by asking all."""
     for count, size in ((1, 1.0), (3, 1.0), (60, 1.0), (30, 6.0)):  # the last ones overlap a lot
@@ -806,12 +1036,26 @@ def the_nearest_of_all(t):
             right_answer(t, scene, first_met(t, scene, tree, origin, direction))
 
 
-@check("05.6.axes", task="05.6", points=3, calls=("traverse",), needs=("build_bvh",),
-       kills=("traverse_entry_is_hit", "traverse_far_child_lost", "traverse_first_leaf",
-              "traverse_flat_missed", "traverse_nan", "traverse_negative_missed",
-              "traverse_number_in_leaf", "traverse_starts_outside", "traverse_zero_is_miss"),
-       hint="where a component of the direction is 0, the origin is between both faces or not",
-       sole="what random rays never do, and those of a camera always")  # fmt: skip
+@check(
+    "05.6.axes",
+    task="05.6",
+    points=3,
+    calls=("traverse",),
+    needs=("build_bvh",),
+    kills=(
+        "traverse_entry_is_hit",
+        "traverse_far_child_lost",
+        "traverse_first_leaf",
+        "traverse_flat_missed",
+        "traverse_nan",
+        "traverse_negative_missed",
+        "traverse_number_in_leaf",
+        "traverse_starts_outside",
+        "traverse_zero_is_miss",
+    ),
+    hint="where a component of the direction is 0, the origin is between both faces or not",
+    sole="what random rays never do, and those of a camera always",
+)
 def rays_along_axes(t):
     """Rays along axes and in planes, from places on faces too, meet what they should."""
     scene = rectangles(t, 40, 2.0)
@@ -843,13 +1087,28 @@ def lanes(t, rows, deep):
     return Scene(low, high)
 
 
-@check("05.6.cost", task="05.6", points=3, calls=("traverse",), needs=("build_bvh",),
-       kills=("traverse_asks_twice", "traverse_boxes_behind", "traverse_boxes_ignored",
-              "traverse_entry_is_hit", "traverse_far_first", "traverse_negative_missed",
-              "traverse_never_skips", "traverse_number_in_leaf", "traverse_starts_outside",
-              "traverse_still_axes_ignored", "traverse_zero_is_miss"),
-       hint="handout, equation (20): the nearer box first, and what begins behind the best, never",
-       sole="what a tree is for: questions are counted, not seconds")  # fmt: skip
+@check(
+    "05.6.cost",
+    task="05.6",
+    points=3,
+    calls=("traverse",),
+    needs=("build_bvh",),
+    kills=(
+        "traverse_asks_twice",
+        "traverse_boxes_behind",
+        "traverse_boxes_ignored",
+        "traverse_entry_is_hit",
+        "traverse_far_first",
+        "traverse_negative_missed",
+        "traverse_never_skips",
+        "traverse_number_in_leaf",
+        "traverse_starts_outside",
+        "traverse_still_axes_ignored",
+        "traverse_zero_is_miss",
+    ),
+    hint="handout, equation (20): the nearer box first, and what begins behind the best, never",
+    sole="what a tree is for: questions are counted, not seconds",
+)
 def few_boxes_are_asked_for(t):
     """A ray through many things asks for the boxes that it enters before its hit, and siblings."""
     scene = lanes(t, 4, 16)
@@ -870,19 +1129,36 @@ def few_boxes_are_asked_for(t):
         entered = inside & begins & ~passed
         needed = 1 + 2 * int((entered & (count == 0)).sum())
         things = int(count[entered].sum())
-        t.require(len(scene.asked) <= needed,
-                  f"{len(scene.asked)} boxes were asked for, {needed} are enough")  # fmt: skip
-        t.require(len(scene.met) <= things,
-                  f"{len(scene.met)} things were asked for, {things} are enough")  # fmt: skip
+        t.require(
+            len(scene.asked) <= needed,
+            f"{len(scene.asked)} boxes were asked for, {needed} are enough",
+        )
+        t.require(
+            len(scene.met) <= things, f"{len(scene.met)} things were asked for, {things} are enough"
+        )
 
 
-@check("05.6.growth", task="05.6", points=2, calls=("traverse",), needs=("build_bvh",),
-       kills=("traverse_boxes_ignored", "traverse_entry_is_hit", "traverse_far_child_lost",
-              "traverse_first_leaf", "traverse_last_exit", "traverse_negative_missed",
-              "traverse_number_in_leaf", "traverse_still_axes_ignored", "traverse_two_axes",
-              "traverse_zero_is_miss"),
-       hint="16 times as many things are four more levels, not 16 times as many boxes",
-       sole="growth, by counts")  # fmt: skip
+@check(
+    "05.6.growth",
+    task="05.6",
+    points=2,
+    calls=("traverse",),
+    needs=("build_bvh",),
+    kills=(
+        "traverse_boxes_ignored",
+        "traverse_entry_is_hit",
+        "traverse_far_child_lost",
+        "traverse_first_leaf",
+        "traverse_last_exit",
+        "traverse_negative_missed",
+        "traverse_number_in_leaf",
+        "traverse_still_axes_ignored",
+        "traverse_two_axes",
+        "traverse_zero_is_miss",
+    ),
+    hint="16 times as many things are four more levels, not 16 times as many boxes",
+    sole="growth, by counts",
+)
 def questions_grow_like_a_logarithm(t):
     """With 16 times as many things of a sheet, fewer than twice as many boxes are asked for."""
     means = []
@@ -898,8 +1174,10 @@ def questions_grow_like_a_logarithm(t):
             right_answer(t, scene, first_met(t, scene, tree, origin, target - origin))
             asked += len(scene.asked)
         means.append(asked / 9)
-    t.require(means[1] < 2 * means[0],
-              f"64 things: {means[0]:.1f} boxes a ray, 1024 things: {means[1]:.1f}")  # fmt: skip
+    t.require(
+        means[1] < 2 * means[0],
+        f"64 things: {means[0]:.1f} boxes a ray, 1024 things: {means[1]:.1f}",
+    )
 
 
 def ring():
@@ -927,23 +1205,75 @@ def ring_rays():
 
 
 # What Embree [Wald2014] says about them, through the C++ core: triangles, and t where there is one.
-EMBREE = (2, 165, 87, -1, 147, 68, 7, 57, 17, 114, 193, 48, 174, 254, 76, 188, 106, 40, 204, -1, 10,
-          187, 93, -1)  # fmt: skip
+EMBREE = (
+    2,
+    165,
+    87,
+    -1,
+    147,
+    68,
+    7,
+    57,
+    17,
+    114,
+    193,
+    48,
+    174,
+    254,
+    76,
+    188,
+    106,
+    40,
+    204,
+    -1,
+    10,
+    187,
+    93,
+    -1,
+)
 EMBREE_T = (
-    0.8074094252247, 0.8333343913262, 0.8203379780611, 0.6868570173722, 0.8616933137047,
-    0.7339925628934, 1.510409875712, 0.4864799483926, 0.3117000289521, 0.3291869230618,
-    0.4012528131706, 0.3723334201136, 0.2246670824919, 0.5828264512131, 0.3993073220366,
-    0.821178456555, 0.8116245224668, 0.8129629882266, 0.8471657567662, 0.7978106266098,
+    0.8074094252247,
+    0.8333343913262,
+    0.8203379780611,
+    0.6868570173722,
+    0.8616933137047,
+    0.7339925628934,
+    1.510409875712,
+    0.4864799483926,
+    0.3117000289521,
+    0.3291869230618,
+    0.4012528131706,
+    0.3723334201136,
+    0.2246670824919,
+    0.5828264512131,
+    0.3993073220366,
+    0.821178456555,
+    0.8116245224668,
+    0.8129629882266,
+    0.8471657567662,
+    0.7978106266098,
     0.8077895024417,
-)  # fmt: skip
+)
 
 
-@check("05.6.embree", task="05.6", points=2, calls=("traverse",),
-       needs=("build_bvh", "hit_triangle"), tolerance=EXACT,
-       kills=("traverse_any_hit", "traverse_entry_is_hit", "traverse_far_child_lost",
-              "traverse_first_leaf", "traverse_negative_missed", "traverse_number_in_leaf"),
-       hint="traverse on triangles: the other checks of this task are simpler",
-       sole="the whole, against a library that films are made with")  # fmt: skip
+@check(
+    "05.6.embree",
+    task="05.6",
+    points=2,
+    calls=("traverse",),
+    needs=("build_bvh", "hit_triangle"),
+    tolerance=EXACT,
+    kills=(
+        "traverse_any_hit",
+        "traverse_entry_is_hit",
+        "traverse_far_child_lost",
+        "traverse_first_leaf",
+        "traverse_negative_missed",
+        "traverse_number_in_leaf",
+    ),
+    hint="traverse on triangles: the other checks of this task are simpler",
+    sole="the whole, against a library that films are made with",
+)
 def as_embree_has_it(t):
     """Your tree and triangles find what Embree finds: the triangle, and where."""
     origins, directions = ring_rays()
@@ -957,12 +1287,28 @@ def as_embree_has_it(t):
 
 
 # >>> hidden
-@check("05.1.hidden", task="05.1", points=2, calls=("hit_sphere",), visibility="hidden",
-       tolerance=EXACT,
-       kills=("sphere_absolute", "sphere_backwards", "sphere_behind", "sphere_centre_added",
-              "sphere_far_root", "sphere_half_of_two", "sphere_near_only", "sphere_never_misses",
-              "sphere_radius", "sphere_starts_on_itself", "sphere_unit_direction"),
-       sole="the same mistakes at spheres that are not known beforehand")  # fmt: skip
+@check(
+    "05.1.hidden",
+    task="05.1",
+    points=2,
+    calls=("hit_sphere",),
+    visibility="hidden",
+    tolerance=EXACT,
+    kills=(
+        "sphere_absolute",
+        "sphere_backwards",
+        "sphere_behind",
+        "sphere_centre_added",
+        "sphere_far_root",
+        "sphere_half_of_two",
+        "sphere_near_only",
+        "sphere_never_misses",
+        "sphere_radius",
+        "sphere_starts_on_itself",
+        "sphere_unit_direction",
+    ),
+    sole="the same mistakes at spheres that are not known beforehand",
+)
 def spheres_at_random(t):
     """Random rays and random spheres, of all kinds at once."""
     for _ in range(4):
@@ -974,13 +1320,29 @@ def spheres_at_random(t):
         same_hits(t, hit(t, origins, directions, center, radius), right)
 
 
-@check("05.2.hidden", task="05.2", points=2, calls=("hit_triangle",), visibility="hidden",
-       tolerance=EXACT,
-       kills=("triangle_back_culled", "triangle_behind", "triangle_front_culled",
-              "triangle_one_edge_open", "triangle_other_weights", "triangle_plane",
-              "triangle_quad", "triangle_t_of_plane_corner", "triangle_unit_direction",
-              "triangle_volumes", "triangle_weights_left", "triangle_weights_swapped"),
-       sole="the same mistakes at triangles that are not known beforehand")  # fmt: skip
+@check(
+    "05.2.hidden",
+    task="05.2",
+    points=2,
+    calls=("hit_triangle",),
+    visibility="hidden",
+    tolerance=EXACT,
+    kills=(
+        "triangle_back_culled",
+        "triangle_behind",
+        "triangle_front_culled",
+        "triangle_one_edge_open",
+        "triangle_other_weights",
+        "triangle_plane",
+        "triangle_quad",
+        "triangle_t_of_plane_corner",
+        "triangle_unit_direction",
+        "triangle_volumes",
+        "triangle_weights_left",
+        "triangle_weights_swapped",
+    ),
+    sole="the same mistakes at triangles that are not known beforehand",
+)
 def triangles_at_random(t):
     """Random rays and triangles, met and missed."""
     for _ in range(4):
@@ -993,13 +1355,27 @@ def triangles_at_random(t):
         t.close("weights", weights, expected)
 
 
-@check("05.3.hidden", task="05.3", points=2, calls=("refract",), visibility="hidden",
-       tolerance=EXACT,
-       kills=("refract_always_mirrors", "refract_always_through", "refract_eta_upside_down",
-              "refract_from_inside_alike", "refract_goes_back", "refract_mirror_sign",
-              "refract_never_through", "refract_normal_twice", "refract_not_unit",
-              "refract_paraxial"),
-       sole="the same mistakes at directions that are not known beforehand")  # fmt: skip
+@check(
+    "05.3.hidden",
+    task="05.3",
+    points=2,
+    calls=("refract",),
+    visibility="hidden",
+    tolerance=EXACT,
+    kills=(
+        "refract_always_mirrors",
+        "refract_always_through",
+        "refract_eta_upside_down",
+        "refract_from_inside_alike",
+        "refract_goes_back",
+        "refract_mirror_sign",
+        "refract_never_through",
+        "refract_normal_twice",
+        "refract_not_unit",
+        "refract_paraxial",
+    ),
+    sole="the same mistakes at directions that are not known beforehand",
+)
 def glass_at_random(t):
     """Random directions from both sides, many of them beyond the critical angle."""
     for eta in (1.5, 0.6, 2.0):
@@ -1011,13 +1387,31 @@ def glass_at_random(t):
         t.close("out", out, right)
 
 
-@check("05.4.hidden", task="05.4", points=2, calls=("march_sdf",), visibility="hidden",
-       tolerance=MARCHED,
-       kills=("march_all_are_hits", "march_all_rays", "march_d_no_cosine", "march_d_sign",
-              "march_d_times_cosine", "march_d_zero", "march_ends_early", "march_fixed_step",
-              "march_from_origin", "march_no_limit", "march_one_step_more", "march_signed_inside",
-              "march_smallest_of_all", "march_twice_as_far"),
-       sole="the same mistakes at scenes that are not known beforehand")  # fmt: skip
+@check(
+    "05.4.hidden",
+    task="05.4",
+    points=2,
+    calls=("march_sdf",),
+    visibility="hidden",
+    tolerance=MARCHED,
+    kills=(
+        "march_all_are_hits",
+        "march_all_rays",
+        "march_d_no_cosine",
+        "march_d_sign",
+        "march_d_times_cosine",
+        "march_d_zero",
+        "march_ends_early",
+        "march_fixed_step",
+        "march_from_origin",
+        "march_no_limit",
+        "march_one_step_more",
+        "march_signed_inside",
+        "march_smallest_of_all",
+        "march_twice_as_far",
+    ),
+    sole="the same mistakes at scenes that are not known beforehand",
+)
 def marches_at_random(t):
     """Random scenes: what is met, the derivative, and how many places are asked for."""
     for p_first in (True, False):
@@ -1040,11 +1434,24 @@ def marches_at_random(t):
             t.require(asked <= 1.02 * service.asked, said)
 
 
-@check("05.5.hidden", task="05.5", points=2, calls=("build_bvh",), visibility="hidden",
-       tolerance=EXACT,
-       kills=("build_boxes_low_twice", "build_boxes_of_middles", "build_boxes_too_large",
-              "build_first_axis", "build_leaf_lost", "build_one_and_rest", "build_unsorted"),
-       sole="the same mistakes at things that are not known beforehand; growth")  # fmt: skip
+@check(
+    "05.5.hidden",
+    task="05.5",
+    points=2,
+    calls=("build_bvh",),
+    visibility="hidden",
+    tolerance=EXACT,
+    kills=(
+        "build_boxes_low_twice",
+        "build_boxes_of_middles",
+        "build_boxes_too_large",
+        "build_first_axis",
+        "build_leaf_lost",
+        "build_one_and_rest",
+        "build_unsorted",
+    ),
+    sole="the same mistakes at things that are not known beforehand; growth",
+)
 def trees_at_random(t):
     """Random things: the boxes fit, and rays ask for few more of them when there are many more."""
     means = []
@@ -1061,23 +1468,51 @@ def trees_at_random(t):
             scene = Scene(low, high)
             scene.boxes = tree[0]
             scene.ray(t.rng.uniform(-8, 8, 3), units(t, 1)[0])
-            t.reference.traverse(tree[1], tree[2], tree[3], lambda k, s=scene: s.box(int(k)),
-                                 scene.meet, scene.origin, scene.direction)  # fmt: skip
+            t.reference.traverse(
+                tree[1],
+                tree[2],
+                tree[3],
+                lambda k, s=scene: s.box(int(k)),
+                scene.meet,
+                scene.origin,
+                scene.direction,
+            )
             asked += len(scene.asked)
         means.append(asked / 24)
-    t.require(means[1] < 4 * means[0],
-              f"64 things: {means[0]:.1f} boxes for a ray, 1024 things: {means[1]:.1f}; "
-              "fewer than four times as many are enough")  # fmt: skip
+    t.require(
+        means[1] < 4 * means[0],
+        f"64 things: {means[0]:.1f} boxes for a ray, 1024 things: {means[1]:.1f}; "
+        "fewer than four times as many are enough",
+    )
 
 
-@check("05.6.hidden", task="05.6", points=2, calls=("traverse",), needs=("build_bvh",),
-       visibility="hidden", tolerance=EXACT,
-       kills=("traverse_any_hit", "traverse_asks_twice", "traverse_boxes_behind",
-              "traverse_boxes_ignored", "traverse_entry_is_hit", "traverse_far_child_lost",
-              "traverse_far_first", "traverse_first_leaf", "traverse_flat_missed",
-              "traverse_last_exit", "traverse_negative_missed", "traverse_never_skips",
-              "traverse_number_in_leaf", "traverse_starts_outside", "traverse_two_axes"),
-       sole="the same mistakes in scenes that are not known beforehand")  # fmt: skip
+@check(
+    "05.6.hidden",
+    task="05.6",
+    points=2,
+    calls=("traverse",),
+    needs=("build_bvh",),
+    visibility="hidden",
+    tolerance=EXACT,
+    kills=(
+        "traverse_any_hit",
+        "traverse_asks_twice",
+        "traverse_boxes_behind",
+        "traverse_boxes_ignored",
+        "traverse_entry_is_hit",
+        "traverse_far_child_lost",
+        "traverse_far_first",
+        "traverse_first_leaf",
+        "traverse_flat_missed",
+        "traverse_last_exit",
+        "traverse_negative_missed",
+        "traverse_never_skips",
+        "traverse_number_in_leaf",
+        "traverse_starts_outside",
+        "traverse_two_axes",
+    ),
+    sole="the same mistakes in scenes that are not known beforehand",
+)
 def scenes_at_random(t):
     """Random rays in random scenes: the answer, and how many boxes and things it takes."""
     # Of 3, 6, 12 ... things a third are alone in their leaves, and those boxes are flat.
@@ -1095,8 +1530,15 @@ def scenes_at_random(t):
             right_answer(t, scene, first_met(t, scene, tree, origin, direction))
             mine = [mine[0] + len(scene.asked), mine[1] + len(scene.met)]
             scene.ray(origin, direction)
-            t.reference.traverse(tree[1], tree[2], tree[3], lambda k, s=scene: s.box(int(k)),
-                                 scene.meet, origin, direction)  # fmt: skip
+            t.reference.traverse(
+                tree[1],
+                tree[2],
+                tree[3],
+                lambda k, s=scene: s.box(int(k)),
+                scene.meet,
+                origin,
+                direction,
+            )
             enough = [enough[0] + len(scene.asked), enough[1] + len(scene.met)]
         for what, got, right in zip(("boxes", "things"), mine, enough, strict=True):
             t.require(got <= 1.05 * right, f"{got} {what} were asked for, {right} are enough")

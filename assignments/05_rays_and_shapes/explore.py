@@ -81,8 +81,10 @@ corners = ring(turns, max(3, triangles // (2 * turns)))
 before = time.perf_counter()
 t, number, asked, met = look(corners, origins, ways)
 seconds = time.perf_counter() - before
-print(f"{len(corners)} triangles, {len(ways)} pixels: {asked.mean():.1f} boxes and "
-      f"{met.mean():.1f} triangles for each, {seconds:.1f} s")  # fmt: skip
+print(
+    f"{len(corners)} triangles, {len(ways)} pixels: {asked.mean():.1f} boxes and "
+    f"{met.mean():.1f} triangles for each, {seconds:.1f} s"
+)
 a, b, c = np.moveaxis(corners, 1, 0)
 normals = np.cross(b - a, c - a)
 normals /= np.linalg.norm(normals, axis=1, keepdims=True)
@@ -172,8 +174,10 @@ else:
     near = np.isfinite(its) & np.isfinite(t_mine)
     differ = int((np.isfinite(its) != np.isfinite(t_mine)).sum())
     off = np.abs(t_mine[near] / its[near] - 1).max()
-    print(f"core: {near.sum()} of {count} rays meet the ring, {differ} are told apart, "
-          f"t is {off:.1e} from yours")  # fmt: skip
+    print(
+        f"core: {near.sum()} of {count} rays meet the ring, {differ} are told apart, "
+        f"t is {off:.1e} from yours"
+    )
 
 # %% [markdown]
 # ## Pictures

@@ -52,10 +52,16 @@ def fig1_far(module: ModuleType) -> tuple[Figure, Facts]:
         tiny = 1e-17
         axes.loglog(away, np.maximum(quadratic, tiny), color=CRIMSON, marker="o", markersize=4)
         axes.loglog(away, np.maximum(ours, tiny), color=BLUE, marker="s", markersize=4)
-        axes.annotate("quadratic", (away[6], quadratic[6]), (-58, 2), color=CRIMSON,
-                      textcoords="offset points")  # fmt: skip
-        axes.annotate("(5) and (6)", (away[6], ours[6]), (8, -12), color=BLUE,
-                      textcoords="offset points")  # fmt: skip
+        axes.annotate(
+            "quadratic",
+            (away[6], quadratic[6]),
+            (-58, 2),
+            color=CRIMSON,
+            textcoords="offset points",
+        )
+        axes.annotate(
+            "(5) and (6)", (away[6], ours[6]), (8, -12), color=BLUE, textcoords="offset points"
+        )
         axes.set(xlabel="distance of the origin  [radii]", ylabel="off the sphere  [radii]")
         _plain(axes)
     return figure, facts
@@ -82,8 +88,10 @@ def fig2_edges(module: ModuleType) -> tuple[Figure, Facts]:
     which = rng.integers(0, len(ends), 2000)
     places = (1 - s) * ends[which, 0] + s * ends[which, 1]
     ways = np.column_stack([rng.uniform(-0.3, 0.3, (2000, 2)), -np.ones(2000)])
-    lost = [not np.isfinite(module.hit_triangle(place - 4 * way, way, corners)[0]).any()
-            for place, way in zip(places, ways, strict=True)]  # fmt: skip
+    lost = [
+        not np.isfinite(module.hit_triangle(place - 4 * way, way, corners)[0]).any()
+        for place, way in zip(places, ways, strict=True)
+    ]
     lost_by_corner = ~_from_a_corner(places - 4 * ways, ways, corners).any(axis=1)
     facts: Facts = {
         "none is lost": bool(not any(lost)),
@@ -183,12 +191,16 @@ def fig4_march(module: ModuleType) -> tuple[Figure, Facts]:
     facts: Facts = {
         "both arrive at the wall": bool(max(abs(each[1] - 6) for each in walks) < 1e-8),
         "the grazing ray asks three times as often or more": (
-            len(walks[0][0]) / len(walks[1][0]), 3.0, 30.0),
+            len(walks[0][0]) / len(walks[1][0]),
+            3.0,
+            30.0,
+        ),
         "no step is longer than the distance": bool(
-            len(ahead) > 3 and (ahead <= room[:-1] + 1e-12).all()),
+            len(ahead) > 3 and (ahead <= room[:-1] + 1e-12).all()
+        ),
         "differences agree": (float(np.abs(slopes - apart).max()), 0.0, 1e-3),
         "towards the outline it grows": bool(abs(slopes[0]) > 3 * abs(slopes[24]) > 1),
-    }  # fmt: skip
+    }
     with house_style():
         figure = Figure(figsize=(7.0, 3.2), layout="constrained")
         left, right = figure.subplots(1, 2, width_ratios=(1.4, 1))
@@ -198,8 +210,7 @@ def fig4_march(module: ModuleType) -> tuple[Figure, Facts]:
             left.plot([-3, 3], walk[[0, 0], 1], color=colour, linewidth=0.6)
             for place in walk[:60]:
                 free = abs(float(scene(place[None])[0][0]))
-                left.add_patch(Circle(place[:2], free, fill=False, edgecolor=colour,
-                                      linewidth=0.6))  # fmt: skip
+                left.add_patch(Circle(place[:2], free, fill=False, edgecolor=colour, linewidth=0.6))
             left.plot(*walk[:, :2].T, ".", color=colour, markersize=3)
         left.set(xlim=(-5.3, 3.4), ylim=(-3.9, 3.2), aspect="equal", xlabel="x  [m]")
         right.plot(y, slopes, color=BLUE)
@@ -215,8 +226,10 @@ def fig5_tree(module: ModuleType) -> tuple[Figure, Facts]:
     pose = np.array([[1, 0, 0, 0], [0, -0.8, -0.6, 3.3], [0, 0.6, -0.8, 4.4]])
     origins, ways = module.camera_rays(width, height, 29.0, 29.0, width / 2, height / 2, pose)
     counts, depth = _asked(module, _ring(16, 8), origins, ways)
-    every = [module.hit_triangle(o, d, _ring(16, 8))[0].min(initial=np.inf)
-             for o, d in zip(origins[::7], ways[::7], strict=True)]  # fmt: skip
+    every = [
+        module.hit_triangle(o, d, _ring(16, 8))[0].min(initial=np.inf)
+        for o, d in zip(origins[::7], ways[::7], strict=True)
+    ]
     hits = np.isfinite(depth)
     sizes, means = [], []
     chosen = np.flatnonzero(hits)[::10]
@@ -226,12 +239,13 @@ def fig5_tree(module: ModuleType) -> tuple[Figure, Facts]:
         means.append(float(np.mean(found)))
     facts: Facts = {
         "the answers are those of asking every triangle": bool(
-            np.allclose(_finite(depth[::7]), _finite(np.array(every)), atol=1e-9)),
+            np.allclose(_finite(depth[::7]), _finite(np.array(every)), atol=1e-9)
+        ),
         "beside the root's box one box is enough": bool(counts.min() == 1),
         "the dearest pixel asks for some 60": (int(counts.max()), 45, 75),
         "from 256 to 4096 less than twice as many": (means[3] / means[1], 1.0, 2.0),
         "with 256 triangles about 25": (means[1], 22.0, 28.0),
-    }  # fmt: skip
+    }
     with house_style():
         figure = Figure(figsize=(7.0, 2.9), layout="constrained")
         left, right = figure.subplots(1, 2, width_ratios=(1.5, 1))
@@ -240,10 +254,16 @@ def fig5_tree(module: ModuleType) -> tuple[Figure, Facts]:
         left.set(xticks=[], yticks=[])
         right.loglog(sizes, sizes, color=GREY, linewidth=1)
         right.loglog(sizes, means, color=BLUE, marker="o", markersize=4)
-        right.annotate("every triangle", (sizes[1], sizes[1]), (-30, 22), color=INK,
-                       textcoords="offset points")  # fmt: skip
-        right.annotate("boxes of the tree", (sizes[1], means[1]), (-20, -16), color=BLUE,
-                       textcoords="offset points")  # fmt: skip
+        right.annotate(
+            "every triangle", (sizes[1], sizes[1]), (-30, 22), color=INK, textcoords="offset points"
+        )
+        right.annotate(
+            "boxes of the tree",
+            (sizes[1], means[1]),
+            (-20, -16),
+            color=BLUE,
+            textcoords="offset points",
+        )
         right.set(xlabel="triangles", ylabel="asked for, by one ray", ylim=(5, 8000))
         right.set_xticks(sizes, [str(k) for k in sizes])
         right.minorticks_off()
@@ -286,8 +306,11 @@ def _sheet(rng: np.random.Generator, n: int) -> tuple[Array, Array]:
     v = np.stack([x, y, np.zeros(x.shape)], axis=2) + rng.uniform(-0.3, 0.3, (n + 1, n + 1, 3))
     a, b, c, d = v[:-1, :-1], v[1:, :-1], v[1:, 1:], v[:-1, 1:]
     both = np.stack([np.stack([a, b, c], axis=2), np.stack([a, c, d], axis=2)], axis=2)
-    edges = [np.stack([a, c], axis=2), np.stack([b, c], axis=2)[:-1],
-             np.stack([d, c], axis=2)[:, :-1]]  # fmt: skip
+    edges = [
+        np.stack([a, c], axis=2),
+        np.stack([b, c], axis=2)[:-1],
+        np.stack([d, c], axis=2)[:, :-1],
+    ]
     return both.reshape(-1, 3, 3), np.concatenate([e.reshape(-1, 2, 3) for e in edges])
 
 

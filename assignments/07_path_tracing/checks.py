@@ -37,8 +37,10 @@ def scene_of(flat, balls=()):
     Materials are dicts; what they leave out is grey and matte.
     """
     given = [thing[-1] for thing in (*flat, *balls)]
-    scene = {name: np.array([thing[k] for thing in flat], float).reshape(-1, 3)
-             for k, name in enumerate(("corners", "edges_u", "edges_v"))}  # fmt: skip
+    scene = {
+        name: np.array([thing[k] for thing in flat], float).reshape(-1, 3)
+        for k, name in enumerate(("corners", "edges_u", "edges_v"))
+    }
     scene["balls"] = np.array([[*each[0], each[1]] for each in balls], float).reshape(-1, 4)
     for name, plain in (("emission", 0.0), ("base_color", 0.5)):
         scene[name] = np.array([np.ones(3) * each.get(name, plain) for each in given])
@@ -51,10 +53,13 @@ def scene_of(flat, balls=()):
 def cube(**material):
     """Six rectangles around the origin, 2 m wide, fronts inwards."""
     faces = (
-        ((-1, -1, -1), (0, 0, 2), (2, 0, 0)), ((-1, 1, -1), (2, 0, 0), (0, 0, 2)),
-        ((-1, -1, -1), (2, 0, 0), (0, 2, 0)), ((-1, -1, 1), (0, 2, 0), (2, 0, 0)),
-        ((-1, -1, -1), (0, 2, 0), (0, 0, 2)), ((1, -1, -1), (0, 0, 2), (0, 2, 0)),
-    )  # fmt: skip
+        ((-1, -1, -1), (0, 0, 2), (2, 0, 0)),
+        ((-1, 1, -1), (2, 0, 0), (0, 0, 2)),
+        ((-1, -1, -1), (2, 0, 0), (0, 2, 0)),
+        ((-1, -1, 1), (0, 2, 0), (2, 0, 0)),
+        ((-1, -1, -1), (0, 2, 0), (0, 0, 2)),
+        ((1, -1, -1), (0, 0, 2), (0, 2, 0)),
+    )
     return [(*face, material) for face in faces]
 
 
@@ -67,10 +72,13 @@ def hit_at(points, wo, thing):
     """Places on a surface that faces up."""
     n = len(points)
     return {
-        "points": np.asarray(points, float), "normals": np.tile(UP, (n, 1)),
-        "wo": np.asarray(wo, float), "front": np.ones(n, bool), "t": np.ones(n),
+        "points": np.asarray(points, float),
+        "normals": np.tile(UP, (n, 1)),
+        "wo": np.asarray(wo, float),
+        "front": np.ones(n, bool),
+        "t": np.ones(n),
         "thing": np.broadcast_to(np.asarray(thing, np.int64), (n,)).copy(),
-    }  # fmt: skip
+    }
 
 
 def ways(rng, n, low=0.2):
@@ -167,9 +175,13 @@ def require_mean(t, what, draw, right, mistakes=(), hint=""):
             worst = int(np.argmax(np.abs(mean - right)))
             fits = [(p_value(values, wrong), said) for wrong, said in mistakes]
             fits = [(p, said) for p, said in fits if p > 5 * LEVEL]
-            t.require(False, f"{what}: the mean of {len(values)} samples, {mean[worst]:.4g}, give "
-                             f"or take {spread[worst]:.1g}, is not {right[worst]:.4g} "
-                             f"(channel {worst})", hint=max(fits)[1] if fits else hint)  # fmt: skip
+            t.require(
+                False,
+                f"{what}: the mean of {len(values)} samples, {mean[worst]:.4g}, give "
+                f"or take {spread[worst]:.1g}, is not {right[worst]:.4g} "
+                f"(channel {worst})",
+                hint=max(fits)[1] if fits else hint,
+            )
     t.require(True, "")
 
 
@@ -182,17 +194,26 @@ def density(t, scene, thing, wi, distance):
 
 def towards(scene, thing, point, uv):
     """(wi, distance) from a point to places (n, 2) of a rectangle."""
-    place = scene["corners"][thing] + uv[:, :1] * scene["edges_u"][thing] + (
-        uv[:, 1:] * scene["edges_v"][thing])  # fmt: skip
+    place = (
+        scene["corners"][thing]
+        + uv[:, :1] * scene["edges_u"][thing]
+        + (uv[:, 1:] * scene["edges_v"][thing])
+    )
     far = np.linalg.norm(place - point, axis=1)
     return (place - point) / far[:, None], far
 
 
-@check("07.1.straight", task="07.1", points=2, calls=("light_pdf",), tolerance=EXACT,
-       kills=("pdf_backs", "pdf_by_area", "pdf_distance_once", "pdf_one_lamp", "pdf_upside_down"),
-       hint="equation (6): straight ahead the cosine is 1, and what is left is "
-       "distance squared over area, for one of K lamps",
-       sole="one number that can be worked out by head")  # fmt: skip
+@check(
+    "07.1.straight",
+    task="07.1",
+    points=2,
+    calls=("light_pdf",),
+    tolerance=EXACT,
+    kills=("pdf_backs", "pdf_by_area", "pdf_distance_once", "pdf_one_lamp", "pdf_upside_down"),
+    hint="equation (6): straight ahead the cosine is 1, and what is left is "
+    "distance squared over area, for one of K lamps",
+    sole="one number that can be worked out by head",
+)
 def straight_below(t):
     """Straight below the middle of a lamp: distance squared over its area, a K-th of it for K."""
     for count in (1, 3):
@@ -204,12 +225,25 @@ def straight_below(t):
         t.close("density", got, [h * h / (4 * a * b * count)], reveal=True)
 
 
-@check("07.1.solid_angle", task="07.1", points=4, calls=("light_pdf",), tolerance=NODES,
-       kills=("pdf_backs", "pdf_by_area", "pdf_cosine_above", "pdf_distance_once",
-              "pdf_no_cosine", "pdf_one_lamp", "pdf_upside_down"),
-       hint="equations (4) to (6): an area turned away looks smaller, one twice as far "
-       "away four times smaller",
-       sole="a density by solid angle is known by the solid angle")  # fmt: skip
+@check(
+    "07.1.solid_angle",
+    task="07.1",
+    points=4,
+    calls=("light_pdf",),
+    tolerance=NODES,
+    kills=(
+        "pdf_backs",
+        "pdf_by_area",
+        "pdf_cosine_above",
+        "pdf_distance_once",
+        "pdf_no_cosine",
+        "pdf_one_lamp",
+        "pdf_upside_down",
+    ),
+    hint="equations (4) to (6): an area turned away looks smaller, one twice as far "
+    "away four times smaller",
+    sole="a density by solid angle is known by the solid angle",
+)
 def densities_know_the_solid_angle(t):
     """The mean of 1 / density over the places of a lamp is its solid angle, K times that for K."""
     uv, weights = nodes(16)
@@ -225,10 +259,15 @@ def densities_know_the_solid_angle(t):
             t.close("mean of 1 / density", weights @ (1 / (count * pdf)), right, reveal=True)
 
 
-@check("07.1.none", task="07.1", points=2, calls=("light_pdf",),
-       kills=("pdf_backs", "pdf_both_sides", "pdf_of_everything"),
-       hint="only fronts of lamps are drawn: a lamp's front is where its normal points",
-       sole="what is never drawn has density 0")  # fmt: skip
+@check(
+    "07.1.none",
+    task="07.1",
+    points=2,
+    calls=("light_pdf",),
+    kills=("pdf_backs", "pdf_both_sides", "pdf_of_everything"),
+    hint="only fronts of lamps are drawn: a lamp's front is where its normal points",
+    sole="what is never drawn has density 0",
+)
 def no_density_without_a_lamp(t):
     """Walls, balls, nothing at all, and a lamp from behind or from the edge: exactly 0."""
     turn = t.rng.uniform(0.5, 2.0)
@@ -252,11 +291,24 @@ def weights_of(t, pdf, other):
     return t.call("mis_weight", pdf, other, returns=Array((len(pdf),)))
 
 
-@check("07.2.values", task="07.2", points=3, calls=("mis_weight",), tolerance=EXACT,
-       kills=("mis_balance", "mis_cube", "mis_exchanged", "mis_floor", "mis_half",
-              "mis_no_square", "mis_ratio"),
-       hint="equation (7): the squares of densities",
-       sole="three numbers that can be worked out by head")  # fmt: skip
+@check(
+    "07.2.values",
+    task="07.2",
+    points=3,
+    calls=("mis_weight",),
+    tolerance=EXACT,
+    kills=(
+        "mis_balance",
+        "mis_cube",
+        "mis_exchanged",
+        "mis_floor",
+        "mis_half",
+        "mis_no_square",
+        "mis_ratio",
+    ),
+    hint="equation (7): the squares of densities",
+    sole="three numbers that can be worked out by head",
+)
 def known_weights(t):
     """Three times as dense: nine parts of ten. As dense: half."""
     s = float(t.rng.uniform(0.1, 10))
@@ -264,22 +316,43 @@ def known_weights(t):
     t.close("weights of 3:1, 1:3, 1:1, 2:1", got, [0.9, 0.1, 0.5, 0.8], reveal=True)
 
 
-@check("07.2.sum", task="07.2", points=2, calls=("mis_weight",), tolerance=EXACT,
-       kills=("mis_floor", "mis_no_square", "mis_ratio"),
-       hint="what one strategy leaves is the other one's",
-       sole="no light is counted twice, and none forgotten")  # fmt: skip
+@check(
+    "07.2.sum",
+    task="07.2",
+    points=2,
+    calls=("mis_weight",),
+    tolerance=EXACT,
+    kills=("mis_floor", "mis_no_square", "mis_ratio"),
+    hint="what one strategy leaves is the other one's",
+    sole="no light is counted twice, and none forgotten",
+)
 def weights_sum_to_one(t):
     """Over both strategies the weights sum to 1."""
     p, q = np.exp(t.rng.uniform(-7, 7, (2, 60)))
-    t.close("sum of both weights", weights_of(t, p, q) + weights_of(t, q, p), np.ones(60),
-            reveal=True)  # fmt: skip
+    t.close(
+        "sum of both weights", weights_of(t, p, q) + weights_of(t, q, p), np.ones(60), reveal=True
+    )
 
 
-@check("07.2.extremes", task="07.2", points=2, calls=("mis_weight",), tolerance=EXACT,
-       kills=("mis_balance", "mis_cube", "mis_exchanged", "mis_floor", "mis_half",
-              "mis_no_square", "mis_overflows", "mis_ratio"),
-       hint="divide by the larger of the two before you square",
-       sole="mirrors have densities without bound, and what cannot be drawn has none")  # fmt: skip
+@check(
+    "07.2.extremes",
+    task="07.2",
+    points=2,
+    calls=("mis_weight",),
+    tolerance=EXACT,
+    kills=(
+        "mis_balance",
+        "mis_cube",
+        "mis_exchanged",
+        "mis_floor",
+        "mis_half",
+        "mis_no_square",
+        "mis_overflows",
+        "mis_ratio",
+    ),
+    hint="divide by the larger of the two before you square",
+    sole="mirrors have densities without bound, and what cannot be drawn has none",
+)
 def weights_at_the_ends(t):
     """A density of 0, or of 1e200: 0, 1, or by their ratio; never infinite."""
     s = float(t.rng.uniform(0.5, 1.0))
@@ -298,8 +371,10 @@ def direct(t, scene, hit, u=None, proposal=None):
     return t.call("direct_light", scene, hit, u[0], u[1], *more, returns=Array((n, 3)))
 
 
-TWICE = ("twice as bright as it should be: the light is counted in full by both strategies; "
-         "in each direction their weights must sum to 1")  # fmt: skip
+TWICE = (
+    "twice as bright as it should be: the light is counted in full by both strategies; "
+    "in each direction their weights must sum to 1"
+)
 
 
 def lit_floor(t, n=2000, size=1.3, height=0.45):
@@ -314,14 +389,28 @@ def lit_floor(t, n=2000, size=1.3, height=0.45):
     return scene, hit_at(np.tile(point, (n, 1)), ways(t.rng, n), 0), right
 
 
-@check("07.3.matte", task="07.3", points=4, calls=("direct_light",), needs=TASK_3,
-       kills=("direct_average", "direct_lamps_alone", "direct_material_alone",
-              "direct_no_cosine", "direct_no_division", "direct_no_emission",
-              "direct_no_weights", "direct_other_pdf", "direct_weights_exchanged",
-              "direct_wrong_measure"),
-       hint="equations (8) to (10): reflectance times cosine times radiance, over "
-       "the density of the strategy that has drawn it, by its weight; weights sum to 1",
-       sole="the irradiance from a rectangle has been known since Lambert")  # fmt: skip
+@check(
+    "07.3.matte",
+    task="07.3",
+    points=4,
+    calls=("direct_light",),
+    needs=TASK_3,
+    kills=(
+        "direct_average",
+        "direct_lamps_alone",
+        "direct_material_alone",
+        "direct_no_cosine",
+        "direct_no_division",
+        "direct_no_emission",
+        "direct_no_weights",
+        "direct_other_pdf",
+        "direct_weights_exchanged",
+        "direct_wrong_measure",
+    ),
+    hint="equations (8) to (10): reflectance times cosine times radiance, over "
+    "the density of the strategy that has drawn it, by its weight; weights sum to 1",
+    sole="the irradiance from a rectangle has been known since Lambert",
+)
 def light_from_a_rectangle(t):
     """A matte place below a large lamp: the mean is Lambert's formula. A small lamp: no noise."""
     scene, hit, right = lit_floor(t)
@@ -330,14 +419,20 @@ def light_from_a_rectangle(t):
     # Of 2000 directions by the cosine some 40 find this lamp: drawing its places is far better.
     scene, hit, right = lit_floor(t, 2000, 0.5, 2.0)
     spread = float((direct(t, scene, hit).std(axis=0) / right).max())
-    t.require(spread < 0.7, f"a small lamp: estimates spread by {spread:.1f} of their mean, 0.2 is "
-                            "possible: the strategy that fits badly has the weight")  # fmt: skip
+    t.require(
+        spread < 0.7,
+        f"a small lamp: estimates spread by {spread:.1f} of their mean, 0.2 is "
+        "possible: the strategy that fits badly has the weight",
+    )
 
 
 def furnace(t, n=2500):
     """(scene, hit, right, error): a glossy place in a room that is equally bright everywhere."""
-    given = {"base_color": t.rng.uniform(0.2, 0.9, 3), "metalness": float(t.rng.uniform(0.2, 0.8)),
-             "roughness": float(t.rng.uniform(0.4, 0.8))}  # fmt: skip
+    given = {
+        "base_color": t.rng.uniform(0.2, 0.9, 3),
+        "metalness": float(t.rng.uniform(0.2, 0.8)),
+        "roughness": float(t.rng.uniform(0.4, 0.8)),
+    }
     scene = scene_of([*cube(emission=1.0), flake(**given)])
     wo = ways(t.rng, 1, 0.4)
     hit = hit_at(np.tile(t.rng.uniform(-0.5, 0.5, 3), (n, 1)), np.tile(wo, (n, 1)), 6)
@@ -351,13 +446,25 @@ def albedo(t, scene, hit):
     return weights @ t.call("brdf", scene, rows, wi, returns=Array((len(wi), 3)))
 
 
-@check("07.3.furnace", task="07.3", points=4, calls=("direct_light",), needs=TASK_3,
-       kills=("direct_lamps_alone", "direct_material_alone", "direct_no_cosine",
-              "direct_no_division", "direct_no_weights", "direct_other_pdf",
-              "direct_wrong_measure"),
-       hint="in a room of radiance 1 direct light is the albedo: both strategies "
-       "together must count every direction once",
-       sole="the integral of assignment 04, with all directions lit")  # fmt: skip
+@check(
+    "07.3.furnace",
+    task="07.3",
+    points=4,
+    calls=("direct_light",),
+    needs=TASK_3,
+    kills=(
+        "direct_lamps_alone",
+        "direct_material_alone",
+        "direct_no_cosine",
+        "direct_no_division",
+        "direct_no_weights",
+        "direct_other_pdf",
+        "direct_wrong_measure",
+    ),
+    hint="in a room of radiance 1 direct light is the albedo: both strategies "
+    "together must count every direction once",
+    sole="the integral of assignment 04, with all directions lit",
+)
 def a_bright_room_shows_the_albedo(t):
     """A glossy place in a room of radiance 1: the mean is the integral of assignment 04."""
     scene, hit = furnace(t)
@@ -365,33 +472,54 @@ def a_bright_room_shows_the_albedo(t):
     require_mean(t, "albedo", lambda: direct(t, scene, hit), right, [(2 * right, TWICE)])
 
 
-@check("07.3.proposal", task="07.3", points=3, calls=("direct_light",), needs=TASK_3,
-       kills=("direct_lamps_alone", "direct_material_alone", "direct_no_cosine",
-              "direct_no_division", "direct_no_weights", "direct_other_pdf",
-              "direct_proposal_forgotten", "direct_proposal_ignored", "direct_proposal_reflects",
-              "direct_wrong_measure"),
-       hint="directions, densities and weights by `proposal`, reflectance by `scene`",
-       sole="the mean does not depend on how samples are drawn")  # fmt: skip
+@check(
+    "07.3.proposal",
+    task="07.3",
+    points=3,
+    calls=("direct_light",),
+    needs=TASK_3,
+    kills=(
+        "direct_lamps_alone",
+        "direct_material_alone",
+        "direct_no_cosine",
+        "direct_no_division",
+        "direct_no_weights",
+        "direct_other_pdf",
+        "direct_proposal_forgotten",
+        "direct_proposal_ignored",
+        "direct_proposal_reflects",
+        "direct_wrong_measure",
+    ),
+    hint="directions, densities and weights by `proposal`, reflectance by `scene`",
+    sole="the mean does not depend on how samples are drawn",
+)
 def another_proposal_has_the_same_mean(t):
     """Directions drawn by a rougher material: other estimates, and the mean of the scene."""
     scene, hit = furnace(t)
-    other = {**scene, "roughness": scene["roughness"] + 0.2,
-             "base_color": 1 - scene["base_color"]}  # fmt: skip
+    other = {**scene, "roughness": scene["roughness"] + 0.2, "base_color": 1 - scene["base_color"]}
     right = albedo(t, scene, hit)
     require_mean(t, "albedo", lambda: direct(t, scene, hit, proposal=other), right)
     few, u = {name: rows[:50] for name, rows in hit.items()}, t.rng.random((2, 50, 3))
     apart = np.abs(direct(t, scene, few, u, other) - direct(t, scene, few, u)) > 1e-6
-    t.require(bool(apart.any(axis=1).mean() > 0.5),
-              "for the same random numbers a rougher proposal gives the same estimates",
-              hint="`proposal` is not looked at: directions, densities and weights come from it "
-              "wherever it is given")  # fmt: skip
+    t.require(
+        bool(apart.any(axis=1).mean() > 0.5),
+        "for the same random numbers a rougher proposal gives the same estimates",
+        hint="`proposal` is not looked at: directions, densities and weights come from it "
+        "wherever it is given",
+    )
 
 
-@check("07.3.dark", task="07.3", points=2, calls=("direct_light",), needs=TASK_3,
-       kills=("direct_material_alone", "direct_through_walls"),
-       hint="what counts is the first thing that is met along the direction, and it must "
-       "be the lamp that was drawn",
-       sole="shadows")  # fmt: skip
+@check(
+    "07.3.dark",
+    task="07.3",
+    points=2,
+    calls=("direct_light",),
+    needs=TASK_3,
+    kills=("direct_material_alone", "direct_through_walls"),
+    hint="what counts is the first thing that is met along the direction, and it must "
+    "be the lamp that was drawn",
+    sole="shadows",
+)
 def no_light_arrives(t):
     """A lamp behind a wall, a ball or a lamp, below the horizon or seen from behind: exactly 0."""
     n, x = 60, float(t.rng.uniform(0.5, 1.0))
@@ -415,10 +543,13 @@ def no_light_arrives(t):
     got = direct(t, scene, hit, all_draw(t, n, 0.9))
     t.require(bool(got.any(axis=1).all()), "two lamps: the nearer one, if drawn, brings light")
     got = direct(t, scene, hit, all_draw(t, n, 0.1))
-    t.require(not got.any(), "two lamps, the farther one drawn, the nearer one met: this sample "
-                             f"brings nothing, but yours is {got.max():.3g}",
-              hint="the lamp that is met is not the one that was drawn; it has samples of its "
-              "own, and would count twice")  # fmt: skip
+    t.require(
+        not got.any(),
+        "two lamps, the farther one drawn, the nearer one met: this sample "
+        f"brings nothing, but yours is {got.max():.3g}",
+        hint="the lamp that is met is not the one that was drawn; it has samples of its "
+        "own, and would count twice",
+    )
 
 
 def all_draw(t, n, share):
@@ -431,8 +562,14 @@ def all_draw(t, n, share):
 
 def mixed_room(t):
     """A room with two lamps, one before the other in part, glossy things and a ball."""
-    some = [{"base_color": t.rng.uniform(0.1, 0.9, 3), "metalness": float(t.rng.uniform(0.2, 0.8)),
-             "roughness": float(t.rng.uniform(0.3, 0.7))} for _ in range(2)]  # fmt: skip
+    some = [
+        {
+            "base_color": t.rng.uniform(0.1, 0.9, 3),
+            "metalness": float(t.rng.uniform(0.2, 0.8)),
+            "roughness": float(t.rng.uniform(0.3, 0.7)),
+        }
+        for _ in range(2)
+    ]
     a, b = t.rng.uniform(0.3, 0.7, 2)
     return scene_of(
         [
@@ -448,8 +585,9 @@ def mixed_room(t):
 def looked_at(t, scene, n):
     """A hit of n places of `mixed_room`, seen from above and outside."""
     origins = np.tile([0.4, 0.3, 2.2], (n, 1))
-    directions = np.column_stack([t.rng.uniform(-1.2, 0.6, n), t.rng.uniform(-1.2, 0.5, n),
-                                  t.rng.uniform(-2.9, -1.5, n)]) - [0.2, 0.2, 0]  # fmt: skip
+    directions = np.column_stack(
+        [t.rng.uniform(-1.2, 0.6, n), t.rng.uniform(-1.2, 0.5, n), t.rng.uniform(-2.9, -1.5, n)]
+    ) - [0.2, 0.2, 0]
     directions /= np.linalg.norm(directions, axis=1, keepdims=True)
     hit = t.reference.see(scene, origins, directions)
     return t.reference.some(hit, hit["thing"] >= 0)
@@ -464,12 +602,25 @@ def played(t, beta, u):
     return t.call("roulette", beta, u, returns=parts)
 
 
-@check("07.4.values", task="07.4", points=2, calls=("roulette",), tolerance=EXACT,
-       kills=("roulette_clamped", "roulette_clamped_late", "roulette_dead_carry",
-              "roulette_divided_by_rest", "roulette_floor", "roulette_mean_channel",
-              "roulette_no_division", "roulette_reversed"),
-       hint="equations (11) and (12): the brightest channel decides, u < q goes on",
-       sole="one path that goes on and one that ends")  # fmt: skip
+@check(
+    "07.4.values",
+    task="07.4",
+    points=2,
+    calls=("roulette",),
+    tolerance=EXACT,
+    kills=(
+        "roulette_clamped",
+        "roulette_clamped_late",
+        "roulette_dead_carry",
+        "roulette_divided_by_rest",
+        "roulette_floor",
+        "roulette_mean_channel",
+        "roulette_no_division",
+        "roulette_reversed",
+    ),
+    hint="equations (11) and (12): the brightest channel decides, u < q goes on",
+    sole="one path that goes on and one that ends",
+)
 def known_ends(t):
     """A path with (0.2, 0.5, 0.1) goes on in half of all cases, as (0.4, 1, 0.2); dark ones too."""
     u = [float(t.rng.uniform(0.3, 0.49)), float(t.rng.uniform(0.51, 0.9)), 0.0, 0.5]
@@ -480,16 +631,33 @@ def known_ends(t):
     q = np.array([0.1, 0.001])
     beta, alive = played(t, np.outer(q, [0.4, 1, 0.2]), t.rng.uniform(0.1, 0.9) * q)
     t.require(bool(alive.all()), "a path with u < q has ended: q is 0.1 or 0.001")
-    t.close("beta of dark paths", beta, np.tile([0.4, 1, 0.2], (2, 1)), reveal=True,
-            hint="1 / q is 10 and 1000 here, and nothing may limit it: those who go on speak for "
-            "all who have ended")  # fmt: skip
+    t.close(
+        "beta of dark paths",
+        beta,
+        np.tile([0.4, 1, 0.2], (2, 1)),
+        reveal=True,
+        hint="1 / q is 10 and 1000 here, and nothing may limit it: those who go on speak for "
+        "all who have ended",
+    )
 
 
-@check("07.4.mean", task="07.4", points=3, calls=("roulette",), tolerance=EXACT,
-       kills=("roulette_clamped", "roulette_dead_carry", "roulette_divided_by_rest",
-              "roulette_mean_channel", "roulette_no_division", "roulette_reversed"),
-       hint="who goes on carries 1 / q, for those who do not",
-       sole="roulette must not change the mean")  # fmt: skip
+@check(
+    "07.4.mean",
+    task="07.4",
+    points=3,
+    calls=("roulette",),
+    tolerance=EXACT,
+    kills=(
+        "roulette_clamped",
+        "roulette_dead_carry",
+        "roulette_divided_by_rest",
+        "roulette_mean_channel",
+        "roulette_no_division",
+        "roulette_reversed",
+    ),
+    hint="who goes on carries 1 / q, for those who do not",
+    sole="roulette must not change the mean",
+)
 def the_mean_is_kept(t):
     """Over 1000 values of u, evenly spread, the mean of beta is what it was."""
     u = (np.arange(1000) + 0.5) / 1000
@@ -499,10 +667,16 @@ def the_mean_is_kept(t):
         t.close("mean of beta", after.mean(axis=0), beta, reveal=True)
 
 
-@check("07.4.ends", task="07.4", points=2, calls=("roulette",), tolerance=EXACT,
-       kills=("roulette_floor", "roulette_gain", "roulette_mean_channel", "roulette_reversed"),
-       hint="q is at most 1; and where q is 0 nothing may be divided by it",
-       sole="bright paths stay as they are, and dark ones end")  # fmt: skip
+@check(
+    "07.4.ends",
+    task="07.4",
+    points=2,
+    calls=("roulette",),
+    tolerance=EXACT,
+    kills=("roulette_floor", "roulette_gain", "roulette_mean_channel", "roulette_reversed"),
+    hint="q is at most 1; and where q is 0 nothing may be divided by it",
+    sole="bright paths stay as they are, and dark ones end",
+)
 def bright_and_dark_paths(t):
     """A channel of 1 or more: goes on unchanged, always. Black: ends, always."""
     bright = t.rng.uniform(0, 3, (20, 3))
@@ -521,20 +695,29 @@ def bright_and_dark_paths(t):
 def traced(t, scene, origins, directions, depth):
     seed = int(t.rng.integers(2**31))
     n = len(origins)
-    return t.call("adapters.traced", scene, origins, directions, depth, seed,
-                  returns=Array((n, 3)))  # fmt: skip
+    return t.call("adapters.traced", scene, origins, directions, depth, seed, returns=Array((n, 3)))
 
 
-@check("07.5.emitted", task="07.5", points=2, calls=("trace_paths",), needs=TASK_5,
-       tolerance=EXACT,
-       kills=("trace_no_emission", "trace_one_more"),
-       hint="a path of one piece ends at a lamp, or brings nothing",
-       sole="what is seen by itself, exactly")  # fmt: skip
+@check(
+    "07.5.emitted",
+    task="07.5",
+    points=2,
+    calls=("trace_paths",),
+    needs=TASK_5,
+    tolerance=EXACT,
+    kills=("trace_no_emission", "trace_one_more"),
+    hint="a path of one piece ends at a lamp, or brings nothing",
+    sole="what is seen by itself, exactly",
+)
 def depth_one(t):
     """One straight piece: what lamps emit from their fronts. A black lamp shows no more, ever."""
     shine = t.rng.uniform(0.5, 3, 3)
-    scene = scene_of([((-1, 2, -1), (2, 0, 0), (0, 0, 2), {"emission": shine, "base_color": 0.0}),
-                      ((-1, -1, 3), (2, 0, 0), (0, 2, 0), {})])  # fmt: skip
+    scene = scene_of(
+        [
+            ((-1, 2, -1), (2, 0, 0), (0, 0, 2), {"emission": shine, "base_color": 0.0}),
+            ((-1, -1, 3), (2, 0, 0), (0, 2, 0), {}),
+        ]
+    )
     origins = np.array([[0, 0, 0], [0, 3, 0], [0, 0, 0], [0, 0, 0.0]])
     directions = np.array([UP, -UP, [0, 0, 1], [0, 0, -1.0]])
     right = np.array([shine, 0 * shine, 0 * shine, 0 * shine])
@@ -545,10 +728,14 @@ def depth_one(t):
 
 
 # What the best known mistakes say of themselves by the mean that they have.
-AGAIN = ("what a path meets after a bounce adds its emission: direct light at the place before has "
-         "counted it already")  # fmt: skip
-ANEW = ("beta is started anew, or left out: it is the product of all surfaces since the viewer, "
-        "equation (14)")  # fmt: skip
+AGAIN = (
+    "what a path meets after a bounce adds its emission: direct light at the place before has "
+    "counted it already"
+)
+ANEW = (
+    "beta is started anew, or left out: it is the product of all surfaces since the viewer, "
+    "equation (14)"
+)
 LAST = "beta is that of the last surface alone; equation (14) multiplies it by the one before"
 EARLY = "beta is multiplied before direct light is added: at each place direct light comes first"
 DARK = "what the first place emits towards the viewer is missing"
@@ -556,10 +743,16 @@ FEWER = "a piece too few: direct light is asked for depth - 1 times"
 MORE = "a piece too many: direct light is asked for depth - 1 times"
 
 
-@check("07.5.integral", task="07.5", points=3, calls=("trace_paths",), needs=TASK_5,
-       kills=("trace_double_emission", "trace_no_emission", "trace_one_less", "trace_one_more"),
-       hint="two straight pieces are direct light and what is emitted, nothing else",
-       sole="depth two is the integral of assignment 04")  # fmt: skip
+@check(
+    "07.5.integral",
+    task="07.5",
+    points=3,
+    calls=("trace_paths",),
+    needs=TASK_5,
+    kills=("trace_double_emission", "trace_no_emission", "trace_one_less", "trace_one_more"),
+    hint="two straight pieces are direct light and what is emitted, nothing else",
+    sole="depth two is the integral of assignment 04",
+)
 def depth_two(t):
     """Emission plus the integral over all directions; more pieces change nothing where none lead.
 
@@ -569,51 +762,92 @@ def depth_two(t):
     scene = scene_of(cube(emission=shine, base_color=color))
     origins, directions = rays_inside(t, 1000)
     right = shine * (1 + color)
-    mistakes = [(shine, FEWER), (right + shine * color**2, MORE), (shine * color, DARK),
-                (right + shine * color, AGAIN), (shine * (1 + color**2), EARLY)]  # fmt: skip
-    require_mean(t, "a closed room, depth 2", lambda: traced(t, scene, origins, directions, 2),
-                 right, mistakes)  # fmt: skip
+    mistakes = [
+        (shine, FEWER),
+        (right + shine * color**2, MORE),
+        (shine * color, DARK),
+        (right + shine * color, AGAIN),
+        (shine * (1 + color**2), EARLY),
+    ]
+    require_mean(
+        t,
+        "a closed room, depth 2",
+        lambda: traced(t, scene, origins, directions, 2),
+        right,
+        mistakes,
+    )
     point, size = t.rng.uniform(-0.1, 0.1, 3), t.rng.uniform(0.8, 1.2)
     lamp = (point + np.array([0.5, 0.05, -1]), [0, 0, 2], [0, size, 0])
-    scene = scene_of([
-        (point - np.array([0.2, 0, 0.2]), [0, 0, 0.4], [0.4, 0, 0], {"base_color": color}),
-        (*lamp, {"emission": shine, "base_color": 0.0}), flake(base_color=0.9),
-    ])  # fmt: skip
+    scene = scene_of(
+        [
+            (point - np.array([0.2, 0, 0.2]), [0, 0, 0.4], [0.4, 0, 0], {"base_color": color}),
+            (*lamp, {"emission": shine, "base_color": 0.0}),
+            flake(base_color=0.9),
+        ]
+    )
     right = color / np.pi * irradiance(corners_of(*lamp) - point) * shine
     wo = ways(t.rng, 1000, 0.4)
     for depth in (2, 4):
-        require_mean(t, f"a floor beside a lamp, depth {depth}",
-                     lambda d=depth: traced(t, scene, point + 0.05 * wo, -wo, d), right,
-                     [(2 * right, AGAIN), (right * color, EARLY)],
-                     hint="the floor sees a black lamp and nothing else: direct light at its one "
-                     "place is all there is, at any depth")  # fmt: skip
+        require_mean(
+            t,
+            f"a floor beside a lamp, depth {depth}",
+            lambda d=depth: traced(t, scene, point + 0.05 * wo, -wo, d),
+            right,
+            [(2 * right, AGAIN), (right * color, EARLY)],
+            hint="the floor sees a black lamp and nothing else: direct light at its one "
+            "place is all there is, at any depth",
+        )
 
 
-@check("07.5.corner", task="07.5", points=2, calls=("trace_paths",), needs=TASK_5,
-       kills=("trace_no_attenuation", "trace_no_cosine", "trace_no_pdf", "trace_one_less",
-              "trace_one_more"),
-       hint="three pieces: the direction of the material leads to the wall, and there "
-       "direct light is asked for again, times what the floor reflects of it",
-       sole="light from where the path went, and from nowhere else")  # fmt: skip
+@check(
+    "07.5.corner",
+    task="07.5",
+    points=2,
+    calls=("trace_paths",),
+    needs=TASK_5,
+    kills=(
+        "trace_no_attenuation",
+        "trace_no_cosine",
+        "trace_no_pdf",
+        "trace_one_less",
+        "trace_one_more",
+    ),
+    hint="three pieces: the direction of the material leads to the wall, and there "
+    "direct light is asked for again, times what the floor reflects of it",
+    sole="light from where the path went, and from nowhere else",
+)
 def around_a_corner(t):
     """A floor that sees a lamp's back, and a wall on which it shines: three straight pieces."""
     floor, wall, shine = t.rng.uniform(0.3, 0.6, 3), t.rng.uniform(0.4, 0.9, 3), 5.0
     lamp = ((0.4, 1.3, -0.4), (0, 0.6, 0), (0, 0, 0.8))
-    scene = scene_of([
-        ((-0.1, 0, -0.1), (0, 0, 0.2), (0.2, 0, 0), {"base_color": floor}),
-        ((1, 0, -1), (0, 0, 2), (0, 1, 0), {"base_color": wall}),
-        (*lamp, {"emission": shine, "base_color": 0.0}),
-    ])  # fmt: skip
+    scene = scene_of(
+        [
+            ((-0.1, 0, -0.1), (0, 0, 0.2), (0.2, 0, 0), {"base_color": floor}),
+            ((1, 0, -1), (0, 0, 2), (0, 1, 0), {"base_color": wall}),
+            (*lamp, {"emission": shine, "base_color": 0.0}),
+        ]
+    )
     uv, weights = nodes(10)
     places = np.column_stack([np.ones(100), uv[:, 0], 2 * uv[:, 1] - 1])
     lit = [irradiance(corners_of(*lamp) - place, np.array([-1.0, 0, 0])) for place in places]
     share = 2 * places[:, 1] / np.sum(places**2, axis=1) ** 2  # cosines, area, distance squared
     right = floor * wall / np.pi**2 * shine * (weights * share @ np.array(lit))
     wo = ways(t.rng, 3000, 0.4)
-    require_mean(t, "a floor in the shadow", lambda: traced(t, scene, 0.05 * wo, -wo, 3), right,
-                 [(right / floor, "the wall's light counts as if the floor reflected all of it: is "
-                   "beta multiplied by reflectance times cosine over density, (14)?"),
-                  (right * wall, EARLY), (0 * right, FEWER)])  # fmt: skip
+    require_mean(
+        t,
+        "a floor in the shadow",
+        lambda: traced(t, scene, 0.05 * wo, -wo, 3),
+        right,
+        [
+            (
+                right / floor,
+                "the wall's light counts as if the floor reflected all of it: is "
+                "beta multiplied by reflectance times cosine over density, (14)?",
+            ),
+            (right * wall, EARLY),
+            (0 * right, FEWER),
+        ],
+    )
     t.require(not traced(t, scene, 0.05 * wo, -wo, 2).any(), "at depth 2 the floor is black")
 
 
@@ -624,13 +858,27 @@ def rays_inside(t, n):
     return np.tile(t.rng.uniform(-0.5, 0.5, 3), (n, 1)), d
 
 
-@check("07.5.furnace", task="07.5", points=4, calls=("trace_paths",), needs=TASK_5,
-       kills=("trace_double_emission", "trace_last_surface_only", "trace_no_attenuation",
-              "trace_no_cosine", "trace_no_emission", "trace_no_pdf", "trace_one_less",
-              "trace_one_more", "trace_roulette_ends_only"),
-       hint="equation (15): e (1 + a + a^2 + ...), as many terms as pieces; each surface "
-       "multiplies once, and lamps that a path finds by chance are counted already",
-       sole="a room whose light is a geometric series")  # fmt: skip
+@check(
+    "07.5.furnace",
+    task="07.5",
+    points=4,
+    calls=("trace_paths",),
+    needs=TASK_5,
+    kills=(
+        "trace_double_emission",
+        "trace_last_surface_only",
+        "trace_no_attenuation",
+        "trace_no_cosine",
+        "trace_no_emission",
+        "trace_no_pdf",
+        "trace_one_less",
+        "trace_one_more",
+        "trace_roulette_ends_only",
+    ),
+    hint="equation (15): e (1 + a + a^2 + ...), as many terms as pieces; each surface "
+    "multiplies once, and lamps that a path finds by chance are counted already",
+    sole="a room whose light is a geometric series",
+)
 def a_room_that_shines(t):
     """A closed room that shines and reflects everywhere: a geometric series, by depth."""
     # Roulette has no say before depth 5, so that at 4 mistakes have means in closed form.
@@ -649,10 +897,14 @@ def a_room_that_shines(t):
         (right + shine * color**4, MORE),
     ]
     require_mean(t, "depth 4", lambda: traced(t, scene, origins, directions, 4), right, mistakes)
-    require_mean(t, "depth 9", lambda: traced(t, scene, origins, directions, 9),
-                 shine * (1 - color**9) / (1 - color),
-                 hint="depth 4 is right, and roulette begins after it: what it returns is the new "
-                 "beta, (12), of the paths that go on")  # fmt: skip
+    require_mean(
+        t,
+        "depth 9",
+        lambda: traced(t, scene, origins, directions, 9),
+        shine * (1 - color**9) / (1 - color),
+        hint="depth 4 is right, and roulette begins after it: what it returns is the new "
+        "beta, (12), of the paths that go on",
+    )
 
 
 # 07.6 ---------------------------------------------------------------------------------------------
@@ -668,10 +920,14 @@ def slopes(t, scene, hit, d, u=None):
 
 def small_scene(t, n):
     """A scene of three things, two of them glossy, and places on those."""
-    glossy = [{"base_color": t.rng.uniform(0.2, 0.8, 3),
-               "metalness": float(t.rng.uniform(0.2, 0.8)),
-               "roughness": float(t.rng.uniform(0.35, 0.7))}
-              for _ in range(2)]  # fmt: skip
+    glossy = [
+        {
+            "base_color": t.rng.uniform(0.2, 0.8, 3),
+            "metalness": float(t.rng.uniform(0.2, 0.8)),
+            "roughness": float(t.rng.uniform(0.35, 0.7)),
+        }
+        for _ in range(2)
+    ]
     lamp = ((-0.6, 0.9, -0.6), (1.2, 0, 0), (0, 0, 1.2), {"emission": t.rng.uniform(1, 3, 3)})
     scene = scene_of([flake(**glossy[0]), lamp, flake(**glossy[1])])
     points = np.column_stack(
@@ -680,13 +936,27 @@ def small_scene(t, n):
     return scene, hit_at(points, ways(t.rng, n, 0.4), np.arange(n) % 2 * 2)
 
 
-@check("07.6.differences", task="07.6", points=5, calls=("direct_light_backward",),
-       needs=(*TASK_3, "direct_light"), tolerance=GATE,
-       kills=("back_density_too", "back_lamps_alone", "back_no_cosine", "back_no_emission",
-              "back_no_weights", "back_overwritten", "back_overwritten_in_turn", "back_sign",
-              "back_weights_too"),
-       hint="equation (17): reflectance is differentiated, all that was drawn stays",
-       sole="the definition: your own direct light, its proposal held fixed")  # fmt: skip
+@check(
+    "07.6.differences",
+    task="07.6",
+    points=5,
+    calls=("direct_light_backward",),
+    needs=(*TASK_3, "direct_light"),
+    tolerance=GATE,
+    kills=(
+        "back_density_too",
+        "back_lamps_alone",
+        "back_no_cosine",
+        "back_no_emission",
+        "back_no_weights",
+        "back_overwritten",
+        "back_overwritten_in_turn",
+        "back_sign",
+        "back_weights_too",
+    ),
+    hint="equation (17): reflectance is differentiated, all that was drawn stays",
+    sole="the definition: your own direct light, its proposal held fixed",
+)
 def the_gradient_agrees_with_differences(t):
     """Against differences of your own `direct_light` whose proposal stays as it is."""
     scene, hit = small_scene(t, 40)
@@ -699,15 +969,23 @@ def the_gradient_agrees_with_differences(t):
     require_gradients(t, slopes(t, scene, hit, d, u), forward, point, d, GATE)
 
 
-ROWS = ("a thing has many rows, and all of them add up; d[things] += rows keeps the last row of "
-        "each thing alone: see np.add.at")  # fmt: skip
+ROWS = (
+    "a thing has many rows, and all of them add up; d[things] += rows keeps the last row of "
+    "each thing alone: see np.add.at"
+)
 
 
-@check("07.6.zero", task="07.6", points=2, calls=("direct_light_backward",), needs=TASK_3,
-       tolerance=GATE,
-       kills=("back_overwritten", "back_overwritten_in_turn", "back_through_lamps"),
-       hint="it is linear in d_radiance, and what was not seen has no derivative",
-       sole="what must be zero, and what must double")  # fmt: skip
+@check(
+    "07.6.zero",
+    task="07.6",
+    points=2,
+    calls=("direct_light_backward",),
+    needs=TASK_3,
+    tolerance=GATE,
+    kills=("back_overwritten", "back_overwritten_in_turn", "back_through_lamps"),
+    hint="it is linear in d_radiance, and what was not seen has no derivative",
+    sole="what must be zero, and what must double",
+)
 def zeros_and_doubles(t):
     """Zero for zero; twice for twice; matte things have no roughness; the unseen nothing at all."""
     scene, hit = small_scene(t, 30)
@@ -718,8 +996,10 @@ def zeros_and_doubles(t):
     for name in once:
         t.require(bool(once[name].any()), f"d_{name} is zero everywhere", hint=ROWS)
         t.close(f"d_{name} for twice the cotangent", twice[name], 2 * once[name])
-    t.require(not (once["base_color"][1].any() or once["roughness"][1]),
-              "a thing that the hit does not contain has a derivative")  # fmt: skip
+    t.require(
+        not (once["base_color"][1].any() or once["roughness"][1]),
+        "a thing that the hit does not contain has a derivative",
+    )
     t.require(once["roughness"][2] == 0, "a matte thing has a derivative by roughness")
     turned = {**scene, "edges_u": scene["edges_v"], "edges_v": scene["edges_u"]}
     for name, values in slopes(t, turned, hit, d, u).items():
@@ -727,28 +1007,50 @@ def zeros_and_doubles(t):
     again = {name: np.concatenate([values, values]) for name, values in hit.items()}
     more = slopes(t, scene, again, np.tile(d, (2, 1)), np.tile(u, (1, 2, 1)))
     for name in once:
-        t.close(f"d_{name} of the same places twice", more[name], 2 * once[name],
-                hint=ROWS)  # fmt: skip
+        t.close(f"d_{name} of the same places twice", more[name], 2 * once[name], hint=ROWS)
     nearer = ((-3, 0.5, -3), (6, 0, 0), (0, 0, 6), {"emission": 1.0})
     hidden = scene_of([flake(), flake(), nearer])
     hidden = {name: np.concatenate([scene[name], rows[2:]]) for name, rows in hidden.items()}
     hidden["balls"] = scene["balls"]
     for name, values in slopes(t, hidden, hit, d, all_draw(t, 30, 0.1)).items():
-        t.require(not values.any(), f"d_{name} is not zero where another lamp hides the one that "
-                                    "was drawn")  # fmt: skip
+        t.require(
+            not values.any(),
+            f"d_{name} is not zero where another lamp hides the one that was drawn",
+        )
 
 
-@check("07.6.mean", task="07.6", points=3, calls=("direct_light_backward",), needs=TASK_3,
-       kills=("back_density_too", "back_lamps_alone", "back_no_cosine", "back_no_weights",
-              "back_overwritten", "back_overwritten_in_turn", "back_sign"),
-       hint="equation (18): the mean over samples is the derivative of the integral",
-       sole="the mean of the gradient is the gradient of the mean")  # fmt: skip
+@check(
+    "07.6.mean",
+    task="07.6",
+    points=3,
+    calls=("direct_light_backward",),
+    needs=TASK_3,
+    kills=(
+        "back_density_too",
+        "back_lamps_alone",
+        "back_no_cosine",
+        "back_no_weights",
+        "back_overwritten",
+        "back_overwritten_in_turn",
+        "back_sign",
+    ),
+    hint="equation (18): the mean over samples is the derivative of the integral",
+    sole="the mean of the gradient is the gradient of the mean",
+)
 def the_mean_of_the_gradient(t):
     """In a room of radiance 1 the mean gradient is the derivative of assignment 04's integral."""
     groups, each = 24, 60
     scene, hit = furnace(t, groups * each)
-    for name in ("corners", "edges_u", "edges_v", "emission", "base_color", "metalness",
-                 "roughness", "matte"):  # fmt: skip
+    for name in (
+        "corners",
+        "edges_u",
+        "edges_v",
+        "emission",
+        "base_color",
+        "metalness",
+        "roughness",
+        "matte",
+    ):
         copies = np.repeat(scene[name][6:7], groups - 1, axis=0)
         scene[name] = np.concatenate([scene[name], copies])
     hit["thing"] = 6 + np.arange(groups * each) % groups
@@ -769,13 +1071,27 @@ def the_mean_of_the_gradient(t):
     require_mean(t, "mean gradient", draw, np.array(right))
 
 
-@check("07.6.cost", task="07.6", points=1, calls=("direct_light_backward",),
-       needs=(*TASK_3, "direct_light"),
-       kills=("back_by_differences", "back_density_too", "back_lamps_alone", "back_no_cosine",
-              "back_no_emission", "back_no_weights", "back_overwritten",
-              "back_overwritten_in_turn", "back_sign", "back_weights_too"),
-       hint="one pass over the same samples gives the derivative by everything",
-       sole="differences would pay two renderings for each number")  # fmt: skip
+@check(
+    "07.6.cost",
+    task="07.6",
+    points=1,
+    calls=("direct_light_backward",),
+    needs=(*TASK_3, "direct_light"),
+    kills=(
+        "back_by_differences",
+        "back_density_too",
+        "back_lamps_alone",
+        "back_no_cosine",
+        "back_no_emission",
+        "back_no_weights",
+        "back_overwritten",
+        "back_overwritten_in_turn",
+        "back_sign",
+        "back_weights_too",
+    ),
+    hint="one pass over the same samples gives the derivative by everything",
+    sole="differences would pay two renderings for each number",
+)
 def the_gradient_is_cheap(t):
     """A scene of 100 things: the gradient costs at most 20 times what direct light costs."""
     scene, hit = small_scene(t, 30)
@@ -788,16 +1104,33 @@ def the_gradient_is_cheap(t):
     # Where nobody can measure (a student's machine) there must be a gradient at least.
     got = t.call("direct_light_backward", scene, hit, u[0], u[1], d, returns=parts)
     t.require(bool(got[0].any() and got[1].any()), "the gradient is zero everywhere")
-    require_cheap(t, ("direct_light", (scene, hit, u[0], u[1]), Array((30, 3))),
-                  ("direct_light_backward", (scene, hit, u[0], u[1], d), parts))  # fmt: skip
+    require_cheap(
+        t,
+        ("direct_light", (scene, hit, u[0], u[1]), Array((30, 3))),
+        ("direct_light_backward", (scene, hit, u[0], u[1], d), parts),
+    )
 
 
 # >>> hidden
-@check("07.1.hidden", task="07.1", points=2, calls=("light_pdf",), visibility="hidden",
-       tolerance=EXACT,
-       kills=("pdf_backs", "pdf_by_area", "pdf_cosine_above", "pdf_distance_once",
-              "pdf_no_cosine", "pdf_of_everything", "pdf_one_lamp", "pdf_upside_down"),
-       sole="rooms that are not known beforehand")  # fmt: skip
+@check(
+    "07.1.hidden",
+    task="07.1",
+    points=2,
+    calls=("light_pdf",),
+    visibility="hidden",
+    tolerance=EXACT,
+    kills=(
+        "pdf_backs",
+        "pdf_by_area",
+        "pdf_cosine_above",
+        "pdf_distance_once",
+        "pdf_no_cosine",
+        "pdf_of_everything",
+        "pdf_one_lamp",
+        "pdf_upside_down",
+    ),
+    sole="rooms that are not known beforehand",
+)
 def densities_in_a_room(t):
     """What random rays of a room meet, against the solution."""
     scene = mixed_room(t)
@@ -807,30 +1140,65 @@ def densities_in_a_room(t):
     t.close("density", density(t, scene, there["thing"], directions, there["t"]), right)
 
 
-@check("07.2.hidden", task="07.2", points=1, calls=("mis_weight",), visibility="hidden",
-       tolerance=EXACT,
-       kills=("mis_balance", "mis_cube", "mis_exchanged", "mis_floor", "mis_half",
-              "mis_no_square", "mis_ratio"),
-       sole="densities that are not known beforehand")  # fmt: skip
+@check(
+    "07.2.hidden",
+    task="07.2",
+    points=1,
+    calls=("mis_weight",),
+    visibility="hidden",
+    tolerance=EXACT,
+    kills=(
+        "mis_balance",
+        "mis_cube",
+        "mis_exchanged",
+        "mis_floor",
+        "mis_half",
+        "mis_no_square",
+        "mis_ratio",
+    ),
+    sole="densities that are not known beforehand",
+)
 def random_weights(t):
     """Random densities."""
     p, q = np.exp(t.rng.uniform(-3, 3, (2, 40)))
     t.close("weights", weights_of(t, p, q), 1 / (1 + (q / p) ** 2))
 
 
-@check("07.3.hidden", task="07.3", points=6, calls=("direct_light",), needs=TASK_3,
-       visibility="hidden", tolerance=EXACT,
-       kills=("direct_average", "direct_lamps_alone", "direct_material_alone",
-              "direct_no_cosine", "direct_no_division", "direct_no_emission",
-              "direct_no_weights", "direct_other_pdf", "direct_proposal_forgotten",
-              "direct_proposal_ignored", "direct_proposal_reflects", "direct_through_walls",
-              "direct_weights_exchanged", "direct_wrong_measure"),
-       sole="the same random numbers, two lamps, shadows, and another proposal")  # fmt: skip
+@check(
+    "07.3.hidden",
+    task="07.3",
+    points=6,
+    calls=("direct_light",),
+    needs=TASK_3,
+    visibility="hidden",
+    tolerance=EXACT,
+    kills=(
+        "direct_average",
+        "direct_lamps_alone",
+        "direct_material_alone",
+        "direct_no_cosine",
+        "direct_no_division",
+        "direct_no_emission",
+        "direct_no_weights",
+        "direct_other_pdf",
+        "direct_proposal_forgotten",
+        "direct_proposal_ignored",
+        "direct_proposal_reflects",
+        "direct_through_walls",
+        "direct_weights_exchanged",
+        "direct_wrong_measure",
+    ),
+    sole="the same random numbers, two lamps, shadows, and another proposal",
+)
 def direct_light_of_a_room(t):
     """A room with two lamps, a ball and shadows, against the solution, number by number."""
     scene = mixed_room(t)
-    other = {**scene, "roughness": scene["roughness"] + 0.15, "matte": ~scene["matte"],
-             "base_color": scene["base_color"] / 2}  # fmt: skip
+    other = {
+        **scene,
+        "roughness": scene["roughness"] + 0.15,
+        "matte": ~scene["matte"],
+        "base_color": scene["base_color"] / 2,
+    }
     hit = looked_at(t, scene, 300)
     u = t.rng.random((2, len(hit["thing"]), 3))
     for proposal in (None, other):
@@ -838,12 +1206,26 @@ def direct_light_of_a_room(t):
         t.close("direct light", direct(t, scene, hit, u, proposal), right)
 
 
-@check("07.4.hidden", task="07.4", points=1, calls=("roulette",), visibility="hidden",
-       tolerance=EXACT,
-       kills=("roulette_clamped", "roulette_clamped_late", "roulette_dead_carry",
-              "roulette_divided_by_rest", "roulette_floor", "roulette_gain",
-              "roulette_mean_channel", "roulette_no_division", "roulette_reversed"),
-       sole="paths that are not known beforehand")  # fmt: skip
+@check(
+    "07.4.hidden",
+    task="07.4",
+    points=1,
+    calls=("roulette",),
+    visibility="hidden",
+    tolerance=EXACT,
+    kills=(
+        "roulette_clamped",
+        "roulette_clamped_late",
+        "roulette_dead_carry",
+        "roulette_divided_by_rest",
+        "roulette_floor",
+        "roulette_gain",
+        "roulette_mean_channel",
+        "roulette_no_division",
+        "roulette_reversed",
+    ),
+    sole="paths that are not known beforehand",
+)
 def random_roulette(t):
     """Random paths."""
     beta, u = t.rng.uniform(0, 1.3, (200, 3)) * t.rng.uniform(0, 1, (200, 1)), t.rng.random(200)
@@ -854,37 +1236,77 @@ def random_roulette(t):
     t.close("beta", after, right)
 
 
-@check("07.5.hidden", task="07.5", points=3, calls=("trace_paths",), needs=TASK_5,
-       visibility="hidden",
-       kills=("trace_double_emission", "trace_last_surface_only", "trace_no_attenuation",
-              "trace_no_cosine", "trace_no_emission", "trace_no_pdf", "trace_one_less",
-              "trace_one_more"),
-       sole="glossy things, shadows, and paths that leave the room")  # fmt: skip
+@check(
+    "07.5.hidden",
+    task="07.5",
+    points=3,
+    calls=("trace_paths",),
+    needs=TASK_5,
+    visibility="hidden",
+    kills=(
+        "trace_double_emission",
+        "trace_last_surface_only",
+        "trace_no_attenuation",
+        "trace_no_cosine",
+        "trace_no_emission",
+        "trace_no_pdf",
+        "trace_one_less",
+        "trace_one_more",
+    ),
+    sole="glossy things, shadows, and paths that leave the room",
+)
 def paths_of_a_room(t):
     """An open room where walls shine differently, with a glossy ball: the solution's mean."""
-    walls = [(*face[:3], {"emission": t.rng.uniform(0.3, 2, 3),
-                          "base_color": t.rng.permutation([0.4, 0.6, 0.9])})
-             for face in cube()[:5]]  # fmt: skip
+    walls = [
+        (
+            *face[:3],
+            {
+                "emission": t.rng.uniform(0.3, 2, 3),
+                "base_color": t.rng.permutation([0.4, 0.6, 0.9]),
+            },
+        )
+        for face in cube()[:5]
+    ]
     glossy = {"base_color": t.rng.uniform(0.5, 0.9, 3), "metalness": 0.7, "roughness": 0.4}
     scene = scene_of(walls, [((0.3, -0.4, 0.1), 0.4, glossy)])
     n, times = 1000, 3
     origins, directions = rays_inside(t, n)
     origins = np.tile([-0.4, -0.2, 0.3], (n, 1))
-    theirs = t.reference.trace_paths(scene, np.tile(origins, (times, 1)),
-                                     np.tile(directions, (times, 1)), 4, t.rng)  # fmt: skip
+    theirs = t.reference.trace_paths(
+        scene, np.tile(origins, (times, 1)), np.tile(directions, (times, 1)), 4, t.rng
+    )
     # Rays differ more than two estimates for one of them do: their differences are judged.
     right = theirs.reshape(times, n, 3).mean(axis=0)
-    require_mean(t, "depth 4, less the solution's, plus 1",
-                 lambda: 1 + traced(t, scene, origins, directions, 4) - right,
-                 np.ones(3))  # fmt: skip
+    require_mean(
+        t,
+        "depth 4, less the solution's, plus 1",
+        lambda: 1 + traced(t, scene, origins, directions, 4) - right,
+        np.ones(3),
+    )
 
 
-@check("07.6.hidden", task="07.6", points=2, calls=("direct_light_backward",), needs=TASK_3,
-       visibility="hidden", tolerance=GATE,
-       kills=("back_density_too", "back_lamps_alone", "back_no_cosine", "back_no_emission",
-              "back_no_weights", "back_overwritten", "back_overwritten_in_turn", "back_sign",
-              "back_through_lamps", "back_weights_too"),
-       sole="two lamps, shadows, a ball and something matte")  # fmt: skip
+@check(
+    "07.6.hidden",
+    task="07.6",
+    points=2,
+    calls=("direct_light_backward",),
+    needs=TASK_3,
+    visibility="hidden",
+    tolerance=GATE,
+    kills=(
+        "back_density_too",
+        "back_lamps_alone",
+        "back_no_cosine",
+        "back_no_emission",
+        "back_no_weights",
+        "back_overwritten",
+        "back_overwritten_in_turn",
+        "back_sign",
+        "back_through_lamps",
+        "back_weights_too",
+    ),
+    sole="two lamps, shadows, a ball and something matte",
+)
 def the_gradient_of_a_room(t):
     """A room with two lamps, a ball and shadows, against the solution."""
     scene = mixed_room(t)
@@ -905,10 +1327,16 @@ def glossy_table(color, metalness, roughness):
     return scene_of([(*table, given), lamp])
 
 
-@check("07.6.recover", task="07.6", points=3, calls=("direct_light_backward",),
-       needs=(*TASK_3, "direct_light"), visibility="hidden",
-       kills=("back_overwritten", "back_overwritten_in_turn", "back_sign"),
-       sole="what it is for: a base colour and a roughness, found in a picture")  # fmt: skip
+@check(
+    "07.6.recover",
+    task="07.6",
+    points=3,
+    calls=("direct_light_backward",),
+    needs=(*TASK_3, "direct_light"),
+    visibility="hidden",
+    kills=("back_overwritten", "back_overwritten_in_turn", "back_sign"),
+    sole="what it is for: a base colour and a roughness, found in a picture",
+)
 def a_material_is_recovered(t):
     """The base colour within 0.01 and the roughness within 0.02, from an unseen picture."""
     # A polished table, or one channel far from the others, takes more steps than these.
@@ -931,8 +1359,9 @@ def a_material_is_recovered(t):
 
     def off():
         seed = int(t.rng.integers(2**31))
-        found, rough = t.call("adapters.recovered", start, 0, origins, directions, picture, 60,
-                              seed, returns=parts)  # fmt: skip
+        found, rough = t.call(
+            "adapters.recovered", start, 0, origins, directions, picture, 60, seed, returns=parts
+        )
         return max(float(np.abs(found - color).max()) / 0.01, abs(rough - roughness) / 0.02)
 
     worst = off()

@@ -48,8 +48,10 @@ picture = total / samples
 spread = (squares - samples * picture**2).mean() / max(samples - 1, 1)
 noise = np.sqrt(max(spread, 0) / samples) / max(picture.mean(), 1e-9)
 said = f"noise {noise:.0%}" if samples > 1 else "noise unknown (take 2 samples or more)"
-print(f"room:  depth {depth}, {samples} samples a pixel, mean {picture.mean():.3f}, {said}, "
-      f"{time.perf_counter() - before:.1f} s")  # fmt: skip
+print(
+    f"room:  depth {depth}, {samples} samples a pixel, mean {picture.mean():.3f}, {said}, "
+    f"{time.perf_counter() - before:.1f} s"
+)
 
 # %% [markdown]
 # ## The table
@@ -78,17 +80,24 @@ def of_the_core(spp):
     shapes = importlib.import_module("photograd.transport.shapes")
     camera = importlib.import_module("photograd.capture.camera").Camera
     look_at = importlib.import_module("photograd.capture.orbit").look_at
-    parts = [shapes.rectangle(f"thing{k}", *(truth[name][k] for name in
-                                             ("corners", "edges_u", "edges_v")),
-                              f"of{k}", truth["emission"][k]) for k in range(2)]  # fmt: skip
+    parts = [
+        shapes.rectangle(
+            f"thing{k}",
+            *(truth[name][k] for name in ("corners", "edges_u", "edges_v")),
+            f"of{k}",
+            truth["emission"][k],
+        )
+        for k in range(2)
+    ]
     materials = {
         f"of{k}": transport.Material(
             "gltf", {name: truth[name][k] for name in ("base_color", "metalness", "roughness")}
         )
         for k in range(2)
     }
-    cameras = [camera(1, 1, 1e5, 1e5, 0.5, 0.5, look_at(o, o + d))
-               for o, d in zip(*rays, strict=True)]  # fmt: skip
+    cameras = [
+        camera(1, 1, 1e5, 1e5, 0.5, 0.5, look_at(o, o + d)) for o, d in zip(*rays, strict=True)
+    ]
     scene = transport.Scene("table", tuple(parts), materials, cameras[0])
     tracer = transport.PathTracer(scene, dtype=np.float64)
     light, change = np.zeros((70, 3)), np.zeros(70)
@@ -122,8 +131,10 @@ else:
     theirs, their_slope, name = light.reshape(7, 10, 3), change.reshape(7, 10), "core"
     target = light
 if whose == "the core's":
-    print(f"table: your picture is {apart(table, target):.1%} from the core's, your gradient "
-          f"{apart(slope, their_slope.ravel()):.1%}")  # fmt: skip
+    print(
+        f"table: your picture is {apart(table, target):.1%} from the core's, your gradient "
+        f"{apart(slope, their_slope.ravel()):.1%}"
+    )
 
 # %% [markdown]
 # ## What the picture says about the material
@@ -142,8 +153,10 @@ print(
 near = np.abs(track - goal) < 0.02
 late = [int(np.flatnonzero(~each)[-1]) + 2 if not each.all() else 1 for each in near.T]
 said = [f"from step {each}" if each <= steps else "not yet" for each in late]
-print(f"       within 0.02 of that: red {said[0]}, green {said[1]}, blue {said[2]}, roughness "
-      f"{said[3]}")  # fmt: skip
+print(
+    f"       within 0.02 of that: red {said[0]}, green {said[1]}, blue {said[2]}, roughness "
+    f"{said[3]}"
+)
 
 # %% [markdown]
 # ## Pictures

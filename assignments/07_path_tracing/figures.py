@@ -57,12 +57,23 @@ def fig1_measure(module: ModuleType) -> tuple[Figure, Facts]:
         axes.semilogy(aside[::2], np.maximum(ours, 1e-9)[::2], "o", color=BLUE, markersize=4)
         axes.semilogy(aside, by_area, color=CRIMSON)
         axes.semilogy(aside, no_cosine, color=ORANGE)
-        axes.annotate("density by area", (2.6, by_area[21]), (0, 5), color=CRIMSON,
-                      textcoords="offset points")  # fmt: skip
-        axes.annotate("without the lamp's cosine", (2.6, no_cosine[21]), (0, 8), color=ORANGE,
-                      textcoords="offset points")  # fmt: skip
-        axes.annotate("yours, and Lambert's formula", (1.2, right[10]), (-60, -24), color=BLUE,
-                      textcoords="offset points")  # fmt: skip
+        axes.annotate(
+            "density by area", (2.6, by_area[21]), (0, 5), color=CRIMSON, textcoords="offset points"
+        )
+        axes.annotate(
+            "without the lamp's cosine",
+            (2.6, no_cosine[21]),
+            (0, 8),
+            color=ORANGE,
+            textcoords="offset points",
+        )
+        axes.annotate(
+            "yours, and Lambert's formula",
+            (1.2, right[10]),
+            (-60, -24),
+            color=BLUE,
+            textcoords="offset points",
+        )
         axes.set(xlabel="aside of the lamp  [m]", ylabel="irradiance / radiance", ylim=(5e-3, 2))
         _plain(axes)
     return figure, facts
@@ -72,10 +83,16 @@ def fig2_strategies(module: ModuleType) -> tuple[Figure, Facts]:
     """Four strips of metal below a lamp, by three strategies; their noise."""
     roughness, width, height, samples, shown_ones = (0.2, 0.3, 0.5, 0.8), 40, 28, 64, 4
     strips = [
-        module.rectangle([-1 + 0.5 * k, 0, -1], [0, 0, 2], [0.5, 0, 0], base_color=0.8,
-                         metalness=1.0, roughness=each)
+        module.rectangle(
+            [-1 + 0.5 * k, 0, -1],
+            [0, 0, 2],
+            [0.5, 0, 0],
+            base_color=0.8,
+            metalness=1.0,
+            roughness=each,
+        )
         for k, each in enumerate(roughness)
-    ]  # fmt: skip
+    ]
     lamp = module.rectangle([-1, 0.4, -1.4], [2, 0, 0], [0, 0.6, 0.3], emission=1.5)
     scene = module.assemble([*strips, lamp])
     origins, directions = module.camera_rays(width, height, [0, 1.3, 1.7], [0, 0, -0.1], 48)
@@ -90,9 +107,15 @@ def fig2_strategies(module: ModuleType) -> tuple[Figure, Facts]:
     # Of a sample from its pixel, over the strip's brightness, both as root mean squares: dark
     # pixels, of which a polished strip has many, count little in either.
     bright = pictures[2].mean(axis=1)
-    spread = np.array([[np.sqrt(p[strip == k].var(axis=1, ddof=1).mean()
-                                / (bright[strip == k] ** 2).mean())
-                        for k in range(4)] for p in pictures])  # fmt: skip
+    spread = np.array(
+        [
+            [
+                np.sqrt(p[strip == k].var(axis=1, ddof=1).mean() / (bright[strip == k] ** 2).mean())
+                for k in range(4)
+            ]
+            for p in pictures
+        ]
+    )
     means = np.array([[p[strip == k].mean() for k in range(4)] for p in pictures])
     best = spread[:2].min(axis=0)
     facts: Facts = {
@@ -121,8 +144,9 @@ def fig2_strategies(module: ModuleType) -> tuple[Figure, Facts]:
                 low = np.flatnonzero(on)[strip == k].max() // width
                 row = np.flatnonzero(on)[strip == k]
                 middle = np.median(row[row // width == low] % width)
-                axes[0, column].text(middle, low - 1, str(each), color="white", ha="center",
-                                     fontsize=7)  # fmt: skip
+                axes[0, column].text(
+                    middle, low - 1, str(each), color="white", ha="center", fontsize=7
+                )
             axes[1, column].bar(range(4), spread[column], color=(ORANGE, GREY, BLUE)[column])
             axes[1, column].set(yscale="log", ylim=(0.5, 20), xlabel="roughness")
             axes[1, column].set_xticks(range(4), [str(r) for r in roughness])
@@ -159,8 +183,9 @@ def fig3_depth(module: ModuleType) -> tuple[Figure, Facts]:
         "bounces light it": (ceiling[1], 0.02, 1.0),
         "dots on the line": (float(off.max()), 0.0, 4.5),
         "counted twice: too bright from depth 3 on": bool(
-            abs(double[1] - right[1]) < 1e-9 and double[2] > 1.2 * right[2]),
-    }  # fmt: skip
+            abs(double[1] - right[1]) < 1e-9 and double[2] > 1.2 * right[2]
+        ),
+    }
     with house_style():
         figure = Figure(figsize=(7.0, 2.3), layout="constrained")
         axes = figure.subplots(1, 4, width_ratios=(1, 1, 1, 1.4))
@@ -198,8 +223,9 @@ def fig4_roulette(module: ModuleType) -> tuple[Figure, Facts]:
             module.ALWAYS, module.see = always, see
             # Of each surface three rays start: two for direct light, one to go on.
             visited = counted[0] / len(origins) / 3
-            rows.append((seen.mean(), seen.std() / np.sqrt(len(seen)), visited,
-                         seen.var() * visited))  # fmt: skip
+            rows.append(
+                (seen.mean(), seen.std() / np.sqrt(len(seen)), visited, seen.var() * visited)
+            )
         mean, error, visited, price = np.array(rows).T
         means.append((mean, error))
         visits.append(visited)
@@ -218,8 +244,9 @@ def fig4_roulette(module: ModuleType) -> tuple[Figure, Facts]:
         axes = figure.subplots(1, 3)
         for k, (name, colour) in enumerate((("roulette", BLUE), ("none", ORANGE))):
             shift = 0.12 * (2 * k - 1)
-            axes[0].errorbar(depths + shift, means[k][0], 3 * means[k][1], fmt="o", color=colour,
-                             markersize=4)  # fmt: skip
+            axes[0].errorbar(
+                depths + shift, means[k][0], 3 * means[k][1], fmt="o", color=colour, markersize=4
+            )
             axes[1].plot(depths, visits[k], color=colour, marker="o", markersize=4, label=name)
             axes[2].plot(depths, prices[k], color=colour, marker="o", markersize=4)
         axes[0].plot(depths, right, color=GREY, zorder=0)
@@ -236,17 +263,25 @@ def fig5_gradient(module: ModuleType) -> tuple[Figure, Facts]:
     """The gradient by roughness, and a fit with shared random numbers."""
     rng = np.random.default_rng(6)
     values, n = np.linspace(0.25, 0.75, 6), 1200
-    place = {"points": np.array([[0.1, 0, 0.1]]), "normals": UP[None], "thing": np.array([0]),
-             "wo": np.array([[0, 0.8, 0.6]]), "front": np.array([True]),
-             "t": np.ones(1)}  # fmt: skip
+    place = {
+        "points": np.array([[0.1, 0, 0.1]]),
+        "normals": UP[None],
+        "thing": np.array([0]),
+        "wo": np.array([[0, 0.8, 0.6]]),
+        "front": np.array([True]),
+        "t": np.ones(1),
+    }
     hit, d = module.repeated(place, n), np.full((n, 3), 1 / (3 * n))
     ours, wrong, right, errors = [], [], [], []
     for value in values:
         scene = module.demo_table(roughness=value)
         u = rng.random((2, n, 3))
-        parts = [module.direct_light_backward(scene, module.some(hit, rows), u[0, rows], u[1, rows],
-                                              d[rows])[1][0]
-                 for rows in np.arange(n).reshape(15, -1)]  # fmt: skip
+        parts = [
+            module.direct_light_backward(
+                scene, module.some(hit, rows), u[0, rows], u[1, rows], d[rows]
+            )[1][0]
+            for rows in np.arange(n).reshape(15, -1)
+        ]
         ours.append(sum(parts))
         errors.append(float(np.std(parts) * np.sqrt(15)))
         wrong.append(ours[-1] + _through_density(module, scene, hit, u[1], value))
@@ -270,8 +305,13 @@ def fig5_gradient(module: ModuleType) -> tuple[Figure, Facts]:
         side.axhline(0.6, color=GREY)
         side.plot(tracks[0], color=BLUE, linewidth=1)
         side.plot(tracks[1], color=CRIMSON, linewidth=1)
-        side.annotate("shared numbers", (60, tracks[1][60]), (10, -14), color=CRIMSON,
-                      textcoords="offset points")  # fmt: skip
+        side.annotate(
+            "shared numbers",
+            (60, tracks[1][60]),
+            (10, -14),
+            color=CRIMSON,
+            textcoords="offset points",
+        )
         side.annotate("own numbers", (70, 0.66), (0, 8), color=BLUE, textcoords="offset points")
         side.set(xlabel="step", title="base colour", ylim=(0.25, 0.75))
         for each in (left, side):
@@ -363,10 +403,13 @@ def _alone(module: ModuleType, scene: dict, hit: dict, u_light: Array, u_surface
 def _furnace(module: ModuleType, albedo: float, n: int, rng: np.random.Generator) -> tuple:
     """(scene, origins, directions): a closed cube that shines, and rays inside."""
     faces = (
-        ((-1, -1, -1), (0, 0, 2), (2, 0, 0)), ((-1, 1, -1), (2, 0, 0), (0, 0, 2)),
-        ((-1, -1, -1), (2, 0, 0), (0, 2, 0)), ((-1, -1, 1), (0, 2, 0), (2, 0, 0)),
-        ((-1, -1, -1), (0, 2, 0), (0, 0, 2)), ((1, -1, -1), (0, 0, 2), (0, 2, 0)),
-    )  # fmt: skip
+        ((-1, -1, -1), (0, 0, 2), (2, 0, 0)),
+        ((-1, 1, -1), (2, 0, 0), (0, 0, 2)),
+        ((-1, -1, -1), (2, 0, 0), (0, 2, 0)),
+        ((-1, -1, 1), (0, 2, 0), (2, 0, 0)),
+        ((-1, -1, -1), (0, 2, 0), (0, 0, 2)),
+        ((1, -1, -1), (0, 0, 2), (0, 2, 0)),
+    )
     scene = module.assemble([module.rectangle(*f, emission=1.0, base_color=albedo) for f in faces])
     d = rng.normal(size=(n, 3))
     return scene, np.zeros((n, 3)), d / np.linalg.norm(d, axis=1, keepdims=True)
@@ -407,8 +450,14 @@ def _descent(module: ModuleType, shared: bool) -> Array:
     rng = np.random.default_rng(8)
     n = 40
     points = np.column_stack([rng.uniform(-1, 1, n), np.zeros(n), rng.uniform(-1, 1, n)])
-    hit = {"points": points, "normals": np.tile(UP, (n, 1)), "wo": np.tile(UP, (n, 1)),
-           "front": np.ones(n, bool), "t": np.ones(n), "thing": np.zeros(n, int)}  # fmt: skip
+    hit = {
+        "points": points,
+        "normals": np.tile(UP, (n, 1)),
+        "wo": np.tile(UP, (n, 1)),
+        "front": np.ones(n, bool),
+        "t": np.ones(n),
+        "thing": np.zeros(n, int),
+    }
     many = module.repeated(hit, 144)
     x = (np.arange(12) + 0.5) / 12
     even = np.stack([0 * x.repeat(12), x.repeat(12), np.tile(x, 12)], axis=1)

@@ -132,9 +132,12 @@ def of_the_core():
     marches = importlib.import_module("photograd.fields.march")
     base = importlib.import_module("photograd.representation")
     policy = marches.MarchPolicy(
-        box=(tuple(low), tuple(high)), dt=2 / steps * (1 - 1e-12), lattice="entry",
-        density_activation="identity", color_activation="identity",
-    )  # fmt: skip
+        box=(tuple(low), tuple(high)),
+        dt=2 / steps * (1 - 1e-12),
+        lattice="entry",
+        density_activation="identity",
+        color_activation="identity",
+    )
     field = grids.DenseGrid(guess.copy(), policy)
     batch = base.RayBatch(eyes, looks, np.arange(len(eyes), dtype=np.uint32))
     started = time.perf_counter()
@@ -152,8 +155,10 @@ except (ImportError, AttributeError, TypeError):  # none, or another than this w
     print("core not installed")
 else:
     gap = np.linalg.norm(core_slope - d_guess) / np.linalg.norm(core_slope)
-    print(f"core:   both passes in {core_seconds:.4f} s, {(forward + backward) / core_seconds:.0f} "
-          f"times as fast; its derivative is {gap:.1e} from yours")  # fmt: skip
+    print(
+        f"core:   both passes in {core_seconds:.4f} s, {(forward + backward) / core_seconds:.0f} "
+        f"times as fast; its derivative is {gap:.1e} from yours"
+    )
 
 
 # %%

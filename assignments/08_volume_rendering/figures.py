@@ -124,12 +124,18 @@ def fig2_order(module: ModuleType) -> tuple[Figure, Facts]:
         figure = Figure(figsize=(7.0, 3.1), layout="constrained")
         axes = figure.subplots()
         for name, (_, colour, dashes, mark) in ways.items():
-            axes.loglog(counts, errors[name], color=colour, linestyle=dashes, marker=mark,
-                        markersize=4)  # fmt: skip
+            axes.loglog(
+                counts, errors[name], color=colour, linestyle=dashes, marker=mark, markersize=4
+            )
             lift = {"T σ dt": -6, "T inclusive, times α": 6}.get(name, 0)
-            axes.annotate(name, (counts[-1], errors[name][-1]), (7, lift),
-                          textcoords="offset points", va="center",
-                          color=INK if colour == GREY else colour)  # fmt: skip
+            axes.annotate(
+                name,
+                (counts[-1], errors[name][-1]),
+                (7, lift),
+                textcoords="offset points",
+                va="center",
+                color=INK if colour == GREY else colour,
+            )
         axes.set(xlabel="steps", ylabel="relative error of the pixel", xlim=(7, 2200))
         axes.set_xticks(counts, [str(n) for n in counts])
         axes.minorticks_off()
@@ -220,11 +226,7 @@ def fig4_wrong(module: ModuleType) -> tuple[Figure, Facts]:
     worst = np.linalg.norm(right[few] - checked) / np.linalg.norm(checked)
     facts: Facts = {
         "the right one agrees with differences to 1e-7": (float(worst), 0, 1e-7),
-        "the first two point elsewhere": (
-            max(cosine[LEFT_OUT], cosine[ADDED]),
-            -1.001,
-            0.9,
-        ),
+        "the first two point elsewhere": (max(cosine[LEFT_OUT], cosine[ADDED]), -1.001, 0.9),
         "the other four have cosines above 0.99": (min(cosine[k] for k in subtle), 0.99, 1.0001),
         "and are wrong by more than 10 %": (min(error[k] for k in subtle), 0.1, 20),
         "without dt the cosine is 1": (cosine[NO_STEP], 1 - 1e-9, 1 + 1e-9),
@@ -292,19 +294,37 @@ def fig5_box(module: ModuleType) -> tuple[Figure, Facts]:
         rows = 0
         for r in (0, 1):
             for a, mark in ((0, "o"), (1, "s")):
-                right.plot(planes[r][a], [rows, rows], color=colours[r], marker=mark,
-                           markerfacecolor="white", markersize=5)  # fmt: skip
+                right.plot(
+                    planes[r][a],
+                    [rows, rows],
+                    color=colours[r],
+                    marker=mark,
+                    markerfacecolor="white",
+                    markersize=5,
+                )
                 said = "between the " + "xy"[a] + " planes"
-                right.annotate(said, (planes[r][a][0], rows), (0, 7),
-                               textcoords="offset points", fontsize=7.5)  # fmt: skip
+                right.annotate(
+                    said, (planes[r][a][0], rows), (0, 7), textcoords="offset points", fontsize=7.5
+                )
                 rows += 1
             if far[r] > near[r]:
-                right.plot([near[r], far[r]], [rows, rows], color=colours[r], linewidth=4,
-                           solid_capstyle="butt")  # fmt: skip
+                right.plot(
+                    [near[r], far[r]],
+                    [rows, rows],
+                    color=colours[r],
+                    linewidth=4,
+                    solid_capstyle="butt",
+                )
             said = "in the box" if far[r] > near[r] else "never between all: misses"
             start = near[r] if far[r] > near[r] else 0.3
-            right.annotate(said, (start, rows), (0, 6), textcoords="offset points", fontsize=7.5,
-                           color=colours[r])  # fmt: skip
+            right.annotate(
+                said,
+                (start, rows),
+                (0, 6),
+                textcoords="offset points",
+                fontsize=7.5,
+                color=colours[r],
+            )
             rows += 1
         right.set(xlim=(0, 5.3), ylim=(5.6, -0.9), xlabel="t", yticks=[])
         right.spines[["top", "right", "left"]].set_visible(False)
@@ -358,8 +378,9 @@ def fig6_view(module: ModuleType) -> tuple[Figure, Facts]:
             axes.imshow(picture, interpolation="nearest")
             axes.set_title(title)
         top = float(np.abs(columns).max())
-        image = panels[2].imshow(columns / top, cmap=signed_colour_map(), vmin=-1, vmax=1,
-                                 interpolation="nearest")  # fmt: skip
+        image = panels[2].imshow(
+            columns / top, cmap=signed_colour_map(), vmin=-1, vmax=1, interpolation="nearest"
+        )
         panels[2].set_title("∂L/∂σ, summed along z")
         for axes in panels:
             axes.set(xticks=[], yticks=[])

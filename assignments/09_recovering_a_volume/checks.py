@@ -63,9 +63,13 @@ def views_of(pictures, poses, background, focal=None):
     """Views of the box from -1 to 1, which fits into each picture."""
     width = pictures.shape[2]
     return {
-        "pictures": pictures, "world_from_camera": poses, "focal": focal or 1.25 * width,
-        "low": np.full(3, -1.0), "high": np.full(3, 1.0), "background": background,
-    }  # fmt: skip
+        "pictures": pictures,
+        "world_from_camera": poses,
+        "focal": focal or 1.25 * width,
+        "low": np.full(3, -1.0),
+        "high": np.full(3, 1.0),
+        "background": background,
+    }
 
 
 def random_views(t, count=2, rows=3, columns=4):
@@ -89,15 +93,17 @@ def ball_views(t, count=2, size=5):
         away = centre - pose[:3, 3]
         along = d @ away
         hit = away @ away - along**2 < radius**2
-        views["pictures"][k] = np.where(hit[..., None], t.rng.uniform(0.6, 1.0, 3),
-                                        views["background"])  # fmt: skip
+        views["pictures"][k] = np.where(
+            hit[..., None], t.rng.uniform(0.6, 1.0, 3), views["background"]
+        )
     return views
 
 
 def batch(n):
     """What `ray_batch` returns."""
-    return Items(Array((n, 3)), Array((n, 3)), Array((n, 3)),
-                 names=("origins", "directions", "truth"))  # fmt: skip
+    return Items(
+        Array((n, 3)), Array((n, 3)), Array((n, 3)), names=("origins", "directions", "truth")
+    )
 
 
 def unit(v):
@@ -108,11 +114,24 @@ def unit(v):
 # 09.1 ---------------------------------------------------------------------------------------------
 
 
-@check("09.1.values", task="09.1", points=3, calls=("psnr",), tolerance=EXACT,
-       kills=("psnr_by_channel", "psnr_capped", "psnr_clipped", "psnr_natural_log", "psnr_sign",
-              "psnr_sum", "psnr_twenty",),
-       hint="handout, equation (3): decibels are ten times the decimal logarithm",
-       sole="small enough to work out by hand")  # fmt: skip
+@check(
+    "09.1.values",
+    task="09.1",
+    points=3,
+    calls=("psnr",),
+    tolerance=EXACT,
+    kills=(
+        "psnr_by_channel",
+        "psnr_capped",
+        "psnr_clipped",
+        "psnr_natural_log",
+        "psnr_sign",
+        "psnr_sum",
+        "psnr_twenty",
+    ),
+    hint="handout, equation (3): decibels are ten times the decimal logarithm",
+    sole="small enough to work out by hand",
+)
 def known_decibels(t):
     """An error of 0.1 everywhere is 20 dB, of 0.01 40 dB; twice the error costs 6.02 dB."""
     picture = t.rng.uniform(0.0, 1.0, (4, 5, 3))
@@ -128,11 +147,24 @@ def known_decibels(t):
     t.require(got == np.inf, "equal pictures have infinitely many decibels")
 
 
-@check("09.1.mean", task="09.1", points=2, calls=("psnr",), tolerance=EXACT,
-       kills=("psnr_by_channel", "psnr_capped", "psnr_clipped", "psnr_mean_first",
-              "psnr_natural_log", "psnr_sign", "psnr_twenty",),
-       hint="handout, section 1: first one mean over everything, then one logarithm",
-       sole="says that the mean comes first")  # fmt: skip
+@check(
+    "09.1.mean",
+    task="09.1",
+    points=2,
+    calls=("psnr",),
+    tolerance=EXACT,
+    kills=(
+        "psnr_by_channel",
+        "psnr_capped",
+        "psnr_clipped",
+        "psnr_mean_first",
+        "psnr_natural_log",
+        "psnr_sign",
+        "psnr_twenty",
+    ),
+    hint="handout, section 1: first one mean over everything, then one logarithm",
+    sole="says that the mean comes first",
+)
 def one_mean_for_all(t):
     """One wrong number among n has 10 log10 n decibels more than n of them, wherever it is."""
     for shape in ((4, 5, 3), (2, 3, 4, 3), (7, 3)):
@@ -147,12 +179,28 @@ def one_mean_for_all(t):
 # 09.2 ---------------------------------------------------------------------------------------------
 
 
-@check("09.2.middle", task="09.2", points=3, calls=("ray_batch",), tolerance=EXACT,
-       kills=("rays_backwards", "rays_columns_first", "rays_corner", "rays_first_camera",
-              "rays_height_as_width", "rays_place_turned_back", "rays_sorted",
-              "rays_square_pictures", "rays_translated", "rays_turned_back", "rays_unturned",),
-       hint="handout, section 2: the pose's columns are right, down, forward, and the place",
-       sole="names the part of the pose that is misread")  # fmt: skip
+@check(
+    "09.2.middle",
+    task="09.2",
+    points=3,
+    calls=("ray_batch",),
+    tolerance=EXACT,
+    kills=(
+        "rays_backwards",
+        "rays_columns_first",
+        "rays_corner",
+        "rays_first_camera",
+        "rays_height_as_width",
+        "rays_place_turned_back",
+        "rays_sorted",
+        "rays_square_pictures",
+        "rays_translated",
+        "rays_turned_back",
+        "rays_unturned",
+    ),
+    hint="handout, section 2: the pose's columns are right, down, forward, and the place",
+    sole="names the part of the pose that is misread",
+)
 def the_middle_pixel_looks_forward(t):
     """With odd H and W the middle ray starts at the camera and follows its forward axis."""
     views = random_views(t, 3, 5, 7)
@@ -161,17 +209,34 @@ def the_middle_pixel_looks_forward(t):
     middle = np.array([k * 35 + 2 * 7 + 3 for k in (2, 0, 1)])
     origins, directions, _ = t.call("ray_batch", views, middle, returns=batch(3))
     t.close("origins", origins, poses[[2, 0, 1], :3, 3], reveal=True)
-    t.close("directions, made unit vectors", unit(directions), poses[[2, 0, 1], :3, 2],
-            reveal=True)  # fmt: skip
+    t.close("directions, made unit vectors", unit(directions), poses[[2, 0, 1], :3, 2], reveal=True)
 
 
-@check("09.2.projected", task="09.2", points=4, calls=("ray_batch",), tolerance=EXACT,
-       kills=("rays_backwards", "rays_columns_first", "rays_corner", "rays_first_camera",
-              "rays_focal_multiplied", "rays_height_as_width", "rays_place_turned_back",
-              "rays_rows_as_columns", "rays_sorted", "rays_square_pictures", "rays_translated",
-              "rays_turned_back", "rays_unturned", "rays_y_up",),
-       hint="handout, equations (4) to (6): what projects to the middle of that pixel?",
-       sole="needs no formula for a ray: only that it is seen where it should be")  # fmt: skip
+@check(
+    "09.2.projected",
+    task="09.2",
+    points=4,
+    calls=("ray_batch",),
+    tolerance=EXACT,
+    kills=(
+        "rays_backwards",
+        "rays_columns_first",
+        "rays_corner",
+        "rays_first_camera",
+        "rays_focal_multiplied",
+        "rays_height_as_width",
+        "rays_place_turned_back",
+        "rays_rows_as_columns",
+        "rays_sorted",
+        "rays_square_pictures",
+        "rays_translated",
+        "rays_turned_back",
+        "rays_unturned",
+        "rays_y_up",
+    ),
+    hint="handout, equations (4) to (6): what projects to the middle of that pixel?",
+    sole="needs no formula for a ray: only that it is seen where it should be",
+)
 def points_of_a_ray_are_seen_in_its_pixel(t):
     """A point on a ray projects to the middle of the pixel, in pictures of any shape."""
     for rows, columns in ((3, 5), (6, 4)):
@@ -182,17 +247,30 @@ def points_of_a_ray_are_seen_in_its_pixel(t):
         point = origins + t.rng.uniform(1.0, 3.0, (9, 1)) * directions
         pose = views["world_from_camera"][view]
         seen = np.einsum("rji,rj->ri", pose[:, :3, :3], point - pose[:, :3, 3])
-        t.require(bool((seen[:, 2] > 0).all()), "a ray goes backwards: forward is +z",
-                  hint="if 09.2.middle fails too, look there first")  # fmt: skip
+        t.require(
+            bool((seen[:, 2] > 0).all()),
+            "a ray goes backwards: forward is +z",
+            hint="if 09.2.middle fails too, look there first",
+        )
         places = views["focal"] * seen[:, :2] / seen[:, 2:] + [columns / 2, rows / 2]
-        t.close("where points are seen (column, row)", places,
-                np.stack([column + 0.5, row + 0.5], axis=1), reveal=True)  # fmt: skip
+        t.close(
+            "where points are seen (column, row)",
+            places,
+            np.stack([column + 0.5, row + 0.5], axis=1),
+            reveal=True,
+        )
 
 
-@check("09.2.truth", task="09.2", points=2, calls=("ray_batch",), tolerance=EXACT,
-       kills=("rays_columns_first", "rays_sorted",),
-       hint="pixels are counted as they lie in memory: picture by picture, row by row",
-       sole="asks about the colours alone")  # fmt: skip
+@check(
+    "09.2.truth",
+    task="09.2",
+    points=2,
+    calls=("ray_batch",),
+    tolerance=EXACT,
+    kills=("rays_columns_first", "rays_sorted"),
+    hint="pixels are counted as they lie in memory: picture by picture, row by row",
+    sole="asks about the colours alone",
+)
 def colours_belong_to_the_chosen_pixels(t):
     """The colours are those of the chosen pixels, in that order, repeated ones too."""
     views = random_views(t, 3, 2, 4)
@@ -209,10 +287,16 @@ def loss_and_slope(shape):
     return Items(Number(), Array(shape), names=("loss", "derivative"))
 
 
-@check("09.3.values", task="09.3", points=3, calls=("mse_and_cotangent",), tolerance=EXACT,
-       kills=("mse_absolute", "mse_loss_halved", "mse_mean_of_channels", "mse_root", "mse_sum",),
-       hint="handout, equation (7): over which axis is the mean, over which the sum?",
-       sole="small enough to work out by hand")  # fmt: skip
+@check(
+    "09.3.values",
+    task="09.3",
+    points=3,
+    calls=("mse_and_cotangent",),
+    tolerance=EXACT,
+    kills=("mse_absolute", "mse_loss_halved", "mse_mean_of_channels", "mse_root", "mse_sum"),
+    hint="handout, equation (7): over which axis is the mean, over which the sum?",
+    sole="small enough to work out by hand",
+)
 def the_loss_of_known_errors(t):
     """Errors of (a, b, c) at every ray are a loss of a^2 + b^2 + c^2, however many rays."""
     error = t.rng.uniform(0.1, 0.5, 3) * [1, -1, 1]
@@ -226,8 +310,10 @@ def the_loss_of_known_errors(t):
 
 
 ROOT = "You return the root of the loss."
-APART = ("Loss and derivative do not belong together: one of them divides by something that the "
-         "other does not. See 09.3.values.")  # fmt: skip
+APART = (
+    "Loss and derivative do not belong together: one of them divides by something that the "
+    "other does not. See 09.3.values."
+)
 
 
 def advice_on_loss(t):
@@ -252,11 +338,23 @@ def slope_of_loss(t, pixels, truth):
     return d, central_differences(forward, {"pixels": pixels}, "pixels", np.ones(()))
 
 
-@check("09.3.differences", task="09.3", points=3, calls=("mse_and_cotangent",), tolerance=GATE,
-       kills=("mse_cotangent_by_size", "mse_cotangent_of_sum", "mse_loss_halved", "mse_no_two",
-              "mse_root", "mse_sign",),
-       hint="differentiate equation (7) by one number of one ray",
-       sole="the derivative itself, without the reference")  # fmt: skip
+@check(
+    "09.3.differences",
+    task="09.3",
+    points=3,
+    calls=("mse_and_cotangent",),
+    tolerance=GATE,
+    kills=(
+        "mse_cotangent_by_size",
+        "mse_cotangent_of_sum",
+        "mse_loss_halved",
+        "mse_no_two",
+        "mse_root",
+        "mse_sign",
+    ),
+    hint="differentiate equation (7) by one number of one ray",
+    sole="the derivative itself, without the reference",
+)
 def the_cotangent_agrees_with_differences(t):
     """Moving a pixel by a little moves your loss as your derivative says."""
     d, expected = slope_of_loss(t, *t.rng.uniform(0.0, 1.0, (2, 5, 3)))
@@ -264,23 +362,38 @@ def the_cotangent_agrees_with_differences(t):
     t.close("d_pixels", d, expected, GATE, hint=advice_on_loss(t))
 
 
-RENDERER = ("your cotangent is right: what lies between it and the voxels is volume_rendering.py; "
-            "photograd course check 08")  # fmt: skip
+RENDERER = (
+    "your cotangent is right: what lies between it and the voxels is volume_rendering.py; "
+    "photograd course check 08"
+)
 
 
-@check("09.3.chain", task="09.3", points=4,
-       calls=("mse_and_cotangent", "render_rays", "render_adjoint"), needs=("ray_batch",),
-       tolerance=GATE, seconds=PATIENCE,
-       kills=("mse_cotangent_by_size", "mse_cotangent_of_sum", "mse_loss_halved", "mse_no_two",
-              "mse_root", "mse_sign",),
-       hint="mend what fails above first",
-       sole="no fit before the gradient is proved: with your renderer of 08")  # fmt: skip
+@check(
+    "09.3.chain",
+    task="09.3",
+    points=4,
+    calls=("mse_and_cotangent", "render_rays", "render_adjoint"),
+    needs=("ray_batch",),
+    tolerance=GATE,
+    seconds=PATIENCE,
+    kills=(
+        "mse_cotangent_by_size",
+        "mse_cotangent_of_sum",
+        "mse_loss_halved",
+        "mse_no_two",
+        "mse_root",
+        "mse_sign",
+    ),
+    hint="mend what fails above first",
+    sole="no fit before the gradient is proved: with your renderer of 08",
+)
 def from_photographs_to_voxels(t):
     """Moving one voxel moves the loss of your photographs as your adjoint of 08 says."""
     views = random_views(t, 2, 3, 3)
     grid = t.rng.uniform(0.2, 1.0, (2, 1, 3, 4))
-    _, d_grid = t.call("adapters.gradient_of_views", grid, views,
-                       returns=loss_and_slope(grid.shape))  # fmt: skip
+    _, d_grid = t.call(
+        "adapters.gradient_of_views", grid, views, returns=loss_and_slope(grid.shape)
+    )
 
     def forward(point):
         moved = np.concatenate([point["color"], point["sigma"][..., None]], axis=3)
@@ -306,15 +419,32 @@ def rough(t, grid, eps):
     return t.call("tv_loss_adjoint", grid, eps, returns=loss_and_slope(grid.shape))
 
 
-ROUGHNESS = ("handout, equations (8) and (9): three differences under one root; none at the far "
-             "border; the mean over voxels, the sum over channels")  # fmt: skip
+ROUGHNESS = (
+    "handout, equations (8) and (9): three differences under one root; none at the far "
+    "border; the mean over voxels, the sum over channels"
+)
 
 
-@check("09.4.values", task="09.4", points=4, calls=("tv_loss_adjoint",), tolerance=EXACT,
-       kills=("tv_axes_apart", "tv_channels_together", "tv_dark_border", "tv_eps_not_squared",
-              "tv_mean_of_channels", "tv_not_zero_when_flat", "tv_squared", "tv_sum", "tv_wraps",),
-       hint=ROUGHNESS,
-       sole="small enough to work out by hand")  # fmt: skip
+@check(
+    "09.4.values",
+    task="09.4",
+    points=4,
+    calls=("tv_loss_adjoint",),
+    tolerance=EXACT,
+    kills=(
+        "tv_axes_apart",
+        "tv_channels_together",
+        "tv_dark_border",
+        "tv_eps_not_squared",
+        "tv_mean_of_channels",
+        "tv_not_zero_when_flat",
+        "tv_squared",
+        "tv_sum",
+        "tv_wraps",
+    ),
+    hint=ROUGHNESS,
+    sole="small enough to work out by hand",
+)
 def the_roughness_of_ramps(t):
     """The loss of even slopes has a closed form: inside, on a border, along an edge; flat has 0."""
     flat, slope = rough(t, np.full((3, 2, 4, 2), 0.7), 0.1)
@@ -334,11 +464,25 @@ def the_roughness_of_ramps(t):
     t.close("loss of two channels", rough(t, grid, eps)[0], 2 * expected, reveal=True)
 
 
-@check("09.4.differences", task="09.4", points=5, calls=("tv_loss_adjoint",), tolerance=GATE,
-       kills=("tv_dark_border", "tv_derivative_of_sum", "tv_ends_added", "tv_no_length",
-              "tv_other_end_only", "tv_own_end_only", "tv_sign", "tv_to_the_voxel_before",),
-       hint="handout, section 4: a value is in its own difference and in that of the voxel before",
-       sole="the gradient itself, without the reference")  # fmt: skip
+@check(
+    "09.4.differences",
+    task="09.4",
+    points=5,
+    calls=("tv_loss_adjoint",),
+    tolerance=GATE,
+    kills=(
+        "tv_dark_border",
+        "tv_derivative_of_sum",
+        "tv_ends_added",
+        "tv_no_length",
+        "tv_other_end_only",
+        "tv_own_end_only",
+        "tv_sign",
+        "tv_to_the_voxel_before",
+    ),
+    hint="handout, section 4: a value is in its own difference and in that of the voxel before",
+    sole="the gradient itself, without the reference",
+)
 def the_slope_of_roughness_agrees_with_differences(t):
     """Moving a number moves your roughness as your derivative says, one voxel wide grids too."""
     for shape, eps in (((3, 4, 2, 2), 0.3), ((1, 3, 2, 1), 0.1), ((2, 1, 1, 2), 1.0)):
@@ -351,11 +495,23 @@ def the_slope_of_roughness_agrees_with_differences(t):
         require_gradients(t, {"grid": d_grid}, forward, {"grid": grid}, np.ones(()), GATE)
 
 
-@check("09.4.balance", task="09.4", points=2, calls=("tv_loss_adjoint",), tolerance=EXACT,
-       kills=("tv_channels_together", "tv_dark_border", "tv_ends_added", "tv_mean_of_channels",
-              "tv_other_end_only", "tv_own_end_only",),
-       hint="what a difference takes at one end it gives at the other",
-       sole="tells at a glance which end of a difference is missing")  # fmt: skip
+@check(
+    "09.4.balance",
+    task="09.4",
+    points=2,
+    calls=("tv_loss_adjoint",),
+    tolerance=EXACT,
+    kills=(
+        "tv_channels_together",
+        "tv_dark_border",
+        "tv_ends_added",
+        "tv_mean_of_channels",
+        "tv_other_end_only",
+        "tv_own_end_only",
+    ),
+    hint="what a difference takes at one end it gives at the other",
+    sole="tells at a glance which end of a difference is missing",
+)
 def derivatives_of_a_channel_sum_to_zero(t):
     """Lifting a whole channel changes nothing: its derivatives sum to 0. Channels are apart."""
     grid = t.rng.uniform(0.0, 1.0, (3, 4, 5, 3))
@@ -369,9 +525,12 @@ def derivatives_of_a_channel_sum_to_zero(t):
     alone = [rough(t, grid[..., c : c + 1], 0.2) for c in range(3)]
     total = sum(each[0] for each in alone)
     t.close("loss, channel by channel", total, loss, hint=ROUGHNESS)
-    t.close("derivative, channel by channel",
-            np.concatenate([each[1] for each in alone], axis=3), d_grid,
-            hint="each channel goes by itself: no derivative reads another channel")  # fmt: skip
+    t.close(
+        "derivative, channel by channel",
+        np.concatenate([each[1] for each in alone], axis=3),
+        d_grid,
+        hint="each channel goes by itself: no derivative reads another channel",
+    )
 
 
 # 09.5 ---------------------------------------------------------------------------------------------
@@ -390,11 +549,23 @@ def sign_map(t, grid, views):
 SHARE = "handout, equation (12): compare with the largest derivative before you take signs"
 
 
-@check("09.5.differences", task="09.5", points=3, calls=("gradient_sign_map",), needs=EARLIER,
-       kills=("map_first_view", "map_fixed_floor", "map_last_view", "map_of_red", "map_of_votes",
-              "map_upside_down",),
-       hint="handout, equations (11) and (12): all pixels of all photographs",
-       sole="the signs themselves, without the reference")  # fmt: skip
+@check(
+    "09.5.differences",
+    task="09.5",
+    points=3,
+    calls=("gradient_sign_map",),
+    needs=EARLIER,
+    kills=(
+        "map_first_view",
+        "map_fixed_floor",
+        "map_last_view",
+        "map_of_red",
+        "map_of_votes",
+        "map_upside_down",
+    ),
+    hint="handout, equations (11) and (12): all pixels of all photographs",
+    sole="the signs themselves, without the reference",
+)
 def signs_agree_with_differences(t):
     """More extinction in one voxel alone raises your loss where the map says 1, lowers it at -1."""
     views = random_views(t, 3, 4, 5)
@@ -404,32 +575,52 @@ def signs_agree_with_differences(t):
         for way in (1, -1):
             moved = grid.copy()
             moved[(*index, 3)] += way * 1e-4
-            change[index] += way * t.call("adapters.loss_of_views", moved, views,
-                                          returns=Number())  # fmt: skip
+            change[index] += way * t.call("adapters.loss_of_views", moved, views, returns=Number())
     clear = np.abs(change) > 1e-3 * np.abs(change).max()
     t.require(bool((change[clear] > 0).any() and (change[clear] < 0).any()), "not telling")
     signs = sign_map(t, grid, views)
     right = np.sign(change)
-    t.require(not np.array_equal(signs[clear], -right[clear]), "all signs are turned round",
-              hint="-1 is where descent adds: it goes against the derivative")  # fmt: skip
+    t.require(
+        not np.array_equal(signs[clear], -right[clear]),
+        "all signs are turned round",
+        hint="-1 is where descent adds: it goes against the derivative",
+    )
     wrong = [tuple(map(int, at)) for at in np.argwhere(clear & (signs != right))]
     told = f"{len(wrong)} of {int(clear.sum())} voxels have the wrong sign"
     if wrong:
         told += f"; at {wrong[0]} yours is {signs[wrong[0]]:g}, expected {right[wrong[0]]:g}"
     t.require(not wrong, told)
     origins, directions, truth = t.call("ray_batch", views, np.arange(60), returns=batch(60))
-    seen = t.call("render_rays", grid, views["low"], views["high"], origins, directions, 16,
-                  views["background"], returns=Array((60, 3)))  # fmt: skip
+    seen = t.call(
+        "render_rays",
+        grid,
+        views["low"],
+        views["high"],
+        origins,
+        directions,
+        16,
+        views["background"],
+        returns=Array((60, 3)),
+    )
     views["pictures"] = (seen + 1e-6 * (truth - seen)).reshape(3, 4, 5, 3)
     same = np.array_equal(signs, sign_map(t, grid, views))
-    t.require(same, "the signs have changed when all errors became a millionth of what they were",
-              hint=SHARE)  # fmt: skip
+    t.require(
+        same,
+        "the signs have changed when all errors became a millionth of what they were",
+        hint=SHARE,
+    )
 
 
-@check("09.5.silent", task="09.5", points=2, calls=("gradient_sign_map",), needs=EARLIER,
-       kills=("map_floor_of_largest", "map_no_floor", "map_of_votes",),
-       hint=SHARE,
-       sole="where nothing is known")  # fmt: skip
+@check(
+    "09.5.silent",
+    task="09.5",
+    points=2,
+    calls=("gradient_sign_map",),
+    needs=EARLIER,
+    kills=("map_floor_of_largest", "map_no_floor", "map_of_votes"),
+    hint=SHARE,
+    sole="where nothing is known",
+)
 def no_sign_where_nothing_is_known(t):
     """Voxels that no ray passes, and voxels behind a wall, get 0."""
     camera = looking(np.array([0.0, 0.0, 9.0]))
@@ -443,8 +634,9 @@ def no_sign_where_nothing_is_known(t):
         views = views_of(pictures, camera[None], np.zeros(3), focal=60.0)
         signs = sign_map(t, grid, views)
         t.require(bool((signs[1:4, 1:4, 3:] != 0).any()), "the wall is seen, and has no sign")
-        t.require(not signs[0].any() and not signs[:, 4].any(),
-                  "a voxel that no ray passes has a sign")  # fmt: skip
+        t.require(
+            not signs[0].any() and not signs[:, 4].any(), "a voxel that no ray passes has a sign"
+        )
         t.require(not signs[:, :, :2].any(), "a voxel that lies hidden behind the wall has a sign")
 
 
@@ -461,8 +653,9 @@ def fitted(t, views, grid, steps, seed=5, adapter="fit"):
 
 def stepped(t, views, grid):
     """Loss and derivative of a step that sees all pixels, put together from your functions."""
-    loss, d_grid = t.call("adapters.gradient_of_views", grid, views,
-                          returns=loss_and_slope(grid.shape))  # fmt: skip
+    loss, d_grid = t.call(
+        "adapters.gradient_of_views", grid, views, returns=loss_and_slope(grid.shape)
+    )
     more, d_more = rough(t, grid, 0.1)
     return loss + 0.01 * more, d_grid + 0.01 * d_more
 
@@ -477,14 +670,33 @@ def small_start(t, shape=(3, 2, 4)):
     return t.rng.choice([0.02, 0.5, 0.97], (*shape, 4))
 
 
-@check("09.6.first", task="09.6", points=4, calls=("fit_volume",), needs=ALL, tolerance=CHAINED,
-       kills=("fit_black_background", "fit_colors_free", "fit_colors_frozen",
-              "fit_eps_is_the_weight", "fit_limits_kept_at_the_end", "fit_new_adam_each_step",
-              "fit_plain_descent", "fit_sigma_below_one", "fit_sigma_free",
-              "fit_sigma_kept_at_the_end", "fit_sigma_reflected", "fit_tv_at_full_weight",
-              "fit_tv_not_in_loss", "fit_uphill", "fit_without_tv",),
-       hint="handout, equations (13) to (16), in this order",
-       sole="asks about the first two steps alone")  # fmt: skip
+@check(
+    "09.6.first",
+    task="09.6",
+    points=4,
+    calls=("fit_volume",),
+    needs=ALL,
+    tolerance=CHAINED,
+    kills=(
+        "fit_black_background",
+        "fit_colors_free",
+        "fit_colors_frozen",
+        "fit_eps_is_the_weight",
+        "fit_limits_kept_at_the_end",
+        "fit_new_adam_each_step",
+        "fit_plain_descent",
+        "fit_sigma_below_one",
+        "fit_sigma_free",
+        "fit_sigma_kept_at_the_end",
+        "fit_sigma_reflected",
+        "fit_tv_at_full_weight",
+        "fit_tv_not_in_loss",
+        "fit_uphill",
+        "fit_without_tv",
+    ),
+    hint="handout, equations (13) to (16), in this order",
+    sole="asks about the first two steps alone",
+)
 def the_first_steps(t):
     """With few pixels a step sees all of them: two steps of Adam end where your derivatives say."""
     views, grid = random_views(t, 2, 4, 5), small_start(t)
@@ -505,13 +717,27 @@ def the_first_steps(t):
     t.close("volume after two steps", two, kept(one - RATES * m / (np.sqrt(v) + 1e-8)))
 
 
-@check("09.6.draws", task="09.6", points=3, calls=("fit_volume",), needs=ALL, tolerance=CHAINED,
-       kills=("fit_black_background", "fit_eps_is_the_weight", "fit_limits_kept_at_the_end",
-              "fit_one_draw", "fit_own_generator", "fit_sigma_kept_at_the_end",
-              "fit_tv_not_in_loss", "fit_two_draws",),
-       hint="if 09.6.first fails too, look there first; one draw in each step, all of it used, and "
-            "rng for nothing else",
-       sole="asks which pixels a step sees")  # fmt: skip
+@check(
+    "09.6.draws",
+    task="09.6",
+    points=3,
+    calls=("fit_volume",),
+    needs=ALL,
+    tolerance=CHAINED,
+    kills=(
+        "fit_black_background",
+        "fit_eps_is_the_weight",
+        "fit_limits_kept_at_the_end",
+        "fit_one_draw",
+        "fit_own_generator",
+        "fit_sigma_kept_at_the_end",
+        "fit_tv_not_in_loss",
+        "fit_two_draws",
+    ),
+    hint="if 09.6.first fails too, look there first; one draw in each step, all of it used, and "
+    "rng for nothing else",
+    sole="asks which pixels a step sees",
+)
 def each_step_draws_its_own_pixels(t):
     """Where there are more pixels than RAYS, each step's loss is that of its own draw."""
     views, grid = random_views(t, 2, 12, 12), small_start(t, (2, 2, 3))
@@ -526,17 +752,31 @@ def each_step_draws_its_own_pixels(t):
         origins, directions, truth = t.call("ray_batch", views, chosen[k], returns=batch(192))
         t.close("truth", truth, flat[0, chosen[k]])
         box = views["low"], views["high"]
-        seen = t.call("render_rays", reached[k], *box, origins, directions, 16,
-                      views["background"], returns=Array((192, 3)))  # fmt: skip
+        seen = t.call(
+            "render_rays",
+            reached[k],
+            *box,
+            origins,
+            directions,
+            16,
+            views["background"],
+            returns=Array((192, 3)),
+        )
         loss = t.call("mse_and_cotangent", seen, truth, returns=loss_and_slope((192, 3)))[0]
         expected.append(loss + 0.01 * rough(t, reached[k], 0.1)[0])
     t.close("losses", losses, np.array(expected))
 
 
-@check("09.6.falls", task="09.6", points=3, calls=("fit_volume",), needs=ALL,
-       kills=("fit_black_background", "fit_sigma_free", "fit_sigma_reflected", "fit_uphill",),
-       hint="downhill is against the derivative",
-       sole="from any start, on any scene: the least that a descent owes")  # fmt: skip
+@check(
+    "09.6.falls",
+    task="09.6",
+    points=3,
+    calls=("fit_volume",),
+    needs=ALL,
+    kills=("fit_black_background", "fit_sigma_free", "fit_sigma_reflected", "fit_uphill"),
+    hint="downhill is against the derivative",
+    sole="from any start, on any scene: the least that a descent owes",
+)
 def the_first_step_goes_down(t):
     """For 20 scenes, one step from fog lowers the loss of the photographs."""
     fog = np.full((5, 5, 5, 4), 0.5)
@@ -549,9 +789,15 @@ def the_first_step_goes_down(t):
         t.require(after < before, f"scene {scene}: the loss rose from {before:.4g} to {after:.4g}")
 
 
-@check("09.6.start", task="09.6", points=1, calls=("fit_volume",), needs=ALL,
-       kills=("fit_start_overwritten", "fit_start_returned",),
-       hint="an array of the start has changed, or is given back: copy it first")  # fmt: skip
+@check(
+    "09.6.start",
+    task="09.6",
+    points=1,
+    calls=("fit_volume",),
+    needs=ALL,
+    kills=("fit_start_overwritten", "fit_start_returned"),
+    hint="an array of the start has changed, or is given back: copy it first",
+)
 def the_start_is_left_alone(t):
     """A second fit from the same array finds what the first one did; without steps a copy comes."""
     views, grid = random_views(t, 1, 2, 2), small_start(t, (2, 2, 2))
@@ -569,10 +815,25 @@ def the_start_is_left_alone(t):
 BELOW = 2.2  # dB
 
 
-@check("09.1.hidden", task="09.1", points=1, calls=("psnr",), visibility="hidden", tolerance=EXACT,
-       kills=("psnr_by_channel", "psnr_capped", "psnr_clipped", "psnr_mean_first",
-              "psnr_natural_log", "psnr_sign", "psnr_sum", "psnr_twenty",),
-       sole="the same mistakes at values that are not known beforehand")  # fmt: skip
+@check(
+    "09.1.hidden",
+    task="09.1",
+    points=1,
+    calls=("psnr",),
+    visibility="hidden",
+    tolerance=EXACT,
+    kills=(
+        "psnr_by_channel",
+        "psnr_capped",
+        "psnr_clipped",
+        "psnr_mean_first",
+        "psnr_natural_log",
+        "psnr_sign",
+        "psnr_sum",
+        "psnr_twenty",
+    ),
+    sole="the same mistakes at values that are not known beforehand",
+)
 def decibels_of_random_pictures(t):
     """Decibels are right for random pictures."""
     for shape in ((6, 5, 3), (40, 3), (2, 3, 4, 3)):
@@ -581,13 +842,31 @@ def decibels_of_random_pictures(t):
         t.close("decibels", got, t.reference.psnr(a, b), DECIBELS)
 
 
-@check("09.2.hidden", task="09.2", points=3, calls=("ray_batch",), visibility="hidden",
-       tolerance=EXACT,
-       kills=("rays_backwards", "rays_columns_first", "rays_corner", "rays_first_camera",
-              "rays_focal_multiplied", "rays_height_as_width", "rays_place_turned_back",
-              "rays_rows_as_columns", "rays_sorted", "rays_square_pictures", "rays_translated",
-              "rays_turned_back", "rays_unturned", "rays_y_up",),
-       sole="the same mistakes at cameras that are not known beforehand")  # fmt: skip
+@check(
+    "09.2.hidden",
+    task="09.2",
+    points=3,
+    calls=("ray_batch",),
+    visibility="hidden",
+    tolerance=EXACT,
+    kills=(
+        "rays_backwards",
+        "rays_columns_first",
+        "rays_corner",
+        "rays_first_camera",
+        "rays_focal_multiplied",
+        "rays_height_as_width",
+        "rays_place_turned_back",
+        "rays_rows_as_columns",
+        "rays_sorted",
+        "rays_square_pictures",
+        "rays_translated",
+        "rays_turned_back",
+        "rays_unturned",
+        "rays_y_up",
+    ),
+    sole="the same mistakes at cameras that are not known beforehand",
+)
 def rays_of_random_cameras(t):
     """Rays and colours are right for random cameras and pixels."""
     for count, rows, columns in ((4, 3, 6), (1, 7, 2), (2, 1, 1)):
@@ -601,11 +880,26 @@ def rays_of_random_cameras(t):
         t.close("truth", got[2], right[2])
 
 
-@check("09.3.hidden", task="09.3", points=2, calls=("mse_and_cotangent",), visibility="hidden",
-       tolerance=EXACT,
-       kills=("mse_absolute", "mse_cotangent_by_size", "mse_cotangent_of_sum", "mse_loss_halved",
-              "mse_mean_of_channels", "mse_no_two", "mse_root", "mse_sign", "mse_sum",),
-       sole="the same mistakes at values that are not known beforehand")  # fmt: skip
+@check(
+    "09.3.hidden",
+    task="09.3",
+    points=2,
+    calls=("mse_and_cotangent",),
+    visibility="hidden",
+    tolerance=EXACT,
+    kills=(
+        "mse_absolute",
+        "mse_cotangent_by_size",
+        "mse_cotangent_of_sum",
+        "mse_loss_halved",
+        "mse_mean_of_channels",
+        "mse_no_two",
+        "mse_root",
+        "mse_sign",
+        "mse_sum",
+    ),
+    sole="the same mistakes at values that are not known beforehand",
+)
 def losses_of_random_batches(t):
     """Loss and derivative are right for random batches."""
     for n in (1, 3, 50):
@@ -616,13 +910,35 @@ def losses_of_random_batches(t):
         t.close("d_pixels", got[1], right[1])
 
 
-@check("09.4.hidden", task="09.4", points=4, calls=("tv_loss_adjoint",), needs=("psnr",),
-       visibility="hidden", tolerance=EXACT,
-       kills=("tv_axes_apart", "tv_channels_together", "tv_dark_border", "tv_derivative_of_sum",
-              "tv_differences", "tv_ends_added", "tv_eps_not_squared", "tv_mean_of_channels",
-              "tv_no_length", "tv_not_zero_when_flat", "tv_other_end_only", "tv_own_end_only",
-              "tv_sign", "tv_squared", "tv_sum", "tv_to_the_voxel_before", "tv_wraps",),
-       sole="the same mistakes at volumes that are not known beforehand")  # fmt: skip
+@check(
+    "09.4.hidden",
+    task="09.4",
+    points=4,
+    calls=("tv_loss_adjoint",),
+    needs=("psnr",),
+    visibility="hidden",
+    tolerance=EXACT,
+    kills=(
+        "tv_axes_apart",
+        "tv_channels_together",
+        "tv_dark_border",
+        "tv_derivative_of_sum",
+        "tv_differences",
+        "tv_ends_added",
+        "tv_eps_not_squared",
+        "tv_mean_of_channels",
+        "tv_no_length",
+        "tv_not_zero_when_flat",
+        "tv_other_end_only",
+        "tv_own_end_only",
+        "tv_sign",
+        "tv_squared",
+        "tv_sum",
+        "tv_to_the_voxel_before",
+        "tv_wraps",
+    ),
+    sole="the same mistakes at volumes that are not known beforehand",
+)
 def the_roughness_of_random_volumes(t):
     """Roughness and its derivative are right for random volumes, and cheap."""
     for shape, eps in (((4, 3, 5, 4), 0.1), ((1, 6, 2, 1), 0.01), ((1, 1, 1, 3), 0.5)):
@@ -639,10 +955,16 @@ def the_roughness_of_random_volumes(t):
     )
 
 
-@check("09.5.hidden", task="09.5", points=2, calls=("gradient_sign_map",), needs=EARLIER,
-       visibility="hidden",
-       kills=("map_first_view", "map_last_view", "map_of_red", "map_of_votes", "map_upside_down",),
-       sole="the same mistakes at volumes that are not known beforehand")  # fmt: skip
+@check(
+    "09.5.hidden",
+    task="09.5",
+    points=2,
+    calls=("gradient_sign_map",),
+    needs=EARLIER,
+    visibility="hidden",
+    kills=("map_first_view", "map_last_view", "map_of_red", "map_of_votes", "map_upside_down"),
+    sole="the same mistakes at volumes that are not known beforehand",
+)
 def signs_of_random_volumes(t):
     """The map is right for random volumes and photographs."""
     for count, shape in ((3, (4, 3, 5)), (1, (2, 6, 1))):
@@ -687,10 +1009,16 @@ def rendered(t, grid, views):
     return t.reference.render_rays(grid, *box, origins, directions, 32, views["background"])
 
 
-@check("09.5.scene", task="09.5", points=3, calls=("gradient_sign_map",), needs=EARLIER,
-       visibility="hidden",
-       kills=("map_first_view", "map_last_view", "map_upside_down",),
-       sole="what the handout's pictures claim, on a scene that nobody has seen")  # fmt: skip
+@check(
+    "09.5.scene",
+    task="09.5",
+    points=3,
+    calls=("gradient_sign_map",),
+    needs=EARLIER,
+    visibility="hidden",
+    kills=("map_first_view", "map_last_view", "map_upside_down"),
+    sole="what the handout's pictures claim, on a scene that nobody has seen",
+)
 def inside_more_and_outside_less(t):
     """From fog, the map is -1 inside what was photographed, 1 where only background is seen."""
     scene = two_balls(t, 12, 0.7)
@@ -726,15 +1054,36 @@ def telling_start(t, views, shape, seed):
     return t.require(False, "not telling")
 
 
-@check("09.6.hidden", task="09.6", points=3, calls=("fit_volume",), needs=ALL, visibility="hidden",
-       tolerance=CHAINED,
-       kills=("fit_black_background", "fit_colors_free", "fit_colors_frozen",
-              "fit_eps_is_the_weight", "fit_limits_kept_at_the_end", "fit_new_adam_each_step",
-              "fit_one_draw", "fit_own_generator", "fit_plain_descent", "fit_sigma_below_one",
-              "fit_sigma_free", "fit_sigma_kept_at_the_end", "fit_sigma_reflected",
-              "fit_tv_at_full_weight", "fit_tv_not_in_loss", "fit_two_draws", "fit_uphill",
-              "fit_without_tv",),
-       sole="the same mistakes at scenes that are not known beforehand")  # fmt: skip
+@check(
+    "09.6.hidden",
+    task="09.6",
+    points=3,
+    calls=("fit_volume",),
+    needs=ALL,
+    visibility="hidden",
+    tolerance=CHAINED,
+    kills=(
+        "fit_black_background",
+        "fit_colors_free",
+        "fit_colors_frozen",
+        "fit_eps_is_the_weight",
+        "fit_limits_kept_at_the_end",
+        "fit_new_adam_each_step",
+        "fit_one_draw",
+        "fit_own_generator",
+        "fit_plain_descent",
+        "fit_sigma_below_one",
+        "fit_sigma_free",
+        "fit_sigma_kept_at_the_end",
+        "fit_sigma_reflected",
+        "fit_tv_at_full_weight",
+        "fit_tv_not_in_loss",
+        "fit_two_draws",
+        "fit_uphill",
+        "fit_without_tv",
+    ),
+    sole="the same mistakes at scenes that are not known beforehand",
+)
 def fits_of_random_scenes(t):
     """Four steps end where they should, with few pixels and with many."""
     for rows, shape in ((3, (2, 3, 2)), (14, (3, 2, 2))):
@@ -746,13 +1095,30 @@ def fits_of_random_scenes(t):
         t.close("volume", got[0], right[0])
 
 
-@check("09.6.recovers", task="09.6", points=6, calls=("fit_volume",), needs=ALL,
-       visibility="hidden", seconds=60.0,
-       kills=("fit_black_background", "fit_colors_frozen", "fit_limits_kept_at_the_end",
-              "fit_new_adam_each_step", "fit_one_draw", "fit_plain_descent", "fit_sigma_below_one",
-              "fit_sigma_free", "fit_sigma_kept_at_the_end", "fit_tv_at_full_weight", "fit_uphill",
-              "fit_without_tv",),
-       sole="the whole: a scene that nobody has seen, from its photographs")  # fmt: skip
+@check(
+    "09.6.recovers",
+    task="09.6",
+    points=6,
+    calls=("fit_volume",),
+    needs=ALL,
+    visibility="hidden",
+    seconds=60.0,
+    kills=(
+        "fit_black_background",
+        "fit_colors_frozen",
+        "fit_limits_kept_at_the_end",
+        "fit_new_adam_each_step",
+        "fit_one_draw",
+        "fit_plain_descent",
+        "fit_sigma_below_one",
+        "fit_sigma_free",
+        "fit_sigma_kept_at_the_end",
+        "fit_tv_at_full_weight",
+        "fit_uphill",
+        "fit_without_tv",
+    ),
+    sole="the whole: a scene that nobody has seen, from its photographs",
+)
 def an_unseen_scene_is_recovered(t):
     """Your fit is run on a new scene, and judged by photographs that it never got."""
     scene = two_balls(t, 20)

@@ -71,11 +71,13 @@ def photographs(grid, number, size, turn=0.0):
     phi, ring = np.arange(number) * 2.399963 + turn, np.sqrt(1 - height**2)
     places = 3.2 * np.stack([ring * np.cos(phi), height, ring * np.sin(phi)], axis=1)
     views = {
-        "pictures": np.zeros((number, size, size, 3)), "focal": 1.25 * size,
+        "pictures": np.zeros((number, size, size, 3)),
+        "focal": 1.25 * size,
         "world_from_camera": np.stack([camera(place) for place in places]),
-        "low": np.full(3, -1.0), "high": np.full(3, 1.0),
+        "low": np.full(3, -1.0),
+        "high": np.full(3, 1.0),
         "background": np.array([0.04, 0.05, 0.08]),
-    }  # fmt: skip
+    }
     views["pictures"] = shown(grid, views)
     return views
 
@@ -127,8 +129,10 @@ print(f"signs:  {np.mean(signs < 0):.0%} of all voxels want more, {np.mean(signs
 found, losses, seconds = recover(views, voxels, steps)
 own = mine.psnr(shown(found, views), views["pictures"])
 new = mine.psnr(shown(found, unseen), unseen["pictures"])
-print(f"fit:    {steps} steps in {seconds:.1f} s, {own:.1f} dB on the photographs, "
-      f"{new:.1f} dB on new views")  # fmt: skip
+print(
+    f"fit:    {steps} steps in {seconds:.1f} s, {own:.1f} dB on the photographs, "
+    f"{new:.1f} dB on new views"
+)
 
 # %% [markdown]
 # ## The C++ core
@@ -146,9 +150,12 @@ def of_the_core():
 
     def asked(grid, low, high, origins, directions, n):
         policy = marches.MarchPolicy(
-            box=(tuple(low), tuple(high)), dt=float(np.max(high - low)) / n, lattice="entry",
-            density_activation="identity", color_activation="identity",
-        )  # fmt: skip
+            box=(tuple(low), tuple(high)),
+            dt=float(np.max(high - low)) / n,
+            lattice="entry",
+            density_activation="identity",
+            color_activation="identity",
+        )
         aims = directions / np.linalg.norm(directions, axis=1, keepdims=True)
         numbers = np.arange(len(origins), dtype=np.uint32)
         batch = base.RayBatch(np.ascontiguousarray(origins), aims, numbers)
@@ -197,8 +204,10 @@ else:
     fine = finely(fog, some(views, slice(0, 2)))
     gap = np.linalg.norm(core_fine - fine) / np.linalg.norm(core_fine)
     score = mine.psnr(shown(core, unseen), unseen["pictures"])
-    print(f"core:   its derivative is {gap:.2%} from yours at {FINE} steps a ray; "
-          f"{score:.1f} dB on new views in {core_seconds:.1f} s")  # fmt: skip
+    print(
+        f"core:   its derivative is {gap:.2%} from yours at {FINE} steps a ray; "
+        f"{score:.1f} dB on new views in {core_seconds:.1f} s"
+    )
 
 
 # %% [markdown]
@@ -278,10 +287,13 @@ def taken(folder, size):
     rims = [pictures[:, 0], pictures[:, -1], pictures[:, :, 0], pictures[:, :, -1]]
     reach = np.full(3, option("box", 1.0))
     return {
-        "pictures": pictures, "world_from_camera": np.stack(poses), "focal": focal * size,
-        "low": -reach, "high": reach,
+        "pictures": pictures,
+        "world_from_camera": np.stack(poses),
+        "focal": focal * size,
+        "low": -reach,
+        "high": reach,
         "background": np.concatenate([rim.reshape(-1, 3) for rim in rims]).mean(axis=0),
-    }  # fmt: skip
+    }
 
 
 if capture:
@@ -289,8 +301,10 @@ if capture:
     train, last = some(photos, slice(0, -1)), some(photos, slice(-1, None))
     volume, _, seconds = recover(train, voxels, steps)
     kept_back, guess = last["pictures"], shown(volume, last)
-    print(f"capture: {len(train['pictures'])} photographs, {steps} steps in {seconds:.1f} s; "
-          f"{mine.psnr(guess, kept_back):.1f} dB on the one kept back")  # fmt: skip
+    print(
+        f"capture: {len(train['pictures'])} photographs, {steps} steps in {seconds:.1f} s; "
+        f"{mine.psnr(guess, kept_back):.1f} dB on the one kept back"
+    )
     figure = Figure(figsize=(13, 3.4), layout="constrained")
     panels = figure.subplots(1, 5)
     light(panels[0], train["pictures"][0], "a photograph")

@@ -88,11 +88,7 @@ def fig2_signs(module: ModuleType) -> tuple[Figure, Facts]:
             0.95,
             1,
         ),
-        "of the other empty voxels far from all are positive": (
-            _share(signs, other, 1),
-            0.4,
-            0.8,
-        ),
+        "of the other empty voxels far from all are positive": (_share(signs, other, 1), 0.4, 0.8),
     }
     root = np.sign(slope) * np.sqrt(np.abs(slope) / np.abs(slope).max())
     pictures = np.asarray(views["pictures"])
@@ -106,8 +102,14 @@ def fig2_signs(module: ModuleType) -> tuple[Figure, Facts]:
             (panels[2], root, "∂L/∂σ from fog (roots)"),
             (panels[3], signs, "sign map"),
         ):
-            axes.imshow(values[:, :, where].T, cmap=signed_colour_map(), vmin=-1, vmax=1,
-                        origin="lower", interpolation="nearest")  # fmt: skip
+            axes.imshow(
+                values[:, :, where].T,
+                cmap=signed_colour_map(),
+                vmin=-1,
+                vmax=1,
+                origin="lower",
+                interpolation="nearest",
+            )
             axes.contour(scene[:, :, where, 3].T, levels=[5], colors=INK, linewidths=0.8)
             axes.set_title(title)
         for axes in panels:
@@ -141,8 +143,12 @@ def fig3_why(module: ModuleType) -> tuple[Figure, Facts]:
         axes = figure.subplots()
         axes.bar(range(7), [100 * s for s in start], color=BLUE, width=0.6, label="from fog")
         axes.plot(range(7), [100 * s for s in after], "o", color=ORANGE, label="after twelve steps")
-        axes.set(xlabel="photographs that see a ball along a ray through the voxel",
-                 ylabel="positive [%]", ylim=(0, 125), xticks=range(7))  # fmt: skip
+        axes.set(
+            xlabel="photographs that see a ball along a ray through the voxel",
+            ylabel="positive [%]",
+            ylim=(0, 125),
+            xticks=range(7),
+        )
         axes.legend(loc="upper right", ncols=2)
         axes.set_axisbelow(True)
         _plain(axes)
@@ -180,10 +186,22 @@ def fig4_fit(module: ModuleType) -> tuple[Figure, Facts]:
         axes.plot(marks, own, "o--", color=BLUE, markersize=4)
         axes.plot(marks, new, "o-", color=BLUE, markersize=4)
         axes.plot(marks, bad, "o-", color=ORANGE, markersize=4)
-        axes.annotate("right adjoint", (marks[-1], new[-1]), (-4, -16),
-                      textcoords="offset points", color=BLUE, ha="right")  # fmt: skip
-        axes.annotate("what a step hides left out", (marks[-1], bad[-1]), (-4, -24),
-                      textcoords="offset points", color=ORANGE, ha="right")  # fmt: skip
+        axes.annotate(
+            "right adjoint",
+            (marks[-1], new[-1]),
+            (-4, -16),
+            textcoords="offset points",
+            color=BLUE,
+            ha="right",
+        )
+        axes.annotate(
+            "what a step hides left out",
+            (marks[-1], bad[-1]),
+            (-4, -24),
+            textcoords="offset points",
+            color=ORANGE,
+            ha="right",
+        )
         axes.set(xlabel="steps", ylabel="PSNR [dB]", xlim=(0, marks[-1]))
         _plain(axes)
     return figure, facts
@@ -238,9 +256,13 @@ def _around(count: int, turn: float) -> Array:
 
 def _views(pictures: Array, poses: Array) -> Views:
     return {
-        "pictures": pictures, "world_from_camera": poses, "focal": 1.2 * pictures.shape[2],
-        "low": LOW, "high": HIGH, "background": BACKGROUND,
-    }  # fmt: skip
+        "pictures": pictures,
+        "world_from_camera": poses,
+        "focal": 1.2 * pictures.shape[2],
+        "low": LOW,
+        "high": HIGH,
+        "background": BACKGROUND,
+    }
 
 
 def _columns(views: Views, view: int, points: Array) -> Array:
@@ -365,9 +387,15 @@ def _without_hiding(module: ModuleType) -> Callable[..., tuple[Array, Array]]:
     parts = module.render_adjoint.__globals__
 
     def adjoint(
-        grid: Array, low: Array, high: Array, origins: Array, directions: Array, n: int,
-        background: Array, d_pixel: Array,
-    ) -> tuple[Array, Array]:  # fmt: skip
+        grid: Array,
+        low: Array,
+        high: Array,
+        origins: Array,
+        directions: Array,
+        n: int,
+        background: Array,
+        d_pixel: Array,
+    ) -> tuple[Array, Array]:
         u, dt = parts["ray_samples"](low, high, origins, directions, n)
         flat = u.reshape(-1, 3)
         samples = parts["trilinear"](grid, flat).reshape(*dt.shape, 4)

@@ -4,10 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from photograd_course.grading import Array, Items, Number, Tolerance, agree, check
-from photograd_course.grading.adjoint_gate import (
-    require_gradients,
-    require_zero_for_zero,
-)
+from photograd_course.grading.adjoint_gate import require_gradients, require_zero_for_zero
 from photograd_course.grading.failures import CheckFailed, StudentFailure
 
 # Evidence: worst of the solution and the alternatives over several seeds, against the nearest of
@@ -46,8 +43,10 @@ def same_counts(t, what, got, right, hint=""):
             got, right = np.asarray(got), np.asarray(right)
             off = np.argwhere(got != right)
             at = tuple(off[0].tolist())
-            failure.text = (f"{what}: {len(off)} of {right.size} are wrong, the first at index "
-                            f"{at}: {got[at]}, expected {right[at]}")  # fmt: skip
+            failure.text = (
+                f"{what}: {len(off)} of {right.size} are wrong, the first at index "
+                f"{at}: {got[at]}, expected {right[at]}"
+            )
         raise
 
 
@@ -121,10 +120,15 @@ def cells_of(t, tree, n):
 # 10.1 ---------------------------------------------------------------------------------------------
 
 
-@check("10.1.cells", task="10.1", points=4, calls=("octree_from_dense",),
-       kills=("octree_full_by_one", "octree_mirrored", "octree_too_coarse", "octree_z_first"),
-       hint="child 4 a + 2 b + c lies in the upper half along x where a is 1",
-       sole="which cell is full comes before how few nodes say so")  # fmt: skip
+@check(
+    "10.1.cells",
+    task="10.1",
+    points=4,
+    calls=("octree_from_dense",),
+    kills=("octree_full_by_one", "octree_mirrored", "octree_too_coarse", "octree_z_first"),
+    hint="child 4 a + 2 b + c lies in the upper half along x where a is 1",
+    sole="which cell is full comes before how few nodes say so",
+)
 def the_tree_says_what_the_cube_says(t):
     """Each cell of the tree is full or empty as it is in the cube."""
     for n in (2, 1, 4, 8):
@@ -134,11 +138,21 @@ def the_tree_says_what_the_cube_says(t):
             same_counts(t, f"full cells of {n}^3", said, full)
 
 
-@check("10.1.one", task="10.1", points=3, calls=("octree_from_dense",),
-       kills=("octree_empty_cut", "octree_full_by_one", "octree_full_cut", "octree_never_merged",
-              "octree_too_coarse"),
-       hint="handout, equation (6): only the node that holds the odd cell is cut",
-       sole="the exact formula for the memory")  # fmt: skip
+@check(
+    "10.1.one",
+    task="10.1",
+    points=3,
+    calls=("octree_from_dense",),
+    kills=(
+        "octree_empty_cut",
+        "octree_full_by_one",
+        "octree_full_cut",
+        "octree_never_merged",
+        "octree_too_coarse",
+    ),
+    hint="handout, equation (6): only the node that holds the odd cell is cut",
+    sole="the exact formula for the memory",
+)
 def one_cell_costs_eight_nodes_a_level(t):
     """One odd cell among n^3 equal ones: 1 + 8 log2 n nodes, wherever it is."""
     for levels in (0, 1, 2, 3, 4):
@@ -153,11 +167,21 @@ def one_cell_costs_eight_nodes_a_level(t):
         same_counts(t, f"nodes where all cells are {same}", nodes, 1)
 
 
-@check("10.1.fewest", task="10.1", points=3, calls=("octree_from_dense",),
-       kills=("octree_empty_cut", "octree_full_by_one", "octree_full_cut", "octree_never_merged",
-              "octree_too_coarse"),
-       hint="handout, equation (4): a cube of equal cells, full or empty, is one leaf",
-       sole="what an octree is for: counted, not timed")  # fmt: skip
+@check(
+    "10.1.fewest",
+    task="10.1",
+    points=3,
+    calls=("octree_from_dense",),
+    kills=(
+        "octree_empty_cut",
+        "octree_full_by_one",
+        "octree_full_cut",
+        "octree_never_merged",
+        "octree_too_coarse",
+    ),
+    hint="handout, equation (4): a cube of equal cells, full or empty, is one leaf",
+    sole="what an octree is for: counted, not timed",
+)
 def leaves_are_as_large_as_can_be(t):
     """As many leaves as there are largest equal cubes; a plane costs at most a few n^2 leaves."""
     for n in (4, 8):
@@ -171,9 +195,11 @@ def leaves_are_as_large_as_can_be(t):
         full = np.zeros((n, n, n), bool)
         full[:, :, n // 2] = True
         counts.append(len(octree(t, full)))
-    t.require(counts[1] < 4.5 * counts[0],
-              f"a plane in 8^3 and in 16^3 cells: {counts[0]} and {counts[1]} nodes; "
-              "with twice the resolution about 4 times as many are enough")  # fmt: skip
+    t.require(
+        counts[1] < 4.5 * counts[0],
+        f"a plane in 8^3 and in 16^3 cells: {counts[0]} and {counts[1]} nodes; "
+        "with twice the resolution about 4 times as many are enough",
+    )
 
 
 # 10.2 ---------------------------------------------------------------------------------------------
@@ -221,8 +247,14 @@ def skipped(t, full, first, stride, count):
     asked = []
     # No ray has more questions than samples, unless it stands still; many more end the loop.
     most = 20 * len(first) * count + 200
-    got = t.call("skip_empty", counting_leaf(full, asked, most), first, stride, count,
-                 returns=Array((len(first), count), "bool"))  # fmt: skip
+    got = t.call(
+        "skip_empty",
+        counting_leaf(full, asked, most),
+        first,
+        stride,
+        count,
+        returns=Array((len(first), count), "bool"),
+    )
     return got, sum(asked)
 
 
@@ -230,11 +262,22 @@ def same_samples(t, got, right):
     same_counts(t, "wanted samples", got, right)
 
 
-@check("10.2.samples", task="10.2", points=4, calls=("skip_empty",),
-       kills=("skip_farthest_face", "skip_first_of_leaf", "skip_nothing", "skip_one_too_far",
-              "skip_stops_at_full", "skip_takes_empty"),
-       hint="the first face ahead is the nearest of three; samples before it share the leaf",
-       sole="the picture depends on nothing else")  # fmt: skip
+@check(
+    "10.2.samples",
+    task="10.2",
+    points=4,
+    calls=("skip_empty",),
+    kills=(
+        "skip_farthest_face",
+        "skip_first_of_leaf",
+        "skip_nothing",
+        "skip_one_too_far",
+        "skip_stops_at_full",
+        "skip_takes_empty",
+    ),
+    hint="the first face ahead is the nearest of three; samples before it share the leaf",
+    sole="the picture depends on nothing else",
+)
 def samples_in_full_leaves(t):
     """Exactly the samples in full leaves are wanted, on rays that go anywhere."""
     for n, rays, count in ((8, 9, 40), (4, 5, 7), (8, 4, 1), (1, 3, 5)):
@@ -245,11 +288,22 @@ def samples_in_full_leaves(t):
             same_samples(t, got, full[tuple(np.moveaxis(cells_on(first, stride, count), 2, 0))])
 
 
-@check("10.2.faces", task="10.2", points=2, calls=("skip_empty",),
-       kills=("skip_first_of_leaf", "skip_nothing", "skip_one_too_far", "skip_stands_still",
-              "skip_stops_at_full", "skip_takes_empty"),
-       hint="a place on a common face belongs to the upper leaf: going down, the jump there is 0",
-       sole="places that a random ray never meets, and a lattice always")  # fmt: skip
+@check(
+    "10.2.faces",
+    task="10.2",
+    points=2,
+    calls=("skip_empty",),
+    kills=(
+        "skip_first_of_leaf",
+        "skip_nothing",
+        "skip_one_too_far",
+        "skip_stands_still",
+        "skip_stops_at_full",
+        "skip_takes_empty",
+    ),
+    hint="a place on a common face belongs to the upper leaf: going down, the jump there is 0",
+    sole="places that a random ray never meets, and a lattice always",
+)
 def samples_on_faces(t):
     """Samples that lie exactly on faces belong to the upper leaf, and nothing stands still."""
     n, count = 8, 9
@@ -264,12 +318,26 @@ def samples_on_faces(t):
         same_samples(t, got, full[tuple(np.moveaxis(cells_on(first, stride, count), 2, 0))])
 
 
-@check("10.2.cost", task="10.2", points=4, calls=("skip_empty",),
-       kills=("skip_cell_by_cell", "skip_each_sample", "skip_farthest_face", "skip_first_of_leaf",
-              "skip_nothing", "skip_one_too_far", "skip_still_axes", "skip_stops_at_full",
-              "skip_takes_empty", "skip_upper_faces"),
-       hint="one question for each leaf that a ray passes; then over all samples in it at once",
-       sole="what skipping is for: questions are counted, not seconds")  # fmt: skip
+@check(
+    "10.2.cost",
+    task="10.2",
+    points=4,
+    calls=("skip_empty",),
+    kills=(
+        "skip_cell_by_cell",
+        "skip_each_sample",
+        "skip_farthest_face",
+        "skip_first_of_leaf",
+        "skip_nothing",
+        "skip_one_too_far",
+        "skip_still_axes",
+        "skip_stops_at_full",
+        "skip_takes_empty",
+        "skip_upper_faces",
+    ),
+    hint="one question for each leaf that a ray passes; then over all samples in it at once",
+    sole="what skipping is for: questions are counted, not seconds",
+)
 def a_leaf_is_asked_for_once(t):
     """The samples are right, and for each leaf on a ray one place is asked for, not each sample."""
     n, count = 16, 90
@@ -292,9 +360,11 @@ def a_leaf_is_asked_for_once(t):
         size = equal_cubes(full)[cells]
         leaf = np.stack(cells, axis=2) // size[:, :, None] * size[:, :, None]
         passed = len(leaf) + int((leaf[:, 1:] != leaf[:, :-1]).any(axis=2).sum())
-        t.require(asked <= 1.3 * passed,
-                  f"{asked} places were asked for; the rays pass {passed} leaves",
-                  hint=hint)  # fmt: skip
+        t.require(
+            asked <= 1.3 * passed,
+            f"{asked} places were asked for; the rays pass {passed} leaves",
+            hint=hint,
+        )
 
 
 # 10.3 ---------------------------------------------------------------------------------------------
@@ -352,11 +422,15 @@ def insert(t, table, voxels, rows):
 def require_sound(t, table, voxels, rows):
     """Each voxel stands in the table once, with its row, and a search gets to it."""
     taken = np.flatnonzero(table[:, 3] >= 0)
-    t.require(len(taken) == len(voxels),
-              f"{len(taken)} slots are taken by {len(voxels)} voxels",
-              hint=THERE if len(taken) > len(voxels) else "")  # fmt: skip
-    where = {tuple(entry[:3]): int(slot) for slot, entry in zip(taken, table[taken].tolist(),
-                                                                strict=True)}  # fmt: skip
+    t.require(
+        len(taken) == len(voxels),
+        f"{len(taken)} slots are taken by {len(voxels)} voxels",
+        hint=THERE if len(taken) > len(voxels) else "",
+    )
+    where = {
+        tuple(entry[:3]): int(slot)
+        for slot, entry in zip(taken, table[taken].tolist(), strict=True)
+    }
     starts = first_slot(voxels, len(table)).tolist()
     for voxel, row, start in zip(voxels.tolist(), rows.tolist(), starts, strict=True):
         slot = where.get(tuple(voxel))
@@ -364,17 +438,32 @@ def require_sound(t, table, voxels, rows):
         own = int(table[slot, 3])
         t.require(own == row, f"voxel {voxel} has the row {own}, not {row}")
         between = (start + np.arange((slot - start) % len(table))) % len(table)
-        t.require(bool((table[between, 3] >= 0).all()),
-                  f"a free slot lies between the first slot of {voxel} and where it is: "
-                  "a search ends there")  # fmt: skip
+        t.require(
+            bool((table[between, 3] >= 0).all()),
+            f"a free slot lies between the first slot of {voxel} and where it is: "
+            "a search ends there",
+        )
 
 
-@check("10.3.found", task="10.3", points=3, calls=("voxel_hash_insert",),
-       kills=("hash_backwards", "hash_ends_at_end", "hash_from_zero", "hash_in_leaps",
-              "hash_last_slot_unused", "hash_lost_at_end", "hash_overwrites",
-              "hash_part_of_voxel", "hash_row_zero_free"),
-       hint="handout, equation (9): the first free slot from the voxel's own onwards",
-       sole="asks what a table is for: voxel in, row out")  # fmt: skip
+@check(
+    "10.3.found",
+    task="10.3",
+    points=3,
+    calls=("voxel_hash_insert",),
+    kills=(
+        "hash_backwards",
+        "hash_ends_at_end",
+        "hash_from_zero",
+        "hash_in_leaps",
+        "hash_last_slot_unused",
+        "hash_lost_at_end",
+        "hash_overwrites",
+        "hash_part_of_voxel",
+        "hash_row_zero_free",
+    ),
+    hint="handout, equation (9): the first free slot from the voxel's own onwards",
+    sole="asks what a table is for: voxel in, row out",
+)
 def what_was_put_in_is_found(t):
     """Voxels are found with their rows, in tables almost empty and almost full; others are not."""
     cases = [(some_voxels(t, count), slots) for count, slots in ((1, 3), (30, 61), (30, 31))]
@@ -385,18 +474,36 @@ def what_was_put_in_is_found(t):
         rows[0] = 0  # a row as good as any
         table = insert(t, free_table(slots), voxels, rows)
         others = some_voxels(t, 20) + 300
-        found = t.call("voxel_hash_find", table, np.concatenate([voxels, others]),
-                       returns=Array((count + 20,), "i8"))  # fmt: skip
+        found = t.call(
+            "voxel_hash_find",
+            table,
+            np.concatenate([voxels, others]),
+            returns=Array((count + 20,), "i8"),
+        )
         same_counts(t, "rows that are found", found, np.append(rows, np.full(20, -1)))
         require_sound(t, table, voxels, rows)
 
 
-@check("10.3.again", task="10.3", points=3, calls=("voxel_hash_insert",),
-       kills=("hash_backwards", "hash_ends_at_end", "hash_first_row_stays", "hash_from_zero",
-              "hash_in_leaps", "hash_last_slot_unused", "hash_lost_at_end", "hash_overwrites",
-              "hash_row_zero_free", "hash_twice"),
-       hint="a slot that holds the very same voxel is as good as a free one",
-       sole="a voxel that comes again is not a new one")  # fmt: skip
+@check(
+    "10.3.again",
+    task="10.3",
+    points=3,
+    calls=("voxel_hash_insert",),
+    kills=(
+        "hash_backwards",
+        "hash_ends_at_end",
+        "hash_first_row_stays",
+        "hash_from_zero",
+        "hash_in_leaps",
+        "hash_last_slot_unused",
+        "hash_lost_at_end",
+        "hash_overwrites",
+        "hash_row_zero_free",
+        "hash_twice",
+    ),
+    hint="a slot that holds the very same voxel is as good as a free one",
+    sole="a voxel that comes again is not a new one",
+)
 def a_voxel_that_comes_again_gets_its_new_row(t):
     """Put in twice, a voxel takes one slot and has the later row; the others keep theirs."""
     voxels, rows = crowd(t, 8, 11, 9), np.arange(8)
@@ -411,10 +518,21 @@ def a_voxel_that_comes_again_gets_its_new_row(t):
     require_sound(t, insert(t, full, pair[::-1], np.array([6, 5])), pair, np.array([5, 6]))
 
 
-@check("10.3.room", task="10.3", points=2, calls=("voxel_hash_insert",),
-       kills=("hash_ends_at_end", "hash_full_is_silent", "hash_last_slot_unused",
-              "hash_lost_at_end", "hash_overwrites", "hash_row_zero_free"),
-       hint="count the slots that were looked at: after all of them, raise ValueError")  # fmt: skip
+@check(
+    "10.3.room",
+    task="10.3",
+    points=2,
+    calls=("voxel_hash_insert",),
+    kills=(
+        "hash_ends_at_end",
+        "hash_full_is_silent",
+        "hash_last_slot_unused",
+        "hash_lost_at_end",
+        "hash_overwrites",
+        "hash_row_zero_free",
+    ),
+    hint="count the slots that were looked at: after all of them, raise ValueError",
+)
 def a_full_table_says_so(t):
     """A new voxel for a table without a free slot is refused with ValueError."""
     for slots in (1, 5):
@@ -424,14 +542,25 @@ def a_full_table_says_so(t):
         t.refuses("voxel_hash_insert", table, voxels[slots:], np.array([9]), error="ValueError")
 
 
-@check("10.3.kept", task="10.3", points=1, calls=("voxel_hash_insert",),
-       kills=("hash_in_place",),
-       hint="copy the table first")  # fmt: skip
+@check(
+    "10.3.kept",
+    task="10.3",
+    points=1,
+    calls=("voxel_hash_insert",),
+    kills=("hash_in_place",),
+    hint="copy the table first",
+)
 def the_old_table_stays(t):
     """Voxels inserted in a table are not in the table that was given."""
     voxels, rows = some_voxels(t, 10), np.arange(5)
-    got = t.call("adapters.insert_after", free_table(11), voxels[:5], voxels[5:], rows,
-                 returns=Array((11, 4), "i8"))  # fmt: skip
+    got = t.call(
+        "adapters.insert_after",
+        free_table(11),
+        voxels[:5],
+        voxels[5:],
+        rows,
+        returns=Array((11, 4), "i8"),
+    )
     same = agree(got, insert(t, free_table(11), voxels[5:], rows))
     t.require(same, "voxel_hash_insert has written into the table that it was given")
 
@@ -449,16 +578,31 @@ def some_samples(t, count, samples, missing=0.3):
 
 
 def back(t, count, row, weight, g):
-    return t.call("sample_sparse_adjoint", count, row, weight, g,
-                  returns=Array((count, *g.shape[1:])))  # fmt: skip
+    return t.call(
+        "sample_sparse_adjoint", count, row, weight, g, returns=Array((count, *g.shape[1:]))
+    )
 
 
-@check("10.4.transpose", task="10.4", points=3, calls=("sample_sparse_adjoint",), tolerance=EXACT,
-       kills=("back_added_by_corner", "back_added_once", "back_first_channel",
-              "back_to_the_first", "back_to_the_last", "back_voxel_zero_lost",
-              "back_weights_made_one", "back_without_g", "back_without_weight"),
-       hint="handout, equation (11): the same weights as forwards, from sample to voxel",
-       sole="the definition of an adjoint")  # fmt: skip
+@check(
+    "10.4.transpose",
+    task="10.4",
+    points=3,
+    calls=("sample_sparse_adjoint",),
+    tolerance=EXACT,
+    kills=(
+        "back_added_by_corner",
+        "back_added_once",
+        "back_first_channel",
+        "back_to_the_first",
+        "back_to_the_last",
+        "back_voxel_zero_lost",
+        "back_weights_made_one",
+        "back_without_g",
+        "back_without_weight",
+    ),
+    hint="handout, equation (11): the same weights as forwards, from sample to voxel",
+    sole="the definition of an adjoint",
+)
 def is_the_transpose(t):
     """<S x, g> = <x, S* g> for any values x and any g; rows that occur twice add up."""
     # The weights of a sample sum to 1: a voxel that is all eight corners gets the whole g.
@@ -466,26 +610,38 @@ def is_the_transpose(t):
     weight = t.rng.uniform(0.1, 1.0, (8, 5))
     weight /= weight.sum(axis=0)
     got, whole = back(t, 3, np.ones((8, 5), np.int64), weight, g)[1, 0], g[:, 0].sum()
-    t.require(got > 0.999 * whole,
-              f"a voxel that five samples read, with weights that sum to 1, gets {got:.6g}; "
-              f"the samples have {whole:.6g}",
-              hint="a row that occurs twice gets only its last contribution: `d[row] += ...` does "
-                   "not add up; use `np.add.at`")  # fmt: skip
+    t.require(
+        got > 0.999 * whole,
+        f"a voxel that five samples read, with weights that sum to 1, gets {got:.6g}; "
+        f"the samples have {whole:.6g}",
+        hint="a row that occurs twice gets only its last contribution: `d[row] += ...` does "
+        "not add up; use `np.add.at`",
+    )
     for count, samples, channels in ((6, 9, 4), (40, 15, 1), (1, 3, 2)):
         row, weight = some_samples(t, count, samples)
         x, g = t.rng.uniform(-1, 1, (count, channels)), t.rng.uniform(-1, 1, (samples, channels))
         d_values = back(t, count, row, weight, g)
         forth = t.call("sample_sparse", x, row, weight, returns=Array((samples, channels)))
         size = float(np.linalg.norm(forth) * np.linalg.norm(g))
-        t.close("<x, S* g>", np.vdot(x, d_values), np.vdot(forth, g),
-                Tolerance(EXACT.relative, EXACT.evidence, floor=size))  # fmt: skip
+        t.close(
+            "<x, S* g>",
+            np.vdot(x, d_values),
+            np.vdot(forth, g),
+            Tolerance(EXACT.relative, EXACT.evidence, floor=size),
+        )
     require_zero_for_zero(t, {"values": back(t, count, row, weight, 0 * g)})
 
 
-@check("10.4.missing", task="10.4", points=3, calls=("sample_sparse_adjoint",), tolerance=EXACT,
-       kills=("back_to_the_first", "back_to_the_last", "back_weights_made_one"),
-       hint="row -1 means that there is no voxel; as an index it means the last one",
-       sole="what a voxel that does not exist gets, and who must not get it instead")  # fmt: skip
+@check(
+    "10.4.missing",
+    task="10.4",
+    points=3,
+    calls=("sample_sparse_adjoint",),
+    tolerance=EXACT,
+    kills=("back_to_the_first", "back_to_the_last", "back_weights_made_one"),
+    hint="row -1 means that there is no voxel; as an index it means the last one",
+    sole="what a voxel that does not exist gets, and who must not get it instead",
+)
 def a_missing_voxel_gets_nothing(t):
     """What belongs to missing voxels goes nowhere: other voxels get what they got before."""
     count, samples = 5, 8
@@ -504,12 +660,26 @@ def a_missing_voxel_gets_nothing(t):
     t.require(empty.shape == (0, 2), "without any voxel there is no derivative")
 
 
-@check("10.4.picture", task="10.4", points=3, calls=("sample_sparse_adjoint",), tolerance=GATE,
-       kills=("back_added_by_corner", "back_added_once", "back_first_channel",
-              "back_to_the_first", "back_to_the_last", "back_voxel_zero_lost",
-              "back_weights_made_one", "back_without_g", "back_without_weight"),
-       hint="loss_and_grad is right once your function is the transpose of sample_sparse",
-       sole="the derivative of a picture, by differences")  # fmt: skip
+@check(
+    "10.4.picture",
+    task="10.4",
+    points=3,
+    calls=("sample_sparse_adjoint",),
+    tolerance=GATE,
+    kills=(
+        "back_added_by_corner",
+        "back_added_once",
+        "back_first_channel",
+        "back_to_the_first",
+        "back_to_the_last",
+        "back_voxel_zero_lost",
+        "back_weights_made_one",
+        "back_without_g",
+        "back_without_weight",
+    ),
+    hint="loss_and_grad is right once your function is the transpose of sample_sparse",
+    sole="the derivative of a picture, by differences",
+)
 def the_picture_agrees_with_differences(t):
     """Moving one value of one voxel moves the loss as the derivative through your function says."""
     wanted = t.rng.random((6, 7)) < 0.6
@@ -559,11 +729,18 @@ def same_voxels(t, what, n, got, right, hint=""):
     inside = bool(((got >= 0) & (got < n)).all())
     cut = "handout, equation (13): growth is cut off at the faces of the cube"
     t.require(inside, f"{what}: a voxel lies outside of the cube", hint=cut)
-    same_counts(t, f"{what}, how often each voxel is there",
-                marked(got, n).astype(np.int64), marked(right, n).astype(np.int64),
-                hint)  # fmt: skip
-    t.require(bool((got == in_order(got)).all()), f"{what}: not ordered by x, then y, then z",
-              hint="sort the list: by x, where that is the same by y, then by z")  # fmt: skip
+    same_counts(
+        t,
+        f"{what}, how often each voxel is there",
+        marked(got, n).astype(np.int64),
+        marked(right, n).astype(np.int64),
+        hint,
+    )
+    t.require(
+        bool((got == in_order(got)).all()),
+        f"{what}: not ordered by x, then y, then z",
+        hint="sort the list: by x, where that is the same by y, then by z",
+    )
 
 
 def grown(t, n, voxels, steps):
@@ -584,11 +761,23 @@ def some_shares(t, most):
     return row[order].reshape(8, -1), share[order].reshape(8, -1)
 
 
-@check("10.5.pruned", task="10.5", points=3, calls=("prune_and_dilate",),
-       kills=("grow_too_far", "grow_unordered", "prune_at_threshold", "prune_by_last",
-              "prune_by_mean", "prune_by_sum", "prune_missing_counts"),
-       hint="the largest share of any sample decides: one view that needs a voxel is enough",
-       sole="who stays, asked without growing")  # fmt: skip
+@check(
+    "10.5.pruned",
+    task="10.5",
+    points=3,
+    calls=("prune_and_dilate",),
+    kills=(
+        "grow_too_far",
+        "grow_unordered",
+        "prune_at_threshold",
+        "prune_by_last",
+        "prune_by_mean",
+        "prune_by_sum",
+        "prune_missing_counts",
+    ),
+    hint="the largest share of any sample decides: one view that needs a voxel is enough",
+    sole="who stays, asked without growing",
+)
 def the_largest_share_decides(t):
     """Voxels stay whose largest share is above the threshold; those never read do not."""
     n, count = 8, 60
@@ -605,19 +794,31 @@ def the_largest_share_decides(t):
     same_voxels(t, "a share equal to the threshold", n, got, voxels[half > 0.25])
 
 
-@check("10.5.grown", task="10.5", points=3, calls=("prune_and_dilate",),
-       kills=("grow_around_the_border", "grow_faces_only", "grow_too_far", "grow_unordered",
-              "grow_without_itself"),
-       hint="a cube around each voxel, edges and corners included, cut off at the cube's faces",
-       sole="closed forms: one voxel, a corner, two steps at once")  # fmt: skip
+@check(
+    "10.5.grown",
+    task="10.5",
+    points=3,
+    calls=("prune_and_dilate",),
+    kills=(
+        "grow_around_the_border",
+        "grow_faces_only",
+        "grow_too_far",
+        "grow_unordered",
+        "grow_without_itself",
+    ),
+    hint="a cube around each voxel, edges and corners included, cut off at the cube's faces",
+    sole="closed forms: one voxel, a corner, two steps at once",
+)
 def one_voxel_grows_into_a_cube(t):
     """One voxel becomes a cube of side 2 s + 1, cut off at the border; two steps are twice one."""
     n = 8
     for steps in (1, 2):
         middle = t.rng.integers(steps, n - steps, 3)
         got = grown(t, n, middle[None], steps)
-        around = np.stack(np.meshgrid(*[np.arange(m - steps, m + steps + 1) for m in middle],
-                                      indexing="ij"), axis=-1).reshape(-1, 3)  # fmt: skip
+        around = np.stack(
+            np.meshgrid(*[np.arange(m - steps, m + steps + 1) for m in middle], indexing="ij"),
+            axis=-1,
+        ).reshape(-1, 3)
         same_voxels(t, f"one voxel and {steps} steps", n, got, around)
         corner = np.array([[0, n - 1, 0]])
         got = grown(t, n, corner, steps)
@@ -664,16 +865,26 @@ def lump(t, n, radius=0.5):
 def photographed(t, n, voxels, values, rays):
     """(colours, wanted, step) by `march` and `render`."""
     count = rays.shape[1]
-    parts = Items(Array((count, 3)), Array((count, 2 * n), "bool"), Array((count,)),
-                  names=("colours", "wanted", "step"))  # fmt: skip
+    parts = Items(
+        Array((count, 3)),
+        Array((count, 2 * n), "bool"),
+        Array((count,)),
+        names=("colours", "wanted", "step"),
+    )
     return t.call("adapters.picture", n, voxels, values, rays, returns=parts)
 
 
-@check("10.5.render", task="10.5", points=2, calls=("prune_and_dilate",), needs=EARLIER[:3],
-       tolerance=SAME,
-       kills=("grow_faces_only",),
-       hint="a sample in an empty cell reads the full cell next to it: grown by one, not less",
-       sole="skipping may save work, never change a picture")  # fmt: skip
+@check(
+    "10.5.render",
+    task="10.5",
+    points=2,
+    calls=("prune_and_dilate",),
+    needs=EARLIER[:3],
+    tolerance=SAME,
+    kills=("grow_faces_only",),
+    hint="a sample in an empty cell reads the full cell next to it: grown by one, not less",
+    sole="skipping may save work, never change a picture",
+)
 def skipping_changes_nothing(t):
     """The picture of a sparse grid is that of all n^3 voxels, most of its samples never read."""
     n = 8
@@ -718,24 +929,42 @@ def small_case(t, n=8, views=3, size=5):
     return n, voxels[order], values[order], rays, t.rng.uniform(0.0, 1.0, (rays.shape[1], 3))
 
 
-BETWEEN = ("after the last round the list is made anew; it must not be: between two rounds only, "
-           "see (15)")  # fmt: skip
+BETWEEN = (
+    "after the last round the list is made anew; it must not be: between two rounds only, see (15)"
+)
 
 
 def require_same_list(t, got, voxels):
-    t.require(np.array_equal(got, voxels), "one round must leave the list of voxels as it is",
-              hint=BETWEEN)  # fmt: skip
+    t.require(
+        np.array_equal(got, voxels),
+        "one round must leave the list of voxels as it is",
+        hint=BETWEEN,
+    )
 
 
 def rates():
     return np.array([0.05, 0.05, 0.05, 0.4])
 
 
-@check("10.6.first", task="10.6", points=2, calls=("fit_sparse",), needs=STEPS, tolerance=CHAINED,
-       kills=("fit_adam_each_step", "fit_all_cut_at_zero", "fit_colours_cut", "fit_losses_late",
-              "fit_prunes_at_the_end", "fit_sigma_below_zero", "fit_uphill"),
-       hint="handout, equation (14): one Adam for all four channels, then sigma cut off at 0",
-       sole="asks about the first steps alone")  # fmt: skip
+@check(
+    "10.6.first",
+    task="10.6",
+    points=2,
+    calls=("fit_sparse",),
+    needs=STEPS,
+    tolerance=CHAINED,
+    kills=(
+        "fit_adam_each_step",
+        "fit_all_cut_at_zero",
+        "fit_colours_cut",
+        "fit_losses_late",
+        "fit_prunes_at_the_end",
+        "fit_sigma_below_zero",
+        "fit_uphill",
+    ),
+    hint="handout, equation (14): one Adam for all four channels, then sigma cut off at 0",
+    sole="asks about the first steps alone",
+)
 def the_first_steps(t):
     """Adam's first step has the length RATES against the gradient; no sigma goes below 0."""
     n, voxels, values, rays, target = small_case(t)
@@ -763,14 +992,19 @@ def the_first_steps(t):
 def next_start(t, n, voxels, values, rays, threshold, grow):
     """(voxels, values, kept) that a round after these begins with; kept: those there before."""
     parts = Items(Rows(3), Rows(), names=("voxels", "rows"))
-    following, rows = t.call("adapters.next_start", n, voxels, values, rays, threshold, grow,
-                             returns=parts)  # fmt: skip
-    t.require(len(rows) == len(following) and bool((rows < len(voxels)).all()),
-              "voxel_hash_find gives rows that no voxel has")  # fmt: skip
+    following, rows = t.call(
+        "adapters.next_start", n, voxels, values, rays, threshold, grow, returns=parts
+    )
+    t.require(
+        len(rows) == len(following) and bool((rows < len(voxels)).all()),
+        "voxel_hash_find gives rows that no voxel has",
+    )
     kept = rows >= 0
-    t.require(0 < kept.sum() < len(voxels),
-              f"after a round {kept.sum()} of {len(voxels)} voxels stay; some should go, not all",
-              hint="are the values right? 10.6.first looks at them")  # fmt: skip
+    t.require(
+        0 < kept.sum() < len(voxels),
+        f"after a round {kept.sum()} of {len(voxels)} voxels stay; some should go, not all",
+        hint="are the values right? 10.6.first looks at them",
+    )
     start = np.tile(np.array([0.5, 0.5, 0.5, 0.1]), (len(following), 1))
     start[kept] = values[rows[kept]]
     return following, start, kept
@@ -790,13 +1024,28 @@ def two_rounds(t, *given):
         ) from None
 
 
-@check("10.6.chain", task="10.6", points=3, calls=("fit_sparse",), needs=STEPS, tolerance=CHAINED,
-       kills=("fit_forgets_values", "fit_never_grows", "fit_never_prunes",
-              "fit_new_like_the_last", "fit_new_voxels_empty", "fit_one_adam",
-              "fit_prunes_at_the_end", "fit_shares_early", "fit_uphill", ),
-       hint="handout, equations (15) and (16): between rounds prune, grow, carry over, and start "
-            "Adam anew",
-       sole="carries values over from one list of voxels to the next")  # fmt: skip
+@check(
+    "10.6.chain",
+    task="10.6",
+    points=3,
+    calls=("fit_sparse",),
+    needs=STEPS,
+    tolerance=CHAINED,
+    kills=(
+        "fit_forgets_values",
+        "fit_never_grows",
+        "fit_never_prunes",
+        "fit_new_like_the_last",
+        "fit_new_voxels_empty",
+        "fit_one_adam",
+        "fit_prunes_at_the_end",
+        "fit_shares_early",
+        "fit_uphill",
+    ),
+    hint="handout, equations (15) and (16): between rounds prune, grow, carry over, and start "
+    "Adam anew",
+    sole="carries values over from one list of voxels to the next",
+)
 def rounds_can_be_chained(t):
     """Two rounds are one round, a new list with the old values in it, and one round more."""
     n, voxels, values, rays, target = small_case(t)
@@ -823,9 +1072,15 @@ def rounds_can_be_chained(t):
     t.require(len(none[2]) == 0, "without steps there are no losses")
 
 
-@check("10.6.start", task="10.6", points=1, calls=("fit_sparse",), needs=STEPS,
-       kills=("fit_one_adam", "fit_start_overwritten"),
-       hint="an array of the start has changed: copy it first")  # fmt: skip
+@check(
+    "10.6.start",
+    task="10.6",
+    points=1,
+    calls=("fit_sparse",),
+    needs=STEPS,
+    kills=("fit_one_adam", "fit_start_overwritten"),
+    hint="an array of the start has changed: copy it first",
+)
 def the_start_is_left_alone(t):
     """A second fit from the same arrays finds what the first one found."""
     given = (*small_case(t), 2, 2, 0.01, 1)
@@ -834,10 +1089,23 @@ def the_start_is_left_alone(t):
 
 
 # >>> hidden
-@check("10.1.hidden", task="10.1", points=2, calls=("octree_from_dense",), visibility="hidden",
-       kills=("octree_empty_cut", "octree_full_by_one", "octree_full_cut", "octree_mirrored",
-              "octree_never_merged", "octree_too_coarse", "octree_z_first"),
-       sole="the same mistakes in cubes that are not known beforehand")  # fmt: skip
+@check(
+    "10.1.hidden",
+    task="10.1",
+    points=2,
+    calls=("octree_from_dense",),
+    visibility="hidden",
+    kills=(
+        "octree_empty_cut",
+        "octree_full_by_one",
+        "octree_full_cut",
+        "octree_mirrored",
+        "octree_never_merged",
+        "octree_too_coarse",
+        "octree_z_first",
+    ),
+    sole="the same mistakes in cubes that are not known beforehand",
+)
 def trees_of_random_cubes(t):
     """Trees of random cubes are right, with as many nodes as they need."""
     for n in (1, 2, 4, 8):
@@ -848,10 +1116,22 @@ def trees_of_random_cubes(t):
         t.close("nodes", len(tree), len(t.reference.octree_from_dense(full)), FAITHFUL)
 
 
-@check("10.2.hidden", task="10.2", points=6, calls=("skip_empty",), visibility="hidden",
-       kills=("skip_farthest_face", "skip_first_of_leaf", "skip_nothing", "skip_one_too_far",
-              "skip_stops_at_full", "skip_takes_empty"),
-       sole="the same mistakes on rays that are not known beforehand")  # fmt: skip
+@check(
+    "10.2.hidden",
+    task="10.2",
+    points=6,
+    calls=("skip_empty",),
+    visibility="hidden",
+    kills=(
+        "skip_farthest_face",
+        "skip_first_of_leaf",
+        "skip_nothing",
+        "skip_one_too_far",
+        "skip_stops_at_full",
+        "skip_takes_empty",
+    ),
+    sole="the same mistakes on rays that are not known beforehand",
+)
 def samples_of_random_rays(t):
     """Random rays through random trees: the samples, and the length of the rays in full cells."""
     for n, rays, count, still in ((16, 12, 70, 0), (8, 6, 30, 1), (2, 5, 12, 0), (16, 2, 3, 2)):
@@ -875,10 +1155,24 @@ def samples_of_random_rays(t):
     t.require(0 < occupied / 1.3 <= covered <= 1.3 * occupied, said)
 
 
-@check("10.3.hidden", task="10.3", points=1, calls=("voxel_hash_insert",), visibility="hidden",
-       kills=("hash_backwards", "hash_ends_at_end", "hash_from_zero", "hash_in_leaps",
-              "hash_lost_at_end", "hash_overwrites", "hash_part_of_voxel", "hash_row_zero_free"),
-       sole="the same mistakes at voxels that are not known beforehand")  # fmt: skip
+@check(
+    "10.3.hidden",
+    task="10.3",
+    points=1,
+    calls=("voxel_hash_insert",),
+    visibility="hidden",
+    kills=(
+        "hash_backwards",
+        "hash_ends_at_end",
+        "hash_from_zero",
+        "hash_in_leaps",
+        "hash_lost_at_end",
+        "hash_overwrites",
+        "hash_part_of_voxel",
+        "hash_row_zero_free",
+    ),
+    sole="the same mistakes at voxels that are not known beforehand",
+)
 def tables_of_random_voxels(t):
     """Tables of random voxels are sound, filled at once or bit by bit."""
     for count, slots in ((200, 401), (60, 61)):
@@ -890,12 +1184,26 @@ def tables_of_random_voxels(t):
         require_sound(t, table, voxels, rows)
 
 
-@check("10.4.hidden", task="10.4", points=3, calls=("sample_sparse_adjoint",), visibility="hidden",
-       tolerance=EXACT,
-       kills=("back_added_by_corner", "back_added_once", "back_first_channel",
-              "back_to_the_first", "back_to_the_last", "back_voxel_zero_lost",
-              "back_weights_made_one", "back_without_g", "back_without_weight"),
-       sole="the same mistakes at samples that are not known beforehand")  # fmt: skip
+@check(
+    "10.4.hidden",
+    task="10.4",
+    points=3,
+    calls=("sample_sparse_adjoint",),
+    visibility="hidden",
+    tolerance=EXACT,
+    kills=(
+        "back_added_by_corner",
+        "back_added_once",
+        "back_first_channel",
+        "back_to_the_first",
+        "back_to_the_last",
+        "back_voxel_zero_lost",
+        "back_weights_made_one",
+        "back_without_g",
+        "back_without_weight",
+    ),
+    sole="the same mistakes at samples that are not known beforehand",
+)
 def the_adjoint_at_random_samples(t):
     """The adjoint is right for random samples, many of one voxel and none of another."""
     for count, samples, channels in ((7, 30, 4), (1, 5, 1), (90, 40, 3)):
@@ -905,11 +1213,25 @@ def the_adjoint_at_random_samples(t):
         t.close("d_values", back(t, count, row, weight, g), right)
 
 
-@check("10.5.hidden", task="10.5", points=2, calls=("prune_and_dilate",), visibility="hidden",
-       kills=("grow_around_the_border", "grow_faces_only", "grow_too_far", "grow_unordered",
-              "grow_without_itself", "prune_by_last", "prune_by_mean", "prune_by_sum",
-              "prune_missing_counts"),
-       sole="the same mistakes at voxels that are not known beforehand")  # fmt: skip
+@check(
+    "10.5.hidden",
+    task="10.5",
+    points=2,
+    calls=("prune_and_dilate",),
+    visibility="hidden",
+    kills=(
+        "grow_around_the_border",
+        "grow_faces_only",
+        "grow_too_far",
+        "grow_unordered",
+        "grow_without_itself",
+        "prune_by_last",
+        "prune_by_mean",
+        "prune_by_sum",
+        "prune_missing_counts",
+    ),
+    sole="the same mistakes at voxels that are not known beforehand",
+)
 def random_voxels_are_pruned_and_grow(t):
     """Random voxels with random shares are pruned and grow as they should."""
     for n, count, steps in ((8, 100, 1), (4, 10, 2), (16, 50, 0), (2, 3, 1), (8, 20, 3)):
@@ -922,14 +1244,32 @@ def random_voxels_are_pruned_and_grow(t):
         same_voxels(t, f"{steps} steps", n, got, right)
 
 
-@check("10.6.hidden", task="10.6", points=4, calls=("fit_sparse",), needs=STEPS,
-       visibility="hidden", tolerance=CHAINED,
-       kills=("fit_adam_each_step", "fit_all_cut_at_zero", "fit_colours_cut",
-              "fit_forgets_values", "fit_losses_late", "fit_never_grows", "fit_never_prunes",
-              "fit_new_like_the_last", "fit_new_voxels_empty", "fit_one_adam",
-              "fit_prunes_at_the_end", "fit_shares_early", "fit_sigma_below_zero", "fit_uphill",
-              ),
-       sole="the same mistakes at scenes that are not known beforehand")  # fmt: skip
+@check(
+    "10.6.hidden",
+    task="10.6",
+    points=4,
+    calls=("fit_sparse",),
+    needs=STEPS,
+    visibility="hidden",
+    tolerance=CHAINED,
+    kills=(
+        "fit_adam_each_step",
+        "fit_all_cut_at_zero",
+        "fit_colours_cut",
+        "fit_forgets_values",
+        "fit_losses_late",
+        "fit_never_grows",
+        "fit_never_prunes",
+        "fit_new_like_the_last",
+        "fit_new_voxels_empty",
+        "fit_one_adam",
+        "fit_prunes_at_the_end",
+        "fit_shares_early",
+        "fit_sigma_below_zero",
+        "fit_uphill",
+    ),
+    sole="the same mistakes at scenes that are not known beforehand",
+)
 def fits_of_random_scenes(t):
     """Three rounds of two steps end where they should."""
     given = *small_case(t), 3, 2, 0.05, 1
@@ -954,11 +1294,23 @@ def rods(t, n):
     return np.floor((x[active] + 1) / 2 * n).astype(np.int64), values[active]
 
 
-@check("10.6.topology", task="10.6", points=5, calls=("fit_sparse",), needs=STEPS,
-       visibility="hidden", seconds=60.0,
-       kills=("fit_forgets_values", "fit_never_grows", "fit_never_prunes", "fit_one_adam",
-              "fit_uphill"),
-       sole="the experiment: what the gradient cannot bring back, and who can")  # fmt: skip
+@check(
+    "10.6.topology",
+    task="10.6",
+    points=5,
+    calls=("fit_sparse",),
+    needs=STEPS,
+    visibility="hidden",
+    seconds=60.0,
+    kills=(
+        "fit_forgets_values",
+        "fit_never_grows",
+        "fit_never_prunes",
+        "fit_one_adam",
+        "fit_uphill",
+    ),
+    sole="the experiment: what the gradient cannot bring back, and who can",
+)
 def what_is_pruned_too_early_is_lost(t):
     """Pruned after four steps, a scene loses 3 dB for good, unless what is left may grow."""
     ref = t.reference
@@ -977,8 +1329,10 @@ def what_is_pruned_too_early_is_lost(t):
     for grow in (0, 1):
         found = fitted(t, n, every, start, rays, target, 4, 4, 0.05, grow)
         inside = bool(((found[0] >= 0) & (found[0] < n)).all())
-        t.require(inside and len(np.unique(found[0], axis=0)) == len(found[0]),
-                  "voxels lie outside of the cube, or occur twice")  # fmt: skip
+        t.require(
+            inside and len(np.unique(found[0], axis=0)) == len(found[0]),
+            "voxels lie outside of the cube, or occur twice",
+        )
         error = seen(n, found[0], found[1], unseen) - truth
         scores.append(-10 * np.log10(max(float(np.mean(error**2)), 1e-30)))
     lost, kept = scores

@@ -126,8 +126,10 @@ for name, plan in plans.items():
     before = time.perf_counter()
     found[name] = mine.fit_sparse(n, every, start, rays, target, *plan)
     seconds = time.perf_counter() - before
-    print(f"{name}: {len(found[name][0])} voxels, {seconds:.1f} s, "
-          f"{decibels(seen(n, *found[name][:2], unseen), hidden):.1f} dB on new views")  # fmt: skip
+    print(
+        f"{name}: {len(found[name][0])} voxels, {seconds:.1f} s, "
+        f"{decibels(seen(n, *found[name][:2], unseen), hidden):.1f} dB on new views"
+    )
 
 # %% [markdown]
 # ## Your derivative
@@ -167,9 +169,13 @@ def core_field(n, voxels, values):
     density, color = np.zeros(len(rows)), np.zeros((len(rows), 1, 3))
     density[rows], color[rows, 0] = values[:, 3], values[:, :3] / sh.Y_0
     policy = marches.MarchPolicy(
-        box=((-1.0,) * 3, (1.0,) * 3), dt=1 / n * (1 - 1e-12), lattice="entry", border="zero",
-        density_activation="identity", color_activation="identity",
-    )  # fmt: skip
+        box=((-1.0,) * 3, (1.0,) * 3),
+        dt=1 / n * (1 - 1e-12),
+        lattice="entry",
+        border="zero",
+        density_activation="identity",
+        color_activation="identity",
+    )
     return fields.SparseSh(kept, density, color, policy), rows, sh.Y_0
 
 
@@ -239,8 +245,10 @@ else:
     row, share = mine.shares(guess[1], samples)
     largest, order = np.zeros(len(guess[0]) + 1), np.argsort(share, axis=None)
     largest[row.ravel()[order]] = share.ravel()[order]  # the largest is written last
-    print(f"core: its derivative is {off:.1e} from yours, "
-          f"its largest shares {np.abs(core_worth - largest[:-1]).max():.1e}")  # fmt: skip
+    print(
+        f"core: its derivative is {off:.1e} from yours, "
+        f"its largest shares {np.abs(core_worth - largest[:-1]).max():.1e}"
+    )
     its = octrees.Octree.from_dense(full[..., None]).statistics().leaves
     print(f"core: its octree has {its} leaves, yours {leaves}")
     again = through_openvdb(n, *found["pruned and grown"][:2])
@@ -248,9 +256,11 @@ else:
     print("values as they were" if same else "values differ")
     before = time.perf_counter()
     core_found = core_fit(n, every, start, rays, target, rounds, steps, threshold)
-    print(f"core, pruned and grown: {len(core_found[0])} voxels, "
-          f"{time.perf_counter() - before:.1f} s, "
-          f"{decibels(seen(n, *core_found, unseen), hidden):.1f} dB on new views")  # fmt: skip
+    print(
+        f"core, pruned and grown: {len(core_found[0])} voxels, "
+        f"{time.perf_counter() - before:.1f} s, "
+        f"{decibels(seen(n, *core_found, unseen), hidden):.1f} dB on new views"
+    )
 
 # %% [markdown]
 # ## Pictures
@@ -337,9 +347,11 @@ if capture:
     plan = (rounds, steps, threshold, 1)
     own = mine.fit_sparse(n, every, start, rays, target, *plan)
     again = seen(n, *own[:2], rays)
-    print(f"capture: {len(sizes)} photographs, {len(own[0])} of {n**3} voxels, "
-          f"{decibels(0 * target, target):.1f} dB for black, "
-          f"{decibels(again, target):.1f} dB recovered")  # fmt: skip
+    print(
+        f"capture: {len(sizes)} photographs, {len(own[0])} of {n**3} voxels, "
+        f"{decibels(0 * target, target):.1f} dB for black, "
+        f"{decibels(again, target):.1f} dB recovered"
+    )
     figure = Figure(figsize=(9, 6), layout="constrained")
     panels = figure.subplots(2, 3)
     ends = np.cumsum([0] + [a * b for a, b in sizes])

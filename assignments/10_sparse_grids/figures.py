@@ -8,14 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
-from photograd_course.viz.style import (
-    BLUE,
-    GREY,
-    INK,
-    ORANGE,
-    house_style,
-    signed_colour_map,
-)
+from photograd_course.viz.style import BLUE, GREY, INK, ORANGE, house_style, signed_colour_map
 from photograd_course.viz.style import RED as CRIMSON
 
 Facts = dict[str, bool | tuple[float, float, float]]
@@ -61,8 +54,13 @@ def fig1_absent(module: ModuleType) -> tuple[Figure, Facts]:
         left.set(xlabel="colour that it is given", ylabel="∂L/∂σ at σ = 0")
         for c, colour in ((0.9, BLUE), (0.3, ORANGE)):
             right.plot(sigma, curves[c], color=colour)
-            right.annotate(f"colour {c}", (sigma[40], curves[c][40]), (0, 6 if c > 0.5 else -14),
-                           textcoords="offset points", color=colour)  # fmt: skip
+            right.annotate(
+                f"colour {c}",
+                (sigma[40], curves[c][40]),
+                (0, 6 if c > 0.5 else -14),
+                textcoords="offset points",
+                color=colour,
+            )
         right.set(xlabel="σ of the new step  [1/m]", ylabel="loss")
         for axes in (left, right):
             _plain(axes)
@@ -94,16 +92,28 @@ def fig2_octree(module: ModuleType) -> tuple[Figure, Facts]:
         figure = Figure(figsize=(7.0, 3.3), layout="constrained")
         left, right = figure.subplots(1, 2)
         for low, side, full in _leaves_in_slice(module, tree, n, n // 2):
-            left.add_patch(Rectangle(low, side, side, facecolor=ORANGE if full else "white",
-                                     edgecolor=INK, linewidth=0.4))  # fmt: skip
+            left.add_patch(
+                Rectangle(
+                    low,
+                    side,
+                    side,
+                    facecolor=ORANGE if full else "white",
+                    edgecolor=INK,
+                    linewidth=0.4,
+                )
+            )
         left.set(xlim=(0, n), ylim=(0, n), aspect="equal", xlabel="x  [cells]", ylabel="y  [cells]")
         right.loglog(sizes, sizes**3.0, color=GREY, marker="^", markersize=4)
         right.loglog(sizes, shells, color=ORANGE, marker="o", markersize=4)
         right.loglog(sizes, ones, color=BLUE, marker="s", markersize=4)
-        for y, text, colour in ((n**3.0, "cells", INK), (shells[-1], "nodes, shell", ORANGE),
-                                (ones[-1], "nodes, one cell", BLUE)):  # fmt: skip
-            right.annotate(text, (n, y), (5, 0), textcoords="offset points", va="center",
-                           color=colour)  # fmt: skip
+        for y, text, colour in (
+            (n**3.0, "cells", INK),
+            (shells[-1], "nodes, shell", ORANGE),
+            (ones[-1], "nodes, one cell", BLUE),
+        ):
+            right.annotate(
+                text, (n, y), (5, 0), textcoords="offset points", va="center", color=colour
+            )
         right.set(xlabel="cells along a side", xlim=(3.5, 170))
         right.set_xticks(sizes, [str(k) for k in sizes])
         right.minorticks_off()
@@ -136,21 +146,37 @@ def fig3_skip(module: ModuleType) -> tuple[Figure, Facts]:
     facts: Facts = {
         "exactly the samples in full cells": bool((wanted == right).all()),
         "read samples cover at most 1.3 times the occupied length": (
-            float(wanted.sum() / occupied), 0.7, 1.3),
-        "fewer questions than a third of the samples": (
-            len(questions) / right.size, 0.01, 1 / 3),
-    }  # fmt: skip
+            float(wanted.sum() / occupied),
+            0.7,
+            1.3,
+        ),
+        "fewer questions than a third of the samples": (len(questions) / right.size, 0.01, 1 / 3),
+    }
     with house_style():
         figure = Figure(figsize=(7.0, 4.1), layout="constrained")
         axes = figure.subplots()
         for low, side, is_full in _leaves_in_slice(module, tree, n, n // 2):
-            axes.add_patch(Rectangle(low, side, side, facecolor="#f6dcc3" if is_full else "white",
-                                     edgecolor=GREY, linewidth=0.4))  # fmt: skip
+            axes.add_patch(
+                Rectangle(
+                    low,
+                    side,
+                    side,
+                    facecolor="#f6dcc3" if is_full else "white",
+                    edgecolor=GREY,
+                    linewidth=0.4,
+                )
+            )
         for r in range(4):
             axes.plot(*places[r, :, :2].T, ".", color=GREY, markersize=2.5)
             axes.plot(*places[r, wanted[r], :2].T, "o", color=CRIMSON, markersize=3)
-        axes.plot(*questions[:, :2].T, "o", markerfacecolor="none", markeredgecolor=BLUE,
-                  markersize=7, linestyle="none")  # fmt: skip
+        axes.plot(
+            *questions[:, :2].T,
+            "o",
+            markerfacecolor="none",
+            markeredgecolor=BLUE,
+            markersize=7,
+            linestyle="none",
+        )
         axes.set(xlim=(0, n), ylim=(0, n), aspect="equal", xlabel="x  [cells]", ylabel="y  [cells]")
     return figure, facts
 
@@ -169,12 +195,18 @@ def fig4_hash(module: ModuleType) -> tuple[Figure, Facts]:
     two_thirds = loads <= 0.7
     facts: Facts = {
         "hits follow the formula to 15 % up to 0.7": (
-            float(np.abs(np.array(found) / theory[0] - 1)[two_thirds].max()), 0, 0.15),
+            float(np.abs(np.array(found) / theory[0] - 1)[two_thirds].max()),
+            0,
+            0.15,
+        ),
         "misses to 25 %": (
-            float(np.abs(np.array(missing) / theory[1] - 1)[two_thirds].max()), 0, 0.25),
+            float(np.abs(np.array(missing) / theory[1] - 1)[two_thirds].max()),
+            0,
+            0.25,
+        ),
         "half full: a miss looks at less than 3": (float(missing[2]), 1.0, 3.0),
         "nine tenths full: at more than 40": (float(missing[5]), 40.0, 200.0),
-    }  # fmt: skip
+    }
     with house_style():
         figure = Figure(figsize=(7.0, 2.9), layout="constrained")
         axes = figure.subplots()
@@ -183,10 +215,17 @@ def fig4_hash(module: ModuleType) -> tuple[Figure, Facts]:
         axes.semilogy(x, (1 + 1 / (1 - x)) / 2, color=BLUE, linewidth=1)
         axes.semilogy(loads, missing, "s", color=ORANGE, markersize=5)
         axes.semilogy(loads, found, "o", color=BLUE, markersize=5)
-        axes.annotate("not in the table", (0.9, missing[-1]), (-8, 8), ha="right",
-                      textcoords="offset points", color=ORANGE)  # fmt: skip
-        axes.annotate("in the table", (0.9, found[-1]), (8, -3), textcoords="offset points",
-                      color=BLUE)  # fmt: skip
+        axes.annotate(
+            "not in the table",
+            (0.9, missing[-1]),
+            (-8, 8),
+            ha="right",
+            textcoords="offset points",
+            color=ORANGE,
+        )
+        axes.annotate(
+            "in the table", (0.9, found[-1]), (8, -3), textcoords="offset points", color=BLUE
+        )
         axes.set(xlabel="share of slots taken", ylabel="slots looked at", xlim=(0, 1.05))
         axes.set_yticks([1, 3, 10, 30], ["1", "3", "10", "30"])
         axes.minorticks_off()
@@ -225,13 +264,22 @@ def fig5_lost(module: ModuleType) -> tuple[Figure, Facts]:
     ring &= far
     facts: Facts = {
         "voxels without extinction change no pixel": (
-            float(max(np.abs(each - before).max() for each in pictures)), 0, 1e-12),
+            float(max(np.abs(each - before).max() for each in pictures)),
+            0,
+            1e-12,
+        ),
         "those that exist get the same derivative": (
-            float(np.abs(np.array(maps)[:, at] - d_kept[:, 3]).max()), 0, 1e-12),
+            float(np.abs(np.array(maps)[:, at] - d_kept[:, 3]).max()),
+            0,
+            1e-12,
+        ),
         "bright: over 90 % of the missing ring is asked for": (
-            float((maps[0][ring] < 0).mean()), 0.9, 1.0),
+            float((maps[0][ring] < 0).mean()),
+            0.9,
+            1.0,
+        ),
         "black: less than half of it": (float((maps[1][ring] < 0).mean()), 0.0, 0.5),
-    }  # fmt: skip
+    }
     with house_style():
         figure = Figure(figsize=(7.0, 2.6), layout="constrained")
         panels = figure.subplots(1, 3)
@@ -280,7 +328,7 @@ def fig6_topology(module: ModuleType) -> tuple[Figure, Facts]:
         "growing, it is never below all voxels": (float(min(scores[1]) - dense), 0.0, 10.0),
         "with less than three quarters of the voxels": (len(kept[1, 3][0]) / n**3, 0.05, 0.75),
         "the later it is pruned, the less is lost": bool((np.diff(gap) < 0).all()),
-    }  # fmt: skip
+    }
     one = slice(1600, 3200)
     with house_style():
         figure = Figure(figsize=(7.0, 4.6), layout="constrained")
@@ -302,10 +350,19 @@ def fig6_topology(module: ModuleType) -> tuple[Figure, Facts]:
         )
         for grow, colour, name in ((0, CRIMSON, "pruned"), (1, BLUE, "pruned and grown")):
             axes.plot(after, scores[grow], color=colour, marker="o", markersize=4)
-            axes.annotate(name, (after[-1], scores[grow][-1]), (8, -3), color=colour,
-                          textcoords="offset points")  # fmt: skip
-        axes.set(xscale="log", xlabel="steps before each pruning (24 in all)",
-                 ylabel="PSNR of new views [dB]", xlim=(2.7, 22))  # fmt: skip
+            axes.annotate(
+                name,
+                (after[-1], scores[grow][-1]),
+                (8, -3),
+                color=colour,
+                textcoords="offset points",
+            )
+        axes.set(
+            xscale="log",
+            xlabel="steps before each pruning (24 in all)",
+            ylabel="PSNR of new views [dB]",
+            xlim=(2.7, 22),
+        )
         axes.set_xticks(after, [str(k) for k in after])
         axes.minorticks_off()
         _plain(axes)
@@ -484,5 +541,5 @@ HELD = {
     "fig1_absent": {
         "bright: the loss falls at first": "what the figure was given",
         "dim: it rises": "what the figure was given",
-    },
+    }
 }

@@ -67,14 +67,34 @@ def basis(t, d, degree):
 # 11.1 ---------------------------------------------------------------------------------------------
 
 
-@check("11.1.first", task="11.1", points=2, calls=("sh_basis",), tolerance=EXACT,
-       kills=("angle_without_radius", "degree_weights", "factorials_upside_down",
-              "last_degree_left_out", "mean_not_integral", "no_factorials", "no_phase",
-              "no_root", "no_root_two", "orders_by_size", "orders_reversed", "orders_swapped",
-              "other_end", "phase_of_degree", "pole_along_y", "root_two_everywhere",
-              "x_and_y_swapped",),
-       hint="handout, equations (5) to (8) for l = 0 and 1; the order is m = -1, 0, 1",
-       sole="small enough to compare by eye")  # fmt: skip
+@check(
+    "11.1.first",
+    task="11.1",
+    points=2,
+    calls=("sh_basis",),
+    tolerance=EXACT,
+    kills=(
+        "angle_without_radius",
+        "degree_weights",
+        "factorials_upside_down",
+        "last_degree_left_out",
+        "mean_not_integral",
+        "no_factorials",
+        "no_phase",
+        "no_root",
+        "no_root_two",
+        "orders_by_size",
+        "orders_reversed",
+        "orders_swapped",
+        "other_end",
+        "phase_of_degree",
+        "pole_along_y",
+        "root_two_everywhere",
+        "x_and_y_swapped",
+    ),
+    hint="handout, equations (5) to (8) for l = 0 and 1; the order is m = -1, 0, 1",
+    sole="small enough to compare by eye",
+)
 def the_first_four(t):
     """Degree 0 is 0.2821 everywhere; degree 1 is 0.4886 times (-y, z, -x)."""
     d = unit(t.rng, 6)
@@ -83,33 +103,74 @@ def the_first_four(t):
     t.close("degree 1", basis(t, d, 1)[:, 1:], expected, reveal=True)
 
 
-@check("11.1.addition", task="11.1", points=3, calls=("sh_basis",), tolerance=EXACT,
-       kills=("angle_once", "angle_without_radius", "degree_weights", "factorials_upside_down",
-              "last_degree_left_out", "mean_not_integral", "no_factorials", "no_root",
-              "no_root_two", "recurrence_sign", "recurrence_undivided", "root_two_everywhere",
-              "start_of_ones",),
-       hint="handout, equations (7) and (8): the polynomial in z, the size of each harmonic",
-       sole="names the degree in which sizes or polynomials are wrong")  # fmt: skip
+@check(
+    "11.1.addition",
+    task="11.1",
+    points=3,
+    calls=("sh_basis",),
+    tolerance=EXACT,
+    kills=(
+        "angle_once",
+        "angle_without_radius",
+        "degree_weights",
+        "factorials_upside_down",
+        "last_degree_left_out",
+        "mean_not_integral",
+        "no_factorials",
+        "no_root",
+        "no_root_two",
+        "recurrence_sign",
+        "recurrence_undivided",
+        "root_two_everywhere",
+        "start_of_ones",
+    ),
+    hint="handout, equations (7) and (8): the polynomial in z, the size of each harmonic",
+    sole="names the degree in which sizes or polynomials are wrong",
+)
 def harmonics_of_a_degree_add_up(t):
     """Products of one degree's harmonics at two directions depend on the angle between them."""
     a, b = unit(t.rng, 20), unit(t.rng, 20)
     Ya, Yb = basis(t, a, 4), basis(t, b, 4)
     for ell in range(5):
         same = np.sum(Ya[:, band(ell)] ** 2, axis=1)
-        t.close(f"sum of squares, degree {ell}", same, np.full(20, (2 * ell + 1) / (4 * np.pi)),
-                reveal=True)  # fmt: skip
+        t.close(
+            f"sum of squares, degree {ell}",
+            same,
+            np.full(20, (2 * ell + 1) / (4 * np.pi)),
+            reveal=True,
+        )
         legendre = np.polynomial.legendre.legval(np.sum(a * b, axis=1), np.eye(5)[ell])
-        t.close(f"sum of products, degree {ell}", np.sum((Ya * Yb)[:, band(ell)], axis=1),
-                legendre * (2 * ell + 1) / (4 * np.pi))  # fmt: skip
+        t.close(
+            f"sum of products, degree {ell}",
+            np.sum((Ya * Yb)[:, band(ell)], axis=1),
+            legendre * (2 * ell + 1) / (4 * np.pi),
+        )
 
 
-@check("11.1.gram", task="11.1", points=3, calls=("sh_basis",), tolerance=ORTHONORMAL,
-       kills=("angle_once", "angle_without_radius", "degree_weights", "factorials_upside_down",
-              "last_degree_left_out", "mean_not_integral", "no_factorials", "no_root",
-              "no_root_two", "recurrence_sign", "recurrence_undivided", "root_two_everywhere",
-              "start_of_ones",),
-       hint="the integral of two harmonics' product is 1 for a pair of equals, else 0",
-       sole="what all the rest is built on")  # fmt: skip
+@check(
+    "11.1.gram",
+    task="11.1",
+    points=3,
+    calls=("sh_basis",),
+    tolerance=ORTHONORMAL,
+    kills=(
+        "angle_once",
+        "angle_without_radius",
+        "degree_weights",
+        "factorials_upside_down",
+        "last_degree_left_out",
+        "mean_not_integral",
+        "no_factorials",
+        "no_root",
+        "no_root_two",
+        "recurrence_sign",
+        "recurrence_undivided",
+        "root_two_everywhere",
+        "start_of_ones",
+    ),
+    hint="the integral of two harmonics' product is 1 for a pair of equals, else 0",
+    sole="what all the rest is built on",
+)
 def harmonics_are_orthonormal(t):
     """Under a quadrature that is exact to degree 8, all 25 are orthonormal."""
     d, weights = sphere(8)
@@ -117,12 +178,26 @@ def harmonics_are_orthonormal(t):
     t.close("integrals of products", Y.T @ (weights[:, None] * Y), np.eye(25))
 
 
-@check("11.1.signs", task="11.1", points=4, calls=("sh_basis",),
-       kills=("angle_once", "last_degree_left_out", "no_phase", "orders_by_size",
-              "orders_reversed", "orders_swapped", "other_end", "phase_of_degree",
-              "pole_along_y", "x_and_y_swapped",),
-       hint="column l (l + 1) + m; m > 0 has the real part, m < 0 the other",
-       sole="says which column or sign is wrong, where sums of squares see nothing")  # fmt: skip
+@check(
+    "11.1.signs",
+    task="11.1",
+    points=4,
+    calls=("sh_basis",),
+    kills=(
+        "angle_once",
+        "last_degree_left_out",
+        "no_phase",
+        "orders_by_size",
+        "orders_reversed",
+        "orders_swapped",
+        "other_end",
+        "phase_of_degree",
+        "pole_along_y",
+        "x_and_y_swapped",
+    ),
+    hint="column l (l + 1) + m; m > 0 has the real part, m < 0 the other",
+    sole="says which column or sign is wrong, where sums of squares see nothing",
+)
 def order_and_signs(t):
     """Near the pole, signs and zeros say which column is which."""
     theta = t.rng.uniform(0.2, 0.35)
@@ -130,51 +205,88 @@ def order_and_signs(t):
     for degree in (4, 2):
         for m in range(1, degree + 1):
             phi = np.array([0.0, np.pi / (2 * m)])
-            d = np.stack([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi),
-                          np.full(2, np.cos(theta))], axis=1)  # fmt: skip
+            d = np.stack(
+                [
+                    np.sin(theta) * np.cos(phi),
+                    np.sin(theta) * np.sin(phi),
+                    np.full(2, np.cos(theta)),
+                ],
+                axis=1,
+            )
             Y = basis(t, d, degree)
             for ell in range(m, degree + 1):
                 plus, minus = Y[:, ell * (ell + 1) + m], Y[:, ell * (ell + 1) - m]
                 where = f"l = {ell}, m = {m}"
-                t.require(bool(plus[0] * (-1) ** m > 0 and abs(minus[0]) < 1e-12),
-                          f"{where}: at phi = 0 the column of m must have the sign (-1)^m, "
-                          "that of -m be zero")  # fmt: skip
-                t.require(bool(minus[1] * (-1) ** m > 0 and abs(plus[1]) < 1e-12),
-                          f"{where}: at phi = pi / (2 m) the column of -m must have the sign "
-                          "(-1)^m, that of m be zero")  # fmt: skip
+                t.require(
+                    bool(plus[0] * (-1) ** m > 0 and abs(minus[0]) < 1e-12),
+                    f"{where}: at phi = 0 the column of m must have the sign (-1)^m, "
+                    "that of -m be zero",
+                )
+                t.require(
+                    bool(minus[1] * (-1) ** m > 0 and abs(plus[1]) < 1e-12),
+                    f"{where}: at phi = pi / (2 m) the column of -m must have the sign "
+                    "(-1)^m, that of m be zero",
+                )
     d = np.array([[np.sqrt(1 - size**2), 0.0, size]])
     there, back = basis(t, d, 3), basis(t, -d, 3)
     odd = np.repeat([1, -1, 1, -1], [1, 3, 5, 7])
-    t.require(bool(np.abs(there * odd - back).max() < 1e-12),
-              "at -d the odd degrees must change sign, the even ones stay")  # fmt: skip
+    t.require(
+        bool(np.abs(there * odd - back).max() < 1e-12),
+        "at -d the odd degrees must change sign, the even ones stay",
+    )
 
 
 # 11.2 ---------------------------------------------------------------------------------------------
 
 
-@check("11.2.back", task="11.2", points=3, calls=("sh_project",), needs=("sh_basis",),
-       tolerance=EXACT,
-       kills=("project_first_channel", "project_mean", "project_normalised", "project_summed",
-              "project_unweighted", "project_weights_squared",),
-       hint="handout, equation (9): each value counts as much as its solid angle",
-       sole="what a projection is for")  # fmt: skip
+@check(
+    "11.2.back",
+    task="11.2",
+    points=3,
+    calls=("sh_project",),
+    needs=("sh_basis",),
+    tolerance=EXACT,
+    kills=(
+        "project_first_channel",
+        "project_mean",
+        "project_normalised",
+        "project_summed",
+        "project_unweighted",
+        "project_weights_squared",
+    ),
+    hint="handout, equation (9): each value counts as much as its solid angle",
+    sole="what a projection is for",
+)
 def coefficients_come_back(t):
     """A function made of harmonics is projected to the coefficients that made it."""
     for degree in (1, 3):
         d, weights = sphere(2 * degree)
         c = t.rng.uniform(-1.0, 1.0, ((degree + 1) ** 2, 2))
-        got = t.call("sh_project", d, weights, basis(t, d, degree) @ c, degree,
-                     returns=Array(c.shape))  # fmt: skip
+        got = t.call(
+            "sh_project", d, weights, basis(t, d, degree) @ c, degree, returns=Array(c.shape)
+        )
         t.close(f"coefficients, degree {degree}", got, c, reveal=True)
 
 
-@check("11.2.rest", task="11.2", points=2, calls=("sh_project",), needs=("sh_basis",),
-       tolerance=EXACT,
-       kills=("project_first_channel", "project_least_squares", "project_mean",
-              "project_normalised", "project_summed", "project_unweighted",
-              "project_weights_squared",),
-       hint="handout, section 2: what a projection leaves is orthogonal to each harmonic",
-       sole="a function that no sum of harmonics reaches")  # fmt: skip
+@check(
+    "11.2.rest",
+    task="11.2",
+    points=2,
+    calls=("sh_project",),
+    needs=("sh_basis",),
+    tolerance=EXACT,
+    kills=(
+        "project_first_channel",
+        "project_least_squares",
+        "project_mean",
+        "project_normalised",
+        "project_summed",
+        "project_unweighted",
+        "project_weights_squared",
+    ),
+    hint="handout, section 2: what a projection leaves is orthogonal to each harmonic",
+    sole="a function that no sum of harmonics reaches",
+)
 def what_is_left_is_orthogonal(t):
     """What a projection leaves over has no part along any harmonic: the best that can be done."""
     d, weights = sphere(12)
@@ -183,8 +295,13 @@ def what_is_left_is_orthogonal(t):
     Y = basis(t, d, 2)
     left = Y.T @ (weights[:, None] * (f - Y @ got))
     size = float(np.linalg.norm(Y.T @ (weights[:, None] * f)))
-    t.close("integrals of the rest times each harmonic", left, 0 * left,
-            Tolerance(EXACT.relative, EXACT.evidence, floor=size), reveal=True)  # fmt: skip
+    t.close(
+        "integrals of the rest times each harmonic",
+        left,
+        0 * left,
+        Tolerance(EXACT.relative, EXACT.evidence, floor=size),
+        reveal=True,
+    )
 
 
 # 11.3 ---------------------------------------------------------------------------------------------
@@ -203,12 +320,22 @@ def adjoint(t, c, v, g):
     return t.call("sh_color_adjoint", c, v, g, returns=parts)
 
 
-@check("11.3.coefficients", task="11.3", points=4, calls=("sh_color_adjoint",),
-       needs=("sh_basis",), tolerance=EXACT,
-       kills=("d_coefficients_at_v", "d_coefficients_of_all", "d_coefficients_summed",
-              "d_coefficients_without_g",),
-       hint="handout, equation (11): colours are linear in the coefficients",
-       sole="asks about the coefficients alone")  # fmt: skip
+@check(
+    "11.3.coefficients",
+    task="11.3",
+    points=4,
+    calls=("sh_color_adjoint",),
+    needs=("sh_basis",),
+    tolerance=EXACT,
+    kills=(
+        "d_coefficients_at_v",
+        "d_coefficients_of_all",
+        "d_coefficients_summed",
+        "d_coefficients_without_g",
+    ),
+    hint="handout, equation (11): colours are linear in the coefficients",
+    sole="asks about the coefficients alone",
+)
 def the_adjoint_by_coefficients(t):
     """<colours of C, g> = <C, d_coefficients> for any C: the transpose."""
     for degree, channels in ((2, 3), (0, 1), (4, 2)):
@@ -218,19 +345,43 @@ def the_adjoint_by_coefficients(t):
             x = t.rng.uniform(-1.0, 1.0, c.shape)
             forth = t.call("sh_color", x, v, returns=Array(g.shape))
             size = float(np.linalg.norm(forth) * np.linalg.norm(g))
-            t.close("<C, d_coefficients>", np.vdot(x, d_c), np.vdot(forth, g),
-                    Tolerance(EXACT.relative, EXACT.evidence, floor=size))  # fmt: skip
+            t.close(
+                "<C, d_coefficients>",
+                np.vdot(x, d_c),
+                np.vdot(forth, g),
+                Tolerance(EXACT.relative, EXACT.evidence, floor=size),
+            )
 
 
-@check("11.3.vectors", task="11.3", points=5, calls=("sh_color_adjoint",), needs=("sh_basis",),
-       tolerance=SMOOTH,
-       kills=("length_forgotten", "length_squared", "no_projection", "no_slope_by_waves",
-              "no_slope_by_z", "projection_added", "projection_only_divided",
-              "pull_first_channel", "pull_mean", "pull_without_g", "recurrence_undivided",
-              "start_of_ones", "wave_slope_not_lowered", "wave_slope_sign",
-              "wave_slope_without_m", "wave_slopes_swapped", "z_slope_same_order",),
-       hint="handout, equations (12) to (14)",
-       sole="the derivative itself, without the reference")  # fmt: skip
+@check(
+    "11.3.vectors",
+    task="11.3",
+    points=5,
+    calls=("sh_color_adjoint",),
+    needs=("sh_basis",),
+    tolerance=SMOOTH,
+    kills=(
+        "length_forgotten",
+        "length_squared",
+        "no_projection",
+        "no_slope_by_waves",
+        "no_slope_by_z",
+        "projection_added",
+        "projection_only_divided",
+        "pull_first_channel",
+        "pull_mean",
+        "pull_without_g",
+        "recurrence_undivided",
+        "start_of_ones",
+        "wave_slope_not_lowered",
+        "wave_slope_sign",
+        "wave_slope_without_m",
+        "wave_slopes_swapped",
+        "z_slope_same_order",
+    ),
+    hint="handout, equations (12) to (14)",
+    sole="the derivative itself, without the reference",
+)
 def the_adjoint_by_vectors(t):
     """Moving a vector by a little changes your colours by as much as your d_v says."""
     for degree, channels in ((1, 1), (2, 3), (4, 2)):
@@ -243,12 +394,25 @@ def the_adjoint_by_vectors(t):
         require_gradients(t, {"v": d_v}, forward, {"v": v}, g, SMOOTH)
 
 
-@check("11.3.length", task="11.3", points=2, calls=("sh_color_adjoint",), needs=("sh_basis",),
-       tolerance=EXACT,
-       kills=("d_coefficients_at_v", "length_forgotten", "length_squared", "no_projection",
-              "projection_added", "projection_only_divided", "pull_without_g",),
-       hint="handout, equation (14): a longer v alone changes no colour",
-       sole="names what the step from v to d leaves out")  # fmt: skip
+@check(
+    "11.3.length",
+    task="11.3",
+    points=2,
+    calls=("sh_color_adjoint",),
+    needs=("sh_basis",),
+    tolerance=EXACT,
+    kills=(
+        "d_coefficients_at_v",
+        "length_forgotten",
+        "length_squared",
+        "no_projection",
+        "projection_added",
+        "projection_only_divided",
+        "pull_without_g",
+    ),
+    hint="handout, equation (14): a longer v alone changes no colour",
+    sole="names what the step from v to d leaves out",
+)
 def length_does_not_matter(t):
     """Along v nothing changes: v . d_v = 0; at twice the length d_v is half as long."""
     c, v, g = colours(t.rng, 6, 3, 2)
@@ -256,8 +420,13 @@ def length_does_not_matter(t):
     along = np.sum(d_v * v, axis=1)
     size = np.linalg.norm(d_v, axis=1) * np.linalg.norm(v, axis=1)
     floor = max(float(np.linalg.norm(size)), 1e-12)
-    t.close("v . d_v", along, 0 * along, Tolerance(EXACT.relative, EXACT.evidence, floor=floor),
-            reveal=True)  # fmt: skip
+    t.close(
+        "v . d_v",
+        along,
+        0 * along,
+        Tolerance(EXACT.relative, EXACT.evidence, floor=floor),
+        reveal=True,
+    )
     twice_c, twice = adjoint(t, c, 2 * v, g)
     t.close("d_v at 2 v", twice, d_v / 2)
     t.close("d_coefficients at 2 v", twice_c, d_c)
@@ -273,17 +442,30 @@ def rotated(t, c, R):
     return t.call("sh_rotate", c, R, returns=Array(c.shape))
 
 
-@check("11.4.turns", task="11.4", points=4, calls=("sh_rotate",),
-       needs=("sh_basis", "sh_project"), tolerance=EXACT,
-       kills=("even_degrees_negated", "not_turned", "quadrature_too_coarse",
-              "turned_about_z_only", "turned_back", "turned_twice",),
-       hint="handout, equation (15): what stands at d after the turn stood elsewhere before",
-       sole="the definition of a rotation")  # fmt: skip
+@check(
+    "11.4.turns",
+    task="11.4",
+    points=4,
+    calls=("sh_rotate",),
+    needs=("sh_basis", "sh_project"),
+    tolerance=EXACT,
+    kills=(
+        "even_degrees_negated",
+        "not_turned",
+        "quadrature_too_coarse",
+        "turned_about_z_only",
+        "turned_back",
+        "turned_twice",
+    ),
+    hint="handout, equation (15): what stands at d after the turn stood elsewhere before",
+    sole="the definition of a rotation",
+)
 def a_turned_function_has_moved(t):
     """The value that was at d is at R d, for turns about z and about any axis."""
     angle = t.rng.uniform(0.5, 2.5)
-    about_z = np.array([[np.cos(angle), -np.sin(angle), 0.0],
-                        [np.sin(angle), np.cos(angle), 0.0], [0.0, 0.0, 1.0]])  # fmt: skip
+    about_z = np.array(
+        [[np.cos(angle), -np.sin(angle), 0.0], [np.sin(angle), np.cos(angle), 0.0], [0.0, 0.0, 1.0]]
+    )
     d = unit(t.rng, 12)
     for degree, R in ((1, about_z), (2, turn(t.rng)), (4, turn(t.rng))):
         c = t.rng.uniform(-1.0, 1.0, ((degree + 1) ** 2, 2))
@@ -291,12 +473,23 @@ def a_turned_function_has_moved(t):
         t.close(f"values, degree {degree}", there, basis(t, d, degree) @ c)
 
 
-@check("11.4.compose", task="11.4", points=2, calls=("sh_rotate",),
-       needs=("sh_basis", "sh_project"), tolerance=EXACT,
-       kills=("even_degrees_negated", "quadrature_too_coarse", "turned_about_z_only",
-              "turned_back", "turned_twice",),
-       hint="R' after R is the turn R' R; each degree keeps its length",
-       sole="needs no harmonics to be asked")  # fmt: skip
+@check(
+    "11.4.compose",
+    task="11.4",
+    points=2,
+    calls=("sh_rotate",),
+    needs=("sh_basis", "sh_project"),
+    tolerance=EXACT,
+    kills=(
+        "even_degrees_negated",
+        "quadrature_too_coarse",
+        "turned_about_z_only",
+        "turned_back",
+        "turned_twice",
+    ),
+    hint="R' after R is the turn R' R; each degree keeps its length",
+    sole="needs no harmonics to be asked",
+)
 def turns_compose(t):
     """Two turns are one; no turn changes the length of any degree's coefficients."""
     c = t.rng.uniform(-1.0, 1.0, (16, 3))
@@ -316,12 +509,25 @@ def lit(t, probes, p, n):
     return t.call("probe_irradiance", probes, p, n, returns=Array((len(p), probes.shape[4])))
 
 
-@check("11.5.constant", task="11.5", points=2, calls=("probe_irradiance",), needs=("sh_basis",),
-       tolerance=EXACT,
-       kills=("lobe_half", "lobe_of_solid_angle", "lobe_unclamped", "lobe_without_pi", "no_lobe",
-              "one_probe", "probes_added",),
-       hint="a white sky of radiance 1 gives the irradiance pi: the factor of degree 0",
-       sole="sees nothing but degree 0 and the sum of the weights")  # fmt: skip
+@check(
+    "11.5.constant",
+    task="11.5",
+    points=2,
+    calls=("probe_irradiance",),
+    needs=("sh_basis",),
+    tolerance=EXACT,
+    kills=(
+        "lobe_half",
+        "lobe_of_solid_angle",
+        "lobe_unclamped",
+        "lobe_without_pi",
+        "no_lobe",
+        "one_probe",
+        "probes_added",
+    ),
+    hint="a white sky of radiance 1 gives the irradiance pi: the factor of degree 0",
+    sole="sees nothing but degree 0 and the sum of the weights",
+)
 def a_constant_sky(t):
     """Radiance 1 from everywhere is the irradiance pi, at any place, on any surface."""
     probes = np.zeros((3, 2, 4, 9, 1))
@@ -330,13 +536,30 @@ def a_constant_sky(t):
     t.close("irradiance", lit(t, probes, p, unit(t.rng, 20)), np.full((20, 1), np.pi), reveal=True)
 
 
-@check("11.5.lambert", task="11.5", points=3, calls=("probe_irradiance",), needs=("sh_basis",),
-       tolerance=EXACT,
-       kills=("irradiance_clamped", "lobe_by_coefficient", "lobe_flat", "lobe_fourth_positive",
-              "lobe_half", "lobe_no_fourth", "lobe_of_solid_angle", "lobe_unclamped",
-              "lobe_without_pi", "no_lobe", "normal_reversed", "probes_added",),
-       hint="handout, equations (17) and (18): one factor for each degree",
-       sole="the integral that the factors stand for")  # fmt: skip
+@check(
+    "11.5.lambert",
+    task="11.5",
+    points=3,
+    calls=("probe_irradiance",),
+    needs=("sh_basis",),
+    tolerance=EXACT,
+    kills=(
+        "irradiance_clamped",
+        "lobe_by_coefficient",
+        "lobe_flat",
+        "lobe_fourth_positive",
+        "lobe_half",
+        "lobe_no_fourth",
+        "lobe_of_solid_angle",
+        "lobe_unclamped",
+        "lobe_without_pi",
+        "no_lobe",
+        "normal_reversed",
+        "probes_added",
+    ),
+    hint="handout, equations (17) and (18): one factor for each degree",
+    sole="the integral that the factors stand for",
+)
 def irradiance_is_the_integral(t):
     """One probe: irradiance is the integral of light times cosine, for light of degree 4 too."""
     half, weights = sphere(8, caps=True)
@@ -349,11 +572,17 @@ def irradiance_is_the_integral(t):
         t.close(f"irradiance, degree {degree}", got, np.stack(expected))
 
 
-@check("11.5.blend", task="11.5", points=3, calls=("probe_irradiance",), needs=("sh_basis",),
-       tolerance=EXACT,
-       kills=("nearest_probe", "one_probe", "probes_added", "probes_averaged", "probes_mirrored",),
-       hint="handout, equation (19): eight probes, the weights of `corners`",
-       sole="looks at the blend, whatever the factors")  # fmt: skip
+@check(
+    "11.5.blend",
+    task="11.5",
+    points=3,
+    calls=("probe_irradiance",),
+    needs=("sh_basis",),
+    tolerance=EXACT,
+    kills=("nearest_probe", "one_probe", "probes_added", "probes_averaged", "probes_mirrored"),
+    hint="handout, equation (19): eight probes, the weights of `corners`",
+    sole="looks at the blend, whatever the factors",
+)
 def an_even_change_is_blended_exactly(t):
     """Light that changes evenly from probe to probe is blended without error; borders hold."""
     shape = (4, 3, 2)
@@ -363,8 +592,9 @@ def an_even_change_is_blended_exactly(t):
     p, n = t.rng.uniform(-0.5, 3.5, (15, 3)), unit(t.rng, 15)
     inside = np.clip(p, 0, np.array(shape) - 1)
     alone = [start + np.einsum("i,ikc->kc", place, slopes) for place in inside]
-    expected = [lit(t, c[None, None, None], p[:1] * 0, n[k : k + 1])[0]
-                for k, c in enumerate(alone)]  # fmt: skip
+    expected = [
+        lit(t, c[None, None, None], p[:1] * 0, n[k : k + 1])[0] for k, c in enumerate(alone)
+    ]
     t.close("irradiance", lit(t, probes, p, n), np.stack(expected))
 
 
@@ -409,13 +639,24 @@ def small_case(rng, shape=(2, 3, 2), channels=1):
 EARLIER = ("sh_basis", "sh_color_adjoint")
 
 
-@check("11.6.refine", task="11.6", points=3, calls=("fit_plenoxels",), needs=EARLIER,
-       tolerance=EXACT,
-       kills=("refined_by_repetition", "refined_coefficients_lost", "refined_density_halved",
-              "refined_edge_to_edge", "refined_off_centre",),
-       hint="handout, equation (21): where do the eight new cells lie in the old ones? An array "
-            "twice too large: refinement stands between levels, not after the last",
-       sole="asks about the refinement alone")  # fmt: skip
+@check(
+    "11.6.refine",
+    task="11.6",
+    points=3,
+    calls=("fit_plenoxels",),
+    needs=EARLIER,
+    tolerance=EXACT,
+    kills=(
+        "refined_by_repetition",
+        "refined_coefficients_lost",
+        "refined_density_halved",
+        "refined_edge_to_edge",
+        "refined_off_centre",
+    ),
+    hint="handout, equation (21): where do the eight new cells lie in the old ones? An array "
+    "twice too large: refinement stands between levels, not after the last",
+    sole="asks about the refinement alone",
+)
 def refinement_keeps_what_is_even(t):
     """Without steps, two levels only refine: even slopes stay, the border holds."""
     shape = np.array([3, 2, 4])
@@ -423,27 +664,47 @@ def refinement_keeps_what_is_even(t):
     slopes, four = t.rng.uniform(0.1, 0.5, 3), t.rng.uniform(-1.0, 1.0, (4, 2))
     cells = np.stack(np.indices(tuple(shape)), axis=-1)
     density = 0.5 + cells @ slopes
-    got, c, _ = fitted(t, density, density[..., None, None] * four, rays,
-                       np.zeros((rays.shape[1], 2)), 2, 0)  # fmt: skip
+    got, c, _ = fitted(
+        t, density, density[..., None, None] * four, rays, np.zeros((rays.shape[1], 2)), 2, 0
+    )
     place = np.stack(np.indices(tuple(2 * shape)), axis=-1) / 2 - 0.25
     expected = 0.5 + np.clip(place, 0, shape - 1) @ slopes
     t.close("density", got, expected, reveal=True)
     t.close("coefficients", c, expected[..., None, None] * four)
 
 
-@check("11.6.first", task="11.6", points=2, calls=("fit_plenoxels",), needs=EARLIER,
-       tolerance=CHAINED,
-       kills=("adam_each_step", "coefficients_cut", "coefficients_frozen", "density_cut_late",
-              "density_first", "density_frozen", "density_mirrored", "density_uncut",
-              "losses_late", "uphill",),
-       hint="handout, equations (22) and (23), both in each step",
-       sole="asks about the first two steps alone")  # fmt: skip
+@check(
+    "11.6.first",
+    task="11.6",
+    points=2,
+    calls=("fit_plenoxels",),
+    needs=EARLIER,
+    tolerance=CHAINED,
+    kills=(
+        "adam_each_step",
+        "coefficients_cut",
+        "coefficients_frozen",
+        "density_cut_late",
+        "density_first",
+        "density_frozen",
+        "density_mirrored",
+        "density_uncut",
+        "losses_late",
+        "uphill",
+    ),
+    hint="handout, equations (22) and (23), both in each step",
+    sole="asks about the first two steps alone",
+)
 def the_first_steps(t):
     """Adam's first step has the length RATE against the gradient; none sees a density below 0."""
     density, c, rays, target = small_case(t.rng)
     density = density / 10
-    parts = Items(Number(), Array(density.shape), Array(c.shape),
-                  names=("loss", "d_density", "d_coefficients"))  # fmt: skip
+    parts = Items(
+        Number(),
+        Array(density.shape),
+        Array(c.shape),
+        names=("loss", "d_density", "d_coefficients"),
+    )
     given = t.call("adapters.gradient", density, c, rays, target, returns=parts)
     got = fitted(t, density, c, rays, target, 1, 1)
     loss, d_density, d_c = (np.asarray(each) for each in given)
@@ -463,11 +724,17 @@ def the_first_steps(t):
         t.close(f"{name} after two steps", then[k], expected)
 
 
-@check("11.6.chain", task="11.6", points=2, calls=("fit_plenoxels",), needs=EARLIER,
-       tolerance=CHAINED,
-       kills=("steps_at_last_level",),
-       hint="refine before every level but the first; then march, two new Adams, `steps` steps",
-       sole="counts levels, steps and losses")  # fmt: skip
+@check(
+    "11.6.chain",
+    task="11.6",
+    points=2,
+    calls=("fit_plenoxels",),
+    needs=EARLIER,
+    tolerance=CHAINED,
+    kills=("steps_at_last_level",),
+    hint="refine before every level but the first; then march, two new Adams, `steps` steps",
+    sole="counts levels, steps and losses",
+)
 def levels_can_be_chained(t):
     """Two levels are one level, a refinement, and one level more."""
     density, c, rays, target = small_case(t.rng, channels=2)
@@ -480,9 +747,15 @@ def levels_can_be_chained(t):
     t.close("coefficients", both[1], two[1])
 
 
-@check("11.6.start", task="11.6", points=1, calls=("fit_plenoxels",), needs=EARLIER,
-       kills=("start_overwritten",),
-       hint="an array of the start has changed: copy it first")  # fmt: skip
+@check(
+    "11.6.start",
+    task="11.6",
+    points=1,
+    calls=("fit_plenoxels",),
+    needs=EARLIER,
+    kills=("start_overwritten",),
+    hint="an array of the start has changed: copy it first",
+)
 def the_start_is_left_alone(t):
     """A second fit from the same arrays finds what the first one found."""
     given = (*small_case(t.rng), 2, 2)
@@ -491,14 +764,38 @@ def the_start_is_left_alone(t):
 
 
 # >>> hidden
-@check("11.1.hidden", task="11.1", points=4, calls=("sh_basis",), visibility="hidden",
-       tolerance=EXACT,
-       kills=("angle_once", "angle_without_radius", "degree_weights", "factorials_upside_down",
-              "last_degree_left_out", "mean_not_integral", "no_factorials", "no_phase",
-              "no_root", "no_root_two", "orders_by_size", "orders_reversed", "orders_swapped",
-              "other_end", "phase_of_degree", "pole_along_y", "recurrence_sign",
-              "recurrence_undivided", "root_two_everywhere", "start_of_ones", "x_and_y_swapped",),
-       sole="the same mistakes at directions that are not known beforehand")  # fmt: skip
+@check(
+    "11.1.hidden",
+    task="11.1",
+    points=4,
+    calls=("sh_basis",),
+    visibility="hidden",
+    tolerance=EXACT,
+    kills=(
+        "angle_once",
+        "angle_without_radius",
+        "degree_weights",
+        "factorials_upside_down",
+        "last_degree_left_out",
+        "mean_not_integral",
+        "no_factorials",
+        "no_phase",
+        "no_root",
+        "no_root_two",
+        "orders_by_size",
+        "orders_reversed",
+        "orders_swapped",
+        "other_end",
+        "phase_of_degree",
+        "pole_along_y",
+        "recurrence_sign",
+        "recurrence_undivided",
+        "root_two_everywhere",
+        "start_of_ones",
+        "x_and_y_swapped",
+    ),
+    sole="the same mistakes at directions that are not known beforehand",
+)
 def the_basis_at_random_directions(t):
     """All harmonics are right at random directions, at the poles too, for each degree."""
     for degree in range(5):
@@ -506,12 +803,25 @@ def the_basis_at_random_directions(t):
         t.close(f"degree {degree}", basis(t, d, degree), t.reference.sh_basis(d, degree))
 
 
-@check("11.2.hidden", task="11.2", points=3, calls=("sh_project",), needs=("sh_basis",),
-       visibility="hidden", tolerance=EXACT,
-       kills=("project_first_channel", "project_least_squares", "project_mean",
-              "project_normalised", "project_summed", "project_unweighted",
-              "project_weights_squared",),
-       sole="the same mistakes at values that are not known beforehand")  # fmt: skip
+@check(
+    "11.2.hidden",
+    task="11.2",
+    points=3,
+    calls=("sh_project",),
+    needs=("sh_basis",),
+    visibility="hidden",
+    tolerance=EXACT,
+    kills=(
+        "project_first_channel",
+        "project_least_squares",
+        "project_mean",
+        "project_normalised",
+        "project_summed",
+        "project_unweighted",
+        "project_weights_squared",
+    ),
+    sole="the same mistakes at values that are not known beforehand",
+)
 def projections_of_random_values(t):
     """Projections of random values are right, with weights of any kind."""
     for degree, n in ((4, 30), (0, 3), (2, 11)):
@@ -522,18 +832,49 @@ def projections_of_random_values(t):
         t.close(f"degree {degree}", got, t.reference.sh_project(d, weights, f, degree))
 
 
-@check("11.3.hidden", task="11.3", points=5, calls=("sh_color_adjoint",), needs=("sh_basis",),
-       visibility="hidden", tolerance=EXACT,
-       kills=("d_coefficients_at_v", "d_coefficients_of_all", "d_coefficients_summed",
-              "d_coefficients_without_g", "degree_weights", "factorials_upside_down",
-              "length_forgotten", "length_squared", "mean_not_integral", "no_factorials",
-              "no_phase", "no_projection", "no_root", "no_root_two", "no_slope_by_waves",
-              "no_slope_by_z", "phase_of_degree", "projection_added", "projection_only_divided",
-              "pull_first_channel", "pull_mean", "pull_without_g", "recurrence_sign",
-              "recurrence_undivided", "root_two_everywhere", "start_of_ones",
-              "wave_slope_not_lowered", "wave_slope_sign", "wave_slope_without_m",
-              "wave_slopes_swapped", "z_slope_same_order",),
-       sole="the same mistakes at values that are not known beforehand")  # fmt: skip
+@check(
+    "11.3.hidden",
+    task="11.3",
+    points=5,
+    calls=("sh_color_adjoint",),
+    needs=("sh_basis",),
+    visibility="hidden",
+    tolerance=EXACT,
+    kills=(
+        "d_coefficients_at_v",
+        "d_coefficients_of_all",
+        "d_coefficients_summed",
+        "d_coefficients_without_g",
+        "degree_weights",
+        "factorials_upside_down",
+        "length_forgotten",
+        "length_squared",
+        "mean_not_integral",
+        "no_factorials",
+        "no_phase",
+        "no_projection",
+        "no_root",
+        "no_root_two",
+        "no_slope_by_waves",
+        "no_slope_by_z",
+        "phase_of_degree",
+        "projection_added",
+        "projection_only_divided",
+        "pull_first_channel",
+        "pull_mean",
+        "pull_without_g",
+        "recurrence_sign",
+        "recurrence_undivided",
+        "root_two_everywhere",
+        "start_of_ones",
+        "wave_slope_not_lowered",
+        "wave_slope_sign",
+        "wave_slope_without_m",
+        "wave_slopes_swapped",
+        "z_slope_same_order",
+    ),
+    sole="the same mistakes at values that are not known beforehand",
+)
 def the_adjoint_at_random_values(t):
     """Both parts of the adjoint are right at random values, for each degree."""
     for degree, channels in ((0, 2), (1, 1), (2, 3), (3, 2), (4, 1)):
@@ -542,21 +883,57 @@ def the_adjoint_at_random_values(t):
         right = t.reference.sh_color_adjoint(c, v, g)
         t.close(f"d_coefficients, degree {degree}", d_c, right[0])
         size = float(np.linalg.norm(c) * np.linalg.norm(g))
-        t.close(f"d_v, degree {degree}", d_v, right[1],
-                Tolerance(EXACT.relative, EXACT.evidence, floor=size / 100))  # fmt: skip
+        t.close(
+            f"d_v, degree {degree}",
+            d_v,
+            right[1],
+            Tolerance(EXACT.relative, EXACT.evidence, floor=size / 100),
+        )
 
 
-@check("11.3.cost", task="11.3", points=2, calls=("sh_color_adjoint",), needs=("sh_basis",),
-       visibility="hidden", tolerance=EXACT,
-       kills=("adjoint_differences", "d_coefficients_at_v", "d_coefficients_of_all",
-              "d_coefficients_summed", "d_coefficients_without_g", "degree_weights",
-              "factorials_upside_down", "length_forgotten", "length_squared",
-              "mean_not_integral", "no_factorials", "no_phase", "no_projection", "no_root",
-              "no_root_two", "no_slope_by_waves", "no_slope_by_z", "phase_of_degree",
-              "projection_added", "projection_only_divided", "pull_first_channel", "pull_mean",
-              "pull_without_g", "recurrence_sign", "recurrence_undivided", "root_two_everywhere",
-              "start_of_ones", "wave_slope_not_lowered", "wave_slope_sign",
-              "wave_slope_without_m", "wave_slopes_swapped", "z_slope_same_order",))  # fmt: skip
+@check(
+    "11.3.cost",
+    task="11.3",
+    points=2,
+    calls=("sh_color_adjoint",),
+    needs=("sh_basis",),
+    visibility="hidden",
+    tolerance=EXACT,
+    kills=(
+        "adjoint_differences",
+        "d_coefficients_at_v",
+        "d_coefficients_of_all",
+        "d_coefficients_summed",
+        "d_coefficients_without_g",
+        "degree_weights",
+        "factorials_upside_down",
+        "length_forgotten",
+        "length_squared",
+        "mean_not_integral",
+        "no_factorials",
+        "no_phase",
+        "no_projection",
+        "no_root",
+        "no_root_two",
+        "no_slope_by_waves",
+        "no_slope_by_z",
+        "phase_of_degree",
+        "projection_added",
+        "projection_only_divided",
+        "pull_first_channel",
+        "pull_mean",
+        "pull_without_g",
+        "recurrence_sign",
+        "recurrence_undivided",
+        "root_two_everywhere",
+        "start_of_ones",
+        "wave_slope_not_lowered",
+        "wave_slope_sign",
+        "wave_slope_without_m",
+        "wave_slopes_swapped",
+        "z_slope_same_order",
+    ),
+)
 def the_adjoint_is_cheap(t):
     """For 60 colours of degree 4 the adjoint is right, and costs a few forward calls."""
     c, v, g = colours(t.rng, 60, 4, 3)
@@ -565,18 +942,27 @@ def the_adjoint_is_cheap(t):
     t.close("d_coefficients", d_c, right[0])
     t.close("d_v", d_v, right[1])
     parts = Items(Array(c.shape), Array(v.shape), names=("d_coefficients", "d_v"))
-    require_cheap(
-        t,
-        ("sh_color", (c, v), Array(g.shape)),
-        ("sh_color_adjoint", (c, v, g), parts),
-    )
+    require_cheap(t, ("sh_color", (c, v), Array(g.shape)), ("sh_color_adjoint", (c, v, g), parts))
 
 
-@check("11.4.hidden", task="11.4", points=3, calls=("sh_rotate",),
-       needs=("sh_basis", "sh_project"), visibility="hidden", tolerance=EXACT,
-       kills=("even_degrees_negated", "not_turned", "quadrature_too_coarse",
-              "turned_about_z_only", "turned_back", "turned_twice",),
-       sole="the same mistakes at turns that are not known beforehand")  # fmt: skip
+@check(
+    "11.4.hidden",
+    task="11.4",
+    points=3,
+    calls=("sh_rotate",),
+    needs=("sh_basis", "sh_project"),
+    visibility="hidden",
+    tolerance=EXACT,
+    kills=(
+        "even_degrees_negated",
+        "not_turned",
+        "quadrature_too_coarse",
+        "turned_about_z_only",
+        "turned_back",
+        "turned_twice",
+    ),
+    sole="the same mistakes at turns that are not known beforehand",
+)
 def random_turns(t):
     """Random coefficients are turned rightly, for each degree."""
     for degree in range(5):
@@ -584,13 +970,34 @@ def random_turns(t):
         t.close(f"degree {degree}", rotated(t, c, R), t.reference.sh_rotate(c, R))
 
 
-@check("11.5.hidden", task="11.5", points=2, calls=("probe_irradiance",), needs=("sh_basis",),
-       visibility="hidden", tolerance=EXACT,
-       kills=("irradiance_clamped", "lobe_by_coefficient", "lobe_flat", "lobe_fourth_positive",
-              "lobe_half", "lobe_no_fourth", "lobe_of_solid_angle", "lobe_unclamped",
-              "lobe_without_pi", "nearest_probe", "no_lobe", "normal_reversed", "one_probe",
-              "probes_added", "probes_averaged", "probes_mirrored",),
-       sole="the same mistakes at probes that are not known beforehand")  # fmt: skip
+@check(
+    "11.5.hidden",
+    task="11.5",
+    points=2,
+    calls=("probe_irradiance",),
+    needs=("sh_basis",),
+    visibility="hidden",
+    tolerance=EXACT,
+    kills=(
+        "irradiance_clamped",
+        "lobe_by_coefficient",
+        "lobe_flat",
+        "lobe_fourth_positive",
+        "lobe_half",
+        "lobe_no_fourth",
+        "lobe_of_solid_angle",
+        "lobe_unclamped",
+        "lobe_without_pi",
+        "nearest_probe",
+        "no_lobe",
+        "normal_reversed",
+        "one_probe",
+        "probes_added",
+        "probes_averaged",
+        "probes_mirrored",
+    ),
+    sole="the same mistakes at probes that are not known beforehand",
+)
 def irradiance_among_random_probes(t):
     """Irradiance is right among random probes, for each degree, one probe wide grids included."""
     for degree, shape in ((0, (2, 2, 2)), (2, (3, 1, 4)), (3, (1, 5, 2)), (4, (2, 3, 3))):
@@ -600,13 +1007,31 @@ def irradiance_among_random_probes(t):
         t.close(f"irradiance, degree {degree}", lit(t, probes, p, n), right)
 
 
-@check("11.6.hidden", task="11.6", points=2, calls=("fit_plenoxels",), needs=EARLIER,
-       visibility="hidden", tolerance=CHAINED,
-       kills=("adam_each_step", "coefficients_cut", "coefficients_frozen", "density_first",
-              "density_frozen", "losses_late", "refined_by_repetition",
-              "refined_coefficients_lost", "refined_density_halved", "refined_edge_to_edge",
-              "refined_off_centre", "steps_at_last_level", "uphill",),
-       sole="the same mistakes at scenes that are not known beforehand")  # fmt: skip
+@check(
+    "11.6.hidden",
+    task="11.6",
+    points=2,
+    calls=("fit_plenoxels",),
+    needs=EARLIER,
+    visibility="hidden",
+    tolerance=CHAINED,
+    kills=(
+        "adam_each_step",
+        "coefficients_cut",
+        "coefficients_frozen",
+        "density_first",
+        "density_frozen",
+        "losses_late",
+        "refined_by_repetition",
+        "refined_coefficients_lost",
+        "refined_density_halved",
+        "refined_edge_to_edge",
+        "refined_off_centre",
+        "steps_at_last_level",
+        "uphill",
+    ),
+    sole="the same mistakes at scenes that are not known beforehand",
+)
 def fits_of_random_scenes(t):
     """Three levels of two steps end where they should."""
     density, c, rays, target = small_case(t.rng, (2, 1, 3), 2)
@@ -622,8 +1047,10 @@ def glossy_scene(t, n):
     middle = t.rng.uniform(0.2, 0.4) * unit(t.rng, 1)[0]
     light = unit(t.rng, 1)[0]
     outward = [x - middle, x + 1.4 * middle]
-    inside = [np.clip((r - np.linalg.norm(each, axis=-1)) * n / 3 + 0.5, 0, 1)
-              for r, each in zip((0.45, 0.3), outward, strict=True)]  # fmt: skip
+    inside = [
+        np.clip((r - np.linalg.norm(each, axis=-1)) * n / 3 + 0.5, 0, 1)
+        for r, each in zip((0.45, 0.3), outward, strict=True)
+    ]
     first = inside[0] >= inside[1]
     normal = np.where(first[..., None], *outward)
     normal /= np.linalg.norm(normal, axis=-1, keepdims=True) + 1e-12
@@ -635,11 +1062,23 @@ def glossy_scene(t, n):
     return 8 * np.maximum(*inside), c
 
 
-@check("11.6.gain", task="11.6", points=4, calls=("fit_plenoxels",), needs=EARLIER,
-       visibility="hidden",
-       kills=("coefficients_frozen", "density_frozen", "refined_coefficients_lost",
-              "steps_at_last_level", "uphill",), seconds=60.0,
-       sole="the whole: a scene that nobody has seen, from its pictures")  # fmt: skip
+@check(
+    "11.6.gain",
+    task="11.6",
+    points=4,
+    calls=("fit_plenoxels",),
+    needs=EARLIER,
+    visibility="hidden",
+    kills=(
+        "coefficients_frozen",
+        "density_frozen",
+        "refined_coefficients_lost",
+        "steps_at_last_level",
+        "uphill",
+    ),
+    seconds=60.0,
+    sole="the whole: a scene that nobody has seen, from its pictures",
+)
 def coarse_to_fine_beats_the_fixed_grid(t):
     """A glossy scene, seen from new places, is at least 1 dB better coarse to fine."""
     density, c = glossy_scene(t, 20)
@@ -659,8 +1098,9 @@ def coarse_to_fine_beats_the_fixed_grid(t):
     fixed, fine = scores
     # Forty seeds: at least 1.7 dB more, 3.3 on average; 20.2 dB at worst, an empty volume has 17.
     # With a density that never moves: 0.2 dB more.
-    t.require(fine >= fixed + 1.0,
-              f"coarse to fine {fine:.1f} dB, fixed {fixed:.1f} dB: asked 1 dB more")  # fmt: skip
+    t.require(
+        fine >= fixed + 1.0, f"coarse to fine {fine:.1f} dB, fixed {fixed:.1f} dB: asked 1 dB more"
+    )
     t.require(fine >= 19.0, f"coarse to fine {fine:.1f} dB, asked 19 dB")
 
 

@@ -42,12 +42,12 @@ def fig1_harmonics(module):
         "l = 1, m = 1 is negative towards +x": (float(east[3]), -1, -0.4),
         "l = 1, m = 0 is positive towards +z": (float(pole[2]), 0.4, 1),
         "odd degrees change sign at the opposite point, even ones do not": (
-            float(np.abs(back - there * odd).max()), 0, 1e-12,
+            float(np.abs(back - there * odd).max()),
+            0,
+            1e-12,
         ),
-        "all but the first have mean zero": (
-            float(np.abs(weights @ there)[1:].max()), 0, 1e-12,
-        ),
-    }  # fmt: skip
+        "all but the first have mean zero": (float(np.abs(weights @ there)[1:].max()), 0, 1e-12),
+    }
     with house_style():
         figure = Figure(figsize=(7.0, 4.1))
         top = float(np.abs(Y).max())
@@ -80,24 +80,34 @@ def fig2_projection(module):
         "each degree comes closer": bool((np.diff(errors) < 0).all()),
         "the mean is kept from the first": (max(abs(mean - 1) for mean in means), 0, 1e-9),
         "degree 4 finds the lamp to 10 degrees": (
-            float(np.degrees(np.arccos(places[np.argmax(peak)] @ LAMP))), 0, 10,
+            float(np.degrees(np.arccos(places[np.argmax(peak)] @ LAMP))),
+            0,
+            10,
         ),
         "degree 4 keeps less than half of the lamp's peak": (
-            float(peak.max() / shown[0][1].max()), 0.1, 0.5,
+            float(peak.max() / shown[0][1].max()),
+            0.1,
+            0.5,
         ),
         "degree 4 is below zero on more than 10 % of the sphere": (
-            float(weights[four < 0].sum() / (4 * np.pi)), 0.1, 0.5,
+            float(weights[four < 0].sum() / (4 * np.pi)),
+            0.1,
+            0.5,
         ),
         "the sky is nowhere below zero": (float(shown[0][1].min()), 0, 1),
-    }  # fmt: skip
+    }
     with house_style():
         figure = Figure(figsize=(7.0, 3.1), layout="constrained")
         panels = figure.subplots(2, 3)
         for axes, (title, values) in zip(panels.flat, shown, strict=False):
             image = axes.imshow(
-                values.reshape(shape), cmap=signed_colour_map(), vmin=-1.5, vmax=1.5,
-                extent=(0, 360, -1, 1), aspect=90,
-            )  # fmt: skip
+                values.reshape(shape),
+                cmap=signed_colour_map(),
+                vmin=-1.5,
+                vmax=1.5,
+                extent=(0, 360, -1, 1),
+                aspect=90,
+            )
             axes.set(title=title, xticks=[], yticks=[-1, 1])
         panels[1, 0].set(xticks=[0, 180, 360], xlabel="angle around z, degrees", ylabel="z")
         panels[0, 0].set_ylabel("z")
@@ -132,7 +142,7 @@ def fig3_tangent(module):
         "arrows are tangent": (float(max(parts)), 0, 1e-12),
         "along each arrow f rises": bool(np.all(rises)),
         "over 200 arrows": (float(2 * len(at)), 200, 400),
-    }  # fmt: skip
+    }
     with house_style():
         figure = Figure(figsize=(7.0, 3.3), layout="constrained")
         panels = figure.subplots(1, 2)
@@ -180,9 +190,13 @@ def fig4_irradiance(module):
             (panels[1, 0], off, "difference, % of mean", (-far, far), signed_colour_map()),
         ):
             image = axes.imshow(
-                values.reshape(shape), cmap=colours, vmin=limits[0], vmax=limits[1],
-                extent=(0, 360, -1, 1), aspect=90,
-            )  # fmt: skip
+                values.reshape(shape),
+                cmap=colours,
+                vmin=limits[0],
+                vmax=limits[1],
+                extent=(0, 360, -1, 1),
+                aspect=90,
+            )
             axes.set(title=title, xticks=[0, 180, 360], yticks=[-1, 0, 1])
             if axes is not panels[0, 1]:
                 figure.colorbar(
@@ -200,11 +214,13 @@ def fig4_irradiance(module):
             float(
                 module.probe_irradiance(
                     np.eye((ell + 1) ** 2)[ell * (ell + 1)][None, None, None, :, None],
-                    np.zeros((1, 3)), np.array([[0, 0, 1.0]]),
-                )[0, 0] / module.sh_basis(np.array([[0, 0, 1.0]]), ell)[0, ell * (ell + 1)]
+                    np.zeros((1, 3)),
+                    np.array([[0, 0, 1.0]]),
+                )[0, 0]
+                / module.sh_basis(np.array([[0, 0, 1.0]]), ell)[0, ell * (ell + 1)]
             )
             for ell in range(5)
-        ]  # fmt: skip
+        ]
         axes.bar(range(5), factors, color=ORANGE, width=0.6)
         axes.axhline(0, color=FRAME, linewidth=0.7)
         axes.set(xlabel="degree l", title="factor of the lobe")
@@ -235,16 +251,21 @@ def fig5_glyphs(module):
     strong = np.linalg.norm(slice_, axis=-1) > 0.3 * np.linalg.norm(slice_, axis=-1).max()
     facts = {
         "cells that face the highlight get brighter towards it": (
-            float((gain > 0).mean()), 0.95, 1,
+            float((gain > 0).mean()),
+            0.95,
+            1,
         ),
         "more than 80 % of the energy lies in or next to the ball": (
-            float(energy[near].sum() / energy.sum()), 0.8, 1,
+            float(energy[near].sum() / energy.sum()),
+            0.8,
+            1,
         ),
         "most of the larger glyphs have both colours": (
             float(((change[strong].min(axis=1) < 0) & (change[strong].max(axis=1) > 0)).mean()),
-            0.6, 1,
+            0.6,
+            1,
         ),
-    }  # fmt: skip
+    }
     with house_style():
         figure = Figure(figsize=(5.6, 5.2), layout="constrained")
         axes = figure.subplots()
@@ -302,13 +323,13 @@ def fig6_coarse_to_fine(module):
         "16 cells a side at the end": cells == (16, 16, 16),
         "coarse to fine ends more than 4 dB above": (fine[-1] - fixed[-1], 4, 20),
         "the fixed grid fits its own photographs to better than 27 dB": (
-            runs["fixed grid"][3], 27, 60,
+            runs["fixed grid"][3],
+            27,
+            60,
         ),
-        "on new views the fixed grid gets worse after its best": (
-            max(fixed) - fixed[-1], 0.5, 10,
-        ),
+        "on new views the fixed grid gets worse after its best": (max(fixed) - fixed[-1], 0.5, 10),
         "degree 0 loses more than 2 dB": (fine[-1] - plain[-1], 2, 20),
-    }  # fmt: skip
+    }
     with house_style():
         figure = Figure(figsize=(7.0, 4.0), layout="constrained")
         grid = figure.add_gridspec(2, 4, height_ratios=(1, 1.15))

@@ -7,9 +7,12 @@ import numpy as np
 
 def _camera(f, centre, width):
     return {
-        "camera_from_world": np.eye(4)[:3], "focal": np.full(2, float(f)),
-        "centre": np.array([centre, 0.5 * width]), "width": width, "height": width,
-    }  # fmt: skip
+        "camera_from_world": np.eye(4)[:3],
+        "focal": np.full(2, float(f)),
+        "centre": np.array([centre, 0.5 * width]),
+        "width": width,
+        "height": width,
+    }
 
 
 def variance_of_a_ball(reference, s, z, f):

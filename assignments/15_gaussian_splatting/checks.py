@@ -37,9 +37,12 @@ def some_camera(rng):
     """A camera anywhere, whose pictures are not square."""
     pose = np.concatenate([turned(rng), rng.normal(size=(3, 1))], axis=1)
     return {
-        "camera_from_world": pose, "focal": np.array([18.0, 22.0]),
-        "centre": np.array([9.0, 8.0]), "width": 20, "height": 14,
-    }  # fmt: skip
+        "camera_from_world": pose,
+        "focal": np.array([18.0, 22.0]),
+        "centre": np.array([9.0, 8.0]),
+        "width": 20,
+        "height": 14,
+    }
 
 
 def in_world(camera, t):
@@ -92,11 +95,23 @@ def spread_back(t, q, s, g):
     return t.call("adapters.covariance_back", q, s, g, returns=parts)
 
 
-@check("15.1.axes", task="15.1", points=2, calls=("covariance",), tolerance=EXACT,
-       kills=("shape_half_turned", "shape_product_reversed", "shape_rows_scaled",
-              "shape_turned_back", "shape_variances", "shape_w_last",),
-       hint="handout, equations (4) to (6): w turns nothing, (x, y, z) is the axis",
-       sole="small enough to work out by hand")  # fmt: skip
+@check(
+    "15.1.axes",
+    task="15.1",
+    points=2,
+    calls=("covariance",),
+    tolerance=EXACT,
+    kills=(
+        "shape_half_turned",
+        "shape_product_reversed",
+        "shape_rows_scaled",
+        "shape_turned_back",
+        "shape_variances",
+        "shape_w_last",
+    ),
+    hint="handout, equations (4) to (6): w turns nothing, (x, y, z) is the axis",
+    sole="small enough to work out by hand",
+)
 def known_turns(t):
     """Unturned the scales lie on the axes; about z by an angle, xx, xy, yy are known."""
     s = t.rng.uniform(-1.0, 1.0, (1, 3))
@@ -112,14 +127,24 @@ def known_turns(t):
         p, r = np.exp(2 * s[0, [i, j]])
         cos, sin = np.cos(angle), np.sin(angle)
         expected = [p * cos**2 + r * sin**2, (p - r) * sin * cos, p * sin**2 + r * cos**2]
-        t.close(f"cov, turned about the axis {'xyz'[axis]}", got[[i, i, j], [i, j, j]], expected,
-                reveal=True)  # fmt: skip
+        t.close(
+            f"cov, turned about the axis {'xyz'[axis]}",
+            got[[i, i, j], [i, j, j]],
+            expected,
+            reveal=True,
+        )
 
 
-@check("15.1.same", task="15.1", points=2, calls=("covariance",), tolerance=EXACT,
-       kills=("shape_half_turned", "shape_unnormalised", "shape_variances",),
-       hint="handout, section 1: divide by the length of q; M M^T is symmetric whatever M is",
-       sole="needs no formula: what any covariance must be")  # fmt: skip
+@check(
+    "15.1.same",
+    task="15.1",
+    points=2,
+    calls=("covariance",),
+    tolerance=EXACT,
+    kills=("shape_half_turned", "shape_unnormalised", "shape_variances"),
+    hint="handout, section 1: divide by the length of q; M M^T is symmetric whatever M is",
+    sole="needs no formula: what any covariance must be",
+)
 def symmetric_positive_and_free_of_length(t):
     """cov is symmetric, its eigenvalues are squared scales; q, -q and 3 q are one Gaussian."""
     q, s = t.rng.normal(size=(6, 4)), t.rng.uniform(-1.0, 1.0, (6, 3))
@@ -130,15 +155,34 @@ def symmetric_positive_and_free_of_length(t):
     t.close("cov of 3 q", spread(t, 3 * q, s), cov)
 
 
-@check("15.1.differences", task="15.1", points=4, calls=("covariance",), tolerance=GATE,
-       kills=("shape_back_K_sign", "shape_back_R_unscaled", "shape_back_length",
-              "shape_back_not_log", "shape_back_one_K", "shape_back_one_factor",
-              "shape_back_radial", "shape_back_rows", "shape_back_symmetric",
-              "shape_back_w_lost", "shape_half_turned", "shape_product_reversed",
-              "shape_rows_scaled", "shape_turned_back", "shape_unnormalised",
-              "shape_variances", "shape_w_last",),
-       hint="handout, equations (7) and (8); d_log_scales: M, not R; d_cov need not be symmetric",
-       sole="the derivative itself, without the reference")  # fmt: skip
+@check(
+    "15.1.differences",
+    task="15.1",
+    points=4,
+    calls=("covariance",),
+    tolerance=GATE,
+    kills=(
+        "shape_back_K_sign",
+        "shape_back_R_unscaled",
+        "shape_back_length",
+        "shape_back_not_log",
+        "shape_back_one_K",
+        "shape_back_one_factor",
+        "shape_back_radial",
+        "shape_back_rows",
+        "shape_back_symmetric",
+        "shape_back_w_lost",
+        "shape_half_turned",
+        "shape_product_reversed",
+        "shape_rows_scaled",
+        "shape_turned_back",
+        "shape_unnormalised",
+        "shape_variances",
+        "shape_w_last",
+    ),
+    hint="handout, equations (7) and (8); d_log_scales: M, not R; d_cov need not be symmetric",
+    sole="the derivative itself, without the reference",
+)
 def the_shape_agrees_with_differences(t):
     """Moving q or a scale moves your covariance as your back says, group by group."""
     q, s = t.rng.normal(size=(3, 4)), t.rng.uniform(-0.7, 0.7, (3, 3))
@@ -154,10 +198,16 @@ def the_shape_agrees_with_differences(t):
     require_zero_for_zero(t, {"quats": none[0], "log_scales": none[1]})
 
 
-@check("15.1.length", task="15.1", points=1, calls=("covariance",), tolerance=EXACT,
-       kills=("shape_back_length", "shape_back_radial", "shape_unnormalised",),
-       hint="handout, equation (8): a longer q alone changes nothing",
-       sole="names what the division by the length leaves out")  # fmt: skip
+@check(
+    "15.1.length",
+    task="15.1",
+    points=1,
+    calls=("covariance",),
+    tolerance=EXACT,
+    kills=("shape_back_length", "shape_back_radial", "shape_unnormalised"),
+    hint="handout, equation (8): a longer q alone changes nothing",
+    sole="names what the division by the length leaves out",
+)
 def length_has_no_derivative(t):
     """Along q nothing changes: q . d_q = 0; at 2 q, d_q is half as long; at -q it is -d_q."""
     q, s = t.rng.normal(size=(5, 4)), t.rng.uniform(-0.7, 0.7, (5, 3))
@@ -197,10 +247,16 @@ def outside(rng, camera, k):
     return np.where(np.abs(side) > 0.25, k * side, side)
 
 
-@check("15.2.means", task="15.2", points=3, calls=("project",), tolerance=EXACT,
-       kills=("lens_inverse_pose", "lens_mean_held", "lens_no_centre",),
-       hint="handout, equations (9) and (10): rotate, move, divide by t_z, stretch, move",
-       sole="needs no covariance")  # fmt: skip
+@check(
+    "15.2.means",
+    task="15.2",
+    points=3,
+    calls=("project",),
+    tolerance=EXACT,
+    kills=("lens_inverse_pose", "lens_mean_held", "lens_no_centre"),
+    hint="handout, equations (9) and (10): rotate, move, divide by t_z, stretch, move",
+    sole="needs no covariance",
+)
 def where_means_are_seen(t):
     """A point on the ray through a place of the screen is seen there, at its depth."""
     camera = some_camera(t.rng)
@@ -212,11 +268,22 @@ def where_means_are_seen(t):
     t.close("depth", depth, z, reveal=True)
 
 
-@check("15.2.sampled", task="15.2", points=3, calls=("project",), tolerance=SAMPLED,
-       kills=("lens_cov_unturned", "lens_inverse_pose", "lens_no_third_column",
-              "lens_size_without_depth", "lens_third_column_sign",),
-       hint="handout, equations (11) and (12): J is the derivative of (10) by t",
-       sole="needs no formula: only your own means")  # fmt: skip
+@check(
+    "15.2.sampled",
+    task="15.2",
+    points=3,
+    calls=("project",),
+    tolerance=SAMPLED,
+    kills=(
+        "lens_cov_unturned",
+        "lens_inverse_pose",
+        "lens_no_third_column",
+        "lens_size_without_depth",
+        "lens_third_column_sign",
+    ),
+    hint="handout, equations (11) and (12): J is the derivative of (10) by t",
+    sole="needs no formula: only your own means",
+)
 def the_covariance_of_projected_points(t):
     """Points spread like a small Gaussian are seen spread as your cov2d says."""
     camera = some_camera(t.rng)
@@ -232,10 +299,16 @@ def the_covariance_of_projected_points(t):
         t.close("cov2d", cov2d[k], sample, SAMPLED)
 
 
-@check("15.2.limits", task="15.2", points=2, calls=("project",), tolerance=EXACT,
-       kills=("lens_inverse_pose", "lens_mean_held", "lens_no_centre", "lens_not_held",),
-       hint="handout, equation (13): only J sees the held direction, and mean2d does not",
-       sole="asks what is held and what is not, on each side")  # fmt: skip
+@check(
+    "15.2.limits",
+    task="15.2",
+    points=2,
+    calls=("project",),
+    tolerance=EXACT,
+    kills=("lens_inverse_pose", "lens_mean_held", "lens_no_centre", "lens_not_held"),
+    hint="handout, equation (13): only J sees the held direction, and mean2d does not",
+    sole="asks what is held and what is not, on each side",
+)
 def what_is_held_outside(t):
     """Outside the limits cov2d is that of the limit, while mean2d goes on."""
     camera = some_camera(t.rng)
@@ -270,15 +343,32 @@ def projection_gate(t, points, camera, g):
     require_gradients(t, found, forward, {"means": means, NINE: six}, g, GATE)
 
 
-@check("15.2.differences", task="15.2", points=4, calls=("project",), tolerance=GATE,
-       kills=("lens_back_J_fixed", "lens_back_cov_in_camera", "lens_back_depth_under_f",
-              "lens_back_in_camera", "lens_back_one_factor", "lens_back_only_means",
-              "lens_back_turned_on", "lens_back_xy_lost", "lens_back_xy_twice",
-              "lens_cov_unturned", "lens_inverse_pose", "lens_no_third_column",
-              "lens_size_without_depth", "lens_third_column_sign",),
-       hint="handout, equation (14): xy is two entries of a matrix. d_means: t_z stands in four "
-            "entries of J and in both u; inside, J_xz moves by u as well",
-       sole="the derivative itself, without the reference")  # fmt: skip
+@check(
+    "15.2.differences",
+    task="15.2",
+    points=4,
+    calls=("project",),
+    tolerance=GATE,
+    kills=(
+        "lens_back_J_fixed",
+        "lens_back_cov_in_camera",
+        "lens_back_depth_under_f",
+        "lens_back_in_camera",
+        "lens_back_one_factor",
+        "lens_back_only_means",
+        "lens_back_turned_on",
+        "lens_back_xy_lost",
+        "lens_back_xy_twice",
+        "lens_cov_unturned",
+        "lens_inverse_pose",
+        "lens_no_third_column",
+        "lens_size_without_depth",
+        "lens_third_column_sign",
+    ),
+    hint="handout, equation (14): xy is two entries of a matrix. d_means: t_z stands in four "
+    "entries of J and in both u; inside, J_xz moves by u as well",
+    sole="the derivative itself, without the reference",
+)
 def the_projection_agrees_with_differences(t):
     """Moving a mean or a covariance moves its splat as your back says."""
     camera = some_camera(t.rng)
@@ -291,16 +381,35 @@ def the_projection_agrees_with_differences(t):
     require_zero_for_zero(t, {"means": none[0], "cov": none[1]})
 
 
-@check("15.2.held", task="15.2", points=3, calls=("project",), tolerance=GATE,
-       kills=("lens_back_J_fixed", "lens_back_cov_in_camera", "lens_back_depth_under_f",
-              "lens_back_held_dead", "lens_back_held_moves", "lens_back_in_camera",
-              "lens_back_one_factor", "lens_back_only_means", "lens_back_public_code",
-              "lens_back_turned_on", "lens_back_xy_lost", "lens_back_xy_twice",
-              "lens_cov_unturned", "lens_inverse_pose", "lens_mean_held",
-              "lens_no_third_column", "lens_size_without_depth",
-              "lens_third_column_sign",),
-       hint="handout, section 2: what is held does not move; t_z still stands under f",
-       sole="the branch that public code has wrong")  # fmt: skip
+@check(
+    "15.2.held",
+    task="15.2",
+    points=3,
+    calls=("project",),
+    tolerance=GATE,
+    kills=(
+        "lens_back_J_fixed",
+        "lens_back_cov_in_camera",
+        "lens_back_depth_under_f",
+        "lens_back_held_dead",
+        "lens_back_held_moves",
+        "lens_back_in_camera",
+        "lens_back_one_factor",
+        "lens_back_only_means",
+        "lens_back_public_code",
+        "lens_back_turned_on",
+        "lens_back_xy_lost",
+        "lens_back_xy_twice",
+        "lens_cov_unturned",
+        "lens_inverse_pose",
+        "lens_mean_held",
+        "lens_no_third_column",
+        "lens_size_without_depth",
+        "lens_third_column_sign",
+    ),
+    hint="handout, section 2: what is held does not move; t_z still stands under f",
+    sole="the branch that public code has wrong",
+)
 def outside_the_limits_too(t):
     """Outside of the limits, beside the picture and at its corners, differences agree as well."""
     camera = some_camera(t.rng)
@@ -321,8 +430,13 @@ def taken(t, m, s, o, pixels):
 
 def taken_back(t, m, s, o, pixels, g):
     """What the `back` of `screen_alpha` returns."""
-    parts = Items(Array(m.shape), Array(s.shape), Array(o.shape), Array(m.shape),
-                  names=("d_mean2d", "d_cov2d", "d_opacity_logits", "pull"))  # fmt: skip
+    parts = Items(
+        Array(m.shape),
+        Array(s.shape),
+        Array(o.shape),
+        Array(m.shape),
+        names=("d_mean2d", "d_cov2d", "d_opacity_logits", "pull"),
+    )
     return t.call("adapters.screen_alpha_back", m, s, o, pixels, g, returns=parts)
 
 
@@ -333,11 +447,16 @@ def wide_splats(rng, n, p):
     return rng.uniform(0.0, 4.0, (n, 2)), s, rng.uniform(0.0, 2.0, n), rng.uniform(0.0, 4.0, (p, 2))
 
 
-@check("15.3.round", task="15.3", points=2, calls=("screen_alpha",), tolerance=EXACT,
-       kills=("alpha_low_pass_xy", "alpha_no_half", "alpha_no_low_pass",
-              "alpha_not_inverted",),
-       hint="handout, equations (15) to (18), for a round splat",
-       sole="small enough to work out by hand")  # fmt: skip
+@check(
+    "15.3.round",
+    task="15.3",
+    points=2,
+    calls=("screen_alpha",),
+    tolerance=EXACT,
+    kills=("alpha_low_pass_xy", "alpha_no_half", "alpha_no_low_pass", "alpha_not_inverted"),
+    hint="handout, equations (15) to (18), for a round splat",
+    sole="small enough to work out by hand",
+)
 def a_round_splat(t):
     """In its middle alpha is the opacity, at a known distance half of it, and LOW_PASS counts."""
     logits = t.rng.uniform(-1.0, 1.0, 3)
@@ -350,13 +469,26 @@ def a_round_splat(t):
     t.close("alpha at half", np.diag(taken(t, m, s, logits, there)), o / 2, reveal=True)
 
 
-@check("15.3.ellipse", task="15.3", points=2, calls=("screen_alpha",), tolerance=EXACT,
-       kills=("alpha_conic_once", "alpha_conic_sign", "alpha_conic_unswapped",
-              "alpha_low_pass_xy", "alpha_mirrored", "alpha_no_half", "alpha_no_low_pass",
-              "alpha_not_inverted",),
-       hint="handout, equations (16) and (17): the inverse swaps xx and yy; B dx dy stands outside "
-            "of the 1/2; or dx and dy have different signs",
-       sole="says whether the conic belongs to the covariance")  # fmt: skip
+@check(
+    "15.3.ellipse",
+    task="15.3",
+    points=2,
+    calls=("screen_alpha",),
+    tolerance=EXACT,
+    kills=(
+        "alpha_conic_once",
+        "alpha_conic_sign",
+        "alpha_conic_unswapped",
+        "alpha_low_pass_xy",
+        "alpha_mirrored",
+        "alpha_no_half",
+        "alpha_no_low_pass",
+        "alpha_not_inverted",
+    ),
+    hint="handout, equations (16) and (17): the inverse swaps xx and yy; B dx dy stands outside "
+    "of the 1/2; or dx and dy have different signs",
+    sole="says whether the conic belongs to the covariance",
+)
 def on_an_ellipse_alpha_is_the_same(t):
     """On the ellipse of k standard deviations, alpha is the opacity times exp(-k^2 / 2)."""
     m, s, logits, _ = wide_splats(t.rng, 1, 1)
@@ -367,17 +499,34 @@ def on_an_ellipse_alpha_is_the_same(t):
     t.close("alpha", taken(t, m, s, logits, ring), np.full((1, 9), expected), reveal=True)
 
 
-@check("15.3.cuts", task="15.3", points=2, calls=("screen_alpha",), tolerance=EXACT,
-       kills=("alpha_back_dropped_passes", "alpha_back_held_passes", "alpha_low_pass_xy",
-              "alpha_no_half", "alpha_no_low_pass", "alpha_not_dropped", "alpha_not_held",
-              "alpha_not_inverted",),
-       hint="handout, equation (18): below ALPHA_MIN nothing, never above ALPHA_MAX; both are flat",
-       sole="names the cut-off, and whether its derivative is 0")  # fmt: skip
+@check(
+    "15.3.cuts",
+    task="15.3",
+    points=2,
+    calls=("screen_alpha",),
+    tolerance=EXACT,
+    kills=(
+        "alpha_back_dropped_passes",
+        "alpha_back_held_passes",
+        "alpha_low_pass_xy",
+        "alpha_no_half",
+        "alpha_no_low_pass",
+        "alpha_not_dropped",
+        "alpha_not_held",
+        "alpha_not_inverted",
+    ),
+    hint="handout, equation (18): below ALPHA_MIN nothing, never above ALPHA_MAX; both are flat",
+    sole="names the cut-off, and whether its derivative is 0",
+)
 def cut_offs(t):
     """What is below 1 / 255 is exactly 0, what is above 0.999 is held, and neither moves."""
     m, s = t.rng.uniform(0.0, 9.0, (1, 2)), np.array([[4.0, 0.0, 4.0]])
-    for logit, alpha, expected in ((0.0, 0.0037, 0.0), (0.0, 0.0042, 0.0042),
-                                   (9.0, 0.9993, 0.999), (9.0, 0.9985, 0.9985)):  # fmt: skip
+    for logit, alpha, expected in (
+        (0.0, 0.0037, 0.0),
+        (0.0, 0.0042, 0.0042),
+        (9.0, 0.9993, 0.999),
+        (9.0, 0.9985, 0.9985),
+    ):
         o = 1 / (1 + np.exp(-logit))
         pixel = m + np.array([np.sqrt(2 * 4.3 * np.log(o / alpha)), 0.0])
         got = taken(t, m, s, np.array([logit]), pixel)
@@ -385,22 +534,43 @@ def cut_offs(t):
         d_m, d_s, d_o, pull = taken_back(t, m, s, np.array([logit]), pixel, np.ones((1, 1)))
         for name, d in (("mean2d", d_m), ("cov2d", d_s), ("opacity_logits", d_o), ("pull", pull)):
             moves = bool(d.any())
-            t.require(moves == (alpha == expected),
-                      f"d_{name} where o G = {alpha}: must "
-                      f"{'not ' * (alpha == expected)}be 0")  # fmt: skip
+            t.require(
+                moves == (alpha == expected),
+                f"d_{name} where o G = {alpha}: must {'not ' * (alpha == expected)}be 0",
+            )
 
 
-@check("15.3.differences", task="15.3", points=4, calls=("screen_alpha",), tolerance=GATE,
-       kills=("alpha_back_conic_doubled", "alpha_back_conic_fixed",
-              "alpha_back_cov_no_half", "alpha_back_cov_sign", "alpha_back_held_passes",
-              "alpha_back_logit_is_opacity", "alpha_back_logit_slope",
-              "alpha_back_mean_round", "alpha_back_mean_sign", "alpha_back_of_conic",
-              "alpha_back_without_alpha", "alpha_conic_once", "alpha_conic_sign",
-              "alpha_conic_unswapped", "alpha_mirrored", "alpha_no_half",
-              "alpha_not_held", "alpha_not_inverted", "pull_exchanged",),
-       hint="handout, equations (19) and (20): derivatives by A, B, C or by the covariance, each "
-            "with its own count of B; the slope of oG by the logit is oG (1 - o)",
-       sole="the derivative itself, without the reference")  # fmt: skip
+@check(
+    "15.3.differences",
+    task="15.3",
+    points=4,
+    calls=("screen_alpha",),
+    tolerance=GATE,
+    kills=(
+        "alpha_back_conic_doubled",
+        "alpha_back_conic_fixed",
+        "alpha_back_cov_no_half",
+        "alpha_back_cov_sign",
+        "alpha_back_held_passes",
+        "alpha_back_logit_is_opacity",
+        "alpha_back_logit_slope",
+        "alpha_back_mean_round",
+        "alpha_back_mean_sign",
+        "alpha_back_of_conic",
+        "alpha_back_without_alpha",
+        "alpha_conic_once",
+        "alpha_conic_sign",
+        "alpha_conic_unswapped",
+        "alpha_mirrored",
+        "alpha_no_half",
+        "alpha_not_held",
+        "alpha_not_inverted",
+        "pull_exchanged",
+    ),
+    hint="handout, equations (19) and (20): derivatives by A, B, C or by the covariance, each "
+    "with its own count of B; the slope of oG by the logit is oG (1 - o)",
+    sole="the derivative itself, without the reference",
+)
 def alpha_agrees_with_differences(t):
     """Moving a splat, its covariance or its logit moves alpha as your back says."""
     m, s, o, pixels = wide_splats(t.rng, 4, 6)
@@ -418,11 +588,22 @@ def alpha_agrees_with_differences(t):
     require_zero_for_zero(t, dict(zip(names, taken_back(t, m, s, o, pixels, 0 * g), strict=True)))
 
 
-@check("15.3.pull", task="15.3", points=2, calls=("screen_alpha",), tolerance=EXACT,
-       kills=("alpha_back_mean_round", "pull_exchanged", "pull_of_lengths",
-              "pull_of_the_sum", "pull_squared",),
-       hint="handout, equation (21): absolute values first, then the sum over pixels",
-       sole="asks about pull alone")  # fmt: skip
+@check(
+    "15.3.pull",
+    task="15.3",
+    points=2,
+    calls=("screen_alpha",),
+    tolerance=EXACT,
+    kills=(
+        "alpha_back_mean_round",
+        "pull_exchanged",
+        "pull_of_lengths",
+        "pull_of_the_sum",
+        "pull_squared",
+    ),
+    hint="handout, equation (21): absolute values first, then the sum over pixels",
+    sole="asks about pull alone",
+)
 def pull_does_not_cancel(t):
     """pull is the sum over pixels of the size of what each alone adds to d_mean2d."""
     m, s, o, pixels = wide_splats(t.rng, 3, 5)
@@ -443,8 +624,9 @@ def blended(t, a, c, z, b):
 
 def blended_back(t, a, c, z, b, g):
     """What the `back` of `composite` returns."""
-    parts = Items(Array(a.shape), Array(c.shape), Array((3,)),
-                  names=("d_alpha", "d_colors", "d_background"))  # fmt: skip
+    parts = Items(
+        Array(a.shape), Array(c.shape), Array((3,)), names=("d_alpha", "d_colors", "d_background")
+    )
     return t.call("adapters.composite_back", a, c, z, b, g, returns=parts)
 
 
@@ -455,12 +637,25 @@ def layers(rng, n, p):
     return a, rng.uniform(0.0, 1.0, (n, 3)), 1.0 + rng.permutation(n) / 3, rng.uniform(0.0, 1.0, 3)
 
 
-@check("15.4.layers", task="15.4", points=2, calls=("composite",), tolerance=EXACT,
-       kills=("blend_added", "blend_background_undimmed", "blend_farthest_first",
-              "blend_inclusive", "blend_no_background", "blend_ties_reversed",
-              "blend_ties_unstable", "blend_unsorted",),
-       hint="handout, equation (22): T is what all splats in front let through, not this one",
-       sole="small enough to work out by hand")  # fmt: skip
+@check(
+    "15.4.layers",
+    task="15.4",
+    points=2,
+    calls=("composite",),
+    tolerance=EXACT,
+    kills=(
+        "blend_added",
+        "blend_background_undimmed",
+        "blend_farthest_first",
+        "blend_inclusive",
+        "blend_no_background",
+        "blend_ties_reversed",
+        "blend_ties_unstable",
+        "blend_unsorted",
+    ),
+    hint="handout, equation (22): T is what all splats in front let through, not this one",
+    sole="small enough to work out by hand",
+)
 def known_layers(t):
     """Nothing shows the background; one splat mixes; of equal depth the first row is in front.
 
@@ -482,11 +677,21 @@ def known_layers(t):
     t.close("60 rows at three depths", blended(t, a, c, z, b), behind[None], reveal=True)
 
 
-@check("15.4.order", task="15.4", points=3, calls=("composite",), tolerance=EXACT,
-       kills=("blend_back_sorted_again", "blend_back_sorted_alpha",
-              "blend_back_sorted_colors", "blend_unsorted",),
-       hint="sort by depth inside; back must undo the sorting",
-       sole="needs no formula: the list's order means nothing")  # fmt: skip
+@check(
+    "15.4.order",
+    task="15.4",
+    points=3,
+    calls=("composite",),
+    tolerance=EXACT,
+    kills=(
+        "blend_back_sorted_again",
+        "blend_back_sorted_alpha",
+        "blend_back_sorted_colors",
+        "blend_unsorted",
+    ),
+    hint="sort by depth inside; back must undo the sorting",
+    sole="needs no formula: the list's order means nothing",
+)
 def the_order_of_the_list_does_not_matter(t):
     """Splats in another order give the same pixels, and derivatives in that other order."""
     a, c, z, b = layers(t.rng, 7, 5)
@@ -499,17 +704,34 @@ def the_order_of_the_list_does_not_matter(t):
     t.close("d_background", moved[2], d_b)
 
 
-@check("15.4.differences", task="15.4", points=4, calls=("composite",), tolerance=GATE,
-       kills=("blend_added", "blend_back_background_forgotten",
-              "blend_back_background_whole", "blend_back_colors_alpha",
-              "blend_back_itself_behind", "blend_back_last_skipped", "blend_back_no_T",
-              "blend_back_no_division", "blend_back_no_occlusion",
-              "blend_back_occlusion_added", "blend_back_skip_counter",
-              "blend_back_sorted_again", "blend_back_sorted_alpha",
-              "blend_back_sorted_colors", "blend_background_undimmed", "blend_inclusive",
-              "blend_no_background",),
-       hint="handout, equations (23) to (25): what is behind a splat is seen less when it grows",
-       sole="the derivative itself, without the reference")  # fmt: skip
+@check(
+    "15.4.differences",
+    task="15.4",
+    points=4,
+    calls=("composite",),
+    tolerance=GATE,
+    kills=(
+        "blend_added",
+        "blend_back_background_forgotten",
+        "blend_back_background_whole",
+        "blend_back_colors_alpha",
+        "blend_back_itself_behind",
+        "blend_back_last_skipped",
+        "blend_back_no_T",
+        "blend_back_no_division",
+        "blend_back_no_occlusion",
+        "blend_back_occlusion_added",
+        "blend_back_skip_counter",
+        "blend_back_sorted_again",
+        "blend_back_sorted_alpha",
+        "blend_back_sorted_colors",
+        "blend_background_undimmed",
+        "blend_inclusive",
+        "blend_no_background",
+    ),
+    hint="handout, equations (23) to (25): what is behind a splat is seen less when it grows",
+    sole="the derivative itself, without the reference",
+)
 def blending_agrees_with_differences(t):
     """Moving an alpha, a colour or the background moves the pixels as your back says."""
     a, c, z, b = layers(t.rng, 6, 4)
@@ -551,9 +773,10 @@ def some_scene(rng, camera, n, size=0.8):
     return {
         "means": in_world(camera, ahead(rng, n) * [0.5, 0.5, 1]),
         "log_scales": np.log(size) + rng.uniform(-0.3, 0.3, (n, 3)),
-        "quats": rng.normal(size=(n, 4)), "opacity_logits": rng.uniform(-1.0, 1.0, n),
+        "quats": rng.normal(size=(n, 4)),
+        "opacity_logits": rng.uniform(-1.0, 1.0, n),
         "colors": rng.uniform(0.0, 1.0, (n, 3)),
-    }  # fmt: skip
+    }
 
 
 def middle_pixels(rng, camera, p):
@@ -561,10 +784,17 @@ def middle_pixels(rng, camera, p):
     return camera["centre"] + rng.uniform(-2.5, 2.5, (p, 2))
 
 
-@check("15.5.one", task="15.5", points=2, calls=("render",), needs=EARLIER, tolerance=EXACT,
-       kills=("chain_background_black", "chain_distance_unsigned", "chain_listed_order",),
-       hint="handout, equation (26): the four stages in their order; the camera's depth sorts",
-       sole="small enough to work out by hand")  # fmt: skip
+@check(
+    "15.5.one",
+    task="15.5",
+    points=2,
+    calls=("render",),
+    needs=EARLIER,
+    tolerance=EXACT,
+    kills=("chain_background_black", "chain_distance_unsigned", "chain_listed_order"),
+    hint="handout, equation (26): the four stages in their order; the camera's depth sorts",
+    sole="small enough to work out by hand",
+)
 def one_splat_straight_ahead(t):
     """A ball straight ahead is a round splat, and a nearer one lies over it, whichever is first."""
     camera, b = some_camera(t.rng), t.rng.uniform(0.0, 1.0, 3)
@@ -583,11 +813,23 @@ def one_splat_straight_ahead(t):
     t.close("shown", got, near + (1 - a[1, :, None]) * behind, reveal=True)
 
 
-@check("15.5.differences", task="15.5", points=4, calls=("render",), needs=EARLIER, tolerance=GATE,
-       kills=("chain_background_black", "chain_background_lost", "chain_place_lost",
-              "chain_pull_for_place", "chain_size_lost",),
-       hint="handout, equation (27): the stages backwards, each with what the one after it returns",
-       sole="the whole chain, group by group, without the reference")  # fmt: skip
+@check(
+    "15.5.differences",
+    task="15.5",
+    points=4,
+    calls=("render",),
+    needs=EARLIER,
+    tolerance=GATE,
+    kills=(
+        "chain_background_black",
+        "chain_background_lost",
+        "chain_place_lost",
+        "chain_pull_for_place",
+        "chain_size_lost",
+    ),
+    hint="handout, equation (27): the stages backwards, each with what the one after it returns",
+    sole="the whole chain, group by group, without the reference",
+)
 def the_chain_agrees_with_differences(t):
     """Moving any number of a scene moves its pixels as your back says; one Gaussian is outside."""
     camera, b = some_camera(t.rng), t.rng.uniform(0.0, 1.0, 3)
@@ -609,11 +851,17 @@ def the_chain_agrees_with_differences(t):
     require_zero_for_zero(t, none)
 
 
-@check("15.5.behind", task="15.5", points=1, calls=("render",), needs=EARLIER, tolerance=EXACT,
-       kills=("chain_background_black", "chain_behind_drawn", "chain_near_zero",
-              "chain_rows_packed",),
-       hint="leave out what is not farther than NEAR in front, and give its rows zeros",
-       sole="asks about culling alone")  # fmt: skip
+@check(
+    "15.5.behind",
+    task="15.5",
+    points=1,
+    calls=("render",),
+    needs=EARLIER,
+    tolerance=EXACT,
+    kills=("chain_background_black", "chain_behind_drawn", "chain_near_zero", "chain_rows_packed"),
+    hint="leave out what is not farther than NEAR in front, and give its rows zeros",
+    sole="asks about culling alone",
+)
 def what_is_behind_the_camera_has_no_part(t):
     """Gaussians behind the camera or too near change nothing, and their derivatives are 0."""
     camera, b = some_camera(t.rng), t.rng.uniform(0.0, 1.0, 3)
@@ -639,33 +887,57 @@ def what_is_behind_the_camera_has_no_part(t):
 def denser(t, scene, pressure, seed, most, count, adapter="densify"):
     """What `densify` returns, as a dict and the sources."""
     parts = [Array((count, *scene[name].shape[1:])) for name in SCENE]
-    got = t.call(f"adapters.{adapter}", scene, pressure, seed, most,
-                 returns=Items(*parts, Array((count,)), names=(*SCENE, "source")))  # fmt: skip
+    got = t.call(
+        f"adapters.{adapter}",
+        scene,
+        pressure,
+        seed,
+        most,
+        returns=Items(*parts, Array((count,)), names=(*SCENE, "source")),
+    )
     return dict(zip(SCENE, got[:5], strict=True)), got[5]
 
 
 def eight(rng):
     """Faint or not, small or large, pressed or not: (scene, pressure)."""
     scene = {
-        "means": rng.normal(size=(8, 3)), "quats": rng.normal(size=(8, 4)),
+        "means": rng.normal(size=(8, 3)),
+        "quats": rng.normal(size=(8, 4)),
         "log_scales": np.log(0.03) + rng.uniform(-0.2, 0.2, (8, 3)),
-        "opacity_logits": rng.uniform(-1.0, 3.0, 8), "colors": rng.uniform(0.0, 1.0, (8, 3)),
-    }  # fmt: skip
+        "opacity_logits": rng.uniform(-1.0, 3.0, 8),
+        "colors": rng.uniform(0.0, 1.0, (8, 3)),
+    }
     # Row 2: the longest scale is above SMALL = 0.06, the mean of the three below.
     scene["log_scales"][[2, 3, 7], rng.integers(0, 3, 3)] += [1.0, 2.0, 2.0]
     scene["opacity_logits"][[0, 4]] = -5.0
     return scene, np.array([0.9, 3, 5, 1, 0, 8, 1.9, 4]) / 1000
 
 
-@check("15.6.rows", task="15.6", points=2, calls=("densify",), needs=("covariance",),
-       tolerance=EXACT,
-       kills=("dense_all_cloned", "dense_all_split", "dense_calm_chosen",
-              "dense_faint_stay", "dense_in_place", "dense_mean_scale", "dense_one_part",
-              "dense_parts_paired", "dense_shortest_scale", "dense_source_counted",
-              "dense_source_of_new", "dense_split_stays",),
-       hint="handout, equations (28) to (30): first those that stay, then clones, then parts "
-            "twice; work on copies",
-       sole="asks which rows there are, and nothing of their values")  # fmt: skip
+@check(
+    "15.6.rows",
+    task="15.6",
+    points=2,
+    calls=("densify",),
+    needs=("covariance",),
+    tolerance=EXACT,
+    kills=(
+        "dense_all_cloned",
+        "dense_all_split",
+        "dense_calm_chosen",
+        "dense_faint_stay",
+        "dense_in_place",
+        "dense_mean_scale",
+        "dense_one_part",
+        "dense_parts_paired",
+        "dense_shortest_scale",
+        "dense_source_counted",
+        "dense_source_of_new",
+        "dense_split_stays",
+    ),
+    hint="handout, equations (28) to (30): first those that stay, then clones, then parts "
+    "twice; work on copies",
+    sole="asks which rows there are, and nothing of their values",
+)
 def who_stays_and_who_is_new(t):
     """Faint ones go, small pressed ones are cloned, large pressed ones split, in a fixed order."""
     scene, pressure = eight(t.rng)
@@ -678,18 +950,38 @@ def who_stays_and_who_is_new(t):
     t.require(agree(again, (got, source)), "densify has written into an array that it was given")
 
 
-@check("15.6.values", task="15.6", points=2, calls=("densify",), needs=("covariance",),
-       tolerance=EXACT,
-       kills=("dense_all_cloned", "dense_all_split", "dense_calm_chosen",
-              "dense_clones_halved", "dense_clones_opaque", "dense_faint_stay",
-              "dense_mean_scale", "dense_one_part", "dense_original_opaque", "dense_parts_as_large",
-              "dense_parts_by_covariance", "dense_parts_grow", "dense_parts_in_place",
-              "dense_parts_mirrored", "dense_parts_paired", "dense_parts_round",
-              "dense_parts_shrunk_too_much", "dense_shortest_scale",
-              "dense_split_stays",),
-       hint="handout, equations (31) and (32). log-scales: minus log(SHRINK); places: L z with L "
-            "of the whole",
-       sole="asks about the values of new rows")  # fmt: skip
+@check(
+    "15.6.values",
+    task="15.6",
+    points=2,
+    calls=("densify",),
+    needs=("covariance",),
+    tolerance=EXACT,
+    kills=(
+        "dense_all_cloned",
+        "dense_all_split",
+        "dense_calm_chosen",
+        "dense_clones_halved",
+        "dense_clones_opaque",
+        "dense_faint_stay",
+        "dense_mean_scale",
+        "dense_one_part",
+        "dense_original_opaque",
+        "dense_parts_as_large",
+        "dense_parts_by_covariance",
+        "dense_parts_grow",
+        "dense_parts_in_place",
+        "dense_parts_mirrored",
+        "dense_parts_paired",
+        "dense_parts_round",
+        "dense_parts_shrunk_too_much",
+        "dense_shortest_scale",
+        "dense_split_stays",
+    ),
+    hint="handout, equations (31) and (32). log-scales: minus log(SHRINK); places: L z with L "
+    "of the whole",
+    sole="asks about the values of new rows",
+)
 def clones_keep_the_middle_and_parts_are_drawn(t):
     """Two clones cover as one did; parts are smaller by 1.6, at places drawn from the whole."""
     scene, pressure = eight(t.rng)
@@ -701,8 +993,12 @@ def clones_keep_the_middle_and_parts_are_drawn(t):
     both = through.copy()
     both[[0, 2]] = through[[0, 2]] * through[[4, 5]]
     both[[4, 5]] = both[[0, 2]]
-    t.close("what rows let through (original and clone together; parts keep their opacity)", both,
-            before, reveal=True)  # fmt: skip
+    t.close(
+        "what rows let through (original and clone together; parts keep their opacity)",
+        both,
+        before,
+        reveal=True,
+    )
     t.close("opacity of a clone", through[[4, 5]], through[[0, 2]])
     scales = scene["log_scales"][rows]
     scales[new] -= np.log(1.6)
@@ -717,15 +1013,31 @@ def clones_keep_the_middle_and_parts_are_drawn(t):
     t.close("places of parts, in standard deviations", np.stack(draws), expected, reveal=True)
 
 
-@check("15.6.most", task="15.6", points=1, calls=("densify",), needs=("covariance",),
-       tolerance=EXACT,
-       kills=("dense_all_cloned", "dense_all_split", "dense_faint_stay",
-              "dense_least_pressed", "dense_limit_of_all", "dense_mean_scale", "dense_no_limit",
-              "dense_one_part", "dense_shortest_scale", "dense_source_counted",
-              "dense_source_of_new", "dense_split_stays",),
-       hint="each chosen one makes one more; the highest pressure goes first. Faint ones leave "
-            "first: room is `most` minus the number that stay",
-       sole="asks about the budget alone")  # fmt: skip
+@check(
+    "15.6.most",
+    task="15.6",
+    points=1,
+    calls=("densify",),
+    needs=("covariance",),
+    tolerance=EXACT,
+    kills=(
+        "dense_all_cloned",
+        "dense_all_split",
+        "dense_faint_stay",
+        "dense_least_pressed",
+        "dense_limit_of_all",
+        "dense_mean_scale",
+        "dense_no_limit",
+        "dense_one_part",
+        "dense_shortest_scale",
+        "dense_source_counted",
+        "dense_source_of_new",
+        "dense_split_stays",
+    ),
+    hint="each chosen one makes one more; the highest pressure goes first. Faint ones leave "
+    "first: room is `most` minus the number that stay",
+    sole="asks about the budget alone",
+)
 def never_more_than_most(t):
     """With room for two more, the two under the highest pressure are chosen; with none, nobody."""
     scene, pressure = eight(t.rng)
@@ -740,15 +1052,34 @@ def never_more_than_most(t):
 
 
 # >>> hidden
-@check("15.1.hidden", task="15.1", points=3, calls=("covariance",), visibility="hidden",
-       tolerance=EXACT,
-       kills=("shape_back_K_sign", "shape_back_R_unscaled", "shape_back_length",
-              "shape_back_not_log", "shape_back_one_K", "shape_back_one_factor",
-              "shape_back_radial", "shape_back_rows", "shape_back_symmetric",
-              "shape_back_w_lost", "shape_half_turned", "shape_product_reversed",
-              "shape_rows_scaled", "shape_turned_back", "shape_unnormalised",
-              "shape_variances", "shape_w_last",),
-       sole="the same mistakes at values that are not known beforehand")  # fmt: skip
+@check(
+    "15.1.hidden",
+    task="15.1",
+    points=3,
+    calls=("covariance",),
+    visibility="hidden",
+    tolerance=EXACT,
+    kills=(
+        "shape_back_K_sign",
+        "shape_back_R_unscaled",
+        "shape_back_length",
+        "shape_back_not_log",
+        "shape_back_one_K",
+        "shape_back_one_factor",
+        "shape_back_radial",
+        "shape_back_rows",
+        "shape_back_symmetric",
+        "shape_back_w_lost",
+        "shape_half_turned",
+        "shape_product_reversed",
+        "shape_rows_scaled",
+        "shape_turned_back",
+        "shape_unnormalised",
+        "shape_variances",
+        "shape_w_last",
+    ),
+    sole="the same mistakes at values that are not known beforehand",
+)
 def random_shapes(t):
     """Values and both derivatives are right for random Gaussians."""
     q, s = 3 * t.rng.normal(size=(9, 4)), t.rng.uniform(-2.0, 1.0, (9, 3))
@@ -760,16 +1091,37 @@ def random_shapes(t):
         t.close(name, mine, theirs)
 
 
-@check("15.2.hidden", task="15.2", points=3, calls=("project",), visibility="hidden",
-       tolerance=EXACT,
-       kills=("lens_back_J_fixed", "lens_back_cov_in_camera", "lens_back_depth_under_f",
-              "lens_back_held_dead", "lens_back_held_moves", "lens_back_in_camera",
-              "lens_back_one_factor", "lens_back_only_means", "lens_back_public_code",
-              "lens_back_turned_on", "lens_back_xy_lost", "lens_back_xy_twice",
-              "lens_cov_unturned", "lens_inverse_pose", "lens_mean_held",
-              "lens_no_centre", "lens_no_third_column", "lens_not_held",
-              "lens_size_without_depth", "lens_third_column_sign",),
-       sole="the same mistakes at values that are not known beforehand")  # fmt: skip
+@check(
+    "15.2.hidden",
+    task="15.2",
+    points=3,
+    calls=("project",),
+    visibility="hidden",
+    tolerance=EXACT,
+    kills=(
+        "lens_back_J_fixed",
+        "lens_back_cov_in_camera",
+        "lens_back_depth_under_f",
+        "lens_back_held_dead",
+        "lens_back_held_moves",
+        "lens_back_in_camera",
+        "lens_back_one_factor",
+        "lens_back_only_means",
+        "lens_back_public_code",
+        "lens_back_turned_on",
+        "lens_back_xy_lost",
+        "lens_back_xy_twice",
+        "lens_cov_unturned",
+        "lens_inverse_pose",
+        "lens_mean_held",
+        "lens_no_centre",
+        "lens_no_third_column",
+        "lens_not_held",
+        "lens_size_without_depth",
+        "lens_third_column_sign",
+    ),
+    sole="the same mistakes at values that are not known beforehand",
+)
 def random_projections(t):
     """Values and both derivatives are right, inside of the limits and outside."""
     camera = some_camera(t.rng)
@@ -778,8 +1130,9 @@ def random_projections(t):
     means = in_world(camera, np.concatenate([side * z, z], axis=1))
     cov, g = shapes(t.rng, 12), random_cotangent(t.rng, (12, 5))
     *right, pullback = t.reference.project(means, cov, camera)
-    for name, mine, theirs in zip(("mean2d", "cov2d", "depth"), seen(t, means, cov, camera), right,
-                                  strict=True):  # fmt: skip
+    for name, mine, theirs in zip(
+        ("mean2d", "cov2d", "depth"), seen(t, means, cov, camera), right, strict=True
+    ):
         t.close(name, mine, theirs)
     d_means, d_cov = seen_back(t, means, cov, camera, g)
     right = pullback(g[:, :2], g[:, 2:])
@@ -787,19 +1140,43 @@ def random_projections(t):
     t.close("d_cov", folded(d_cov), folded(right[1]))
 
 
-@check("15.3.hidden", task="15.3", points=2, calls=("screen_alpha",), visibility="hidden",
-       tolerance=EXACT,
-       kills=("alpha_back_conic_doubled", "alpha_back_conic_fixed",
-              "alpha_back_cov_no_half", "alpha_back_cov_sign",
-              "alpha_back_dropped_passes", "alpha_back_held_passes",
-              "alpha_back_logit_is_opacity", "alpha_back_logit_slope",
-              "alpha_back_mean_round", "alpha_back_mean_sign", "alpha_back_of_conic",
-              "alpha_back_without_alpha", "alpha_conic_once", "alpha_conic_sign",
-              "alpha_conic_unswapped", "alpha_low_pass_xy", "alpha_mirrored",
-              "alpha_no_half", "alpha_no_low_pass", "alpha_not_dropped", "alpha_not_held",
-              "alpha_not_inverted", "pull_exchanged", "pull_of_lengths",
-              "pull_of_the_sum", "pull_squared",),
-       sole="the same mistakes at values that are not known beforehand")  # fmt: skip
+@check(
+    "15.3.hidden",
+    task="15.3",
+    points=2,
+    calls=("screen_alpha",),
+    visibility="hidden",
+    tolerance=EXACT,
+    kills=(
+        "alpha_back_conic_doubled",
+        "alpha_back_conic_fixed",
+        "alpha_back_cov_no_half",
+        "alpha_back_cov_sign",
+        "alpha_back_dropped_passes",
+        "alpha_back_held_passes",
+        "alpha_back_logit_is_opacity",
+        "alpha_back_logit_slope",
+        "alpha_back_mean_round",
+        "alpha_back_mean_sign",
+        "alpha_back_of_conic",
+        "alpha_back_without_alpha",
+        "alpha_conic_once",
+        "alpha_conic_sign",
+        "alpha_conic_unswapped",
+        "alpha_low_pass_xy",
+        "alpha_mirrored",
+        "alpha_no_half",
+        "alpha_no_low_pass",
+        "alpha_not_dropped",
+        "alpha_not_held",
+        "alpha_not_inverted",
+        "pull_exchanged",
+        "pull_of_lengths",
+        "pull_of_the_sum",
+        "pull_squared",
+    ),
+    sole="the same mistakes at values that are not known beforehand",
+)
 def random_splats(t):
     """Values and derivatives are right for splats of all kinds, cut off here and there."""
     n, pixels = 12, t.rng.uniform(0.0, 16.0, (40, 2))
@@ -817,18 +1194,38 @@ def random_splats(t):
         t.close(name, mine, theirs)
 
 
-@check("15.4.hidden", task="15.4", points=3, calls=("composite",), visibility="hidden",
-       tolerance=EXACT,
-       kills=("blend_added", "blend_back_background_forgotten",
-              "blend_back_background_whole", "blend_back_colors_alpha",
-              "blend_back_itself_behind", "blend_back_last_skipped", "blend_back_no_T",
-              "blend_back_no_division", "blend_back_no_occlusion",
-              "blend_back_occlusion_added", "blend_back_skip_counter",
-              "blend_back_sorted_again", "blend_back_sorted_alpha",
-              "blend_back_sorted_colors", "blend_background_undimmed",
-              "blend_farthest_first", "blend_inclusive", "blend_no_background",
-              "blend_ties_reversed", "blend_ties_unstable", "blend_unsorted",),
-       sole="the same mistakes at values that are not known beforehand")  # fmt: skip
+@check(
+    "15.4.hidden",
+    task="15.4",
+    points=3,
+    calls=("composite",),
+    visibility="hidden",
+    tolerance=EXACT,
+    kills=(
+        "blend_added",
+        "blend_back_background_forgotten",
+        "blend_back_background_whole",
+        "blend_back_colors_alpha",
+        "blend_back_itself_behind",
+        "blend_back_last_skipped",
+        "blend_back_no_T",
+        "blend_back_no_division",
+        "blend_back_no_occlusion",
+        "blend_back_occlusion_added",
+        "blend_back_skip_counter",
+        "blend_back_sorted_again",
+        "blend_back_sorted_alpha",
+        "blend_back_sorted_colors",
+        "blend_background_undimmed",
+        "blend_farthest_first",
+        "blend_inclusive",
+        "blend_no_background",
+        "blend_ties_reversed",
+        "blend_ties_unstable",
+        "blend_unsorted",
+    ),
+    sole="the same mistakes at values that are not known beforehand",
+)
 def random_layers(t):
     """Values and derivatives are right for many layers."""
     a, c, z, b = layers(t.rng, 20, 9)
@@ -842,13 +1239,28 @@ def random_layers(t):
         t.close(name, mine, theirs)
 
 
-@check("15.5.hidden", task="15.5", points=2, calls=("render",), needs=EARLIER,
-       visibility="hidden", tolerance=EXACT,
-       kills=("chain_background_black", "chain_background_lost", "chain_behind_drawn",
-              "chain_distance_unsigned", "chain_listed_order", "chain_place_lost",
-              "chain_pull_for_place", "chain_pull_signed", "chain_rows_packed",
-              "chain_size_lost",),
-       sole="the same mistakes at unknown scenes, and what the way back costs")  # fmt: skip
+@check(
+    "15.5.hidden",
+    task="15.5",
+    points=2,
+    calls=("render",),
+    needs=EARLIER,
+    visibility="hidden",
+    tolerance=EXACT,
+    kills=(
+        "chain_background_black",
+        "chain_background_lost",
+        "chain_behind_drawn",
+        "chain_distance_unsigned",
+        "chain_listed_order",
+        "chain_place_lost",
+        "chain_pull_for_place",
+        "chain_pull_signed",
+        "chain_rows_packed",
+        "chain_size_lost",
+    ),
+    sole="the same mistakes at unknown scenes, and what the way back costs",
+)
 def random_scenes(t):
     """Pixels of 150 Gaussians and their derivatives are right, at the price of a few pictures."""
     camera, b = some_camera(t.rng), t.rng.uniform(0.0, 1.0, 3)
@@ -871,25 +1283,53 @@ def random_scenes(t):
     )
 
 
-@check("15.6.hidden", task="15.6", points=1, calls=("densify",), needs=("covariance",),
-       visibility="hidden", tolerance=EXACT,
-       kills=("dense_all_cloned", "dense_all_split", "dense_calm_chosen",
-              "dense_clones_halved", "dense_clones_opaque", "dense_faint_cloned",
-              "dense_faint_stay", "dense_least_pressed", "dense_limit_of_all", "dense_mean_scale",
-              "dense_no_limit", "dense_one_part", "dense_original_opaque",
-              "dense_parts_as_large", "dense_parts_by_covariance", "dense_parts_grow",
-              "dense_parts_in_place", "dense_parts_mirrored", "dense_parts_paired",
-              "dense_parts_round", "dense_parts_shrunk_too_much", "dense_shortest_scale",
-              "dense_source_counted", "dense_source_of_new", "dense_split_stays",),
-       sole="the same mistakes at scenes that are not known beforehand")  # fmt: skip
+@check(
+    "15.6.hidden",
+    task="15.6",
+    points=1,
+    calls=("densify",),
+    needs=("covariance",),
+    visibility="hidden",
+    tolerance=EXACT,
+    kills=(
+        "dense_all_cloned",
+        "dense_all_split",
+        "dense_calm_chosen",
+        "dense_clones_halved",
+        "dense_clones_opaque",
+        "dense_faint_cloned",
+        "dense_faint_stay",
+        "dense_least_pressed",
+        "dense_limit_of_all",
+        "dense_mean_scale",
+        "dense_no_limit",
+        "dense_one_part",
+        "dense_original_opaque",
+        "dense_parts_as_large",
+        "dense_parts_by_covariance",
+        "dense_parts_grow",
+        "dense_parts_in_place",
+        "dense_parts_mirrored",
+        "dense_parts_paired",
+        "dense_parts_round",
+        "dense_parts_shrunk_too_much",
+        "dense_shortest_scale",
+        "dense_source_counted",
+        "dense_source_of_new",
+        "dense_split_stays",
+    ),
+    sole="the same mistakes at scenes that are not known beforehand",
+)
 def random_changes(t):
     """Random scenes become what they should."""
     for most in (1000, 45):
         scene = {
-            "means": t.rng.normal(size=(40, 3)), "quats": t.rng.normal(size=(40, 4)),
+            "means": t.rng.normal(size=(40, 3)),
+            "quats": t.rng.normal(size=(40, 4)),
             "log_scales": np.log(0.05) + t.rng.normal(size=(40, 3)) / 3,
-            "opacity_logits": t.rng.uniform(-6.0, 6.0, 40), "colors": t.rng.normal(size=(40, 3)),
-        }  # fmt: skip
+            "opacity_logits": t.rng.uniform(-6.0, 6.0, 40),
+            "colors": t.rng.normal(size=(40, 3)),
+        }
         # Opacities of 0.0202 and 0.0198, on both sides of FAINT.
         scene["opacity_logits"][:2] = np.log([0.0202 / 0.9798, 0.0198 / 0.9802])
         pressure, seed = t.rng.exponential(0.003, 40), int(t.rng.integers(1 << 20))
@@ -909,29 +1349,42 @@ def striped_picture(size):
     return np.where(disc[..., None], [0.9, 0.3, 0.1], stripes[..., None] * [0.2, 0.6, 0.9])
 
 
-@check("15.6.gain", task="15.6", points=4, calls=("densify",), needs=(*EARLIER, "render"),
-       visibility="hidden",
-       kills=("dense_one_part",),
-       seconds=60.0, sole="the whole: what more Gaussians are good for")  # fmt: skip
+@check(
+    "15.6.gain",
+    task="15.6",
+    points=4,
+    calls=("densify",),
+    needs=(*EARLIER, "render"),
+    visibility="hidden",
+    kills=("dense_one_part",),
+    seconds=60.0,
+    sole="the whole: what more Gaussians are good for",
+)
 def denser_is_better(t):
     """Stripes that four Gaussians cannot show are at least 2 dB better with up to forty."""
     size = 16
     camera = {
-        "camera_from_world": np.eye(4)[:3], "focal": np.full(2, 16.0),
-        "centre": np.full(2, 8.0), "width": size, "height": size,
-    }  # fmt: skip
+        "camera_from_world": np.eye(4)[:3],
+        "focal": np.full(2, 16.0),
+        "centre": np.full(2, 8.0),
+        "width": size,
+        "height": size,
+    }
     places = np.array([[-0.5, -0.5], [0.5, -0.5], [-0.5, 0.5], [0.5, 0.5]])
     start = {
         "means": np.concatenate([places, np.full((4, 1), 2.0)], axis=1)
         + t.rng.uniform(-0.1, 0.1, (4, 3)),
-        "log_scales": np.full((4, 3), np.log(0.25)), "quats": np.tile([1.0, 0, 0, 0], (4, 1)),
-        "opacity_logits": np.zeros(4), "colors": np.full((4, 3), 0.5),
-    }  # fmt: skip
+        "log_scales": np.full((4, 3), np.log(0.25)),
+        "quats": np.tile([1.0, 0, 0, 0], (4, 1)),
+        "opacity_logits": np.zeros(4),
+        "colors": np.full((4, 3), 0.5),
+    }
     views = [[camera, striped_picture(size)]]
     seed, losses = int(t.rng.integers(1 << 20)), []
     for most in (0, 40):
-        found = t.call("adapters.fitted", start, views, 120, seed, np.zeros(3), most,
-                       returns=Array((120,)))  # fmt: skip
+        found = t.call(
+            "adapters.fitted", start, views, 120, seed, np.zeros(3), most, returns=Array((120,))
+        )
         losses.append(max(float(found[-5:].mean()), 1e-30))
     gain = 10 * np.log10(losses[0] / losses[1])
     t.require(gain >= 2.0, f"with densify the fit is {gain:.1f} dB better, asked 2 dB")

@@ -42,8 +42,13 @@ def camera_at(place, width):
     W = np.stack([x, np.cross(z, x), z])
     pose = np.concatenate([W, -(W @ place)[:, None]], axis=1)
     middle = np.full(2, width / 2)
-    return {"camera_from_world": pose, "focal": np.full(2, 1.2 * width), "centre": middle,
-            "width": width, "height": width}  # fmt: skip
+    return {
+        "camera_from_world": pose,
+        "focal": np.full(2, 1.2 * width),
+        "centre": middle,
+        "width": width,
+        "height": width,
+    }
 
 
 def around(number, width, turn=0.0):
@@ -93,10 +98,12 @@ def decibels(one, other):
 def cloud(number, rng):
     """Where a fit begins: grey balls anywhere."""
     return {
-        "means": rng.uniform(-0.8, 0.8, (number, 3)), "quats": np.eye(4)[[0] * number],
-        "log_scales": np.full((number, 3), np.log(0.1)), "colors": np.full((number, 3), 0.5),
+        "means": rng.uniform(-0.8, 0.8, (number, 3)),
+        "quats": np.eye(4)[[0] * number],
+        "log_scales": np.full((number, 3), np.log(0.1)),
+        "colors": np.full((number, 3), 0.5),
         "opacity_logits": np.full(number, -1.0),
-    }  # fmt: skip
+    }
 
 
 views = [(camera, photograph(camera)) for camera in around(count, size)]
@@ -115,19 +122,26 @@ def watch(step, scene, _):
     if step % max(1, steps // 40) == 0:
         shown, _ = mine.picture(scene, unseen[0][0], BACKGROUND)
         frames.append(shown)
-        print(f"\rfit:    step {step} of {steps}, {len(scene['means'])} Gaussians, "
-              f"{decibels(shown, unseen[0][1]):.1f} dB on a new view, "
-              f"{time.perf_counter() - began:.0f} s ", end="", flush=True)  # fmt: skip
+        print(
+            f"\rfit:    step {step} of {steps}, {len(scene['means'])} Gaussians, "
+            f"{decibels(shown, unseen[0][1]):.1f} dB on a new view, "
+            f"{time.perf_counter() - began:.0f} s ",
+            end="",
+            flush=True,
+        )
 
 
-found, losses = mine.fit(start, views, steps, np.random.default_rng(seed), BACKGROUND, most, every,
-                         watch)  # fmt: skip
+found, losses = mine.fit(
+    start, views, steps, np.random.default_rng(seed), BACKGROUND, most, every, watch
+)
 seconds = time.perf_counter() - began
 scores = [decibels(mine.picture(found, camera, BACKGROUND)[0], truth) for camera, truth in unseen]
 empty = [decibels(np.broadcast_to(BACKGROUND, truth.shape), truth) for _, truth in unseen]
-print(f"\rfit:    {steps} steps in {seconds:.0f} s, {len(found['means'])} Gaussians, "
-      f"{np.mean(scores):.1f} dB on new views "
-      f"(nothing at all has {np.mean(empty):.1f} dB)  ")  # fmt: skip
+print(
+    f"\rfit:    {steps} steps in {seconds:.0f} s, {len(found['means'])} Gaussians, "
+    f"{np.mean(scores):.1f} dB on new views "
+    f"(nothing at all has {np.mean(empty):.1f} dB)  "
+)
 
 
 def byte(shown):
@@ -158,8 +172,11 @@ arrows = -(gradient["means"] @ W.T) * (depth / camera["focal"][0])[:, None]
 pull = np.linalg.norm(gradient["pull"], axis=1)
 figure = Figure(figsize=(13, 4.4), layout="constrained")
 panels = figure.subplots(1, 3)
-for axes, image, title in ((panels[0], truth, "a photograph"), (panels[1], shown, "your Gaussians"),
-                           (panels[2], shown, "arrows: descent; circles: pull")):  # fmt: skip
+for axes, image, title in (
+    (panels[0], truth, "a photograph"),
+    (panels[1], shown, "your Gaussians"),
+    (panels[2], shown, "arrows: descent; circles: pull"),
+):
     axes.imshow(np.clip(image, 0, 1), extent=(0, size, size, 0))
     axes.set(title=title, xticks=[], yticks=[], xlim=(0, size), ylim=(size, 0))
 panels[2].scatter(*places.T, s=300 * pull / pull.max(), facecolors="none", edgecolors="w", lw=0.7)
@@ -212,8 +229,10 @@ def by_covariance(of_conic, factor):
 
 
 halved, patched = (off(by_covariance(kept * [1, whole, 1], 2), right) for whole in (1, 2))
-print(f"conic:  B's derivative kept halved and doubled later is off by {halved:.0e}; "
-      f"the patch (kept whole, still doubled) by {patched:.0%}")  # fmt: skip
+print(
+    f"conic:  B's derivative kept halved and doubled later is off by {halved:.0e}; "
+    f"the patch (kept whole, still doubled) by {patched:.0%}"
+)
 
 lens = around(1, 64)[0]
 high = mine.limits(lens)[1][0]
@@ -236,9 +255,11 @@ told = -np.sum(slopes[:, :2] * A[:, :2]) / z
 told += slopes[0, 2] * 2 * f * high / z**2  # as public code has it
 told += slopes[1, 2] * 2 * f * (point[0, 1] / z) / z**2
 mended = told - slopes[0, 2] * f * high / z**2
-print(f"clamp:  by t_z, outside: differences {by_depth:.4f}, "
-      f"the formula of public code {told:.4f}, "
-      f"with the clamped branch of its own {mended:.4f}")  # fmt: skip
+print(
+    f"clamp:  by t_z, outside: differences {by_depth:.4f}, "
+    f"the formula of public code {told:.4f}, "
+    f"with the clamped branch of its own {mended:.4f}"
+)
 
 # %% [markdown]
 # ## The C++ core
@@ -258,8 +279,15 @@ def of_the_core():
         pose = np.eye(4)
         pose[:3] = camera["camera_from_world"]
         (fx, fy), (cx, cy) = camera["focal"].tolist(), camera["centre"].tolist()
-        lens = cameras.Camera(world_from_camera=np.linalg.inv(pose), width=camera["width"],
-                              height=camera["height"], fx=fx, fy=fy, cx=cx, cy=cy)  # fmt: skip
+        lens = cameras.Camera(
+            world_from_camera=np.linalg.inv(pose),
+            width=camera["width"],
+            height=camera["height"],
+            fx=fx,
+            fy=fy,
+            cx=cx,
+            cy=cy,
+        )
         told = {key: scene[key] for key in ("means", "log_scales", "quats", "opacity_logits")}
         own = splat.Gaussians(**told, sh=((scene["colors"] - 0.5) / Y0)[:, None])
         options = splat.SplatOptions(stop=0.0)
@@ -301,12 +329,21 @@ else:
     # The core sums with signs before it takes sizes, so less is left of a pull.
     mine.THRESHOLD, limit = mine.THRESHOLD / 4, mine.SMALL
     mine.SMALL = limit / 2
-    many, _ = mine.fit(cloud(500, np.random.default_rng(seed)), sharp, 2 * steps,
-                       np.random.default_rng(seed), BACKGROUND, 8 * most, every)  # fmt: skip
+    many, _ = mine.fit(
+        cloud(500, np.random.default_rng(seed)),
+        sharp,
+        2 * steps,
+        np.random.default_rng(seed),
+        BACKGROUND,
+        8 * most,
+        every,
+    )
     mine.picture = kept_back
     tests = [(each, photograph(each)) for each in around(3, wider, 1.0)]
     pairs = [(core(many, each, BACKGROUND)[0], truth) for each, truth in tests]
     Image.fromarray(byte(np.concatenate([pairs[0][1], pairs[0][0]], axis=1))).save("core.png")
     score, took = np.mean([decibels(*pair) for pair in pairs]), time.perf_counter() - before
-    print(f"core:   {2 * steps} steps of {wider} x {wider} in {took:.0f} s, "
-          f"{len(many['means'])} Gaussians, {score:.1f} dB; core.png")  # fmt: skip
+    print(
+        f"core:   {2 * steps} steps of {wider} x {wider} in {took:.0f} s, "
+        f"{len(many['means'])} Gaussians, {score:.1f} dB; core.png"
+    )

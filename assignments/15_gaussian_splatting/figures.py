@@ -55,13 +55,13 @@ def fig1_projection(module: ModuleType) -> tuple[Figure, Facts]:
     held, free = widths
     facts: Facts = {
         "the points' covariance is cov2d within 6 %": (
-            float(np.linalg.norm(sample - cov2d[0]) / np.linalg.norm(cov2d[0])), 0, 0.06,
+            float(np.linalg.norm(sample - cov2d[0]) / np.linalg.norm(cov2d[0])),
+            0,
+            0.06,
         ),
         "held, the width stays": (float(held[-1] / held[slopes > limit][0]), 0.999, 1.001),
-        "not held, it is more than twice as large in the end": (
-            float(free[-1] / held[-1]), 2, 10,
-        ),
-    }  # fmt: skip
+        "not held, it is more than twice as large in the end": (float(free[-1] / held[-1]), 2, 10),
+    }
     with house_style():
         figure = Figure(figsize=(7.0, 3.0), layout="constrained")
         left, right = figure.subplots(1, 2)
@@ -85,19 +85,23 @@ def fig2_weights(module: ModuleType) -> tuple[Figure, Facts]:
     alpha = np.array([[0.35], [0.6], [0.25], [0.8], [0.5], [0.3]])
     depth = np.array([2.2, 1.4, 3.1, 2.7, 3.6, 1.8])
     count = len(alpha)
-    weights = np.array([
-        module.composite(alpha, np.eye(count)[:, [k] * 3], depth, BLACK)[0][0, 0]
-        for k in range(count)
-    ])  # fmt: skip
+    weights = np.array(
+        [
+            module.composite(alpha, np.eye(count)[:, [k] * 3], depth, BLACK)[0][0, 0]
+            for k in range(count)
+        ]
+    )
     left = float(module.composite(alpha, np.zeros((count, 3)), depth, np.ones(3))[0][0, 0])
     order = np.argsort(depth)
     facts: Facts = {
         "weights and what is left add up to 1": (float(weights.sum() + left), 1 - 1e-12, 1 + 1e-12),
         "the nearest weighs its alpha": (float(weights[order[0]] - 0.6), -1e-12, 1e-12),
         "the most opaque one weighs a quarter of the nearest": (
-            float(weights[3] / weights[1]), 0.23, 0.27,
+            float(weights[3] / weights[1]),
+            0.23,
+            0.27,
         ),
-    }  # fmt: skip
+    }
     with house_style():
         figure = Figure(figsize=(7.0, 2.4), layout="constrained")
         axes = figure.subplots()
@@ -145,18 +149,26 @@ def fig3_pull(module: ModuleType) -> tuple[Figure, Facts]:
     facts: Facts = {
         "the sum along x is less than 5 % of the sizes": (float(signed[0] / total[0]), 0, 0.05),
         "pull is the sum of the sizes": (
-            float(total[0] / np.abs(pulls[:, 0]).sum()), 1 - 1e-9, 1 + 1e-9,
+            float(total[0] / np.abs(pulls[:, 0]).sum()),
+            1 - 1e-9,
+            1 + 1e-9,
         ),
-        "with densify the loss ends below a tenth": (
-            float(curves[1][-1] / curves[0][-1]), 0, 0.1,
-        ),
-    }  # fmt: skip
+        "with densify the loss ends below a tenth": (float(curves[1][-1] / curves[0][-1]), 0, 0.1),
+    }
     with house_style():
         figure = Figure(figsize=(7.0, 2.9), layout="constrained")
         left, right = figure.subplots(1, 2)
         left.imshow(truth.reshape(n, n, 3), extent=(0, n, n, 0))
-        left.quiver(x, y, *(pulls / np.abs(pulls).max()).T, angles="xy", scale_units="xy",
-                    scale=0.5, color=ORANGE, width=0.006)  # fmt: skip
+        left.quiver(
+            x,
+            y,
+            *(pulls / np.abs(pulls).max()).T,
+            angles="xy",
+            scale_units="xy",
+            scale=0.5,
+            color=ORANGE,
+            width=0.006,
+        )
         for k in (1, 2):
             left.add_patch(_ellipse(mean2d[0], cov2d[0], k, edgecolor=BLUE))
         left.set(xticks=[], yticks=[], title="what each pixel wants of the mean")
@@ -215,13 +227,17 @@ def fig5_arrows(module: ModuleType) -> tuple[Figure, Facts]:
     beneath = alpha @ np.sum(error**2, axis=2).ravel() / np.maximum(alpha.sum(axis=1), 1e-9)
     facts: Facts = {
         "a small step along all arrows lowers the loss as the gradient says": (
-            float(fall / predicted), 0.98, 1.02,
+            float(fall / predicted),
+            0.98,
+            1.02,
         ),
         "some are chosen, and most are not": (float(chosen.mean()), 0.05, 0.6),
         "beneath the chosen ones the error is at least 1.5 times that beneath the others": (
-            float(beneath[chosen].mean() / beneath[~chosen].mean()), 1.5, 50,
+            float(beneath[chosen].mean() / beneath[~chosen].mean()),
+            1.5,
+            50,
         ),
-    }  # fmt: skip
+    }
     arrows = (
         -(slope @ camera["camera_from_world"][:2, :3].T) * (depth / camera["focal"][0])[:, None]
     )
@@ -232,11 +248,23 @@ def fig5_arrows(module: ModuleType) -> tuple[Figure, Facts]:
         _show(panels[0], truth, "a photograph")
         _show(panels[1], shown, "arrows: where descent moves means")
         _show(panels[2], 0.35 * shown, "circles: pull; orange: chosen")
-        panels[1].quiver(*(places - 0.5).T, *arrows.T, angles="xy", scale_units="xy", scale=1,
-                         color="white", width=0.006)  # fmt: skip
+        panels[1].quiver(
+            *(places - 0.5).T,
+            *arrows.T,
+            angles="xy",
+            scale_units="xy",
+            scale=1,
+            color="white",
+            width=0.006,
+        )
         for which, colour in ((~chosen, GREY), (chosen, ORANGE)):
-            panels[2].scatter(*(places[which] - 0.5).T, s=120 * pull[which] / pull.max(),
-                              facecolors="none", edgecolors=colour, linewidths=0.9)  # fmt: skip
+            panels[2].scatter(
+                *(places[which] - 0.5).T,
+                s=120 * pull[which] / pull.max(),
+                facecolors="none",
+                edgecolors=colour,
+                linewidths=0.9,
+            )
         for axes in panels:
             axes.set(xlim=(-0.5, SIZE - 0.5), ylim=(SIZE - 0.5, -0.5))
     return figure, facts
@@ -270,20 +298,33 @@ def fig6_three(module: ModuleType) -> tuple[Figure, Facts]:
         figure = Figure(figsize=(7.0, 3.9), layout="constrained")
         panels = figure.subplots(2, 4)
         _show(panels[0, 0], unseen[0][1], "a new view: truth")
-        for axes, image, name, size, decibels in zip(panels[0, 1:], pictures, names, sizes,
-                                                     (score, score9[0], score11[0]),
-                                                     strict=True):  # fmt: skip
+        for axes, image, name, size, decibels in zip(
+            panels[0, 1:], pictures, names, sizes, (score, score9[0], score11[0]), strict=True
+        ):
             _show(axes, image, f"{name}\n{decibels:.1f} dB, {size / 1024:.0f} KiB")
         _show(panels[1, 0], truth, "a photograph")
         _show(panels[1, 1], 0.5 * shown, "start: ∂L/∂mean")
-        panels[1, 1].quiver(*(places - 0.5).T, *arrows.T, angles="xy", scale_units="xy", scale=1,
-                            color="white", width=0.008)  # fmt: skip
+        panels[1, 1].quiver(
+            *(places - 0.5).T,
+            *arrows.T,
+            angles="xy",
+            scale_units="xy",
+            scale=1,
+            color="white",
+            width=0.008,
+        )
         panels[1, 1].set(xlim=(-0.5, SIZE - 0.5), ylim=(SIZE - 0.5, -0.5))
         for axes, values in ((panels[1, 2], slope9), (panels[1, 3], slope11)):
             flat = values[:, :, values.shape[2] // 2].T
             root = np.sign(flat) * np.sqrt(np.abs(flat) / np.abs(flat).max())
-            axes.imshow(root, cmap=signed_colour_map(), vmin=-1, vmax=1, origin="lower",
-                        interpolation="nearest")  # fmt: skip
+            axes.imshow(
+                root,
+                cmap=signed_colour_map(),
+                vmin=-1,
+                vmax=1,
+                origin="lower",
+                interpolation="nearest",
+            )
             axes.set(xticks=[], yticks=[])
             axes.set_title("start: ∂L/∂σ, slice", fontsize=8)
     return figure, facts
@@ -297,9 +338,11 @@ def _camera(place: Array, size: int) -> Camera:
     W = np.stack([side, np.cross(forward, side), forward])
     return {
         "camera_from_world": np.concatenate([W, -(W @ place)[:, None]], axis=1),
-        "focal": np.full(2, 1.2 * size), "centre": np.full(2, size / 2), "width": size,
+        "focal": np.full(2, 1.2 * size),
+        "centre": np.full(2, size / 2),
+        "width": size,
         "height": size,
-    }  # fmt: skip
+    }
 
 
 def _world(camera: Camera, t: Array) -> Array:
@@ -352,10 +395,12 @@ def _cloud(count: int, scale: float) -> Scene:
     """Grey balls anywhere."""
     rng = np.random.default_rng(15)
     return {
-        "means": rng.uniform(-0.8, 0.8, (count, 3)), "quats": np.eye(4)[[0] * count],
-        "log_scales": np.full((count, 3), np.log(scale)), "opacity_logits": np.full(count, -1.0),
+        "means": rng.uniform(-0.8, 0.8, (count, 3)),
+        "quats": np.eye(4)[[0] * count],
+        "log_scales": np.full((count, 3), np.log(scale)),
+        "opacity_logits": np.full(count, -1.0),
         "colors": np.full((count, 3), 0.5),
-    }  # fmt: skip
+    }
 
 
 def _fitted(
@@ -368,8 +413,9 @@ def _fitted(
         if step in marks:
             kept[step] = scene
 
-    found, _ = module.fit(_cloud(80, 0.1), views, steps, np.random.default_rng(15), BLACK,
-                          MOST, 20, watch)  # fmt: skip
+    found, _ = module.fit(
+        _cloud(80, 0.1), views, steps, np.random.default_rng(15), BLACK, MOST, 20, watch
+    )
     return [kept.get(mark, found) for mark in marks], found, views
 
 
@@ -391,10 +437,13 @@ def _views_of_09(views: list[tuple[Camera, Array]]) -> dict[str, object]:
         pose[:3] = camera["camera_from_world"]
         poses.append(np.linalg.inv(pose))
     return {
-        "pictures": np.stack([truth for _, truth in views]), "world_from_camera": np.stack(poses),
-        "focal": float(np.asarray(views[0][0]["focal"])[0]), "low": np.full(3, -1.0),
-        "high": np.full(3, 1.0), "background": BLACK,
-    }  # fmt: skip
+        "pictures": np.stack([truth for _, truth in views]),
+        "world_from_camera": np.stack(poses),
+        "focal": float(np.asarray(views[0][0]["focal"])[0]),
+        "low": np.full(3, -1.0),
+        "high": np.full(3, 1.0),
+        "background": BLACK,
+    }
 
 
 def _volume(
@@ -456,8 +505,9 @@ def _ellipse(middle: Array, cov2d: Array, k: float, **style: object) -> Ellipse:
     values, vectors = np.linalg.eigh(cov2d[[0, 1, 1, 2]].reshape(2, 2))
     angle = np.degrees(np.arctan2(vectors[1, 1], vectors[0, 1]))
     wide, narrow = 2 * k * np.sqrt(np.maximum(values[::-1], 0))
-    return Ellipse(tuple(middle), wide, narrow, angle=angle, fill=False, linewidth=1.4, zorder=5,
-                   **style)  # fmt: skip
+    return Ellipse(
+        tuple(middle), wide, narrow, angle=angle, fill=False, linewidth=1.4, zorder=5, **style
+    )
 
 
 def _show(axes: Axes, picture: Array, title: str) -> None:

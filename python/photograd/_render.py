@@ -11,8 +11,9 @@ from photograd.capture.camera import Camera
 from photograd.errors import DtypeError, RangeError, message
 from photograd.fitting.evaluate import display_image
 from photograd.fitting.model import Model
+from photograd.transport.path_options import DEFAULTS, PathOptions
 from photograd.transport.scene import Scene
-from photograd.transport.tracer import DEFAULTS, PathOptions, PathTracer
+from photograd.transport.tracer import PathTracer
 from photograd.types import Array
 
 

@@ -85,9 +85,13 @@ def evaluate_backward(
         out = np.empty(coefficients.shape, coefficients.dtype), np.empty_like(_whole(directions))
     d_coefficients, d_directions = out
     _core.sh_colors_backward(
-        _whole(directions), _whole(coefficients), _whole(d_values), d_directions, d_coefficients,
+        _whole(directions),
+        _whole(coefficients),
+        _whole(d_values),
+        d_directions,
+        d_coefficients,
         add=False,
-    )  # fmt: skip
+    )
     return d_coefficients, d_directions
 
 

@@ -161,9 +161,7 @@ def test_a_representation_that_cannot_be_fitted(
 def test_a_bad_option(
     photograd: Photograd, capture_folder: Path, tmp_path: Path, words: tuple[str, ...], says: str
 ) -> None:
-    assert_one_line(
-        photograd("fit", capture_folder, "--out", tmp_path / "m", *FEW, *words), says
-    )  # fmt: skip
+    assert_one_line(photograd("fit", capture_folder, "--out", tmp_path / "m", *FEW, *words), says)
 
 
 @pytest.mark.parametrize(
@@ -185,9 +183,16 @@ def test_a_fit_that_diverges(photograd: Photograd, capture_folder: Path, tmp_pat
     for seconds in (0, 30):
         out = tmp_path / f"{seconds}"
         done = photograd(
-            "fit", capture_folder, "--out", out, *FEW, "--learning-rate", "1e39",
-            "--checkpoint-seconds", seconds,
-        )  # fmt: skip
+            "fit",
+            capture_folder,
+            "--out",
+            out,
+            *FEW,
+            "--learning-rate",
+            "1e39",
+            "--checkpoint-seconds",
+            seconds,
+        )
         assert_one_line(done, "finite values", "lower the learning rate")
         assert not (out / "model.npz").exists()
         assert [path.name for path in (out / "snapshots").iterdir()] == ["step_000000.npz"]
@@ -244,9 +249,13 @@ def test_resuming_on_another_capture(
 @pytest.mark.parametrize("command", ["render", "evaluate", "gradients", "info", "fit --resume"])
 @pytest.mark.parametrize("damage", ["truncated", "text"])
 def test_a_corrupt_checkpoint(
-    photograd: Photograd, capture_folder: Path, model_folder: Path, tmp_path: Path,
-    command: str, damage: str,
-) -> None:  # fmt: skip
+    photograd: Photograd,
+    capture_folder: Path,
+    model_folder: Path,
+    tmp_path: Path,
+    command: str,
+    damage: str,
+) -> None:
     content = (model_folder / "model.npz").read_bytes()
     broken = content[: len(content) // 2] if damage == "truncated" else b"no archive at all"
     model = tmp_path / "model"

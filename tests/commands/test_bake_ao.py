@@ -44,9 +44,12 @@ def test_a_floor_becomes_a_texture(photograd: Photograd, tmp_path: Path) -> None
     ],
 )
 def test_mistakes_are_named(
-    photograd: Photograd, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
-    words: tuple[str, ...], said: str,
-) -> None:  # fmt: skip
+    photograd: Photograd,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    words: tuple[str, ...],
+    said: str,
+) -> None:
     monkeypatch.chdir(tmp_path)
     done = photograd("bake-ao", "cornell-box", "--texels", 2, "--spp", 1, *words)
     assert done.code in (1, 2)

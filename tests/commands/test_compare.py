@@ -84,8 +84,22 @@ def test_a_folder_of_other_options_is_not_taken_for_these(
 
 
 def test_a_built_in_scene_is_photographed_once(photograd: Photograd, tmp_path: Path) -> None:
-    words = ("compare", "flat_walls", "--contenders", "dense_grid:8", "--out", tmp_path, *FEW,
-             "--views", 4, "--size", 16, "--spp", 1, "--json")  # fmt: skip
+    words = (
+        "compare",
+        "flat_walls",
+        "--contenders",
+        "dense_grid:8",
+        "--out",
+        tmp_path,
+        *FEW,
+        "--views",
+        4,
+        "--size",
+        16,
+        "--spp",
+        1,
+        "--json",
+    )
     assert photograd(*words).code == 0
     (photographs,) = (tmp_path / "flat_walls").glob("capture_*/transforms_train.json")
     made = photographs.stat().st_mtime_ns
@@ -125,8 +139,9 @@ def test_contenders_that_cannot_be(text: str, words: str) -> None:
 
 def test_contenders_are_read() -> None:
     assert parse_contenders("dense_grid:8, dense_grid:16") == [
-        Contender("dense_grid", 8), Contender("dense_grid", 16),
-    ]  # fmt: skip
+        Contender("dense_grid", 8),
+        Contender("dense_grid", 16),
+    ]
 
 
 def test_neither_folder_nor_scene(photograd: Photograd, tmp_path: Path) -> None:

@@ -51,9 +51,13 @@ def test_each_representation_has_the_resolution_that_suits_it(photograd: Photogr
     ],
 )
 def test_options_without_effect_are_refused(
-    photograd: Photograd, capture_folder: Path, tmp_path: Path, representation: str, words: Any,
+    photograd: Photograd,
+    capture_folder: Path,
+    tmp_path: Path,
+    representation: str,
+    words: Any,
     says: str,
-) -> None:  # fmt: skip
+) -> None:
     kind = ("--representation", representation)
     done = photograd("fit", capture_folder, "--out", tmp_path, *kind, *words, *FEW)
     assert_one_line(done, says, "leave it out")

@@ -26,10 +26,23 @@ WORDS = [word for name, value in OPTIONS.items() for word in (f"--{name}", str(v
 
 def start(capture: Path, out: Path, *more: str) -> subprocess.Popen[str]:
     return subprocess.Popen(
-        [sys.executable, "-m", "photograd_course", "fit", str(capture), "--out", str(out),
-         "--checkpoint-seconds", "0.1", *more],
-        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, encoding="utf-8",
-    )  # fmt: skip
+        [
+            sys.executable,
+            "-m",
+            "photograd_course",
+            "fit",
+            str(capture),
+            "--out",
+            str(out),
+            "--checkpoint-seconds",
+            "0.1",
+            *more,
+        ],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        encoding="utf-8",
+    )
 
 
 def wait_for_checkpoint(process: subprocess.Popen[str], out: Path, *, after: int = 0) -> None:

@@ -57,9 +57,13 @@ def test_the_folder_one_stands_in_can_hold_a_capture(
     ids=["empty", "long"],
 )
 def test_a_name_that_no_file_can_have_is_refused_before_the_work(
-    photograd: Photograd, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
-    command: str, name: str, says: str,
-) -> None:  # fmt: skip
+    photograd: Photograd,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    command: str,
+    name: str,
+    says: str,
+) -> None:
     monkeypatch.chdir(tmp_path)
     needed = {
         "fit": ["capture"],

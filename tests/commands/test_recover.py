@@ -57,9 +57,12 @@ def test_a_colour_is_found_and_resumed(
     ],
 )
 def test_mistakes_are_named(
-    photograd: Photograd, taken: tuple[Path, Path], tmp_path: Path,
-    words: tuple[object, ...], said: str,
-) -> None:  # fmt: skip
+    photograd: Photograd,
+    taken: tuple[Path, Path],
+    tmp_path: Path,
+    words: tuple[object, ...],
+    said: str,
+) -> None:
     scene, target = taken
     done = photograd("recover", scene, "--target", target, "--out", tmp_path / "x", *words)
     assert done.code in (1, 2)

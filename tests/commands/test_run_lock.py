@@ -79,12 +79,20 @@ def test_every_command_that_fills_a_folder_asks(
         ("compare", capture_folder, "--out", folder),
         ("gradients", model_folder, capture_folder, "--out", folder),
         ("demo", "--out", folder),
-        ("recover", "cornell-box", "--target", picture, "--unknown", "materials.red.albedo",
-         "--out", folder),
+        (
+            "recover",
+            "cornell-box",
+            "--target",
+            picture,
+            "--unknown",
+            "materials.red.albedo",
+            "--out",
+            folder,
+        ),
         ("trace", "cornell-box", "--out", picture),
         ("trace", "cornell-box", "--out", picture, "--resume"),
         ("trace", "cornell-box", "--out", picture.with_suffix(".png")),  # it writes x.png, too
-    ]  # fmt: skip
+    ]
     with one_run_in("fit", folder), one_run_for("trace", picture):
         for words in lines:
             done = photograd(*words)

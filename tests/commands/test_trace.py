@@ -115,9 +115,12 @@ def test_other_integrators(photograd: Photograd, tmp_path: Path, integrator: str
     ],
 )
 def test_mistakes_are_named(
-    photograd: Photograd, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
-    words: tuple[str, ...], said: str,
-) -> None:  # fmt: skip
+    photograd: Photograd,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    words: tuple[str, ...],
+    said: str,
+) -> None:
     monkeypatch.chdir(tmp_path)
     done = photograd("trace", *words)
     assert done.code in (1, 2)

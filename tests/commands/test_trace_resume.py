@@ -22,9 +22,12 @@ SMALL = ("cornell-box", "--size", 12, "--spp", 42)
     ("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)], ids=["Ctrl-C", "SIGTERM"]
 )
 def test_interrupted_and_resumed_it_has_the_same_bits(
-    photograd: Photograd, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
-    number: signal.Signals, code: int,
-) -> None:  # fmt: skip
+    photograd: Photograd,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    number: signal.Signals,
+    code: int,
+) -> None:
     whole, parts = tmp_path / "whole.exr", tmp_path / "parts.exr"
     assert photograd("trace", *SMALL, "--out", whole).code == 0
     add, calls = PathTracer.add_samples, []

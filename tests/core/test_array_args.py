@@ -18,13 +18,16 @@ from tests.splat import oracle
 
 def call(**changes: Any) -> Any:
     arguments: dict[str, Any] = {
-        "field": "dense_grid", "parameters": np.zeros((4, 4, 4, 4), np.float32),
+        "field": "dense_grid",
+        "parameters": np.zeros((4, 4, 4, 4), np.float32),
         "settings": settings(),
-    }  # fmt: skip
+    }
     rays = {
-        "origins": np.zeros((5, 3), np.float32), "directions": np.ones((5, 3), np.float32),
-        "t0": np.zeros(5, np.float32), "samples": np.zeros(5, np.int32),
-    }  # fmt: skip
+        "origins": np.zeros((5, 3), np.float32),
+        "directions": np.ones((5, 3), np.float32),
+        "t0": np.zeros(5, np.float32),
+        "samples": np.zeros(5, np.int32),
+    }
     for name, value in changes.items():
         (rays if name in rays else arguments)[name] = value
     return _core.march(**arguments, rays=list(rays.values()))
@@ -33,31 +36,52 @@ def call(**changes: Any) -> Any:
 @pytest.mark.parametrize(
     ("changes", "error", "text"),
     [
-        ({"t0": np.zeros(4, np.float32)}, ShapeError,
-         r"march: t0: expected shape \(R,\) with R = 5 as in origins, got \(4,\)"),
-        ({"directions": np.ones((5, 2), np.float32)}, ShapeError,
-         r"directions: expected shape \(R, 3\), got \(5, 2\)"),
-        ({"directions": np.ones((5, 3))}, DtypeError,
-         "directions: expected dtype float32, got dtype float64"),
+        (
+            {"t0": np.zeros(4, np.float32)},
+            ShapeError,
+            r"march: t0: expected shape \(R,\) with R = 5 as in origins, got \(4,\)",
+        ),
+        (
+            {"directions": np.ones((5, 2), np.float32)},
+            ShapeError,
+            r"directions: expected shape \(R, 3\), got \(5, 2\)",
+        ),
+        (
+            {"directions": np.ones((5, 3))},
+            DtypeError,
+            "directions: expected dtype float32, got dtype float64",
+        ),
         ({"directions": np.ones((3, 5), np.float32).T}, ShapeError, "C-contiguous"),
         ({"samples": np.zeros(5, np.int64)}, DtypeError, "samples: expected dtype int32"),
         ({"parameters": np.zeros((4, 4, 4, 3), np.float32)}, ShapeError, r"\(X, Y, Z, 4\)"),
         ({"parameters": np.zeros((4, 4, 1, 4), np.float32)}, RangeError, "two voxels"),
         ({"parameters": np.zeros((4, 4, 4, 4), np.int32)}, DtypeError, "float32 or float64"),
         ({"field": "dense_gird"}, RangeError, "one of .'dense_grid', 'tiny_network'"),
-        ({"origins": np.full((5, 3), np.nan, np.float32)}, RangeError,
-         r"march: origins: expected numbers from -1e\+15 to 1e\+15, got 15 that are not, the first "
-         "in row 0"),
-        ({"directions": np.float32([[0, 0, 1]] * 4 + [[0, 1e20, 0]])}, RangeError,
-         "march: directions: .* got 1 that are not, the first in row 4"),
+        (
+            {"origins": np.full((5, 3), np.nan, np.float32)},
+            RangeError,
+            r"march: origins: expected numbers from -1e\+15 to 1e\+15, got 15 that are not, "
+            "the first in row 0",
+        ),
+        (
+            {"directions": np.float32([[0, 0, 1]] * 4 + [[0, 1e20, 0]])},
+            RangeError,
+            "march: directions: .* got 1 that are not, the first in row 4",
+        ),
         ({"t0": np.float32([0, 0, np.inf, 0, 0])}, RangeError, "march: t0: .* in row 2"),
-        ({"samples": np.int32([0, 1, 2, -1, 0])}, RangeError,
-         "march: samples: expected 0 to 262144 samples of a ray, got -1 in row 3"),
+        (
+            {"samples": np.int32([0, 1, 2, -1, 0])},
+            RangeError,
+            "march: samples: expected 0 to 262144 samples of a ray, got -1 in row 3",
+        ),
         ({"samples": np.full(5, 2**31 - 1, np.int32)}, RangeError, "got 2147483647 in row 0"),
-        ({"t0": np.zeros(21, np.uint8)[1:].view(np.float32)}, ShapeError,
-         "march: t0: expected an aligned array"),
+        (
+            {"t0": np.zeros(21, np.uint8)[1:].view(np.float32)},
+            ShapeError,
+            "march: t0: expected an aligned array",
+        ),
     ],
-)  # fmt: skip
+)
 def test_each_wrong_array_is_named(changes: Any, error: type[Exception], text: str) -> None:
     with pytest.raises(error, match=text):
         call(**changes)
@@ -85,12 +109,22 @@ def test_gradients_are_not_written_into_a_read_only_array() -> None:
 @pytest.mark.parametrize(
     "changes",
     [
-        {"dt": 0.0}, {"dt": float("nan")}, {"dt": float("inf")}, {"box": [[0, 0, 0], [1, 0, 1]]},
-        {"box": [[0, 0, 0], [1, 1, 1e20]]}, {"box": [[0, 0, 0], [1, 1, 1e-20]]}, {"stop": -1.0},
-        {"stop": float("nan")}, {"lattice": 2}, {"quadrature": -1}, {"border": 2},
-        {"color_activation": 5}, {"density_activation": -1}, {"density_scale": float("inf")},
+        {"dt": 0.0},
+        {"dt": float("nan")},
+        {"dt": float("inf")},
+        {"box": [[0, 0, 0], [1, 0, 1]]},
+        {"box": [[0, 0, 0], [1, 1, 1e20]]},
+        {"box": [[0, 0, 0], [1, 1, 1e-20]]},
+        {"stop": -1.0},
+        {"stop": float("nan")},
+        {"lattice": 2},
+        {"quadrature": -1},
+        {"border": 2},
+        {"color_activation": 5},
+        {"density_activation": -1},
+        {"density_scale": float("inf")},
     ],
-)  # fmt: skip
+)
 def test_settings_are_checked(changes: dict[str, Any]) -> None:
     with pytest.raises(RangeError, match="MarchSettings"):
         settings(**changes)

@@ -148,8 +148,10 @@ atomic_write(Path(sys.argv[1]), write_slowly)
 """
     with subprocess.Popen(
         [sys.executable, "-c", code, str(target)],
-        stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
-    ) as slow:  # fmt: skip
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+    ) as slow:
         assert slow.stdout is not None
         assert slow.stdout.readline() == "writing\n"
         atomic_write(target, NEW)

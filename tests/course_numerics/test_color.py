@@ -40,10 +40,16 @@ def test_srgb_known_points() -> None:
 def test_eight_bytes_of_an_image() -> None:
     # Of 255, in linear light, by the formula of the standard; 10 and 11 lie beside its seam.
     bytes_, linear = zip(
-        (0, 0.0), (1, 0.000303527), (10, 0.003035270), (11, 0.003346536), (64, 0.051269458),
-        (128, 0.215860501), (188, 0.502886458), (255, 1.0),
+        (0, 0.0),
+        (1, 0.000303527),
+        (10, 0.003035270),
+        (11, 0.003346536),
+        (64, 0.051269458),
+        (128, 0.215860501),
+        (188, 0.502886458),
+        (255, 1.0),
         strict=True,
-    )  # fmt: skip
+    )
     found = color.srgb_decode(np.array(bytes_) / 255)
     np.testing.assert_allclose(found, linear, rtol=0, atol=1e-9)
 

@@ -130,11 +130,7 @@ def test_named_outputs_and_parameters_stay_untouched() -> None:
 
     def two_backward(p: Arrays, d: Arrays) -> Arrays:
         d_a = 2.0 * (d["colour"] * p["c"] + d["depth"][:, None])
-        return {
-            "a": d_a,
-            "b": np.zeros(3),
-            "c": np.array((d["colour"] * 2.0 * p["a"]).sum()),
-        }
+        return {"a": d_a, "b": np.zeros(3), "c": np.array((d["colour"] * 2.0 * p["a"]).sum())}
 
     assert check_gradient(two, two_backward, p, seed=6, may_be_zero=("b",))
     for name, array in before.items():

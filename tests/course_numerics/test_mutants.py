@@ -15,14 +15,8 @@ from photograd_course.mutants import (
 
 Arrays = dict[str, np.ndarray]
 
-PLACE = {
-    "colour": draw_like((5, 3), seed=1, stream=0),
-    "gain": np.array(1.3),
-}
-COTANGENT = {
-    "image": draw_like((5, 3), seed=2, stream=0),
-    "sum": draw_like((5,), seed=2, stream=1),
-}
+PLACE = {"colour": draw_like((5, 3), seed=1, stream=0), "gain": np.array(1.3)}
+COTANGENT = {"image": draw_like((5, 3), seed=2, stream=0), "sum": draw_like((5,), seed=2, stream=1)}
 
 
 def value(p: Arrays) -> Arrays:

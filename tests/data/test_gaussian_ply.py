@@ -51,9 +51,21 @@ def text_file(tmp_path: Path, header: str, rows: str) -> Path:
 
 
 NAMES = [
-    "x", "y", "z", "scale_0", "scale_1", "scale_2", "rot_0", "rot_1", "rot_2", "rot_3", "opacity",
-    "f_dc_0", "f_dc_1", "f_dc_2",
-]  # fmt: skip
+    "x",
+    "y",
+    "z",
+    "scale_0",
+    "scale_1",
+    "scale_2",
+    "rot_0",
+    "rot_1",
+    "rot_2",
+    "rot_3",
+    "opacity",
+    "f_dc_0",
+    "f_dc_1",
+    "f_dc_2",
+]
 
 
 def header(names: list[str], count: int = 1, kind: str = "float") -> str:

@@ -21,8 +21,11 @@ from support.tree import ROOT, python_texts
 
 POSTSCRIPT = b"%!PS-Adobe-3.0 EPSF-3.0\n%%BoundingBox: 0 0 16 16\n%%EndComments\n(x) show\n"
 READERS: list[Callable[[Path], Any]] = [
-    read_image, read_header, read_texture, lambda path: find_photographs(path.parent),
-]  # fmt: skip
+    read_image,
+    read_header,
+    read_texture,
+    lambda path: find_photographs(path.parent),
+]
 
 
 @pytest.fixture
@@ -51,9 +54,17 @@ def test_no_program_is_started_for_a_picture(tmp_path: Path, stub: Path, name: s
 
 
 @pytest.mark.parametrize(
-    ("kind", "found"), [("GIF", "GIF"), ("TIFF", "TIFF"), ("BMP", "BMP"), ("WEBP", "WebP"),
-                        ("PPM", "PPM"), ("PDF", "PDF"), ("ICO", "data that begins with")],
-)  # fmt: skip
+    ("kind", "found"),
+    [
+        ("GIF", "GIF"),
+        ("TIFF", "TIFF"),
+        ("BMP", "BMP"),
+        ("WEBP", "WebP"),
+        ("PPM", "PPM"),
+        ("PDF", "PDF"),
+        ("ICO", "data that begins with"),
+    ],
+)
 def test_other_kinds_are_named(tmp_path: Path, kind: str, found: str) -> None:
     buffer = io.BytesIO()
     Image.new("RGB", (16, 16), (200, 10, 10)).save(buffer, format=kind)

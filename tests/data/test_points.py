@@ -81,8 +81,9 @@ def test_points_of_a_nerfstudio_capture_are_those_of_the_colmap_model(
         camera, other = view.camera, first[view.name].camera
         np.testing.assert_allclose(
             np.sort(np.linalg.norm(theirs.points - camera.position, axis=1)),
-            np.sort(np.linalg.norm(ours.points - other.position, axis=1)), rtol=1e-4,
-        )  # fmt: skip
+            np.sort(np.linalg.norm(ours.points - other.position, axis=1)),
+            rtol=1e-4,
+        )
     assert colour_errors(ours) == pytest.approx(colour_errors(theirs), abs=0.01)
 
 

@@ -189,7 +189,7 @@ def test_damaged_files_are_refused(tmp_path: Path) -> None:
         (b"PF\n1 1\nnan\n" + b"\0" * 12, "a PFM header"),
         (b"Pf\n1 1\n-1\n\0\0\xc0\x7f", "finite values, got others, the first in row 0, column 0"),
     ],
-)  # fmt: skip
+)
 def test_headers_without_sense_take_no_memory(tmp_path: Path, content: bytes, words: str) -> None:
     (tmp_path / "a").write_bytes(content)
     tracemalloc.start()

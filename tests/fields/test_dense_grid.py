@@ -151,9 +151,14 @@ def test_a_voxel_that_went_bad_is_reported(dtype: Any, channel: int) -> None:
 
 @pytest.mark.parametrize(
     ("name", "value"),
-    [("origins", np.nan), ("origins", np.inf), ("directions", np.nan), ("directions", 0.0),
-     ("directions", 5.0)],
-)  # fmt: skip
+    [
+        ("origins", np.nan),
+        ("origins", np.inf),
+        ("directions", np.nan),
+        ("directions", 0.0),
+        ("directions", 5.0),
+    ],
+)
 def test_rays_that_are_no_rays_are_named_by_their_pixel(name: str, value: float) -> None:
     grid = DenseGrid.example(seed=4)
     batch = grid.example_batch(seed=4)

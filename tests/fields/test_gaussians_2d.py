@@ -24,9 +24,12 @@ def test_one_gaussian_by_hand() -> None:
     # Long along (cos 30, sin 30), right and down.
     half = np.sqrt(0.75)
     field = Gaussians2D(
-        np.array([[0.5, 0.5]]), np.log([[0.2, 0.1]]), np.array([np.pi / 6]), np.array([np.log(3)]),
+        np.array([[0.5, 0.5]]),
+        np.log([[0.2, 0.1]]),
+        np.array([np.pi / 6]),
+        np.array([np.log(3)]),
         np.array([[1.0, 0.5, 0.25]]),
-    )  # fmt: skip
+    )
     along, across = [0.5 + 0.2 * half, 0.6], [0.5 - 0.1 * 0.5, 0.5 + 0.1 * half]
     outputs, context = drawn(field, [[0.5, 0.5], along, across])
     alpha = 0.75 * np.exp([0, -0.5, -0.5])
@@ -72,11 +75,10 @@ def test_a_camera_that_looks_at_flat_gaussians_sees_the_canvas() -> None:
     solid = Gaussians(
         np.column_stack([p["mean"] - 0.5, 1e-6 * np.arange(n)]),
         np.column_stack([p["log_scale"], np.full(n, -9.0)]),
-        np.column_stack(
-            [np.cos(p["angle"] / 2), np.zeros((n, 2)), np.sin(p["angle"] / 2)]
-        ),
-        p["opacity_logit"], ((p["color"] - 0.5) / Y_0)[:, None],
-    )  # fmt: skip
+        np.column_stack([np.cos(p["angle"] / 2), np.zeros((n, 2)), np.sin(p["angle"] / 2)]),
+        p["opacity_logit"],
+        ((p["color"] - 0.5) / Y_0)[:, None],
+    )
     pose = np.eye(4)
     pose[2, 3] = -far
     camera = Camera(size, size, size * far, size * far, size / 2, size / 2, pose)

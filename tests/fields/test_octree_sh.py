@@ -57,9 +57,12 @@ def test_cutting_a_leaf_into_equal_ones_changes_nothing() -> None:
     source = field.row[single.values[:, 0].astype(int)]
     row = np.where(source >= 0, np.cumsum(source >= 0) - 1, -1).astype(np.int32)
     cut = OctreeSh(
-        single, row, field.params["density"][source[source >= 0]],
-        field.params["sh"][source[source >= 0]], density_scale=field.density_scale,
-    )  # fmt: skip
+        single,
+        row,
+        field.params["density"][source[source >= 0]],
+        field.params["sh"][source[source >= 0]],
+        density_scale=field.density_scale,
+    )
     assert len(single.values) == 512 > 2 * len(labels[0])
     assert (side > 1).any()
     batch = field.example_batch(seed=3)
@@ -118,9 +121,10 @@ def test_a_grid_becomes_a_tree_that_learns_what_the_conversion_lost() -> None:
     batch = grid.example_batch(seed=5)
     many = [grid.example_batch(seed=s) for s in range(5, 25)]
     batch = RayBatch(
-        np.concatenate([b.origins for b in many]), np.concatenate([b.directions for b in many]),
+        np.concatenate([b.origins for b in many]),
+        np.concatenate([b.directions for b in many]),
         np.arange(24 * 20, dtype=np.uint32),
-    )  # fmt: skip
+    )
     truth = grid.render(batch, seed=0, step=0, options=OPTIONS)[0].color
     optimiser = Adam()
     errors = []

@@ -102,9 +102,10 @@ def test_a_cloud_is_recovered_from_rays() -> None:
         error = outputs.color - target
         decay = 0.1 ** (step / 300)
         adam.step(
-            points.params, points.render_backward(context, Outputs(2 * error / error.size)),
+            points.params,
+            points.render_backward(context, Outputs(2 * error / error.size)),
             {name: rate * decay for name, rate in rates.items()},
-        )  # fmt: skip
+        )
     after = np.abs(points.params["position"] - truth.params["position"]).max()
     assert before > 0.1
     assert after < 0.1 * before

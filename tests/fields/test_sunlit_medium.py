@@ -32,9 +32,17 @@ OPTIONS = RenderOptions()
 
 def slab(sigma_t: float, sun: Any, g: float = 0.3, **more: Any) -> SunlitMedium:
     return SunlitMedium.homogeneous(
-        sigma_t, SHAPE, BOX, DT, albedo=ALBEDO, g=g, irradiance=IRRADIANCE, sun=sun,
-        dtype=np.float64, **more,
-    )  # fmt: skip
+        sigma_t,
+        SHAPE,
+        BOX,
+        DT,
+        albedo=ALBEDO,
+        g=g,
+        irradiance=IRRADIANCE,
+        sun=sun,
+        dtype=np.float64,
+        **more,
+    )
 
 
 def one_ray(origin: Any, direction: Any) -> RayBatch:
@@ -107,9 +115,16 @@ def test_the_error_falls_with_the_square_of_voxel_and_step(up: float) -> None:
     errors = []
     for n in (8, 16, 32, 64):
         medium = SunlitMedium.homogeneous(
-            2.0, (4, n, 4), BOX, 0.5 / n, albedo=ALBEDO, g=0.3, irradiance=IRRADIANCE,
-            sun=(0, 1, 0), dtype=np.float64,
-        )  # fmt: skip
+            2.0,
+            (4, n, 4),
+            BOX,
+            0.5 / n,
+            albedo=ALBEDO,
+            g=0.3,
+            irradiance=IRRADIANCE,
+            sun=(0, 1, 0),
+            dtype=np.float64,
+        )
         got = radiance(medium, one_ray([0, 0.5 - 1.5 * up, 0], (0, up, 0)))[0, 0]
         errors.append(abs(got / closed_form(2.0, (0, 1, 0), (0, up, 0), 0.3)[0] - 1))
     orders = np.log2(np.array(errors[:-1]) / errors[1:])

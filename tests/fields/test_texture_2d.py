@@ -33,8 +33,9 @@ def test_half_way_is_the_mean_of_its_neighbours() -> None:
     between_columns, between_rows, middle_of_four = (1 / 3, 0.25), (0.5, 0.5), (2 / 3, 0.5)
     np.testing.assert_allclose(
         red(between_columns, between_rows, middle_of_four),
-        [1.5, 11.0, (2 + 3 + 20 + 30) / 4], rtol=1e-14,
-    )  # fmt: skip
+        [1.5, 11.0, (2 + 3 + 20 + 30) / 4],
+        rtol=1e-14,
+    )
 
 
 def test_the_border_continues_outwards() -> None:
@@ -86,8 +87,10 @@ def test_dot_product_of_a_linear_stage() -> None:
     report = dot_product_error(
         lambda _, v: sample(v["texture"], points),  # linear: J v is the function at v
         lambda p, d: {"texture": sample_backward(p["texture"], points, d)[0]},
-        {"texture": TEXTURE}, seed=1, tolerance=1e-12,
-    )  # fmt: skip
+        {"texture": TEXTURE},
+        seed=1,
+        tolerance=1e-12,
+    )
     assert report, str(report)
 
 
@@ -98,8 +101,9 @@ def test_a_single_row_or_column_is_constant_across(shape: tuple[int, ...]) -> No
     report = check_gradient(
         lambda p: sample(p["texture"], points),
         lambda p, d: {"texture": sample_backward(p["texture"], points, d)[0]},
-        {"texture": texture}, seed=2,
-    )  # fmt: skip
+        {"texture": texture},
+        seed=2,
+    )
     assert report, str(report)
     if shape[0] == 1:
         other = points * [1.0, 0.3]

@@ -169,9 +169,12 @@ def test_rows_without_a_gradient_keep_every_bit() -> None:
     mean = np.array([[0.1, 0.1], [0.9, 0.9]])
     blobs = ToyBlobs(mean, np.log([0.05, 0.05]), np.ones((2, 3)), reach=3.0)
     before = {name: array.copy() for name, array in blobs.params.items()}
-    descend(blobs, Adam(), np.zeros((40, 3)), CanvasBatch(
-        np.random.default_rng(1).uniform(0.0, 0.3, (40, 2))
-    ))  # fmt: skip
+    descend(
+        blobs,
+        Adam(),
+        np.zeros((40, 3)),
+        CanvasBatch(np.random.default_rng(1).uniform(0.0, 0.3, (40, 2))),
+    )
     for name, array in blobs.params.items():
         assert np.array_equal(array[1], before[name][1])
         assert not np.array_equal(array[0], before[name][0])
@@ -190,8 +193,6 @@ ONE = {"mean": np.zeros((2, 2)), "log_radius": np.zeros(2), "color": np.zeros((2
         ({"reach": 0.0}, RangeError, "reach: expected a positive number or None, got 0.0"),
     ],
 )
-def test_bad_blobs_are_refused(
-    change: dict[str, Any], error: type[Exception], words: str
-) -> None:  # fmt: skip
+def test_bad_blobs_are_refused(change: dict[str, Any], error: type[Exception], words: str) -> None:
     with pytest.raises(error, match=words):
         ToyBlobs(**(ONE | change))

@@ -43,9 +43,11 @@ def truth() -> DenseGrid:
         weight += inside + 1e-9
     values[..., :3] /= weight[..., None]
     policy = MarchPolicy(
-        (tuple(BOX[0].tolist()), tuple(BOX[1].tolist())), 0.02,
-        density_activation="identity", color_activation="identity",
-    )  # fmt: skip
+        (tuple(BOX[0].tolist()), tuple(BOX[1].tolist())),
+        0.02,
+        density_activation="identity",
+        color_activation="identity",
+    )
     return DenseGrid(values, policy)
 
 
@@ -80,8 +82,9 @@ def over_wall(image: Any, color: tuple[float, float, float]) -> Any:
     alpha = image[..., 3:]
     return np.concatenate(
         [image[..., :3] * alpha + (1 - alpha) * np.array(color), np.ones_like(alpha)],
-        axis=-1, dtype=np.float32,
-    )  # fmt: skip
+        axis=-1,
+        dtype=np.float32,
+    )
 
 
 def capture(*, wall: tuple[float, float, float] | None = None) -> Capture:

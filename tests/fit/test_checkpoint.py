@@ -123,16 +123,10 @@ def with_meta(**entries: Any) -> Any:
 
 DAMAGES = {
     "another version": (with_meta(version=99), "expected version 1, got 99"),
-    "no policy": (
-        with_meta(policy=None),
-        "of a fit, got .*MarchPolicy: expected an object",
-    ),
+    "no policy": (with_meta(policy=None), "of a fit, got .*MarchPolicy: expected an object"),
     "no options": (with_meta(options=None), "FitOptions: expected an object, got None"),
     "unknown option": (with_meta(options={"refine_at": [0, 0], "sharpness": 1}), "sharpness"),
-    "bad option": (
-        with_meta(options={"refine_at": [0, 0], "rays": -1}),
-        "rays: expected",
-    ),
+    "bad option": (with_meta(options={"refine_at": [0, 0], "rays": -1}), "rays: expected"),
     "no values": (lambda a: a.pop("params.values"), "missing or unknown values"),
     "text for values": (
         lambda a: a.update({"params.values": np.array("x")}),
@@ -160,10 +154,7 @@ def test_contents_that_do_not_fit_are_refused(tmp_path: Path, model: Path, name:
 @pytest.mark.parametrize("key", ["split", "pixels"])
 def test_a_model_that_is_no_fit_cannot_be_resumed(tmp_path: Path, model: Path, key: str) -> None:
     rewrite(model, tmp_path, with_meta(**{key: None}))
-    with pytest.raises(
-        IoError,
-        match=rf"that of a fit, got one without \['{key}'\]",
-    ):
+    with pytest.raises(IoError, match=rf"that of a fit, got one without \['{key}'\]"):
         Fit.resume(scene.capture(), tmp_path)
 
 

@@ -60,11 +60,20 @@ def other_values(old: Any) -> list[Any]:
 def other_arrays(old: Any) -> list[Any]:
     """What may be in the place of an array."""
     found = [
-        np.zeros(0), np.array("x"), old[..., None], old.astype(complex), old.astype("U8"),
-        old.astype(old.dtype.newbyteorder()), old.astype(np.float16), old.astype(bool),
-        old.astype(np.int64), old.astype(np.float64), np.zeros_like(old), -np.abs(old) - 1,
+        np.zeros(0),
+        np.array("x"),
+        old[..., None],
+        old.astype(complex),
+        old.astype("U8"),
+        old.astype(old.dtype.newbyteorder()),
+        old.astype(np.float16),
+        old.astype(bool),
+        old.astype(np.int64),
+        old.astype(np.float64),
+        np.zeros_like(old),
+        -np.abs(old) - 1,
         np.full_like(old, 10**9 if old.dtype.kind != "u" else 255),
-    ]  # fmt: skip
+    ]
     if old.ndim:
         found += [old[:-1], np.concatenate([old, old[:1]]), old[::-1], old.T.copy(), old.ravel()]
         found += [old[..., :-1], old[0]]

@@ -153,8 +153,11 @@ def test_the_gradient_is_that_of_sigma_t() -> None:
     report = check_gradient(
         lambda p: evaluate(p).loss,
         lambda p, d: {"sigma_t": d * evaluate(p).d_sigma_t.astype(np.float64)},
-        {"sigma_t": sigma_t}, seed=1, directions=4, coordinates=12,
-    )  # fmt: skip
+        {"sigma_t": sigma_t},
+        seed=1,
+        directions=4,
+        coordinates=12,
+    )
     assert report, str(report)
 
 

@@ -131,8 +131,11 @@ def test_a_view_without_a_whole_window_is_named_and_left_out(
     assert found.protocol.startswith("1 held-out views at 48x48")
     assert found.protocol.endswith("left out, without a window of valid pixels: striped")
     assert module.as_result(found)["left_out"] == ["striped"]
-    with pytest.raises(RangeError, match="evaluate: views: expected a view with an 11x11 window of "
-                       "valid pixels, got none in striped"):  # fmt: skip
+    with pytest.raises(
+        RangeError,
+        match="evaluate: views: expected a view with an 11x11 window of "
+        "valid pixels, got none in striped",
+    ):
         evaluate(MODEL, [hidden])
     with pytest.raises(RangeError, match="an 11x11 window of valid pixels, got none in front"):
         evaluate(MODEL, [opaque(size=10)])

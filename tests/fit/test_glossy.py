@@ -32,9 +32,12 @@ def glossy_ball() -> SparseSh:
     coefficients[:, [3, 1, 2], [0, 1, 2]] = 0.4
     coefficients[:, 8, :] = 0.15
     policy = MarchPolicy(
-        (tuple(BOX[0].tolist()), tuple(BOX[1].tolist())), 0.02, border="zero",
-        density_activation="relu", color_activation="relu",
-    )  # fmt: skip
+        (tuple(BOX[0].tolist()), tuple(BOX[1].tolist())),
+        0.02,
+        border="zero",
+        density_activation="relu",
+        color_activation="relu",
+    )
     return SparseSh(active, density, coefficients, policy)
 
 
@@ -52,8 +55,12 @@ def glossy_capture() -> Capture:
     return Capture(
         tuple(view(f"train_{n}", c) for n, c in enumerate(train)),
         tuple(view(f"test_{n}", c) for n, c in enumerate(test)),
-        "memory", Path("memory"), "display", True, bounds=BOX,
-    )  # fmt: skip
+        "memory",
+        Path("memory"),
+        "display",
+        True,
+        bounds=BOX,
+    )
 
 
 def test_harmonics_beat_a_diffuse_grid_of_the_same_size(tmp_path: Path) -> None:

@@ -100,8 +100,9 @@ def test_gradient_of_a_learned_background() -> None:
     report = check_gradient(
         lambda p: learned_background(p["raw"]),
         lambda p, d: {"raw": learned_background_backward(p["raw"], d)},
-        {"raw": np.array([-1.3, 0.2, 2.1])}, seed=3,
-    )  # fmt: skip
+        {"raw": np.array([-1.3, 0.2, 2.1])},
+        seed=3,
+    )
     assert report, str(report)
 
 

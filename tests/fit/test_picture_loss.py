@@ -39,8 +39,9 @@ class Proof:
         }
 
     def loss(self, p: dict[str, Any]) -> Any:
-        return picture_loss(Outputs(p["color"], p["opacity"]), self.view, p["background"],
-                            ssim_weight=self.weight)  # fmt: skip
+        return picture_loss(
+            Outputs(p["color"], p["opacity"]), self.view, p["background"], ssim_weight=self.weight
+        )
 
     def forward(self, p: dict[str, Any]) -> dict[str, Any]:
         return {"value": np.array(self.loss(p).value)}
@@ -87,8 +88,10 @@ def test_wrong_gradients_die() -> None:
         lambda backward: check_gradient(
             proof.forward, backward, proof.place, seed=5, directions=4, steps=(1e-5, 1e-6)
         ),
-        proof.backward, proof.place, {"value": np.array(1.0)},
-    )  # fmt: skip
+        proof.backward,
+        proof.place,
+        {"value": np.array(1.0)},
+    )
     assert report, str(report)
 
 

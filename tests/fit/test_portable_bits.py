@@ -44,8 +44,12 @@ def test_the_same_bits_without_any_instruction_that_can_be_switched_off(tmp_path
     folder = opaque_capture(tmp_path / "capture")
     other = subprocess.run(
         [sys.executable, "-m", "tests.fit.all_fits", str(folder)],
-        cwd=ROOT, env=os.environ | variables, capture_output=True, text=True, check=True,
-    )  # fmt: skip
+        cwd=ROOT,
+        env=os.environ | variables,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
     plain, bare = digests(folder), json.loads(other.stdout)
     same = plain.pop("of the processor") == bare.pop("of the processor")
     assert same != ("X86_V3" in features)  # the switches do something

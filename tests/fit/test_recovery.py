@@ -138,8 +138,11 @@ def test_gradient_of_a_whole_step(wall: Any) -> None:
     report = check_gradient(
         lambda p: both(p)[0],
         lambda p, d: {name: d * gradient for name, gradient in both(p)[1].items()},
-        start, seed=1, directions=4, coordinates=16,
-    )  # fmt: skip
+        start,
+        seed=1,
+        directions=4,
+        coordinates=16,
+    )
     assert report, str(report)
 
 

@@ -21,10 +21,7 @@ from tests.fit import scene
 @pytest.mark.parametrize(
     ("name", "words"),
     [
-        (
-            "dense_gird",
-            r"a capture can start: .*, got 'dense_gird' .*mean 'dense_grid'",
-        ),
+        ("dense_gird", r"a capture can start: .*, got 'dense_gird' .*mean 'dense_grid'"),
         ("zebra", r"'octree_sh' or 'gaussians', got 'zebra'$"),
         ("gaussian", r"got 'gaussian' \(did you mean 'gaussians'\?\)$"),
         ("texture_2d", r"got 'texture_2d' \(it lives on a 2D canvas\)"),

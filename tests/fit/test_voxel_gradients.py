@@ -82,8 +82,11 @@ def test_what_is_drawn_is_the_gradient(name: str) -> None:
     report = check_gradient(
         lambda p: evaluate(p).loss,
         lambda p, d: {"sigma_t": d * rows_of(field, evaluate(p).d_sigma_t).astype(np.float64)},
-        {"sigma_t": sigma_t}, seed=1, directions=3, coordinates=8,
-    )  # fmt: skip
+        {"sigma_t": sigma_t},
+        seed=1,
+        directions=3,
+        coordinates=8,
+    )
     assert report, str(report)
 
 

@@ -39,9 +39,12 @@ def sample() -> Glb:
     }
     coat = {"clearcoatFactor": 0.5, "clearcoatTexture": {"index": 0}}
     material = glb.material(
-        name="m", normalTexture={"index": 1, "scale": 0.5}, emissiveFactor=[1, 1, 1],
-        extensions={"KHR_materials_clearcoat": coat}, **core(**textures),
-    )  # fmt: skip
+        name="m",
+        normalTexture={"index": 1, "scale": 0.5},
+        emissiveFactor=[1, 1, 1],
+        extensions={"KHR_materials_clearcoat": coat},
+        **core(**textures),
+    )
     parent = glb.node(glb.mesh(material=material), rotation=[0, 0, 0, 1], scale=[1, 2, 1])
     glb.json["nodes"].append({"mesh": 0, "translation": [1, 2, 3]})
     parent["children"] = [1]

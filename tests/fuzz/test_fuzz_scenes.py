@@ -27,9 +27,23 @@ pytestmark = pytest.mark.fuzz
 SECONDS = float(os.environ.get("PHOTOGRAD_FUZZ_SECONDS", "0.8"))
 EXAMPLES_A_ROUND = 50
 WORDS = (
-    "nan", "-1", "1e308", "9" * 5000, "[]", "{}", "[[", "true", '"x"', "\n[camera]\n", "[" * 500,
-    "é", "1979-05-27", "0", "=", '"""',
-)  # fmt: skip
+    "nan",
+    "-1",
+    "1e308",
+    "9" * 5000,
+    "[]",
+    "{}",
+    "[[",
+    "true",
+    '"x"',
+    "\n[camera]\n",
+    "[" * 500,
+    "é",
+    "1979-05-27",
+    "0",
+    "=",
+    '"""',
+)
 
 TEXTS = {
     "shapes": TEXT,

@@ -32,8 +32,9 @@ def test_comments_come_back_to_the_bit(tmp_path: Path) -> None:
     found = read_gaussians(tmp_path / "a.ply")
     assert found.presentation == TOLD
     assert found.conversions == (
-        "the file says: -y is up", "the file says: background 0.100 0.333 0.000",
-    )  # fmt: skip
+        "the file says: -y is up",
+        "the file says: background 0.100 0.333 0.000",
+    )
     assert PlyData.read(tmp_path / "a.ply").comments[0] == "photograd: up -y"
     write_gaussians(tmp_path / "b.ply", g)
     assert read_gaussians(tmp_path / "b.ply").presentation == UNSTATED

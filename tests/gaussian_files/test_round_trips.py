@@ -82,8 +82,13 @@ def test_extremes_are_moved_to_the_limits_and_counted(tmp_path: Path) -> None:
     g.quats[0] = 0.0
     found = there_and_back(tmp_path / "a.spz", g, 3)
     assert {name: each.clamped for name, each in found.items()} == {
-        "means": 0, "log_scales": 6, "rotation": 0, "opacity": 0, "color": 3, "harmonics": 3,
-    }  # fmt: skip
+        "means": 0,
+        "log_scales": 6,
+        "rotation": 0,
+        "opacity": 0,
+        "color": 3,
+        "harmonics": 3,
+    }
     # What was moved to a limit counts: 9 to 1/2 / 0.15; -3, which is 3 after the half turn.
     assert found["log_scales"].largest == np.inf
     assert found["color"].largest == pytest.approx((9.0 - 0.5 / 0.15) * Y_0)

@@ -14,9 +14,14 @@ WORDS = ["packed_position", "packed_rotation", "packed_scale", "packed_color"]
 
 
 def write_words(
-    path: Path, rows: list[tuple[int, ...]], *, colors: bool = False, rest: int = 0,
-    chunks: int = 1, lowest: float = -2.0,
-) -> None:  # fmt: skip
+    path: Path,
+    rows: list[tuple[int, ...]],
+    *,
+    colors: bool = False,
+    rest: int = 0,
+    chunks: int = 1,
+    lowest: float = -2.0,
+) -> None:
     """Chunks with positions of -2 to 2 (0 to 1 along y), scales of -6 to -1, colours of -1 to 3."""
     names = [*LIMITS, *SCALES, *(COLORS if colors else ())]
     values = [lowest, 0, -2, 2, 1, 2, *[-6] * 3, *[-1] * 3, *([-1] * 3 + [3] * 3 if colors else ())]

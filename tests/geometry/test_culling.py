@@ -124,8 +124,10 @@ def test_the_shape_of_the_tree() -> None:
     assert (tree.parent[1:] < np.arange(1, len(tree.parent))).all()
     assert (tree.level[1:] == tree.level[tree.parent[1:]] + 1).all()
     assert 2 <= tree.level.max() <= 4
-    for inner, outer in ((tree.node_boxes[1:], tree.node_boxes[tree.parent[1:]]),
-                         (BOXES, tree.node_boxes[tree.node])):  # fmt: skip
+    for inner, outer in (
+        (tree.node_boxes[1:], tree.node_boxes[tree.parent[1:]]),
+        (BOXES, tree.node_boxes[tree.node]),
+    ):
         assert (inner[:, 0] >= outer[:, 0]).all()
         assert (inner[:, 1] <= outer[:, 1]).all()
     np.testing.assert_array_equal(tree.node_boxes[0], [BOXES[:, 0].min(0), BOXES[:, 1].max(0)])

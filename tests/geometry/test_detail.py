@@ -62,8 +62,10 @@ def test_coarser_is_smaller_and_errs_more() -> None:
 
 def test_a_promise_without_what_was_lost_would_be_broken() -> None:
     # The fin becomes a line that belongs to no triangle: moved corners alone (2 cm) do not tell.
-    mesh = Mesh(np.concatenate([FIN, FIN + np.array([0, 3, 0])]),
-                np.array([[0, 1, 2], [0, 2, 3], [5, 9, 6]]))  # fmt: skip
+    mesh = Mesh(
+        np.concatenate([FIN, FIN + np.array([0, 3, 0])]),
+        np.array([[0, 1, 2], [0, 2, 3], [5, 9, 6]]),
+    )
     level = clustered(mesh, 0.2)
     there, _ = nearest_on_mesh(on_surface(mesh, 200, 3), level.mesh)
     assert there.max() > 1.0
@@ -110,8 +112,10 @@ def test_silhouettes_move_by_no_more_than_the_error() -> None:
     camera = Camera(128, 128, 120, 120, 64, 64, look_at(np.array([0.0, 8.0, 14.0]), np.zeros(3)))
     level = detail.choose(camera, 4.0)
     assert level > 0
-    masks = [Bvh(m).trace(*camera.rays()).hit.reshape(128, 128)
-             for m in (mesh, detail.levels[level].mesh)]  # fmt: skip
+    masks = [
+        Bvh(m).trace(*camera.rays()).hit.reshape(128, 128)
+        for m in (mesh, detail.levels[level].mesh)
+    ]
     assert (masks[0] != masks[1]).any()
     reach = 5  # pixels: the error, and half a pixel on either side
     for one, other in (masks, masks[::-1]):

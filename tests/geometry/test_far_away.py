@@ -67,9 +67,11 @@ SCENES = {
     "got 1e+16 m in mesh 0",
 }
 WITHIN = (
-    "geometry(scaled(1e11))", "geometry(scaled(1e-11))", "geometry(scaled(1e-6), scaled(2e-6))",
+    "geometry(scaled(1e11))",
+    "geometry(scaled(1e-11))",
+    "geometry(scaled(1e-6), scaled(2e-6))",
     "geometry(spheres=[[0, -4e14, 0, 4e14], [0, 0, 1, 1e-20]])",
-)  # fmt: skip
+)
 
 
 @pytest.fixture(scope="module")
@@ -122,9 +124,15 @@ def test_a_turn_that_keeps_its_sides_is_taken() -> None:
     triangle = np.eye(3, dtype=np.float32), np.array([[0, 1, 2]], np.uint32), None, None
     lights: list[tuple[object, ...]] = []
     geometry = _core.PathGeometry(
-        [triangle], np.zeros(1, np.int32), np.eye(4)[None, :3].copy(), np.zeros((0, 4), np.float32),
-        np.zeros(1, np.int32), np.zeros((1, 3)), lights, closing_matrices=turned,
-    )  # fmt: skip
+        [triangle],
+        np.zeros(1, np.int32),
+        np.eye(4)[None, :3].copy(),
+        np.zeros((0, 4), np.float32),
+        np.zeros(1, np.int32),
+        np.zeros((1, 3)),
+        lights,
+        closing_matrices=turned,
+    )
     assert geometry.bvh.occluded(np.ones((1, 3)), -np.ones((1, 3)), np.zeros(1), np.ones(1)).all()
 
 

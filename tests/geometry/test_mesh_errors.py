@@ -27,14 +27,23 @@ def build(vertices: Any = VERTICES, faces: Any = FACES, uv: Any = None, **option
 
 FLAT = with_row(FACES, 5, [3, 3, 4])
 CASES: dict[str, tuple[type[Error], str, dict[str, Any]]] = {
-    "nan": (SceneError, "vertices.*nan in vertex 7 of mesh 0",
-            {"vertices": with_row(VERTICES, 7, np.nan)}),
-    "far vertex": (SceneError, "faces.*below 86, got 99 in triangle 4 of mesh 0",
-                   {"faces": with_row(FACES, 4, [0, 99, 1])}),
+    "nan": (
+        SceneError,
+        "vertices.*nan in vertex 7 of mesh 0",
+        {"vertices": with_row(VERTICES, 7, np.nan)},
+    ),
+    "far vertex": (
+        SceneError,
+        "faces.*below 86, got 99 in triangle 4 of mesh 0",
+        {"faces": with_row(FACES, 4, [0, 99, 1])},
+    ),
     "flat": (SceneError, "1 without, the first is triangle 5 .*drop_degenerate", {"faces": FLAT}),
     "no face": (SceneError, "at least one triangle", {"faces": np.zeros((0, 3), int)}),
-    "negative": (RangeError, r"\[0, -1, 2\] in triangle 3",
-                 {"faces": with_row(FACES.astype(int), 3, [0, -1, 2])}),
+    "negative": (
+        RangeError,
+        r"\[0, -1, 2\] in triangle 3",
+        {"faces": with_row(FACES.astype(int), 3, [0, -1, 2])},
+    ),
     "float faces": (DtypeError, "faces: expected integer", {"faces": FACES.astype(float)}),
     "quads": (ShapeError, "faces: expected shape", {"faces": FACES[:8].reshape(-1, 4)}),
     "planar": (ShapeError, "vertices: expected shape", {"vertices": VERTICES[:, :2]}),
@@ -42,10 +51,13 @@ CASES: dict[str, tuple[type[Error], str, dict[str, Any]]] = {
     "uv nan": (SceneError, "uv.*at vertex 0", {"uv": np.full((len(VERTICES), 2), np.nan)}),
     "mesh number": (SceneError, "instances.*below 1, got 2", {"instances": [Instance(2)]}),
     "no instance": (SceneError, "at least one", {"instances": []}),
-    "singular": (SceneError, "invertible.*instance 0",
-                 {"instances": [Instance(0, np.zeros((3, 4)))]}),
+    "singular": (
+        SceneError,
+        "invertible.*instance 0",
+        {"instances": [Instance(0, np.zeros((3, 4)))]},
+    ),
     "matrix": (ShapeError, r"shape \(3, 4\)", {"instances": [Instance(0, np.eye(3))]}),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("case", CASES)

@@ -116,15 +116,18 @@ def test_bodies_hold_what_their_parts_say() -> None:
         Body(SHAPES["scaled"]).distance(p), 1.7 * Body(torus(0.6, 0.25)).distance(p / 1.7)
     )
     w, x, y, z = np.array(TURN) / np.linalg.norm(TURN)
-    turn = np.array([  # columns: where the axes go
-        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-    ])  # fmt: skip
+    turn = np.array(
+        [  # columns: where the axes go
+            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+        ]
+    )
     np.testing.assert_allclose(
         Body(SHAPES["placed"]).distance(p @ turn.T + [0.2, -0.1, 0.3]),
-        Body(SHAPES["box"]).distance(p), atol=1e-14,
-    )  # fmt: skip
+        Body(SHAPES["box"]).distance(p),
+        atol=1e-14,
+    )
 
 
 @pytest.mark.parametrize("name", [*SHAPES, "all"])
@@ -186,11 +189,27 @@ def test_normals_are_slopes() -> None:
 
 def test_the_tree_is_laid_out_by_name() -> None:
     body = Body(all_together())
-    assert len(body.names) == len(body.numbers) == sum(
-        len(KINDS[kind]) for kind in
-        ("torus", "scaled", "placed", "box", "torus", "placed", "smooth_union", "sphere", "plane",
-         "capsule", "rounded", "placed")
-    )  # fmt: skip
+    assert (
+        len(body.names)
+        == len(body.numbers)
+        == sum(
+            len(KINDS[kind])
+            for kind in (
+                "torus",
+                "scaled",
+                "placed",
+                "box",
+                "torus",
+                "placed",
+                "smooth_union",
+                "sphere",
+                "plane",
+                "capsule",
+                "rounded",
+                "placed",
+            )
+        )
+    )
     assert body.names[:3] == ("torus 0: ring", "torus 0: tube", "scaled 1: factor")
     assert body.numbers[:3].tolist() == [0.5, 0.15, 1.2]
     many = Body(union(*[placed(sphere(0.1), [k, 0, 0]) for k in range(300)]))

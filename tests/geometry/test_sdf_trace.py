@@ -145,9 +145,7 @@ def test_derivatives_of_a_hit() -> None:
         found = body.trace_backward(groups["origins"], groups["directions"], hits_of(groups), d_t)
         return dict(zip(("numbers", "origins", "directions"), found, strict=True))
 
-    place = {
-        "numbers": body.numbers.copy(), "origins": origins, "directions": 1.3 * directions,
-    }  # fmt: skip
+    place = {"numbers": body.numbers.copy(), "origins": origins, "directions": 1.3 * directions}
     # Every number of every shape moves some hit: a derivative of zero would not be checked.
     assert (backward(place, np.ones(150))["numbers"] != 0).all()
     # Larger steps would make rays miss.
@@ -158,8 +156,10 @@ def test_derivatives_of_a_hit() -> None:
         lambda wrong: check_gradient(
             forward, wrong, place, seed=5, coordinates=6, directions=3, steps=steps[:2]
         ),
-        backward, place, 0.5 + np.arange(150) / 150,
-    )  # fmt: skip
+        backward,
+        place,
+        0.5 + np.arange(150) / 150,
+    )
     assert mutants, str(mutants)
 
 
@@ -251,7 +251,11 @@ def test_a_picture_of_a_ball_on_a_floor_in_closed_form() -> None:
     np.testing.assert_allclose(picture.radiance[met][sure | ball], expected[sure | ball], atol=1e-9)
     np.testing.assert_array_equal(picture.shadow[met][sure & ~ball], dark[sure & ~ball])
     assert not picture.radiance[~met].any()
-    for change, words in (({"albedo": [2, 0, 0]}, "albedo"), ({"towards_sun": [0, 0, 0]}, "sun"),
-                          ({"sky": -1.0}, "sky"), ({"albedo": 0.5}, "albedo")):  # fmt: skip
+    for change, words in (
+        ({"albedo": [2, 0, 0]}, "albedo"),
+        ({"towards_sun": [0, 0, 0]}, "sun"),
+        ({"sky": -1.0}, "sky"),
+        ({"albedo": 0.5}, "albedo"),
+    ):
         with pytest.raises((RangeError, ShapeError), match=words):
             draw_body(body, camera, **change)

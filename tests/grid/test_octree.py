@@ -160,8 +160,9 @@ def test_a_function_gives_the_tree_of_its_samples() -> None:
         return x * x + 2 * y * y < 500.0
 
     def classify(lower: tuple[int, ...], side: int) -> list[float] | None:
-        corners = [inside(lower[0] + a, lower[1] + b) for a in (0.5, side - 0.5)
-                   for b in (0.5, side - 0.5)]  # fmt: skip
+        corners = [
+            inside(lower[0] + a, lower[1] + b) for a in (0.5, side - 0.5) for b in (0.5, side - 0.5)
+        ]
         return [float(corners[0])] if len(set(corners)) == 1 else None
 
     tree = Quadtree.from_function(classify, 5)

@@ -19,9 +19,22 @@ from support.tree import ROOT
 
 BENCH = ROOT / "bench"
 FIELDS = {
-    "workload", "peer", "version", "size", "threads", "seconds_fwd", "seconds_fwdbwd", "quality",
-    "peak_rss_mb", "timings_fwd", "timings_fwdbwd", "loadavg", "machine", "bound", "inputs",
-}  # fmt: skip
+    "workload",
+    "peer",
+    "version",
+    "size",
+    "threads",
+    "seconds_fwd",
+    "seconds_fwdbwd",
+    "quality",
+    "peak_rss_mb",
+    "timings_fwd",
+    "timings_fwdbwd",
+    "loadavg",
+    "machine",
+    "bound",
+    "inputs",
+}
 TIMING = {"median", "min", "all", "foreign", "cpu_median", "first", "tries"}
 TINY_W4 = {"n": 16, "res": 8, "views": 1}
 Array = NDArray[Any]

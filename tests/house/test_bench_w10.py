@@ -21,16 +21,26 @@ pytestmark = pytest.mark.usefixtures("core")
 @pytest.mark.parametrize("kind", ["scalar", "texture"])
 def test_w10_computes_the_workload(monkeypatch: pytest.MonkeyPatch, kind: str) -> None:
     command = [
-        sys.executable, str(BENCH / "w10_bsdf.py"), "--evals", "2000", "--texels", "20",
-        "--params", kind, "--reps", "2",
-    ]  # fmt: skip
+        sys.executable,
+        str(BENCH / "w10_bsdf.py"),
+        "--evals",
+        "2000",
+        "--texels",
+        "20",
+        "--params",
+        kind,
+        "--reps",
+        "2",
+    ]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     row = json.loads(done.stdout)
     assert (row["workload"], row["peer"]) == ("W10", "photograd")
     assert row["size"] == {
-        "evals": 2000, "params": kind, "texels": 20 if kind == "texture" else None
-    }  # fmt: skip
+        "evals": 2000,
+        "params": kind,
+        "texels": 20 if kind == "texture" else None,
+    }
     assert row["inputs"]["agree"]
     assert row["seconds_fwdbwd"] > row["bound"]["seconds_fwdbwd"] > 0
 

@@ -66,6 +66,9 @@ def test_entries_say_who_what_and_when() -> None:
 
 def test_the_forms_of_a_citation() -> None:
     assert cited("[Max1995], [Mildenhall2020, Eq. 3]; [Sun2022; Kingma2015, Alg. 1]") == {
-        "Max1995", "Mildenhall2020", "Sun2022", "Kingma2015",
-    }  # fmt: skip
+        "Max1995",
+        "Mildenhall2020",
+        "Sun2022",
+        "Kingma2015",
+    }
     assert cited("values[i], [0, 1], shape [R, S]") == set()

@@ -35,22 +35,40 @@ from photograd.transport import (
     TextureUse,
 )
 from photograd.transport.material import MODELS
+from photograd.transport.path_options import HEURISTICS, SAMPLERS, STRATEGIES
 from photograd.transport.texture import FILTERS, WRAPS
-from photograd.transport.tracer import HEURISTICS, SAMPLERS, STRATEGIES
 
 from support.tree import ROOT
 
 pytestmark = pytest.mark.usefixtures("core")
 SMALL = "path/fog/default/"
 KINDS = (
-    Scene, MeshShape, SphereShape, SdfShape, Material, NormalMap, Texture, TextureUse, Medium,
-    DensityGrid, Environment, Lens, Shutter,
-)  # fmt: skip
+    Scene,
+    MeshShape,
+    SphereShape,
+    SdfShape,
+    Material,
+    NormalMap,
+    Texture,
+    TextureUse,
+    Medium,
+    DensityGrid,
+    Environment,
+    Lens,
+    Shutter,
+)
 FUNCTIONS = (
-    "trace_paths", "trace_paths_backward", "dual_buffer_backward", "trace_paths_tangent",
-    "trace_path", "emit_particles", "trace_light", "trace_photons", "ambient_occlusion",
+    "trace_paths",
+    "trace_paths_backward",
+    "dual_buffer_backward",
+    "trace_paths_tangent",
+    "trace_path",
+    "emit_particles",
+    "trace_light",
+    "trace_photons",
+    "ambient_occlusion",
     "point_occlusion",
-)  # fmt: skip
+)
 
 
 @pytest.fixture
@@ -115,16 +133,17 @@ def test_every_part_of_a_scene_is_crossed(tool: Any) -> None:
 
 
 METHODS = (
-    "PathGeometry", "PathGeometry.choose_lights", "PathGeometry.set_media",
-    "PathGeometry.set_textures", "PhotonMap", "PhotonMap.irradiance",
-)  # fmt: skip
+    "PathGeometry",
+    "PathGeometry.choose_lights",
+    "PathGeometry.set_media",
+    "PathGeometry.set_textures",
+    "PhotonMap",
+    "PhotonMap.irradiance",
+)
 GROUPS = ("path", "call", "irradiance", "emitted", "photons", "occlusion", "occlusion-baked")
 CALLED = (*FUNCTIONS, *METHODS)
 ONE = np.ones(1)
-RETURNED = {
-    "trace_path": [], "emit_particles": [ONE] * 4,
-    "PathGeometry.choose_lights": [ONE] * 2,
-}  # fmt: skip
+RETURNED = {"trace_path": [], "emit_particles": [ONE] * 4, "PathGeometry.choose_lights": [ONE] * 2}
 
 
 class Recorder:

@@ -6,6 +6,7 @@ Lines of C++ end at column 100, comments too; ruff sees to those of Python.
 from __future__ import annotations
 
 import ast
+import re
 from pathlib import Path
 
 from support.cpp_functions import functions
@@ -53,6 +54,14 @@ def test_files_stay_below_their_cap() -> None:
     lengths = {relative(path): len(path.read_text("utf-8").splitlines()) for path in sources()}
     assert len(lengths) > 50
     assert [f"{path}: {n} lines" for path, n in lengths.items() if n > cap_of(path)] == []
+
+
+def test_the_formatter_decides() -> None:
+    """At most twenty statements of the whole repository are kept from it."""
+    sources = {relative(path): path.read_text("utf-8") for path in walk(ROOT, {".py"})}
+    assert len(sources) > 1000
+    kept = [name for name, text in sources.items() if re.search(r"# fmt: (skip|off)", text)]
+    assert kept == []
 
 
 def test_python_functions_stay_below_sixty_lines() -> None:

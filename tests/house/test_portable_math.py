@@ -17,13 +17,26 @@ def test_fits_compute_with_portable_functions_only() -> None:
 @pytest.mark.parametrize(
     "line",
     [
-        "np.exp(x)", "math.log(x)", "numpy.power(x, 2)", "np.logaddexp(0, x)",
-        "from math import exp", "f = np.tanh", "x ** 2.4", "x ** n", "2.0 ** -x", "a @ b",
-        "a.dot(b)", "np.dot(a, b)",
-        "np.linalg.norm(x)", "np.linalg.inv(x)", "np.argsort(x)", "x.argsort()", "x **= 3",
+        "np.exp(x)",
+        "math.log(x)",
+        "numpy.power(x, 2)",
+        "np.logaddexp(0, x)",
+        "from math import exp",
+        "f = np.tanh",
+        "x ** 2.4",
+        "x ** n",
+        "2.0 ** -x",
+        "a @ b",
+        "a.dot(b)",
+        "np.dot(a, b)",
+        "np.linalg.norm(x)",
+        "np.linalg.inv(x)",
+        "np.argsort(x)",
+        "x.argsort()",
+        "x **= 3",
         "np.einsum('ij,jk', a, b, optimize=True)",
     ],
-)  # fmt: skip
+)
 def test_a_breach_is_seen(line: str) -> None:
     assert len(portable_breaches({"x.py": line})) == 1
 
@@ -31,10 +44,17 @@ def test_a_breach_is_seen(line: str) -> None:
 @pytest.mark.parametrize(
     "line",
     [
-        "exp(x)", "np.sqrt(x)", "2.0**-24", "2**32", "np.linalg.norm(x, axis=1)", "x * x",
-        "np.argsort(x, kind='stable')", "np.einsum('ij,jk', a, b)", "np.square(x).sum()",
+        "exp(x)",
+        "np.sqrt(x)",
+        "2.0**-24",
+        "2**32",
+        "np.linalg.norm(x, axis=1)",
+        "x * x",
+        "np.argsort(x, kind='stable')",
+        "np.einsum('ij,jk', a, b)",
+        "np.square(x).sum()",
         "math.sqrt(x)",
     ],
-)  # fmt: skip
+)
 def test_what_is_portable_passes(line: str) -> None:
     assert portable_breaches({"x.py": line}) == []

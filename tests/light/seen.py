@@ -5,13 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from photograd.lights import (
-    EnvironmentMap,
-    QuadLight,
-    SphereLight,
-    TriangleLight,
-    about_y,
-)
+from photograd.lights import EnvironmentMap, QuadLight, SphereLight, TriangleLight, about_y
 from photograd_course.random import uniform
 
 from support.light_charts import Ball, Parallelogram, Sphere, Triangles

@@ -64,13 +64,17 @@ def test_gradients(function: str) -> None:
     assert report, str(report)
     report = check_mutants(
         lambda b: check_gradient(proof.forward, b, proof.place, seed=1),
-        proof.backward, proof.place, proof.d,
-    )  # fmt: skip
+        proof.backward,
+        proof.place,
+        proof.d,
+    )
     assert report, str(report)
     report = check_overwriting_mutants(
         lambda a: check_accumulation(a, proof.place, proof.d),
-        proof.accumulate, proof.place, proof.d,
-    )  # fmt: skip
+        proof.accumulate,
+        proof.place,
+        proof.d,
+    )
     assert report, str(report)
 
 

@@ -180,9 +180,10 @@ def test_nothing_comes_from_behind_or_from_within(name: str) -> None:
     light = SEEN[name]().light
     center = CORNER + 0.5 * (EDGE_X + EDGE_Y)
     place = {
-        "quad": 2.0 * center - POINT, "triangle": 2.0 * center - POINT,
+        "quad": 2.0 * center - POINT,
+        "triangle": 2.0 * center - POINT,
         "sphere": np.array([0.4, 1.0, 0.6]),
-    }[name]  # fmt: skip
+    }[name]
     points = np.tile(place, (100, 1))
     samples = light.sample(np.tile(POINT, (100, 1)), square(100, seed=29))
     w = np.where(samples.pdf[:, None] > 0, samples.direction, [0.0, 0.6, 0.8])

@@ -195,9 +195,12 @@ def test_the_right_formula_passes_and_equals_the_core(name: str) -> None:
 def test_wrong_adjoint_dies(name: str, wrong: str) -> None:
     proof = Proof(name)
     report = check_gradient(
-        proof.forward, lambda p, d: ADJOINTS[name](wrong, p, d), draw(proof.op, 11), seed=11,
+        proof.forward,
+        lambda p, d: ADJOINTS[name](wrong, p, d),
+        draw(proof.op, 11),
+        seed=11,
         tolerance=TOLERANCE,
-    )  # fmt: skip
+    )
     assert not report, wrong
     assert max(group.error for group in report.groups) >= 1000 * TOLERANCE, str(report)
 

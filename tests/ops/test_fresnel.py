@@ -88,8 +88,10 @@ def test_facets_cover_the_surface_once(name: str, alpha: float) -> None:
     cosine = 1 / np.sqrt(1 + tangent**2)
     if name == "ggx":
         op = _core.ops["ggx"]
-        D = [op.forward(np.array([t * c, 0, c, 0, 0, 1, 0, 0, 1, alpha, alpha]))[0]
-             for t, c in zip(tangent, cosine, strict=True)]  # fmt: skip
+        D = [
+            op.forward(np.array([t * c, 0, c, 0, 0, 1, 0, 0, 1, alpha, alpha]))[0]
+            for t, c in zip(tangent, cosine, strict=True)
+        ]
     elif name == "beckmann":
         D = np.exp(-((tangent / alpha) ** 2)) / (np.pi * alpha**2 * cosine**4)
         checked = _core.ops["beckmann"].forward(np.array([alpha]))[0]

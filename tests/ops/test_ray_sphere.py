@@ -40,11 +40,17 @@ def test_a_ray_along_z_in_closed_form(side: int, z: float, b: float) -> None:
     point = [t, b, 0, z + side * h, b / r, 0, side * h / r]
     np.testing.assert_allclose(_core.ops["ray_sphere"].forward(x), point, rtol=1e-14)
     slide = -side * b / h  # dz/db along the sphere
-    by_origin = np.array([
-        [slide / speed, 0, -1 / speed],
-        [1, 0, 0], [0, 1, 0], [slide, 0, 0],
-        [1 / r, 0, 0], [0, 1 / r, 0], [slide / r, 0, 0],
-    ])  # fmt: skip
+    by_origin = np.array(
+        [
+            [slide / speed, 0, -1 / speed],
+            [1, 0, 0],
+            [0, 1, 0],
+            [slide, 0, 0],
+            [1 / r, 0, 0],
+            [0, 1 / r, 0],
+            [slide / r, 0, 0],
+        ]
+    )
     # Moved together, ray and sphere keep t and n, and the position moves with them.
     by_center = np.concatenate([np.zeros((1, 3)), np.eye(3), np.zeros((3, 3))]) - by_origin
     grow = side * r / h
@@ -188,8 +194,9 @@ def test_the_right_formula_passes_and_equals_the_core(name: str) -> None:
     place = draw(proof.op, 11)
     assert check_gradient(proof.forward, lambda p, d: adjoint(None, p, d), place, seed=11)
     d_y = np.random.default_rng(1).standard_normal(proof.op.outputs)
-    mine, core = (flat(proof.op, found) for found in
-                  (adjoint(None, place, d_y), proof.backward(place, d_y)))  # fmt: skip
+    mine, core = (
+        flat(proof.op, found) for found in (adjoint(None, place, d_y), proof.backward(place, d_y))
+    )
     np.testing.assert_allclose(mine, core, rtol=1e-11, atol=1e-12)
 
 
@@ -198,8 +205,11 @@ def test_the_right_formula_passes_and_equals_the_core(name: str) -> None:
 def test_wrong_adjoint_dies(name: str, wrong: str) -> None:
     proof = Proof(name)
     report = check_gradient(
-        proof.forward, lambda p, d: adjoint(wrong, p, d), draw(proof.op, 11), seed=11,
+        proof.forward,
+        lambda p, d: adjoint(wrong, p, d),
+        draw(proof.op, 11),
+        seed=11,
         tolerance=TOLERANCE,
-    )  # fmt: skip
+    )
     assert not report, wrong
     assert max(group.error for group in report.groups) >= 1000 * TOLERANCE, str(report)

@@ -61,10 +61,14 @@ def test_each_bounce_takes_its_share() -> None:
     views = list(zip(0.5 * (nodes + 1.0), weights, strict=True))
     E = sum(w * c * albedo(LOSSY, c, f0=WHITE, roughness=roughness)[0] for c, w in views)
     glow = sum(
-        w * c * (albedo(WHOLE, c, f0=f0, roughness=roughness)
-                 - albedo(LOSSY, c, f0=f0, roughness=roughness))
+        w
+        * c
+        * (
+            albedo(WHOLE, c, f0=f0, roughness=roughness)
+            - albedo(LOSSY, c, f0=f0, roughness=roughness)
+        )
         for c, w in views
-    )  # fmt: skip
+    )
     nodes, weights = np.polynomial.legendre.leggauss(8)
     c = 0.5 * (nodes + 1.0)
     ramp = (weights * c * (1 - c) ** 5).sum()
@@ -87,8 +91,10 @@ def test_more_bounces_deepen_a_colour() -> None:
 def test_scaling_the_lobe_instead_is_not_reciprocal() -> None:
     # f (1 + f0 (1 - E(wo)) / E(wo)): all light as well, and another value with wo and wi exchanged.
     wo, wi = (hemisphere(100, seed=41, stream=k) for k in (1, 2))
-    loss = [np.array([1 - albedo(LOSSY, z, f0=WHITE, roughness=1.0)[0] for z in w[:20, 2]])
-            for w in (wo, wi)]  # fmt: skip
+    loss = [
+        np.array([1 - albedo(LOSSY, z, f0=WHITE, roughness=1.0)[0] for z in w[:20, 2]])
+        for w in (wo, wi)
+    ]
     scale = [1 + x / (1 - x) for x in loss]
     assert np.abs(scale[0] / scale[1] - 1).max() > 0.2
     given: dict[str, Any] = {"f0": WHITE, "roughness": 1.0}

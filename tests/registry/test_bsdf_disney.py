@@ -16,9 +16,17 @@ WO = hemisphere(300, seed=61, stream=1)
 WI = hemisphere(300, seed=61, stream=2)
 WI[::2] = near_mirror(WO[::2], seed=61, stream=3)
 SLIDERS = {
-    "subsurface": 0.3, "metalness": 0.4, "specular": 0.7, "specular_tint": 0.6, "roughness": 0.45,
-    "anisotropic": 0.5, "sheen": 0.8, "sheen_tint": 0.7, "clearcoat": 0.9, "clearcoat_gloss": 0.4,
-}  # fmt: skip
+    "subsurface": 0.3,
+    "metalness": 0.4,
+    "specular": 0.7,
+    "specular_tint": 0.6,
+    "roughness": 0.45,
+    "anisotropic": 0.5,
+    "sheen": 0.8,
+    "sheen_tint": 0.7,
+    "clearcoat": 0.9,
+    "clearcoat_gloss": 0.4,
+}
 COLOR = np.array([0.8, 0.3, 0.1])
 
 
@@ -122,8 +130,13 @@ def test_coats_facets_cover_the_surface_once(gloss: float) -> None:
 
 def test_light_returned_at_the_worst() -> None:
     grid, area = upper_grid(60, 256)
-    all_up = {**dict.fromkeys(SLIDERS, 1.0), "metalness": 0.0, "subsurface": 0.0,
-              "clearcoat_gloss": 0.0, "base_color": np.array([0.0, 0.0, 1.0])}  # fmt: skip
+    all_up = {
+        **dict.fromkeys(SLIDERS, 1.0),
+        "metalness": 0.0,
+        "subsurface": 0.0,
+        "clearcoat_gloss": 0.0,
+        "base_color": np.array([0.0, 0.0, 1.0]),
+    }
     wo = np.tile([1.0, 0.0, 1e-5], (len(grid), 1))  # along the smooth direction's tangent
     blue = (MODEL.f(all_up, wo, grid) * grid[:, 2:] * area).sum(axis=0)
     assert blue[2] == pytest.approx(3.80, abs=0.01)

@@ -36,8 +36,9 @@ def even(count: int) -> Any:
 
 def inside_of_the_lobe(proof: Proof, name: str) -> None:
     """Moves wi to where light leaves: a narrow lobe is 0 almost everywhere else."""
-    groups = {key: value[:, 0] if value.shape[1] == 1 else value
-              for key, value in proof.place.items()}  # fmt: skip
+    groups = {
+        key: value[:, 0] if value.shape[1] == 1 else value for key, value in proof.place.items()
+    }
     proof.wo = hemisphere(ROWS, seed=81, stream=1)
     u2 = 0.15 + 0.7 * squares(ROWS, seed=82)
     proof.wi = proof.model.sample(groups, proof.wo, u2)
@@ -55,13 +56,14 @@ def test_derivatives_at_both_ends_of_every_width(name: str, parameter: str, end:
     start = {parameter: proof.place[parameter]}
     report = check_gradient(
         lambda groups: proof.forward({**proof.place, **groups}),
-        lambda groups, d_f: {
-            parameter: proof.backward({**proof.place, **groups}, d_f)[parameter]
-        },
-        start, seed=8, directions=3, coordinates=4,
+        lambda groups, d_f: {parameter: proof.backward({**proof.place, **groups}, d_f)[parameter]},
+        start,
+        seed=8,
+        directions=3,
+        coordinates=4,
         # A lobe of roughness 0.045 is 0.002 wide: the longest steps leave it.
         steps=(1e-4, 1e-5, 1e-6, 1e-7),
-    )  # fmt: skip
+    )
     assert report, str(report)
 
 
@@ -69,9 +71,10 @@ BASE = 0.5
 METAL = {"metalness": 1.0, "base_color": np.full(3, BASE), "eta": 1.5, "iridescence_ior": 1.5}
 METALS = [
     # Disney's masking keeps a width of its own, so that its smoothest metal is no mirror.
-    name for name, model in MODELS.items()
+    name
+    for name, model in MODELS.items()
     if name != "disney" and any(p.name == "metalness" for p in model.parameters)
-]  # fmt: skip
+]
 
 
 def metal(name: str, roughness: float, color: float = BASE) -> dict[str, Any]:
@@ -107,8 +110,10 @@ def test_the_roughest_metals_lose_what_theory_says(name: str) -> None:
 def test_the_smoothest_conductors_reflect_by_fresnel(name: str) -> None:
     values = {"eta": [0.2, 1.4, 3.0], "k": [3.0, 1.9, 0.5], "roughness": 0.045}
     for cosine in (0.3, 0.8):
-        F = [float(_core.ops["fresnel_conductor"].forward(np.array([e, k, cosine]))[0])
-             for e, k in zip(values["eta"], values["k"], strict=True)]  # fmt: skip
+        F = [
+            float(_core.ops["fresnel_conductor"].forward(np.array([e, k, cosine]))[0])
+            for e, k in zip(values["eta"], values["k"], strict=True)
+        ]
         found = furnace_curve(MODELS[name], values, np.array([cosine]))[0]
         np.testing.assert_allclose(found, F, rtol=5e-3)
 

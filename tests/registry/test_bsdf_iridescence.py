@@ -16,9 +16,12 @@ WO = hemisphere(200, seed=31, stream=1)
 WI = near_mirror(WO, seed=31, stream=2)
 GROUND: dict[str, Any] = {"base_color": [0.9, 0.5, 0.2], "metalness": 0.4, "roughness": 0.5}
 RGB = np.array(
-    [[3.2404542, -1.5371385, -0.4985314], [-0.9692660, 1.8760108, 0.0415560],
-     [0.0556434, -0.2040259, 1.0572252]]
-)  # fmt: skip
+    [
+        [3.2404542, -1.5371385, -0.4985314],
+        [-0.9692660, 1.8760108, 0.0415560],
+        [0.0556434, -0.2040259, 1.0572252],
+    ]
+)
 
 
 def metal(cosine: Any, color: Any, ior: float, thickness: float) -> Any:
@@ -47,8 +50,12 @@ def formula(c1: Any, f0: Any, n: float, d: float, mistake: str = "") -> Any:
         path = path / 2
     leaves = (1 - r12) ** (1 if mistake == "one passage" else 2) * r23 / (1 - r12 * r23)
     total = r12 + leaves
-    lobes = ((5.4856e-13, 1.6810e6, 4.3278e9, 0), (4.4201e-13, 1.7953e6, 9.3046e9, 1),
-             (5.2481e-13, 2.2084e6, 6.6121e9, 2), (9.7470e-14, 2.2399e6, 4.5282e9, 0))  # fmt: skip
+    lobes = (
+        (5.4856e-13, 1.6810e6, 4.3278e9, 0),
+        (4.4201e-13, 1.7953e6, 9.3046e9, 1),
+        (5.2481e-13, 2.2084e6, 6.6121e9, 2),
+        (9.7470e-14, 2.2399e6, 4.5282e9, 0),
+    )
     for order in (1,) if mistake == "one order" else (1, 2):
         k = 2 * np.pi * order * path * 1e-9
         xyz = np.zeros((len(c1), 3), complex)

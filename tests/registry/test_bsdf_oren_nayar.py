@@ -49,9 +49,12 @@ def published(albedo: Any, sigma: float, mistake: str = "") -> Any:
 
 
 MISTAKES = (
-    "alpha and beta exchanged", "one branch", "two terms", "no second bounce",
+    "alpha and beta exchanged",
+    "one branch",
+    "two terms",
+    "no second bounce",
     "second bounce by albedo",
-)  # fmt: skip
+)
 
 
 @pytest.mark.parametrize("sigma", [0.1, 0.5, 1.0])
@@ -109,8 +112,10 @@ def test_white_plaster_returns_all_light_for_every_view(roughness: float) -> Non
 def test_grey_plaster_loses_what_each_bounce_takes(roughness: float) -> None:
     k1, k2 = 0.5 - 2 / (3 * np.pi), 2 / 3 - 28 / (15 * np.pi)
     once = 1e-6  # so dark that one bounce is all there is
-    first = [albedo(WHOLE, {"albedo": once * WHITE, "roughness": roughness}, c)[0] / once
-             for c in COSINES]  # fmt: skip
+    first = [
+        albedo(WHOLE, {"albedo": once * WHITE, "roughness": roughness}, c)[0] / once
+        for c in COSINES
+    ]
     average = (1 + k2 * roughness) / (1 + k1 * roughness)
     nodes, weights = np.polynomial.legendre.leggauss(12)
     dark = {"albedo": once * WHITE, "roughness": roughness}

@@ -39,8 +39,10 @@ def test_sheen_takes_from_the_base_what_it_returns(roughness: float) -> None:
         assert sheen < total < sheen + (1 - sheen) * base + 5e-3
         assert total < 1.003
     # Without the scaling the sum gains light.
-    grazing = [albedo("sheen", {"color": WHITE, "roughness": roughness}, 0.05)[0],
-               albedo("gltf", METAL, 0.05)[0]]  # fmt: skip
+    grazing = [
+        albedo("sheen", {"color": WHITE, "roughness": roughness}, 0.05)[0],
+        albedo("gltf", METAL, 0.05)[0],
+    ]
     assert sum(grazing) > 1.2
 
 

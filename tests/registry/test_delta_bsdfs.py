@@ -85,13 +85,17 @@ def test_wrong_derivatives_die(name: str) -> None:
     proof = Proof(name)
     report: Any = check_mutants(
         lambda b: check_gradient(proof.forward, b, proof.place, seed=1, coordinates=8),
-        proof.backward, proof.place, proof.d,
-    )  # fmt: skip
+        proof.backward,
+        proof.place,
+        proof.d,
+    )
     assert report, str(report)
     report = check_overwriting_mutants(
         lambda a: check_accumulation(a, proof.place, proof.d),
-        proof.accumulate, proof.place, proof.d,
-    )  # fmt: skip
+        proof.accumulate,
+        proof.place,
+        proof.d,
+    )
     assert report, str(report)
 
 

@@ -16,12 +16,25 @@ LAYERED = ("gltf_layered", "gltf_layered_volume")
 WO, WI = (hemisphere(200, seed=61, stream=k) for k in (1, 2))
 THROUGH = WI * [1.0, 1.0, -1.0]
 BARE: dict[str, Any] = {
-    "base_color": [0.9, 0.5, 0.2], "metalness": 0.3, "roughness": 0.4, "eta": 1.5,
-    "specular_factor": 1.0, "specular_color_factor": np.ones(3), "anisotropy": 0.0,
-    "rotation": 0.0, "anisotropy_x": 1.0, "anisotropy_y": 0.0, "iridescence_factor": 0.0,
-    "iridescence_ior": 1.3, "iridescence_thickness": 400.0, "sheen_color_factor": np.zeros(3),
-    "sheen_roughness_factor": 0.5, "coat": 0.0, "coat_roughness": 0.1, "transmission": 0.0,
-}  # fmt: skip
+    "base_color": [0.9, 0.5, 0.2],
+    "metalness": 0.3,
+    "roughness": 0.4,
+    "eta": 1.5,
+    "specular_factor": 1.0,
+    "specular_color_factor": np.ones(3),
+    "anisotropy": 0.0,
+    "rotation": 0.0,
+    "anisotropy_x": 1.0,
+    "anisotropy_y": 0.0,
+    "iridescence_factor": 0.0,
+    "iridescence_ior": 1.3,
+    "iridescence_thickness": 400.0,
+    "sheen_color_factor": np.zeros(3),
+    "sheen_roughness_factor": 0.5,
+    "coat": 0.0,
+    "coat_roughness": 0.1,
+    "transmission": 0.0,
+}
 SHEEN = {"sheen_color_factor": [0.8, 0.3, 0.6], "sheen_roughness_factor": 0.4}
 FILM = {"iridescence_factor": 0.7, "iridescence_ior": 1.4, "iridescence_thickness": 330.0}
 SPECULAR = {"eta": 1.8, "specular_factor": 0.6, "specular_color_factor": [1.5, 0.4, 1.0]}
@@ -37,17 +50,25 @@ def value(name: str, parameters: dict[str, Any], wo: Any = WO, wi: Any = WI) -> 
 
 @pytest.mark.parametrize(
     ("name", "layer"),
-    [("gltf", {}), ("gltf_sheen", SHEEN), ("gltf_iridescence", FILM), ("gltf_specular", SPECULAR),
-     ("gltf_transmission", {"transmission": 0.6, "eta": 1.3})],
-)  # fmt: skip
+    [
+        ("gltf", {}),
+        ("gltf_sheen", SHEEN),
+        ("gltf_iridescence", FILM),
+        ("gltf_specular", SPECULAR),
+        ("gltf_transmission", {"transmission": 0.6, "eta": 1.3}),
+    ],
+)
 def test_with_one_layer_it_is_the_model_of_that_layer(name: str, layer: dict[str, Any]) -> None:
     for wi in (WI, THROUGH):
         one = value(name, BARE | layer, wi=wi)
         # Measured 2e-12: a turned half vector is rounded once more.
         np.testing.assert_allclose(value("gltf_layered", BARE | layer, wi=wi), one, rtol=1e-10)
         sides = value("gltf_layered", BARE | layer, -WO, -wi)
-        np.testing.assert_allclose(sides, value("gltf_layered", BARE | layer, WO * [-1, -1, 1],
-                                                wi * [-1, -1, 1]), rtol=1e-10)  # fmt: skip
+        np.testing.assert_allclose(
+            sides,
+            value("gltf_layered", BARE | layer, WO * [-1, -1, 1], wi * [-1, -1, 1]),
+            rtol=1e-10,
+        )
 
 
 def test_a_brushed_metal_is_the_brushed_metal() -> None:
@@ -87,8 +108,10 @@ def test_layers_nest_as_the_extensions_print_them(name: str) -> None:
 def test_film_and_coating_are_mixed_as_finished_layers() -> None:
     # mix(fresnel_mix(base, layer), rgb_mix(base, layer, film), iridescence), colored coatings too.
     for layer in (SPECULAR, {}):
-        ends = [value("gltf_layered", BARE | FILM | layer | {"iridescence_factor": w})
-                for w in (0.0, 1.0)]  # fmt: skip
+        ends = [
+            value("gltf_layered", BARE | FILM | layer | {"iridescence_factor": w})
+            for w in (0.0, 1.0)
+        ]
         found = value("gltf_layered", BARE | FILM | layer)
         np.testing.assert_allclose(found, 0.3 * ends[0] + 0.7 * ends[1], rtol=1e-9)
     matt = BARE | FILM | {"specular_factor": 0.0, "metalness": 0.0}
@@ -181,5 +204,6 @@ def test_the_conserving_variant_changes_what_gains_and_little_else() -> None:
     assert (held < 1.05 * printed).all()
     np.testing.assert_allclose(
         value("gltf_layered_conserving", ALL),
-        value("gltf_layered_conserving", ALL, WI, WO), rtol=1e-9,
-    )  # fmt: skip
+        value("gltf_layered_conserving", ALL, WI, WO),
+        rtol=1e-9,
+    )

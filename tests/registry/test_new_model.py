@@ -74,10 +74,13 @@ PYBIND11_MODULE(_with_dusty, m) {
 }
 """
 SOURCES = (
-    "bindings/bind_bsdf.cpp", "bindings/array_args.cpp", "bindings/errors.cpp",
-    "photograd/bsdf/bsdf_table_float.cpp", "photograd/bsdf/bsdf_table_double.cpp",
+    "bindings/bind_bsdf.cpp",
+    "bindings/array_args.cpp",
+    "bindings/errors.cpp",
+    "photograd/bsdf/bsdf_table_float.cpp",
+    "photograd/bsdf/bsdf_table_double.cpp",
     "photograd/core/parallel.cpp",
-)  # fmt: skip
+)
 
 
 def add_model(cpp: Path) -> None:
@@ -111,10 +114,19 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     target = build / f"_with_dusty{sysconfig.get_config_var('EXT_SUFFIX')}"
     # std::thread instead of TBB: nothing else is to be found and linked.
     flags = [
-        "-std=c++20", "-O1", "-fPIC", "-shared", "-fvisibility=hidden", "-ffp-contract=off",
-        "-pthread", "-DPHOTOGRAD_STD_THREADS", f"-I{cpp}", f"-I{cpp / 'bindings'}",
-        f"-I{pybind11.get_include()}", f"-I{python}",
-    ]  # fmt: skip
+        "-std=c++20",
+        "-O1",
+        "-fPIC",
+        "-shared",
+        "-fvisibility=hidden",
+        "-ffp-contract=off",
+        "-pthread",
+        "-DPHOTOGRAD_STD_THREADS",
+        f"-I{cpp}",
+        f"-I{cpp / 'bindings'}",
+        f"-I{pybind11.get_include()}",
+        f"-I{python}",
+    ]
     command = [compiler, *flags, str(whole), "-o", str(target)]
     run = subprocess.run(command, capture_output=True, text=True, check=False)
     assert run.returncode == 0, run.stderr

@@ -52,7 +52,7 @@ CHANGES: dict[str, list[tuple[str, str]]] = {
             '    add("gain", BlockKind::dense, 0,\n'
             "        {static_cast<std::int64_t>(scene.geometry->shape_count())});\n"
             "    for (std::size_t i = 0; i < scene.lights.size(); ++i) {\n",
-        ),
+        )
     ],
     # 4. Its term in the adjoint.
     "photograd/render/path/adjoint.h": [
@@ -62,7 +62,7 @@ CHANGES: dict[str, list[tuple[str, str]]] = {
             "        const R* E = scene.emission + 3 * s;\n"
             "        d_scene.emission[s] += d_L * scene.gain[s];\n"
             "        d_scene.gain[s] += dot(d_L, Vec3<R>(E[0], E[1], E[2]));\n",
-        ),
+        )
     ],
     # 5. The array that Python hands over.
     "bindings/path_args.h": [
@@ -70,7 +70,7 @@ CHANGES: dict[str, list[tuple[str, str]]] = {
             "        scene.media = media;\n",
             '        scene.gain = args.in<R>("gain", rows.gain, '
             "std::to_string(geometry.shape_count()));\n        scene.media = media;\n",
-        ),
+        )
     ],
 }
 PROGRAM = """

@@ -119,9 +119,6 @@ def test_automatic_mutants_die(name: str) -> None:
     )
     assert report, str(report)
     report = check_overwriting_mutants(
-        lambda accumulate: check_accumulation(accumulate, place, d_y),
-        proof.accumulate,
-        place,
-        d_y,
+        lambda accumulate: check_accumulation(accumulate, place, d_y), proof.accumulate, place, d_y
     )
     assert report, str(report)

@@ -100,13 +100,17 @@ def test_wrong_derivatives_die(name: str) -> None:
     proof = Proof(name)
     report: Any = check_mutants(
         lambda b: check_gradient(proof.forward, b, proof.place, seed=1),
-        proof.backward, proof.place, proof.d_p,
-    )  # fmt: skip
+        proof.backward,
+        proof.place,
+        proof.d_p,
+    )
     assert report, str(report)
     report = check_overwriting_mutants(
         lambda a: check_accumulation(a, proof.place, proof.d_p),
-        proof.accumulate, proof.place, proof.d_p,
-    )  # fmt: skip
+        proof.accumulate,
+        proof.place,
+        proof.d_p,
+    )
     assert report, str(report)
 
 

@@ -55,8 +55,9 @@ def written_out(wo: Array, wi: Array, row: Array) -> Array:
     return diffuse + (varnish[:, None] + metal) * lobe[:, None]
 
 
-@pytest.mark.parametrize("row", [(0.7, 0.4, 0.2, 0.3, 0.35), (0.1, 0.9, 0.5, 0.0, 1.0),
-                                 (0.8, 0.6, 0.3, 1.0, 0.15)])  # fmt: skip
+@pytest.mark.parametrize(
+    "row", [(0.7, 0.4, 0.2, 0.3, 0.35), (0.1, 0.9, 0.5, 0.0, 1.0), (0.8, 0.6, 0.3, 1.0, 0.15)]
+)
 def test_values_are_those_of_the_formula(row: tuple[float, ...]) -> None:
     wo, wi = (hemisphere(400, seed=2, stream=k) for k in (1, 2))
     found = MODEL.f({"base_color": row[:3], "metalness": row[3], "roughness": row[4]}, wo, wi)

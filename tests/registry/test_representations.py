@@ -154,11 +154,18 @@ def test_automatic_mutants_die(name: str) -> None:
     proof = Proof(name, 5)
     report = check_mutants(
         lambda backward: check_gradient(
-            proof.forward, backward, proof.place, seed=5, directions=4, coordinates=8,
+            proof.forward,
+            backward,
+            proof.place,
+            seed=5,
+            directions=4,
+            coordinates=8,
             steps=(1e-4, 1e-5, 1e-6),
         ),
-        proof.backward, proof.place, proof.cotangent(),
-    )  # fmt: skip
+        proof.backward,
+        proof.place,
+        proof.cotangent(),
+    )
     assert report, str(report)
     assert len(report.killed) >= 3 * len(proof.place)
 

@@ -119,13 +119,17 @@ def test_gradients(name: str, function: str) -> None:
         lambda b: check_gradient(
             proof.forward, b, proof.place, seed=1, directions=3, coordinates=4, steps=(1e-4, 1e-5)
         ),
-        proof.backward, proof.place, d_radiance(),
-    )  # fmt: skip
+        proof.backward,
+        proof.place,
+        d_radiance(),
+    )
     assert report, str(report)
     report = check_overwriting_mutants(
         lambda a: check_accumulation(a, proof.place, d_radiance()),
-        proof.accumulate, proof.place, d_radiance(),
-    )  # fmt: skip
+        proof.accumulate,
+        proof.place,
+        d_radiance(),
+    )
     assert report, str(report)
 
 

@@ -13,9 +13,16 @@ CODES = {"origin": 0, "entry": 1, "alpha": 0, "riemann": 1, "clamp": 0, "zero": 
 def settings(**changes: Any) -> Any:
     """March settings with identity activations, so that parameters are densities and colours."""
     values: dict[str, Any] = {
-        "box": [[-1, -1, -1], [1, 1, 1]], "dt": 0.05, "stop": 0.0, "lattice": 0, "quadrature": 0,
-        "border": 0, "density_activation": 0, "color_activation": 0, "density_scale": 1.0,
-    }  # fmt: skip
+        "box": [[-1, -1, -1], [1, 1, 1]],
+        "dt": 0.05,
+        "stop": 0.0,
+        "lattice": 0,
+        "quadrature": 0,
+        "border": 0,
+        "density_activation": 0,
+        "color_activation": 0,
+        "density_scale": 1.0,
+    }
     values.update({k: CODES.get(v, v) if isinstance(v, str) else v for k, v in changes.items()})
     return _core.MarchSettings(**values)
 
@@ -54,9 +61,14 @@ def march(grid: Any, s: Any, rays: tuple[Any, Any], *, fused: bool = True) -> tu
 
 
 def march_backward(
-    grid: Any, s: Any, rays: tuple[Any, Any], out: tuple[Any, ...], d: tuple[Any, Any, Any], *,
+    grid: Any,
+    s: Any,
+    rays: tuple[Any, Any],
+    out: tuple[Any, ...],
+    d: tuple[Any, Any, Any],
+    *,
     fused: bool = True,
-) -> Any:  # fmt: skip
+) -> Any:
     color, transmittance, depth, t0, samples = out
     d_grid = np.zeros_like(grid)
     outputs = color, transmittance, depth

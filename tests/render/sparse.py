@@ -38,9 +38,16 @@ class Scene:
 
 
 def scene(
-    seed: int, *, degree: int = 2, shape: tuple[int, int, int] = (11, 9, 10), dense: float = 0.6,
-    count: int = 20, dtype: Any = np.float64, offset: float = 0.0, **options: Any,
-) -> Scene:  # fmt: skip
+    seed: int,
+    *,
+    degree: int = 2,
+    shape: tuple[int, int, int] = (11, 9, 10),
+    dense: float = 0.6,
+    count: int = 20,
+    dtype: Any = np.float64,
+    offset: float = 0.0,
+    **options: Any,
+) -> Scene:
     """Random values on a random part of the voxels; many cells are half active."""
     g = np.random.default_rng(seed)
     active = ActiveVoxels(g.random(shape) < dense)
@@ -69,9 +76,14 @@ def march(s: Scene, place: dict[str, Any], *, fused: bool = True, skip: bool = T
 
 
 def march_backward(
-    s: Scene, place: dict[str, Any], d: tuple[Any, ...], *, fused: bool = True,
-    into: dict[str, Any] | None = None, camera: tuple[Any, Any] | None = None,
-) -> dict[str, Any]:  # fmt: skip
+    s: Scene,
+    place: dict[str, Any],
+    d: tuple[Any, ...],
+    *,
+    fused: bool = True,
+    into: dict[str, Any] | None = None,
+    camera: tuple[Any, Any] | None = None,
+) -> dict[str, Any]:
     """{group: gradient}; with `camera`, dL/d origins and directions are added to its arrays."""
     out = march(s, place, fused=fused)[:3]
     gradients = into or {g: np.zeros_like(place[g]) for g in GROUPS}
@@ -138,6 +150,4 @@ def oracle(s: Scene, place: dict[str, Any]) -> dict[str, Any]:
         color.append(w @ rgb)
         depth.append(w @ t)
         through.append(np.exp(-tau[-1]) if len(t) else 1.0)
-    return {
-        "color": np.array(color), "transmittance": np.array(through), "depth": np.array(depth)
-    }  # fmt: skip
+    return {"color": np.array(color), "transmittance": np.array(through), "depth": np.array(depth)}

@@ -91,8 +91,10 @@ def test_mutants_die() -> None:
         lambda b: check_gradient(
             function, b, s.place, seed=5, directions=4, coordinates=8, steps=(1e-4, 1e-5, 1e-6)
         ),
-        backward, s.place, cotangents(s, 5),
-    )  # fmt: skip
+        backward,
+        s.place,
+        cotangents(s, 5),
+    )
     assert report, str(report)
     assert len(report.killed) >= 9
 
@@ -123,9 +125,15 @@ def wrong_gradients(name: str, s: Scene, right: dict[str, Any]) -> Any:
 
 @pytest.mark.parametrize(
     "name",
-    ["background dropped", "direction of the viewer", "no phase", "channels swapped",
-     "rim dropped", "rows shifted"],
-)  # fmt: skip
+    [
+        "background dropped",
+        "direction of the viewer",
+        "no phase",
+        "channels swapped",
+        "rim dropped",
+        "rows shifted",
+    ],
+)
 def test_mistakes_are_seen(name: str) -> None:
     s = scene(6, shape=(14, 12, 13), dense=0.995)
     function, backward = problem(s)
@@ -179,10 +187,11 @@ def test_camera_gradient(degree: int) -> None:
         plain.place["sh"][:, 1:] = 0
         out = {key: np.zeros_like(value) for key, value in c.items()}
         march_backward(
-            with_rays(plain, **c), plain.place,
+            with_rays(plain, **c),
+            plain.place,
             tuple(np.ascontiguousarray(d[n]) for n in NAMES),
             camera=(out["origins"], out["directions"]),
-        )  # fmt: skip
+        )
         return {"origins": found["origins"], "directions": out["directions"]}
 
     if degree:

@@ -53,8 +53,12 @@ def flips(x: int, key: int) -> int:
 
 def test_points_are_what_the_definition_says() -> None:
     tables = [directions(p) for p in POLYNOMIALS]
-    for seed, pixel, block, sample in [(1, 0, 0, 0), (7, 3, 5, 1), (2**40 + 1, 9, 2, 63),
-                                       (3, 2**32 - 1, 11, 4097)]:  # fmt: skip
+    for seed, pixel, block, sample in [
+        (1, 0, 0, 0),
+        (7, 3, 5, 1),
+        (2**40 + 1, 9, 2, 63),
+        (3, 2**32 - 1, 11, 4097),
+    ]:
         keys = np.array([[seed & ONES, seed >> 32]], np.uint32)
         digits, order = (
             philox4x32(np.array([[pixel, OWN, 0, 2 * block + k]], np.uint32), keys)[0].tolist()
@@ -78,8 +82,10 @@ def test_every_box_has_its_share_of_points(pair: tuple[int, int], log_volume: in
         found = words(40, 64, first=first)
         for a in range(log_volume + 1):
             b = log_volume - a
-            box = [found[..., w].astype(np.uint64) >> np.uint64(32 - bits)
-                   for w, bits in zip(pair, (a, b), strict=True)]  # fmt: skip
+            box = [
+                found[..., w].astype(np.uint64) >> np.uint64(32 - bits)
+                for w, bits in zip(pair, (a, b), strict=True)
+            ]
             number = np.sort((box[0] << np.uint64(b)) + box[1], axis=1)
             expected = np.repeat(np.arange(1 << log_volume), 64 >> log_volume)
             np.testing.assert_array_equal(number, np.broadcast_to(expected, number.shape))

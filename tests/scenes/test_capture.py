@@ -54,9 +54,15 @@ def test_a_capture_and_its_way_through_the_loader(tmp_path: Path) -> None:
     scene = ball_scene()
     calls: list[tuple[int, int]] = []
     splits = capture_scene(
-        scene, cast, views=5, test_views=2, size=24, seed=3, spp=4,
+        scene,
+        cast,
+        views=5,
+        test_views=2,
+        size=24,
+        seed=3,
+        spp=4,
         on_view=lambda done, total: calls.append((done, total)),
-    )  # fmt: skip
+    )
     assert calls == [(k, 7) for k in range(1, 8)]
     assert [len(splits[name]) for name in ("train", "test")] == [5, 2]
     write_blender_capture(tmp_path / "ball", splits, aabb=scene.bounds)

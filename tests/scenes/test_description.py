@@ -7,13 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.scenes import (
-    SceneDescription,
-    SceneMesh,
-    SkyDescription,
-    SunDescription,
-    bounds_of,
-)
+from photograd.scenes import SceneDescription, SceneMesh, SkyDescription, SunDescription, bounds_of
 from photograd_course.errors import DtypeError, Error, RangeError, SceneError, ShapeError
 
 VERTICES = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 1]], dtype=np.float32)

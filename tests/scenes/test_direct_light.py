@@ -10,12 +10,7 @@ from photograd._compiled import _core
 from photograd.capture.camera import Camera
 from photograd.capture.orbit import look_at
 from photograd.errors import RangeError, ShapeError
-from photograd.scenes.description import (
-    SceneDescription,
-    SceneMesh,
-    SkyDescription,
-    SunDescription,
-)
+from photograd.scenes.description import SceneDescription, SceneMesh, SkyDescription, SunDescription
 from photograd.scenes.direct_light import DirectLight, vertex_color_texture
 from photograd.textures import sample
 
@@ -31,15 +26,21 @@ def square(y: float, half: float, albedo: Any, *, uv: bool = False) -> SceneMesh
     corners = [[-half, y, half], [half, y, half], [half, y, -half], [-half, y, -half]]
     coordinates = np.array([[0, 1], [1, 1], [1, 0], [0, 0]], np.float32) if uv else None
     return SceneMesh(
-        np.array(corners, np.float32), np.array([[0, 1, 2], [0, 2, 3]], np.uint32),
-        np.asarray(albedo, np.float32), coordinates,
-    )  # fmt: skip
+        np.array(corners, np.float32),
+        np.array([[0, 1, 2], [0, 2, 3]], np.uint32),
+        np.asarray(albedo, np.float32),
+        coordinates,
+    )
 
 
 def lit(
-    *meshes: SceneMesh, sun: Any = BLACK, sky: Any = BLACK, radius: float = 0.1,
-    towards: Any = (0.0, 1.0, 0.0), box: Any = BOX,
-) -> DirectLight:  # fmt: skip
+    *meshes: SceneMesh,
+    sun: Any = BLACK,
+    sky: Any = BLACK,
+    radius: float = 0.1,
+    towards: Any = (0.0, 1.0, 0.0),
+    box: Any = BOX,
+) -> DirectLight:
     direction = np.asarray(towards) / np.linalg.norm(towards)
     light = SunDescription(direction, np.asarray(sun, float), radius)
     dome = SkyDescription(*(np.asarray(sky, float) for _ in range(3)))
@@ -113,9 +114,7 @@ def test_pixels_beside_the_object_are_empty() -> None:
     assert rim.any()
     np.testing.assert_array_equal(alpha * 16, np.round(alpha * 16))  # whole samples
     # Premultiplied: what is seen of the square has its color, whatever lies beside it.
-    np.testing.assert_allclose(
-        radiance[rim].mean(axis=0), alpha[rim].mean() * ALBEDO, rtol=0.05
-    )  # fmt: skip
+    np.testing.assert_allclose(radiance[rim].mean(axis=0), alpha[rim].mean() * ALBEDO, rtol=0.05)
 
 
 @pytest.mark.parametrize("scale", [1e-2, 1.0, 1e3])

@@ -54,10 +54,7 @@ SOLIDS: dict[str, tuple[Surface, float]] = {
     "flat torus": (torus(0.5, 0.1, flatten=0.3), 2 * np.pi**2 * 0.5 * 0.1**2 * 0.3),
     "rounded_box": (rounded_box((0.3, 0.2, 0.1), 0.02), float(ROUNDED)),
     "lathe": (lathe(CUP), np.pi * (0.25**2 * 0.3 - 0.2**2 * 0.2)),
-    "stick": (
-        tube(STICK, 0.05, sides=64),
-        np.pi * 0.05**2 * 0.5 + 4 / 3 * np.pi * 0.05**3,
-    ),
+    "stick": (tube(STICK, 0.05, sides=64), np.pi * 0.05**2 * 0.5 + 4 / 3 * np.pi * 0.05**3),
     "hoop": (tube(RING, 0.1, sides=64, closed=True), 2 * np.pi**2 * 0.1**2),
     "trefoil": (tube(TREFOIL, 0.1, sides=64, closed=True), np.pi * 0.01 * TREFOIL_LENGTH),
 }
@@ -140,8 +137,11 @@ def test_land_is_closed_and_keeps_its_order() -> None:
     np.testing.assert_array_equal(plan, net_points(9, 0.5))
     # Each cell is two triangles (here, below, across) and (here, across, right).
     here, right, below, across = (
-        heights[:-1, :-1], heights[:-1, 1:], heights[1:, :-1], heights[1:, 1:],
-    )  # fmt: skip
+        heights[:-1, :-1],
+        heights[:-1, 1:],
+        heights[1:, :-1],
+        heights[1:, 1:],
+    )
     mean = ((here + below + across) / 3 + (here + across + right) / 3).mean() / 2
     assert volume(joined([top, sides])) == pytest.approx(mean + 0.1, rel=1e-12)
 

@@ -15,9 +15,13 @@ TURNS = range(1, 9)
 
 
 def photograph(
-    path: Path, *, size: tuple[int, int] = (48, 32), orientation: int | None = None,
-    focal: float | None = None, model: str = "",
-) -> Path:  # fmt: skip
+    path: Path,
+    *,
+    size: tuple[int, int] = (48, 32),
+    orientation: int | None = None,
+    focal: float | None = None,
+    model: str = "",
+) -> Path:
     """Red on the left, blue at the bottom; a JPEG or PNG with tags."""
     pixels = np.full((size[1], size[0], 3), 90, np.uint8)
     pixels[:, : size[0] // 4] = [220, 20, 20]

@@ -24,9 +24,14 @@ def run(tmp_path: Path, engine: FakeEngine, **options: object) -> tuple[Capture,
     lines: list[str] = []
     settings = options.pop("settings", Settings())
     capture, report = reconstruct(
-        tmp_path / "in", tmp_path / "out", settings, note=lines.append, engine=engine,
-        threads=4, **options,
-    )  # type: ignore[arg-type]  # fmt: skip
+        tmp_path / "in",
+        tmp_path / "out",
+        settings,
+        note=lines.append,
+        engine=engine,
+        threads=4,
+        **options,
+    )  # type: ignore[arg-type]
     return capture, report, lines
 
 

@@ -94,6 +94,9 @@ def cloud(
         [g.uniform(-0.3, 1.0, (n, 1, 3)), g.normal(0, 0.08, (n, k - 1, 3))], axis=1
     )
     return Gaussians(
-        g.uniform(-spread, spread, (n, 3)), size + 0.4 * g.standard_normal((n, 3)),
-        g.standard_normal((n, 4)), g.uniform(-2, 2, n), colors,
-    )  # fmt: skip
+        g.uniform(-spread, spread, (n, 3)),
+        size + 0.4 * g.standard_normal((n, 3)),
+        g.standard_normal((n, 4)),
+        g.uniform(-2, 2, n),
+        colors,
+    )

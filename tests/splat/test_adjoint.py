@@ -36,9 +36,12 @@ class Scene:
     def rendered(self, p: dict[str, Any]) -> Any:
         g = Gaussians(p["means"], p["log_scales"], p["quats"], p["opacity_logits"], p["sh"])
         return render(
-            g, self.camera, background=p["background"], options=self.options,
+            g,
+            self.camera,
+            background=p["background"],
+            options=self.options,
             camera_from_world=p["camera_from_world"],
-        )  # fmt: skip
+        )
 
     def forward(self, p: dict[str, Any]) -> dict[str, Any]:
         return dict(vars(self.rendered(p)[0]))
@@ -108,8 +111,10 @@ def test_automatic_mutants_die() -> None:
         lambda backward: check_gradient(
             scene.forward, backward, scene.place, seed=6, coordinates=6, directions=4
         ),
-        scene.backward, scene.place, d,
-    )  # fmt: skip
+        scene.backward,
+        scene.place,
+        d,
+    )
     assert report, str(report)
 
 

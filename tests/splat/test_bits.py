@@ -28,9 +28,12 @@ def run(name: str, dtype: Any = np.float32, count: int = 300) -> list[Any]:
     d = [random.uniform(-1, 1, a.shape).astype(dtype) for a in vars(picture).values()]
     found = render_backward(context, *d)
     return [
-        *vars(picture).values(), *found.gaussians.values(), found.background,
-        found.camera_from_world, found.screen,
-    ]  # fmt: skip
+        *vars(picture).values(),
+        *found.gaussians.values(),
+        found.background,
+        found.camera_from_world,
+        found.screen,
+    ]
 
 
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])

@@ -167,9 +167,15 @@ def test_wrong_arrays_are_refused() -> None:
 
 @pytest.mark.parametrize(
     "change",
-    [{"low_pass": -1.0}, {"alpha_max": 2.0}, {"alpha_min": np.nan}, {"near": 0.0}, {"stop": -1e-3},
-     {"clamped_gradient": "maybe"}],
-)  # fmt: skip
+    [
+        {"low_pass": -1.0},
+        {"alpha_max": 2.0},
+        {"alpha_min": np.nan},
+        {"near": 0.0},
+        {"stop": -1e-3},
+        {"clamped_gradient": "maybe"},
+    ],
+)
 def test_options_without_meaning_are_refused(change: dict[str, Any]) -> None:
     (name,) = change
     with pytest.raises(RangeError, match=f"SplatOptions: {name}"):

@@ -26,9 +26,12 @@ POLICIES = {
 def one(mean: Any = (0, 0, 0), scale: float = 0.2, logit: float = 0.0, sh: Any = None) -> Gaussians:
     colors = np.full((1, 1, 3), 0.5) if sh is None else sh
     return Gaussians(
-        np.array([mean], float), np.full((1, 3), np.log(scale)), np.array([[1.0, 0, 0, 0]]),
-        np.array([logit]), colors,
-    )  # fmt: skip
+        np.array([mean], float),
+        np.full((1, 3), np.log(scale)),
+        np.array([[1.0, 0, 0, 0]]),
+        np.array([logit]),
+        colors,
+    )
 
 
 def straight(width: int = 33, height: int = 33, focal: float = 40.0, back: float = 2.0) -> Camera:

@@ -23,11 +23,13 @@ PAIRS = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)]
 
 def matrix(n: Any) -> Any:
     w, x, y, z = n
-    return np.array([
-        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-    ])  # fmt: skip
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+        ]
+    )
 
 
 def symmetric(d: Any, off: float = 0.5) -> Any:
@@ -152,25 +154,46 @@ Formula = Callable[[str | None, Groups, Any], Groups]
 FORMULAS: dict[str, tuple[Formula, list[str]]] = {
     "gaussian_covariance": (
         covariance,
-        ["off-diagonal twice", "one side of M M^T", "normalisation forgotten", "length forgotten",
-         "log forgotten"],
+        [
+            "off-diagonal twice",
+            "one side of M M^T",
+            "normalisation forgotten",
+            "length forgotten",
+            "log forgotten",
+        ],
     ),
     "splat_conic": (
         conic,
-        ["halved conic fixed", "inverted", "off-diagonal once", "compensation forgotten",
-         "low-pass forgotten"],
+        [
+            "halved conic fixed",
+            "inverted",
+            "off-diagonal once",
+            "compensation forgotten",
+            "low-pass forgotten",
+        ],
     ),
     "splat_projection_held": (
         held_projection,
-        ["clamp passed through", "depth as if t_x moved", "mean held too",
-         "rotation of the covariance forgotten"],
+        [
+            "clamp passed through",
+            "depth as if t_x moved",
+            "mean held too",
+            "rotation of the covariance forgotten",
+        ],
     ),
     "splat_blend": (
         blend,
-        ["inclusive transmittance", "background forgotten", "off by one", "skipped splat counted",
-         "division forgotten", "inverted", "halved conic"],
+        [
+            "inclusive transmittance",
+            "background forgotten",
+            "off by one",
+            "skipped splat counted",
+            "division forgotten",
+            "inverted",
+            "halved conic",
+        ],
     ),
-}  # fmt: skip
+}
 WRONG = [(op, wrong) for op, (_, list_of) in FORMULAS.items() for wrong in list_of]
 
 

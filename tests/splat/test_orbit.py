@@ -32,9 +32,12 @@ def test_a_scene_and_its_camera_turned_together_give_the_same_picture() -> None:
     x, y, z = np.sin(angle / 2) * 2 * half / angle
     q = g.quats @ np.array([[w, x, y, z], [-x, w, z, -y], [-y, -z, w, x], [-z, y, -x, w]])
     turned = Gaussians(
-        g.means @ R.T, g.log_scales, q, g.opacity_logits,
+        g.means @ R.T,
+        g.log_scales,
+        q,
+        g.opacity_logits,
         np.einsum("kj,njc->nkc", sh.rotation(R, 3), g.sh),
-    )  # fmt: skip
+    )
     pose = camera.world_from_camera.copy()
     pose[:3] = R @ pose[:3]
     a, b = render(g, camera)[0], render(turned, replace(camera, world_from_camera=pose))[0]

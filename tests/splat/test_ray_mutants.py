@@ -100,18 +100,31 @@ def blend(wrong: str | None, groups: Groups, d_out: Any) -> Groups:
 FORMULAS: dict[str, tuple[Formula, list[str]]] = {
     "ray_gaussian": (
         peak,
-        ["the peak stays where it was", "depth ignores the direction's length",
-         "depth moves along only", "square forgotten", "the origin's strain alone",
-         "strain not turned back", "mean with the origin's sign", "length kept",
-         "scales inverted"],
+        [
+            "the peak stays where it was",
+            "depth ignores the direction's length",
+            "depth moves along only",
+            "square forgotten",
+            "the origin's strain alone",
+            "strain not turned back",
+            "mean with the origin's sign",
+            "length kept",
+            "scales inverted",
+        ],
     ),
     "ray_color": (color, ["normalisation forgotten", "length forgotten"]),
     "ray_blend": (
         blend,
-        ["inclusive transmittance", "depth forgotten", "background forgotten", "opacity's sign",
-         "off by one", "division forgotten"],
+        [
+            "inclusive transmittance",
+            "depth forgotten",
+            "background forgotten",
+            "opacity's sign",
+            "off by one",
+            "division forgotten",
+        ],
     ),
-}  # fmt: skip
+}
 WRONG = [(op, wrong) for op, (_, list_of) in FORMULAS.items() for wrong in list_of]
 
 

@@ -25,8 +25,11 @@ class Scene:
         self.options = options
         origins, directions = ray_oracle.rays(rays, 3)
         self.place = {
-            **g.arrays(), "background": BEHIND.copy(), "origins": origins, "directions": directions
-        }  # fmt: skip
+            **g.arrays(),
+            "background": BEHIND.copy(),
+            "origins": origins,
+            "directions": directions,
+        }
 
     def rendered(self, p: dict[str, Any]) -> Any:
         g = Gaussians(p["means"], p["log_scales"], p["quats"], p["opacity_logits"], p["sh"])
@@ -41,9 +44,11 @@ class Scene:
         _, context = self.rendered(p)
         found = render_backward(context, d["color"], d["opacity"], d["depth"], rays=True)
         return {
-            **found.gaussians, "background": found.background, "origins": found.origins,
+            **found.gaussians,
+            "background": found.background,
+            "origins": found.origins,
             "directions": found.directions,
-        }  # fmt: skip
+        }
 
 
 SCENES = {
@@ -73,11 +78,18 @@ def test_automatic_mutants_die() -> None:
     d = {name: g.uniform(0.5, 1.5, array.shape) for name, array in shapes.items()}
     report = check_mutants(
         lambda backward: check_gradient(
-            scene.forward, backward, scene.place, seed=6, coordinates=6, directions=4,
+            scene.forward,
+            backward,
+            scene.place,
+            seed=6,
+            coordinates=6,
+            directions=4,
             steps=(1e-4, 1e-5, 1e-6),
         ),
-        scene.backward, scene.place, d,
-    )  # fmt: skip
+        scene.backward,
+        scene.place,
+        d,
+    )
     assert report, str(report)
 
 
@@ -85,9 +97,13 @@ def test_gradients_with_cutoffs_are_those_of_what_is_left() -> None:
     # Away from the discontinuities the derivative exists: small steps cross none of them here.
     scene = Scene(*SCENES["degree 3"], RayOptions())
     report = check_gradient(
-        scene.forward, scene.backward, scene.place, seed=3, coordinates=8,
+        scene.forward,
+        scene.backward,
+        scene.place,
+        seed=3,
+        coordinates=8,
         steps=(1e-5, 1e-6, 1e-7, 1e-8),
-    )  # fmt: skip
+    )
     assert report, str(report)
 
 

@@ -33,9 +33,12 @@ def run(name: str, dtype: Any = np.float32, count: int = 300, rays: int = 700) -
     d = [random.uniform(-1, 1, a.shape).astype(dtype) for a in vars(picture).values()]
     found = render_backward(context, *d, rays=True)
     return [
-        *vars(picture).values(), *found.gaussians.values(), found.background, found.origins,
+        *vars(picture).values(),
+        *found.gaussians.values(),
+        found.background,
+        found.origins,
         found.directions,
-    ]  # fmt: skip
+    ]
 
 
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])

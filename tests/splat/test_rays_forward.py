@@ -70,8 +70,7 @@ def small_gaussians(count: int = 400) -> Gaussians:
     """Two to five pixels of `narrow` wide, in all directions, half a metre around the origin."""
     g = np.random.default_rng(5)
     return replace(
-        oracle.cloud(count, 5, spread=0.5),
-        log_scales=np.log(g.uniform(0.04, 0.1, (count, 3))),
+        oracle.cloud(count, 5, spread=0.5), log_scales=np.log(g.uniform(0.04, 0.1, (count, 3)))
     )
 
 
@@ -107,9 +106,12 @@ def test_the_difference_to_splatting_is_order_low_pass_and_perspective() -> None
 
 def one(mean: Any = (0, 0, 0), scales: Any = (0.2, 0.2, 0.2), logit: float = 0.0) -> Gaussians:
     return Gaussians(
-        np.array([mean], float), np.log([scales]), np.array([[1.0, 0, 0, 0]]), np.array([logit]),
+        np.array([mean], float),
+        np.log([scales]),
+        np.array([[1.0, 0, 0, 0]]),
+        np.array([logit]),
         np.full((1, 1, 3), 0.5),
-    )  # fmt: skip
+    )
 
 
 def test_one_gaussian_in_closed_form() -> None:

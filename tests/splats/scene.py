@@ -37,9 +37,13 @@ def ball_capture(size: int = SIZE) -> Capture:
                 View(f"{elevation:+.0f}_{len(views)}", camera, pixels.reshape(size, size, 4))
             )
     return Capture(
-        train=tuple(views[:5] + views[6:11]), test=(views[5], views[11]), format="test",
-        source=Path("ball"), color_space="display", has_alpha=True,
-    )  # fmt: skip
+        train=tuple(views[:5] + views[6:11]),
+        test=(views[5], views[11]),
+        format="test",
+        source=Path("ball"),
+        color_space="display",
+        has_alpha=True,
+    )
 
 
 @cache
@@ -55,9 +59,10 @@ def cloud_capture(size: int = SIZE) -> Capture:
     )
     ball = ball_capture(size)
     return replace(
-        ball, train=tuple(_painted(view, truth) for view in ball.train),
+        ball,
+        train=tuple(_painted(view, truth) for view in ball.train),
         test=tuple(_painted(view, truth) for view in ball.test),
-    )  # fmt: skip
+    )
 
 
 def _painted(view: View, truth: Gaussians) -> View:

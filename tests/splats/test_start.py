@@ -82,9 +82,10 @@ def test_colors_are_those_of_the_pixels() -> None:
 def with_points(count: int) -> Capture:
     g = np.random.default_rng(6)
     return replace(
-        ball_capture(), points=g.normal(size=(count, 3)),
+        ball_capture(),
+        points=g.normal(size=(count, 3)),
         point_colors=g.integers(0, 256, (count, 3), dtype=np.uint8),
-    )  # fmt: skip
+    )
 
 
 def test_sparse_points_are_taken_with_their_colors() -> None:

@@ -11,11 +11,7 @@ from photograd.fitting.data import TrainingViews
 from photograd.fitting.gradient_drawings import draw_gaussian_gradients
 from photograd.fitting.loop import Fit
 from photograd.fitting.options import options_for
-from photograd.fitting.view_gradients import (
-    grad2d_picture,
-    screen_covariances,
-    view_gradients,
-)
+from photograd.fitting.view_gradients import grad2d_picture, screen_covariances, view_gradients
 from photograd.splats.model import GaussianScene
 from photograd.splats.splatting import Gaussians, SplatOptions, render
 
@@ -52,10 +48,12 @@ def test_loss_falls_along_what_is_drawn(
 
 def test_one_splat_has_the_moments_of_its_ellipse() -> None:
     g: Any = Gaussians(
-        means=np.array([[0.1, -0.05, 2.0]]), log_scales=np.log([[0.05, 0.12, 0.08]]),
-        quats=np.array([[0.9, 0.3, -0.2, 0.4]]), opacity_logits=np.array([-5.0]),
+        means=np.array([[0.1, -0.05, 2.0]]),
+        log_scales=np.log([[0.05, 0.12, 0.08]]),
+        quats=np.array([[0.9, 0.3, -0.2, 0.4]]),
+        opacity_logits=np.array([-5.0]),
         sh=np.ones((1, 1, 3)),
-    )  # fmt: skip
+    )
     camera = Camera(96, 96, 120.0, 120.0, 48.0, 48.0, np.eye(4))
     options = SplatOptions(low_pass=0.0).smooth()
     weight = render(g, camera, options=options)[0].opacity

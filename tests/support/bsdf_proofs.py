@@ -214,13 +214,12 @@ def prove_sampling(model: BsdfModel, *, seed: int = 4, level: float = 0.01) -> N
         np.testing.assert_allclose(np.linalg.norm(wi, axis=1), 1.0, atol=1e-12)
         # Samples below the horizon, or in it for models that transmit, are lost on purpose.
         kept = wi[:, 2] != 0.0 if model.transmits else wi[:, 2] >= 0.0
-        lost = 1.0 - kept.mean()
+        lost, pdf = 1.0 - kept.mean(), functools.partial(model.pdf, parameters)
         # As many nodes as a narrow lobe, or the sharp edge of the cone of refracted rays, needs.
         for order in (15, 30) if bends(model, parameters) else (5, 15, 30):
             masses = sphere_cell_masses(
-                lambda w, p=parameters, c=cosine: model.pdf(p, towards(c, len(w)), w),
-                z, 40, order=order,
-            )  # fmt: skip
+                lambda w, f=pdf, c=cosine: f(towards(c, len(w)), w), z, 40, order=order
+            )
             if abs(masses.sum() + lost - 1.0) < 4e-3:
                 break
         # 4 standard errors of `lost` are 5e-3; quadrature of the coarsest lobes adds some.
@@ -291,6 +290,11 @@ def prove_horizon(model: BsdfModel) -> None:
 
 
 PROOFS = (
-    prove_gradients, prove_shared_row, prove_float, prove_sampling, prove_energy,
-    prove_reciprocity, prove_horizon,
-)  # fmt: skip
+    prove_gradients,
+    prove_shared_row,
+    prove_float,
+    prove_sampling,
+    prove_energy,
+    prove_reciprocity,
+    prove_horizon,
+)

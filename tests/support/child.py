@@ -34,9 +34,13 @@ def answers(begin: str, cases: Mapping[str, str]) -> dict[str, str]:
     """
     paths = os.pathsep.join([str(ROOT / "tests"), str(ROOT)])
     child = subprocess.run(
-        [sys.executable, "-c", RUNNER], input=json.dumps([begin, dict(cases)]),
-        capture_output=True, text=True, check=False, env=os.environ | {"PYTHONPATH": paths},
-    )  # fmt: skip
+        [sys.executable, "-c", RUNNER],
+        input=json.dumps([begin, dict(cases)]),
+        capture_output=True,
+        text=True,
+        check=False,
+        env=os.environ | {"PYTHONPATH": paths},
+    )
     found = dict(json.loads(line) for line in child.stdout.splitlines())
     if len(found) < len(cases):
         died = next(name for name in cases if name not in found)

@@ -24,9 +24,7 @@ from support.memory_limit import limit_memory
 MEMORY = 6 << 30
 AMOUNTS = {"count", "spp", "steps", "channels"}
 """Work that a caller asks for: larger numbers take longer, and that is all."""
-NUMBERS = (
-    0.0, -1.0, 0.5, 1e20, -1e20, 1e38, 1e-40, 1e300, -1e-7, 3e9, np.nan, np.inf, -np.inf,
-)  # fmt: skip
+NUMBERS = (0.0, -1.0, 0.5, 1e20, -1e20, 1e38, 1e-40, 1e300, -1e-7, 3e9, np.nan, np.inf, -np.inf)
 WHOLE = (0, 1, -1, 2, 3, 7, 100, -(2**31), 2**31 - 1, 2**32 - 1, 2**63 - 1, 2**64 - 1, 10**30)
 SMALL = (0, 1, 2, 3, -1, 2**64)
 UNFIT = re.compile("incompatible (function|constructor) arguments")

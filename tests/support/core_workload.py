@@ -249,11 +249,8 @@ def gaussians() -> None:
 def textured() -> Scene:
     paint = any_material("gltf")
     paint = replace(paint, values={**paint.values, "alpha": 0.5})
-    paint = replace(
-        paint,
-        textures={"base_color": TextureUse("t")},
-        normal_map=NormalMap(np.full((2, 2, 3), [0.0, 0.1, 1.0])),
-    )
+    bumps = NormalMap(np.full((2, 2, 3), [0.0, 0.1, 1.0]))
+    paint = replace(paint, textures={"base_color": TextureUse("t")}, normal_map=bumps)
     texels = Texture(G.uniform(0.1, 0.9, (4, 5, 3)), filter="mip")
     plain = stage(any_material("lambert"))
     return replace(plain, materials={**plain.materials, "floor": paint}, textures={"t": texels})
@@ -278,9 +275,13 @@ def paths() -> None:
         tracer._geometry.choose_lights(G.random(3))
         sums = Accumulation.empty(*image.shape[:2])
         _core.trace_reference(
-            **tracer.wide_arguments(), options=PATHS.numbers(1), first=0, count=1,
-            radiance=sums.radiance, squares=sums.squares,
-        )  # fmt: skip
+            **tracer.wide_arguments(),
+            options=PATHS.numbers(1),
+            first=0,
+            count=1,
+            radiance=sums.radiance,
+            squares=sums.squares,
+        )
     tracer = PathTracer(scenes[0])
     interval = np.zeros(1), np.full(1, np.inf)
     tracer._geometry.bvh.occluded(*rays(5, np.float64), *interval)
@@ -294,6 +295,4 @@ def paths() -> None:
     bake_ambient_occlusion(textured(), "floor", 4, spp=1, seed=1)
 
 
-PARTS = (
-    numbers, representations, models, geometry, grids, textures, gaussians, paths,
-)  # fmt: skip
+PARTS = (numbers, representations, models, geometry, grids, textures, gaussians, paths)

@@ -21,9 +21,14 @@ def share_of_ring(radius: np.ndarray, half: float) -> np.ndarray:
 
 
 def flux_below_ball(
-    radius: float, height: float, half: float, *, eta: float = 1.5, orders: int = 24,
+    radius: float,
+    height: float,
+    half: float,
+    *,
+    eta: float = 1.5,
+    orders: int = 24,
     rays: int = 40_000,
-) -> float:  # fmt: skip
+) -> float:
     """Watts through a square (2 half)^2 below a ball, for light of 1 W/m^2 from straight above.
 
     The ball's centre is `height` above the middle of the square. A ray that meets the ball at the

@@ -28,6 +28,9 @@ def survives(
             if name in names
         },
         {name: place[name] for name in names},
-        seed=seed, directions=3, coordinates=4, steps=(1e-4, 1e-5, 1e-6),
-    )  # fmt: skip
+        seed=seed,
+        directions=3,
+        coordinates=4,
+        steps=(1e-4, 1e-5, 1e-6),
+    )
     return bool(report)

@@ -52,8 +52,9 @@ def test_constants_stay(shape: tuple[int, int]) -> None:
 
 def ramp(height: int, width: int) -> Any:
     """(H, W, 2): u and v at the centres."""
-    v, u = np.meshgrid((np.arange(height) + 0.5) / height, (np.arange(width) + 0.5) / width,
-                       indexing="ij")  # fmt: skip
+    v, u = np.meshgrid(
+        (np.arange(height) + 0.5) / height, (np.arange(width) + 0.5) / width, indexing="ij"
+    )
     return np.stack([u, v], axis=-1)
 
 
@@ -85,10 +86,15 @@ def test_adjoint_of_the_levels(shape: tuple[int, int]) -> None:
 
 def test_level_of_a_footprint() -> None:
     # Of 64 x 32 texels: 4 texels along u, 8 texels along v, slanted 3-4-5, a point, a huge one.
-    sides = np.array([
-        [[4 / 32, 0], [0, 1 / 64]], [[0, 1 / 64], [0, 8 / 64]], [[6 / 32, 8 / 64], [0, 0]],
-        [[0, 0], [0, 0]], [[1e200, 0], [0, 0]],
-    ])  # fmt: skip
+    sides = np.array(
+        [
+            [[4 / 32, 0], [0, 1 / 64]],
+            [[0, 1 / 64], [0, 8 / 64]],
+            [[6 / 32, 8 / 64], [0, 0]],
+            [[0, 0], [0, 0]],
+            [[1e200, 0], [0, 0]],
+        ]
+    )
     level = mip_level((64, 32, 3), sides)
     np.testing.assert_allclose(level[:3], [2, 3, np.log2(10)], rtol=1e-15)
     assert level[3] == 0
@@ -120,8 +126,10 @@ def test_adjoint_of_the_lookup() -> None:
     report = dot_product_error(
         lambda _, v: sample_mips(list(v.values()), uv, level),
         lambda p, d: names(sample_mips_backward(list(p.values()), uv, level, d)[0]),
-        names(mips), seed=1, tolerance=1e-12,
-    )  # fmt: skip
+        names(mips),
+        seed=1,
+        tolerance=1e-12,
+    )
     assert report, str(report)
 
 
@@ -146,9 +154,11 @@ def test_derivative_by_point_and_level() -> None:
         return {"uv": d_uv, "level": d_level}
 
     report = check_gradient(
-        lambda p: sample_mips(mips, p["uv"], p["level"]), backward,
-        {"uv": uv, "level": level}, seed=3,
-    )  # fmt: skip
+        lambda p: sample_mips(mips, p["uv"], p["level"]),
+        backward,
+        {"uv": uv, "level": level},
+        seed=3,
+    )
     assert report, str(report)
     *_, d_level = sample_mips_backward(mips, uv, np.full(40, 50.0), np.ones((40, 3)))
     assert not d_level.any()
@@ -166,15 +176,20 @@ def test_a_texture_without_a_second_level() -> None:
 UV = np.zeros((4, 2))
 BAD: list[tuple[Any, Any, Any, type[Exception], str]] = [
     ([], UV, UV[:, 0], RangeError, "sample_mips: mips: expected at least one level, got none"),
-    ([np.zeros((4, 4, 3)), np.zeros((3, 2, 3))], UV, UV[:, 0], RangeError,
-     r"mips\[1\]: expected the shapes that build_mips makes, got 3 x 2 x 3"),
+    (
+        [np.zeros((4, 4, 3)), np.zeros((3, 2, 3))],
+        UV,
+        UV[:, 0],
+        RangeError,
+        r"mips\[1\]: expected the shapes that build_mips makes, got 3 x 2 x 3",
+    ),
     ([np.zeros((4, 4, 3)), np.zeros((2, 2, 2))], UV, UV[:, 0], RangeError, "got 2 x 2 x 2"),
     ([np.zeros((1, 1, 3)), np.zeros((1, 1, 3))], UV, UV[:, 0], RangeError, r"mips\[1\]"),
     ([np.zeros((4, 4, 3))], UV, np.full(4, np.nan), RangeError, "level: expected finite numbers"),
     ([np.zeros((4, 4, 3))], UV, UV[:3, 0], ShapeError, r"level: expected shape \(N,\) with N = 4"),
     ([np.zeros((4, 4, 3), "f4")], UV, UV[:, 0], DtypeError, r"mips\[0\]: expected dtype float64"),
     ([np.zeros((4, 4))], UV, UV[:, 0], ShapeError, r"mips\[0\]: expected shape \(H, W, C\)"),
-]  # fmt: skip
+]
 
 
 @pytest.mark.parametrize(("mips", "uv", "level", "error", "words"), BAD)

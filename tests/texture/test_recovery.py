@@ -40,8 +40,9 @@ def test_gradient_agrees_with_central_differences() -> None:
     report = check_gradient(
         lambda p: np.array(plan.loss_and_gradient(p["texture"])[0]),
         lambda p, d: {"texture": d * plan.loss_and_gradient(p["texture"])[1]},
-        {"texture": noise((6, 5, 3), 1)}, seed=3,
-    )  # fmt: skip
+        {"texture": noise((6, 5, 3), 1)},
+        seed=3,
+    )
     assert report, str(report)
 
 

@@ -16,9 +16,14 @@ from tests.texture.oracle import adjoint, lookup, noise, points
 # Sizes below, at and above a tile's 16 cells, with a single row or column among them.
 SHAPES = [(2, 3), (1, 1), (1, 5), (4, 1), (16, 17), (17, 16), (18, 33), (53, 40)]
 WRONG = [
-    "swapped axes", "half a texel", "corners aligned", "fractions swapped", "wraps around",
-    "a texel forgotten", "overwrites",
-]  # fmt: skip
+    "swapped axes",
+    "half a texel",
+    "corners aligned",
+    "fractions swapped",
+    "wraps around",
+    "a texel forgotten",
+    "overwrites",
+]
 
 
 @pytest.mark.parametrize("channels", [1, 2, 3, 4])
@@ -57,8 +62,9 @@ def test_rows_go_down_and_columns_to_the_right() -> None:
 @pytest.mark.parametrize("shape", [(2, 3), (40, 21)])
 def test_affine_textures_are_exact(shape: tuple[int, int]) -> None:
     height, width = shape
-    v, u = np.meshgrid((np.arange(height) + 0.5) / height, (np.arange(width) + 0.5) / width,
-                       indexing="ij")  # fmt: skip
+    v, u = np.meshgrid(
+        (np.arange(height) + 0.5) / height, (np.arange(width) + 0.5) / width, indexing="ij"
+    )
     texture = np.stack([0.3 + 2 * u - v, np.ones_like(u), 5 * v], axis=-1)
     low = np.array([0.5 / width, 0.5 / height])
     uv = low + (1 - 2 * low) * points(10_000, 4, reach=0.0)
@@ -82,8 +88,10 @@ def test_adjoint_of_a_linear_map(shape: tuple[int, int]) -> None:
     report = dot_product_error(
         lambda _, v: sample(v["texture"], uv),  # linear: J v is the function at v
         lambda p, d: {"texture": sample_backward(p["texture"], uv, d)[0]},
-        {"texture": noise((*shape, 3), 7)}, seed=1, tolerance=1e-12,
-    )  # fmt: skip
+        {"texture": noise((*shape, 3), 7)},
+        seed=1,
+        tolerance=1e-12,
+    )
     assert report, str(report)
 
 
@@ -95,8 +103,9 @@ def test_derivative_by_the_point() -> None:
     report = check_gradient(
         lambda p: sample(texture, p["uv"]),
         lambda p, d: {"uv": sample_backward(texture, p["uv"], d)[1]},
-        {"uv": uv}, seed=3,
-    )  # fmt: skip
+        {"uv": uv},
+        seed=3,
+    )
     assert report, str(report)
 
 
@@ -156,9 +165,13 @@ BAD: list[tuple[Any, Any, type[Exception], str]] = [
     (np.zeros((3, 3, 3)), UV[:, :1], ShapeError, r"uv: expected shape \(N, 2\), got \(4, 1\)"),
     (np.zeros((0, 3, 3)), UV, RangeError, "texels along each axis, got 0 x 3"),
     (np.zeros((3, 3, 5)), UV, RangeError, "1 to 4 channels, got 5"),
-    (np.zeros((3, 3, 3)), np.array([[0, 0.5], [np.nan, np.inf]]), RangeError,
-     "uv: expected finite numbers, got 2 that are not, the first in point 1"),
-]  # fmt: skip
+    (
+        np.zeros((3, 3, 3)),
+        np.array([[0, 0.5], [np.nan, np.inf]]),
+        RangeError,
+        "uv: expected finite numbers, got 2 that are not, the first in point 1",
+    ),
+]
 
 
 @pytest.mark.parametrize(("texture", "uv", "error", "words"), BAD)

@@ -61,8 +61,10 @@ def test_wrong_gradients_die() -> None:
     proof = Proof(4)
     report = check_mutants(
         lambda backward: check_gradient(proof.forward, backward, proof.place, seed=5, directions=4),
-        proof.backward, proof.place, {"value": np.array(0.7)},
-    )  # fmt: skip
+        proof.backward,
+        proof.place,
+        {"value": np.array(0.7)},
+    )
     assert report, str(report)
     assert len(report.killed) >= 3
 

@@ -32,10 +32,17 @@ def everything(dtype: Any) -> list[Any]:
     d_mips, *d_places = sample_mips_backward(mips, uv, level, d_color)
     loss, gradient = loss_and_gradient(texture, uv, d_color)
     return [
-        sample(texture, uv), *sample_backward(texture, uv, d_color), level, *mips,
-        sample_mips(mips, uv, level), *d_mips, *d_places, build_mips_backward(d_mips),
-        np.array(loss), gradient,
-    ]  # fmt: skip
+        sample(texture, uv),
+        *sample_backward(texture, uv, d_color),
+        level,
+        *mips,
+        sample_mips(mips, uv, level),
+        *d_mips,
+        *d_places,
+        build_mips_backward(d_mips),
+        np.array(loss),
+        gradient,
+    ]
 
 
 def digests() -> list[str]:

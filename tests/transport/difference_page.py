@@ -15,9 +15,12 @@ BEGIN, END = "<!-- differences -->", "<!-- end of differences -->"
 CLEAR = 0.003  # relative standard error of the two estimates together
 CHANCE = 5.0  # standard errors, known from 8 batches at least: one row in 700 by chance
 TITLES = {
-    "model": "Reflectance", "alpha": "Coverage (`alpha`), of every model", "light": "Lights",
-    "medium": "Media", "texture": "Textures",
-}  # fmt: skip
+    "model": "Reflectance",
+    "alpha": "Coverage (`alpha`), of every model",
+    "light": "Lights",
+    "medium": "Media",
+    "texture": "Textures",
+}
 Row = dict[str, Any]
 
 
@@ -90,13 +93,19 @@ def tables(rows: dict[str, Row]) -> list[str]:
         names = [name for case, name in known if case.kind == kind]
         lines += ["", f"## {title}", "", *table(names, rows)]
     lines += [
-        "", "## Refused", "",
+        "",
+        "## Refused",
+        "",
         "Paths are held fixed: neither do refracted rays of smooth glass turn, nor do edges of",
         "masks, shadows and silhouettes move. What that leaves of a derivative is incomplete, as",
         "these rows show, where it is handed out on request (`PathTracer(allow_incomplete=True)`):",
-        "", *table(refused_rows, rows), "",
-        "All else refuses, whatever the scene, and says why:", "",
-        "| of | with respect to | what is said |", "|---|---|---|",
+        "",
+        *table(refused_rows, rows),
+        "",
+        "All else refuses, whatever the scene, and says why:",
+        "",
+        "| of | with respect to | what is said |",
+        "|---|---|---|",
         *(f"| {thing} | {name} | {said} |" for thing, name, said in refused(incomplete)),
-    ]  # fmt: skip
+    ]
     return lines

@@ -29,11 +29,20 @@ from tests.transport.scenes import globe_light, view
 
 PATHS = PathOptions(max_depth=4, roulette_from=2)
 STEPS = {
-    "roughness": 0.06, "coat_roughness": 0.1, "slope": 0.05, "clearcoat_gloss": 0.2,
-    "anisotropic": 0.2, "anisotropy": 0.2, "rotation": 0.2, "dispersion": 0.5,
-    "iridescence_thickness": 15.0, "iridescence_ior": 0.06, "cos_outer": 0.03, "softness": 0.06,
+    "roughness": 0.06,
+    "coat_roughness": 0.1,
+    "slope": 0.05,
+    "clearcoat_gloss": 0.2,
+    "anisotropic": 0.2,
+    "anisotropy": 0.2,
+    "rotation": 0.2,
+    "dispersion": 0.5,
+    "iridescence_thickness": 15.0,
+    "iridescence_ior": 0.06,
+    "cos_outer": 0.03,
+    "softness": 0.06,
     "g": 0.1,
-}  # fmt: skip
+}
 """Where a fifth of the range, or three tenths of the value, would be too long, or too short."""
 VEILED = ("lambert", "gltf_refraction", "mirror", "glass")
 """Coverage does not know what it covers: rough and smooth, with and without what lies behind."""
@@ -99,11 +108,14 @@ def models() -> Iterator[Case]:
         material, (moving, _) = scenes.own(model), TURNING.get(model, ((), ""))
         named = LAYERED.get(model, [p.name for p in MODELS[model].parameters])
         rows = {
-            p.name: tuple(rows_of(model, p.name, f"materials.own.{p.name}",
-                                  material.values[p.name], p.lo, p.hi))
+            p.name: tuple(
+                rows_of(
+                    model, p.name, f"materials.own.{p.name}", material.values[p.name], p.lo, p.hi
+                )
+            )
             for p in MODELS[model].parameters
             if p.name in named
-        }  # fmt: skip
+        }
         still = {name: rows[name] for name in rows if name not in moving}
         smooth = model in delta_bsdf.registry()
         for flat in (False, True):

@@ -59,9 +59,13 @@ def more(known: Estimate, batches: list[float]) -> Estimate:
 
 
 def settled(
-    draw: Callable[[int], float], known: Estimate, enough: float, most: int,
-    size: float = 0.0, least: int = LEAST,
-) -> Estimate:  # fmt: skip
+    draw: Callable[[int], float],
+    known: Estimate,
+    enough: float,
+    most: int,
+    size: float = 0.0,
+    least: int = LEAST,
+) -> Estimate:
     """An estimate of at least so many batches `draw(b)`, going on from what is known.
 
     Half as many again each time, until the error is at most `enough` of the mean, or of `size`.

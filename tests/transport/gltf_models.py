@@ -161,19 +161,23 @@ def models(draw: st.DrawFn, model: str) -> ModelFile:
         textures["glow"] = Texture(decode(bytes_of(draw, height, width, 3)), wrap)
         glow = TextureUse("glow") if draw(st.booleans()) else None
     places = tuple(
-        np.block([[np.diag(g.uniform(0.5, 2, 3)) @ turn(g), g.normal(size=(3, 1))],
-                  [np.zeros((1, 3)), 1.0]]) for _ in range(draw(st.sampled_from([0, 2, 3])))
-    )  # fmt: skip
+        transform(np.diag(g.uniform(0.5, 2, 3)) @ turn(g), g.normal(size=(3, 1)))
+        for _ in range(draw(st.sampled_from([0, 2, 3])))
+    )
     interior = None
     thick = model in BODIES - {"dispersive_dielectric"}
     if thick and draw(st.booleans()):
         interior = "m"
     shape = replace(
-        shape, emission=emission, glow=glow, places=places, interior=interior,
+        shape,
+        emission=emission,
+        glow=glow,
+        places=places,
+        interior=interior,
         vertices=shape.vertices + g.normal(size=3).astype(np.float32),
         normals=g.normal(size=(count, 3)).astype(np.float32),
         uv=g.normal(size=(count, 2)).astype(np.float32),
-    )  # fmt: skip
+    )
     media = {"m": Medium(g.uniform(0, 9, 3))} if interior else {}
     asked = {use.texture for use in uses.values()} | ({"glow"} if glow else set())
     return ModelFile((shape,), {"m": material}, {n: textures[n] for n in asked}, media)
@@ -183,3 +187,8 @@ def turn(g: Any) -> Any:
     """A rotation (3, 3)."""
     q = np.linalg.qr(g.normal(size=(3, 3)))[0]
     return q * np.sign(np.linalg.det(q))
+
+
+def transform(linear: Any, offset: Any) -> Any:
+    """The matrix (4, 4) of x -> linear @ x + offset."""
+    return np.block([[linear, offset], [np.zeros((1, 3)), 1.0]])

@@ -31,9 +31,14 @@ class Glb:
     def __init__(self) -> None:
         self.data = b""
         self.json: dict[str, Any] = {
-            "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": []}],
-            "nodes": [], "meshes": [], "bufferViews": [], "accessors": [],
-        }  # fmt: skip
+            "asset": {"version": "2.0"},
+            "scene": 0,
+            "scenes": [{"nodes": []}],
+            "nodes": [],
+            "meshes": [],
+            "bufferViews": [],
+            "accessors": [],
+        }
 
     def view(self, data: bytes) -> int:
         self.data += b"\0" * (-len(self.data) % 4)
@@ -46,10 +51,15 @@ class Glb:
     def accessor(self, array: Any, **more: Any) -> int:
         rows = np.ascontiguousarray(array)
         kind = rows.dtype.newbyteorder("<").str.replace("|", "<")
-        self.json["accessors"].append({
-            "bufferView": self.view(rows.tobytes()), "componentType": _COMPONENTS[kind],
-            "count": len(rows), "type": _TYPES[1 if rows.ndim == 1 else rows.shape[1]], **more,
-        })  # fmt: skip
+        self.json["accessors"].append(
+            {
+                "bufferView": self.view(rows.tobytes()),
+                "componentType": _COMPONENTS[kind],
+                "count": len(rows),
+                "type": _TYPES[1 if rows.ndim == 1 else rows.shape[1]],
+                **more,
+            }
+        )
         return len(self.json["accessors"]) - 1
 
     def image(self, pixels: Any) -> int:
@@ -65,9 +75,14 @@ class Glb:
         return len(self.json["materials"]) - 1
 
     def mesh(
-        self, vertices: Any = CORNERS, faces: Any = FACES, uv: Any = UV, *,
-        material: int | None = None, **more: Any,
-    ) -> int:  # fmt: skip
+        self,
+        vertices: Any = CORNERS,
+        faces: Any = FACES,
+        uv: Any = UV,
+        *,
+        material: int | None = None,
+        **more: Any,
+    ) -> int:
         part: dict[str, Any] = {"attributes": {"POSITION": self.accessor(vertices)}, **more}
         if uv is not None:
             part["attributes"]["TEXCOORD_0"] = self.accessor(uv)

@@ -67,9 +67,15 @@ def with_interior(shape: Any, name: str) -> Any:
 
 
 def ball_of(
-    medium: Medium, material: Material | None = None, *, size: int = 8, sky: float = 1.0,
-    lights: Any = (), camera: Any = None, floor: bool = False,
-) -> Scene:  # fmt: skip
+    medium: Medium,
+    material: Material | None = None,
+    *,
+    size: int = 8,
+    sky: float = 1.0,
+    lights: Any = (),
+    camera: Any = None,
+    floor: bool = False,
+) -> Scene:
     """A ball of 1 m across, filled; without a material its surface is a mere boundary."""
     name = BOUNDARY if material is None else "shell"
     shapes: tuple[Any, ...] = (
@@ -80,9 +86,8 @@ def ball_of(
     materials = {"floor": GREY} if material is None else {"floor": GREY, "shell": material}
     seen = view(size, (0, 0.5, 2.0), (0, 0.5, 0)) if camera is None else camera
     return Scene(
-        "ball", shapes, materials, seen, Environment.constant(sky), lights,
-        media={"inside": medium},
-    )  # fmt: skip
+        "ball", shapes, materials, seen, Environment.constant(sky), lights, media={"inside": medium}
+    )
 
 
 def haze(medium: Medium = FOG, *, size: int = 8) -> Scene:

@@ -23,9 +23,14 @@ def view(size: int = 8, position: Any = (0.0, 1.2, 3.0), target: Any = (0.0, 0.2
 
 
 def stage(
-    material: Material, *, size: int = 8, lamp: float = 4.0, sky: float | None = None,
-    ball: bool = True, floor: Material = GREY,
-) -> Scene:  # fmt: skip
+    material: Material,
+    *,
+    size: int = 8,
+    lamp: float = 4.0,
+    sky: float | None = None,
+    ball: bool = True,
+    floor: Material = GREY,
+) -> Scene:
     """A ball of a material on a grey floor, under a square lamp and perhaps an even sky."""
     shapes: list[Any] = [rectangle("floor", *FLOOR, "floor")]
     if ball:

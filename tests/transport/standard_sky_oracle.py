@@ -109,8 +109,14 @@ def sky_picture(
     image = np.zeros((len(at), 3))
     for point in range(4):
         image[inner] += 0.25 * reflected(
-            balls, texels, x[inner, point], n[inner, point], -d[inner, point], k[inner, point],
-            count, form,
-        )  # fmt: skip
+            balls,
+            texels,
+            x[inner, point],
+            n[inner, point],
+            -d[inner, point],
+            k[inner, point],
+            count,
+            form,
+        )
     shape = camera.height, camera.width
     return image.reshape(*shape, 3), inner.reshape(shape)

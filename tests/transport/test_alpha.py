@@ -70,10 +70,11 @@ def test_alphas_of_none_and_all_have_their_whole_derivative(alpha: float) -> Non
     tracer = PathTracer(wall(grey(alpha), {}), dtype=np.float64)
     d_image = np.full((8, 8, 3), 1 / 64)
     found = [
-        float(tracer.render_backward(d_image, spp=64, seed=seed, options=BARE)
-              ["materials.wall.alpha"])
+        float(
+            tracer.render_backward(d_image, spp=64, seed=seed, options=BARE)["materials.wall.alpha"]
+        )
         for seed in range(40)
-    ]  # fmt: skip
+    ]
     expected = (0.3 + 0.4 + 0.5) - 3
     error = np.std(found) / np.sqrt(len(found))
     assert error < 0.1
@@ -87,15 +88,16 @@ def test_a_shadow_keeps_what_passes() -> None:
     second = rectangle("second", [-1.5, 0.9, -1.5], [3, 0, 0], [0, 0, 3], "second")
     covered = shade(grey(0.3), sky=None)
     twice = replace(
-        covered, shapes=(*covered.shapes, second),
+        covered,
+        shapes=(*covered.shapes, second),
         materials={**covered.materials, "second": grey(0.4)},
-    )  # fmt: skip
+    )
     bare, once, both = (
-        PathTracer(scene, dtype=np.float64).render(
-            spp=64, seed=2, options=options, camera=view(8, (0, 0.5, 3.0), (0, 0, 0.3))
-        ).mean[4, 3:5]
+        PathTracer(scene, dtype=np.float64)
+        .render(spp=64, seed=2, options=options, camera=view(8, (0, 0.5, 3.0), (0, 0, 0.3)))
+        .mean[4, 3:5]
         for scene in (shade(None, sky=None), covered, twice)
-    )  # fmt: skip
+    )
     assert bare.min() > 0.05
     np.testing.assert_allclose(once / bare, 0.7, rtol=1e-9)
     np.testing.assert_allclose(both / bare, 0.7 * 0.6, rtol=1e-9)
@@ -121,10 +123,17 @@ def test_derivatives() -> None:
     material = grey(0.8, textures={"alpha": TextureUse("t")})
     scene = shade(material, textures={"t": checker()})
     second = rectangle("second", [-1.0, 0.4, -1.0], [2.0, 0, 0], [0, 0, 2.0], "sheet")
-    sheet = Material("gltf_transmission", {
-        "base_color": [0.8, 0.6, 0.4], "metalness": 0.1, "roughness": 0.6, "transmission": 0.5,
-        "eta": 1.4, "alpha": 0.6,
-    })  # fmt: skip
+    sheet = Material(
+        "gltf_transmission",
+        {
+            "base_color": [0.8, 0.6, 0.4],
+            "metalness": 0.1,
+            "roughness": 0.6,
+            "transmission": 0.5,
+            "eta": 1.4,
+            "alpha": 0.6,
+        },
+    )
     scene = replace(
         scene, shapes=(*scene.shapes, second), materials={**scene.materials, "sheet": sheet}
     )
@@ -142,8 +151,10 @@ def test_wrong_gradients_die() -> None:
     d = 0.2 + np.random.default_rng(5).random((3, 3, 3))
     deaths = check_mutants(
         lambda b: check_gradient(function, b, start, seed=4, coordinates=2, directions=1),
-        backward, start, d,
-    )  # fmt: skip
+        backward,
+        start,
+        d,
+    )
     assert deaths, str(deaths)
 
 
@@ -162,9 +173,10 @@ def test_a_mask_cuts_a_shape_out() -> None:
     plain = Material("lambert", {"albedo": [0.3, 0.4, 0.5]})
     half = shade(None)
     half = replace(
-        half, shapes=(*half.shapes, rectangle("card", corner, np.multiply(u, 0.5), v, "card")),
+        half,
+        shapes=(*half.shapes, rectangle("card", corner, np.multiply(u, 0.5), v, "card")),
         materials={**half.materials, "card": plain},
-    )  # fmt: skip
+    )
     other, full = picture(half), picture(shade(plain))
     for side in (slice(0, 8), slice(8, 16)):
         # Most paths are the same ones: the two differ by less than either's error. Measured: 0.1.

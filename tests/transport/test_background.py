@@ -9,14 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from photograd.errors import DtypeError, ShapeError
-from photograd.transport import (
-    Accumulation,
-    Material,
-    Medium,
-    PathOptions,
-    PathTracer,
-    Scene,
-)
+from photograd.transport import Accumulation, Material, Medium, PathOptions, PathTracer, Scene
 
 from tests.transport.media_scenes import fog_box
 from tests.transport.scenes import GREY, stage

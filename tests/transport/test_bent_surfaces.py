@@ -6,14 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.transport import (
-    Material,
-    MeshShape,
-    NormalMap,
-    PathOptions,
-    PathTracer,
-    Scene,
-)
+from photograd.transport import Material, MeshShape, NormalMap, PathOptions, PathTracer, Scene
 from photograd.transport.shapes import rectangle
 
 from tests.transport.scenes import BLACK, view

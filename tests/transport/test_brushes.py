@@ -17,9 +17,14 @@ from tests.transport.test_textures import WALL
 
 MODELS = bsdf.registry()
 BRUSHED: dict[str, Any] = {
-    "roughness": 0.3, "anisotropy": 0.8, "rotation": 0.0, "metalness": 1.0, "coat": 0.0,
-    "iridescence_factor": 0.0, "sheen_color_factor": [0, 0, 0],
-}  # fmt: skip
+    "roughness": 0.3,
+    "anisotropy": 0.8,
+    "rotation": 0.0,
+    "metalness": 1.0,
+    "coat": 0.0,
+    "iridescence_factor": 0.0,
+    "sheen_color_factor": [0, 0, 0],
+}
 SHINY: dict[str, dict[str, Any]] = {
     "ggx_anisotropic": {"roughness": 0.3, "anisotropy": 0.8, "rotation": 0.0},
     **{name: BRUSHED for name in MODELS if name.startswith("gltf_layered")},

@@ -26,10 +26,14 @@ WHITE = Material("lambert", {"albedo": [1.0, 1.0, 1.0]})
 @pytest.mark.parametrize(
     ("strategy", "albedo", "spp"),
     [
-        ("bsdf", 0.3, 512), ("bsdf", 0.5, 512), ("bsdf", 0.8, 1024),
-        ("mis", 0.3, 512), ("mis", 0.5, 512), ("mis", 0.8, 1024),
+        ("bsdf", 0.3, 512),
+        ("bsdf", 0.5, 512),
+        ("bsdf", 0.8, 1024),
+        ("mis", 0.3, 512),
+        ("mis", 0.5, 512),
+        ("mis", 0.8, 1024),
     ],
-)  # fmt: skip
+)
 def test_furnace(strategy: str, albedo: float, spp: int) -> None:
     # Geometric series: e + a e + a^2 e + ... = e / (1 - a), from everywhere. Asking lights alone is
     # not tried: where walls meet, 1 / d^2 gives it an infinite variance.
@@ -103,8 +107,9 @@ def test_a_clear_ball_of_glass_neither_gains_nor_loses() -> None:
     # factors 1 / eta^2 and eta^2 cancel, so the ball shows the sky's radiance.
     glass = Material("glass", {"eta": 1.5, "tint": [1.0, 1.0, 1.0]})
     ball = SphereShape("ball", np.zeros(3), 1.0, "glass")
-    scene = Scene("g", (ball,), {"glass": glass}, view(8, (0, 0, 4), (0, 0, 0)),
-                  Environment.constant(1.0))  # fmt: skip
+    scene = Scene(
+        "g", (ball,), {"glass": glass}, view(8, (0, 0, 4), (0, 0, 0)), Environment.constant(1.0)
+    )
     found = PathTracer(scene).render(spp=512, seed=5, options=PathOptions(max_depth=200))
     total = found.standard_error.mean() / 8
     assert total < 0.002
@@ -115,8 +120,13 @@ def test_a_camera_within_glass_sees_eta_squared() -> None:
     # Radiance over index squared is what a boundary keeps: inside, a sky of 1 has radiance eta^2.
     glass = Material("glass", {"eta": 1.5, "tint": [1.0, 1.0, 1.0]})
     ball = SphereShape("ball", np.zeros(3), 1.0, "glass")
-    scene = Scene("g", (ball,), {"glass": glass}, view(8, (0.1, 0, 0.2), (0, 0, -1)),
-                  Environment.constant(1.0))  # fmt: skip
+    scene = Scene(
+        "g",
+        (ball,),
+        {"glass": glass},
+        view(8, (0.1, 0, 0.2), (0, 0, -1)),
+        Environment.constant(1.0),
+    )
     found = PathTracer(scene).render(spp=512, seed=6, options=PathOptions(max_depth=200))
     total = found.standard_error.mean() / 8
     assert total < 0.01
@@ -145,7 +155,7 @@ def test_no_light_leaks_through_closed_walls() -> None:
             camera_at([0, 0.1, 0], target, 60.0, 16, 16),
             Environment.constant(1e6),
         )
-        assert not PathTracer(scene).render(spp=32, seed=8).radiance.any()  # fmt: skip
+        assert not PathTracer(scene).render(spp=32, seed=8).radiance.any()
 
 
 def test_bent_normals_do_not_create_light() -> None:

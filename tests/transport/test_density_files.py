@@ -97,9 +97,13 @@ def test_light_goes_through_it_as_through_the_file(tmp_path: Path) -> None:
     start = middle + np.array([0.5, 0.3, 2.0])
     hull = with_interior(box("hull", middle.tolist(), [4, 4, 4], "boundary"), "cloud")
     scene = Scene(
-        "line", (hull,), {}, pencil(start, middle), Environment.constant(1.0),
+        "line",
+        (hull,),
+        {},
+        pencil(start, middle),
+        Environment.constant(1.0),
         media={"cloud": medium},
-    )  # fmt: skip
+    )
     found = PathTracer(scene, dtype=np.float64).render(spp=1 << 16, seed=1)
     way = middle - start
     t = (np.arange(200_000) + 0.5) / 200_000 * 2  # twice the way to the middle
@@ -152,18 +156,20 @@ def vectors() -> SparseGrid:
     ("grids", "old", "new", "text"),
     [
         ([], "", "", r"line 11: media.cloud.density: .*cloud\.vdb.*: expected a file"),
-        ([spots], '"cloud.vdb"', '"cloud.vdb"\ngrid = "smoke"',
-         r"line 11: media.cloud.density: .*called 'smoke', got 'spots' \(1 channels\)"),
+        (
+            [spots],
+            '"cloud.vdb"',
+            '"cloud.vdb"\ngrid = "smoke"',
+            r"line 11: media.cloud.density: .*called 'smoke', got 'spots' \(1 channels\)",
+        ),
         ([vectors], "", "", r"line 11: .*a grid of scalars, got 'wind' \(3 channels\)"),
         ([level_set], "", "", r"line 11: .*grid 'ls': expected a background of 0"),
         ([spots], '"cloud.vdb"', '"cloud.vdb"\ncorner = [0, 0, 0]', "media.cloud.size: expected"),
         ([spots], '"cloud.vdb"', '"cloud.vdb"\nmajorant = 0.1', r"line 11: .*the majorant 0\.1"),
         ([spots], '"cloud.vdb"', '"cloud.npy"\ngrid = "spots"', "media.cloud.corner: expected"),
     ],
-)  # fmt: skip
-def test_what_is_wrong_is_named(
-    tmp_path: Path, grids: Any, old: str, new: str, text: str
-) -> None:  # fmt: skip
+)
+def test_what_is_wrong_is_named(tmp_path: Path, grids: Any, old: str, new: str, text: str) -> None:
     if grids:
         write_vdb(tmp_path / "cloud.vdb", [make() for make in grids])
     (tmp_path / "s.toml").write_text(TEXT.replace(old, new) if old else TEXT)

@@ -174,8 +174,13 @@ def test_spelling_and_mistakes() -> None:
     assert one[2, 1, 0] == 1
     assert one.sum() == 1
     assert direction_of(params, "materials.floor.roughness")["materials.floor.roughness"] == 1
-    for spelling in ("materials.flor.roughness", "", "textures.paint[0]", "textures.paint[5,0,0]",
-                     "materials.box.albedo[x]"):  # fmt: skip
+    for spelling in (
+        "materials.flor.roughness",
+        "",
+        "textures.paint[0]",
+        "textures.paint[5,0,0]",
+        "materials.box.albedo[x]",
+    ):
         with pytest.raises(RangeError, match="direction_of: parameter"):
             direction_of(params, spelling)
     with pytest.raises(RangeError, match="spp: expected at least 1"):

@@ -122,9 +122,11 @@ def test_light_from_far_away(name: str) -> None:
         arriving = 2 * np.pi * light.height * np.asarray(light.radiance)
     else:
         ways = in_cap(towards, [0.0, 1, 0], 2.0)
-        parts = [light.radiance] * 4 if name == "ambient" else [
-            light.zenith, light.horizon, light.horizon, light.ground
-        ]  # fmt: skip
+        parts = (
+            [light.radiance] * 4
+            if name == "ambient"
+            else [light.zenith, light.horizon, light.horizon, light.ground]
+        )
         arriving = np.pi * np.sum(parts, axis=0)
     assert_even([*ways, *on_disc(found.origins, towards)])
     flux = np.pi * RADIUS**2 * arriving

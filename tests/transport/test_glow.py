@@ -51,9 +51,12 @@ def test_a_sign_shows_its_picture() -> None:
     blocks = np.repeat(np.repeat(sign(2, 2).values, 32, axis=0), 32, axis=1)
     shape = rectangle("sign", [-1, -1, 0], [2, 0, 0], [0, 2, 0], "black", [4.0, 2.0, 1.0])
     scene = Scene(
-        "sign", (replace(shape, glow=TextureUse("t")),), {"black": BLACK},
-        view(8, (0, 0, 4.0), (0, 0, 0)), textures={"t": Texture(blocks)},
-    )  # fmt: skip
+        "sign",
+        (replace(shape, glow=TextureUse("t")),),
+        {"black": BLACK},
+        view(8, (0, 0, 4.0), (0, 0, 0)),
+        textures={"t": Texture(blocks)},
+    )
     found = PathTracer(scene).render(spp=8, seed=1).mean
     for row, column in np.ndindex(2, 2):
         expected = blocks[16 + 32 * row, 16 + 32 * column] * [4, 2, 1]
@@ -106,8 +109,10 @@ def test_wrong_gradients_die() -> None:
     d = 0.2 + np.random.default_rng(5).random((3, 3, 3))
     deaths = check_mutants(
         lambda b: check_gradient(function, b, start, seed=4, coordinates=2, directions=1),
-        backward, start, d,
-    )  # fmt: skip
+        backward,
+        start,
+        d,
+    )
     assert deaths, str(deaths)
 
 

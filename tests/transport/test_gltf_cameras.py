@@ -107,9 +107,11 @@ def test_cameras_that_have_no_counterpart_are_named(tmp_path: Path) -> None:
     shear = np.eye(4)
     shear[0, 1] = 0.5
     for place in (
-        {"scale": [1, 1, -1]}, {"scale": [1, 0, 1]}, {"translation": [2e9, 0, 0]},
+        {"scale": [1, 1, -1]},
+        {"scale": [1, 0, 1]},
+        {"translation": [2e9, 0, 0]},
         {"matrix": shear.T.ravel().tolist()},
-    ):  # fmt: skip
+    ):
         model, told = read(tmp_path, seen_square(camera(), **place).bytes())
         assert told == [f"m.glb: {out}"]
         assert model.cameras == ()
@@ -249,10 +251,13 @@ def test_a_scene_file_takes_camera_and_lights(tmp_path: Path) -> None:
         ('"m.glb"', '"gone.glb"', "gone.glb"),
         ("size", "aperture = 1\nsize", "line 3: camera.aperture: expected a key that is known"),
         ("lights = true", "lights = 1", "line 8: shapes.0.lights: expected true or false"),
-        ("lights = true", "lights = true\nclosing = { translate = [1, 0, 0] }",
-         "line 9: shapes.0.closing: expected no motion of a file whose lights are wanted"),
+        (
+            "lights = true",
+            "lights = true\nclosing = { translate = [1, 0, 0] }",
+            "line 9: shapes.0.closing: expected no motion of a file whose lights are wanted",
+        ),
     ],
-)  # fmt: skip
+)
 def test_a_mistake_is_named_with_line_and_key(
     tmp_path: Path, old: str, new: str, words: str
 ) -> None:

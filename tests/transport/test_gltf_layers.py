@@ -28,16 +28,33 @@ TINT = {"specularFactor": 0.5, "specularColorFactor": [1, 0.5, 2]}
     [
         (
             core(metallicFactor=0.5, roughnessFactor=0.25)
-            | layers(specular=TINT, ior={"ior": 1.25}, anisotropy=BRUSH, sheen=CLOTH,
-                     iridescence=FILM, clearcoat=COAT),
+            | layers(
+                specular=TINT,
+                ior={"ior": 1.25},
+                anisotropy=BRUSH,
+                sheen=CLOTH,
+                iridescence=FILM,
+                clearcoat=COAT,
+            ),
             "gltf_layered",
             {
-                "metalness": 0.5, "roughness": 0.25, "eta": 1.25, "specular_factor": 0.5,
-                "specular_color_factor": [1, 0.5, 2], "anisotropy": 0.5, "rotation": 0.25,
-                "anisotropy_x": 1, "anisotropy_y": 0, "iridescence_factor": 0.5,
-                "iridescence_ior": 1.3, "iridescence_thickness": 550,
-                "sheen_color_factor": [1, 0.5, 0], "sheen_roughness_factor": 0.5, "coat": 0.75,
-                "coat_roughness": 0.25, "transmission": 0,
+                "metalness": 0.5,
+                "roughness": 0.25,
+                "eta": 1.25,
+                "specular_factor": 0.5,
+                "specular_color_factor": [1, 0.5, 2],
+                "anisotropy": 0.5,
+                "rotation": 0.25,
+                "anisotropy_x": 1,
+                "anisotropy_y": 0,
+                "iridescence_factor": 0.5,
+                "iridescence_ior": 1.3,
+                "iridescence_thickness": 550,
+                "sheen_color_factor": [1, 0.5, 0],
+                "sheen_roughness_factor": 0.5,
+                "coat": 0.75,
+                "coat_roughness": 0.25,
+                "transmission": 0,
             },
         ),
         (
@@ -69,7 +86,7 @@ TINT = {"specularFactor": 0.5, "specularColorFactor": [1, 0.5, 2]}
             {"coat": 0.75, "eta": 1.25, "dispersion": 0},
         ),
     ],
-)  # fmt: skip
+)
 def test_which_model_several_layers_become(
     tmp_path: Path, entries: dict[str, Any], model: str, values: dict[str, Any]
 ) -> None:
@@ -108,9 +125,12 @@ def test_a_film_is_as_thick_as_its_texture_blends(tmp_path: Path) -> None:
     green = PIXELS[..., 1] / 255
     for least, most in ((100, 400), (0, 400), (400, 100)):
         glb = square()
-        film = {"iridescenceFactor": 1, "iridescenceThicknessMinimum": least,
-                "iridescenceThicknessMaximum": most,
-                "iridescenceThicknessTexture": {"index": glb.image(PIXELS)}}  # fmt: skip
+        film = {
+            "iridescenceFactor": 1,
+            "iridescenceThicknessMinimum": least,
+            "iridescenceThicknessMaximum": most,
+            "iridescenceThicknessTexture": {"index": glb.image(PIXELS)},
+        }
         glb.json["materials"][0] |= layers(iridescence=film)
         model, told = read(tmp_path, glb.bytes())
         assert told == []
@@ -139,8 +159,13 @@ def test_textures_of_all_layers(tmp_path: Path) -> None:
     material = only(model)
     unpainted = {parameter.name for parameter in material.parameters} - set(material.textures)
     assert unpainted == {
-        "eta", "anisotropy", "anisotropy_x", "anisotropy_y", "rotation", "iridescence_ior"
-    }  # fmt: skip
+        "eta",
+        "anisotropy",
+        "anisotropy_x",
+        "anisotropy_y",
+        "rotation",
+        "iridescence_ior",
+    }
     rough = material.textures["sheen_roughness_factor"]
     np.testing.assert_allclose(model.textures[rough.texture].values, 100 / 255, rtol=1e-6)
 

@@ -65,35 +65,46 @@ def at_share(t: float) -> float:
         # (0, 4, -1.5): r^2 = 16 + 2.25 + 1 for x = 1.
         (
             {"type": "point", "intensity": 7.0, "color": COLOR},
-            {"translation": [0.5, 1, 0]}, 1.0, 7 * 4 / 19.25**1.5,
+            {"translation": [0.5, 1, 0]},
+            1.0,
+            7 * 4 / 19.25**1.5,
         ),
         ({"type": "point", "color": COLOR}, {"translation": [0, 1, 0]}, 0.0, 1 / 16),
         # (0, 4, 0), straight down: within, in the middle of the rim's cosines, and beyond.
         (
             {"type": "spot", "intensity": 5.0, "color": COLOR, "spot": CONE},
-            {"translation": [0, 1, 0], "rotation": DOWN}, 1.0, 5 * 4 / 17**1.5,
+            {"translation": [0, 1, 0], "rotation": DOWN},
+            1.0,
+            5 * 4 / 17**1.5,
         ),
         (
             {"type": "spot", "intensity": 5.0, "color": COLOR, "spot": CONE},
-            {"translation": [0, 1, 0], "rotation": DOWN}, at_share(0.5),
+            {"translation": [0, 1, 0], "rotation": DOWN},
+            at_share(0.5),
             0.5 * 5 * 4 / (16 + at_share(0.5) ** 2) ** 1.5,
         ),
         (
             {"type": "spot", "intensity": 5.0, "color": COLOR, "spot": CONE},
-            {"translation": [0, 1, 0], "rotation": DOWN}, at_share(-0.01), 0.0,
+            {"translation": [0, 1, 0], "rotation": DOWN},
+            at_share(-0.01),
+            0.0,
         ),
         # Without angles light fades from the axis to 45 degrees.
         (
-            {"type": "spot", "color": COLOR}, {"translation": [0, 1, 0], "rotation": DOWN}, 0.0,
+            {"type": "spot", "color": COLOR},
+            {"translation": [0, 1, 0], "rotation": DOWN},
+            0.0,
             1 / 16,
         ),
         # -Z of the parent is -X of the world: turned by 30 degrees about its X, down again.
         (
             {"type": "directional", "intensity": 3.0, "color": COLOR},
-            {"rotation": [-np.sin(np.pi / 12), 0, 0, np.cos(np.pi / 12)]}, 0.0, 3 * 0.5,
+            {"rotation": [-np.sin(np.pi / 12), 0, 0, np.cos(np.pi / 12)]},
+            0.0,
+            3 * 0.5,
         ),
     ],
-)  # fmt: skip
+)
 def test_irradiance_has_a_closed_form(
     tmp_path: Path, light: Any, place: Any, x: float, expected: float
 ) -> None:
@@ -166,9 +177,10 @@ def some_lights(g: np.random.Generator) -> tuple[Any, ...]:
     strong = g.uniform(0, 10.0 ** g.integers(-2, 5), (3, 3))
     cone = float(np.cos(g.uniform(0.01, np.pi / 2))), float(g.uniform(0.01, 1))
     return (
-        PointLight(place[0], strong[0]), SpotLight(place[1], way[0], strong[1], *cone),
+        PointLight(place[0], strong[0]),
+        SpotLight(place[1], way[0], strong[1], *cone),
         DirectionalLight(way[1], strong[2]),
-    )  # fmt: skip
+    )
 
 
 def test_lights_come_back(tmp_path: Path) -> None:
@@ -179,7 +191,7 @@ def test_lights_come_back(tmp_path: Path) -> None:
         SpotLight([0, 0, 0], [0, 0, -1], [0] * 3, 0.0, 1.0),
         SpotLight([0, 0, 0], [0, 1, 0], [1] * 3, np.cos(2e-3), 0.01),
         DirectionalLight([0, 0, -1], [0, 0, 1e-9]),
-    )  # fmt: skip
+    )
     for lights in [ends, *(some_lights(g) for _ in range(10))]:
         model = ModelFile((wall,), {"m": paint}, lights=lights)
         found, said = written(model, tmp_path / "m.glb")
@@ -198,12 +210,16 @@ def test_lights_without_words_are_named(tmp_path: Path) -> None:
     wall = rectangle("wall", [-1, -1, 0], [2, 0, 0], [0, 2, 0], "m")
     paint = Material("gltf", {"base_color": [0.5] * 3, "metalness": 0.0, "roughness": 1.0})
     lights = (
-        SkyLight([1] * 3, [1] * 3, [1] * 3), PointLight([0, 0, 1], [1] * 3),
-        SpotLight([0, 0, 1], [0, 0, -1], [1] * 3, -0.1, 0.5), SunLight([0, 1, 0], [1] * 3, 0.01),
+        SkyLight([1] * 3, [1] * 3, [1] * 3),
+        PointLight([0, 0, 1], [1] * 3),
+        SpotLight([0, 0, 1], [0, 0, -1], [1] * 3, -0.1, 0.5),
+        SunLight([0, 1, 0], [1] * 3, 0.01),
         PointLight([0, 0, 1], [1e30, 1, 1]),
-    )  # fmt: skip
+    )
     found, said = written(ModelFile((wall,), {"m": paint}, lights=lights), tmp_path / "m.glb")
-    assert said == ["m.glb: not written: lights[0] (SkyLight), lights[2] (SpotLight), "
-                    "lights[3] (SunLight), lights[4] (PointLight)"]  # fmt: skip
+    assert said == [
+        "m.glb: not written: lights[0] (SkyLight), lights[2] (SpotLight), "
+        "lights[3] (SunLight), lights[4] (PointLight)"
+    ]
     assert [type(light).__name__ for light in found.lights] == ["PointLight"]
     assert json_of(tmp_path / "m.glb")["extensionsUsed"] == [LIGHTS]

@@ -195,8 +195,9 @@ def test_light_of_surfaces(tmp_path: Path) -> None:
     np.testing.assert_array_equal(model.shapes[0].emission, [8, 4, 0])
     glb = square()
     glb.json["materials"][0] |= {
-        "emissiveFactor": [1, 1, 1], "emissiveTexture": {"index": glb.image(PIXELS)}
-    }  # fmt: skip
+        "emissiveFactor": [1, 1, 1],
+        "emissiveTexture": {"index": glb.image(PIXELS)},
+    }
     model, told = read(tmp_path, glb.bytes())
     assert told == []
     shape = model.shapes[0]
@@ -262,10 +263,11 @@ def test_coordinates_are_moved_and_chosen(tmp_path: Path) -> None:
     turn = {"offset": [0.25, 0.5], "rotation": np.pi / 2, "scale": [2, 1]}
     glb.json["materials"][0] |= core(
         baseColorTexture={
-            "index": glb.image(PIXELS), "texCoord": 1,
+            "index": glb.image(PIXELS),
+            "texCoord": 1,
             "extensions": {"KHR_texture_transform": turn},
         }
-    )  # fmt: skip
+    )
     model, told = read(tmp_path, glb.bytes())
     assert told == []
     # (u, v) = (1/2, 1/2) is scaled to (1, 1/2); a quarter turn, v downwards, makes (1/2, -1) of it.
@@ -278,8 +280,9 @@ def test_extensions_of_a_file_are_named(tmp_path: Path) -> None:
     glb = square()
     lamp = {"type": "directional", "intensity": 2.0}
     glb.json["extensions"] = {
-        "KHR_lights_punctual": {"lights": [lamp]}, "KHR_materials_variants": {"variants": []},
-    }  # fmt: skip
+        "KHR_lights_punctual": {"lights": [lamp]},
+        "KHR_materials_variants": {"variants": []},
+    }
     glb.json["extensionsRequired"] = ["KHR_lights_punctual"]
     model, told = read(tmp_path, glb.bytes())
     assert told == ["m.glb: extensions: KHR_materials_variants: not supported, left out"]

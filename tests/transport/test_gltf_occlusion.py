@@ -116,9 +116,8 @@ def test_ambient_light_under_a_baked_map_is_what_rays_find(tmp_path: Path) -> No
         )
         occlusion = found.at(np.array([[0.5, z]]))
         shaded = shade(
-            even_sky(), up, up, base_color=albedo, metalness=0.0, roughness=1.0,
-            occlusion=occlusion,
-        )  # fmt: skip
+            even_sky(), up, up, base_color=albedo, metalness=0.0, roughness=1.0, occlusion=occlusion
+        )
         assert 0.5 < occlusion[0] < 0.99
         np.testing.assert_allclose(shaded[0], rays.mean[0, 0], rtol=0.01)
 

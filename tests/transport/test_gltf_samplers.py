@@ -93,8 +93,10 @@ def test_what_is_no_filter_is_refused(tmp_path: Path, value: Any) -> None:
 def test_what_is_seen_point_by_point_is_named(tmp_path: Path) -> None:
     glb = sampled(minFilter=9987)
     glb.json["materials"][0] |= {
-        "normalTexture": {"index": 0}, "emissiveTexture": {"index": 0}, "emissiveFactor": [1, 1, 1],
-    }  # fmt: skip
+        "normalTexture": {"index": 0},
+        "emissiveTexture": {"index": 0},
+        "emissiveFactor": [1, 1, 1],
+    }
     _, told = read(tmp_path, glb.bytes())
     place = "m.glb: materials[0]"
     assert told == [f"{place}: normalTexture: {SEEN}", f"{place}: emissiveTexture: {SEEN}"]
@@ -126,8 +128,14 @@ def test_a_mask_far_away_is_still_a_net(tmp_path: Path) -> None:
         assert said == ([f"again.glb: read back: again.glb{place[5:]}: {SEEN}"] if told else [])
         same(model, again)
         # Black before an even sky of 1, in a picture of 8 x 8: what is there is missing from it.
-        black = {"m": replace(model.materials["m"], model="lambert", values=BLACK, textures={
-            "alpha": uses["alpha"]})}  # fmt: skip
+        black = {
+            "m": replace(
+                model.materials["m"],
+                model="lambert",
+                values=BLACK,
+                textures={"alpha": uses["alpha"]},
+            )
+        }
         camera = camera_at([0.5, 0.5, 10.0], [0.5, 0.5, 0.0], 5.0, 8, 8)
         for filter in FILTERS:
             seen = {uses["alpha"].texture: replace(alpha, filter=filter)}
@@ -169,9 +177,11 @@ def test_a_filter_comes_back_and_filters(tmp_path: Path) -> None:
         pictures = [
             PathTracer(
                 Scene("s", m.shapes, m.materials, camera, lights=(sun,), textures=m.textures)
-            ).render(spp=1, seed=1, options=PathOptions("light", max_depth=2)).mean
+            )
+            .render(spp=1, seed=1, options=PathOptions("light", max_depth=2))
+            .mean
             for m in (before, after)
-        ]  # fmt: skip
+        ]
         np.testing.assert_array_equal(*pictures)
         noise[filter] = float(pictures[0].std() / pictures[0].mean())
     # A pixel holds 4 x 4 squares: those of one level are all the same.

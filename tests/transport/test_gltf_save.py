@@ -60,10 +60,13 @@ def test_what_is_written_is_read_again(tmp_path: Path, model: str, suffix: str) 
     path = tmp_path / f"m{suffix}"
 
     @settings(
-        max_examples=EXAMPLES, deadline=None, database=None, derandomize=True,
+        max_examples=EXAMPLES,
+        deadline=None,
+        database=None,
+        derandomize=True,
         phases=[Phase.generate],
         suppress_health_check=list(HealthCheck),
-    )  # fmt: skip
+    )
     @given(models(model))
     def check(before: ModelFile) -> None:
         after, said = written(before, path)
@@ -108,9 +111,16 @@ def test_a_file_says_what_it_uses(tmp_path: Path) -> None:
     assert used["dispersive_glass"] == {"transmission", "ior", "volume", "dispersion"}
     assert used["lambert"] == {"specular"}
     assert set().union(*used.values()) == {
-        "clearcoat", "sheen", "anisotropy", "iridescence", "transmission", "volume", "dispersion",
-        "specular", "ior",
-    }  # fmt: skip
+        "clearcoat",
+        "sheen",
+        "anisotropy",
+        "iridescence",
+        "transmission",
+        "volume",
+        "dispersion",
+        "specular",
+        "ior",
+    }
 
 
 def test_special_cases_of_other_models_are_named(tmp_path: Path) -> None:
@@ -162,8 +172,9 @@ def test_rounding_is_named(tmp_path: Path) -> None:
     one_place = replace(cube, places=(np.diag([2.0, 2.0, 2.0, 1.0]),))
     _, said = written(ModelFile((one_place,), {"m": at_half("gltf")}), tmp_path / "m.glb")
     assert [text.split(": ", 1)[1] for text in said] == [
-        "shape 'cube': vertices changed", "shape 'cube': places changed"
-    ]  # fmt: skip
+        "shape 'cube': vertices changed",
+        "shape 'cube': places changed",
+    ]
 
 
 def test_a_film_keeps_its_least_thickness(tmp_path: Path) -> None:
@@ -216,10 +227,12 @@ def test_what_gltf_cannot_say_is_refused_by_name(tmp_path: Path) -> None:
         ((replace(cube, interior="f"),), {"m": glass}, {"f": fog}, "medium 'f' does more"),
         ((replace(cube, interior="f"),), {"m": glass}, {"f": smoke}, "medium 'f' does more"),
         (
-            (replace(cube, interior="f"),), {"m": at_half("gltf")}, {"f": Medium(1.0)},
+            (replace(cube, interior="f"),),
+            {"m": at_half("gltf")},
+            {"f": Medium(1.0)},
             "shape 'cube' of 'gltf' has an interior",
         ),
-    ):  # fmt: skip
+    ):
         with pytest.raises(SceneError, match=f"save_gltf: model: .*{words}"):
             save_gltf(ModelFile(shapes, materials_, {}, media), tmp_path / "m.glb")  # type: ignore[arg-type]
     textured = replace(at_half("gltf_specular"), textures={"eta": TextureUse("t")})
@@ -255,9 +268,17 @@ def test_normals_keep_their_scale() -> None:
 
 
 @pytest.mark.parametrize(
-    "name", ["ClearCoatTest", "SpecularTest", "AttenuationTest", "dispersion-test",
-             "SunglassesKhronos", "low-poly-tree", "AnisotropyStrengthTest"],
-)  # fmt: skip
+    "name",
+    [
+        "ClearCoatTest",
+        "SpecularTest",
+        "AttenuationTest",
+        "dispersion-test",
+        "SunglassesKhronos",
+        "low-poly-tree",
+        "AnisotropyStrengthTest",
+    ],
+)
 def test_sample_files(tmp_path: Path, name: str) -> None:
     path = DATA / "gltf" / f"{name}.glb"
     if not path.is_file():

@@ -55,9 +55,11 @@ def scenes(size: int) -> tuple[Scene, Scene]:
     values = np.random.default_rng(1).uniform(0.3, 0.9, (4, 6, 3))
     tilt = NormalMap(np.broadcast_to([0.2, 0.1, 1.0], (2, 2, 3)).copy())
     gloss = Material(
-        "gltf", {"base_color": [1.0] * 3, "metalness": 0.3, "roughness": 0.4},
-        {"base_color": TextureUse("paint")}, tilt,
-    )  # fmt: skip
+        "gltf",
+        {"base_color": [1.0] * 3, "metalness": 0.3, "roughness": 0.4},
+        {"base_color": TextureUse("paint")},
+        tilt,
+    )
     materials = {"gloss": gloss, "grey": GREY}
     floor = rectangle("floor", *FLOOR, "grey")
     vertices, faces, normals, uv = dome()
@@ -100,7 +102,7 @@ def test_instances_look_like_meshes_of_their_own() -> None:
             ]
         ),
         atol=0.12,
-    )  # fmt: skip  (the box of a turned box is larger)
+    )  # the box of a turned box is larger
 
 
 def test_their_derivatives() -> None:

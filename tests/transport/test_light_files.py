@@ -96,9 +96,17 @@ def write(folder: Path, lights: str, image: Any = None) -> Path:
 def test_every_kind_is_read(tmp_path: Path) -> None:
     scene = read_scene(write(tmp_path, LIGHTS))
     assert [type(light).__name__ for light in scene.lights] == [
-        "PointLight", "SpotLight", "DirectionalLight", "ConstantLight", "SkyLight", "SunLight",
-        "QuadLight", "SphereLight", "TriangleLight", "EnvironmentMap",
-    ]  # fmt: skip
+        "PointLight",
+        "SpotLight",
+        "DirectionalLight",
+        "ConstantLight",
+        "SkyLight",
+        "SunLight",
+        "QuadLight",
+        "SphereLight",
+        "TriangleLight",
+        "EnvironmentMap",
+    ]
     spot, sun, sky = scene.lights[1], scene.lights[5], scene.lights[9]
     assert isinstance(spot, SpotLight)
     assert spot.cos_outer == pytest.approx(0.5)

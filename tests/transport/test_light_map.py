@@ -50,8 +50,12 @@ def patch(size: int, half: float = HALF) -> Receiver:
 
 def seen_irradiance(tracer: PathTracer, camera: Camera, albedo: Any, spp: int) -> Accumulation:
     """Irradiance of a Lambertian floor, from the radiance that a path tracer sees."""
-    sums = tracer.render(spp=spp, seed=3, camera=camera, options=PathOptions(roulette_from=None,
-                         max_depth=12, sampler="independent"))  # fmt: skip
+    sums = tracer.render(
+        spp=spp,
+        seed=3,
+        camera=camera,
+        options=PathOptions(roulette_from=None, max_depth=12, sampler="independent"),
+    )
     scale = np.pi / np.asarray(albedo)
     return Accumulation(sums.radiance * scale, sums.squares * scale**2, sums.count)
 
@@ -110,9 +114,12 @@ def test_both_ends_agree_under_bent_normals() -> None:
     bent = bent_floor(8, 40.0)
     ceiling = rectangle("ceiling", [-0.5, 1.2, -0.5], [1, 0, 0], [0, 0, 1], "grey")
     scene = Scene(
-        "bent", (*bent.shapes, ceiling), {**bent.materials, "grey": GREY}, view(8),
+        "bent",
+        (*bent.shapes, ceiling),
+        {**bent.materials, "grey": GREY},
+        view(8),
         lights=(PointLight([0.9, 0.6, 0.3], [3.0, 2.0, 1.0]),),
-    )  # fmt: skip
+    )
     tracer = PathTracer(scene, dtype=np.float64)
     upwards = np.array([[1.0, 0, 0, 0], [0, 0, 1, 0.2], [0, -1, 0, 0], [0, 0, 0, 1]])
     camera = Camera(2, 2, 2.0, 2.0, 1.0, 1.0, upwards)
@@ -129,10 +136,7 @@ def test_energy_in_a_closed_box() -> None:
     walls = []
     for k in range(3):
         n, x, y = np.roll(2 * np.eye(3), -k, axis=0)
-        walls += [
-            Receiver([-1.0] * 3, x, y, 1, 1),
-            Receiver(n - 1.0, y, x, 1, 1),
-        ]
+        walls += [Receiver([-1.0] * 3, x, y, 1, 1), Receiver(n - 1.0, y, x, 1, 1)]
     for options, tolerance in ((ParticleOptions(10, None), 3e-4), (ParticleOptions(99, 1), 0.02)):
         landed = sum(
             wall.cell_area * trace_light(tracer, wall, 8192, seed=1, options=options).mean
@@ -153,10 +157,15 @@ def test_a_lamp_in_closed_form() -> None:
         for column in range(3):
             # The mean over a cell, by 5 x 5 points.
             steps = (np.arange(5) + 0.5) / 5
-            points = [[-0.5 + (column + i) / 3, 1.2, -0.5 + (row + j) / 3]
-                      for i in steps for j in steps]  # fmt: skip
-            E = np.mean([abs(polygon_irradiance(outline, np.array(p), np.array([0.0, 1, 0])))
-                         for p in points])  # fmt: skip
+            points = [
+                [-0.5 + (column + i) / 3, 1.2, -0.5 + (row + j) / 3] for i in steps for j in steps
+            ]
+            E = np.mean(
+                [
+                    abs(polygon_irradiance(outline, np.array(p), np.array([0.0, 1, 0])))
+                    for p in points
+                ]
+            )
             z = (found.mean[row, column, 0] - 4.0 * E) / found.standard_error[row, column, 0]
             assert abs(z) < 4, (row, column)
             assert 4 * found.standard_error[row, column, 0] < 0.05 * 4.0 * E

@@ -255,8 +255,8 @@ def test_lights_are_chosen_by_power() -> None:
 
 def test_what_was_dark_may_shine_later() -> None:
     # Built dark and lit later: lights are chosen badly, and the picture is right all the same.
-    lights = (PointLight([0.8, 1.6, 0.9], [0, 0, 0]), SkyLight(*np.zeros((3, 3))),
-              EnvironmentMap(np.zeros((6, 12, 3))))  # fmt: skip
+    point, sky = PointLight([0.8, 1.6, 0.9], [0, 0, 0]), SkyLight(*np.zeros((3, 3)))
+    lights = point, sky, EnvironmentMap(np.zeros((6, 12, 3)))
     late = PathTracer(lit_by(*lights, LIGHTS["rectangle"][0]))
     bright: Any = (LIGHTS["point"][0], LIGHTS["sky"][0], LIGHTS["map"][0], LIGHTS["rectangle"][0])
     soon = PathTracer(lit_by(*bright))
@@ -278,9 +278,14 @@ def test_what_is_no_light_is_named() -> None:
         tracer.render(spp=1, seed=1)
     with pytest.raises(SceneError, match="a light without a surface, got quad"):
         _core.PathGeometry(
-            [], np.zeros(0, np.int32), np.zeros((0, 3, 4)), np.ones((1, 4), np.float32),
-            np.zeros(1, np.int32), np.zeros((1, 3)), [("quad", np.ones(3), np.ones(9))],
-        )  # fmt: skip
+            [],
+            np.zeros(0, np.int32),
+            np.zeros((0, 3, 4)),
+            np.ones((1, 4), np.float32),
+            np.zeros(1, np.int32),
+            np.zeros((1, 3)),
+            [("quad", np.ones(3), np.ones(9))],
+        )
 
 
 def test_a_view_of_the_sky_alone_is_the_map() -> None:

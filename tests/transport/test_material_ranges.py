@@ -98,11 +98,17 @@ def test_the_smoothest_metal_is_a_mirror_in_a_picture() -> None:
 
 def test_negative_light_of_a_file_is_named(tmp_path: Path) -> None:
     for change, emission, words in (
-        ({"emissiveFactor": [-1, 0.5, 3]}, [0, 0.5, 1],
-         "materials[0]: emissiveFactor: [-1.   0.5  3. ] is taken as [0.  0.5 1. ]"),
-        ({"emissiveFactor": [1, 1, 1]} | extension("emissive_strength", emissiveStrength=-2),
-         [0, 0, 0], "emissiveStrength: -2.0 is taken as 0"),
-    ):  # fmt: skip
+        (
+            {"emissiveFactor": [-1, 0.5, 3]},
+            [0, 0.5, 1],
+            "materials[0]: emissiveFactor: [-1.   0.5  3. ] is taken as [0.  0.5 1. ]",
+        ),
+        (
+            {"emissiveFactor": [1, 1, 1]} | extension("emissive_strength", emissiveStrength=-2),
+            [0, 0, 0],
+            "emissiveStrength: -2.0 is taken as 0",
+        ),
+    ):
         model, told = read(tmp_path, square(**change).bytes())
         np.testing.assert_array_equal(model.shapes[0].emission, emission)
         assert len(told) == 1

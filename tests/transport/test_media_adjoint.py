@@ -73,8 +73,10 @@ def test_wrong_gradients_die() -> None:
     d = 0.2 + np.random.default_rng(5).random((3, 3, 3))
     deaths = check_mutants(
         lambda b: check_gradient(function, b, start, seed=4, coordinates=2, directions=1),
-        backward, start, d,
-    )  # fmt: skip
+        backward,
+        start,
+        d,
+    )
     assert deaths, str(deaths)
 
 
@@ -194,8 +196,11 @@ def test_float_agrees_with_double() -> None:
 def test_materials_and_lights_see_through_media() -> None:
     # sum of p dL/dp = L over all that shines, on the same paths, to rounding.
     scene: Scene = fog_box(smoke(), size=5)
-    scene = replace(scene, lights=LAMP, materials={**scene.materials,
-                    "floor": Material("lambert", {"albedo": [0.7, 0.6, 0.5]})})  # fmt: skip
+    scene = replace(
+        scene,
+        lights=LAMP,
+        materials={**scene.materials, "floor": Material("lambert", {"albedo": [0.7, 0.6, 0.5]})},
+    )
     tracer = PathTracer(scene, dtype=np.float64)
     d = np.random.default_rng(8).random((5, 5, 3))
     gradient = tracer.render_backward(d, spp=20, seed=9, options=OPTIONS)

@@ -43,9 +43,12 @@ def veiled(card: Material | None, medium: Any = FOG, *, size: int = 4, **more: A
         return replace(scene, lights=(LIGHT,), **more)
     shape = rectangle("card", [-3, 0.02, 0.1], [6, 0, 0], [0, 1.4, 0.6], "card")
     return replace(
-        scene, shapes=(*scene.shapes, shape), materials={**scene.materials, "card": card},
-        lights=(LIGHT,), **more,
-    )  # fmt: skip
+        scene,
+        shapes=(*scene.shapes, shape),
+        materials={**scene.materials, "card": card},
+        lights=(LIGHT,),
+        **more,
+    )
 
 
 def opaque() -> Material:
@@ -99,9 +102,7 @@ def veil_scene(alpha: float | None) -> Scene:
         materials["veil"] = Material("lambert", dark if alpha < 0 else {**dark, "alpha": alpha})
     camera = replace(pencil((0, 0, 1.5), (0, 0, 0)), width=4, height=4, fx=8.0, fy=8.0, cx=2, cy=2)
     light = PointLight([1.5, 0.2, 0.1], [2.0, 3.0, 4.0])
-    return Scene(
-        "veil", shapes, materials, camera, None, (light,), media={"fog": FOG},
-    )  # fmt: skip
+    return Scene("veil", shapes, materials, camera, None, (light,), media={"fog": FOG})
 
 
 def test_a_veil_in_ink_in_closed_form() -> None:
@@ -110,8 +111,9 @@ def test_a_veil_in_ink_in_closed_form() -> None:
     veil = rectangle("veil", [-0.5, -0.5, 0.25], [1, 0, 0], [0, 1, 0], "veil")
     black = Material("lambert", {"albedo": [0.0] * 3, "alpha": 0.3})
     camera = pencil((0, 0, 3), (0, 0, -3))
-    scene = Scene("ink", (ink, veil), {"veil": black}, camera, Environment.constant(1.0),
-                  media={"ink": INK})  # fmt: skip
+    scene = Scene(
+        "ink", (ink, veil), {"veil": black}, camera, Environment.constant(1.0), media={"ink": INK}
+    )
     found = PathTracer(scene, dtype=np.float64).render(
         spp=8192, seed=1, options=PathOptions(sampler="independent")
     )
@@ -126,10 +128,14 @@ def test_a_veil_in_ink_in_closed_form() -> None:
     )
     sheet = Material("lambert", {"albedo": [0.0] * 3, "alpha": 0.4})
     lit = Scene(
-        "lit", (ink, floor, *sheets), {"floor": GREY, "sheet": sheet},
-        pencil((0, 0, 0.9), (0, -0.5, 0)), None, (DirectionalLight([0, 1, 0], [2.0] * 3),),
+        "lit",
+        (ink, floor, *sheets),
+        {"floor": GREY, "sheet": sheet},
+        pencil((0, 0, 0.9), (0, -0.5, 0)),
+        None,
+        (DirectionalLight([0, 1, 0], [2.0] * 3),),
         media={"ink": INK},
-    )  # fmt: skip
+    )
     found = PathTracer(lit, dtype=np.float64).render(
         spp=2, seed=1, options=PathOptions(max_depth=2)
     )
@@ -143,8 +149,14 @@ def test_the_hole_of_a_surface_leads_into_its_interior() -> None:
     for alpha in (0.0, 0.25):
         shell = Material("lambert", {"albedo": [0.0] * 3, "alpha": alpha})
         ball = SphereShape("ball", np.zeros(3), 0.5, "shell", interior="ink")
-        scene = Scene("ball", (ball,), {"shell": shell}, pencil((0, 0, 3), (0, 0, 0)),
-                      Environment.constant(1.0), media={"ink": INK})  # fmt: skip
+        scene = Scene(
+            "ball",
+            (ball,),
+            {"shell": shell},
+            pencil((0, 0, 3), (0, 0, 0)),
+            Environment.constant(1.0),
+            media={"ink": INK},
+        )
         found = PathTracer(scene, dtype=np.float64).render(
             spp=8192, seed=1, options=PathOptions(sampler="independent")
         )
@@ -161,11 +173,12 @@ def test_strategies_agree_behind_a_veil(grid: bool) -> None:
     scene = replace(scene, lights=())  # lamp and sky can be met
     found = {
         strategy: PathTracer(scene).render(
-            spp=3000 if strategy == "bsdf" else 1000, seed=seed,
+            spp=3000 if strategy == "bsdf" else 1000,
+            seed=seed,
             options=PathOptions(strategy, max_depth=6, roulette_from=None, sampler="independent"),
         )
         for seed, strategy in enumerate(("light", "bsdf", "mis"))
-    }  # fmt: skip
+    }
     assert_same_mean(found["light"], found["mis"], 4, 0.15)
     assert_same_mean(found["bsdf"], found["mis"], 4, 0.15)
 
@@ -175,10 +188,17 @@ def test_derivatives(grid: bool) -> None:
     card = grey(0.8, textures={"alpha": TextureUse("t")})
     scene = veiled(card, smoke() if grid else FOG, size=4, textures={"t": checker()})
     sheet = rectangle("sheet", [-1.0, 0.9, -1.0], [2.0, 0, 0], [0, 0, 2.0], "sheet")
-    half = Material("gltf_transmission", {
-        "base_color": [0.8, 0.6, 0.4], "metalness": 0.1, "roughness": 0.6, "transmission": 0.5,
-        "eta": 1.4, "alpha": 0.6,
-    })  # fmt: skip
+    half = Material(
+        "gltf_transmission",
+        {
+            "base_color": [0.8, 0.6, 0.4],
+            "metalness": 0.1,
+            "roughness": 0.6,
+            "transmission": 0.5,
+            "eta": 1.4,
+            "alpha": 0.6,
+        },
+    )
     scene = replace(
         scene, shapes=(*scene.shapes, sheet), materials={**scene.materials, "sheet": half}
     )
@@ -196,8 +216,14 @@ def test_derivatives(grid: bool) -> None:
 def test_a_mask_cuts_a_hole_into_a_shell_of_ink() -> None:
     mask = Material("lambert", {**COLOR, "alpha": 0.2}, alpha_cutoff=0.5)
     ball = SphereShape("ball", np.zeros(3), 0.5, "shell", interior="ink")
-    scene = Scene("ball", (ball,), {"shell": mask}, pencil((0, 0, 3), (0, 0, 0)),
-                  Environment.constant(1.0), media={"ink": INK})  # fmt: skip
+    scene = Scene(
+        "ball",
+        (ball,),
+        {"shell": mask},
+        pencil((0, 0, 3), (0, 0, 0)),
+        Environment.constant(1.0),
+        media={"ink": INK},
+    )
     found = PathTracer(scene, dtype=np.float64).render(spp=2, seed=1)
     np.testing.assert_allclose(found.mean[0, 0], np.exp(-SIGMA), rtol=1e-8)
 

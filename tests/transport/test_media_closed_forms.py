@@ -28,14 +28,25 @@ SIGMA = np.array(INK.sigma_t)
 PATHS = PathOptions("bsdf", max_depth=4000, sampler="independent")
 
 
-def slab(medium: Medium, thickness: float, camera: Any, *lights: Any, sky: float = 1.0,
-         width: float = 2.0) -> Scene:  # fmt: skip
+def slab(
+    medium: Medium,
+    thickness: float,
+    camera: Any,
+    *lights: Any,
+    sky: float = 1.0,
+    width: float = 2.0,
+) -> Scene:
     """A box, z = -thickness to 0, of a medium behind a mere boundary."""
     shape = box("slab", [0, 0, -thickness / 2], [width, width, thickness], BOUNDARY)
     return Scene(
-        "slab", (with_interior(shape, "inside"),), {}, camera, Environment.constant(sky), lights,
+        "slab",
+        (with_interior(shape, "inside"),),
+        {},
+        camera,
+        Environment.constant(sky),
+        lights,
         media={"inside": medium},
-    )  # fmt: skip
+    )
 
 
 @pytest.mark.parametrize(("dtype", "error"), [(np.float32, 2e-6), (np.float64, 1e-9)])
@@ -121,9 +132,14 @@ def test_single_scattering_of_a_point_light() -> None:
     wall = rectangle("wall", [-9, -9, -2], [18, 0, 0], [0, 18, 0], "black")
     medium = Medium(SIGMA, 0.6, values={"g": -0.4})
     scene = Scene(
-        "p", (wall,), {"black": BLACK}, pencil((0, 0, 0), (0, 0, -1)),
-        lights=(PointLight(light, [intensity] * 3),), media={"fog": medium}, world="fog",
-    )  # fmt: skip
+        "p",
+        (wall,),
+        {"black": BLACK},
+        pencil((0, 0, 0), (0, 0, -1)),
+        lights=(PointLight(light, [intensity] * 3),),
+        media={"fog": medium},
+        world="fog",
+    )
     options = PathOptions(max_depth=2, sampler="independent")
     found = PathTracer(scene, dtype=np.float64).render(spp=20000, seed=4, options=options)
     s = (np.arange(20000) + 0.5) / 10000

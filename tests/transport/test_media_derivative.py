@@ -114,8 +114,9 @@ def test_single_scattering_in_closed_form() -> None:
         "g": ((-2 * g / (1 - g * g) - 3 * g / (1 + g * g)) * L, L),
     }
     for name, (value, size) in expected.items():
-        _, found = derivative_image(traced, f"media.inside.{name}", spp=32768, seed=3,
-                                    options=options)  # fmt: skip
+        _, found = derivative_image(
+            traced, f"media.inside.{name}", spp=32768, seed=3, options=options
+        )
         assert (np.abs(found.mean[0, 0] - value) < 0.01 * size).all(), name
 
 

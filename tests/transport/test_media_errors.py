@@ -84,9 +84,10 @@ def test_closed_is_every_edge_both_ways() -> None:
     assert not is_closed(replace(cube, faces=turned))
     # Corners of its own for each triangle, as flat shading needs: the same places.
     apart = replace(
-        cube, vertices=cube.vertices[cube.faces].reshape(-1, 3),
+        cube,
+        vertices=cube.vertices[cube.faces].reshape(-1, 3),
         faces=np.arange(36, dtype=np.uint32).reshape(-1, 3),
-    )  # fmt: skip
+    )
     assert is_closed(apart)
 
 

@@ -60,8 +60,16 @@ def paths(name: str) -> list[list[dict[str, Any]]]:
     ]
     for path in found:
         for v in path:
-            for key in ("Le", "nee_f", "nee_Le", "f", "pdf_channels", "direction",
-                        "wi", "nee_direction"):  # fmt: skip
+            for key in (
+                "Le",
+                "nee_f",
+                "nee_Le",
+                "f",
+                "pdf_channels",
+                "direction",
+                "wi",
+                "nee_direction",
+            ):
                 v[key] = np.array(v[key])
             for key in ("events", "nee_events"):
                 v[key] = [(kind, length, np.array(value)) for _, kind, length, _, value in v[key]]

@@ -169,8 +169,9 @@ def test_energy_is_kept_on_the_mean(grid: bool) -> None:
 def test_light_from_infinity_ends_in_a_world_of_fog() -> None:
     sun = DirectionalLight([0, 1, 0], [2.0] * 3)
     shapes = (rectangle("floor", *FLOOR, "floor"),)
-    scene = Scene("w", shapes, {"floor": GREY}, view(2), None, (sun, LIGHT),
-                  media={"fog": FOG}, world="fog")  # fmt: skip
+    scene = Scene(
+        "w", shapes, {"floor": GREY}, view(2), None, (sun, LIGHT), media={"fog": FOG}, world="fog"
+    )
     tracer = PathTracer(scene, dtype=np.float64)
     found = trace_light(tracer, patch(2), 1 << 14, seed=1)
     alone = PathTracer(replace(scene, lights=(LIGHT,)), dtype=np.float64)
@@ -187,8 +188,9 @@ def test_both_ends_agree_in_a_world_with_a_grid(light: Any) -> None:
     )
     cloud = Medium([0.8, 1.2, 1.6], 0.8, values={"g": 0.3}, density=tall)
     shapes = (rectangle("floor", *FLOOR, "floor"),)
-    scene = Scene("w", shapes, {"floor": GREY}, view(2), None, (light,),
-                  media={"cloud": cloud}, world="cloud")  # fmt: skip
+    scene = Scene(
+        "w", shapes, {"floor": GREY}, view(2), None, (light,), media={"cloud": cloud}, world="cloud"
+    )
     tracer = PathTracer(scene, dtype=np.float64)
     seen = seen_irradiance(tracer, below(1e-3, 2, 0.5), 0.5, 4096)
     landed = trace_light(tracer, patch(2), 4 * PARTICLES, seed=4, options=AS_SEEN)

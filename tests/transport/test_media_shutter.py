@@ -23,9 +23,14 @@ def into_ink() -> Scene:
     ink = with_interior(box("ink", [0, 0, 0], [1, 1, 1], BOUNDARY), "ink")
     camera, inside = pencil((0, 0, 1.5), (0, 0, 0)), pencil((0, 0, 0), (0, 0, -1))
     return Scene(
-        "into", (ink,), {}, camera, Environment.constant(1.0), media={"ink": INK},
+        "into",
+        (ink,),
+        {},
+        camera,
+        Environment.constant(1.0),
+        media={"ink": INK},
         shutter=Shutter(inside.world_from_camera),
-    )  # fmt: skip
+    )
 
 
 def test_a_camera_that_dives_into_a_medium() -> None:

@@ -61,10 +61,7 @@ def sparse_zeros(glb: Glb, count: int) -> dict[str, Any]:
         ("view", "accessors[0]: bufferView: expected a whole number from 0 to"),
         ("count", "accessors[0]: expected numbers inside of the buffer view, got 5 rows of 12"),
         ("huge", "accessors[0]: expected at most 268,435,456 vertices"),
-        (
-            "zeros",
-            "accessors[0]: expected at most 268,435,456 bytes more than the file is",
-        ),
+        ("zeros", "accessors[0]: expected at most 268,435,456 bytes more than the file is"),
         ("kind", "accessors[0]: type"),
         ("component", "accessors[0]: componentType"),
         ("indices", "primitives[0]: indices: expected vertex numbers below 4, got 4"),

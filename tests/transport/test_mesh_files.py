@@ -165,9 +165,15 @@ def test_interleaved_and_sparse_accessors(tmp_path: Path) -> None:
     view = glb.view(rows.tobytes())
     glb.json["bufferViews"][view]["byteStride"] = 20
     for start, kind in ((0, "VEC3"), (12, "VEC2")):
-        glb.json["accessors"].append({
-            "bufferView": view, "byteOffset": start, "componentType": 5126, "count": 4, "type": kind
-        })  # fmt: skip
+        glb.json["accessors"].append(
+            {
+                "bufferView": view,
+                "byteOffset": start,
+                "componentType": 5126,
+                "count": 4,
+                "type": kind,
+            }
+        )
     glb.json["accessors"][0]["sparse"] = {
         "count": 1,
         "indices": {

@@ -49,6 +49,8 @@ def test_wrong_gradients_die() -> None:
     d = 0.2 + np.random.default_rng(5).random((3, 3, 3))
     deaths = check_mutants(
         lambda b: check_gradient(function, b, start, seed=4, coordinates=2, directions=1),
-        backward, start, d,
-    )  # fmt: skip
+        backward,
+        start,
+        d,
+    )
     assert deaths, str(deaths)

@@ -222,14 +222,15 @@ def test_dual_numbers_agree_with_the_adjoint() -> None:
 
 
 def test_wrong_gradients_die() -> None:
-    function, backward, start = proof(
-        filtered(textures.wall(PAINT, {"t": textures.noise(2, 2)}, 3), 8)
-    )
+    wall = textures.wall(PAINT, {"t": textures.noise(2, 2)}, 3)
+    function, backward, start = proof(filtered(wall, 8))
     d = 0.2 + np.random.default_rng(5).random((3, 3, 3))
     deaths = check_mutants(
         lambda b: check_gradient(function, b, start, seed=4, coordinates=2, directions=1),
-        backward, start, d,
-    )  # fmt: skip
+        backward,
+        start,
+        d,
+    )
     assert deaths, str(deaths)
 
 

@@ -54,9 +54,13 @@ def filled(medium: Any) -> Scene:
     """A ball of a medium that flies past a veil that does."""
     scene = moving(alpha=True)
     fog = SphereShape(
-        "fog", np.array([-0.4, 0.6, 0.6]), 0.5, BOUNDARY, interior="fog",
+        "fog",
+        np.array([-0.4, 0.6, 0.6]),
+        0.5,
+        BOUNDARY,
+        interior="fog",
         closing=np.array([0.3, 0.7, 0.2]),
-    )  # fmt: skip
+    )
     return replace(scene, shapes=(*scene.shapes, fog), media={"fog": medium})
 
 
@@ -147,9 +151,7 @@ def shadowed(shape: Any, materials: dict[str, Material], **more: Any) -> Array:
     camera = pencil((0, 1, 3), (0, 0, 0))
     sun = DirectionalLight([0.0, 1.0, 0.0], [2.0, 2.0, 2.0])
     floor = rectangle("floor", *FLOOR, "grey")
-    scene = Scene(
-        "s", (floor, shape), {"grey": GREY, **materials}, camera, None, (sun,), **more
-    )  # fmt: skip
+    scene = Scene("s", (floor, shape), {"grey": GREY, **materials}, camera, None, (sun,), **more)
     options = PathOptions(max_depth=2)
     found = PathTracer(scene, dtype=np.float64).render(spp=4096, seed=2, options=options).mean
     full = 2.0 * 0.5 / np.pi
@@ -194,9 +196,14 @@ def test_a_camera_and_what_it_is_in_fly_together() -> None:
     away = shift(5, 1, -2)
     camera = pencil((0, 0, 0), (0, 0, -1))
     scene = Scene(
-        "along", (moved_on(ink, away),), {}, camera, SKY, media={"ink": INK},
+        "along",
+        (moved_on(ink, away),),
+        {},
+        camera,
+        SKY,
+        media={"ink": INK},
         shutter=Shutter(away @ camera.world_from_camera),
-    )  # fmt: skip
+    )
     found = PathTracer(scene, dtype=np.float64).render(spp=64, seed=1).mean
     np.testing.assert_allclose(found[0, 0], np.exp(-SIGMA / 2), rtol=1e-5)
 

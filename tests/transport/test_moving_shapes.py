@@ -58,12 +58,19 @@ def moving(size: int = 8, *, alpha: bool = False) -> Scene:
     veil = Material("lambert", {"albedo": [0.8, 0.6, 0.4], "alpha": 0.6})
     vertices, faces, normals, uv = dome()
     mesh = MeshShape(
-        "dome", vertices, faces, "gloss", normals=normals, uv=uv, places=(START,),
+        "dome",
+        vertices,
+        faces,
+        "gloss",
+        normals=normals,
+        uv=uv,
+        places=(START,),
         closing_places=(END,),
-    )  # fmt: skip
+    )
     scene = stage(any_material("ggx_metal"), size=size, sky=0.3)
-    ball = SphereShape("flying", np.array([0.5, 0.25, 0.5]), 0.25, "veil" if alpha else "ball",
-                       closing=BALL_END)  # fmt: skip
+    ball = SphereShape(
+        "flying", np.array([0.5, 0.25, 0.5]), 0.25, "veil" if alpha else "ball", closing=BALL_END
+    )
     still = SphereShape("still", np.array([0.8, 0.2, 0.8]), 0.2, "floor")
     shapes = (mesh, ball, still, *(s for s in scene.shapes if s.name != "ball"))
     materials = {**scene.materials, "gloss": gloss, "veil": veil}
@@ -126,10 +133,13 @@ def test_a_camera_that_flies_along_sees_no_blur() -> None:
 def test_what_moves_nowhere_takes_the_same_picture() -> None:
     scene = at(moving(), 0.3)
     told = [
-        replace(s, closing_places=s.places) if isinstance(s, MeshShape) and s.places
-        else replace(s, closing=s.center) if isinstance(s, SphereShape) else s
+        replace(s, closing_places=s.places)
+        if isinstance(s, MeshShape) and s.places
+        else replace(s, closing=s.center)
+        if isinstance(s, SphereShape)
+        else s
         for s in scene.shapes
-    ]  # fmt: skip
+    ]
     a, b = (
         PathTracer(s).render(spp=4, seed=3).radiance
         for s in (scene, replace(scene, shapes=tuple(told)))

@@ -95,7 +95,7 @@ def room(material: str = "grey") -> tuple[Any, ...]:
         rectangle("wall", [-1, 0, -0.8], [2, 0, 0], [0, 1, 0], material),
         box("box", [0.3, 0.2, 0.1], [0.4, 0.4, 0.4], "black", turn=0.4),
         MeshShape("roof", roof, faces, material, uv=uv.astype(np.float32)),
-    )  # fmt: skip
+    )
 
 
 SEEN = view(20, (0.4, 1.5, 3.0), (0.0, 0.35, 0.0))

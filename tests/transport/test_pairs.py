@@ -9,21 +9,10 @@ import numpy as np
 import pytest
 from photograd._compiled import _core
 from photograd.errors import Error, RangeError, ShapeError
-from photograd.transport import (
-    Accumulation,
-    Material,
-    PathOptions,
-    PathTracer,
-    Scene,
-    TextureUse,
-)
+from photograd.transport import Accumulation, Material, PathOptions, PathTracer, Scene, TextureUse
 from photograd.transport.accumulation import PAIR_EVEN_SHARE, pair_counts
 from photograd.transport.builtin import cornell_box
-from photograd.transport.inverse import (
-    cross_loss,
-    cross_loss_backward,
-    loss_and_gradients,
-)
+from photograd.transport.inverse import cross_loss, cross_loss_backward, loss_and_gradients
 from photograd.transport.metal_room import metal_room
 
 from tests.transport.media_scenes import fog_box, smoke
@@ -34,9 +23,10 @@ from tests.transport.test_textures import noise, wall
 pytestmark = pytest.mark.usefixtures("core")
 PATH = PathOptions(max_depth=4, roulette_from=2)
 PAINTED = Material(
-    "gltf", {"base_color": [0.8, 0.7, 0.6], "metalness": 0.3, "roughness": 0.5},
+    "gltf",
+    {"base_color": [0.8, 0.7, 0.6], "metalness": 0.3, "roughness": 0.5},
     textures={"base_color": TextureUse("t")},
-)  # fmt: skip
+)
 SCENES = {
     "room": lambda: cornell_box(7),
     "glass": lambda: stage(any_material("glass"), size=7, sky=0.4),
@@ -81,13 +71,21 @@ def test_paths_may_go_where_they_are_needed() -> None:
     name, count = "textures.picture", 10
 
     def estimates(spread: str, first: int) -> Any:
-        return np.array([
-            loss_and_gradients(
-                tracer, target, weight, spp=16, seeds=(first + 2 * k, first + 2 * k + 1),
-                options=PathOptions(max_depth=8), names=[name], spread=spread,
-            )[1][name]
-            for k in range(count)
-        ])  # fmt: skip
+        return np.array(
+            [
+                loss_and_gradients(
+                    tracer,
+                    target,
+                    weight,
+                    spp=16,
+                    seeds=(first + 2 * k, first + 2 * k + 1),
+                    options=PathOptions(max_depth=8),
+                    names=[name],
+                    spread=spread,
+                )[1][name]
+                for k in range(count)
+            ]
+        )
 
     even, focused = estimates("even", 0), estimates("cotangent", 1000)
     variances = [float(found.var(axis=0, ddof=1).sum()) for found in (even, focused)]
@@ -126,9 +124,14 @@ def test_same_bits_on_any_threads() -> None:
     for threads in (1, 2, 5):
         _core.set_thread_count(threads)
         loss, found = loss_and_gradients(
-            PathTracer(cornell_box(12)), target, weight, spp=8, seeds=(9, 10), options=PATH,
+            PathTracer(cornell_box(12)),
+            target,
+            weight,
+            spp=8,
+            seeds=(9, 10),
+            options=PATH,
             spread="cotangent",
-        )  # fmt: skip
+        )
         rows.append(np.concatenate([[loss], *(value.ravel() for value in found.values())]))
     _core.set_thread_count(0)
     assert np.abs(rows[0]).max() > 0

@@ -29,9 +29,10 @@ def lit_floor(**more: Any) -> PathTracer:
     """A floor under a point light of 1 W/sr, 1 m above its middle."""
     scene = stage(GREY, lamp=0.0, ball=False, **more)
     light = PointLight([0.0, 1.0, 0.0], [1.0, 2.0, 0.5])
-    return PathTracer(type(scene)(
-        scene.name, scene.shapes, scene.materials, scene.camera, lights=(light,)
-    ), dtype=np.float64)  # fmt: skip
+    return PathTracer(
+        type(scene)(scene.name, scene.shapes, scene.materials, scene.camera, lights=(light,)),
+        dtype=np.float64,
+    )
 
 
 def test_the_blur_of_the_radius_in_closed_form_falls() -> None:

@@ -22,11 +22,7 @@ from photograd.transport import (
     scene_with,
 )
 from photograd.transport.builtin import cornell_box, evening, evening_map
-from photograd.transport.inverse import (
-    cross_loss,
-    cross_loss_backward,
-    loss_and_gradients,
-)
+from photograd.transport.inverse import cross_loss, cross_loss_backward, loss_and_gradients
 from photograd.transport.inverse.parameters import Activation
 from photograd_course.gradcheck import check_gradient
 from photograd_course.mutants import check_mutants
@@ -42,8 +38,10 @@ def test_activations_have_derivatives_and_inverses(activation: Activation) -> No
     x = {"x": np.random.default_rng(1).normal(0, 2, (5, 3))}
     report = check_gradient(
         lambda p: activation.value(p["x"]),
-        lambda p, d: {"x": activation.value_backward(p["x"], d)}, x, seed=2,
-    )  # fmt: skip
+        lambda p, d: {"x": activation.value_backward(p["x"], d)},
+        x,
+        seed=2,
+    )
     assert report, str(report)
     np.testing.assert_allclose(activation.inverse(activation.value(x["x"])), x["x"], atol=1e-10)
     far = activation.value(np.array([-1e9, 1e9]))
@@ -114,8 +112,10 @@ def test_wrong_gradients_die() -> None:
     function, backward, start = proof(3, 2, "materials.ball")
     deaths = check_mutants(
         lambda b: check_gradient(function, b, start, seed=7, coordinates=2, directions=1),
-        backward, start, np.array(1.3),
-    )  # fmt: skip
+        backward,
+        start,
+        np.array(1.3),
+    )
     assert deaths, str(deaths)
 
 

@@ -32,9 +32,13 @@ def reference(tracer: PathTracer, spp: int, options: PathOptions, seed: int = 9)
     camera = tracer.scene.camera
     sums = Accumulation.empty(camera.height, camera.width)
     _core.trace_reference(
-        **tracer.wide_arguments(), options=options.numbers(seed), first=0, count=spp,
-        radiance=sums.radiance, squares=sums.squares,
-    )  # fmt: skip
+        **tracer.wide_arguments(),
+        options=options.numbers(seed),
+        first=0,
+        count=spp,
+        radiance=sums.radiance,
+        squares=sums.squares,
+    )
     sums.count = spp
     return sums
 
@@ -50,22 +54,26 @@ def wax_in_glass() -> Scene:
 def foggy_world() -> Scene:
     shapes = (rectangle("floor", *FLOOR, "floor"), box("hole", [0, 0.5, 0], [1, 0.6, 1], BOUNDARY))
     lights = (PointLight([0.3, 1.2, 0.2], [3.0, 2.5, 2.0]),)
-    return Scene("w", shapes, {"floor": GREY}, view(SIZE), None, lights,
-                 media={"fog": FOG}, world="fog")  # fmt: skip
+    return Scene(
+        "w", shapes, {"floor": GREY}, view(SIZE), None, lights, media={"fog": FOG}, world="fog"
+    )
 
 
 MORE: dict[str, Callable[[], Scene]] = {
-    **{name: lambda make=make: replace(make(), camera=view(SIZE)) for name, make in
-       MEDIA_SCENES.items()},
+    **{
+        name: lambda make=make: replace(make(), camera=view(SIZE))
+        for name, make in MEDIA_SCENES.items()
+    },
     "wax in glass": wax_in_glass,
     "foggy world": foggy_world,
     "smoke under the sun": lambda: replace(
         fog_box(smoke(), size=SIZE), lights=(DirectionalLight([0.3, 1, 0.2], [2.0, 1.5, 1.0]),)
     ),
-}  # fmt: skip
+}
 CASES: dict[str, Callable[[], Scene]] = {
-    **{name: lambda make=make: make(SIZE) for name, make in BUILTIN.items()}, **MORE
-}  # fmt: skip
+    **{name: lambda make=make: make(SIZE) for name, make in BUILTIN.items()},
+    **MORE,
+}
 
 
 @pytest.mark.parametrize("name", CASES)

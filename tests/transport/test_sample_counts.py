@@ -67,12 +67,14 @@ def test_the_mean_stays_and_noise_falls() -> None:
     tracer, d = PathTracer(cornell_box(SIZE)), few_bright()
 
     def estimates(spread: str, first: int) -> Any:
-        return np.array([
-            tracer.render_backward(d, spp=SPP, seed=first + k, options=OPTIONS, spread=spread)[
-                "materials.white.albedo"
-            ].sum()
-            for k in range(100)
-        ])  # fmt: skip
+        return np.array(
+            [
+                tracer.render_backward(d, spp=SPP, seed=first + k, options=OPTIONS, spread=spread)[
+                    "materials.white.albedo"
+                ].sum()
+                for k in range(100)
+            ]
+        )
 
     even, focused = estimates("even", 0), estimates("cotangent", 1000)
     error = np.sqrt((even.var() + focused.var()) / 100)

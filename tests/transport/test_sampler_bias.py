@@ -18,13 +18,7 @@ import numpy as np
 import pytest
 from photograd.bsdf.specular import registry
 from photograd.lights import PointLight
-from photograd.transport import (
-    Environment,
-    Material,
-    PathOptions,
-    PathTracer,
-    Scene,
-)
+from photograd.transport import Environment, Material, PathOptions, PathTracer, Scene
 from photograd.transport.builtin import camera_at, furnace_box
 from photograd.transport.shapes import Shape, rectangle
 

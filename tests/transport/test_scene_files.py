@@ -183,8 +183,14 @@ def test_built_in_scenes_are_found_by_name() -> None:
 def mesh(**changes: Any) -> MeshShape:
     corners = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]])
     given = {"vertices": corners, "faces": np.array([[0, 1, 2], [1, 3, 2]]), **changes}
-    return MeshShape("m", given["vertices"], given["faces"], "grey",
-                     given.get("emission", np.zeros(3)), given.get("normals"))  # fmt: skip
+    return MeshShape(
+        "m",
+        given["vertices"],
+        given["faces"],
+        "grey",
+        given.get("emission", np.zeros(3)),
+        given.get("normals"),
+    )
 
 
 def test_useless_triangles_are_counted_and_dropped() -> None:
@@ -193,8 +199,13 @@ def test_useless_triangles_are_counted_and_dropped() -> None:
     with pytest.warns(UserWarning, match="1 with corners that are not finite and 2 without area"):
         shape = mesh(vertices=vertices, faces=faces)
     assert shape.faces.tolist() == [[0, 1, 2]]
-    scene = Scene("s", (shape,), {"grey": GREY}, view(8, (0.3, 0.3, 2), (0.3, 0.3, 0)),
-                  Environment.constant(1.0))  # fmt: skip
+    scene = Scene(
+        "s",
+        (shape,),
+        {"grey": GREY},
+        view(8, (0.3, 0.3, 2), (0.3, 0.3, 0)),
+        Environment.constant(1.0),
+    )
     image = PathTracer(scene).render(spp=8, seed=1, options=PathOptions("bsdf")).mean
     assert image.min() == pytest.approx(0.5, rel=1e-5)  # the triangle is hit
     with (

@@ -146,7 +146,7 @@ def test_turns_are_about_x_then_y_then_z() -> None:
         ('kind = "sphere"\nradius = 0.5', 'kind = "plane"\nnormal = [0, 1]', 20, "3 finite"),
         ('of = ["soft", "rod"]', 'of = ["soft", "soft"]\nrod = 1', 50, "sdfs.both.rod"),
     ],
-)  # fmt: skip
+)
 def test_a_mistake_is_named_with_line_and_key(
     tmp_path: Path, old: str, new: str, line: int, words: str
 ) -> None:

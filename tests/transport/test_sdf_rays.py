@@ -23,8 +23,15 @@ def hits(scene: Scene, origins: Array, directions: Array) -> tuple[Array, ...]:
     bvh = PathTracer(scene).wide_arguments()["geometry"].bvh
     found = Hits.empty(len(origins), np.dtype(np.float64))
     everywhere = np.zeros(1), np.array([np.inf])
-    bvh.trace(origins, directions, *everywhere, found.t, found.primitive, found.instance,
-              found.barycentrics)  # fmt: skip
+    bvh.trace(
+        origins,
+        directions,
+        *everywhere,
+        found.t,
+        found.primitive,
+        found.instance,
+        found.barycentrics,
+    )
     return found.hit, found.t
 
 

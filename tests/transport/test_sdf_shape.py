@@ -63,9 +63,10 @@ def as_sdf(scene: Scene) -> Scene:
     """The same scene with bodies of signed distances for its balls."""
     shapes = [
         SdfShape(s.name, placed(sphere(s.radius), s.center), s.material, interior=s.interior)
-        if isinstance(s, SphereShape) and not s.emission.any() else s
+        if isinstance(s, SphereShape) and not s.emission.any()
+        else s
         for s in scene.shapes
-    ]  # fmt: skip
+    ]
     assert any(isinstance(shape, SdfShape) for shape in shapes)
     return replace(scene, shapes=tuple(shapes))
 
@@ -88,16 +89,24 @@ def hollow_room() -> Scene:
 def milk() -> Scene:
     scene = stage(GREY, sky=0.4)
     white = Medium([3.0, 4.0, 5.0], [0.9, 0.95, 0.8], values={"g": 0.3})
-    balls = [replace(s, material=BOUNDARY, interior="milk") if s.name == "ball" else s
-             for s in scene.shapes]  # fmt: skip
+    balls = [
+        replace(s, material=BOUNDARY, interior="milk") if s.name == "ball" else s
+        for s in scene.shapes
+    ]
     return replace(scene, shapes=tuple(balls), media={"milk": white})
 
 
-@pytest.mark.parametrize("make", [
-    lambda: stage(any_material("gltf"), sky=0.4), rough_dielectric_stage,
-    lambda: stage(Material("glass", {"eta": 1.5, "tint": [0.9, 1.0, 0.95]}), sky=0.4),
-    within_glass, hollow_room, milk,
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda: stage(any_material("gltf"), sky=0.4),
+        rough_dielectric_stage,
+        lambda: stage(Material("glass", {"eta": 1.5, "tint": [0.9, 1.0, 0.95]}), sky=0.4),
+        within_glass,
+        hollow_room,
+        milk,
+    ],
+)
 def test_a_ball_looks_like_a_sphere(make: Any) -> None:
     scene, options = make(), PathOptions(max_depth=24, sampler="independent")
     a = PathTracer(scene).render(spp=1024, seed=1, options=options)
@@ -127,8 +136,11 @@ def busy() -> Scene:
     ring = placed(torus(0.35, 0.1), [0.5, 0.5, 0.2], [0.8, 0.5, 0.1, 0.2])
     scene = stage(any_material("gltf"), size=6, sky=0.3)
     shapes = (SdfShape("grown", grown, "shiny"), *scene.shapes, SdfShape("ring", ring, "glass"))
-    materials = {**scene.materials, "shiny": any_material("ggx_metal"),
-                 "glass": Material("rough_dielectric", {"eta": 1.5, "roughness": 0.4})}  # fmt: skip
+    materials = {
+        **scene.materials,
+        "shiny": any_material("ggx_metal"),
+        "glass": Material("rough_dielectric", {"eta": 1.5, "roughness": 0.4}),
+    }
     return replace(scene, shapes=shapes, materials=materials)
 
 
@@ -165,21 +177,35 @@ def test_boxes_are_derived() -> None:
 def test_what_is_no_solid_is_refused() -> None:
     cases: list[tuple[type[Exception], str, Any]] = [
         (SceneError, "an end on all sides", lambda: SdfShape("s", plane([0, 1, 0], 0.0), "m")),
-        (SceneError, "nothing is left of it", lambda: SdfShape(
-            "s", intersection(sphere(1), placed(sphere(1), [3, 0, 0])), "m")),
-        (SceneError, r"s\.body: expected a shape of photograd\.geometry", lambda: SdfShape(
-            "s", SphereShape("t", np.zeros(3), 1.0, "m"), "m")),  # type: ignore[arg-type]
-        (SceneError, r"s\.emission: expected 0, got .*let a mesh or a sphere shine",
-         lambda: SdfShape("s", sphere(1), "m", np.ones(3))),
+        (
+            SceneError,
+            "nothing is left of it",
+            lambda: SdfShape("s", intersection(sphere(1), placed(sphere(1), [3, 0, 0])), "m"),
+        ),
+        (
+            SceneError,
+            r"s\.body: expected a shape of photograd\.geometry",
+            lambda: SdfShape("s", SphereShape("t", np.zeros(3), 1.0, "m"), "m"),
+        ),  # type: ignore[arg-type]
+        (
+            SceneError,
+            r"s\.emission: expected 0, got .*let a mesh or a sphere shine",
+            lambda: SdfShape("s", sphere(1), "m", np.ones(3)),
+        ),
         (RangeError, r"s\.emission", lambda: SdfShape("s", sphere(1), "m", -np.ones(3))),
-    ]  # fmt: skip
+    ]
     for error, words, call in cases:
         with pytest.raises(error, match=words):
             call()
     painted = Material("lambert", {"albedo": [1.0] * 3}, {"albedo": TextureUse("paint")})
     with pytest.raises(SceneError, match=r"s\.uv: expected texture coordinates"):
-        Scene("s", (SdfShape("s", sphere(1), "m"),), {"m": painted}, view(4),
-              textures={"paint": Texture(np.ones((2, 2, 3)))})  # fmt: skip
+        Scene(
+            "s",
+            (SdfShape("s", sphere(1), "m"),),
+            {"m": painted},
+            view(4),
+            textures={"paint": Texture(np.ones((2, 2, 3)))},
+        )
 
 
 def test_other_views_of_a_scene_see_bodies() -> None:

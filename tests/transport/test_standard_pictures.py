@@ -42,10 +42,15 @@ def scene(balls: Balls, lights: Any, pixels: int) -> Scene:
     """The rack from 12 m away, `pixels` a metre."""
     shapes, materials = [], {}
     for i, (center, radius) in enumerate(zip(balls.centers, balls.radii, strict=True)):
-        materials[f"m{i}"] = Material("standard", {
-            "base_color": balls.base_color[i], "metalness": balls.metalness[i],
-            "roughness": balls.roughness[i], "reflectance": balls.reflectance[i],
-        })  # fmt: skip
+        materials[f"m{i}"] = Material(
+            "standard",
+            {
+                "base_color": balls.base_color[i],
+                "metalness": balls.metalness[i],
+                "roughness": balls.roughness[i],
+                "reflectance": balls.reflectance[i],
+            },
+        )
         shapes.append(SphereShape(f"b{i}", center, float(radius), f"m{i}"))
     wide, high = (np.ptp(balls.centers, axis=0)[:2] + 1).astype(int)
     angle = 2 * np.degrees(np.arctan(high / 2 / 12.0))

@@ -52,10 +52,14 @@ def wall(material: Material, textures: dict[str, Texture], size: int = 8, **more
 def stage(size: int = 6) -> Scene:
     """A textured floor and ball stand: two textures on three parameters, one of them twice."""
     floor = Material(
-        "gltf", {"base_color": [0.9, 0.8, 0.7], "metalness": 0.8, "roughness": 0.9},
-        {"base_color": TextureUse("paint"), "metalness": TextureUse("rough", 2),
-         "roughness": TextureUse("rough", 1)},
-    )  # fmt: skip
+        "gltf",
+        {"base_color": [0.9, 0.8, 0.7], "metalness": 0.8, "roughness": 0.9},
+        {
+            "base_color": TextureUse("paint"),
+            "metalness": TextureUse("rough", 2),
+            "roughness": TextureUse("rough", 1),
+        },
+    )
     box = Material("lambert", {"albedo": [0.8, 0.9, 0.7]}, {"albedo": TextureUse("paint")})
     shapes = (
         rectangle("floor", *FLOOR, "floor"),
@@ -160,8 +164,10 @@ def test_wrong_gradients_die() -> None:
     d = 0.2 + np.random.default_rng(5).random((3, 3, 3))
     deaths = check_mutants(
         lambda b: check_gradient(function, b, start, seed=4, coordinates=2, directions=1),
-        backward, start, d,
-    )  # fmt: skip
+        backward,
+        start,
+        d,
+    )
     assert deaths, str(deaths)
 
 

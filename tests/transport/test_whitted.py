@@ -91,9 +91,11 @@ def test_no_light_is_lost_and_more_depth_shows_more() -> None:
     for depth in (1, 2, 3, 4, 6, 40):
         options = PathOptions(max_depth=depth, roulette_from=None, sampler="independent")
         pictures.append(
-            [tracer.render(spp=4096, seed=1, options=options, camera=needle(s)).mean[0, 0, 0]
-             for s in SIDES]
-        )  # fmt: skip
+            [
+                tracer.render(spp=4096, seed=1, options=options, camera=needle(s)).mean[0, 0, 0]
+                for s in SIDES
+            ]
+        )
     grown = np.diff(np.array(pictures), axis=0)
     assert (grown >= 0).all()
     assert (grown[:, :4].sum(axis=0) > 0.9).all()

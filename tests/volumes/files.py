@@ -26,13 +26,17 @@ def vtk(
     """A legacy file; `lines` replaces header lines by keyword, "" leaves one out."""
     channels = array.shape[3] if array.ndim == 4 else 1
     header = {
-        "MAGIC": "# vtk DataFile Version 3.0", "TITLE": "a title",
-        "FORMAT": "ASCII" if text else "BINARY", "DATASET": "DATASET STRUCTURED_POINTS",
+        "MAGIC": "# vtk DataFile Version 3.0",
+        "TITLE": "a title",
+        "FORMAT": "ASCII" if text else "BINARY",
+        "DATASET": "DATASET STRUCTURED_POINTS",
         "DIMENSIONS": "DIMENSIONS " + " ".join(map(str, array.shape[:3])),
-        "SPACING": "SPACING 0.5 1 2", "ORIGIN": "ORIGIN 10 20 30",
+        "SPACING": "SPACING 0.5 1 2",
+        "ORIGIN": "ORIGIN 10 20 30",
         "POINT_DATA": f"POINT_DATA {array[..., 0].size * array.shape[2]}",
-        "SCALARS": f"SCALARS density {kind} {channels}", "LOOKUP_TABLE": "LOOKUP_TABLE default",
-    }  # fmt: skip
+        "SCALARS": f"SCALARS density {kind} {channels}",
+        "LOOKUP_TABLE": "LOOKUP_TABLE default",
+    }
     kept = [line for line in (header | lines).values() if line]
     data = in_file_order(array).astype(dtype)
     body = " ".join(map(str, data.ravel())).encode() if text else data.tobytes()
@@ -40,10 +44,19 @@ def vtk(
 
 
 def nifti(
-    array: Any, dtype: str = "<u1", code: int = 2, *, slope: float = 0.0, shift: float = 0.0,
-    sform: Any = None, qform: Any = None, pixdim: Any = (1, 2, 3, 4), units: int = 2,
-    sizes: Any = None, magic: bytes = b"n+1\0",
-) -> bytes:  # fmt: skip
+    array: Any,
+    dtype: str = "<u1",
+    code: int = 2,
+    *,
+    slope: float = 0.0,
+    shift: float = 0.0,
+    sform: Any = None,
+    qform: Any = None,
+    pixdim: Any = (1, 2, 3, 4),
+    units: int = 2,
+    sizes: Any = None,
+    magic: bytes = b"n+1\0",
+) -> bytes:
     """A NIfTI-1 file. sform is (3, 4); qform is (b, c, d, x, y, z)."""
     order = dtype[0]
     header = bytearray(352)
@@ -64,9 +77,14 @@ def nifti(
 
 
 def mitsuba(
-    array: Any, dtype: str = "<f4", encoding: int = 1, *, sizes: Any = None,
-    box: Any = (-1, -1, -1, 1, 1, 1), magic: bytes = b"VOL\3",
-) -> bytes:  # fmt: skip
+    array: Any,
+    dtype: str = "<f4",
+    encoding: int = 1,
+    *,
+    sizes: Any = None,
+    box: Any = (-1, -1, -1, 1, 1, 1),
+    magic: bytes = b"VOL\3",
+) -> bytes:
     """A .vol file of (X, Y, Z, C)."""
     head = struct.pack("<5i6f", encoding, *(sizes or array.shape), *box)
     return magic + head + in_file_order(array).astype(dtype).tobytes()

@@ -73,9 +73,15 @@ def marched(
     """A march and its adjoint, through a field of one array."""
     given = MarchPolicy(BOX, 0.05, **POLICIES[policy])
     out, context = march(
-        field, field_values(field, dtype), given, rays(2, dtype), options, seed=seed, step=3,
+        field,
+        field_values(field, dtype),
+        given,
+        rays(2, dtype),
+        options,
+        seed=seed,
+        step=3,
         fused=fused,
-    )  # fmt: skip
+    )
     return {**outputs_of(out), **march_backward(context, cotangents(out))}
 
 
@@ -93,9 +99,10 @@ def marched_sparse(
     """A march and its adjoint, through sparse spherical harmonics."""
     active, k, g = active_voxels(), sh.count(degree), np.random.default_rng(seed)
     values = [
-        g.uniform(-0.5, 2.0, len(active)), g.uniform(-0.5, 0.5, (len(active), k, 3)),
+        g.uniform(-0.5, 2.0, len(active)),
+        g.uniform(-0.5, 0.5, (len(active), k, 3)),
         g.uniform(-0.3, 0.3, 1 + 3 * k),
-    ]  # fmt: skip
+    ]
     given = [value.astype(dtype) for value in values]
     settings = MarchPolicy(BOX, 0.05, **POLICIES[policy]).settings(1e-3 if skip else 0.0)
     batch = rays(2, dtype)
@@ -155,9 +162,12 @@ def cloud(degree: int, dtype: Any) -> splat.Gaussians:
     """Random Gaussians before a camera that looks along -z."""
     g, n = np.random.default_rng(4), 60
     return splat.Gaussians(
-        g.uniform(-0.8, 0.8, (n, 3)), g.uniform(-3.5, -1.2, (n, 3)), g.standard_normal((n, 4)),
-        g.uniform(-2, 5, n), g.uniform(-0.4, 0.6, (n, sh.count(degree), 3)),
-    ).astype(dtype)  # fmt: skip
+        g.uniform(-0.8, 0.8, (n, 3)),
+        g.uniform(-3.5, -1.2, (n, 3)),
+        g.standard_normal((n, 4)),
+        g.uniform(-2, 5, n),
+        g.uniform(-0.4, 0.6, (n, sh.count(degree), 3)),
+    ).astype(dtype)
 
 
 SPLATS: dict[str, splat.SplatOptions] = {
@@ -183,27 +193,31 @@ def splatted(degree: int, dtype: Any, options: splat.SplatOptions, seed: int) ->
     d = [g.uniform(-1, 1, a.shape).astype(dtype) for a in vars(out).values()]
     found = splat.render_backward(context, *d)
     return {
-        **vars(out), **found.gaussians, "background": found.background,
-        "camera": found.camera_from_world, "screen": found.screen,
-    }  # fmt: skip
+        **vars(out),
+        **found.gaussians,
+        "background": found.background,
+        "camera": found.camera_from_world,
+        "screen": found.screen,
+    }
 
 
 def splatted_rays(degree: int, dtype: Any, options: splat_rays.RayOptions, seed: int) -> Arrays:
     """Gaussians along rays, and the adjoint."""
     batch = rays(6, dtype)
     out, context = splat_rays.render(
-        cloud(degree, dtype), batch.origins, batch.directions, background=(0.2, 0.3, 0.4),
+        cloud(degree, dtype),
+        batch.origins,
+        batch.directions,
+        background=(0.2, 0.3, 0.4),
         options=options,
-    )  # fmt: skip
+    )
     g = np.random.default_rng(seed)
     d = [g.uniform(-1, 1, a.shape).astype(dtype) for a in vars(out).values()]
     found = splat_rays.render_backward(context, *d, rays=True)
     gradients = {**found.gaussians, "background": found.background}
     assert found.origins is not None
     assert found.directions is not None
-    return {
-        **vars(out), **gradients, "origins": found.origins, "directions": found.directions
-    }  # fmt: skip
+    return {**vars(out), **gradients, "origins": found.origins, "directions": found.directions}
 
 
 def direct_light(name: str, seed: int) -> Arrays:
@@ -219,9 +233,10 @@ def direct_light(name: str, seed: int) -> Arrays:
 def march_cases() -> Iterator[Case]:
     """The three marches: fused and staged through arrays, and through sparse harmonics."""
     ways = {
-        "still": RenderOptions(), "stop-jitter": RenderOptions(stop=1e-2, jitter=True),
+        "still": RenderOptions(),
+        "stop-jitter": RenderOptions(stop=1e-2, jitter=True),
         "camera": RenderOptions(camera_adjoint=True),
-    }  # fmt: skip
+    }
     for (key, dtype), policy in product(PRECISIONS.items(), POLICIES):
         for field, (way, options), fused in product(
             ("dense_grid", "tiny_network"), ways.items(), (True, False)

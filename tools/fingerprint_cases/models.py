@@ -47,9 +47,11 @@ def reflectance(name: str, dtype: Any, seed: int) -> Arrays:
     g = np.random.default_rng(seed)
     u2, d = g.random((COUNT, 2)).astype(dtype), g.uniform(-1, 1, (COUNT, 3)).astype(dtype)
     found = {
-        "f": core.f(rows, wo, wi), "pdf": core.pdf(rows, wo, wi), "wi": core.sample(rows, wo, u2),
+        "f": core.f(rows, wo, wi),
+        "pdf": core.pdf(rows, wo, wi),
+        "wi": core.sample(rows, wo, u2),
         "d_rows": core.f_backward(rows, wo, wi, d, np.zeros_like(rows)),
-    }  # fmt: skip
+    }
     if dtype == np.float64:
         found["tangent"] = core.jvp(rows, np.ones_like(rows), wo, wi)
         found["index"] = core.index_inside(rows)
@@ -92,10 +94,13 @@ def light(name: str, dtype: Any, seed: int) -> Arrays:
     w = np.where(chosen.pdf[:, None] > 0, chosen.direction, np.array([0, 1, 0], dtype))
     d = g.uniform(-1, 1, (COUNT, 3)).astype(dtype) * (chosen.pdf > 0)[:, None]
     found = {
-        "direction": chosen.direction, "distance": np.nan_to_num(chosen.distance, posinf=-1.0),
-        "radiance": chosen.radiance, "pdf": chosen.pdf, "L": it.L(points, w),
+        "direction": chosen.direction,
+        "distance": np.nan_to_num(chosen.distance, posinf=-1.0),
+        "radiance": chosen.radiance,
+        "pdf": chosen.pdf,
+        "L": it.L(points, w),
         "pdf-of": it.pdf(points, w),
-    }  # fmt: skip
+    }
     for key, value in it.L_backward(points, w, d).items():
         found[f"d_L-{key}"] = np.asarray(value)
     for key, value in it.sample_backward(points, chosen, d).items():
@@ -149,10 +154,12 @@ def flat(value: Any) -> list[Any]:
 def model_cases() -> Iterator[Case]:
     """Every registered part, in both precisions."""
     groups: tuple[tuple[str, Any, Any], ...] = (
-        ("bsdf", bsdf.registry(), reflectance), ("delta", delta_bsdf.registry(), specular),
-        ("phase", phase.registry(), phase_function), ("light", LIGHTS, light),
+        ("bsdf", bsdf.registry(), reflectance),
+        ("delta", delta_bsdf.registry(), specular),
+        ("phase", phase.registry(), phase_function),
+        ("light", LIGHTS, light),
         ("op", _core.ops, op),
-    )  # fmt: skip
+    )
     for key, dtype in PRECISIONS.items():
         for group, names, compute in groups:
             for name in names:

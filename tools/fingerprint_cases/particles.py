@@ -29,15 +29,35 @@ OPTIONS = {
     "roulette-0": ParticleOptions(roulette_from=0),
 }
 SURFACES = (
-    "stage", "model-glass", "model-disney", "model-gltf_refraction", "texture-mirror-mip",
-    "opacity-textured", "mask", "lights-all", "lights-far-and-sky", "emitting-shapes",
-    "instances", "bent-floor",
-)  # fmt: skip
+    "stage",
+    "model-glass",
+    "model-disney",
+    "model-gltf_refraction",
+    "texture-mirror-mip",
+    "opacity-textured",
+    "mask",
+    "lights-all",
+    "lights-far-and-sky",
+    "emitting-shapes",
+    "instances",
+    "bent-floor",
+)
 MEDIA = (
-    "fog", "fog-lights", "fog-absorbing", "smoke", "smoke-majorant", "nested", "nested-smoke",
-    "haze", "haze-lights-at-infinity", "haze-smoke", "signed-distances", "opacity-fog",
-    "opacity-smoke", "boundary-alone",
-)  # fmt: skip
+    "fog",
+    "fog-lights",
+    "fog-absorbing",
+    "smoke",
+    "smoke-majorant",
+    "nested",
+    "nested-smoke",
+    "haze",
+    "haze-lights-at-infinity",
+    "haze-smoke",
+    "signed-distances",
+    "opacity-fog",
+    "opacity-smoke",
+    "boundary-alone",
+)
 
 
 def irradiance(scene: str, options: ParticleOptions, seed: int) -> Arrays:
@@ -63,9 +83,10 @@ def photons(scene: str, options: ParticleOptions, direct: bool, seed: int) -> Ar
     normals = np.tile([0.0, 1.0, 0.0], (40, 1))
     sums = found.render(spp=2, seed=seed, options=PathOptions(max_depth=8))
     return {
-        **sums_of(sums), "count": np.array(len(found)),
+        **sums_of(sums),
+        "count": np.array(len(found)),
         "irradiance": found.irradiance(points, normals),
-    }  # fmt: skip
+    }
 
 
 def occlusion(scene: str, radius: float, seed: int) -> Arrays:

@@ -121,10 +121,19 @@ KINDS: dict[str, tuple[Compute, tuple[str, ...], tuple[str, ...]]] = {
 }
 """What is computed: how, in which precisions, and which of its arrays are estimates."""
 PATHS_OF = (
-    "stage", "model-glass", "model-rough_dielectric", "opacity-textured", "lights-all",
-    "emitting-shapes", "fog", "nested-smoke", "opacity-smoke", "haze", "moving-opacity",
+    "stage",
+    "model-glass",
+    "model-rough_dielectric",
+    "opacity-textured",
+    "lights-all",
+    "emitting-shapes",
+    "fog",
+    "nested-smoke",
+    "opacity-smoke",
+    "haze",
+    "moving-opacity",
     "signed-distances",
-)  # fmt: skip
+)
 """Scenes whose vertices are looked at one by one."""
 
 
@@ -207,15 +216,23 @@ def chosen_lights(scene: str, precision: str, seed: int) -> Arrays:
 Call = Callable[[str, str, int], Arrays]
 CALLS: tuple[tuple[str, Call, tuple[str, ...], tuple[str, ...]], ...] = (
     ("ranges", ranges, PICTURE, ("stage", "fog", "moving", "lens", "shutter")),
-    ("other-sampling", other_sampling, PICTURE,
-     ("model-gltf", "model-glass", "texture-mirror-mip", "opacity-textured", "nested-smoke")),
+    (
+        "other-sampling",
+        other_sampling,
+        PICTURE,
+        ("model-gltf", "model-glass", "texture-mirror-mip", "opacity-textured", "nested-smoke"),
+    ),
     ("spread", spread, GRADIENTS, ("stage", "lights-all", "opacity-textured", "nested-smoke")),
     ("spread-dual", spread_dual, (), ("stage", "lights-all", "opacity-textured", "nested-smoke")),
-    ("incomplete", incomplete, (),
-     ("model-glass", "model-dispersive_glass", "mask", "opacity-fog")),
+    (
+        "incomplete",
+        incomplete,
+        (),
+        ("model-glass", "model-dispersive_glass", "mask", "opacity-fog"),
+    ),
     ("chosen-lights", chosen_lights, (), ("lights-all", "emitting-shapes")),
     ("no-background", no_background, PICTURE, ("stage", "opacity-textured", "fog")),
-)  # fmt: skip
+)
 """(name, how it is computed, its estimates, scenes)."""
 
 

@@ -35,9 +35,13 @@ def prime() -> bool:
 
 
 def compute_all(
-    cases: Mapping[str, Case], *, jobs: int = 1, threads: int = 0, save: Path | None = None,
+    cases: Mapping[str, Case],
+    *,
+    jobs: int = 1,
+    threads: int = 0,
+    save: Path | None = None,
     title: str = "results",
-) -> dict[str, str]:  # fmt: skip
+) -> dict[str, str]:
     """{name: hash, or `FAILED` and a message} of all cases, in their order.
 
     Args:

@@ -36,9 +36,12 @@ POINT = PointLight([-0.9, 1.2, 0.9], [0.9, 0.8, 0.7])
 
 
 def view(
-    position: Any = (0.0, 1.0, 2.4), target: Any = (0.0, 0.6, 0.0), *, width: int = WIDTH,
+    position: Any = (0.0, 1.0, 2.4),
+    target: Any = (0.0, 0.6, 0.0),
+    *,
+    width: int = WIDTH,
     height: int = HEIGHT,
-) -> Camera:  # fmt: skip
+) -> Camera:
     """A camera 60 degrees wide."""
     return camera_at(position, target, 60.0, width, height)
 
@@ -52,9 +55,11 @@ def stage(*shapes: Any, materials: Mapping[str, Material] | None = None, **more:
     """Shapes on a gray floor, under a square light, a point light and a sky."""
     given = {"camera": view(), "environment": SKY, "lights": (POINT,), **more}
     return Scene(
-        "stage", (rectangle("floor", *FLOOR, "gray"), panel(), *shapes),
-        {"gray": GRAY, "black": BLACK, **(materials or {})}, **given,
-    )  # fmt: skip
+        "stage",
+        (rectangle("floor", *FLOOR, "gray"), panel(), *shapes),
+        {"gray": GRAY, "black": BLACK, **(materials or {})},
+        **given,
+    )
 
 
 def ball(
@@ -77,9 +82,14 @@ def dome(material: str, **more: Any) -> MeshShape:
     at = np.asarray(more.pop("at", (0.0, 0.0, 0.0)))
     name, scale = more.pop("name", "dome"), more.pop("scale", 0.5)
     return MeshShape(
-        name, scale * normals + at, faces, material, normals=normals, uv=more.pop("uv", 1.0) * uv,
+        name,
+        scale * normals + at,
+        faces,
+        material,
+        normals=normals,
+        uv=more.pop("uv", 1.0) * uv,
         **more,
-    )  # fmt: skip
+    )
 
 
 def bent_floor() -> Scene:

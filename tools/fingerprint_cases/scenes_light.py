@@ -39,8 +39,9 @@ from fingerprint_cases.scenes import (
 
 TILT = about_y(0.7) @ np.array([[1.0, 0, 0], [0, 0.6, -0.8], [0, 0.8, 0.6]])
 OCTAHEDRON = 0.3 * np.concatenate([np.eye(3), -np.eye(3)]) + [0.2, 1.4, 0.3]
-SIDES = np.array([[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, 5],
-                  [0, 4, 5]])  # fmt: skip
+SIDES = np.array(
+    [[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, 5], [0, 4, 5]]
+)
 
 
 def environment_map(turn: Any = None, share: float = 0.0) -> EnvironmentMap:
@@ -89,9 +90,13 @@ def emitting_shapes() -> Scene:
     rows[0][:3, 3], rows[1][:3, 3] = [-0.9, 0.1, 0.3], [0.9, 0.2, 0.0]
     rows[1][0, 0] = 1.4
     small = MeshShape(
-        "small", 0.5 * (OCTAHEDRON - [0.2, 1.2, 0.3]), SIDES, "gray",
-        np.array([0.8, 0.6, 0.4]), places=rows,
-    )  # fmt: skip
+        "small",
+        0.5 * (OCTAHEDRON - [0.2, 1.2, 0.3]),
+        SIDES,
+        "gray",
+        np.array([0.8, 0.6, 0.4]),
+        places=rows,
+    )
     globe = ball("black", (0.0, 0.3, 0.6), 0.2, emission=np.array([1.0, 1.5, 2.0]))
     shapes = (rectangle("floor", *FLOOR, "gloss"), screen, small, globe, dome("gray", scale=0.3))
     materials = {"gray": GRAY, "black": BLACK, "gloss": GLOSS}
@@ -107,8 +112,9 @@ LIT: Scenes = {
     **{f"light-{name}": _lit(name) for name in LIGHTS},
     "lights-all": all_lights,
     "lights-far-and-sky": lambda: stage(
-        ball(), materials={"ball": GLOSS},
+        ball(),
+        materials={"ball": GLOSS},
         lights=tuple(LIGHTS[name]() for name in ("map", "sun", "sky", "constant", "directional")),
     ),
     "emitting-shapes": emitting_shapes,
-}  # fmt: skip
+}

@@ -55,9 +55,11 @@ def nested(outer: Medium = FOG) -> Scene:
         ball("frosted", (0.35, 0.9, -0.3), 0.2, name="frosted", interior="wax"),
     )
     return fog_box(
-        outer, *shapes, materials={"glass": GLASS, "frosted": FROSTED},
+        outer,
+        *shapes,
+        materials={"glass": GLASS, "frosted": FROSTED},
         media={"wax": WAX, "ink": INK},
-    )  # fmt: skip
+    )
 
 
 def haze(medium: Medium = FOG, **more: Any) -> Scene:
@@ -86,9 +88,13 @@ def with_opacity(medium: Medium, **more: Any) -> Scene:
         "shell": of_model("gltf_refraction", values={"alpha": 0.7}),
     }
     return fog_box(
-        medium, *shapes, materials=materials, textures={"opacity": opacity}, media={"ink": INK},
+        medium,
+        *shapes,
+        materials=materials,
+        textures={"opacity": opacity},
+        media={"ink": INK},
         **more,
-    )  # fmt: skip
+    )
 
 
 def camera_inside(medium: Medium, *, moving: bool = False) -> Scene:
@@ -98,23 +104,42 @@ def camera_inside(medium: Medium, *, moving: bool = False) -> Scene:
     end = camera.world_from_camera.copy()
     end[:3, 3] += [0.3, 0.2, 1.5]
     return fog_box(
-        medium, *shapes, materials={"glass": GLASS}, media={"ink": INK}, camera=camera,
+        medium,
+        *shapes,
+        materials={"glass": GLASS},
+        media={"ink": INK},
+        camera=camera,
         shutter=Shutter(end) if moving else None,
-    )  # fmt: skip
+    )
 
 
 def moving_media() -> Scene:
     """A ball of wax that moves, past a camera in fog."""
     shapes = (
-        ball(BOUNDARY, (-0.3, 0.5, 0.2), 0.3, name="wax", interior="wax",
-             closing=np.array([0.4, 0.7, 0.0])),
-        ball("glass", (0.0, 0.7, 0.9), 0.2, name="glass", interior="ink",
-             closing=np.array([0.0, 0.7, 2.2])),
-    )  # fmt: skip
+        ball(
+            BOUNDARY,
+            (-0.3, 0.5, 0.2),
+            0.3,
+            name="wax",
+            interior="wax",
+            closing=np.array([0.4, 0.7, 0.0]),
+        ),
+        ball(
+            "glass",
+            (0.0, 0.7, 0.9),
+            0.2,
+            name="glass",
+            interior="ink",
+            closing=np.array([0.0, 0.7, 2.2]),
+        ),
+    )
     return fog_box(
-        FOG, *shapes, materials={"glass": GLASS}, media={"wax": WAX, "ink": INK},
+        FOG,
+        *shapes,
+        materials={"glass": GLASS},
+        media={"wax": WAX, "ink": INK},
         camera=view((0.0, 0.7, 0.9), (0.0, 0.4, -0.6)),
-    )  # fmt: skip
+    )
 
 
 MEDIA: Scenes = {
@@ -135,7 +160,7 @@ MEDIA: Scenes = {
     "haze-absorbing": lambda: haze(INK),
     "haze-smoke": lambda: haze(smoke(), lights=(POINT,)),
     "haze-lights-at-infinity": lambda: haze(
-        FOG, environment=SKY, lights=(POINT, DirectionalLight([0.5, 1, 0.4], [2.0, 1.5, 1.0])),
+        FOG, environment=SKY, lights=(POINT, DirectionalLight([0.5, 1, 0.4], [2.0, 1.5, 1.0]))
     ),
     "opacity-fog": lambda: with_opacity(FOG),
     "opacity-smoke": lambda: with_opacity(smoke()),
@@ -145,7 +170,7 @@ MEDIA: Scenes = {
     "camera-leaves": lambda: camera_inside(FOG, moving=True),
     "moving-media": moving_media,
     "point-light-in-fog": lambda: fog_box(FOG, lights=(PointLight([0, 0.8, 0], [1.0, 0.9, 0.8]),)),
-}  # fmt: skip
+}
 
 
 def panel_ball() -> Any:

@@ -35,12 +35,16 @@ def instances(*, moving: bool = False, transparent: bool = False, **more: Any) -
     end = np.array([0.5, 0.7, -0.2]) if moving else None
     flying = ball("card" if transparent else "glass", (0.2, 0.3, 0.6), 0.25, closing=end)
     return stage(
-        domes, flying,
+        domes,
+        flying,
         materials={
-            "gloss": replace(painted("gltf"), normal_map=tilt), "glass": GLASS, "card": card(0.6),
+            "gloss": replace(painted("gltf"), normal_map=tilt),
+            "glass": GLASS,
+            "card": card(0.6),
         },
-        textures={"paint": Texture(texels(), filter="mip")}, **more,
-    )  # fmt: skip
+        textures={"paint": Texture(texels(), filter="mip")},
+        **more,
+    )
 
 
 def with_shutter(scene: Scene) -> Scene:
@@ -58,9 +62,10 @@ def bodies() -> Scene:
     shapes = (
         SdfShape("gloss", placed(lump, [-0.6, 0.4, 0.0], [0.9, 0.1, 0.3, 0.0]), "gloss"),
         SdfShape("glass", placed(sphere(0.3), [0.1, 0.4, 0.4]), "glass", interior="ink"),
-        SdfShape("fog", placed(sdf_box([0.3, 0.5, 0.3]), [0.7, 0.6, -0.3]), BOUNDARY,
-                 interior="fog"),
-    )  # fmt: skip
+        SdfShape(
+            "fog", placed(sdf_box([0.3, 0.5, 0.3]), [0.7, 0.6, -0.3]), BOUNDARY, interior="fog"
+        ),
+    )
     return stage(
         *shapes, materials={"gloss": GLOSS, "glass": GLASS}, media={"ink": INK, "fog": FOG}
     )

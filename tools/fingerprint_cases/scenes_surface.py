@@ -7,14 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from photograd.transport import (
-    Material,
-    MeshShape,
-    NormalMap,
-    Scene,
-    Texture,
-    TextureUse,
-)
+from photograd.transport import Material, MeshShape, NormalMap, Scene, Texture, TextureUse
 from photograd.transport.material import MODELS
 from photograd.transport.shapes import rectangle
 
@@ -49,14 +42,12 @@ def painted(model: str, texture: str = "paint", **more: Any) -> Material:
 
 def model_scene(model: str) -> Scene:
     """A ball of a model, and a dome of it with every parameter textured."""
-    shapes = (
-        ball("ball", (-0.5, 0.45, 0.1), 0.45),
-        dome("dome", at=(0.5, 0.05, 0.2)),
-    )
+    shapes = (ball("ball", (-0.5, 0.45, 0.1), 0.45), dome("dome", at=(0.5, 0.05, 0.2)))
     return stage(
-        *shapes, materials={"ball": of_model(model), "dome": painted(model)},
+        *shapes,
+        materials={"ball": of_model(model), "dome": painted(model)},
         textures={"paint": Texture(texels(), ("mirror", "mirror"))},
-    )  # fmt: skip
+    )
 
 
 def textured(wrap: str, kind: str, *, bent: bool = True) -> Scene:
@@ -65,9 +56,11 @@ def textured(wrap: str, kind: str, *, bent: bool = True) -> Scene:
     tilt = g.uniform(-0.3, 0.3, (3, 4, 3)) + np.array([0, 0, 1.0])
     normals = NormalMap(tilt, (wrap, wrap)) if bent else None
     material = replace(painted("gltf"), normal_map=normals)
-    scene = stage(dome("dome", uv=2.7), materials={"dome": material}, textures={
-        "paint": Texture(texels(), (wrap, wrap), kind),
-    })  # fmt: skip
+    scene = stage(
+        dome("dome", uv=2.7),
+        materials={"dome": material},
+        textures={"paint": Texture(texels(), (wrap, wrap), kind)},
+    )
     floor = rectangle("floor", [-2, 0, 2], [4, 0, 0], [0, 0, -4], "dome")
     floor = replace(floor, uv=None if floor.uv is None else 1.0 - 3.0 * floor.uv)
     return replace(scene, shapes=(floor, *scene.shapes[1:]))
@@ -85,11 +78,10 @@ def channels(kind: str) -> Scene:
         for name, x in zip(uses, (-0.8, 0.0, 0.8), strict=True)
     ]
     return stage(
-        *domes, materials={name: replace(GLOSS, textures=use) for name, use in uses.items()},
-        textures={
-            name: Texture(texels(k), filter=kind) for k, name in enumerate(uses, 1)
-        },
-    )  # fmt: skip
+        *domes,
+        materials={name: replace(GLOSS, textures=use) for name, use in uses.items()},
+        textures={name: Texture(texels(k), filter=kind) for k, name in enumerate(uses, 1)},
+    )
 
 
 def many_layers(count: int = 260) -> Scene:
@@ -116,9 +108,11 @@ def shaded(material: Material, *, kind: str = "bilinear", **more: Any) -> Scene:
         ball("glass", (0.3, 0.25, 0.5), 0.25),
     )
     return stage(
-        *shapes, materials={"card": material, "sheet": sheet, "glass": GLASS},
-        textures={"opacity": Texture(opacity, filter=kind)}, **more,
-    )  # fmt: skip
+        *shapes,
+        materials={"card": material, "sheet": sheet, "glass": GLASS},
+        textures={"opacity": Texture(opacity, filter=kind)},
+        **more,
+    )
 
 
 def transparent_models() -> Scene:

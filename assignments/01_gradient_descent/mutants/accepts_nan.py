@@ -2,9 +2,4 @@
 
 TASKS = ("01.6",)
 LOSES = ("01.6.undefined",)
-REPLACE = [
-    (
-        "while not f(x + tau * d) <= start",
-        "while f(x + tau * d) > start",
-    ),
-]
+REPLACE = [("while not f(x + tau * d) <= start", "while f(x + tau * d) > start")]

@@ -6,5 +6,5 @@ REPLACE = [
     (
         "    for k in range(n):\n        x[k + 1] = x[k] - tau * grad(x[k])\n    loss",
         ("    for k in range(n):\n        x[: k + 2] = x[k] - tau * grad(x[k])\n    loss"),
-    ),
+    )
 ]

@@ -2,9 +2,4 @@
 
 TASKS = ("01.4",)
 LOSES = ("01.4.constant", "01.4.roots")
-REPLACE = [
-    (
-        "v = beta * v + grad(x[k])",
-        "v = beta * v + (1.0 - beta) * grad(x[k])",
-    ),
-]
+REPLACE = [("v = beta * v + grad(x[k])", "v = beta * v + (1.0 - beta) * grad(x[k])")]

@@ -2,9 +2,4 @@
 
 TASKS = ("01.2",)
 LOSES = ("01.2.basins",)
-REPLACE = [
-    (
-        "tau * df(float(x[k]))",
-        "np.clip(tau * df(float(x[k])), -1.5, 1.5)",
-    ),
-]
+REPLACE = [("tau * df(float(x[k]))", "np.clip(tau * df(float(x[k])), -1.5, 1.5)")]

@@ -9,5 +9,5 @@ REPLACE = [
             "    m, v = np.zeros(len(x0)), np.zeros(len(x0))\n"
             "    beta1, beta2, eps = 0.9, 0.999, 1e-8\n"
         ),
-    ),
+    )
 ]

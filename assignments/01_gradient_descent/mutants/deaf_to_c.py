@@ -2,9 +2,4 @@
 
 TASKS = ("01.6",)
 LOSES = ("01.6.armijo",)
-REPLACE = [
-    (
-        "c * tau * slope",
-        "1e-4 * tau * slope",
-    ),
-]
+REPLACE = [("c * tau * slope", "1e-4 * tau * slope")]

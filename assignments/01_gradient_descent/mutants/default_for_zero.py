@@ -2,9 +2,4 @@
 
 TASKS = ("01.4",)
 LOSES = ("01.4.plain",)
-REPLACE = [
-    (
-        "v = beta * v + grad",
-        "v = (beta or 0.9) * v + grad",
-    ),
-]
+REPLACE = [("v = beta * v + grad", "v = (beta or 0.9) * v + grad")]

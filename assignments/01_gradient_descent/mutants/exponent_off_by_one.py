@@ -3,12 +3,6 @@
 TASKS = ("01.5",)
 LOSES = ("01.5.constant", "01.5.trace", "01.5.sums")
 REPLACE = [
-    (
-        "1.0 - beta1**k",
-        "1.0 - beta1 ** (k + 1)",
-    ),
-    (
-        "1.0 - beta2**k",
-        "1.0 - beta2 ** (k + 1)",
-    ),
+    ("1.0 - beta1**k", "1.0 - beta1 ** (k + 1)"),
+    ("1.0 - beta2**k", "1.0 - beta2 ** (k + 1)"),
 ]

@@ -2,9 +2,4 @@
 
 TASKS = ("01.6",)
 LOSES = ("01.6.descends",)
-REPLACE = [
-    (
-        "tau, start = tau0, f(x)",
-        "tau, start = 1.0, f(x)",
-    ),
-]
+REPLACE = [("tau, start = tau0, f(x)", "tau, start = 1.0, f(x)")]

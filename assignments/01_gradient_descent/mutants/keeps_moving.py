@@ -6,5 +6,5 @@ REPLACE = [
     (
         ("    for i in range(len(x)):\n        step = np.zeros(len(x))\n        step[i] = eps"),
         ("    step = np.zeros(len(x))\n    for i in range(len(x)):\n        step[i] = eps"),
-    ),
+    )
 ]

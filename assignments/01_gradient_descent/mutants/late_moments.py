@@ -6,5 +6,5 @@ REPLACE = [
     (
         "        g = grad(x[k - 1])\n",
         "        g_now, g = grad(x[k - 1]), np.zeros(len(x0)) if k == 1 else g_now\n",
-    ),
+    )
 ]

@@ -6,5 +6,5 @@ REPLACE = [
     (
         "        v = beta * v + grad(x[k])\n        x[k + 1] = x[k] - tau * v",
         "        x[k + 1] = x[k] - tau * v\n        v = beta * v + grad(x[k])",
-    ),
+    )
 ]

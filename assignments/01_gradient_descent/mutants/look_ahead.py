@@ -6,5 +6,5 @@ REPLACE = [
     (
         "grad(x[k])\n        x[k + 1] = x[k] - tau * v",
         "grad(x[k] - tau * beta * v)\n        x[k + 1] = x[k] - tau * v",
-    ),
+    )
 ]

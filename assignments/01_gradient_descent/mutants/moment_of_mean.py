@@ -2,9 +2,4 @@
 
 TASKS = ("01.5",)
 LOSES = ("01.5.constant", "01.5.trace", "01.5.sums")
-REPLACE = [
-    (
-        "(1.0 - beta2) * g * g",
-        "(1.0 - beta2) * m * m",
-    ),
-]
+REPLACE = [("(1.0 - beta2) * g * g", "(1.0 - beta2) * m * m")]

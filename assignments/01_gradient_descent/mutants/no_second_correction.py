@@ -2,9 +2,4 @@
 
 TASKS = ("01.5",)
 LOSES = ("01.5.constant", "01.5.trace", "01.5.sums")
-REPLACE = [
-    (
-        "v_hat = v / (1.0 - beta2**k)",
-        "v_hat = v",
-    ),
-]
+REPLACE = [("v_hat = v / (1.0 - beta2**k)", "v_hat = v")]

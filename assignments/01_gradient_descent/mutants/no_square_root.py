@@ -2,9 +2,4 @@
 
 TASKS = ("01.5",)
 LOSES = ("01.5.constant", "01.5.trace", "01.5.sums")
-REPLACE = [
-    (
-        "(np.sqrt(v_hat) + eps)",
-        "(v_hat + eps)",
-    ),
-]
+REPLACE = [("(np.sqrt(v_hat) + eps)", "(v_hat + eps)")]

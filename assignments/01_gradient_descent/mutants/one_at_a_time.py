@@ -10,5 +10,5 @@ REPLACE = [
             "        for i in range(len(x0)):\n"
             "            x[k + 1, i] -= tau * grad(x[k + 1])[i]"
         ),
-    ),
+    )
 ]

@@ -2,9 +2,4 @@
 
 TASKS = ("01.6",)
 LOSES = ("01.6.armijo", "01.6.descends")
-REPLACE = [
-    (
-        "    return tau\n",
-        "    return tau * shrink\n",
-    ),
-]
+REPLACE = [("    return tau\n", "    return tau * shrink\n")]

@@ -6,5 +6,5 @@ REPLACE = [
     (
         "    loss = np.array([f(each) for each in x])\n    return x, loss,",
         "    loss = np.array([f(each) for each in x])\n    return x, loss - loss[0],",
-    ),
+    )
 ]

@@ -2,9 +2,4 @@
 
 TASKS = ("01.2",)
 LOSES = ("01.2.rate", "01.2.verdict", "01.2.basins")
-REPLACE = [
-    (
-        "df(float(x[k]))",
-        "df(float(x[max(k - 1, 0)]))",
-    ),
-]
+REPLACE = [("df(float(x[k]))", "df(float(x[max(k - 1, 0)]))")]

@@ -6,5 +6,5 @@ REPLACE = [
     (
         "np.array([f(float(each)) for each in x])",
         "np.array([f(float(each)) for each in x[[0, *range(n)]]])",
-    ),
+    )
 ]

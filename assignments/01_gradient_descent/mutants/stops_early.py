@@ -3,8 +3,5 @@
 TASKS = ("01.3",)
 LOSES = ("01.3.contraction",)
 REPLACE = [
-    (
-        "x[k] - tau * grad(x[k])",
-        "x[k] - tau * grad(x[k]) * (np.linalg.norm(grad(x[k])) > 1e-2)",
-    ),
+    ("x[k] - tau * grad(x[k])", "x[k] - tau * grad(x[k]) * (np.linalg.norm(grad(x[k])) > 1e-2)")
 ]

@@ -2,9 +2,4 @@
 
 TASKS = ("01.3",)
 LOSES = ("01.3.rates", "01.3.stability", "01.3.contraction")
-REPLACE = [
-    (
-        "x[k] - tau * grad(x[k])",
-        "x[k] - tau * grad(x[k]) / np.linalg.norm(grad(x[k]))",
-    ),
-]
+REPLACE = [("x[k] - tau * grad(x[k])", "x[k] - tau * grad(x[k]) / np.linalg.norm(grad(x[k]))")]

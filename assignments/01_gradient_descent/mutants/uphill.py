@@ -2,9 +2,4 @@
 
 TASKS = ("01.2",)
 LOSES = ("01.2.rate", "01.2.verdict", "01.2.basins", "01.2.undefined")
-REPLACE = [
-    (
-        "x[k] - tau * df(float(x[k]))",
-        "x[k] + tau * df(float(x[k]))",
-    ),
-]
+REPLACE = [("x[k] - tau * df(float(x[k]))", "x[k] + tau * df(float(x[k]))")]

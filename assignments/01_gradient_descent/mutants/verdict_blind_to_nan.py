@@ -12,5 +12,5 @@ REPLACE = [
             "    loss = np.array([f(float(each)) for each in x])\n"
             "    return x, loss, loss[n] > loss[0]"
         ),
-    ),
+    )
 ]

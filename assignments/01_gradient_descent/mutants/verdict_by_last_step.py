@@ -12,5 +12,5 @@ REPLACE = [
             "    loss = np.array([f(each) for each in x])\n"
             "    return x, loss, not loss[n] <= loss[n - 1]"
         ),
-    ),
+    )
 ]

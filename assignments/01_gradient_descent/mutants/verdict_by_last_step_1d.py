@@ -10,5 +10,5 @@ REPLACE = [
         "        x[k + 1] = x[k] - tau * df(float(x[k]))\n"
         "    loss = np.array([f(float(each)) for each in x])\n"
         "    return x, loss, not loss[n] <= loss[max(n - 1, 0)]",
-    ),
+    )
 ]

@@ -2,9 +2,4 @@
 
 TASKS = ("01.6",)
 LOSES = ("01.6.refuses",)
-REPLACE = [
-    (
-        "if not slope < 0.0:",
-        "if slope > 1e300:",
-    ),
-]
+REPLACE = [("if not slope < 0.0:", "if slope > 1e300:")]

@@ -2,9 +2,4 @@
 
 TASKS = ("01.6",)
 LOSES = ("01.6.armijo",)
-REPLACE = [
-    (
-        "start + c * tau * slope",
-        "start - c * tau * slope",
-    ),
-]
+REPLACE = [("start + c * tau * slope", "start - c * tau * slope")]

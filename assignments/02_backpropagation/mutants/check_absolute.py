@@ -2,9 +2,4 @@
 
 TASKS = ("02.6",)
 LOSES = ("02.6.rejects", "02.6.scale")
-REPLACE = [
-    (
-        "return error / scale if scale > 0.0 else 0.0",
-        "return error",
-    ),
-]
+REPLACE = [("return error / scale if scale > 0.0 else 0.0", "return error")]

@@ -12,5 +12,5 @@ REPLACE = [
     scale = float(np.linalg.norm(gradient) * np.linalg.norm(quotients))
     error = scale - float(gradient @ quotients)
 """,
-    ),
+    )
 ]

@@ -6,5 +6,5 @@ REPLACE = [
     (
         "scale = max(float(np.linalg.norm(gradient)), float(np.linalg.norm(quotients)))",
         "scale = float(np.linalg.norm(quotients))",
-    ),
+    )
 ]

@@ -8,5 +8,5 @@ REPLACE = [
         """\
         gradient = np.asarray(f(x.copy())[1], dtype=np.float64)
         step = eps * max""",
-    ),
+    )
 ]

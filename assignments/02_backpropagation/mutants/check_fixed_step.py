@@ -2,9 +2,4 @@
 
 TASKS = ("02.6",)
 LOSES = ("02.6.large", "02.6.scale")
-REPLACE = [
-    (
-        "eps * max(1.0, abs(x[i]))",
-        "eps",
-    ),
-]
+REPLACE = [("eps * max(1.0, abs(x[i]))", "eps")]

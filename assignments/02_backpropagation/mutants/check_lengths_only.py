@@ -6,5 +6,5 @@ REPLACE = [
     (
         "np.linalg.norm(gradient - quotients))",
         "abs(np.linalg.norm(gradient) - np.linalg.norm(quotients)))",
-    ),
+    )
 ]

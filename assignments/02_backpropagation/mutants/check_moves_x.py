@@ -3,12 +3,6 @@
 TASKS = ("02.6",)
 LOSES = ("02.6.accepts", "02.6.large", "02.6.rejects", "02.6.scale")
 REPLACE = [
-    (
-        "x = np.array(x, dtype=np.float64)",
-        "x = np.asarray(x, dtype=np.float64)",
-    ),
-    (
-        "ahead, behind = x.copy(), x.copy()",
-        "ahead, behind = x, x",
-    ),
+    ("x = np.array(x, dtype=np.float64)", "x = np.asarray(x, dtype=np.float64)"),
+    ("ahead, behind = x.copy(), x.copy()", "ahead, behind = x, x"),
 ]

@@ -2,9 +2,4 @@
 
 TASKS = ("02.6",)
 LOSES = ("02.6.accepts", "02.6.large", "02.6.rejects", "02.6.scale")
-REPLACE = [
-    (
-        "(f(ahead)[0] - f(behind)[0]) / (2.0 * step)",
-        "(f(ahead)[0] - f(x.copy())[0]) / step",
-    ),
-]
+REPLACE = [("(f(ahead)[0] - f(behind)[0]) / (2.0 * step)", "(f(ahead)[0] - f(x.copy())[0]) / step")]

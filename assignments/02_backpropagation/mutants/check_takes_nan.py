@@ -9,5 +9,5 @@ REPLACE = [
         return math.inf
 """,
         "",
-    ),
+    )
 ]

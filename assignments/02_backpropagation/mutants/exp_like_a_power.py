@@ -6,5 +6,5 @@ REPLACE = [
     (
         "return Value(grown, ((self, grown),))",
         "return Value(grown, ((self, self.data * math.exp(self.data - 1.0)),))",
-    ),
+    )
 ]

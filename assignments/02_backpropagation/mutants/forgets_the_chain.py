@@ -2,9 +2,4 @@
 
 TASKS = ("02.5",)
 LOSES = ("02.5.worked", "02.5.adds", "02.5.seed", "02.5.expressions", "02.5.random", "02.5.chain")
-REPLACE = [
-    (
-        "slope * node.grad",
-        "slope",
-    ),
-]
+REPLACE = [("slope * node.grad", "slope")]

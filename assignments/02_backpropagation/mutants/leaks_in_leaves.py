@@ -10,5 +10,5 @@ REPLACE = [
         """\
         node.grad = 0.0 if node.inputs else node.grad
 """,
-    ),
+    )
 ]

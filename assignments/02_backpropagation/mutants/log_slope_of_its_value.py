@@ -2,9 +2,4 @@
 
 TASKS = ("02.3", "02.5")
 LOSES = ("02.3.log", "02.3.many", "02.5.expressions", "02.5.random")
-REPLACE = [
-    (
-        "1.0 / self.data),))",
-        "1.0 / (math.log(self.data) or 1.0)),))",
-    ),
-]
+REPLACE = [("1.0 / self.data),))", "1.0 / (math.log(self.data) or 1.0)),))")]

@@ -8,5 +8,5 @@ REPLACE = [
         """\
 wins = 0.5 if self.data == other.data else wins
         return Value(larger, ((self, wins), (other, 1.0 - wins)))""",
-    ),
+    )
 ]

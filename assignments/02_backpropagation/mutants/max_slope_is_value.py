@@ -6,5 +6,5 @@ REPLACE = [
     (
         "return Value(larger, ((self, wins), (other, 1.0 - wins)))",
         "return Value(larger, ((self, wins * larger), (other, (1.0 - wins) * larger)))",
-    ),
+    )
 ]

@@ -2,9 +2,4 @@
 
 TASKS = ("02.2",)
 LOSES = ("02.2.tie",)
-REPLACE = [
-    (
-        "self.data > other.data",
-        "self.data >= other.data",
-    ),
-]
+REPLACE = [("self.data > other.data", "self.data >= other.data")]

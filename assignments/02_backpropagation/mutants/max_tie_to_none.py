@@ -6,5 +6,5 @@ REPLACE = [
     (
         "return Value(larger, ((self, wins), (other, 1.0 - wins)))",
         "return Value(larger, ((self, wins), (other, 1.0 if other.data > self.data else 0.0)))",
-    ),
+    )
 ]

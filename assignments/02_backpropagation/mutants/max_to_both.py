@@ -6,5 +6,5 @@ REPLACE = [
     (
         "return Value(larger, ((self, wins), (other, 1.0 - wins)))",
         "return Value(larger, ((self, 1.0), (other, 1.0)))",
-    ),
+    )
 ]

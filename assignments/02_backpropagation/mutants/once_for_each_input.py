@@ -10,5 +10,5 @@ for source, slope in node.inputs:
         """\
 for source, slope in dict(node.inputs).items():
             source.grad""",
-    ),
+    )
 ]

@@ -27,5 +27,5 @@ REPLACE = [
                 order.append(source)
     return order[::-1]
 """,
-    ),
+    )
 ]

@@ -10,5 +10,5 @@ REPLACE = [
         """\
             order += [node] if node.inputs else []
         elif""",
-    ),
+    )
 ]

@@ -2,13 +2,4 @@
 
 TASKS = ("02.4",)
 LOSES = ("02.4.chain", "02.4.work")
-REPLACE = [
-    (
-        "[], set()",
-        "[], []",
-    ),
-    (
-        "seen.add(node)",
-        "seen.append(node)",
-    ),
-]
+REPLACE = [("[], set()", "[], []"), ("seen.add(node)", "seen.append(node)")]

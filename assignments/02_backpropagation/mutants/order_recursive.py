@@ -31,5 +31,5 @@ REPLACE = [
     visit(root)
     return order
 """,
-    ),
+    )
 ]

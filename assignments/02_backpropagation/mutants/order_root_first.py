@@ -10,5 +10,5 @@ REPLACE = [
         """\
             seen.add(node)
             order.append(node)""",
-    ),
+    )
 ]

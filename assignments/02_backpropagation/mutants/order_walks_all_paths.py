@@ -15,5 +15,5 @@ REPLACE = [
             seen.add(node)
         else:
 """,
-    ),
+    )
 ]

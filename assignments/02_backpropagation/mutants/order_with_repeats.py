@@ -8,5 +8,5 @@ REPLACE = [
             seen.add(node)
 """,
         "",
-    ),
+    )
 ]

@@ -2,9 +2,4 @@
 
 TASKS = ("02.3",)
 LOSES = ("02.3.power",)
-REPLACE = [
-    (
-        "n * self.data ** (n - 1)",
-        "n * self.data**n / self.data",
-    ),
-]
+REPLACE = [("n * self.data ** (n - 1)", "n * self.data**n / self.data")]

@@ -13,5 +13,5 @@ REPLACE = [
     (
         "((self, other.data), (other, self.data))",
         "((self, self.data * other.data), (other, self.data * other.data))",
-    ),
+    )
 ]

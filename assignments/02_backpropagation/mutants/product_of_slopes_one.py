@@ -9,9 +9,4 @@ LOSES = (
     "02.5.expressions",
     "02.5.random",
 )
-REPLACE = [
-    (
-        "((self, other.data), (other, self.data))",
-        "((self, 1.0), (other, 1.0))",
-    ),
-]
+REPLACE = [("((self, other.data), (other, self.data))", "((self, 1.0), (other, 1.0))")]

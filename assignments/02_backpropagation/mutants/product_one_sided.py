@@ -9,9 +9,4 @@ LOSES = (
     "02.5.expressions",
     "02.5.random",
 )
-REPLACE = [
-    (
-        "((self, other.data), (other, self.data))",
-        "((self, other.data),)",
-    ),
-]
+REPLACE = [("((self, other.data), (other, self.data))", "((self, other.data),)")]

@@ -18,5 +18,5 @@ REPLACE = [
 
     push(root, root.grad)
 """,
-    ),
+    )
 ]

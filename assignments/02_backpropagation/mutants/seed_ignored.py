@@ -2,9 +2,4 @@
 
 TASKS = ("02.5",)
 LOSES = ("02.5.seed",)
-REPLACE = [
-    (
-        "root.grad = float(seed)",
-        "root.grad = 1.0",
-    ),
-]
+REPLACE = [("root.grad = float(seed)", "root.grad = 1.0")]

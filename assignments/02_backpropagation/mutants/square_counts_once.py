@@ -8,5 +8,5 @@ REPLACE = [
         """\
 uses = ((self, other.data), (other, self.data))
         return Value(self.data * other.data, uses[:1] if other is self else uses)""",
-    ),
+    )
 ]

@@ -13,5 +13,5 @@ REPLACE = [
     (
         "return Value(self.data + other.data, ((self, 1.0), (other, 1.0)))",
         "return Value(self.data + other.data, ((self, 1.0),))",
-    ),
+    )
 ]

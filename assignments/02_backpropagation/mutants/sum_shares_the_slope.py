@@ -9,9 +9,4 @@ LOSES = (
     "02.5.expressions",
     "02.5.random",
 )
-REPLACE = [
-    (
-        "((self, 1.0), (other, 1.0))",
-        "((self, 0.5), (other, 0.5))",
-    ),
-]
+REPLACE = [("((self, 1.0), (other, 1.0))", "((self, 0.5), (other, 0.5))")]

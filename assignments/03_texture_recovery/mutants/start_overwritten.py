@@ -2,7 +2,4 @@
 
 TASKS = ("03.5",)
 LOSES = ("03.5.start",)
-REPLACE = [
-    ("T = T0.copy()", "T = T0"),
-    ("T = T - step * d_T", "T -= step * d_T"),
-]
+REPLACE = [("T = T0.copy()", "T = T0"), ("T = T - step * d_T", "T -= step * d_T")]

@@ -29,8 +29,9 @@ def hemisphere(heights=48, turns=96):
         z = ((node + 1) / 2) ** 2
         for turn in range(turns):
             phi = (turn + 0.5) * 2 * PI / turns
-            directions.append([math.sqrt(1 - z * z) * math.cos(phi),
-                               math.sqrt(1 - z * z) * math.sin(phi), z])  # fmt: skip
+            directions.append(
+                [math.sqrt(1 - z * z) * math.cos(phi), math.sqrt(1 - z * z) * math.sin(phi), z]
+            )
             angles.append((node + 1) / 2 * weight * 2 * PI / turns)
     return np.array(directions), np.array(angles)
 

@@ -1,13 +1,10 @@
 """The part of V has the wrong sign: longer lengths make V smaller."""
 
 TASKS = ("04.6",)
-LOSES = (
-    "04.6.differences",
-    "04.6.hidden",
-)
+LOSES = ("04.6.differences", "04.6.hidden")
 REPLACE = [
     (
         ("(np.sum(d_f * mirrored, axis=1) * lobe * 2 * roughness)[up] * (of_D - of_V)"),
         ("(np.sum(d_f * mirrored, axis=1) * lobe * 2 * roughness)[up] * (of_D + of_V)"),
-    ),
+    )
 ]

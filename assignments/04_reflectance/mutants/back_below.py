@@ -9,5 +9,5 @@ REPLACE = [
             " schlick(0.0, cos)) * lobe"
         ),
         ("by_color = (1 - m) * (1 - F) / np.pi + m * (1 - schlick(0.0, cos)) * lobe"),
-    ),
+    )
 ]

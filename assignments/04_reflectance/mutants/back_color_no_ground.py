@@ -1,11 +1,7 @@
 """Your d_base_color lacks the ground's part."""
 
 TASKS = ("04.6",)
-LOSES = (
-    "04.6.differences",
-    "04.6.linear",
-    "04.6.hidden",
-)
+LOSES = ("04.6.differences", "04.6.linear", "04.6.hidden")
 REPLACE = [
     (
         (
@@ -13,5 +9,5 @@ REPLACE = [
             " schlick(0.0, cos)) * lobe"
         ),
         "by_color = m * (1 - schlick(0.0, cos)) * lobe",
-    ),
+    )
 ]

@@ -1,10 +1,7 @@
 """Your d_roughness is a central difference: it has nine digits, the formula has all."""
 
 TASKS = ("04.6",)
-LOSES = (
-    "04.6.straight",
-    "04.6.hidden",
-)
+LOSES = ("04.6.straight", "04.6.hidden")
 REPLACE = [
     (
         "    return d_f * by_color[:, None], ",
@@ -14,5 +11,5 @@ REPLACE = [
             "    d_roughness = np.sum(d_f * (ends[0] - ends[1]), axis=1) / 2e-5\n"
             "    return d_f * by_color[:, None], "
         ),
-    ),
+    )
 ]

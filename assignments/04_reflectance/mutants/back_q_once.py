@@ -1,13 +1,10 @@
 """In D stands q squared: its logarithm is 2 ln q."""
 
 TASKS = ("04.6",)
-LOSES = (
-    "04.6.differences",
-    "04.6.hidden",
-)
+LOSES = ("04.6.differences", "04.6.hidden")
 REPLACE = [
     (
         "of_D = (4 * flat_h / (alpha**2 * q) - 2) / alpha",
         "of_D = (2 * flat_h / (alpha**2 * q) - 2) / alpha",
-    ),
+    )
 ]

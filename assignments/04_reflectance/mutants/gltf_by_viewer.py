@@ -1,12 +1,7 @@
 """Your Fresnel factor takes the viewer's angle to the normal: it belongs to the half vector."""
 
 TASKS = ("04.5",)
-LOSES = (
-    "04.5.mirror",
-    "04.5.symmetry",
-    "04.5.energy",
-    "04.5.hidden",
-)
+LOSES = ("04.5.mirror", "04.5.symmetry", "04.5.energy", "04.5.hidden")
 REPLACE = [
     (
         (
@@ -15,5 +10,5 @@ REPLACE = [
             "    ground"
         ),
         ("cos = wo[:, 2:]\n    F = schlick(0.04, cos)\n    ground"),
-    ),
+    )
 ]

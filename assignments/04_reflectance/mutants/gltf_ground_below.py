@@ -2,6 +2,4 @@
 
 TASKS = ("04.5",)
 LOSES = ("04.5.symmetry",)
-REPLACE = [
-    ("ground = above(wo, wi)[:, None] * base_color / np.pi", "ground = base_color / np.pi"),
-]
+REPLACE = [("ground = above(wo, wi)[:, None] * base_color / np.pi", "ground = base_color / np.pi")]

@@ -1,11 +1,7 @@
 """Your varnish mirrors 0.2 straight on: of an index of 1.5 it is ((1.5 - 1) / (1.5 + 1))^2."""
 
 TASKS = ("04.5",)
-LOSES = (
-    "04.5.straight",
-    "04.5.energy",
-    "04.5.hidden",
-)
+LOSES = ("04.5.straight", "04.5.energy", "04.5.hidden")
 REPLACE = [
     (
         (
@@ -18,5 +14,5 @@ REPLACE = [
             "    F = schlick(0.2, cos)\n"
             "    ground"
         ),
-    ),
+    )
 ]

@@ -1,10 +1,7 @@
 """Your varnish is coloured: a dielectric mirrors all colours alike."""
 
 TASKS = ("04.5",)
-LOSES = (
-    "04.5.straight",
-    "04.5.hidden",
-)
+LOSES = ("04.5.straight", "04.5.hidden")
 REPLACE = [
     (
         ("return (1 - m) * ((1 - F) * ground + F * lobe) + m * schlick(base_color, cos) * lobe"),
@@ -12,5 +9,5 @@ REPLACE = [
             "return (1 - m) * ((1 - F) * ground + F * base_color * lobe) + m *"
             " schlick(base_color, cos) * lobe"
         ),
-    ),
+    )
 ]

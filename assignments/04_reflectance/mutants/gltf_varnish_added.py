@@ -1,15 +1,10 @@
 """Your metal is varnished: metal mirrors by its own colour alone."""
 
 TASKS = ("04.5",)
-LOSES = (
-    "04.5.straight",
-    "04.5.mirror",
-    "04.5.energy",
-    "04.5.hidden",
-)
+LOSES = ("04.5.straight", "04.5.mirror", "04.5.energy", "04.5.hidden")
 REPLACE = [
     (
         ("return (1 - m) * ((1 - F) * ground + F * lobe) + m * schlick(base_color, cos) * lobe"),
         ("return (1 - m) * (1 - F) * ground + F * lobe + m * schlick(base_color, cos) * lobe"),
-    ),
+    )
 ]

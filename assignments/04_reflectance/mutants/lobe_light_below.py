@@ -15,5 +15,5 @@ REPLACE = [
             " ** 2\n"
             "    h = half_vector(o, i)"
         ),
-    ),
+    )
 ]

@@ -1,10 +1,7 @@
 """Your V is the short form without roots: it is right at roughness 1 and 0 alone."""
 
 TASKS = ("04.2",)
-LOSES = (
-    "04.2.energy",
-    "04.2.hidden",
-)
+LOSES = ("04.2.energy", "04.2.hidden")
 REPLACE = [
     (
         ("    L = stretched(o, alpha) * i[:, 2] + stretched(i, alpha) * o[:, 2]\n    lobe ="),
@@ -13,5 +10,5 @@ REPLACE = [
             " * (1 - alpha) + alpha)\n"
             "    lobe ="
         ),
-    ),
+    )
 ]

@@ -1,11 +1,7 @@
 """Your density is that of all facets: those that the viewer does not see are drawn as well."""
 
 TASKS = ("04.3",)
-LOSES = (
-    "04.3.ball",
-    "04.3.weight",
-    "04.3.hidden",
-)
+LOSES = ("04.3.ball", "04.3.weight", "04.3.hidden")
 REPLACE = [
     (
         "pdf[up] = ggx_lobe(o, i, roughness[up]) * L / (o[:, 2] + length)",
@@ -14,5 +10,5 @@ REPLACE = [
             "    pdf[up] = ggx_lobe(o, i, roughness[up]) * 2 * L * h[:, 2] / (4 *"
             " np.sum(o * h, axis=1))"
         ),
-    ),
+    )
 ]

@@ -2,6 +2,4 @@
 
 TASKS = ("04.3",)
 LOSES = ("04.3.below",)
-REPLACE = [
-    ("    pdf = np.zeros(len(wo))", "    pdf = np.full(len(wo), 1e-6)"),
-]
+REPLACE = [("    pdf = np.zeros(len(wo))", "    pdf = np.full(len(wo), 1e-6)")]

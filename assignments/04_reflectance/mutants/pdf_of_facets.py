@@ -1,12 +1,7 @@
 """Your density is that of the facets: directions turn twice as far, equation (12)."""
 
 TASKS = ("04.3",)
-LOSES = (
-    "04.3.ball",
-    "04.3.mass",
-    "04.3.weight",
-    "04.3.hidden",
-)
+LOSES = ("04.3.ball", "04.3.mass", "04.3.weight", "04.3.hidden")
 REPLACE = [
     (
         "pdf[up] = ggx_lobe(o, i, roughness[up]) * L / (o[:, 2] + length)",
@@ -15,5 +10,5 @@ REPLACE = [
             "    pdf[up] = ggx_lobe(o, i, roughness[up]) * L / (o[:, 2] + length) *"
             " 4 * np.sum(o * h, axis=1)"
         ),
-    ),
+    )
 ]

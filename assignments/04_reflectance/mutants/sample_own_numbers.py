@@ -3,5 +3,5 @@
 TASKS = ("04.4",)
 LOSES = ("04.4.rows",)
 REPLACE = [
-    ("phi = 2 * np.pi * u2[:, 1]", "phi = 2 * np.pi * np.random.default_rng(0).random(len(wo))"),
+    ("phi = 2 * np.pi * u2[:, 1]", "phi = 2 * np.pi * np.random.default_rng(0).random(len(wo))")
 ]

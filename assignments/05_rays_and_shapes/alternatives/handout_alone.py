@@ -125,8 +125,15 @@ def trace_mesh(corners, origins, directions):
     boxes, first, count, order = build_bvh(corners.min(axis=1), corners.max(axis=1))
 
     def one(o, d):
-        return traverse(first, count, order, lambda node: boxes[node],
-                        lambda things: hit_triangle(o, d, corners[things])[0], o, d)  # fmt: skip
+        return traverse(
+            first,
+            count,
+            order,
+            lambda node: boxes[node],
+            lambda things: hit_triangle(o, d, corners[things])[0],
+            o,
+            d,
+        )
 
     found = [one(o, d) for o, d in zip(origins, directions, strict=True)]
     return np.array([t for t, _ in found]), np.array([k for _, k in found])

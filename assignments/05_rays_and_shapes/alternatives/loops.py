@@ -101,8 +101,10 @@ def build_bvh(low, high):
 
     def make(node, start, stop):
         mine = order[start:stop]
-        boxes[node] = [[min(low[k][a] for k in mine) for a in range(3)],
-                       [max(high[k][a] for k in mine) for a in range(3)]]  # fmt: skip
+        boxes[node] = [
+            [min(low[k][a] for k in mine) for a in range(3)],
+            [max(high[k][a] for k in mine) for a in range(3)],
+        ]
         if stop - start <= LEAF:
             first[node], count[node] = start, stop - start
             return

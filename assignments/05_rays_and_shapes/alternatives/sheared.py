@@ -150,7 +150,12 @@ def trace_mesh(corners, origins, directions):
     for r in range(len(origins)):
         o, d = origins[r], directions[r]
         t[r], number[r] = traverse(
-            first, count, order, lambda node: boxes[node],
-            lambda things, o=o, d=d: hit_triangle(o, d, corners[things])[0], o, d,
-        )  # fmt: skip
+            first,
+            count,
+            order,
+            lambda node: boxes[node],
+            lambda things, o=o, d=d: hit_triangle(o, d, corners[things])[0],
+            o,
+            d,
+        )
     return t, number

@@ -2,9 +2,4 @@
 
 TASKS = ("05.5",)
 LOSES = ("05.5.halves",)
-REPLACE = [
-    (
-        "stop - start <= LEAF",
-        "stop - start <= 1",
-    ),
-]
+REPLACE = [("stop - start <= LEAF", "stop - start <= 1")]

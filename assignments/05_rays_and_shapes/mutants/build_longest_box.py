@@ -6,5 +6,5 @@ REPLACE = [
     (
         "axis = np.ptp(twice_middle[mine], axis=0).argmax()",
         "axis = (high[mine].max(axis=0) - low[mine].min(axis=0)).argmax()",
-    ),
+    )
 ]

@@ -6,5 +6,5 @@ REPLACE = [
     (
         "order[start:stop] = mine[np.argsort(twice_middle[mine, axis])]",
         "order[start:stop] = mine[np.argsort(low[mine, axis])]",
-    ),
+    )
 ]

@@ -1,13 +1,10 @@
 """The derivative of the march is taken to be zero."""
 
 TASKS = ("05.4",)
-LOSES = (
-    "05.4.derivative",
-    "05.4.hidden",
-)
+LOSES = ("05.4.derivative", "05.4.hidden")
 REPLACE = [
     (
         "d_t[done] = -by_parameter[there] / np.sum(gradient[there] * directions[done], axis=1)",
         "d_t[done] = 0.0",
-    ),
+    )
 ]

@@ -2,9 +2,4 @@
 
 TASKS = ("05.4",)
 LOSES = ("05.4.cost",)
-REPLACE = [
-    (
-        "live = live[~there & (t[live] <= t_max)]",
-        "live = live[~there & (t[live] < t_max)]",
-    ),
-]
+REPLACE = [("live = live[~there & (t[live] <= t_max)]", "live = live[~there & (t[live] < t_max)]")]

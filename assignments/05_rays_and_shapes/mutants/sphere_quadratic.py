@@ -6,5 +6,5 @@ REPLACE = [
     (
         "rest = (radius**2 - np.sum(aside**2, axis=1)) / square",
         "rest = nearest**2 - (np.sum(offset**2, axis=1) - radius**2) / square",
-    ),
+    )
 ]

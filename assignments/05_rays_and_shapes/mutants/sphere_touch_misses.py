@@ -2,9 +2,4 @@
 
 TASKS = ("05.1",)
 LOSES = ("05.1.misses",)
-REPLACE = [
-    (
-        "rest >= 0",
-        "rest > 0",
-    ),
-]
+REPLACE = [("rest >= 0", "rest > 0")]

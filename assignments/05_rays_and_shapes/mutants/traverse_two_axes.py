@@ -1,13 +1,10 @@
 """Only two of three axes are looked at."""
 
 TASKS = ("05.6",)
-LOSES = (
-    "05.6.growth",
-    "05.6.hidden",
-)
+LOSES = ("05.6.growth", "05.6.hidden")
 REPLACE = [
     (
         "near, far = max(faces.min(axis=0).max(), 0.0), faces.max(axis=0).min()",
         "near, far = max(faces.min(axis=0)[:2].max(), 0.0), faces.max(axis=0)[:2].min()",
-    ),
+    )
 ]

@@ -1,14 +1,10 @@
 """The whole plane of the triangle is met, not the triangle alone."""
 
 TASKS = ("05.2",)
-LOSES = (
-    "05.2.misses",
-    "05.2.edges",
-    "05.2.hidden",
-)
+LOSES = ("05.2.misses", "05.2.edges", "05.2.hidden")
 REPLACE = [
     (
         "inside = ((volumes >= 0).all(axis=0) | (volumes <= 0).all(axis=0)) & (whole != 0)",
         "inside = whole != 0",
-    ),
+    )
 ]

@@ -6,5 +6,5 @@ REPLACE = [
     (
         "inside = ((volumes >= 0).all(axis=0) | (volumes <= 0).all(axis=0)) & (whole != 0)",
         "inside = ((volumes > 0).all(axis=0) | (volumes < 0).all(axis=0)) & (whole != 0)",
-    ),
+    )
 ]

@@ -56,8 +56,14 @@ def see(scene, origins, directions):
     outward[round_] = (points[round_] - which[:, :3]) / which[:, 3:]
     front = np.sum(outward * directions, axis=1) < 0
     normals = np.where(front[:, None], outward, -outward)
-    return {"points": points, "normals": normals, "wo": -directions, "front": front, "t": t,
-            "thing": thing}  # fmt: skip
+    return {
+        "points": points,
+        "normals": normals,
+        "wo": -directions,
+        "front": front,
+        "t": t,
+        "thing": thing,
+    }
 
 
 def some(hit, rows):
@@ -414,25 +420,39 @@ def assemble(things):
 def demo_room():
     """A room with a lamp in the ceiling, a glossy floor and a ball of metal: thing 7."""
     lamp, white = {"emission": [9.0, 8.0, 6.5], "base_color": 0.0}, {"base_color": 0.7}
-    return assemble([
-        rectangle([-1, 0, -1], [0, 0, 2], [2, 0, 0], base_color=[0.4, 0.35, 0.3], roughness=0.35),
-        rectangle([-1, 2, -1], [2, 0, 0], [0, 0, 2], **white),
-        rectangle([-1, 0, -1], [2, 0, 0], [0, 2, 0], **white),
-        rectangle([-1, 0, -1], [0, 2, 0], [0, 0, 2], base_color=[0.65, 0.1, 0.1]),
-        rectangle([1, 0, -1], [0, 0, 2], [0, 2, 0], base_color=[0.15, 0.45, 0.15]),
-        rectangle([-0.35, 1.98, -0.35], [0.7, 0, 0], [0, 0, 0.7], **lamp),
-        rectangle([-0.95, 0.15, -0.95], [0.5, 0, -0.02], [0, 0.5, 0], base_color=[0.1, 0.2, 0.6]),
-        ball([0.25, 0.5, 0], 0.5, base_color=[0.9, 0.6, 0.3], metalness=1, roughness=0.4),
-    ])  # fmt: skip
+    return assemble(
+        [
+            rectangle(
+                [-1, 0, -1], [0, 0, 2], [2, 0, 0], base_color=[0.4, 0.35, 0.3], roughness=0.35
+            ),
+            rectangle([-1, 2, -1], [2, 0, 0], [0, 0, 2], **white),
+            rectangle([-1, 0, -1], [2, 0, 0], [0, 2, 0], **white),
+            rectangle([-1, 0, -1], [0, 2, 0], [0, 0, 2], base_color=[0.65, 0.1, 0.1]),
+            rectangle([1, 0, -1], [0, 0, 2], [0, 2, 0], base_color=[0.15, 0.45, 0.15]),
+            rectangle([-0.35, 1.98, -0.35], [0.7, 0, 0], [0, 0, 0.7], **lamp),
+            rectangle(
+                [-0.95, 0.15, -0.95], [0.5, 0, -0.02], [0, 0.5, 0], base_color=[0.1, 0.2, 0.6]
+            ),
+            ball([0.25, 0.5, 0], 0.5, base_color=[0.9, 0.6, 0.3], metalness=1, roughness=0.4),
+        ]
+    )
 
 
 def demo_table(base_color=(0.8, 0.5, 0.2), roughness=0.35):
     """A table under a slanted lamp; the table is thing 0. Its picture is 10 x 7 pixels small."""
-    return assemble([
-        rectangle([-1, 0, -1], [0, 0, 2], [2, 0, 0], base_color=base_color, roughness=roughness,
-                  metalness=0.5),
-        rectangle([-0.5, 0.4, -1], [1, 0, 0], [0, 0.5, 0.4], emission=[6, 5, 4], base_color=0),
-    ])  # fmt: skip
+    return assemble(
+        [
+            rectangle(
+                [-1, 0, -1],
+                [0, 0, 2],
+                [2, 0, 0],
+                base_color=base_color,
+                roughness=roughness,
+                metalness=0.5,
+            ),
+            rectangle([-0.5, 0.4, -1], [1, 0, 0], [0, 0.5, 0.4], emission=[6, 5, 4], base_color=0),
+        ]
+    )
 
 
 def table_rays():

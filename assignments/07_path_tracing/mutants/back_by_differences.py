@@ -15,5 +15,5 @@ REPLACE = [
             "            ends.append(np.vdot(seen, d_radiance))\n"
             "        d_roughness[what] = (ends[0] - ends[1]) / 2e-5"
         ),
-    ),
+    )
 ]

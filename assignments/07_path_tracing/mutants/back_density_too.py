@@ -1,12 +1,7 @@
 """The densities are differentiated as well: that has another mean."""
 
 TASKS = ("07.6",)
-LOSES = (
-    "07.6.cost",
-    "07.6.differences",
-    "07.6.hidden",
-    "07.6.mean",
-)
+LOSES = ("07.6.cost", "07.6.differences", "07.6.hidden", "07.6.mean")
 REPLACE = [
     (
         "return d_base_color, d_roughness\n",
@@ -20,5 +15,5 @@ REPLACE = [
             '    np.add.at(d_roughness, both["thing"], extra)\n'
             "    return d_base_color, d_roughness\n"
         ),
-    ),
+    )
 ]

@@ -1,11 +1,7 @@
 """The weights are differentiated as well; they are held fixed, as the directions are."""
 
 TASKS = ("07.6",)
-LOSES = (
-    "07.6.cost",
-    "07.6.differences",
-    "07.6.hidden",
-)
+LOSES = ("07.6.cost", "07.6.differences", "07.6.hidden")
 REPLACE = [
     (
         "return d_base_color, d_roughness\n",
@@ -22,5 +18,5 @@ REPLACE = [
             '    np.add.at(d_roughness, both["thing"], extra)\n'
             "    return d_base_color, d_roughness\n"
         ),
-    ),
+    )
 ]

@@ -1,15 +1,10 @@
 """A small number in the divisor moves all weights: they do not sum to 1."""
 
 TASKS = ("07.2",)
-LOSES = (
-    "07.2.extremes",
-    "07.2.hidden",
-    "07.2.sum",
-    "07.2.values",
-)
+LOSES = ("07.2.extremes", "07.2.hidden", "07.2.sum", "07.2.values")
 REPLACE = [
     (
         "weight[drawn] = (pdf[drawn] / np.hypot(pdf[drawn], other[drawn])) ** 2",
         "weight[drawn] = (pdf[drawn] / (np.hypot(pdf[drawn], other[drawn]) + 0.01)) ** 2",
-    ),
+    )
 ]

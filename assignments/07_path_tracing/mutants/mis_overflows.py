@@ -10,5 +10,5 @@ REPLACE = [
             "        weight[drawn] = np.nan_to_num(pdf[drawn] ** 2 / (pdf[drawn] ** 2 + "
             "other[drawn] ** 2))"
         ),
-    ),
+    )
 ]

@@ -6,5 +6,5 @@ REPLACE = [
     (
         "facing = -np.sum(wi[rows] * front_normals(scene)[lamp], axis=1)",
         "facing = np.abs(np.sum(wi[rows] * front_normals(scene)[lamp], axis=1))",
-    ),
+    )
 ]

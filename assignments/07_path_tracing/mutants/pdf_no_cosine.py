@@ -1,13 +1,10 @@
 """The cosine at the lamp is missing: a lamp seen at a slant looks smaller."""
 
 TASKS = ("07.1",)
-LOSES = (
-    "07.1.hidden",
-    "07.1.solid_angle",
-)
+LOSES = ("07.1.hidden", "07.1.solid_angle")
 REPLACE = [
     (
         "small = len(numbers) * width[seen] * height[seen] * facing[seen]",
         "small = len(numbers) * width[seen] * height[seen]",
-    ),
+    )
 ]

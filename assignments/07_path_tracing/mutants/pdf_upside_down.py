@@ -1,14 +1,10 @@
 """It is 1 over the density."""
 
 TASKS = ("07.1",)
-LOSES = (
-    "07.1.hidden",
-    "07.1.solid_angle",
-    "07.1.straight",
-)
+LOSES = ("07.1.hidden", "07.1.solid_angle", "07.1.straight")
 REPLACE = [
     (
         "pdf[rows[seen]] = distance[rows[seen]] ** 2 / small",
         "pdf[rows[seen]] = small / distance[rows[seen]] ** 2",
-    ),
+    )
 ]

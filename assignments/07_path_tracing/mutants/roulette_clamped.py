@@ -1,14 +1,10 @@
 """1 / q is clamped: what was to make up for the ended paths is lost."""
 
 TASKS = ("07.4",)
-LOSES = (
-    "07.4.hidden",
-    "07.4.mean",
-    "07.4.values",
-)
+LOSES = ("07.4.hidden", "07.4.mean", "07.4.values")
 REPLACE = [
     (
         "after[alive] = beta[alive] / q[alive, None]",
         "after[alive] = beta[alive] * np.minimum(1 / q[alive, None], 2.0)",
-    ),
+    )
 ]

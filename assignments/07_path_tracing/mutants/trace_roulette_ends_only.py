@@ -6,5 +6,5 @@ REPLACE = [
     (
         "beta, _ = roulette(beta, rng.random(len(live)))",
         "beta = beta * roulette(beta, rng.random(len(live)))[1][:, None]",
-    ),
+    )
 ]

@@ -10,6 +10,4 @@ LOSES = (
     "08.1.order",
     "08.1.hidden",
 )
-REPLACE = [
-    ("np.cumsum(s, axis=1)", "np.cumsum(s, axis=0)"),
-]
+REPLACE = [("np.cumsum(s, axis=1)", "np.cumsum(s, axis=0)")]

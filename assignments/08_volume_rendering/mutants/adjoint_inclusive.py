@@ -13,5 +13,5 @@ REPLACE = [
     (
         "weight, after = T * -np.expm1(-tau), T * np.exp(-tau)",
         "weight, after = T * np.exp(-tau) * -np.expm1(-tau), T * np.exp(-tau)",
-    ),
+    )
 ]

@@ -9,6 +9,4 @@ LOSES = (
     "08.2.hidden",
     "08.2.cost",
 )
-REPLACE = [
-    ("d_sigma[:, k] = dt[:, k] * (after * v - left)", "d_sigma[:, k] = after * v - left"),
-]
+REPLACE = [("d_sigma[:, k] = dt[:, k] * (after * v - left)", "d_sigma[:, k] = after * v - left")]

@@ -2,6 +2,4 @@
 
 TASKS = ("08.2",)
 LOSES = ("08.2.walls",)
-REPLACE = [
-    ("weight, after = T * -np.expm1(-tau),", "weight, after = T * (1 - np.exp(-tau)),"),
-]
+REPLACE = [("weight, after = T * -np.expm1(-tau),", "weight, after = T * (1 - np.exp(-tau)),")]

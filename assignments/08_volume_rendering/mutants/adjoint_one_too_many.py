@@ -1,13 +1,7 @@
 """What lies directly behind a step is hidden by it, too: you leave one step out."""
 
 TASKS = ("08.2",)
-LOSES = (
-    "08.2.differences",
-    "08.2.background",
-    "08.2.walls",
-    "08.2.hidden",
-    "08.2.cost",
-)
+LOSES = ("08.2.differences", "08.2.background", "08.2.walls", "08.2.hidden", "08.2.cost")
 REPLACE = [
     (
         (
@@ -23,5 +17,5 @@ REPLACE = [
             "1])\n"
             "            d_sigma[:, k] += dt[:, k] * ahead\n"
         ),
-    ),
+    )
 ]

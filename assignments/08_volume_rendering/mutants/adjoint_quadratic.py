@@ -17,5 +17,5 @@ REPLACE = [
             "            reach = reach * np.exp(-depth)\n"
             "        d_sigma[:, k] = dt[:, k] * (after * v - hides)\n"
         ),
-    ),
+    )
 ]

@@ -1,12 +1,7 @@
 """You divide by the sum of weights: an adjoint adds up, it does not average."""
 
 TASKS = ("08.5",)
-LOSES = (
-    "08.5.single",
-    "08.5.transpose",
-    "08.5.repeated",
-    "08.5.hidden",
-)
+LOSES = ("08.5.single", "08.5.transpose", "08.5.repeated", "08.5.hidden")
 REPLACE = [
     (
         "    return d_grid\n",
@@ -18,5 +13,5 @@ REPLACE = [
             "        np.add.at(total, (a, b, c), part[:, None])\n"
             "    return d_grid / np.where(total > 0, total, 1)\n"
         ),
-    ),
+    )
 ]

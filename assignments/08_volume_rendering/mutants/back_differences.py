@@ -13,5 +13,5 @@ REPLACE = [
             "        d_grid[voxel] = np.sum(trilinear(unit, u) * g, axis=0)\n"
             "    return d_grid\n"
         ),
-    ),
+    )
 ]

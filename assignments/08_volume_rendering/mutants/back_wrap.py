@@ -1,10 +1,7 @@
 """Your border wraps around: what lies beyond belongs to the voxel at the border."""
 
 TASKS = ("08.5",)
-LOSES = (
-    "08.5.transpose",
-    "08.5.hidden",
-)
+LOSES = ("08.5.transpose", "08.5.hidden")
 REPLACE = [
     ("where = np.clip(sizes * u - 0.5, 0, sizes - 1)", "where = sizes * u - 0.5"),
     ("floor = where.astype(int)", "floor = np.floor(where).astype(int)"),

@@ -2,6 +2,4 @@
 
 TASKS = ("08.3",)
 LOSES = ("08.3.parallel",)
-REPLACE = [
-    ("(origins >= low) & (origins <= high)", "(origins > low) & (origins < high)"),
-]
+REPLACE = [("(origins >= low) & (origins <= high)", "(origins > low) & (origins < high)")]

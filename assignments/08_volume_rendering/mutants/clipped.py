@@ -10,6 +10,4 @@ LOSES = (
     "08.1.order",
     "08.1.hidden",
 )
-REPLACE = [
-    ("-np.expm1(-s)", "np.minimum(s, 1)"),
-]
+REPLACE = [("-np.expm1(-s)", "np.minimum(s, 1)")]

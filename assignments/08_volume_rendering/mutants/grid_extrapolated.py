@@ -1,10 +1,7 @@
 """Beyond the outermost centres you extend the slope: the value at the border should hold."""
 
 TASKS = ("08.4",)
-LOSES = (
-    "08.4.edge",
-    "08.4.hidden",
-)
+LOSES = ("08.4.edge", "08.4.hidden")
 REPLACE = [
     ("place = np.clip(u * counts - 0.5, 0, counts - 1)", "place = u * counts - 0.5"),
     (

@@ -10,6 +10,4 @@ LOSES = (
     "08.1.order",
     "08.1.hidden",
 )
-REPLACE = [
-    ("np.exp(-front) *", "np.exp(-behind) *"),
-]
+REPLACE = [("np.exp(-front) *", "np.exp(-behind) *")]

@@ -10,6 +10,4 @@ LOSES = (
     "08.1.order",
     "08.1.hidden",
 )
-REPLACE = [
-    ("w = np.exp(-front) * -np.expm1(-s)", "w = np.exp(-behind) * sigma"),
-]
+REPLACE = [("w = np.exp(-front) * -np.expm1(-s)", "w = np.exp(-behind) * sigma")]

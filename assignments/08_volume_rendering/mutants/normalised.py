@@ -16,5 +16,5 @@ REPLACE = [
             "T_end = np.exp(-behind[:, -1])\n"
             "    w = w / np.maximum(np.sum(w, axis=1, keepdims=True), 1e-12)"
         ),
-    ),
+    )
 ]

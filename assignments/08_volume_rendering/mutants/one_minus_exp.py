@@ -2,6 +2,4 @@
 
 TASKS = ("08.1",)
 LOSES = ("08.1.extremes",)
-REPLACE = [
-    ("-np.expm1(-s)", "(1 - np.exp(-s))"),
-]
+REPLACE = [("-np.expm1(-s)", "(1 - np.exp(-s))")]

@@ -18,5 +18,5 @@ REPLACE = [
             "axis=1)[:, :-1]], axis=1)\n"
             "    w = rest"
         ),
-    ),
+    )
 ]

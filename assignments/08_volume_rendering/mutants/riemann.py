@@ -10,6 +10,4 @@ LOSES = (
     "08.1.order",
     "08.1.hidden",
 )
-REPLACE = [
-    ("-np.expm1(-s)", "s"),
-]
+REPLACE = [("-np.expm1(-s)", "s")]

@@ -1,14 +1,10 @@
 """Each of your steps has a new Adam, which remembers nothing."""
 
 TASKS = ("09.6",)
-LOSES = (
-    "09.6.first",
-    "09.6.hidden",
-    "09.6.recovers",
-)
+LOSES = ("09.6.first", "09.6.hidden", "09.6.recovers")
 REPLACE = [
     (
         "grid = adam.step(grid, d_grid + TV * d_rough)",
         "grid = Adam().step(grid, d_grid + TV * d_rough)",
-    ),
+    )
 ]

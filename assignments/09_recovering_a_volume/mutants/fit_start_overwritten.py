@@ -6,5 +6,5 @@ REPLACE = [
     (
         "grid = adam.step(grid, d_grid + TV * d_rough)",
         "grid[:] = adam.step(grid, d_grid + TV * d_rough)",
-    ),
+    )
 ]

@@ -2,9 +2,4 @@
 
 TASKS = ("09.6",)
 LOSES = ("09.6.start",)
-REPLACE = [
-    (
-        "return grid.copy(), losses",
-        "return grid, losses",
-    ),
-]
+REPLACE = [("return grid.copy(), losses", "return grid, losses")]

@@ -1,15 +1,10 @@
 """You walk uphill."""
 
 TASKS = ("09.6",)
-LOSES = (
-    "09.6.first",
-    "09.6.falls",
-    "09.6.hidden",
-    "09.6.recovers",
-)
+LOSES = ("09.6.first", "09.6.falls", "09.6.hidden", "09.6.recovers")
 REPLACE = [
     (
         "grid = adam.step(grid, d_grid + TV * d_rough)",
         "grid = adam.step(grid, -(d_grid + TV * d_rough))",
-    ),
+    )
 ]

@@ -6,5 +6,5 @@ REPLACE = [
     (
         "return np.where(np.abs(slope) > FLOOR * np.abs(slope).max(), np.sign(slope), 0.0)",
         "return np.where(np.abs(slope) > FLOOR, np.sign(slope), 0.0)",
-    ),
+    )
 ]

@@ -2,9 +2,4 @@
 
 TASKS = ("09.5",)
 LOSES = ("09.5.silent",)
-REPLACE = [
-    (
-        "FLOOR * np.abs(slope).max()",
-        "FLOOR * slope.max()",
-    ),
-]
+REPLACE = [("FLOOR * np.abs(slope).max()", "FLOOR * slope.max()")]

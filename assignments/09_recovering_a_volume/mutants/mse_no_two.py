@@ -1,14 +1,10 @@
 """The square's derivative has a factor of 2."""
 
 TASKS = ("09.3",)
-LOSES = (
-    "09.3.differences",
-    "09.3.chain",
-    "09.3.hidden",
-)
+LOSES = ("09.3.differences", "09.3.chain", "09.3.hidden")
 REPLACE = [
     (
         "return float(np.sum(residual**2) / len(residual)), 2 / len(residual) * residual",
         "return float(np.sum(residual**2) / len(residual)), 1 / len(residual) * residual",
-    ),
+    )
 ]

@@ -1,15 +1,10 @@
 """You return the root of the loss."""
 
 TASKS = ("09.3",)
-LOSES = (
-    "09.3.values",
-    "09.3.differences",
-    "09.3.chain",
-    "09.3.hidden",
-)
+LOSES = ("09.3.values", "09.3.differences", "09.3.chain", "09.3.hidden")
 REPLACE = [
     (
         "return float(np.sum(residual**2) / len(residual)), 2 / len(residual) * residual",
         "return float(np.sqrt(np.sum(residual**2) / len(residual))), 2 / len(residual) * residual",
-    ),
+    )
 ]

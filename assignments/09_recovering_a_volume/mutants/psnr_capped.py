@@ -1,14 +1,10 @@
 """You add a small number to the error: equal pictures have infinitely many decibels."""
 
 TASKS = ("09.1",)
-LOSES = (
-    "09.1.values",
-    "09.1.mean",
-    "09.1.hidden",
-)
+LOSES = ("09.1.values", "09.1.mean", "09.1.hidden")
 REPLACE = [
     (
         "float(-10 * np.log10(np.mean((picture - truth) ** 2)))",
         "float(-10 * np.log10(np.mean((picture - truth) ** 2) + 1e-8))",
-    ),
+    )
 ]

@@ -15,5 +15,5 @@ REPLACE = [
             "        d_grid[index] = np.sum(np.sqrt(squares)).imag / 1e-30 / count\n"
             "    return float(np.sum(length - eps) / count), d_grid\n"
         ),
-    ),
+    )
 ]

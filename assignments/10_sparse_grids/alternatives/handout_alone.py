@@ -29,10 +29,7 @@ def octree_from_dense(full):
                     x, y, z = (
                         (slice(0, h), slice(h, None))[a],
                         (slice(0, h), slice(h, None))[b],
-                        (
-                            slice(0, h),
-                            slice(h, None),
-                        )[c],
+                        (slice(0, h), slice(h, None))[c],
                     )
                     fill(child + 4 * a + 2 * b + c, cube[x, y, z])
 

@@ -1,10 +1,7 @@
 """The shares are those before the last step; take those of the newest values."""
 
 TASKS = ("10.6",)
-LOSES = (
-    "10.6.chain",
-    "10.6.hidden",
-)
+LOSES = ("10.6.chain", "10.6.hidden")
 REPLACE = [
     ("adam = Adam()", "adam, before = Adam(), values"),
     (

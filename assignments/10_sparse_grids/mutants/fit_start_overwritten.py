@@ -2,6 +2,4 @@
 
 TASKS = ("10.6",)
 LOSES = ("10.6.start",)
-REPLACE = [
-    ("values = adam.step(values, d_values)", "values[:] = adam.step(values, d_values)"),
-]
+REPLACE = [("values = adam.step(values, d_values)", "values[:] = adam.step(values, d_values)")]

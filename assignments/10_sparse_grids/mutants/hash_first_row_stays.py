@@ -6,5 +6,5 @@ REPLACE = [
     (
         "entry[:3], entry[3] = voxel, row",
         "entry[:3], entry[3] = voxel, row if entry[3] < 0 else entry[3]",
-    ),
+    )
 ]

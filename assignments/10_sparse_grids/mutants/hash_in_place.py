@@ -2,6 +2,4 @@
 
 TASKS = ("10.3",)
 LOSES = ("10.3.kept",)
-REPLACE = [
-    ("table = table.copy()", "table.setflags(write=True)"),
-]
+REPLACE = [("table = table.copy()", "table.setflags(write=True)")]

@@ -2,6 +2,4 @@
 
 TASKS = ("10.3",)
 LOSES = ("10.3.again",)
-REPLACE = [
-    ("if entry[3] < 0 or (entry[:3] == voxel).all():", "if entry[3] < 0:"),
-]
+REPLACE = [("if entry[3] < 0 or (entry[:3] == voxel).all():", "if entry[3] < 0:")]

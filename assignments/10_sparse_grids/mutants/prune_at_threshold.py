@@ -2,6 +2,4 @@
 
 TASKS = ("10.5",)
 LOSES = ("10.5.pruned",)
-REPLACE = [
-    ("worth > threshold", "worth >= threshold"),
-]
+REPLACE = [("worth > threshold", "worth >= threshold")]

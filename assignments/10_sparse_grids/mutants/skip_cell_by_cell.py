@@ -6,5 +6,5 @@ REPLACE = [
     (
         "face = low + np.where(step > 0, side[:, None], 0.0)",
         "face = np.floor(here) + np.where(step > 0, 1.0, 0.0)",
-    ),
+    )
 ]

@@ -2,6 +2,4 @@
 
 TASKS = ("10.2",)
 LOSES = ("10.2.cost",)
-REPLACE = [
-    ("np.maximum(jump, 1)", "np.minimum(np.maximum(jump, 1), 1)"),
-]
+REPLACE = [("np.maximum(jump, 1)", "np.minimum(np.maximum(jump, 1), 1)")]

@@ -2,7 +2,4 @@
 
 TASKS = ("10.2",)
 LOSES = ("10.2.faces",)
-REPLACE = [
-    ("for _ in range(count):", "while len(live):"),
-    ("np.maximum(jump, 1)", "jump"),
-]
+REPLACE = [("for _ in range(count):", "while len(live):"), ("np.maximum(jump, 1)", "jump")]

@@ -2,6 +2,4 @@
 
 TASKS = ("10.2",)
 LOSES = ("10.2.cost",)
-REPLACE = [
-    ("np.where(step == 0, np.inf, (face - here) / step)", "(face - here) / step"),
-]
+REPLACE = [("np.where(step == 0, np.inf, (face - here) / step)", "(face - here) / step")]

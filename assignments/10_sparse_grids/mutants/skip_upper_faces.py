@@ -2,6 +2,4 @@
 
 TASKS = ("10.2",)
 LOSES = ("10.2.cost",)
-REPLACE = [
-    ("np.where(step > 0, side[:, None], 0.0)", "side[:, None]"),
-]
+REPLACE = [("np.where(step > 0, side[:, None], 0.0)", "side[:, None]")]

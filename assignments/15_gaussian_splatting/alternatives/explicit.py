@@ -13,15 +13,15 @@ SMALL = 0.06  # metres; longer ones are split, the others cloned
 THRESHOLD = 0.002  # of the pressure
 SHRINK = 1.6  # a part of a split Gaussian is smaller by this
 TILE = 16  # pixels
-RATES = {
-    "means": 0.008, "log_scales": 0.03, "quats": 0.03, "opacity_logits": 0.05, "colors": 0.02,
-}  # fmt: skip
+RATES = {"means": 0.008, "log_scales": 0.03, "quats": 0.03, "opacity_logits": 0.05, "colors": 0.02}
 # The matrix that takes v to the cross product u x v has the entries sum_k CROSS[i, j, k] u_k.
-CROSS = np.array([
-    [[0, 0, 0], [0, 0, -1], [0, 1, 0]],
-    [[0, 0, 1], [0, 0, 0], [-1, 0, 0]],
-    [[0, -1, 0], [1, 0, 0], [0, 0, 0]],
-])  # fmt: skip
+CROSS = np.array(
+    [
+        [[0, 0, 0], [0, 0, -1], [0, 1, 0]],
+        [[0, 0, 1], [0, 0, 0], [-1, 0, 0]],
+        [[0, -1, 0], [1, 0, 0], [0, 0, 0]],
+    ]
+)
 
 
 def covariance(quats, log_scales):
@@ -41,16 +41,26 @@ def covariance(quats, log_scales):
         G = np.einsum("nij,njk,nk->nik", d_cov, R, variance)
         G = G + np.einsum("nji,njk,nk->nik", d_cov, R, variance)
         g = 2 * G.transpose(1, 2, 0)
-        d = np.stack([
-            w * (g[0, 0] + g[1, 1] + g[2, 2]) + z * (g[1, 0] - g[0, 1]) + y * (g[0, 2] - g[2, 0])
-            + x * (g[2, 1] - g[1, 2]),
-            x * (g[0, 0] - g[1, 1] - g[2, 2]) + y * (g[0, 1] + g[1, 0]) + z * (g[0, 2] + g[2, 0])
-            + w * (g[2, 1] - g[1, 2]),
-            y * (g[1, 1] - g[0, 0] - g[2, 2]) + x * (g[0, 1] + g[1, 0]) + z * (g[1, 2] + g[2, 1])
-            + w * (g[0, 2] - g[2, 0]),
-            z * (g[2, 2] - g[0, 0] - g[1, 1]) + x * (g[0, 2] + g[2, 0]) + y * (g[1, 2] + g[2, 1])
-            + w * (g[1, 0] - g[0, 1]),
-        ])  # fmt: skip
+        d = np.stack(
+            [
+                w * (g[0, 0] + g[1, 1] + g[2, 2])
+                + z * (g[1, 0] - g[0, 1])
+                + y * (g[0, 2] - g[2, 0])
+                + x * (g[2, 1] - g[1, 2]),
+                x * (g[0, 0] - g[1, 1] - g[2, 2])
+                + y * (g[0, 1] + g[1, 0])
+                + z * (g[0, 2] + g[2, 0])
+                + w * (g[2, 1] - g[1, 2]),
+                y * (g[1, 1] - g[0, 0] - g[2, 2])
+                + x * (g[0, 1] + g[1, 0])
+                + z * (g[1, 2] + g[2, 1])
+                + w * (g[0, 2] - g[2, 0]),
+                z * (g[2, 2] - g[0, 0] - g[1, 1])
+                + x * (g[0, 2] + g[2, 0])
+                + y * (g[1, 2] + g[2, 1])
+                + w * (g[1, 0] - g[0, 1]),
+            ]
+        )
         unit = np.stack([w, x, y, z])
         return ((d - unit * np.sum(d * unit, axis=0)) / size).T, 2 * variance * d_variance
 

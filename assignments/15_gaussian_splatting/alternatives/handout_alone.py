@@ -13,15 +13,15 @@ SMALL = 0.06  # metres; longer ones are split, the others cloned
 THRESHOLD = 0.002  # of the pressure
 SHRINK = 1.6  # a part of a split Gaussian is smaller by this
 TILE = 16  # pixels
-RATES = {
-    "means": 0.008, "log_scales": 0.03, "quats": 0.03, "opacity_logits": 0.05, "colors": 0.02,
-}  # fmt: skip
+RATES = {"means": 0.008, "log_scales": 0.03, "quats": 0.03, "opacity_logits": 0.05, "colors": 0.02}
 # The matrix that takes v to the cross product u x v has the entries sum_k CROSS[i, j, k] u_k.
-CROSS = np.array([
-    [[0, 0, 0], [0, 0, -1], [0, 1, 0]],
-    [[0, 0, 1], [0, 0, 0], [-1, 0, 0]],
-    [[0, -1, 0], [1, 0, 0], [0, 0, 0]],
-])  # fmt: skip
+CROSS = np.array(
+    [
+        [[0, 0, 0], [0, 0, -1], [0, 1, 0]],
+        [[0, 0, 1], [0, 0, 0], [-1, 0, 0]],
+        [[0, -1, 0], [1, 0, 0], [0, 0, 0]],
+    ]
+)
 
 
 def covariance(quats, log_scales):

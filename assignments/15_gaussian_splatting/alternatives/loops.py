@@ -13,36 +13,40 @@ SMALL = 0.06  # metres; longer ones are split, the others cloned
 THRESHOLD = 0.002  # of the pressure
 SHRINK = 1.6  # a part of a split Gaussian is smaller by this
 TILE = 16  # pixels
-RATES = {
-    "means": 0.008, "log_scales": 0.03, "quats": 0.03, "opacity_logits": 0.05, "colors": 0.02,
-}  # fmt: skip
+RATES = {"means": 0.008, "log_scales": 0.03, "quats": 0.03, "opacity_logits": 0.05, "colors": 0.02}
 # The matrix that takes v to the cross product u x v has the entries sum_k CROSS[i, j, k] u_k.
-CROSS = np.array([
-    [[0, 0, 0], [0, 0, -1], [0, 1, 0]],
-    [[0, 0, 1], [0, 0, 0], [-1, 0, 0]],
-    [[0, -1, 0], [1, 0, 0], [0, 0, 0]],
-])  # fmt: skip
+CROSS = np.array(
+    [
+        [[0, 0, 0], [0, 0, -1], [0, 1, 0]],
+        [[0, 0, 1], [0, 0, 0], [-1, 0, 0]],
+        [[0, -1, 0], [1, 0, 0], [0, 0, 0]],
+    ]
+)
 
 
 def turning(q):
     """R of a unit quaternion, entry by entry."""
     w, x, y, z = q
-    return np.array([
-        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-    ])  # fmt: skip
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+        ]
+    )
 
 
 def turning_slopes(q):
     """The derivatives of `turning` by w, x, y, z."""
     w, x, y, z = q
-    return 2 * np.array([
-        [[0, -z, y], [z, 0, -x], [-y, x, 0]],
-        [[0, y, z], [y, -2 * x, -w], [z, w, -2 * x]],
-        [[-2 * y, x, w], [x, 0, z], [-w, z, -2 * y]],
-        [[-2 * z, -w, x], [w, -2 * z, y], [x, y, 0]],
-    ])  # fmt: skip
+    return 2 * np.array(
+        [
+            [[0, -z, y], [z, 0, -x], [-y, x, 0]],
+            [[0, y, z], [y, -2 * x, -w], [z, w, -2 * x]],
+            [[-2 * y, x, w], [x, 0, z], [-w, z, -2 * y]],
+            [[-2 * z, -w, x], [w, -2 * z, y], [x, y, 0]],
+        ]
+    )
 
 
 def covariance(quats, log_scales):

@@ -2,9 +2,4 @@
 
 TASKS = ("15.5",)
 LOSES = ("15.5.behind",)
-REPLACE = [
-    (
-        ("camera) > NEAR\n    part"),
-        ("camera) > 0\n    part"),
-    ),
-]
+REPLACE = [(("camera) > NEAR\n    part"), ("camera) > 0\n    part"))]

@@ -6,5 +6,5 @@ REPLACE = [
     (
         '        found["quats"], found["log_scales"]',
         ('        found["pull"] = d_mean2d\n        found["quats"], found["log_scales"]'),
-    ),
+    )
 ]

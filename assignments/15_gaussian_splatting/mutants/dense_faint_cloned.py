@@ -6,5 +6,5 @@ REPLACE = [
     (
         "chosen = rows[(kept & (pressure > THRESHOLD))[rows]]",
         "chosen = rows[(pressure > THRESHOLD)[rows]]",
-    ),
+    )
 ]

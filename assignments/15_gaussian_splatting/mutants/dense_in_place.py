@@ -2,9 +2,4 @@
 
 TASKS = ("15.6",)
 LOSES = ("15.6.rows",)
-REPLACE = [
-    (
-        'logits = gaussians["opacity_logits"].copy()',
-        'logits = gaussians["opacity_logits"]',
-    ),
-]
+REPLACE = [('logits = gaussians["opacity_logits"].copy()', 'logits = gaussians["opacity_logits"]')]

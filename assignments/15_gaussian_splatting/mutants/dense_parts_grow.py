@@ -1,13 +1,5 @@
 """A part is smaller than the whole: yours is a little larger."""
 
 TASKS = ("15.6",)
-LOSES = (
-    "15.6.values",
-    "15.6.hidden",
-)
-REPLACE = [
-    (
-        "[fresh] -= np.log(SHRINK)",
-        "[fresh] += np.log(SHRINK) / 5",
-    ),
-]
+LOSES = ("15.6.values", "15.6.hidden")
+REPLACE = [("[fresh] -= np.log(SHRINK)", "[fresh] += np.log(SHRINK) / 5")]

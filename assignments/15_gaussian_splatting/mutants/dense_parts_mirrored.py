@@ -1,10 +1,7 @@
 """Every part has a draw of its own: yours lie opposite each other."""
 
 TASKS = ("15.6",)
-LOSES = (
-    "15.6.values",
-    "15.6.hidden",
-)
+LOSES = ("15.6.values", "15.6.hidden")
 REPLACE = [
     (
         "drawn = rng.standard_normal((2 * len(split), 3))",
@@ -12,5 +9,5 @@ REPLACE = [
             "drawn = rng.standard_normal((len(split), 3))\n"
             "    drawn = np.concatenate([drawn, -drawn])"
         ),
-    ),
+    )
 ]

@@ -13,5 +13,5 @@ REPLACE = [
     (
         't = means @ W.T + camera["camera_from_world"][:, 3]',
         't = (means - camera["camera_from_world"][:, 3]) @ W',
-    ),
+    )
 ]

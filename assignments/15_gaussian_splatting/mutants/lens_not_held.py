@@ -1,13 +1,5 @@
 """Outside of the limits the slopes are those of the limit: you hold nothing."""
 
 TASKS = ("15.2",)
-LOSES = (
-    "15.2.limits",
-    "15.2.hidden",
-)
-REPLACE = [
-    (
-        "h = np.clip(u, *limits(camera))",
-        "h = u",
-    ),
-]
+LOSES = ("15.2.limits", "15.2.hidden")
+REPLACE = [("h = np.clip(u, *limits(camera))", "h = u")]

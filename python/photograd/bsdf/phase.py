@@ -45,9 +45,12 @@ class PhaseModel:
         """dL/dparameters (P,) and dL/dcos_theta (N,) of dL/dp (N,)."""
         d_parameters, d_cos_theta = np.zeros_like(parameters), np.zeros_like(cos_theta)
         self.core.p_backward(
-            parameters, np.ascontiguousarray(cos_theta), np.ascontiguousarray(d_p),
-            d_parameters, d_cos_theta,
-        )  # fmt: skip
+            parameters,
+            np.ascontiguousarray(cos_theta),
+            np.ascontiguousarray(d_p),
+            d_parameters,
+            d_cos_theta,
+        )
         return d_parameters, d_cos_theta
 
 

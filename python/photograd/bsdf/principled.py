@@ -57,9 +57,14 @@ def evaluate(
 
 
 def evaluate_backward(
-    parameters: Array, wo: Array, wi: Array, d_values: Array, *, cosine: bool = False,
+    parameters: Array,
+    wo: Array,
+    wi: Array,
+    d_values: Array,
+    *,
+    cosine: bool = False,
     out: Array | None = None,
-) -> Array:  # fmt: skip
+) -> Array:
     """dL/dparameters (T, 5) for dL/dvalues (N, 3).
 
     Sums over the evaluations of one row among several are taken in float32, in order; those of a

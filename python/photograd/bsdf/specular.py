@@ -73,10 +73,7 @@ def registry(core: ModuleType | Any = _core) -> dict[str, DeltaModel]:
     """All specular surfaces of a compiled module, by name."""
     return {
         name: DeltaModel(
-            name,
-            tuple(Parameter(*row) for row in model.parameters()),
-            model.lobe_count(),
-            model,
+            name, tuple(Parameter(*row) for row in model.parameters()), model.lobe_count(), model
         )
         for name, model in core.delta_bsdfs.items()
     }

@@ -60,19 +60,12 @@ def load_capture(
     kind, place = found[0]
     if kind == "blender":
         capture = load_blender(
-            place,
-            color_space=color_space,
-            trust_poses=trust_poses,
-            allow_outside=allow_outside,
+            place, color_space=color_space, trust_poses=trust_poses, allow_outside=allow_outside
         )
     elif kind == "llff":  # names no files
         capture = load_llff(place, trust_poses=trust_poses)
     else:
-        readers = {
-            "nerfstudio": load_nerfstudio,
-            "colmap": load_colmap,
-            "opensfm": load_opensfm,
-        }
+        readers = {"nerfstudio": load_nerfstudio, "colmap": load_colmap, "opensfm": load_opensfm}
         capture = readers[kind](place, trust_poses=trust_poses, allow_outside=allow_outside)
     if len(found) > 1:
         others = ", ".join(other for other, _ in found[1:])

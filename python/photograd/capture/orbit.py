@@ -35,10 +35,15 @@ def orbit_cameras(
         outward = np.array([np.cos(tilt) * np.sin(turn), np.sin(tilt), np.cos(tilt) * np.cos(turn)])
         cameras.append(
             Camera(
-                size, size, focal, focal, size / 2, size / 2,
+                size,
+                size,
+                focal,
+                focal,
+                size / 2,
+                size / 2,
                 look_at(centre + distance * outward, centre),
             )
-        )  # fmt: skip
+        )
     return cameras
 
 

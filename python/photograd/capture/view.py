@@ -91,10 +91,7 @@ class View:
         """The same view reduced by an integer box average."""
         camera = self.camera.downscaled(factor)
         return replace(
-            self,
-            camera=camera,
-            downscale=self.downscale * factor,
-            source_size=self._source_size(),
+            self, camera=camera, downscale=self.downscale * factor, source_size=self._source_size()
         )
 
     def turned(self, world_from_source: FloatArray) -> View:

@@ -87,10 +87,14 @@ def bake_ao(
         covered = bake.points.covered
         open_sky = float(values[covered].mean(dtype=np.float64))
         result = {
-            "out": out, "texels": texels, "covered": f"{100 * covered.mean():.1f} %",
-            "mean": round(open_sky, 4), "spp": bake.count, "seconds": round(seconds, 3),
+            "out": out,
+            "texels": texels,
+            "covered": f"{100 * covered.mean():.1f} %",
+            "mean": round(open_sky, 4),
+            "spp": bake.count,
+            "seconds": round(seconds, 3),
             "bytes": out.stat().st_size,
-        }  # fmt: skip
+        }
         emit(result, as_json=as_json, title="bake-ao")
     if bake.count < spp:
         say(f"stopped at {bake.count} of {spp} samples")

@@ -35,17 +35,20 @@ _FEW = 0.75  # of the photographs; with fewer, something is probably wrong with 
 MaxSizeOption = Annotated[
     int,
     typer.Option(
-        "--max-size", min=200, rich_help_panel=_PANEL,
+        "--max-size",
+        min=200,
+        rich_help_panel=_PANEL,
         help="Longer side in pixels at which features are looked for.",
     ),
-]  # fmt: skip
+]
 PairsOption = Annotated[
     str,
     typer.Option(
-        "--pairs", rich_help_panel=_PANEL,
+        "--pairs",
+        rich_help_panel=_PANEL,
         help="Photographs to compare: all, walk (neighbours by name), or auto: all up to 60.",
     ),
-]  # fmt: skip
+]
 
 
 def refuse_mixture(context: typer.Context, photos: Path | None) -> None:
@@ -85,9 +88,14 @@ def capture_photographs(
     began = time.monotonic()
     with one_run_in("capture", out):
         capture, report = reconstruct(
-            photos, out, Settings(seed=seed, max_size=max_size), threads=threads,
-            exhaustive=exhaustive[pairs], overwrite=overwrite, note=note,
-        )  # fmt: skip
+            photos,
+            out,
+            Settings(seed=seed, max_size=max_size),
+            threads=threads,
+            exhaustive=exhaustive[pairs],
+            overwrite=overwrite,
+            note=note,
+        )
     for line in capture.conversions:
         note(line)
     if report.left_out:
@@ -126,8 +134,7 @@ def register(app: typer.Typer) -> None:
 def capture(
     context: typer.Context,
     out: Annotated[
-        Path | None,
-        out_option("Folder to create; beside the photographs if they are given."),
+        Path | None, out_option("Folder to create; beside the photographs if they are given.")
     ] = None,
     photos: Annotated[
         Path | None,
@@ -167,23 +174,41 @@ def capture(
     refuse_mixture(context, photos)
     if photos is not None:
         result = capture_photographs(
-            photos, out or beside(photos), pairs=pairs,
-            max_size=max_size, seed=seed, threads=threads, overwrite=overwrite,
-        )  # fmt: skip
+            photos,
+            out or beside(photos),
+            pairs=pairs,
+            max_size=max_size,
+            seed=seed,
+            threads=threads,
+            overwrite=overwrite,
+        )
     elif out is None:
         raise typer.BadParameter("a scene needs one", param_hint="--out")
     else:
         result = make_capture(
-            scene, out, views=views, test_views=test_views, size=size, spp=spp, seed=seed,
+            scene,
+            out,
+            views=views,
+            test_views=test_views,
+            size=size,
+            spp=spp,
+            seed=seed,
             overwrite=overwrite,
-        )  # fmt: skip
+        )
     emit(result, as_json=as_json, title="capture")
 
 
 def make_capture(
-    name: str, out: Path, *, views: int, test_views: int, size: int, spp: int, seed: int,
+    name: str,
+    out: Path,
+    *,
+    views: int,
+    test_views: int,
+    size: int,
+    spp: int,
+    seed: int,
     overwrite: bool = False,
-) -> dict[str, Any]:  # fmt: skip
+) -> dict[str, Any]:
     """Render and write a capture under a progress bar; returns what the command reports."""
     description = build_scene(name, seed=seed)
     with one_run_in("capture", out):
@@ -191,9 +216,15 @@ def make_capture(
         light = DirectLight(description)
         with Progress("capture", views + test_views, [Column("view", "{:.0f}".format)]) as bar:
             splits = capture_scene(
-                description, light.render_view, views=views, test_views=test_views, size=size,
-                seed=seed, spp=spp, on_view=lambda done, _total: bar.update(done, view=done),
-            )  # fmt: skip
+                description,
+                light.render_view,
+                views=views,
+                test_views=test_views,
+                size=size,
+                seed=seed,
+                spp=spp,
+                on_view=lambda done, _total: bar.update(done, view=done),
+            )
         others = write_blender_capture(out, splits, aabb=description.bounds, overwrite=overwrite)
     if others:
         note(f"not ours, left as it is: {', '.join(others)}")

@@ -118,8 +118,9 @@ def compare(
     protocols = sorted({row.pop("protocol") for row in rows})
     emit(
         {"scores": rows, "protocols": protocols, "table": table, "pictures": pictures},
-        as_json=as_json, title="compare",
-    )  # fmt: skip
+        as_json=as_json,
+        title="compare",
+    )
 
 
 def draw_ranking(scores: list[Score], path: Path) -> Path:
@@ -132,9 +133,13 @@ def draw_ranking(scores: list[Score], path: Path) -> Path:
 
 
 def contest(
-    name: str, capture: Capture, candidates: list[Contender], shared: FitOptions, out: Path,
+    name: str,
+    capture: Capture,
+    candidates: list[Contender],
+    shared: FitOptions,
+    out: Path,
     stopping: StopRequest,
-) -> list[tuple[Score, Evaluation]]:  # fmt: skip
+) -> list[tuple[Score, Evaluation]]:
     """Fit and score all candidates on one capture, under progress bars.
 
     Raises RangeError for a capture without held-out views, typer.Exit if it was stopped.
@@ -150,10 +155,14 @@ def contest(
         source = source_of(candidate, candidates)
         with one_run_in("compare", folder[candidate]):
             result = compare_one(
-                name, capture, candidate, folder[candidate], candidate.options(shared),
+                name,
+                capture,
+                candidate,
+                folder[candidate],
+                candidate.options(shared),
                 lambda job, folder: run_with_bar(job, folder, stopping),
                 source=None if source is None else folder[source],
-            )  # fmt: skip
+            )
         if result is None:
             note("stopped; the same command goes on from here")
             raise typer.Exit(stopping.exit_code or 1)

@@ -12,13 +12,7 @@ from photograd.commands.convert_model import READABLE, convert_model
 from photograd.commands.convert_model import WRITABLE as GLTF
 from photograd.errors import IoError, RangeError, message
 from photograd.splats.coding import differences
-from photograd.splats.files import (
-    SUFFIXES,
-    WRITABLE,
-    codings_of,
-    read_gaussians,
-    write_gaussians,
-)
+from photograd.splats.files import SUFFIXES, WRITABLE, codings_of, read_gaussians, write_gaussians
 from photograd.splats.frames import USUAL_UP, dropped, with_usual_up
 
 SPZ_VERSION = 3
@@ -39,8 +33,7 @@ def convert(
         ),
     ],
     target: Annotated[
-        Path,
-        typer.Argument(help=f"File to write: {', '.join((*WRITABLE, *GLTF))}.", metavar="OUT"),
+        Path, typer.Argument(help=f"File to write: {', '.join((*WRITABLE, *GLTF))}.", metavar="OUT")
     ],
     spz_version: Annotated[
         int | None,

@@ -58,12 +58,11 @@ def demo(
     use_threads(threads)
     context.with_resource(one_run_in("demo", out))
     context.with_resource(one_run_in("demo", out / "model"))
-    pictures = out / "figures"
+    photos = out / "capture"
     make_capture(
-        scene, out / "capture", views=views, test_views=8, size=size, spp=spp, seed=seed,
-        overwrite=True,
-    )  # fmt: skip
-    capture = load_capture(out / "capture")
+        scene, photos, views=views, test_views=8, size=size, spp=spp, seed=seed, overwrite=True
+    )
+    capture = load_capture(photos)
     job = Fit.start(capture, FitOptions(steps=steps, resolution=resolution, seed=seed))
     with stop_on_signals() as stopping:
         fitted = run_with_bar(job, out / "model", stopping)
@@ -72,20 +71,27 @@ def demo(
         raise typer.Exit(stopping.exit_code)
     model = load_model(out / "model")
     scores = evaluate(model, capture.test)
+    pictures = out / "figures"
     pictures.mkdir(parents=True, exist_ok=True)
     draw_picked(scores, pictures / "comparison.png")
     signs = draw_gradients(model, out / "model", capture, pictures, 1 << 18, seed)
     cameras = orbit_cameras(model.field.box, 40, size=192)
     write_gif([display_image(model, camera) for camera in cameras], pictures / "turntable.gif")
-    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20
     emit(
         {
-            "scene": scene, "psnr": scores.psnr, "ssim": scores.ssim, "steps": fitted.step,
+            "scene": scene,
+            "psnr": scores.psnr,
+            "ssim": scores.ssim,
+            "steps": fitted.step,
             "fit_seconds": round(fitted.seconds, 1),
-            "seconds": round(time.perf_counter() - began, 1), "peak_gib": round(peak, 2),
+            "seconds": round(time.perf_counter() - began, 1),
+            "peak_gib": round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20, 2),
             "occupied_negative": signs.get("occupied_negative"),
             "background_positive": signs.get("background_positive"),
-            "protocol": scores.protocol, "model": out / "model", "figures": pictures,
+            "protocol": scores.protocol,
+            "model": out / "model",
+            "figures": pictures,
         },
-        as_json=as_json, title="demo",
-    )  # fmt: skip
+        as_json=as_json,
+        title="demo",
+    )

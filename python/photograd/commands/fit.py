@@ -96,20 +96,27 @@ TotalVariationOption: TypeAlias = Annotated[
 ]
 DegreeOption: TypeAlias = Annotated[
     int | None,
-    typer.Option("--degree", min=0, max=MOST_DEGREE, show_default=_defaults("degree"),
-                 help=f"Degree of the harmonics of {_users('degree')}."),
-]  # fmt: skip
+    typer.Option(
+        "--degree",
+        min=0,
+        max=MOST_DEGREE,
+        show_default=_defaults("degree"),
+        help=f"Degree of the harmonics of {_users('degree')}.",
+    ),
+]
 PruneOption: TypeAlias = Annotated[
     float,
-    typer.Option("--prune", min=0.0,
-                 help=f"Drop voxels of {_users('prune')} that weigh less in every pixel; 0: none."),
-]  # fmt: skip
+    typer.Option(
+        "--prune",
+        min=0.0,
+        help=f"Drop voxels of {_users('prune')} that weigh less in every pixel; 0: none.",
+    ),
+]
 GaussiansOption: TypeAlias = Annotated[
     int, typer.Option("--gaussians", min=1, help="Most Gaussians that there may be.")
 ]
 DensityControlOption: TypeAlias = Annotated[
-    str,
-    typer.Option("--density-control", help=f"Of Gaussians: {', '.join(DENSITY_CONTROLS)}."),
+    str, typer.Option("--density-control", help=f"Of Gaussians: {', '.join(DENSITY_CONTROLS)}.")
 ]
 StartFromOption: TypeAlias = Annotated[
     Path | None,
@@ -202,11 +209,11 @@ def fit(
         note(f"resumed at step {job.step_number} of {job.options.steps}")
     else:
         refuse_without_effect(context, representation)
-        options = options_for(
-            representation, steps=steps, resolution=resolution, rays=rays, seed=seed,
-            learning_rate=learning_rate, total_variation=total_variation, background=background,
-            degree=degree, prune=prune, gaussians=gaussians, density_control=density_control,
-        )  # fmt: skip
+        chosen = {"steps": steps, "resolution": resolution, "rays": rays, "seed": seed}
+        chosen |= {"learning_rate": learning_rate, "total_variation": total_variation}
+        chosen |= {"background": background, "degree": degree, "prune": prune}
+        chosen |= {"gaussians": gaussians, "density_control": density_control}
+        options = options_for(representation, **chosen)
         first = load_model(start_from) if start_from else None
         job = Fit.start(loaded, options, allow_blind=allow_blind, start_from=first)
         note(job.start_rule)
@@ -237,9 +244,14 @@ def refuse_to_overwrite(out: Path) -> None:
     """Raise RangeError if `out` holds a model already."""
     if (out / FILE_NAME).exists():
         raise RangeError(
-            message("fit", "--out", "a folder without a model", f"{out}, which holds one",
-                    "add --resume to continue it, or choose another folder")
-        )  # fmt: skip
+            message(
+                "fit",
+                "--out",
+                "a folder without a model",
+                f"{out}, which holds one",
+                "add --resume to continue it, or choose another folder",
+            )
+        )
 
 
 def load_and_describe(folder: Path, downscale: int, *, allow_outside: bool = False) -> Capture:
@@ -260,9 +272,14 @@ def refuse_without_effect(context: typer.Context, representation: str) -> None:
         source = context.get_parameter_source(name)
         if source is not None and source.name == "COMMANDLINE" and representation not in users:
             raise RangeError(
-                message("fit", f"--{name}", f"a fit of {' or '.join(users)}", repr(representation),
-                        "leave it out, it has no effect here")
-            )  # fmt: skip
+                message(
+                    "fit",
+                    f"--{name}",
+                    f"a fit of {' or '.join(users)}",
+                    repr(representation),
+                    "leave it out, it has no effect here",
+                )
+            )
 
 
 def refuse_other_options(context: typer.Context, stored: FitOptions) -> None:

@@ -103,18 +103,30 @@ def draw_gradients(
     box, active, first = steps.start.box, steps.gradient.active, min(steps.strongest)
     pictures = {
         "gradient_slices": viz.signed_slices(
-            gradient, box, outline=outline, active=active, caption=caption,
+            gradient,
+            box,
+            outline=outline,
+            active=active,
+            caption=caption,
             title=f"Gradient of the loss at step {first}",
         ),
         "gradient_projections": viz.signed_projections(
-            gradient, box, outline=outline, active=active, caption=caption,
+            gradient,
+            box,
+            outline=outline,
+            active=active,
+            caption=caption,
             title=f"Largest gradient along each axis, step {first}",
         ),
         "gradient_steps": viz.projection_steps(
-            steps.strongest, box, active=steps.active, common_scale=False, caption=explain,
+            steps.strongest,
+            box,
+            active=steps.active,
+            common_scale=False,
+            caption=explain,
             title="The gradient as the fit goes on",
         ),
-    }  # fmt: skip
+    }
     if len(model.history) > 1:
         pictures["curves"] = viz.fit_curves(curves_of(model), title="How the fit went")
     for name, figure in pictures.items():

@@ -42,14 +42,19 @@ def describe_model(path: Path) -> dict[str, Any]:
     params = model.field.params
     last = model.history[-100:, 2] if len(model.history) else np.array([np.nan])
     return {
-        "kind": "model", "representation": model.field.name,
+        "kind": "model",
+        "representation": model.field.name,
         "shape": list(model.field.shape),
         "megabytes": sum(values.nbytes for values in params.values()) / 1e6,
-        "box": model.field.box, **step_of(model),
-        "step": model.meta["step"], "steps": model.options.steps,
-        "batch_psnr": float(last.mean()), "capture": model.meta.get("capture", "unknown"),
-        "split": model.meta.get("split", "unknown"), "seed": model.options.seed,
-    }  # fmt: skip
+        "box": model.field.box,
+        **step_of(model),
+        "step": model.meta["step"],
+        "steps": model.options.steps,
+        "batch_psnr": float(last.mean()),
+        "capture": model.meta.get("capture", "unknown"),
+        "split": model.meta.get("split", "unknown"),
+        "seed": model.options.seed,
+    }
 
 
 def step_of(model: Model) -> dict[str, float]:
@@ -64,10 +69,17 @@ def describe_capture(path: Path, allow_outside: bool = False) -> dict[str, Any]:
     bounds = estimate_bounds(capture)
     sizes = sorted({f"{v.camera.width}x{v.camera.height}" for v in capture.views})
     return {
-        "kind": "capture", "format": capture.format, "train": len(capture.train),
-        "test": len(capture.test), "val": len(capture.val), "sizes": sizes,
-        "color_space": capture.color_space, "alpha": capture.has_alpha,
+        "kind": "capture",
+        "format": capture.format,
+        "train": len(capture.train),
+        "test": len(capture.test),
+        "val": len(capture.val),
+        "sizes": sizes,
+        "color_space": capture.color_space,
+        "alpha": capture.has_alpha,
         "points": 0 if capture.points is None else len(capture.points),
-        "box": bounds.box, "box_rule": bounds.rule, "split": capture.split_hash(),
+        "box": bounds.box,
+        "box_rule": bounds.rule,
+        "split": capture.split_hash(),
         "conversions": list(capture.conversions),
-    }  # fmt: skip
+    }

@@ -30,8 +30,9 @@ from photograd.images.write import write_exr
 from photograd.transport.inverse import Recovery, RecoveryOptions, RecoveryResult, Target, Unknown
 from photograd.transport.inverse.job import FILE_NAME
 from photograd.transport.inverse.options import LOSSES, Progress
+from photograd.transport.path_options import PathOptions
 from photograd.transport.scene_file import read_scene
-from photograd.transport.tracer import PathOptions, PathTracer
+from photograd.transport.tracer import PathTracer
 
 DEFAULTS = RecoveryOptions()
 LOOK_SPP = 64  # samples a pixel of the picture that is shown beside the target
@@ -72,10 +73,12 @@ ViewsOption = Annotated[
 SizeOption = Annotated[
     int | None,
     typer.Option(
-        "--size", min=1, help="Pixels along an edge of a built-in scene.",
+        "--size",
+        min=1,
+        help="Pixels along an edge of a built-in scene.",
         show_default="the target's",
     ),
-]  # fmt: skip
+]
 ResumeOption = Annotated[bool, typer.Option("--resume", help="Go on with the recovery in --out.")]
 
 
@@ -123,9 +126,14 @@ def recover(
     cameras = [read_scene(path).camera for path in camera] if camera else [None] * len(images)
     targets = [Target(image, taken) for image, taken in zip(images, cameras, strict=True)]
     options = RecoveryOptions(
-        steps=steps, spp=spp, learning_rate=learning_rate, loss=loss, views=views, seed=seed,
+        steps=steps,
+        spp=spp,
+        learning_rate=learning_rate,
+        loss=loss,
+        views=views,
+        seed=seed,
         path=PathOptions(max_depth=max_depth),
-    )  # fmt: skip
+    )
     job = Recovery(described, targets, [parsed(text) for text in unknown], options)
     if resume:
         job.load(out)
@@ -207,7 +215,9 @@ def write_result(job: Recovery, result: RecoveryResult, out: Path) -> dict[str, 
         save_figure(curves_figure(result), out / "curves.png")
     difference = float(np.sqrt(np.square(picture - first.image).mean()))
     return {
-        "out": out, "step": result.step, "seconds": round(result.seconds, 3),
+        "out": out,
+        "step": result.step,
+        "seconds": round(result.seconds, 3),
         "rms_of_first_picture": difference,
         **{name: value for name, value in found.items() if np.size(value) <= 3},
-    }  # fmt: skip
+    }

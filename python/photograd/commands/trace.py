@@ -47,10 +47,11 @@ from photograd.images.write import write_png, write_radiance
 from photograd.transport.accumulation import Accumulation, load_accumulation
 from photograd.transport.builtin import BUILTIN, builtin_scene
 from photograd.transport.mesh_files import STUDIO, SUFFIXES, model_scene, read_model
+from photograd.transport.path_options import HEURISTICS, STRATEGIES, PathOptions
 from photograd.transport.scene import Scene
 from photograd.transport.scene_digest import scene_digest
 from photograd.transport.scene_file import read_scene
-from photograd.transport.tracer import HEURISTICS, STRATEGIES, PathOptions, PathTracer
+from photograd.transport.tracer import PathTracer
 
 CameraOption = Annotated[
     str | None,
@@ -166,9 +167,13 @@ def trace(
     estimate = Estimate(integrator, options, seed, radius, photons, derivative)
     described, fingerprint = load_scene(scene, size, camera)
     key = {
-        "scene": fingerprint, "seed": seed, "integrator": integrator, "radius": repr(radius),
-        **asdict(options), **estimate.key,
-    }  # fmt: skip
+        "scene": fingerprint,
+        "seed": seed,
+        "integrator": integrator,
+        "radius": repr(radius),
+        **asdict(options),
+        **estimate.key,
+    }
     sums_path = out.with_suffix(".sums.npz")
     if resume:
         sums = load_accumulation(sums_path, key)

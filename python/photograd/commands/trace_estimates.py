@@ -17,7 +17,8 @@ from photograd.transport.accumulation import Accumulation
 from photograd.transport.derivative import add_derivative_samples, direction_of
 from photograd.transport.incomplete import require_whole
 from photograd.transport.particles import PhotonMap
-from photograd.transport.tracer import PathOptions, PathTracer
+from photograd.transport.path_options import PathOptions
+from photograd.transport.tracer import PathTracer
 
 INTEGRATORS = ("path", "direct", "occlusion", "photon")
 CLIPPED = 0.01

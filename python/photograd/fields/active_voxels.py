@@ -34,9 +34,14 @@ class ActiveVoxels:
             )
         if not mask.any():
             raise Error(
-                message("ActiveVoxels", "mask", "one active voxel or more", "none",
-                        "everything was pruned: lower the threshold")
-            )  # fmt: skip
+                message(
+                    "ActiveVoxels",
+                    "mask",
+                    "one active voxel or more",
+                    "none",
+                    "everything was pruned: lower the threshold",
+                )
+            )
         self.mask = mask
         self.shape: tuple[int, int, int] = mask.shape
         blocks = _blocks(mask)

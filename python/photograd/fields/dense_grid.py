@@ -59,9 +59,12 @@ def finer_voxels(function: str, box: Array, resolution: int) -> tuple[int, int, 
 def _require_room(function: str, voxels: list[int], itemsize: int) -> None:
     """Raise RangeError if the values, and the mask of what is finite, take too much memory."""
     require_room(
-        function, f"{' x '.join(map(str, voxels))} voxels", 4 * (itemsize + 1) * math.prod(voxels),
-        argument="resolution", remedy="take a lower resolution, or a flatter box",
-    )  # fmt: skip
+        function,
+        f"{' x '.join(map(str, voxels))} voxels",
+        4 * (itemsize + 1) * math.prod(voxels),
+        argument="resolution",
+        remedy="take a lower resolution, or a flatter box",
+    )
 
 
 @register
@@ -222,9 +225,15 @@ class DenseGrid(Representation):
     ) -> tuple[Outputs, MarchContext]:
         """Colour (R, 3) linear, premultiplied, without background; opacity (R,); depth (R,) m."""
         return march(
-            "dense_grid", self.params["values"], self.policy, batch, options,
-            seed=seed, step=step, fused=self.fused,
-        )  # fmt: skip
+            "dense_grid",
+            self.params["values"],
+            self.policy,
+            batch,
+            options,
+            seed=seed,
+            step=step,
+            fused=self.fused,
+        )
 
     def render_backward(self, context: MarchContext, d_outputs: Outputs) -> dict[str, Array]:
         """{"values": (X, Y, Z, 4)}, and "origins", "directions" (R, 3) if the options asked."""

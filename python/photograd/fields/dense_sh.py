@@ -50,6 +50,11 @@ class DenseSh(SparseSh):
         missing = active.mask.size - len(active)
         if missing:
             raise RangeError(
-                message("DenseSh", "active", "all voxels of the grid", f"{missing} missing",
-                        "what is pruned is a SparseSh")
-            )  # fmt: skip
+                message(
+                    "DenseSh",
+                    "active",
+                    "all voxels of the grid",
+                    f"{missing} missing",
+                    "what is pruned is a SparseSh",
+                )
+            )

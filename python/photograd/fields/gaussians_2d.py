@@ -100,9 +100,12 @@ class Gaussians2D(Representation):
         """
         n = max(len(mean), 1)
         arrays = {
-            "mean": mean, "log_scale": log_scale, "angle": angle, "opacity_logit": opacity_logit,
+            "mean": mean,
+            "log_scale": log_scale,
+            "angle": angle,
+            "opacity_logit": opacity_logit,
             "color": color,
-        }  # fmt: skip
+        }
         shapes = ((n, 2), (n, 2), (n,), (n,), (n, 3))
         for (name, array), shape in zip(arrays.items(), shapes, strict=True):
             if array.shape != shape:
@@ -133,9 +136,12 @@ class Gaussians2D(Representation):
         index = np.arange(9)
         u = np.stack([uniform(seed, step=0, pixel=index, dimension=k) for k in range(9)], axis=-1)
         arrays = (
-            0.1 + 0.8 * u[:, :2], pm.log(0.08 + 0.25 * u[:, 2:4]), 6 * u[:, 4], 4 * u[:, 5] - 2,
+            0.1 + 0.8 * u[:, :2],
+            pm.log(0.08 + 0.25 * u[:, 2:4]),
+            6 * u[:, 4],
+            4 * u[:, 5] - 2,
             0.1 + 0.8 * u[:, 6:],
-        )  # fmt: skip
+        )
         return cls(*(array.astype(dtype) for array in arrays))
 
     def example_batch(self, *, seed: int) -> CanvasBatch:
@@ -203,8 +209,9 @@ def _add_slab(
     s = pm.exp(params["log_scale"])
     cos, sin = pm.cos(params["angle"]), pm.sin(params["angle"])
     x_axis, y_axis = (
-        np.stack([cos, sin], axis=-1) / s[:, :1], np.stack([-sin, cos], axis=-1) / s[:, 1:]
-    )  # fmt: skip
+        np.stack([cos, sin], axis=-1) / s[:, :1],
+        np.stack([-sin, cos], axis=-1) / s[:, 1:],
+    )
     out["mean"] += ea.sum(axis=0)[:, None] * x_axis + eb.sum(axis=0)[:, None] * y_axis
     out["log_scale"] += np.stack([(ea * k.a).sum(axis=0), (eb * k.b).sum(axis=0)], axis=-1)
     out["angle"] += (ea * k.b).sum(axis=0) * (s[:, 0] / s[:, 1] - s[:, 1] / s[:, 0])

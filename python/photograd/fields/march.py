@@ -160,9 +160,19 @@ def march(
     )
     require_finite_image(color, transmittance, batch)
     context = MarchContext(
-        field, parameters, settings, origins, directions, t0, samples,
-        color, transmittance, depth, options.camera_adjoint, fused,
-    )  # fmt: skip
+        field,
+        parameters,
+        settings,
+        origins,
+        directions,
+        t0,
+        samples,
+        color,
+        transmittance,
+        depth,
+        options.camera_adjoint,
+        fused,
+    )
     return Outputs(color, 1 - transmittance, depth), context
 
 

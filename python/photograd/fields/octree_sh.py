@@ -153,9 +153,12 @@ class OctreeSh(Representation):
     @classmethod
     def _of_leaves(cls, leaves: Leaves, kind: np.dtype[Any], density_scale: float) -> OctreeSh:
         return cls(
-            leaves.tree, leaves.row, leaves.density.astype(kind), leaves.sh.astype(kind),
+            leaves.tree,
+            leaves.row,
+            leaves.density.astype(kind),
+            leaves.sh.astype(kind),
             density_scale=density_scale,
-        )  # fmt: skip
+        )
 
     @classmethod
     def of_state(
@@ -169,10 +172,7 @@ class OctreeSh(Representation):
         row = state["row"]
         if row.shape == (len(tree.values),):  # else refused below
             row = row[tree.values[:, 0].astype(np.int64)]
-        return cls(
-            tree, row, params["density"], params["sh"],
-            density_scale=policy.density_scale,
-        )  # fmt: skip
+        return cls(tree, row, params["density"], params["sh"], density_scale=policy.density_scale)
 
     @classmethod
     def example(cls, *, seed: int, dtype: type[np.floating[Any]] = np.float64) -> OctreeSh:
@@ -189,9 +189,12 @@ class OctreeSh(Representation):
         numbers = uniform(seed, step=2, pixel=np.arange(rows * 28), sample=0, dimension=0)
         values = (2.0 * numbers - 1.0).reshape(rows, 28).astype(dtype)
         return cls(
-            tree, row, values[:, 0].copy(), values[:, 1:].reshape(rows, 9, 3).copy(),
+            tree,
+            row,
+            values[:, 0].copy(),
+            values[:, 1:].reshape(rows, 9, 3).copy(),
             density_scale=2.0,
-        )  # fmt: skip
+        )
 
     def example_batch(self, *, seed: int) -> RayBatch:
         """24 rays from a sphere of radius 3 m towards points inside of the box."""
@@ -251,9 +254,15 @@ class OctreeSh(Representation):
             color.astype(density.dtype), 1 - walk.transmittance, depth.astype(density.dtype)
         ).checked("OctreeSh.render", batch)
         context = OctreeContext(
-            dict(self.params), borders, segments, walk, sigma_t, rgb, outputs,
+            dict(self.params),
+            borders,
+            segments,
+            walk,
+            sigma_t,
+            rgb,
+            outputs,
             options.camera_adjoint,
-        )  # fmt: skip
+        )
         return outputs, context
 
     def render_backward(self, context: OctreeContext, d_outputs: Outputs) -> dict[str, Array]:
@@ -304,9 +313,14 @@ class OctreeSh(Representation):
         own = self.state()
         if set(state) != set(own) or not all(np.array_equal(state[k], own[k]) for k in own):
             raise RangeError(
-                message("OctreeSh.load_state", "state", f"this tree's {sorted(own)}",
-                        f"{sorted(state)}", "the topology of an octree_sh cannot change")
-            )  # fmt: skip
+                message(
+                    "OctreeSh.load_state",
+                    "state",
+                    f"this tree's {sorted(own)}",
+                    f"{sorted(state)}",
+                    "the topology of an octree_sh cannot change",
+                )
+            )
 
 
 def _walk(segments: Segments, s: Array, rays: int, stop: float) -> Walk:

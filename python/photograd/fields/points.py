@@ -76,8 +76,10 @@ class Points(Representation):
         count = len(position)
         arrays = {"position": position, "color": color, "log_radius": log_radius}
         allowed: dict[str, list[tuple[int, ...]]] = {
-            "position": [(max(count, 1), 3)], "color": [(count, 3)], "log_radius": [(count,), (1,)]
-        }  # fmt: skip
+            "position": [(max(count, 1), 3)],
+            "color": [(count, 3)],
+            "log_radius": [(count,), (1,)],
+        }
         for name, shapes in allowed.items():
             if arrays[name].shape not in shapes:
                 expected = " or ".join(f"shape {shape}" for shape in shapes)
@@ -128,10 +130,12 @@ class Points(Representation):
         log_scales = np.broadcast_to(self.params["log_radius"][:, None], (count, 3))
         logit = log(self.opacity / (1 - self.opacity))
         return Gaussians(
-            position.copy(), np.ascontiguousarray(log_scales),
-            np.tile(np.array([1, 0, 0, 0], dtype), (count, 1)), np.full(count, logit, dtype),
+            position.copy(),
+            np.ascontiguousarray(log_scales),
+            np.tile(np.array([1, 0, 0, 0], dtype), (count, 1)),
+            np.full(count, logit, dtype),
             (color[:, None] - dtype.type(0.5)) / dtype.type(Y_0),
-        )  # fmt: skip
+        )
 
     def render(
         self, batch: RayBatch, *, seed: int, step: int, options: RenderOptions

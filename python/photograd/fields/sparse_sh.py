@@ -135,15 +135,18 @@ class SparseSh(Representation):
         if resolution >= 2 and np.ptp(corners, axis=0).max() > 0:  # else refused below
             shape = cubic_voxels(corners[1] - corners[0], resolution)
             numbers = 5 + 1 + 3 * sh.count(degree)  # the dense grid is there for a moment
-            require_room(
-                "SparseSh.full", f"{' x '.join(map(str, shape))} voxels of degree {degree}",
-                numbers * np.dtype(dtype).itemsize * math.prod(shape),
-                argument="resolution", remedy="take a lower resolution, or a lower degree",
-            )  # fmt: skip
+            size = numbers * np.dtype(dtype).itemsize * math.prod(shape)
+            what = f"{' x '.join(map(str, shape))} voxels of degree {degree}"
+            remedy = "take a lower resolution, or a lower degree"
+            require_room("SparseSh.full", what, size, argument="resolution", remedy=remedy)
         dense = DenseGrid.empty(
-            box, resolution, finest=finest, sigma_t=sigma_t, steps_per_voxel=steps_per_voxel,
+            box,
+            resolution,
+            finest=finest,
+            sigma_t=sigma_t,
+            steps_per_voxel=steps_per_voxel,
             dtype=dtype,
-        )  # fmt: skip
+        )
         policy = replace(dense.policy, border="zero", density_activation="softplus")
         active = ActiveVoxels(np.ones(dense.density.shape, bool))
         density = np.full(len(active), dense.density.flat[0], dtype)
@@ -163,10 +166,8 @@ class SparseSh(Representation):
         u = 2 * uniform(seed, step=0, pixel=index, sample=0, dimension=0).reshape(-1, 28) - 1
         policy = MarchPolicy(((-1.0, -0.8, -1.2), (1.0, 0.8, 1.2)), 0.11, border="zero")
         coefficients = u[:, 1:].reshape(-1, 9, 3)
-        return cls(
-            active, u[:, 0].astype(dtype), coefficients.astype(dtype), policy,
-            background_density=-2.0,
-        )  # fmt: skip
+        density, coefficients = u[:, 0].astype(dtype), coefficients.astype(dtype)
+        return cls(active, density, coefficients, policy, background_density=-2.0)
 
     def example_batch(self, *, seed: int) -> RayBatch:
         """As that of the dense grid."""
@@ -205,19 +206,23 @@ class SparseSh(Representation):
         checked_values("SparseSh.render", "sh", coefficients)
         settings = self.policy.settings(options.stop)
         rays = checked_rays(batch, settings, options, density.dtype, seed=seed, step=step)
+        parameters = density, coefficients, self._background()
         color, transmittance, depth, looked_up = _core.march_sparse_sh(
-            self.active.table,
-            (density, coefficients, self._background()),
-            settings,
-            0.0,
-            rays,
-            fused=self.fused,
+            self.active.table, parameters, settings, 0.0, rays, fused=self.fused
         )
         require_finite_image(color, transmittance, batch)
         context = SparseContext(
-            self.active, density, coefficients, settings, *rays, color, transmittance, depth,
-            options.camera_adjoint, looked_up,
-        )  # fmt: skip
+            self.active,
+            density,
+            coefficients,
+            settings,
+            *rays,
+            color,
+            transmittance,
+            depth,
+            options.camera_adjoint,
+            looked_up,
+        )
         return Outputs(color, 1 - transmittance, depth), context
 
     def render_backward(self, context: SparseContext, d_outputs: Outputs) -> dict[str, Array]:
@@ -270,11 +275,9 @@ class SparseSh(Representation):
         self, values: Array, d_value: float, d_values: Array, bricks: tuple[int, int]
     ) -> None:
         """Add the adjoint of the variation to the rows of bricks first .. last - 1."""
-        n = len(values)
-        _core.total_variation_backward(
-            self.active.topology, np.ascontiguousarray(values).reshape(n, -1), d_value, *bricks,
-            d_values.reshape(n, -1),
-        )  # fmt: skip
+        flat = np.ascontiguousarray(values).reshape(len(values), -1)
+        d_flat = d_values.reshape(flat.shape)
+        _core.total_variation_backward(self.active.topology, flat, d_value, *bricks, d_flat)
 
     def add_prior(self, gradients: Mapping[str, Array], weight: float, u: float) -> None:
         """Add total variation's gradient in an eighth of the bricks, which stands for the whole.
@@ -341,19 +344,17 @@ class SparseSh(Representation):
         shape = finer_voxels(where, self.box, resolution)
         share = len(self.active) / self.active.mask.size
         numbers = share * self.params["density"].itemsize * (1 + self.params["sh"][0].size)
-        require_room(
-            where, f"{' x '.join(map(str, shape))} voxels", int((3 + numbers) * math.prod(shape)),
-            argument="resolution", remedy="take a lower resolution, or prune",
-        )  # fmt: skip
+        size = int((3 + numbers) * math.prod(shape))
+        what = f"{' x '.join(map(str, shape))} voxels"
+        remedy = "take a lower resolution, or prune"
+        require_room(where, what, size, argument="resolution", remedy=remedy)
         voxel = (self.box[1] - self.box[0]).max() / resolution
         active = ActiveVoxels(resampled_mask(self.active.mask, shape))
         density = self._resampled(self.params["density"], active, self.background_density)
         coefficients = self._resampled(self.params["sh"], active, 0.0)
         policy = replace(self.policy, dt=voxel / steps_per_voxel)
-        return type(self)(
-            active, density, coefficients, policy,
-            background_density=self.background_density, fused=self.fused,
-        )  # fmt: skip
+        grid = active, density, coefficients, policy
+        return type(self)(*grid, background_density=self.background_density, fused=self.fused)
 
     def resampled(self, rows: Array, to: SparseSh) -> Array:
         """Rows of this grid, such as an optimiser's, at the voxels of another; 0 where none is."""

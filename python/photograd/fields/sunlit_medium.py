@@ -151,9 +151,11 @@ class SunlitMedium(Representation):
         self.phase = phase_function(phase)
         self.solids = solids
         self.policy = MarchPolicy(
-            (tuple(corners[0].tolist()), tuple(corners[1].tolist())), dt,
-            density_activation="relu", color_activation="identity",
-        )  # fmt: skip
+            (tuple(corners[0].tolist()), tuple(corners[1].tolist())),
+            dt,
+            density_activation="relu",
+            color_activation="identity",
+        )
         shape = self.params["sigma_t"].shape
         if visibility is None and solids is not None:
             visibility = sun_visibility(solids, corners, shape, self.sun)
@@ -183,9 +185,11 @@ class SunlitMedium(Representation):
         Voxels are needed nevertheless: the light in the medium is not the same everywhere.
         """
         params = {
-            "sigma_t": np.full(shape, sigma_t, dtype), "albedo": np.asarray(albedo, dtype),
-            "g": np.full(1, g, dtype), "irradiance": np.asarray(irradiance, dtype),
-        }  # fmt: skip
+            "sigma_t": np.full(shape, sigma_t, dtype),
+            "albedo": np.asarray(albedo, dtype),
+            "g": np.full(1, g, dtype),
+            "irradiance": np.asarray(irradiance, dtype),
+        }
         return cls(params, box, dt, **more)
 
     @classmethod
@@ -194,14 +198,18 @@ class SunlitMedium(Representation):
         random = np.random.default_rng(seed)
         shape = (4, 3, 5)
         params = {
-            "sigma_t": random.uniform(0.3, 2.0, shape), "albedo": random.uniform(0.3, 0.9, 3),
-            "g": random.uniform(0.2, 0.6, 1), "irradiance": random.uniform(1.0, 4.0, 3),
-        }  # fmt: skip
+            "sigma_t": random.uniform(0.3, 2.0, shape),
+            "albedo": random.uniform(0.3, 0.9, 3),
+            "g": random.uniform(0.2, 0.6, 1),
+            "irradiance": random.uniform(1.0, 4.0, 3),
+        }
         return cls(
             {name: value.astype(dtype) for name, value in params.items()},
-            [[-1.0, -1.0, -1.0], [1.0, 0.5, 1.5]], 0.1, sun=(0.5, 0.8, -0.3),
+            [[-1.0, -1.0, -1.0], [1.0, 0.5, 1.5]],
+            0.1,
+            sun=(0.5, 0.8, -0.3),
             visibility=random.uniform(0.2, 1.0, shape),
-        )  # fmt: skip
+        )
 
     def example_batch(self, *, seed: int) -> RayBatch:
         """Rays from around the box to points within."""
@@ -232,9 +240,15 @@ class SunlitMedium(Representation):
         light, shadow = self.light()
         values = self._values(light)
         outputs, view = march(
-            "dense_grid", values, self.policy, batch, options,
-            seed=seed, step=step, t_max=self._ends(batch),
-        )  # fmt: skip
+            "dense_grid",
+            values,
+            self.policy,
+            batch,
+            options,
+            seed=seed,
+            step=step,
+            t_max=self._ends(batch),
+        )
         cos_theta = np.einsum("rk,k->r", view.directions, self.sun.astype(values.dtype))
         p, s = self.phase.p(self.params["g"], cos_theta), outputs.color[:, 0]
         color = (p * s)[:, None] * (self.params["albedo"] * self.params["irradiance"])
@@ -275,9 +289,14 @@ class SunlitMedium(Representation):
         towards = np.broadcast_to(self.sun, origins.shape)
         batch = RayBatch(origins, towards, np.arange(len(origins), dtype=np.uint32))
         _, context = march(
-            "dense_grid", self._values(None), self.policy, batch, RenderOptions(jitter=True),
-            seed=0, step=0,
-        )  # fmt: skip
+            "dense_grid",
+            self._values(None),
+            self.policy,
+            batch,
+            RenderOptions(jitter=True),
+            seed=0,
+            step=0,
+        )
         through = context.transmittance.reshape(shape)
         return through * self.visibility.astype(through.dtype), context
 

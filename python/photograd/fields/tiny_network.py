@@ -39,10 +39,12 @@ class TinyNetwork(Representation):
         if weights.shape != (_core.tiny_network_parameters,):
             raise ShapeError(
                 message(
-                    "TinyNetwork", "weights", f"shape ({_core.tiny_network_parameters},)",
+                    "TinyNetwork",
+                    "weights",
+                    f"shape ({_core.tiny_network_parameters},)",
                     f"{weights.shape}",
                 )
-            )  # fmt: skip
+            )
         self.params = {"weights": np.ascontiguousarray(weights)}
         self.policy = policy
 

@@ -66,9 +66,14 @@ def load_checkpoint(path: str | Path) -> Checkpoint:
     file = path / FILE_NAME if path.is_dir() else path
     if not file.is_file():
         raise IoError(
-            message("load_checkpoint", "path", "a model (DIR/model.npz)", f"{path}, which is none",
-                    "run 'photograd fit' first")
-        )  # fmt: skip
+            message(
+                "load_checkpoint",
+                "path",
+                "a model (DIR/model.npz)",
+                f"{path}, which is none",
+                "run 'photograd fit' first",
+            )
+        )
     arrays = read_npz("load_checkpoint", file, expected=_EXPECTED, remedy=_REMEDY)
     try:
         meta = json.loads(str(arrays.pop("meta")))
@@ -79,9 +84,14 @@ def load_checkpoint(path: str | Path) -> Checkpoint:
         raise _damaged(file, f"meta that is no JSON object but {type(meta).__name__}")
     if meta.get("version") != VERSION:
         raise IoError(
-            message("load_checkpoint", f"{file}", f"version {VERSION}", f"{meta.get('version')}",
-                    "it was written by another version of photograd")
-        )  # fmt: skip
+            message(
+                "load_checkpoint",
+                f"{file}",
+                f"version {VERSION}",
+                f"{meta.get('version')}",
+                "it was written by another version of photograd",
+            )
+        )
     for name, array in {"history": history, **arrays}.items():
         if not isinstance(array, np.ndarray) or array.dtype.kind not in "fiub":
             raise _damaged(file, f"{name} that is no array of numbers")

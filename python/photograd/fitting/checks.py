@@ -54,9 +54,13 @@ def require_background_of(capture: Capture, options: FitOptions) -> None:
     image = "image" in representation(options.representation).capabilities
     if image and options.background == "learned" and capture.has_alpha:
         raise RangeError(
-            message("Fit", "background", "random, white or black for photographs with alpha",
-                    "'learned'")
-        )  # fmt: skip
+            message(
+                "Fit",
+                "background",
+                "random, white or black for photographs with alpha",
+                "'learned'",
+            )
+        )
 
 
 def require_first_model(name: str, *, given: bool) -> None:
@@ -68,9 +72,14 @@ def require_first_model(name: str, *, given: bool) -> None:
         )
     if name == OctreeSh.name and not given:
         raise RangeError(
-            message("Fit.start", "start_from", f"the model that {name!r} is cut from", "none",
-                    "fit a dense_grid or a sparse_sh first, and start from that (--start-from)")
-        )  # fmt: skip
+            message(
+                "Fit.start",
+                "start_from",
+                f"the model that {name!r} is cut from",
+                "none",
+                "fit a dense_grid or a sparse_sh first, and start from that (--start-from)",
+            )
+        )
 
 
 def require_split_of(saved: Checkpoint, capture: Capture) -> None:
@@ -97,9 +106,14 @@ def require_finite_loss(loss: float, step: int) -> None:
     """Raise Error for a loss that is NaN or infinite."""
     if not math.isfinite(loss):
         raise Error(
-            message("Fit.step", "loss", "a finite number", f"{loss} at step {step}",
-                    "what was saved is as it was; lower the learning rate")
-        )  # fmt: skip
+            message(
+                "Fit.step",
+                "loss",
+                "a finite number",
+                f"{loss} at step {step}",
+                "what was saved is as it was; lower the learning rate",
+            )
+        )
 
 
 def require_finite(params: Mapping[str, Array], step: int) -> None:
@@ -160,9 +174,13 @@ def _parts(
     """Option, what it is, bytes, remedy."""
     pixels = sum(view.camera.width * view.camera.height for view in capture.train)
     parts = [
-        ("capture", f"{pixels:,} pixels to learn from", BYTES_A_PIXEL * pixels,
-         "take smaller photographs with --downscale"),
-    ]  # fmt: skip
+        (
+            "capture",
+            f"{pixels:,} pixels to learn from",
+            BYTES_A_PIXEL * pixels,
+            "take smaller photographs with --downscale",
+        )
+    ]
     name = options.representation
     if name == GaussianScene.name:
         # Position, scales, rotation and opacity; harmonics of three colors.

@@ -89,9 +89,14 @@ def parse_contenders(text: str) -> list[Contender]:
         name, colon, size = word.strip().partition(":")
         if not (colon and size.isdecimal() and int(size) >= 8):
             raise RangeError(
-                message("compare", "contenders", "NAME:RESOLUTION with a resolution of 8 or more",
-                        repr(word.strip()), "for example dense_grid:128,sparse_sh:128")
-            )  # fmt: skip
+                message(
+                    "compare",
+                    "contenders",
+                    "NAME:RESOLUTION with a resolution of 8 or more",
+                    repr(word.strip()),
+                    "for example dense_grid:128,sparse_sh:128",
+                )
+            )
         require_startable(name)
         contenders.append(Contender(name, int(size)))
     if len(set(contenders)) < len(contenders):
@@ -114,15 +119,26 @@ def source_of(contender: Contender, contenders: Sequence[Contender]) -> Contende
         if other.representation in grids and other.resolution == contender.resolution:
             return other
     raise RangeError(
-        message("compare", "contenders", f"a grid of {contender.resolution} before the octree that "
-                "is cut from it", contender.label, f"put sparse_sh:{contender.resolution} first")
-    )  # fmt: skip
+        message(
+            "compare",
+            "contenders",
+            f"a grid of {contender.resolution} before the octree that is cut from it",
+            contender.label,
+            f"put sparse_sh:{contender.resolution} first",
+        )
+    )
 
 
 def compare_one(
-    name: str, capture: Capture, contender: Contender, folder: Path, options: FitOptions, run: Run,
-    *, source: Path | None = None,
-) -> tuple[Score, Evaluation] | None:  # fmt: skip
+    name: str,
+    capture: Capture,
+    contender: Contender,
+    folder: Path,
+    options: FitOptions,
+    run: Run,
+    *,
+    source: Path | None = None,
+) -> tuple[Score, Evaluation] | None:
     """Fit `contender` to `capture` in `folder`, or continue there, and score it.
 
     `name` is what the table calls the capture; `options` holds what all contenders share; `source`
@@ -134,9 +150,14 @@ def compare_one(
         wanted = asdict(options)
         if asdict(job.options) != wanted:
             raise RangeError(
-                message("compare", "out", "a folder of the same options", f"{folder}",
-                        "choose another folder, or give the options that it was made with")
-            )  # fmt: skip
+                message(
+                    "compare",
+                    "out",
+                    "a folder of the same options",
+                    f"{folder}",
+                    "choose another folder, or give the options that it was made with",
+                )
+            )
     else:
         first = None if source is None else load_model(source)
         job = Fit.start(capture, options, start_from=first)
@@ -152,9 +173,16 @@ def compare_one(
     if source is not None:
         spent += _spent(source)
     score = Score(
-        name, contender.label, evaluation.psnr, evaluation.ssim, stored_bytes(model), spent,
-        1000 * frame_seconds(model, capture), max(1, _core.thread_count()), evaluation.protocol,
-    )  # fmt: skip
+        name,
+        contender.label,
+        evaluation.psnr,
+        evaluation.ssim,
+        stored_bytes(model),
+        spent,
+        1000 * frame_seconds(model, capture),
+        max(1, _core.thread_count()),
+        evaluation.protocol,
+    )
     return score, evaluation
 
 

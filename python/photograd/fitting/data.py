@@ -146,10 +146,14 @@ def require_valid_pixels(function: str, has_some: Sequence[bool]) -> None:
     """Raise RangeError if none of the training views has a valid pixel to learn from."""
     if not any(has_some):
         raise RangeError(
-            message(function, "views", "a valid pixel in the training views",
-                    f"none in {len(has_some)} of them",
-                    "their masks are empty, or the lens's distortion leaves nothing of them")
-        )  # fmt: skip
+            message(
+                function,
+                "views",
+                "a valid pixel in the training views",
+                f"none in {len(has_some)} of them",
+                "their masks are empty, or the lens's distortion leaves nothing of them",
+            )
+        )
 
 
 def digest_of(views: Sequence[View]) -> str:

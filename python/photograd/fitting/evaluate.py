@@ -145,9 +145,14 @@ def evaluate(
     """
     if not views:
         raise RangeError(
-            message("evaluate", "views", "at least one held-out view", "none",
-                    "the capture has no test split")
-        )  # fmt: skip
+            message(
+                "evaluate",
+                "views",
+                "at least one held-out view",
+                "none",
+                "the capture has no test split",
+            )
+        )
     found = []
     for number, view in enumerate(views):
         found.append(score_view(model, view))
@@ -184,13 +189,15 @@ def protocol(model: Model, scores: Sequence[ViewScore], left_out: Sequence[str] 
 def as_result(evaluation: Evaluation) -> dict[str, Any]:
     """The evaluation for tables and the machine-readable last line."""
     return {
-        "psnr": evaluation.psnr, "ssim": evaluation.ssim, "protocol": evaluation.protocol,
+        "psnr": evaluation.psnr,
+        "ssim": evaluation.ssim,
+        "protocol": evaluation.protocol,
         "views": [
             {"name": v.name, "psnr": v.psnr, "ssim": v.ssim, "valid_share": v.valid_share}
             for v in evaluation.views
         ],
         "left_out": list(evaluation.left_out),
-    }  # fmt: skip
+    }
 
 
 # How much the step of the march matters: the same views again, with half the step.
@@ -232,9 +239,11 @@ def step_change(
         changes.append(np.abs(fine - coarse).max(axis=-1).ravel())
     change = np.concatenate(changes)
     return StepChange(
-        float(change.max()), float(change.mean(dtype=np.float64)),
-        float((change > VISIBLE).mean()), len(chosen),
-    )  # fmt: skip
+        float(change.max()),
+        float(change.mean(dtype=np.float64)),
+        float((change > VISIBLE).mean()),
+        len(chosen),
+    )
 
 
 def as_entry(change: StepChange | None) -> dict[str, Any]:

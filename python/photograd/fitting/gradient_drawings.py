@@ -119,9 +119,17 @@ def draw_arrows(axes: Axes, found: ViewGradients) -> None:
     length = np.maximum(np.hypot(*way.T), 1e-12)
     way *= np.minimum(1, 1.5 * LONGEST * found.picture.shape[1] / length)[:, None]
     axes.quiver(
-        *found.pixels[rows].T, *way.T, color=style.ORANGE, angles="xy", scale_units="xy", scale=1,
-        width=0.006, headwidth=4, headlength=4.5, headaxislength=4,
-    )  # fmt: skip
+        *found.pixels[rows].T,
+        *way.T,
+        color=style.ORANGE,
+        angles="xy",
+        scale_units="xy",
+        scale=1,
+        width=0.006,
+        headwidth=4,
+        headlength=4.5,
+        headaxislength=4,
+    )
 
 
 def _ellipses(
@@ -136,10 +144,17 @@ def _ellipses(
     sizes, axes_of = np.linalg.eigh(found.spread[rows])
     angle = np.degrees(np.arctan2(axes_of[:, 1, 1], axes_of[:, 0, 1]))
     drawn = EllipseCollection(
-        2 * np.sqrt(np.maximum(sizes[:, 1], 0.05)), 2 * np.sqrt(np.maximum(sizes[:, 0], 0.05)),
-        angle, units="xy", offsets=found.pixels[rows], transOffset=axes.transData,
-        cmap=style.signed_colour_map(), norm=scale, linewidths=0, alpha=0.75,
-    )  # fmt: skip
+        2 * np.sqrt(np.maximum(sizes[:, 1], 0.05)),
+        2 * np.sqrt(np.maximum(sizes[:, 0], 0.05)),
+        angle,
+        units="xy",
+        offsets=found.pixels[rows],
+        transOffset=axes.transData,
+        cmap=style.signed_colour_map(),
+        norm=scale,
+        linewidths=0,
+        alpha=0.75,
+    )
     drawn.set_array(wish[rows])
     axes.add_collection(drawn)
     shades = ScalarMappable(scale, style.signed_colour_map())
@@ -147,9 +162,12 @@ def _ellipses(
 
 
 def _grad2d(
-    figure: Figure, axes: Axes, grad2d: Array, threshold: float,
+    figure: Figure,
+    axes: Axes,
+    grad2d: Array,
+    threshold: float,
     bar: tuple[float, float, float, float],
-) -> None:  # fmt: skip
+) -> None:
     """The map, and the line at the threshold."""
     top = nice_limit(float(np.quantile(grad2d, 0.995)))
     extent = (0, grad2d.shape[1], grad2d.shape[0], 0)

@@ -193,9 +193,12 @@ class Fit:
     def background_color(self, count: int) -> Array:
         """Linear background of each ray of a batch, (R, 3) or (3,)."""
         return background_color(
-            self.background, self.background_kind, count,
-            seed=self.options.seed, step=self.step_number,
-        )  # fmt: skip
+            self.background,
+            self.background_kind,
+            count,
+            seed=self.options.seed,
+            step=self.step_number,
+        )
 
     def run(
         self,
@@ -225,10 +228,13 @@ class Fit:
             if on_step:
                 on_step(
                     Progress(
-                        self.step_number, self.options.steps, *self.history[-1][1:],
-                        self.model.resolution, rate,
+                        self.step_number,
+                        self.options.steps,
+                        *self.history[-1][1:],
+                        self.model.resolution,
+                        rate,
                     )
-                )  # fmt: skip
+                )
             if now - saved > checkpoint_seconds:
                 self.save(folder)
                 saved = time.perf_counter()
@@ -322,9 +328,12 @@ class Fit:
             return
         assert isinstance(self.pixels, TrainingPixels)
         rows = prune_voxels(
-            self.model, self.pixels, self.loss_and_gradients,
-            threshold=self.options.prune, step=self.step_number,
-        )  # fmt: skip
+            self.model,
+            self.pixels,
+            self.loss_and_gradients,
+            threshold=self.options.prune,
+            step=self.step_number,
+        )
         if rows is not None:
             self.optimiser.apply_row_map(rows, self.model.params)
 

@@ -85,9 +85,18 @@ def image_loss(
     encoded = srgb_encode(image) if display else image
     target = srgb_encode(truth) if display else truth
     return ImageLoss(
-        l2(encoded, target), outputs.color, outputs.opacity, photograph, alpha, background,
-        image, truth, encoded, target, display,
-    )  # fmt: skip
+        l2(encoded, target),
+        outputs.color,
+        outputs.opacity,
+        photograph,
+        alpha,
+        background,
+        image,
+        truth,
+        encoded,
+        target,
+        display,
+    )
 
 
 def image_loss_backward(loss: ImageLoss) -> tuple[Outputs, Array]:

@@ -19,10 +19,7 @@ DENSITY_CONTROLS = ("mcmc", "clone_split_prune", "none")
 """Of Gaussians: a fixed number that wanders, a growing one, or none."""
 
 MOST_DEGREE = 3
-USERS_OF = {
-    "degree": ("sparse_sh", "dense_sh", "octree_sh", "gaussians"),
-    "prune": ("sparse_sh",),
-}
+USERS_OF = {"degree": ("sparse_sh", "dense_sh", "octree_sh", "gaussians"), "prune": ("sparse_sh",)}
 """Options that mean nothing to other representations than these."""
 
 
@@ -96,9 +93,13 @@ class FitOptions:
             raise RangeError(message("FitOptions", "ssim_weight", "0 to 1", f"{self.ssim_weight}"))
         if self.density_control not in DENSITY_CONTROLS:
             raise RangeError(
-                message("FitOptions", "density_control", f"one of {DENSITY_CONTROLS}",
-                        repr(self.density_control))
-            )  # fmt: skip
+                message(
+                    "FitOptions",
+                    "density_control",
+                    f"one of {DENSITY_CONTROLS}",
+                    repr(self.density_control),
+                )
+            )
         if self.background not in (*BACKGROUNDS, "auto"):
             raise RangeError(
                 message("FitOptions", "background", f"one of {BACKGROUNDS}", repr(self.background))
@@ -193,6 +194,9 @@ class FitResult:
 def summary(result: FitResult) -> dict[str, Any]:
     """A fit's result for the machine-readable last line."""
     return {
-        "model": str(result.path), "step": result.step, "finished": result.finished,
-        "seconds": round(result.seconds, 3), "loss": result.loss,
-    }  # fmt: skip
+        "model": str(result.path),
+        "step": result.step,
+        "finished": result.finished,
+        "seconds": round(result.seconds, 3),
+        "loss": result.loss,
+    }

@@ -64,9 +64,13 @@ def _panel(axes: Axes, scores: Sequence[Score], looks: dict[str, tuple[str, str]
         axes.plot([x], [score.psnr], mark, color=color)
         left = _crowded(score, scores)
         axes.annotate(
-            f"{score.train_seconds:.0f} s", (x, score.psnr), xytext=(-5, -10) if left else (5, 3),
-            ha="right" if left else "left", textcoords="offset points", fontsize=style.SMALL_SIZE,
-        )  # fmt: skip
+            f"{score.train_seconds:.0f} s",
+            (x, score.psnr),
+            xytext=(-5, -10) if left else (5, 3),
+            ha="right" if left else "left",
+            textcoords="offset points",
+            fontsize=style.SMALL_SIZE,
+        )
     low, high = axes.get_xlim()
     marks = [mark for mark in _ROUND if 0.5 * low < mark < 2 * high]
     axes.set_xticks(marks, labels=[f"{mark:g}" for mark in marks])

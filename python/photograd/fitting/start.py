@@ -46,9 +46,13 @@ def first_scene(
     share = FIRST_SHARE if isinstance(control, CloneSplitPrune) else 1.0
     count = max(1, int(share * options.gaussians))
     gaussians, rule = start_gaussians(
-        capture, box, count, degree=options.degree, seed=options.seed,
+        capture,
+        box,
+        count,
+        degree=options.degree,
+        seed=options.seed,
         given=points(count) if points else None,
-    )  # fmt: skip
+    )
     extent = scene_extent(capture, box)
     return GaussianScene(gaussians, extent=extent, control=control, active_degree=0), rule
 
@@ -107,14 +111,21 @@ def start_field(
     size, finest = options.levels()[0], options.resolution
     if options.representation in HARMONIC_GRIDS:
         harmonic = HARMONIC_GRIDS[options.representation].full(
-            bounds.box, size, degree=options.degree, finest=finest, sigma_t=options.sigma_t,
+            bounds.box,
+            size,
+            degree=options.degree,
+            finest=finest,
+            sigma_t=options.sigma_t,
             steps_per_voxel=options.steps_per_voxel,
-        )  # fmt: skip
+        )
         return harmonic, f"box: {bounds.rule}"
     dense = DenseGrid.empty(
-        bounds.box, size, finest=finest, sigma_t=options.sigma_t,
+        bounds.box,
+        size,
+        finest=finest,
+        sigma_t=options.sigma_t,
         steps_per_voxel=options.steps_per_voxel,
-    )  # fmt: skip
+    )
     return dense, f"box: {bounds.rule}"
 
 
@@ -135,10 +146,7 @@ def frozen_field(field: FittedField, options: FitOptions) -> tuple[OctreeSh, str
 
 
 def saved_field(
-    params: Mapping[str, Array],
-    state: Mapping[str, Array],
-    policy: object,
-    options: FitOptions,
+    params: Mapping[str, Array], state: Mapping[str, Array], policy: object, options: FitOptions
 ) -> FittedField:
     """The field of a checkpoint that `check_checkpoint` has passed, `policy` as JSON has it.
 
@@ -154,7 +162,10 @@ def saved_field(
     if options.representation in HARMONIC_GRIDS:
         rest = {key: value for key, value in state.items() if key != "background_density"}
         return HARMONIC_GRIDS[options.representation](
-            ActiveVoxels.of_state(rest, "load_model"), params["density"], params["sh"], march,
+            ActiveVoxels.of_state(rest, "load_model"),
+            params["density"],
+            params["sh"],
+            march,
             background_density=float(state["background_density"]),
-        )  # fmt: skip
+        )
     return DenseGrid(params["values"], march)

@@ -61,9 +61,11 @@ def ray_slope(
     """Loss of the chosen pixels and its gradient by group, without the prior."""
     model: Any = field  # which takes back the context that it gave
     outputs, context = model.render(
-        pixels.rays(chosen), seed=options.seed, step=step,
+        pixels.rays(chosen),
+        seed=options.seed,
+        step=step,
         options=RenderOptions(stop=options.stop, jitter=True),
-    )  # fmt: skip
+    )
     display = pixels.color_space == "display"
     behind = background_color(raw_background, kind, len(chosen), seed=options.seed, step=step)
     loss = image_loss(outputs, pixels.premultiplied[chosen], behind, display=display)
@@ -113,9 +115,11 @@ def view_slope(
     """
     behind = display_background(raw_background, kind, seed=options.seed, step=step)
     outputs, context = scene.render(
-        ImageBatch(view.camera), seed=options.seed, step=step,
+        ImageBatch(view.camera),
+        seed=options.seed,
+        step=step,
         options=RenderOptions(stop=options.stop),
-    )  # fmt: skip
+    )
     loss = picture_loss(outputs, view, behind, ssim_weight=options.ssim_weight)
     d_outputs, d_background = picture_loss_backward(loss)
     gradients = scene.render_backward(context, d_outputs)

@@ -69,9 +69,15 @@ def view_gradients(
     pixels, _ = shown.camera.project(scene.params["means"].astype(np.float64))
     spread = screen_covariances(scene.gaussians, shown.camera)
     return ViewGradients(
-        picture, pixels, spread, screen, visible, total / len(chosen), grad2d.mean(),
+        picture,
+        pixels,
+        spread,
+        screen,
+        visible,
+        total / len(chosen),
+        grad2d.mean(),
         loss / len(chosen),
-    )  # fmt: skip
+    )
 
 
 def _slope(

@@ -142,9 +142,14 @@ def voxel_masks(field: VoxelField, capture: Capture) -> VoxelMasks:
     """
     if not capture.has_alpha:
         raise RangeError(
-            message("voxel_masks", "capture", "images with alpha", "images without",
-                    "there is no truth to compare signs with")
-        )  # fmt: skip
+            message(
+                "voxel_masks",
+                "capture",
+                "images with alpha",
+                "images without",
+                "there is no truth to compare signs with",
+            )
+        )
     shape = voxel_shape(field)
     lo, hi = field.box
     voxel = (hi - lo) / shape

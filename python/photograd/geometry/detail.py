@@ -119,9 +119,14 @@ class LevelsOfDetail:
         self.levels = [Level(mesh, 0.0), *sorted(coarser, key=lambda level: level.error)]
         low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
         self._corners = np.array(
-            [[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1])
-             for z in (low[2], high[2])], np.float64,
-        )  # fmt: skip
+            [
+                [x, y, z]
+                for x in (low[0], high[0])
+                for y in (low[1], high[1])
+                for z in (low[2], high[2])
+            ],
+            np.float64,
+        )
 
     def screen_error(self, level: int, camera: Camera, pixels: float) -> float:
         """Bound, in pixels, on how far what the camera sees of a level is from where it belongs.

@@ -260,9 +260,15 @@ class Body:
         return np.asarray(gradient / np.where(size > 0.0, size, 1.0))
 
     def trace(
-        self, origins: Any, directions: Any, *, t_min: float = 0.0, t_max: float = 1e3,
-        tolerance: float = 1e-6, max_steps: int = 1000,
-    ) -> SdfHits:  # fmt: skip
+        self,
+        origins: Any,
+        directions: Any,
+        *,
+        t_min: float = 0.0,
+        t_max: float = 1e3,
+        tolerance: float = 1e-6,
+        max_steps: int = 1000,
+    ) -> SdfHits:
         """Where each ray first meets the body, by steps of the distance.
 
         Args:
@@ -301,9 +307,16 @@ class Body:
         d_numbers = np.zeros_like(self.numbers)
         d_origins, d_directions = np.zeros_like(rays[0]), np.zeros_like(rays[1])
         self._core.trace_backward(
-            self._numbers(), *rays, hits.march, t, hits.end, weights,
-            d_numbers, d_origins, d_directions,
-        )  # fmt: skip
+            self._numbers(),
+            *rays,
+            hits.march,
+            t,
+            hits.end,
+            weights,
+            d_numbers,
+            d_origins,
+            d_directions,
+        )
         return d_numbers, d_origins, d_directions
 
     def _numbers(self) -> Array:

@@ -41,10 +41,15 @@ class BodyPicture:
 
 
 def draw_body(
-    body: Body, camera: Camera, *, albedo: Any = (0.7, 0.7, 0.7),
-    towards_sun: Any = (0.4, 0.8, 0.5), irradiance: float = 3.0, sky: float = 0.3,
+    body: Body,
+    camera: Camera,
+    *,
+    albedo: Any = (0.7, 0.7, 0.7),
+    towards_sun: Any = (0.4, 0.8, 0.5),
+    irradiance: float = 3.0,
+    sky: float = 0.3,
     t_max: float = 100.0,
-) -> BodyPicture:  # fmt: skip
+) -> BodyPicture:
     """One ray through the middle of each pixel, and one towards the sun.
 
     A Lambertian surface: radiance = albedo / pi (irradiance cos_sun visible + pi sky (1 + n_y) / 2)

@@ -85,9 +85,15 @@ class BrickField:
             np.zeros_like(self.values), np.zeros_like(self._background()), np.zeros_like(at)
         )
         _core.sample_bricks_backward(
-            self.topology, self.values, self._background(), at, np.ascontiguousarray(d_out),
-            gradients.values, gradients.background, gradients.points,
-        )  # fmt: skip
+            self.topology,
+            self.values,
+            self._background(),
+            at,
+            np.ascontiguousarray(d_out),
+            gradients.values,
+            gradients.background,
+            gradients.points,
+        )
         return gradients
 
     def _background(self) -> Array:

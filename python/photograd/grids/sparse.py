@@ -178,9 +178,14 @@ class SparseGrid:
         """Counts, bytes, bounds and extremes; one pass over the active values."""
         s = self.core.statistics()
         return SparseStatistics(
-            s.active_voxels, s.active_tiles, s.leaves, s.memory,
-            np.array(s.box, np.int64), s.min, s.max,
-        )  # fmt: skip
+            s.active_voxels,
+            s.active_tiles,
+            s.leaves,
+            s.memory,
+            np.array(s.box, np.int64),
+            s.min,
+            s.max,
+        )
 
     def sample(self, points: Array) -> Array:
         """Trilinear values (N, C) at world points (N, 3), by OpenVDB's own sampler.
@@ -232,9 +237,12 @@ class SparseGrid:
             around.append(found.leaves * (8 + 2 * steps) ** 3)
         room = 5 * self.channels * min(around)  # four bytes a value, masks and nodes
         require_room(
-            "SparseGrid.dilate", f"up to {min(around):,} voxels", room - found.memory,
-            argument="steps", remedy="take fewer steps, or a coarser grid",
-        )  # fmt: skip
+            "SparseGrid.dilate",
+            f"up to {min(around):,} voxels",
+            room - found.memory,
+            argument="steps",
+            remedy="take fewer steps, or a coarser grid",
+        )
         self.core.dilate(steps)
 
     def copy(self) -> SparseGrid:

@@ -140,9 +140,7 @@ def read_mitsuba(path: Path, *, memory_limit: int | None = None) -> Volume:
 
 
 HEADER_BYTES = 348
-_NIFTI_TYPES = {
-    2: "u1", 4: "i2", 8: "i4", 16: "f4", 64: "f8", 256: "i1", 512: "u2", 768: "u4",
-}  # fmt: skip
+_NIFTI_TYPES = {2: "u1", 4: "i2", 8: "i4", 16: "f4", 64: "f8", 256: "i1", 512: "u2", 768: "u4"}
 METRES = {1: 1.0, 2: 1e-3, 3: 1e-6}  # of the unit codes: metres, millimetres, micrometres
 OURS_FROM_THEIRS = np.array([[1.0, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
 
@@ -232,9 +230,15 @@ def _turn(b: float, c: float, d: float) -> Array:
 
 
 _VTK_TYPES = {
-    "unsigned_char": "u1", "char": "i1", "unsigned_short": ">u2", "short": ">i2",
-    "unsigned_int": ">u4", "int": ">i4", "float": ">f4", "double": ">f8",
-}  # fmt: skip
+    "unsigned_char": "u1",
+    "char": "i1",
+    "unsigned_short": ">u2",
+    "short": ">i2",
+    "unsigned_int": ">u4",
+    "int": ">i4",
+    "float": ">f4",
+    "double": ">f8",
+}
 LONGEST_HEADER = 4096
 
 

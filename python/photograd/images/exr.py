@@ -82,10 +82,7 @@ def encode_exr(image: npt.NDArray[np.float32], *, half: bool) -> bytes:
         got = f"{float(np.abs(image).max()):.6g}"
         raise RangeError(message("write_exr", "image", "at most 65504 in half", got, "use float"))
     name = "RGB" if image.shape[2] == 3 else "RGBA"
-    header: dict[str, Any] = {
-        "compression": OpenEXR.ZIP_COMPRESSION,
-        "type": OpenEXR.scanlineimage,
-    }
+    header: dict[str, Any] = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
     pixels = np.ascontiguousarray(image, dtype=np.float16 if half else np.float32)
     with TemporaryDirectory() as folder:  # older versions of the library write to paths alone
         path = Path(folder) / "image.exr"

@@ -15,14 +15,28 @@ from PIL import Image
 from photograd.errors import IoError, message
 
 _READ = {
-    b"\x89PNG\r\n\x1a\n": "PNG", b"\xff\xd8\xff": "JPEG", b"v/1\x01": "EXR", b"#?": "HDR",
-    b"PF": "PFM", b"Pf": "PFM",
-}  # fmt: skip
+    b"\x89PNG\r\n\x1a\n": "PNG",
+    b"\xff\xd8\xff": "JPEG",
+    b"v/1\x01": "EXR",
+    b"#?": "HDR",
+    b"PF": "PFM",
+    b"Pf": "PFM",
+}
 _OTHERS = {
-    b"GIF8": "GIF", b"II*\0": "TIFF", b"MM\0*": "TIFF", b"BM": "BMP", b"%!PS": "PostScript",
-    b"\xc5\xd0\xd3\xc6": "PostScript", b"%PDF": "PDF", b"RIFF": "WebP",
-    b"\0\0\0\x0cjP": "JPEG 2000", b"P5": "PGM", b"P6": "PPM", b"<svg": "SVG", b"8BPS": "Photoshop",
-}  # fmt: skip
+    b"GIF8": "GIF",
+    b"II*\0": "TIFF",
+    b"MM\0*": "TIFF",
+    b"BM": "BMP",
+    b"%!PS": "PostScript",
+    b"\xc5\xd0\xd3\xc6": "PostScript",
+    b"%PDF": "PDF",
+    b"RIFF": "WebP",
+    b"\0\0\0\x0cjP": "JPEG 2000",
+    b"P5": "PGM",
+    b"P6": "PPM",
+    b"<svg": "SVG",
+    b"8BPS": "Photoshop",
+}
 PILLOW_KINDS = ("PNG", "JPEG")
 LINEAR_KINDS = ("EXR", "HDR", "PFM")
 LINEAR_SUFFIXES = (".exr", ".hdr", ".pfm")

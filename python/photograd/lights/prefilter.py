@@ -177,9 +177,11 @@ class SpecularMap:
 
 
 def specular_map(
-    light: Light, roughnesses: Sequence[float] = ROUGHNESSES, most_rows: int = 256,
+    light: Light,
+    roughnesses: Sequence[float] = ROUGHNESSES,
+    most_rows: int = 256,
     on_row: OnRow | None = None,
-) -> SpecularMap:  # fmt: skip
+) -> SpecularMap:
     """The radiance that lobes of these roughnesses see around each direction.
 
     Args:
@@ -237,10 +239,17 @@ class PrefilteredLight:
 
 
 def shade(
-    light: PrefilteredLight, normals: Array, wo: Array, *, base_color: ArrayLike,
-    metalness: ArrayLike, roughness: ArrayLike, reflectance: ArrayLike = 0.5,
-    occlusion: ArrayLike = 1.0, leaning: bool = True,
-) -> Array:  # fmt: skip
+    light: PrefilteredLight,
+    normals: Array,
+    wo: Array,
+    *,
+    base_color: ArrayLike,
+    metalness: ArrayLike,
+    roughness: ArrayLike,
+    reflectance: ArrayLike = 0.5,
+    occlusion: ArrayLike = 1.0,
+    leaning: bool = True,
+) -> Array:
     """Radiance (..., 3) that surfaces of the model `standard` send towards wo, by the split sum.
 
     Args:

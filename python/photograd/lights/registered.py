@@ -193,10 +193,17 @@ class TriangleLight(RegisteredLight):
 CLASSES: Mapping[str, type[RegisteredLight]] = {
     light.core_name: light
     for light in (
-        PointLight, SpotLight, DirectionalLight, ConstantLight, SkyLight, SunLight, QuadLight,
-        SphereLight, TriangleLight,
+        PointLight,
+        SpotLight,
+        DirectionalLight,
+        ConstantLight,
+        SkyLight,
+        SunLight,
+        QuadLight,
+        SphereLight,
+        TriangleLight,
     )
-}  # fmt: skip
+}
 
 
 def from_values(name: str, values: Mapping[str, Any]) -> RegisteredLight:

@@ -212,10 +212,7 @@ def _checked(
     where: str, radiance: Picture, alpha: Picture, shape: tuple[int, int]
 ) -> npt.NDArray[np.float32]:
     """What the renderer returned as (H, W, 4) float32, or why it cannot be that."""
-    for name, array, expected in (
-        ("radiance", radiance, (*shape, 3)),
-        ("alpha", alpha, shape),
-    ):
+    for name, array, expected in (("radiance", radiance, (*shape, 3)), ("alpha", alpha, shape)):
         if array.shape != expected:
             argument = f"render_view: {where}: {name}"
             raise ShapeError(message("capture_scene", argument, f"shape {expected}", array.shape))

@@ -48,9 +48,11 @@ def _spline(points: FloatArray) -> FloatArray:
     for k in range(len(points) - 3):
         a, b, c, d = points[k : k + 4]
         pieces.append(
-            b + 0.5 * t * (c - a) + t**2 * (a - 2.5 * b + 2 * c - 0.5 * d)
+            b
+            + 0.5 * t * (c - a)
+            + t**2 * (a - 2.5 * b + 2 * c - 0.5 * d)
             + 0.5 * t**3 * (3 * b - a - 3 * c + d)
-        )  # fmt: skip
+        )
     return np.concatenate([*pieces, points[-2:-1]])
 
 

@@ -135,9 +135,13 @@ class SunDescription:
         if length == 0.0:
             raise RangeError(message("from_irradiance", "towards", "a direction", "a zero vector"))
         require_number(
-            "from_irradiance", "angular_radius", angular_radius,
-            least=0.0, most=np.pi / 2, open_ends=True,
-        )  # fmt: skip
+            "from_irradiance",
+            "angular_radius",
+            angular_radius,
+            least=0.0,
+            most=np.pi / 2,
+            open_ends=True,
+        )
         irradiance = _color("from_irradiance", "irradiance", irradiance)
         radiance = irradiance / (np.pi * np.sin(angular_radius) ** 2)
         return cls(towards / length, radiance, angular_radius)

@@ -14,10 +14,11 @@ from photograd.lights.distant import cap_height
 from photograd.scenes.description import SceneDescription, SceneMesh
 from photograd.transport.accumulation import Accumulation
 from photograd.transport.material import Material
+from photograd.transport.path_options import PathOptions
 from photograd.transport.scene import Environment, Scene
 from photograd.transport.shapes import MeshShape
 from photograd.transport.texture import Texture, TextureUse
-from photograd.transport.tracer import PathOptions, PathTracer
+from photograd.transport.tracer import PathTracer
 from photograd.types import Array
 
 Floats = npt.NDArray[np.float32]

@@ -61,8 +61,13 @@ def cage(*, wires: int = 20) -> list[Part]:
     for height, name in ((_FLOOR + 0.06, "red"), (-0.16, "blue"), (_SHOULDER, "red")):
         hoop = torus(_RADIUS, 1.4 * _WIRE, rows=12, columns=128).moved((0.0, height, 0.0))
         parts.append((hoop, stripes((4, 512), 64, paints(name, "cream"))))
-    base = [(0, _FLOOR + 0.02), (0.43, _FLOOR + 0.02), (0.455, _FLOOR), (0.44, _FLOOR - 0.05),
-            (0, _FLOOR - 0.06)]  # fmt: skip
+    base = [
+        (0, _FLOOR + 0.02),
+        (0.43, _FLOOR + 0.02),
+        (0.455, _FLOOR),
+        (0.44, _FLOOR - 0.05),
+        (0, _FLOOR - 0.06),
+    ]
     floor = lathe(rounded_profile(base), columns=128)
     top = float(upright[-1, 1])
     ball = sphere(0.035, rows=24, columns=48).moved((0.0, top + 0.02, 0.0))
@@ -88,9 +93,7 @@ def knot(*, seed: int) -> list[Part]:
     rows = checker((864, 4), (54, 1), paints(*twice))
     turn = rotation_about("y", 360.0 * float(random.uniform(seed)))
     return placed(
-        [(tube(0.095 * curve, 0.05, sides=24, closed=True), rows)],
-        (0.0, -0.12, 0.0),
-        rotation=turn,
+        [(tube(0.095 * curve, 0.05, sides=24, closed=True), rows)], (0.0, -0.12, 0.0), rotation=turn
     )
 
 

@@ -23,20 +23,39 @@ _TABLE: Final = 256
 # The middles of a cube's edges, four of them twice to make 16 [Perlin2002, Sec. 3].
 _EDGES: Final = np.array(
     [
-        [1, 1, 0], [-1, 1, 0], [1, -1, 0], [-1, -1, 0], [1, 0, 1], [-1, 0, 1], [1, 0, -1],
-        [-1, 0, -1], [0, 1, 1], [0, -1, 1], [0, 1, -1], [0, -1, -1],
-        [1, 1, 0], [-1, 1, 0], [0, -1, 1], [0, -1, -1],
+        [1, 1, 0],
+        [-1, 1, 0],
+        [1, -1, 0],
+        [-1, -1, 0],
+        [1, 0, 1],
+        [-1, 0, 1],
+        [1, 0, -1],
+        [-1, 0, -1],
+        [0, 1, 1],
+        [0, -1, 1],
+        [0, 1, -1],
+        [0, -1, -1],
+        [1, 1, 0],
+        [-1, 1, 0],
+        [0, -1, 1],
+        [0, -1, -1],
     ],
     dtype=np.float64,
-)  # fmt: skip
+)
 
 # Eight directions in the plane, of length sqrt(2) as the edges have.
 _COMPASS: Final = np.array(
     [
-        [1, 1], [-1, 1], [1, -1], [-1, -1],
-        [np.sqrt(2), 0], [-np.sqrt(2), 0], [0, np.sqrt(2)], [0, -np.sqrt(2)],
+        [1, 1],
+        [-1, 1],
+        [1, -1],
+        [-1, -1],
+        [np.sqrt(2), 0],
+        [-np.sqrt(2), 0],
+        [0, np.sqrt(2)],
+        [0, -np.sqrt(2)],
     ]
-)  # fmt: skip
+)
 
 _GRADIENTS: Final = {2: _COMPASS, 3: _EDGES}
 

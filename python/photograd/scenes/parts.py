@@ -26,15 +26,39 @@ BRIGHTEST: Final = 0.95
 """No real paint reflects nothing or everything, and gradients vanish at both ends."""
 
 _DISPLAY: Final = {
-    "cream": "f6ead2", "white": "f7f5ef", "ink": "1c2740", "charcoal": "34302e",
-    "red": "d62828", "coral": "f2644d", "orange": "f48c06", "amber": "ffb627",
-    "yellow": "ffd23f", "lime": "a7c934", "green": "3a9d4b", "pine": "1d6b4f",
-    "teal": "139a94", "turquoise": "3fc4bd", "sky": "5bb4e5", "blue": "2667c9",
-    "navy": "23378a", "violet": "6c3fb0", "magenta": "c9307f", "pink": "f58fb0",
-    "brown": "7a4a28", "oak": "c98f55", "walnut": "8a5a33", "maple": "e2b77e",
-    "sand": "dcc48f", "grass": "6f9c3a", "forest": "3d6b32", "rock": "857a6e", "slate": "5b6068",
-    "snow": "f4f6f8", "lagoon": "2aa7b8", "deep": "1b4f86",
-}  # fmt: skip
+    "cream": "f6ead2",
+    "white": "f7f5ef",
+    "ink": "1c2740",
+    "charcoal": "34302e",
+    "red": "d62828",
+    "coral": "f2644d",
+    "orange": "f48c06",
+    "amber": "ffb627",
+    "yellow": "ffd23f",
+    "lime": "a7c934",
+    "green": "3a9d4b",
+    "pine": "1d6b4f",
+    "teal": "139a94",
+    "turquoise": "3fc4bd",
+    "sky": "5bb4e5",
+    "blue": "2667c9",
+    "navy": "23378a",
+    "violet": "6c3fb0",
+    "magenta": "c9307f",
+    "pink": "f58fb0",
+    "brown": "7a4a28",
+    "oak": "c98f55",
+    "walnut": "8a5a33",
+    "maple": "e2b77e",
+    "sand": "dcc48f",
+    "grass": "6f9c3a",
+    "forest": "3d6b32",
+    "rock": "857a6e",
+    "slate": "5b6068",
+    "snow": "f4f6f8",
+    "lagoon": "2aa7b8",
+    "deep": "1b4f86",
+}
 """Display-encoded, as hexadecimal RGB."""
 
 

@@ -168,8 +168,10 @@ def _icosahedron() -> tuple[FloatArray, npt.NDArray[np.int64]]:
     height, radius = 1.0 / np.sqrt(5.0), 2.0 / np.sqrt(5.0)
     step = 2.0 * np.pi / 5.0
     upper = [[radius * np.sin(step * k), height, radius * np.cos(step * k)] for k in range(5)]
-    lower = [[radius * np.sin(step * (k + 0.5)), -height, radius * np.cos(step * (k + 0.5))]
-             for k in range(5)]  # fmt: skip
+    lower = [
+        [radius * np.sin(step * (k + 0.5)), -height, radius * np.cos(step * (k + 0.5))]
+        for k in range(5)
+    ]
     vertices = np.array([[0.0, 1.0, 0.0], *upper, *lower, [0.0, -1.0, 0.0]])
     faces = []
     for k in range(5):

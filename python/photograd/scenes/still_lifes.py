@@ -25,19 +25,49 @@ from photograd.scenes.textures import checker, marble, painted_tiles, stripes, w
 def smooth_curves(seed: int) -> SceneDescription:
     """A vase, a bowl, a pebble and a ring within 0.7 m of the origin; `seed` turns the colours."""
     shift = float(random.uniform(seed))
-    vase = lathe(rounded_profile([
-        (0.0, 0.02), (0.09, 0.1), (0.06, 0.62), (0.1, 0.66), (0.12, 0.62), (0.09, 0.48),
-        (0.2, 0.22), (0.17, 0.02), (0.1, -0.03), (0.0, -0.03),
-    ], count=160), columns=128)  # fmt: skip
-    bowl = lathe(rounded_profile([
-        (0.0, 0.03), (0.12, 0.06), (0.24, 0.17), (0.26, 0.18), (0.26, 0.16), (0.15, 0.02),
-        (0.08, -0.02), (0.0, -0.02),
-    ], count=128), columns=128)  # fmt: skip
+    vase = lathe(
+        rounded_profile(
+            [
+                (0.0, 0.02),
+                (0.09, 0.1),
+                (0.06, 0.62),
+                (0.1, 0.66),
+                (0.12, 0.62),
+                (0.09, 0.48),
+                (0.2, 0.22),
+                (0.17, 0.02),
+                (0.1, -0.03),
+                (0.0, -0.03),
+            ],
+            count=160,
+        ),
+        columns=128,
+    )
+    bowl = lathe(
+        rounded_profile(
+            [
+                (0.0, 0.03),
+                (0.12, 0.06),
+                (0.24, 0.17),
+                (0.26, 0.18),
+                (0.26, 0.16),
+                (0.15, 0.02),
+                (0.08, -0.02),
+                (0.0, -0.02),
+            ],
+            count=128,
+        ),
+        columns=128,
+    )
     pebble = superellipsoid((0.19, 0.13, 0.15), north=1.0, east=0.9)
     ring = torus(0.15, 0.055, rows=48, columns=128).moved(rotation=rotation_about("x", 75.0))
-    plate = lathe(rounded_profile([
-        (0.0, 0.0), (0.5, 0.0), (0.6, 0.03), (0.61, 0.02), (0.5, -0.04), (0.0, -0.05),
-    ], count=128), columns=160)  # fmt: skip
+    plate = lathe(
+        rounded_profile(
+            [(0.0, 0.0), (0.5, 0.0), (0.6, 0.03), (0.61, 0.02), (0.5, -0.04), (0.0, -0.05)],
+            count=128,
+        ),
+        columns=160,
+    )
     parts: list[Part] = [
         _graded(vase.moved((-0.2, -0.33, -0.16)), ("navy", "turquoise", "cream"), shift),
         _graded(bowl.moved((0.26, -0.33, -0.14)), ("magenta", "coral", "amber"), shift),

@@ -76,8 +76,9 @@ def mug(*, seed: int) -> list[Part]:
     texture = bands((512, 768), [rim - 0.02, rim + 0.02], paints("coral", "navy", "white"))
     start = int((rim + 0.02) * 512)
     texture[start : start + 192] = tiles
-    curve = np.array([[0.12, 0.2, 0], [0.185, 0.205, 0], [0.21, 0.13, 0], [0.18, 0.065, 0],
-                      [0.12, 0.06, 0]])  # fmt: skip
+    curve = np.array(
+        [[0.12, 0.2, 0], [0.185, 0.205, 0], [0.21, 0.13, 0], [0.18, 0.065, 0], [0.12, 0.06, 0]]
+    )
     handle = tube(smooth_curve(curve, 40), 0.019)
     return [(lathe(profile), texture), (handle, paint("coral"))]
 
@@ -101,8 +102,18 @@ def blocks(*, seed: int) -> list[Part]:
 
 def spinning_top(*, seed: int) -> list[Part]:
     """Marbled, leaning as if it turned, on its tip."""
-    profile = [(0, 0.27), (0.017, 0.27), (0.017, 0.255), (0.014, 0.18), (0.03, 0.165),
-               (0.12, 0.135), (0.125, 0.115), (0.07, 0.055), (0.015, 0.012), (0, 0)]  # fmt: skip
+    profile = [
+        (0, 0.27),
+        (0.017, 0.27),
+        (0.017, 0.255),
+        (0.014, 0.18),
+        (0.03, 0.165),
+        (0.12, 0.135),
+        (0.125, 0.115),
+        (0.07, 0.055),
+        (0.015, 0.012),
+        (0, 0),
+    ]
     colors = marble((192, 512), paints("magenta", "white", "violet", "amber"), seed=seed, veins=4)
     body = lathe(rounded_profile(profile))
     return placed([(body, colors)], rotation=rotation_about("z", 16.0) @ rotation_about("x", 9.0))
@@ -123,8 +134,15 @@ def caterpillar() -> list[Part]:
     for side in (-1.0, 1.0):
         eye = sphere(0.017, rows=16, columns=32).moved((x + 0.052, y + 0.025, z + side * 0.03))
         feeler = smooth_curve(
-            np.array([[x, y + 0.05, z + side * 0.02], [x + 0.01, y + 0.11, z + side * 0.045],
-                      [x + 0.045, y + 0.145, z + side * 0.06]]), 16)  # fmt: skip
+            np.array(
+                [
+                    [x, y + 0.05, z + side * 0.02],
+                    [x + 0.01, y + 0.11, z + side * 0.045],
+                    [x + 0.045, y + 0.145, z + side * 0.06],
+                ]
+            ),
+            16,
+        )
         tip = sphere(0.017, rows=16, columns=32).moved((x + 0.045, y + 0.15, z + side * 0.06))
         parts += [(eye, paint("ink")), (tube(feeler, 0.008), paint("ink")), (tip, paint("amber"))]
     return parts
@@ -182,8 +200,19 @@ def table(*, seed: int) -> list[Part]:
 
 def leg() -> list[Part]:
     """One leg below the origin, splayed towards +Z."""
-    turned = [(0, 0.01), (0.04, 0.0), (0.042, -0.06), (0.02, -0.1), (0.046, -0.15), (0.02, -0.2),
-              (0.03, -0.28), (0.022, -0.36), (0.038, -0.4), (0.03, -0.44), (0, -0.45)]  # fmt: skip
+    turned = [
+        (0, 0.01),
+        (0.04, 0.0),
+        (0.042, -0.06),
+        (0.02, -0.1),
+        (0.046, -0.15),
+        (0.02, -0.2),
+        (0.03, -0.28),
+        (0.022, -0.36),
+        (0.038, -0.4),
+        (0.03, -0.44),
+        (0, -0.45),
+    ]
     profile = rounded_profile([(float(r), float(y)) for r, y in turned])
     colors = paints("blue", "cream", "coral", "cream", "teal", "amber", "blue")
     edges = [0.2, 0.28, 0.42, 0.5, 0.72, 0.84]

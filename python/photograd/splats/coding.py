@@ -18,9 +18,13 @@ from photograd.splats.splatting import Gaussians
 from photograd.types import Array
 
 UNITS = {
-    "means": "m", "log_scales": "log m", "rotation": "degrees", "opacity": "of 1",
-    "color": "display, of 1", "harmonics": "coefficient",
-}  # fmt: skip
+    "means": "m",
+    "log_scales": "log m",
+    "rotation": "degrees",
+    "opacity": "of 1",
+    "color": "display, of 1",
+    "harmonics": "coefficient",
+}
 
 
 @dataclass(frozen=True)

@@ -89,11 +89,7 @@ def read_gaussians(path: Path, *, memory_limit: int | None = None) -> GaussianFi
 
 
 def write_gaussians(
-    path: Path,
-    gaussians: Gaussians,
-    *,
-    spz_version: int = 3,
-    presentation: Presentation = UNSTATED,
+    path: Path, gaussians: Gaussians, *, spz_version: int = 3, presentation: Presentation = UNSTATED
 ) -> None:
     """Write Gaussians in the format that the name's end says, whole or not at all.
 
@@ -124,10 +120,9 @@ def write_gaussians(
         ".ply": lambda: write_gaussian_ply(path, gaussians, presentation),
         ".splat": lambda: write_gaussian_splat(path, gaussians),
         ".spz": lambda: write_gaussian_spz(
-            path, gaussians, version=spz_version,
-            antialiased=presentation.antialiased is True,
+            path, gaussians, version=spz_version, antialiased=presentation.antialiased is True
         ),
-    }  # fmt: skip
+    }
     writers[suffix]()
 
 

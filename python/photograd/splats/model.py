@@ -243,9 +243,12 @@ class GaussianScene(Representation):
         plain = {name: params[name] for name in ("means", "log_scales", "quats", "opacity_logits")}
         harmonics = np.concatenate([params["sh_constant"], params["sh_rest"]], axis=1)
         scene = cls(
-            Gaussians(**plain, sh=harmonics), extent=float(state["extent"]), policy=policy,
-            control=control, active_degree=int(state["active_degree"]),
-        )  # fmt: skip
+            Gaussians(**plain, sh=harmonics),
+            extent=float(state["extent"]),
+            policy=policy,
+            control=control,
+            active_degree=int(state["active_degree"]),
+        )
         scene.load_state(state)
         return scene
 

@@ -56,9 +56,11 @@ class RayOptions:
 
     def __post_init__(self) -> None:
         limits = {
-            "alpha_min": (0.0, 0.5), "alpha_max": (0.5, 1.0), "stop": (0.0, 0.5),
+            "alpha_min": (0.0, 0.5),
+            "alpha_max": (0.5, 1.0),
+            "stop": (0.0, 0.5),
             "t_min": (0.0, 1e6),
-        }  # fmt: skip
+        }
         for name, (low, high) in limits.items():
             value = getattr(self, name)
             if not low <= value <= high:

@@ -60,9 +60,12 @@ class Gaussians:
         n = len(self.means) if self.means.ndim else 0
         k = self.sh.shape[1] if self.sh.ndim == 3 else 1
         shapes = {
-            "means": (n, 3), "log_scales": (n, 3), "quats": (n, 4), "opacity_logits": (n,),
+            "means": (n, 3),
+            "log_scales": (n, 3),
+            "quats": (n, 4),
+            "opacity_logits": (n,),
             "sh": (n, k, 3),
-        }  # fmt: skip
+        }
         for name, shape in shapes.items():
             array = getattr(self, name)
             if array.dtype != self.means.dtype:
@@ -127,10 +130,14 @@ class SplatOptions:
 
     def __post_init__(self) -> None:
         limits = {
-            "low_pass": (0.0, 1e3), "alpha_min": (0.0, 0.5), "alpha_max": (0.5, 1.0),
-            "extent_sigmas": (0.0, 1e3), "stop": (0.0, 0.5), "near": (1e-6, 1e6),
+            "low_pass": (0.0, 1e3),
+            "alpha_min": (0.0, 0.5),
+            "alpha_max": (0.5, 1.0),
+            "extent_sigmas": (0.0, 1e3),
+            "stop": (0.0, 0.5),
+            "near": (1e-6, 1e6),
             "frustum_margin": (0.0, 1e3),
-        }  # fmt: skip
+        }
         for name, (low, high) in limits.items():
             value = getattr(self, name)
             if not low <= value <= high:
@@ -145,10 +152,16 @@ class SplatOptions:
 
     def _core(self) -> Any:
         return _core.SplatOptions(
-            self.low_pass, self.antialiased, self.alpha_min, self.alpha_max,
-            self.clamped_gradient == "pass", self.extent_sigmas, self.stop, self.near,
+            self.low_pass,
+            self.antialiased,
+            self.alpha_min,
+            self.alpha_max,
+            self.clamped_gradient == "pass",
+            self.extent_sigmas,
+            self.stop,
+            self.near,
             self.frustum_margin,
-        )  # fmt: skip
+        )
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,11 +10,7 @@ from __future__ import annotations
 from photograd.transport.accumulation import Accumulation
 from photograd.transport.builtin import BUILTIN, builtin_scene
 from photograd.transport.density_files import read_density
-from photograd.transport.derivative import (
-    add_derivative_samples,
-    derivative_image,
-    direction_of,
-)
+from photograd.transport.derivative import add_derivative_samples, derivative_image, direction_of
 from photograd.transport.inverse import (
     Recovery,
     RecoveryOptions,
@@ -43,17 +39,12 @@ from photograd.transport.particles import (
     emit_particles,
     trace_light,
 )
+from photograd.transport.path_options import PathOptions
 from photograd.transport.scene import Environment, Scene
 from photograd.transport.scene_file import read_scene
 from photograd.transport.shapes import MeshShape, SdfShape, SphereShape
-from photograd.transport.texture import (
-    NormalMap,
-    OcclusionMap,
-    Texture,
-    TextureUse,
-    read_texture,
-)
-from photograd.transport.tracer import PathOptions, PathTracer
+from photograd.transport.texture import NormalMap, OcclusionMap, Texture, TextureUse, read_texture
+from photograd.transport.tracer import PathTracer
 
 __all__ = [
     "BOUNDARY",

@@ -90,9 +90,14 @@ class Accumulation:
         return float(np.sqrt(np.square(self.standard_error).mean())) / level if level > 0 else 0.0
 
     def check_call(
-        self, function: str, shape: tuple[int, int], count: int, *, name: str = "sums",
+        self,
+        function: str,
+        shape: tuple[int, int],
+        count: int,
+        *,
+        name: str = "sums",
         many: str = "spp",
-    ) -> None:  # fmt: skip
+    ) -> None:
         """Check a call that adds samples to these sums; its arguments are called so.
 
         Raises:
@@ -152,9 +157,14 @@ def load_accumulation(path: Path, key: dict[str, Any]) -> Accumulation:
             else ["key"]
         )
         raise IoError(
-            message("load_accumulation", f"{path}", "sums of this very rendering",
-                    f"others: {', '.join(differing) or 'version'} differ", "leave --resume away")
-        )  # fmt: skip
+            message(
+                "load_accumulation",
+                f"{path}",
+                "sums of this very rendering",
+                f"others: {', '.join(differing) or 'version'} differ",
+                "leave --resume away",
+            )
+        )
     shape = radiance.shape
     sound = radiance.ndim == 3 and shape[2] == 3 and squares.shape == shape and count >= 0
     if not sound or radiance.dtype != np.float64 or squares.dtype != np.float64:

@@ -106,9 +106,10 @@ def wax(size: int = 256) -> Scene:
         # of 7 to 11 centimetres, so that light gets through a ball of a metre.
         "wax": Medium([9.0, 11.0, 14.0], [0.998, 0.99, 0.96], values={"g": 0.3}),
         "amber": Medium([0.15, 0.9, 3.2]),
-        "smoke": Medium(12.0, [0.8, 0.83, 0.88], values={"g": 0.4},
-                        density=DensityGrid(smoke_densities(), box)),
-    }  # fmt: skip
+        "smoke": Medium(
+            12.0, [0.8, 0.83, 0.88], values={"g": 0.4}, density=DensityGrid(smoke_densities(), box)
+        ),
+    }
     camera = camera_at([0.0, 1.1, 4.8], [0.0, 0.45, 0.0], 40.0, size, size)
     lamp = QuadLight([-2.0, 2.8, -2.2], [4.0, 0.0, 0.0], [0.0, 1.0, 1.0], [7.0, 6.4, 5.6])
     sky = Environment(np.array([0.35, 0.45, 0.6]), np.full(3, 0.3), np.full(3, 0.1))

@@ -34,10 +34,14 @@ def is_placed(path: Path) -> bool:
 
 
 def read_density(
-    path: Path, *, grid: str | None = None, corner: Sequence[float] | None = None,
-    size: Sequence[float] | None = None, majorant: float | None = None,
+    path: Path,
+    *,
+    grid: str | None = None,
+    corner: Sequence[float] | None = None,
+    size: Sequence[float] | None = None,
+    majorant: float | None = None,
     memory_limit: int | None = None,
-) -> DensityGrid:  # fmt: skip
+) -> DensityGrid:
     """A density from a file, on the file's own lattice.
 
     Of a .vdb the box of active voxels is taken, and one layer more of the background around it:
@@ -92,9 +96,7 @@ def _grid_of(path: Path, file: VdbFile, name: str | None) -> SparseGrid:
     raise IoError(message(NAME, f"{path}", expected, names or "no grid"))
 
 
-def _layers(
-    path: Path, grid: SparseGrid, memory_limit: int | None
-) -> tuple[Array, Array, Array]:  # fmt: skip
+def _layers(path: Path, grid: SparseGrid, memory_limit: int | None) -> tuple[Array, Array, Array]:
     """Values of the active box and a layer around it, world_from_index, index of the first."""
     argument = f"{path}: grid '{grid.name}'"
     found = grid.statistics

@@ -18,7 +18,8 @@ from photograd.capture.camera import Camera
 from photograd.errors import RangeError, ShapeError, message
 from photograd.transport.accumulation import Accumulation
 from photograd.transport.incomplete import changed_names, require_whole
-from photograd.transport.tracer import DEFAULTS, PathOptions, PathTracer
+from photograd.transport.path_options import DEFAULTS, PathOptions
+from photograd.transport.tracer import PathTracer
 from photograd.types import Array
 
 SPELLING = re.compile(r"(?P<name>[^\[\]]+)(\[(?P<index>\d+(\s*,\s*\d+)*)\])?")
@@ -57,9 +58,14 @@ def direction_of(params: Mapping[str, Array], parameter: str) -> dict[str, Array
 
 
 def derivative_image(
-    tracer: PathTracer, along: str | Mapping[str, Array], *, spp: int, seed: int,
-    options: PathOptions = DEFAULTS, camera: Camera | None = None,
-) -> tuple[Accumulation, Accumulation]:  # fmt: skip
+    tracer: PathTracer,
+    along: str | Mapping[str, Array],
+    *,
+    spp: int,
+    seed: int,
+    options: PathOptions = DEFAULTS,
+    camera: Camera | None = None,
+) -> tuple[Accumulation, Accumulation]:
     """A picture and its derivative, from the same paths.
 
     Both are linear radiance (H, W, 3); the derivative is per unit of the parameter. Paths and their
@@ -95,10 +101,16 @@ def derivative_image(
 
 
 def add_derivative_samples(
-    tracer: PathTracer, picture: Accumulation, derivative: Accumulation,
-    along: str | Mapping[str, Array], spp: int, *, seed: int, options: PathOptions = DEFAULTS,
+    tracer: PathTracer,
+    picture: Accumulation,
+    derivative: Accumulation,
+    along: str | Mapping[str, Array],
+    spp: int,
+    *,
+    seed: int,
+    options: PathOptions = DEFAULTS,
     camera: Camera | None = None,
-) -> None:  # fmt: skip
+) -> None:
     """Add the next `spp` samples to both sums, in place; arguments as for `derivative_image`.
 
     Raises:
@@ -116,10 +128,14 @@ def add_derivative_samples(
     _core.trace_paths_tangent(
         **tracer.wide_arguments(camera=view),
         **{f"v_{name}": change for name, change in changes.items()},
-        options=options.numbers(seed), first=picture.count, count=spp,
-        radiance=picture.radiance, squares=picture.squares,
-        d_radiance=derivative.radiance, d_squares=derivative.squares,
-    )  # fmt: skip
+        options=options.numbers(seed),
+        first=picture.count,
+        count=spp,
+        radiance=picture.radiance,
+        squares=picture.squares,
+        d_radiance=derivative.radiance,
+        d_squares=derivative.squares,
+    )
     picture.count += spp
     derivative.count += spp
     picture.check_finite("derivative_image")

@@ -68,9 +68,9 @@ class Shutter:
         """
         start = opening.world_from_camera
         turned = self.closing[:3, :3] @ start[:3, :3].T
-        axis = 0.5 * np.array([
-            turned[2, 1] - turned[1, 2], turned[0, 2] - turned[2, 0], turned[1, 0] - turned[0, 1]
-        ])  # fmt: skip
+        axis = 0.5 * np.array(
+            [turned[2, 1] - turned[1, 2], turned[0, 2] - turned[2, 0], turned[1, 0] - turned[0, 1]]
+        )
         sine, cosine = float(np.linalg.norm(axis)), 0.5 * (float(np.trace(turned)) - 1)
         angle = float(np.arctan2(sine, cosine))
         if angle > np.pi - 1e-3:

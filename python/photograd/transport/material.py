@@ -16,10 +16,7 @@ from photograd.transport.shape_checks import check_range
 from photograd.transport.texture import NormalMap, OcclusionMap, TextureUse, checked_uses
 from photograd.types import Array
 
-MODELS: dict[str, bsdf.BsdfModel | specular.DeltaModel] = {
-    **bsdf.registry(),
-    **specular.registry(),
-}
+MODELS: dict[str, bsdf.BsdfModel | specular.DeltaModel] = {**bsdf.registry(), **specular.registry()}
 """All reflectance models, rough and smooth, by name."""
 ALPHA = bsdf.Parameter("alpha", 1, 0.0, 1.0, "")
 """What any material may have besides the parameters of its model."""

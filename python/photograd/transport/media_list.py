@@ -19,9 +19,15 @@ from photograd.types import Array
 
 NOTHING, UNCHANGED = -1, -2  # interiors that are no medium, as the core counts them
 SOLID = (
-    "glass", "rough_dielectric", "dispersive_glass", "dispersive_dielectric", "gltf_refraction",
-    "gltf_layered_volume", "gltf_layered_volume_conserving", BOUNDARY,
-)  # fmt: skip
+    "glass",
+    "rough_dielectric",
+    "dispersive_glass",
+    "dispersive_dielectric",
+    "gltf_refraction",
+    "gltf_layered_volume",
+    "gltf_layered_volume_conserving",
+    BOUNDARY,
+)
 """Surfaces whose inside is empty unless the shape says otherwise. Others that light can pass are
 taken for thin sheets: on both sides is what is around."""
 
@@ -129,9 +135,11 @@ class ListedMedia:
         ]
         world = NOTHING if self._world is None else self._numbers[self._world]
         return {
-            "interior": interior[owner], "boundary": boundary[owner], "world": world,
+            "interior": interior[owner],
+            "boundary": boundary[owner],
+            "world": world,
             "grids": grids,
-        }  # fmt: skip
+        }
 
     def _interior(self, shape: Shape) -> int:
         if shape.interior is not None:

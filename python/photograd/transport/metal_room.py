@@ -106,10 +106,13 @@ def _round(name: str, center: Any, radius: float, nu: int = 64, nv: int = 32) ->
     c, d = a + nu, b + nu
     last = (nv - 2) * nu
     north = np.full(nu, (nv - 1) * nu)
-    faces = np.concatenate([
-        np.stack([a, b, c], -1).reshape(-1, 3), np.stack([b, d, c], -1).reshape(-1, 3),
-        np.stack([north, following, here], -1),
-        np.stack([north + 1, last + here, last + following], -1),
-    ])  # fmt: skip
+    faces = np.concatenate(
+        [
+            np.stack([a, b, c], -1).reshape(-1, 3),
+            np.stack([b, d, c], -1).reshape(-1, 3),
+            np.stack([north, following, here], -1),
+            np.stack([north + 1, last + here, last + following], -1),
+        ]
+    )
     vertices = radius * outward + np.asarray(center)
     return MeshShape(name, vertices, faces, "ball", normals=outward)

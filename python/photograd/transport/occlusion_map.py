@@ -58,9 +58,14 @@ class OcclusionBake:
     """
 
     def __init__(
-        self, scene: Scene, shape: str, resolution: int | tuple[int, int], *,
-        radius: float = np.inf, seed: int,
-    ) -> None:  # fmt: skip
+        self,
+        scene: Scene,
+        shape: str,
+        resolution: int | tuple[int, int],
+        *,
+        radius: float = np.inf,
+        seed: int,
+    ) -> None:
         """Find the texels; arguments and errors as `bake_ambient_occlusion`."""
         height, width = (resolution, resolution) if isinstance(resolution, int) else resolution
         if min(height, width) < 1:
@@ -84,9 +89,15 @@ class OcclusionBake:
             raise _wrong("spp", "at least 1", spp)
         at = self.points
         _core.point_occlusion(
-            self._geometry, at.points, at.normals, self._radius, self._seed, self.count, spp,
+            self._geometry,
+            at.points,
+            at.normals,
+            self._radius,
+            self._seed,
+            self.count,
+            spp,
             self._free,
-        )  # fmt: skip
+        )
         self.count += spp
 
     def texture(self) -> Texture:
@@ -99,9 +110,14 @@ class OcclusionBake:
 
 
 def bake_ambient_occlusion(
-    scene: Scene, shape: str, resolution: int | tuple[int, int], *, radius: float = np.inf,
-    spp: int = 256, seed: int,
-) -> Texture:  # fmt: skip
+    scene: Scene,
+    shape: str,
+    resolution: int | tuple[int, int],
+    *,
+    radius: float = np.inf,
+    spp: int = 256,
+    seed: int,
+) -> Texture:
     """The free part of the sky over each texel of a mesh, weighted with the cosine.
 
     1 where nothing lies within `radius` of the texel's centre, seen from the front of its triangle;

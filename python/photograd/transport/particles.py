@@ -16,7 +16,8 @@ from photograd._compiled import _core
 from photograd.errors import RangeError, ShapeError, message
 from photograd.transport.accumulation import Accumulation
 from photograd.transport.motion import refuse_motion
-from photograd.transport.tracer import DEFAULTS, NEVER, PathOptions, PathTracer
+from photograd.transport.path_options import DEFAULTS, NEVER, PathOptions
+from photograd.transport.tracer import PathTracer
 from photograd.types import Array
 
 
@@ -102,9 +103,14 @@ class Receiver:
 
 
 def trace_light(
-    tracer: PathTracer, receiver: Receiver, particles: int, *, seed: int,
-    options: ParticleOptions = PARTICLES, sums: Accumulation | None = None,
-) -> Accumulation:  # fmt: skip
+    tracer: PathTracer,
+    receiver: Receiver,
+    particles: int,
+    *,
+    seed: int,
+    options: ParticleOptions = PARTICLES,
+    sums: Accumulation | None = None,
+) -> Accumulation:
     """The irradiance of a receiver, by particles from all lights of the scene.
 
     `mean` of what is returned is (H, W, 3) in W/m^2, linear Rec. 709, and times `cell_area` the
@@ -129,10 +135,14 @@ def trace_light(
     total = Accumulation.empty(*shape) if sums is None else sums
     total.check_call("trace_light", shape, particles, many="particles")
     _core.trace_light(
-        **scene_arguments("trace_light", tracer), options=options.numbers(seed), first=total.count,
-        count=particles, rectangle=receiver.rows, irradiance=total.radiance,
+        **scene_arguments("trace_light", tracer),
+        options=options.numbers(seed),
+        first=total.count,
+        count=particles,
+        rectangle=receiver.rows,
+        irradiance=total.radiance,
         squares=total.squares,
-    )  # fmt: skip
+    )
     total.count += particles
     total.check_finite("trace_light")
     return total
@@ -204,9 +214,15 @@ class PhotonMap:
     """
 
     def __init__(
-        self, tracer: PathTracer, particles: int, *, radius: float, seed: int,
-        options: ParticleOptions = PARTICLES, direct: bool = True,
-    ) -> None:  # fmt: skip
+        self,
+        tracer: PathTracer,
+        particles: int,
+        *,
+        radius: float,
+        seed: int,
+        options: ParticleOptions = PARTICLES,
+        direct: bool = True,
+    ) -> None:
         """Follow the particles.
 
         Args:
@@ -228,8 +244,11 @@ class PhotonMap:
         self.radius = radius
         self._map = _core.PhotonMap(
             **scene_arguments("PhotonMap", tracer),
-            options=options.numbers(seed), count=particles, radius=radius, direct=direct,
-        )  # fmt: skip
+            options=options.numbers(seed),
+            count=particles,
+            radius=radius,
+            direct=direct,
+        )
 
     def __len__(self) -> int:
         """Number of photons kept."""
@@ -266,9 +285,14 @@ class PhotonMap:
         view = self.tracer.scene.camera
         sums.check_call("PhotonMap.add_samples", (view.height, view.width), spp)
         _core.trace_photons(
-            map=self._map, **self.tracer.wide_arguments(), options=options.numbers(seed),
-            first=sums.count, count=spp, radiance=sums.radiance, squares=sums.squares,
-        )  # fmt: skip
+            map=self._map,
+            **self.tracer.wide_arguments(),
+            options=options.numbers(seed),
+            first=sums.count,
+            count=spp,
+            radiance=sums.radiance,
+            squares=sums.squares,
+        )
         sums.count += spp
         sums.check_finite("PhotonMap.add_samples")
 

@@ -113,9 +113,18 @@ def _scene(root: Node, name: str) -> Scene:
     lights = tuple(map(light_of, root.tables("lights"))) if root.has("lights") else ()
     lights += tuple(brought.lights)
     return Scene(
-        name, tuple(shapes), brought.materials, camera, environment, lights,
-        textures=brought.textures, lens=lens, shutter=shutter, media=brought.media, world=world,
-    )  # fmt: skip
+        name,
+        tuple(shapes),
+        brought.materials,
+        camera,
+        environment,
+        lights,
+        textures=brought.textures,
+        lens=lens,
+        shutter=shutter,
+        media=brought.media,
+        world=world,
+    )
 
 
 def _camera(node: Node) -> tuple[Camera, Lens, Shutter | None]:
@@ -178,9 +187,12 @@ def _material(node: Node) -> Material:
 
 
 def _shapes(
-    node: Node, index: int, materials: dict[str, Material], brought: Brought,
+    node: Node,
+    index: int,
+    materials: dict[str, Material],
+    brought: Brought,
     bodies: dict[str, SdfNode],
-) -> list[Shape]:  # fmt: skip
+) -> list[Shape]:
     """What a table describes; materials, textures and media of its file are added to `brought`."""
     node.has("interior")  # read by `filled`
     node.has("closing")  # read by `_moving`
@@ -236,9 +248,14 @@ def _rectangle(node: Node, name: str, material: str, emission: Any) -> MeshShape
 
 def _box(node: Node, name: str, material: str, emission: Any) -> MeshShape:
     return box(
-        name, node.numbers("center", 3), node.numbers("size", 3), material, emission,
-        turn=node.number("turn", 0.0), inward=node.flag("inward"),
-    )  # fmt: skip
+        name,
+        node.numbers("center", 3),
+        node.numbers("size", 3),
+        material,
+        emission,
+        turn=node.number("turn", 0.0),
+        inward=node.flag("inward"),
+    )
 
 
 def _sphere(node: Node, name: str, material: str, emission: Any) -> SphereShape:

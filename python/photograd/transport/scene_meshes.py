@@ -202,9 +202,13 @@ def mesh_shapes(
 
 
 def _placed(
-    shape: MeshShape, name: str, material: str | None, emission: Any, inner: Array,
+    shape: MeshShape,
+    name: str,
+    material: str | None,
+    emission: Any,
+    inner: Array,
     places: list[Array],
-) -> MeshShape:  # fmt: skip
+) -> MeshShape:
     """A shape of the file, moved, with the instances of the file and of the table multiplied."""
     vertices, faces, normals, uv = shape.vertices, shape.faces, shape.normals, shape.uv
     own = [np.asarray(inner @ place) for place in shape.places]
@@ -217,11 +221,18 @@ def _placed(
     if glow is not None:
         glow = replace(glow, texture=f"{name}/{glow.texture}")
     return replace(
-        shape, name=f"{name}/{shape.name}", vertices=vertices, faces=faces, normals=normals, uv=uv,
-        material=material or f"{name}/{shape.material}", emission=shining,
-        places=tuple(both) if own or places else (), glow=glow,
+        shape,
+        name=f"{name}/{shape.name}",
+        vertices=vertices,
+        faces=faces,
+        normals=normals,
+        uv=uv,
+        material=material or f"{name}/{shape.material}",
+        emission=shining,
+        places=tuple(both) if own or places else (),
+        glow=glow,
         interior=f"{name}/{shape.interior}" if material is None and shape.interior else None,
-    )  # fmt: skip
+    )
 
 
 def _renamed(model: ModelFile, name: str, looked_up: str | None) -> Brought:

@@ -234,9 +234,15 @@ def rectangle(
 
 
 def box(
-    name: str, center: Any, size: Any, material: str, emission: Any = (0, 0, 0), *,
-    turn: float = 0.0, inward: bool = False,
-) -> MeshShape:  # fmt: skip
+    name: str,
+    center: Any,
+    size: Any,
+    material: str,
+    emission: Any = (0, 0, 0),
+    *,
+    turn: float = 0.0,
+    inward: bool = False,
+) -> MeshShape:
     """A closed box of twelve triangles.
 
     Args:
@@ -257,9 +263,21 @@ def box(
     world_from_object = np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]])
     vertices = (0.5 * corners * extent) @ world_from_object.T + np.asarray(center, np.float64)
     faces: Array = np.array(
-        [[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1],
-         [2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3]]
-    )  # fmt: skip
+        [
+            [0, 1, 3],
+            [0, 3, 2],
+            [4, 6, 7],
+            [4, 7, 5],
+            [0, 4, 5],
+            [0, 5, 1],
+            [2, 3, 7],
+            [2, 7, 6],
+            [0, 2, 6],
+            [0, 6, 4],
+            [1, 5, 7],
+            [1, 7, 3],
+        ]
+    )
     if inward:
         faces = faces[:, ::-1]
     return MeshShape(name, vertices, faces, material, np.asarray(emission, np.float64))

@@ -109,9 +109,11 @@ def dipole_albedo_backward(
 
 
 def normalized_diffusion(
-    radius: ArrayLike, albedo: ArrayLike, mean_free_path: ArrayLike,
+    radius: ArrayLike,
+    albedo: ArrayLike,
+    mean_free_path: ArrayLike,
     fit: DiffusionFit = "searchlight",
-) -> FloatArray:  # fmt: skip
+) -> FloatArray:
     """Normalized diffusion R in 1/m^2; it integrates to `albedo` over the plane.
 
     Args:
@@ -133,9 +135,12 @@ def normalized_diffusion(
 
 
 def normalized_diffusion_backward(
-    radius: ArrayLike, albedo: ArrayLike, mean_free_path: ArrayLike, d_R: ArrayLike,
+    radius: ArrayLike,
+    albedo: ArrayLike,
+    mean_free_path: ArrayLike,
+    d_R: ArrayLike,
     fit: DiffusionFit = "searchlight",
-) -> tuple[FloatArray, FloatArray, FloatArray]:  # fmt: skip
+) -> tuple[FloatArray, FloatArray, FloatArray]:
     """dL/dradius, dL/dalbedo and dL/dmean_free_path of `normalized_diffusion`, for dL/dR.
 
     Raises:
@@ -151,9 +156,11 @@ def normalized_diffusion_backward(
 
 
 def diffusion_cdf(
-    radius: ArrayLike, albedo: ArrayLike, mean_free_path: ArrayLike,
+    radius: ArrayLike,
+    albedo: ArrayLike,
+    mean_free_path: ArrayLike,
     fit: DiffusionFit = "searchlight",
-) -> FloatArray:  # fmt: skip
+) -> FloatArray:
     """The part of the light that leaves within `radius`, of what leaves at all; see
     `normalized_diffusion`.
     """
@@ -164,9 +171,12 @@ def diffusion_cdf(
 
 
 def diffusion_cdf_backward(
-    radius: ArrayLike, albedo: ArrayLike, mean_free_path: ArrayLike, d_cdf: ArrayLike,
+    radius: ArrayLike,
+    albedo: ArrayLike,
+    mean_free_path: ArrayLike,
+    d_cdf: ArrayLike,
     fit: DiffusionFit = "searchlight",
-) -> tuple[FloatArray, FloatArray, FloatArray]:  # fmt: skip
+) -> tuple[FloatArray, FloatArray, FloatArray]:
     """dL/dradius, dL/dalbedo and dL/dmean_free_path of `diffusion_cdf`, for dL/dcdf."""
     name = "diffusion_cdf_backward"
     rows, shape, shapes = _rows(name, radius=radius, albedo=albedo, mean_free_path=mean_free_path)
@@ -197,9 +207,12 @@ def sample_radius(
 
 
 def sample_radius_backward(
-    u: ArrayLike, albedo: ArrayLike, mean_free_path: ArrayLike, d_radius: ArrayLike,
+    u: ArrayLike,
+    albedo: ArrayLike,
+    mean_free_path: ArrayLike,
+    d_radius: ArrayLike,
     fit: DiffusionFit = "searchlight",
-) -> tuple[FloatArray, FloatArray, FloatArray]:  # fmt: skip
+) -> tuple[FloatArray, FloatArray, FloatArray]:
     """dL/du, dL/dalbedo and dL/dmean_free_path of `sample_radius`, for dL/dradius."""
     name = "sample_radius_backward"
     rows, shape, shapes = _rows(name, u=u, albedo=albedo, mean_free_path=mean_free_path)

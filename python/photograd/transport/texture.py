@@ -151,9 +151,11 @@ class OcclusionMap:
 
 
 def read_texture(
-    path: Path, encoding: str = "srgb", wrap: tuple[str, str] = ("repeat", "repeat"),
+    path: Path,
+    encoding: str = "srgb",
+    wrap: tuple[str, str] = ("repeat", "repeat"),
     filter: str = "bilinear",
-) -> Texture:  # fmt: skip
+) -> Texture:
     """The colours of an image file, without its alpha; or its alpha alone.
 
     Args:

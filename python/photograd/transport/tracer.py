@@ -6,7 +6,6 @@ The mathematics is in cpp/photograd/render/path/tracer.h (which paths are sample
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -29,64 +28,12 @@ from photograd.transport.core_arrays import (
 from photograd.transport.incomplete import WholeGradients, incomplete_derivatives
 from photograd.transport.media_list import ListedMedia
 from photograd.transport.motion import closing_arrays, refuse_motion
+from photograd.transport.path_options import DEFAULTS, PathOptions
 from photograd.transport.scene import Scene
 from photograd.transport.shapes import MeshShape, SdfShape, Shape, SphereShape
 from photograd.types import Array
 
-STRATEGIES = ("light", "bsdf", "mis")
-HEURISTICS = ("balance", "power")
-SAMPLERS = ("independent", "even")
-NEVER = 1 << 20  # a vertex that no path reaches
 ORDER = (MeshShape, SphereShape, SdfShape)  # in which the core numbers shapes
-
-
-@dataclass(frozen=True)
-class PathOptions:
-    """How light is looked for.
-
-    Attributes:
-        strategy: "light" asks a light at every vertex; "bsdf" counts what a path meets by chance,
-            and asks only what it cannot meet (point, spot, directional lights); "mis" does both and
-            shares out the weight.
-        heuristic: how "mis" does so: "balance" or "power".
-        max_depth: segments of the longest path; 1 sees lights alone, 2 is direct light. Passing
-            straight through what covers only in part (alpha, a mask's hole) ends a segment, too.
-        roulette_from: the first vertex at which a path may end by chance; None never ends one.
-        sampler: "even" spreads the random numbers of a pixel's samples as scrambled Sobol' points
-            do, most evenly for powers of two of them; "independent" does not. Only with the latter
-            is `Accumulation.standard_error` the error; with the former it is more than that.
-
-    Raises:
-        RangeError: none of these.
-    """
-
-    strategy: str = "mis"
-    heuristic: str = "power"
-    max_depth: int = 64
-    roulette_from: int | None = 4
-    sampler: str = "even"
-
-    def __post_init__(self) -> None:
-        for name, known in (
-            ("strategy", STRATEGIES), ("heuristic", HEURISTICS), ("sampler", SAMPLERS)
-        ):  # fmt: skip
-            if getattr(self, name) not in known:
-                raise RangeError(message("PathOptions", name, known, getattr(self, name)))
-        if not 1 <= self.max_depth <= 4096:
-            raise RangeError(message("PathOptions", "max_depth", "1 to 4096", self.max_depth))
-        if self.roulette_from is not None and self.roulette_from < 0:
-            got = self.roulette_from
-            raise RangeError(message("PathOptions", "roulette_from", "at least 0", got))
-
-    def numbers(self, seed: int) -> tuple[int, int, int, int, int, int]:
-        """As the core takes them."""
-        late = NEVER if self.roulette_from is None else self.roulette_from
-        strategy, heuristic = STRATEGIES.index(self.strategy), HEURISTICS.index(self.heuristic)
-        sampler = SAMPLERS.index(self.sampler)
-        return strategy, heuristic, self.max_depth, late, sampler, seed
-
-
-DEFAULTS = PathOptions()
 
 
 class PathTracer:
@@ -200,10 +147,16 @@ class PathTracer:
         return sums
 
     def add_samples(
-        self, sums: Accumulation, spp: int, *, seed: int, options: PathOptions = DEFAULTS,
-        camera: Camera | None = None, sampling_params: dict[str, Array] | None = None,
+        self,
+        sums: Accumulation,
+        spp: int,
+        *,
+        seed: int,
+        options: PathOptions = DEFAULTS,
+        camera: Camera | None = None,
+        sampling_params: dict[str, Array] | None = None,
         hits: Array | None = None,
-    ) -> None:  # fmt: skip
+    ) -> None:
         """Add the next `spp` samples to `sums`, in place.
 
         Args:
@@ -223,17 +176,30 @@ class PathTracer:
         texels = None if sampling_params is None else self._texels(sampling_params)
         media = None if sampling_params is None else self._media.rows(sampling_params, self.dtype)
         _core.trace_paths(
-            **self._arguments(view), sampling_parameters=other, sampling_textures=texels,
-            sampling_media=media, options=options.numbers(seed),
-            first=sums.count, count=spp, radiance=sums.radiance, squares=sums.squares, hits=hits,
-        )  # fmt: skip
+            **self._arguments(view),
+            sampling_parameters=other,
+            sampling_textures=texels,
+            sampling_media=media,
+            options=options.numbers(seed),
+            first=sums.count,
+            count=spp,
+            radiance=sums.radiance,
+            squares=sums.squares,
+            hits=hits,
+        )
         sums.count += spp
         sums.check_finite("PathTracer.render")
 
     def render_backward(
-        self, d_image: Array, *, spp: int, seed: int, options: PathOptions = DEFAULTS,
-        camera: Camera | None = None, spread: str = "even",
-    ) -> dict[str, Array]:  # fmt: skip
+        self,
+        d_image: Array,
+        *,
+        spp: int,
+        seed: int,
+        options: PathOptions = DEFAULTS,
+        camera: Camera | None = None,
+        spread: str = "even",
+    ) -> dict[str, Array]:
         """dL/dparams for dL/dimage (H, W, 3), estimated with `spp` paths a pixel.
 
         With the seed and spp of a rendering it is the derivative of that very picture, its paths
@@ -263,10 +229,14 @@ class PathTracer:
         if spp < 1:
             raise RangeError(message("PathTracer", "spp", "at least 1", spp))
         return self.add_up(
-            "render_backward", _core.trace_paths_backward, view,
-            options=options.numbers(seed), spp=spp, counts=sample_counts(d_image, spp, spread),
+            "render_backward",
+            _core.trace_paths_backward,
+            view,
+            options=options.numbers(seed),
+            spp=spp,
+            counts=sample_counts(d_image, spp, spread),
             d_image=np.ascontiguousarray(d_image, np.float64),
-        )  # fmt: skip
+        )
 
     def add_up(self, function: str, backward: Any, view: Camera, **given: Any) -> WholeGradients:
         """What an adjoint of the core adds to zeros, by names of `params`, for a `function`."""

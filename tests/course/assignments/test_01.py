@@ -145,7 +145,7 @@ def test_every_fact_of_every_figure_has_a_mutant_or_a_reason() -> None:
         ("01.6", "float(grad(x) @ d)", "float(grad(np.tile(x, (1000, 1)).T)[:, 0] @ d)"),
     ],
     ids=["ragged", "large"],
-)  # fmt: skip
+)
 def test_points_of_another_shape_are_a_failed_check(task: str, before: str, after: str) -> None:
     text = source(FOLDER)
     assert text.count(before) == 1

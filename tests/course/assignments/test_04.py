@@ -135,13 +135,15 @@ def test_the_six_functions_are_the_core_s(solution) -> None:
     np.testing.assert_allclose(solution.ggx_pdf(wo, wi, r), pdf, rtol=1e-11, atol=1e-13)
     np.testing.assert_allclose(
         solution.burley_diffuse(wo, wi, 0.7, 0.4),
-        models["burley_diffuse"].f({"albedo": [0.7] * 3, "roughness": 0.4}, wo, wi), atol=1e-14,
-    )  # fmt: skip
+        models["burley_diffuse"].f({"albedo": [0.7] * 3, "roughness": 0.4}, wo, wi),
+        atol=1e-14,
+    )
     with np.errstate(under="ignore"):
         np.testing.assert_allclose(
             solution.cook_torrance(wo, wi, 0.5, 0.3),
-            models["cook_torrance"].f({"f0": [0.5] * 3, "slope": 0.3}, wo, wi), atol=1e-12,
-        )  # fmt: skip
+            models["cook_torrance"].f({"f0": [0.5] * 3, "slope": 0.3}, wo, wi),
+            atol=1e-12,
+        )
 
 
 def test_the_table_of_checks_is_that_of_a_finer_sum(solution) -> None:

@@ -268,8 +268,11 @@ def test_the_exploration_runs_beside_the_core(tmp_path: Path) -> None:
         shutil.copy(FOLDER / name, tmp_path / name)
     done = subprocess.run(
         [sys.executable, "explore.py", "--triangles", "64", "--size", "32", "--rays", "200"],
-        cwd=tmp_path, capture_output=True, text=True, check=False,
-    )  # fmt: skip
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     assert done.returncode == 0, done.stderr
     with Image.open(tmp_path / "seen.png") as image:
         assert np.asarray(image.convert("L"), dtype=float).std() > 5.0

@@ -51,8 +51,14 @@ def close(got, expected) -> None:
 
 def place_of_the_handout():
     """The hit, u_light and the two u_surface of section 3."""
-    hit = {"points": np.zeros((1, 3)), "normals": np.array([[0, 1.0, 0]]), "thing": np.array([0]),
-           "wo": np.array([[0, 0.8, 0.6]]), "front": np.array([True]), "t": np.ones(1)}  # fmt: skip
+    hit = {
+        "points": np.zeros((1, 3)),
+        "normals": np.array([[0, 1.0, 0]]),
+        "thing": np.array([0]),
+        "wo": np.array([[0, 0.8, 0.6]]),
+        "front": np.array([True]),
+        "t": np.ones(1),
+    }
     found, nothing = np.array([[0.7, 0.25, 0.2]]), np.array([[0.7, 0.3, 0.6]])
     return hit, np.array([[0.5, 0.25, 0.75]]), found, nothing
 
@@ -147,8 +153,9 @@ def test_a_wrong_mean_is_named_by_the_mistake_that_has_it(checks) -> None:
     known = [(2 * one, "twice"), (3 * one, "thrice")]
     for mean, said in ((2.0, "twice"), (3.0, "thrice"), (2.5, "another")):
         with pytest.raises(AssertionError, match=f"is not 1 .*: {said}"):
-            checks.require_mean(Judged(), "x", lambda m=mean: rng.normal(m, 0.1, (500, 3)), one,
-                                known, "another")  # fmt: skip
+            checks.require_mean(
+                Judged(), "x", lambda m=mean: rng.normal(m, 0.1, (500, 3)), one, known, "another"
+            )
     checks.require_mean(Judged(), "x", lambda: rng.normal(1, 0.1, (500, 3)), one, known)
     # The one of those in task 5 that is no named mutant: beta comes before direct light.
     add = "radiance[live] += beta * direct_light(scene, hit, *fresh[:2])"
@@ -206,12 +213,21 @@ def test_the_shipped_answers_are_the_core_s(solution) -> None:
     transport = pytest.importorskip("photograd.transport")
     shapes = pytest.importorskip("photograd.transport.shapes")
     table = solution.demo_table()
-    parts = [shapes.rectangle(f"thing{k}", table["corners"][k], table["edges_u"][k],
-                              table["edges_v"][k], f"of{k}", table["emission"][k])
-             for k in range(2)]  # fmt: skip
+    parts = [
+        shapes.rectangle(
+            f"thing{k}",
+            table["corners"][k],
+            table["edges_u"][k],
+            table["edges_v"][k],
+            f"of{k}",
+            table["emission"][k],
+        )
+        for k in range(2)
+    ]
     names = ("base_color", "metalness", "roughness")
-    materials = {f"of{k}": transport.Material("gltf", {n: table[n][k] for n in names})
-                 for k in range(2)}  # fmt: skip
+    materials = {
+        f"of{k}": transport.Material("gltf", {n: table[n][k] for n in names}) for k in range(2)
+    }
     origins, directions = solution.table_rays()
     light, slope, found = solution.core_answers()
     options = transport.PathOptions(max_depth=2)
@@ -235,8 +251,11 @@ def test_the_exploration_runs_beside_the_core(tmp_path: Path) -> None:
     shutil.copy(ASSIGNMENTS / "04_reflectance" / "reflectance.py", tmp_path)
     done = subprocess.run(
         [sys.executable, "explore.py", "--size", "12", "--samples", "2", "--steps", "20"],
-        cwd=tmp_path, capture_output=True, text=True, check=False,
-    )  # fmt: skip
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     assert done.returncode == 0, done.stderr
     assert float(done.stdout.split("your picture is ")[1].split("%")[0]) < 10
     assert float(done.stdout.split("gradient ")[1].split("%")[0]) < 40
@@ -259,8 +278,13 @@ def test_the_exploration_without_the_core_fits_the_table_that_is_asked_for(tmp_p
     (tmp_path / "alone.py").write_text(ALONE, encoding="utf-8")
 
     def explore(*words: str) -> subprocess.CompletedProcess[str]:
-        return subprocess.run([sys.executable, "alone.py", "--size", "6", *words], cwd=tmp_path,
-                              capture_output=True, text=True, check=False)  # fmt: skip
+        return subprocess.run(
+            [sys.executable, "alone.py", "--size", "6", *words],
+            cwd=tmp_path,
+            capture_output=True,
+            text=True,
+            check=False,
+        )
 
     done = explore("--samples", "1", "--roughness", "0.15", "--steps", "25")
     assert done.returncode == 0, done.stderr

@@ -214,10 +214,23 @@ def test_the_exploration_runs_with_and_without_a_capture(tmp_path: Path) -> None
         shutil.copy(FOLDER / name, tmp_path / name)
     capture(tmp_path / "mine")
     done = subprocess.run(
-        [sys.executable, "explore.py", "--size", "16", "--steps", "8", "--voxels", "10",
-         "--capture", "mine"],
-        cwd=tmp_path, capture_output=True, text=True, check=False,
-    )  # fmt: skip
+        [
+            sys.executable,
+            "explore.py",
+            "--size",
+            "16",
+            "--steps",
+            "8",
+            "--voxels",
+            "10",
+            "--capture",
+            "mine",
+        ],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     assert done.returncode == 0, done.stderr
     for picture in ("ray.png", "volume.png", "capture.png"):
         with Image.open(tmp_path / picture) as image:

@@ -52,9 +52,13 @@ def solution(bundle: Bundle):
 def views(pictures) -> dict:
     """The camera of the handout's check values."""
     return {
-        "pictures": pictures, "world_from_camera": POSE[None], "focal": 2.0,
-        "low": np.full(3, -1.0), "high": np.full(3, 1.0), "background": np.zeros(3),
-    }  # fmt: skip
+        "pictures": pictures,
+        "world_from_camera": POSE[None],
+        "focal": 2.0,
+        "low": np.full(3, -1.0),
+        "high": np.full(3, 1.0),
+        "background": np.zeros(3),
+    }
 
 
 def half_bright() -> dict:
@@ -227,10 +231,25 @@ def test_the_exploration_runs_with_and_without_a_capture(tmp_path: Path) -> None
     shutil.copy(EARLIER / "volume_rendering.py", tmp_path / "volume_rendering.py")
     capture(tmp_path / "mine")
     done = subprocess.run(
-        [sys.executable, "explore.py", "--views", "6", "--pixels", "10", "--voxels", "10",
-         "--steps", "25", "--capture", "mine"],
-        cwd=tmp_path, capture_output=True, text=True, check=False,
-    )  # fmt: skip
+        [
+            sys.executable,
+            "explore.py",
+            "--views",
+            "6",
+            "--pixels",
+            "10",
+            "--voxels",
+            "10",
+            "--steps",
+            "25",
+            "--capture",
+            "mine",
+        ],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     assert done.returncode == 0, done.stderr
     for picture in ("recovery.png", "capture.png"):
         with Image.open(tmp_path / picture) as image:

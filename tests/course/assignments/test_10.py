@@ -262,21 +262,23 @@ def capture(folder: Path) -> None:
     (folder / "transforms.json").write_text(json.dumps(told), encoding="utf-8")
 
 
+EXPLORE = "explore.py --voxels 8 --rounds 3 --steps 4 --views 8 --size 6 --capture mine"
+
+
 def test_the_exploration_runs_with_a_capture_and_beside_the_core(tmp_path: Path) -> None:
     for name in ("sparse_grids.py", "explore.py"):
         shutil.copy(FOLDER / name, tmp_path / name)
     capture(tmp_path / "mine")
-    done = subprocess.run(
-        [sys.executable, "explore.py", "--voxels", "8", "--rounds", "3", "--steps", "4",
-         "--views", "8", "--size", "6", "--capture", "mine"],
-        cwd=tmp_path, capture_output=True, text=True, check=False,
-    )  # fmt: skip
+    command = [sys.executable, *EXPLORE.split()]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     for picture in ("sparse.png", "capture.png"):
         with Image.open(tmp_path / picture) as image:
             assert np.asarray(image.convert("L"), dtype=float).std() > 5.0
-    black, recovered = (float(done.stdout.split(f" dB {word}")[0].split()[-1])
-                        for word in ("for black", "recovered"))  # fmt: skip
+    black, recovered = (
+        float(done.stdout.split(f" dB {word}")[0].split()[-1])
+        for word in ("for black", "recovered")
+    )
     assert recovered > black + 3
     if "core not installed" not in done.stdout:
         assert float(done.stdout.split("derivative is ")[1].split()[0]) < 1e-9

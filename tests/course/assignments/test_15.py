@@ -18,9 +18,12 @@ from course.assignments.support import ASSIGNMENTS, SECRET, AssignmentTests
 FOLDER = ASSIGNMENTS / "15_gaussian_splatting"
 PRINTED = 6e-7  # the handout rounds to six decimals
 CAMERA = {
-    "camera_from_world": np.eye(4)[:3], "focal": np.array([50.0, 40.0]),
-    "centre": np.array([32.0, 24.0]), "width": 64, "height": 48,
-}  # fmt: skip
+    "camera_from_world": np.eye(4)[:3],
+    "focal": np.array([50.0, 40.0]),
+    "centre": np.array([32.0, 24.0]),
+    "width": 64,
+    "height": 48,
+}
 
 
 class TestGaussianSplatting(AssignmentTests):
@@ -79,8 +82,11 @@ def test_check_values_of_alpha_and_blend(solution: ModuleType) -> None:
     alpha, back = solution.screen_alpha(*splat, np.array([[2.5, 2.5], [5.5, 1.5], [1.5, 3.5]]))
     printed(alpha, [0.455337, 0.217473, 0.215396])
     expected = (
-        [-0.094088, 0.057798], [-0.055793, 0.107574, -0.055181], 0.011234, [0.304936, 0.330660],
-    )  # fmt: skip
+        [-0.094088, 0.057798],
+        [-0.055793, 0.107574, -0.055181],
+        0.011234,
+        [0.304936, 0.330660],
+    )
     for got, value in zip(back(np.array([[1.0, -1, -1]])), expected, strict=True):
         printed(got, value)
     alpha, depth = np.array([[0.5], [0.25], [0.8]]), np.array([2.0, 1, 3])
@@ -91,9 +97,12 @@ def test_check_values_of_alpha_and_blend(solution: ModuleType) -> None:
 
 def test_check_values_of_the_chain_and_of_densify(solution: ModuleType) -> None:
     one = {
-        "means": np.array([[0.1, 0, 2]]), "log_scales": np.full((1, 3), -1.0),
-        "quats": np.eye(4)[:1], "opacity_logits": np.zeros(1), "colors": np.array([[1, 0.5, 0]]),
-    }  # fmt: skip
+        "means": np.array([[0.1, 0, 2]]),
+        "log_scales": np.full((1, 3), -1.0),
+        "quats": np.eye(4)[:1],
+        "opacity_logits": np.zeros(1),
+        "colors": np.array([[1, 0.5, 0]]),
+    }
     shown, back = solution.render(one, CAMERA, np.array([[32.5, 24.5]]), np.zeros(3))
     printed(shown, [0.487265, 0.243633, 0])
     got = back(np.array([[1.0, 0, 0]]))
@@ -101,10 +110,12 @@ def test_check_values_of_the_chain_and_of_densify(solution: ModuleType) -> None:
     printed(got["log_scales"], [0.022767, 0.002226, 0.000057])
     printed(got["pull"], [0.011452, 0.004476])
     four = {
-        "means": np.zeros((4, 3)), "log_scales": np.repeat([[-4.0], [-2], [-2], [-2]], 3, axis=1),
-        "quats": np.eye(4)[[0] * 4], "opacity_logits": np.array([2.0, 2, -5, 2]),
+        "means": np.zeros((4, 3)),
+        "log_scales": np.repeat([[-4.0], [-2], [-2], [-2]], 3, axis=1),
+        "quats": np.eye(4)[[0] * 4],
+        "opacity_logits": np.array([2.0, 2, -5, 2]),
         "colors": np.arange(4.0)[:, None] * np.ones(3),
-    }  # fmt: skip
+    }
     pressure = np.array([1.0, 2, 3, 4])
     after, source = solution.densify(four, pressure, np.random.default_rng(0), 10)
     assert after["colors"][:, 0].tolist() == [0, 0, 1, 3, 1, 3]
@@ -115,10 +126,12 @@ def test_check_values_of_the_chain_and_of_densify(solution: ModuleType) -> None:
 def test_tiles_lose_nothing(solution: ModuleType) -> None:
     rng = np.random.default_rng(3)
     scene = {
-        "means": rng.uniform([-1, -1, 2], [1, 1, 4], (40, 3)), "quats": rng.normal(size=(40, 4)),
-        "log_scales": rng.uniform(-4, -1, (40, 3)), "opacity_logits": rng.normal(size=40),
+        "means": rng.uniform([-1, -1, 2], [1, 1, 4], (40, 3)),
+        "quats": rng.normal(size=(40, 4)),
+        "log_scales": rng.uniform(-4, -1, (40, 3)),
+        "opacity_logits": rng.normal(size=40),
         "colors": rng.random((40, 3)),
-    }  # fmt: skip
+    }
     whole, back = solution.picture(scene, CAMERA, np.full(3, 0.2))
     y, x = np.mgrid[0:48, 0:64] + 0.5
     pixels = np.stack([x.ravel(), y.ravel()], axis=1)
@@ -173,10 +186,25 @@ def test_the_exploration_runs_and_tells_the_two_formulas_apart(tmp_path: Path) -
     for name in ("splatting.py", "explore.py"):
         shutil.copy(FOLDER / name, tmp_path / name)
     done = subprocess.run(
-        [sys.executable, "explore.py", "--steps", "30", "--pixels", "20", "--views", "5",
-         "--every", "10", "--core-pixels", "20"],
-        cwd=tmp_path, capture_output=True, text=True, check=False,
-    )  # fmt: skip
+        [
+            sys.executable,
+            "explore.py",
+            "--steps",
+            "30",
+            "--pixels",
+            "20",
+            "--views",
+            "5",
+            "--every",
+            "10",
+            "--core-pixels",
+            "20",
+        ],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     assert done.returncode == 0, done.stderr
     with Image.open(tmp_path / "fit.gif") as film:
         assert getattr(film, "n_frames", 1) > 10

@@ -39,9 +39,12 @@ def run_like_a_container(words: Sequence[str]) -> dict[str, Any]:
     )
     path = os.pathsep.join([str(TESTS), str(TESTS.parent)])
     done = subprocess.run(
-        [sys.executable, "-c", code, *words], capture_output=True, text=True, check=False,
+        [sys.executable, "-c", code, *words],
+        capture_output=True,
+        text=True,
+        check=False,
         env={**os.environ, "PYTHONPATH": path},
-    )  # fmt: skip
+    )
     if done.returncode:
         raise RuntimeError(done.stderr[-3000:])
     results: dict[str, Any] = json.loads(done.stdout.splitlines()[-1])

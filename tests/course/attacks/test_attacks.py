@@ -57,9 +57,7 @@ def test_the_suite_sees_what_it_looks_for(tmp_path: Path) -> None:
     folder = shutil.copytree(honest.folder, tmp_path / honest.name)
     text = (folder / MODULE).read_text(encoding="utf-8").replace("token 60", "escape: on purpose")
     (folder / MODULE).write_text(text, encoding="utf-8")
-    planted = Attack(
-        folder, 60, "planted", "", 1.0, 0.0, ("91.1.value",), {"kind": "token"}
-    )  # fmt: skip
+    planted = Attack(folder, 60, "planted", "", 1.0, 0.0, ("91.1.value",), {"kind": "token"})
     found = run_suite([strongest()], [planted])[strongest()]
     said = sorted(text.split(" ")[0] for text in found["results"][honest.name]["violations"])
     assert said == ["earned", "escape:", "left", "took"]

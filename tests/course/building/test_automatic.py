@@ -56,7 +56,7 @@ def mutations(line: str) -> list[str]:
         ("raise ValueError(f'{a + 1} and {b - 1}' + 'x')", []),
         ("b: 'a + 1' = a", []),
     ],
-)  # fmt: skip
+)
 def test_what_is_changed(line: str, expected: list[str]) -> None:
     assert mutations(line) == expected
 

@@ -62,7 +62,7 @@ def brought(t):
 
 
 @check("91.1.double", task="91.1", points=1, calls=("double",), needs=("weighted_sum",),
-       tolerance=CLOSE)  # fmt: skip
+       tolerance=CLOSE)
 def double(t):
     """It is twice."""
     t.close("s", t.call("double", np.ones(3), np.zeros(3), returns=Number()), 6.0)

@@ -112,8 +112,10 @@ def test_toml_that_is_written_is_read_again(tmp_path: Path) -> None:
 
 
 def test_the_readme_says_how_to_work_where_there_are_questions() -> None:
-    plain, asked = (kit_files(ROOT / "assignments" / name)["README.md"].decode("utf-8")
-                    for name in ("00_setup", "02_backpropagation"))  # fmt: skip
+    plain, asked = (
+        kit_files(ROOT / "assignments" / name)["README.md"].decode("utf-8")
+        for name in ("00_setup", "02_backpropagation")
+    )
     assert "How to work" not in plain
     assert asked.splitlines()[0].startswith("# 02")
     for command in ("predict 02", "check 02", "questions 02", "handin 02"):

@@ -57,8 +57,9 @@ def test_weeks_hours_and_prerequisites(root: Path) -> None:
     assert table["hours"] == 12
     assert table["ready"] == 0
     assert [(row["week"], row["needs"], row["state"]) for row in table["weeks"]] == [
-        (1, "nothing", "planned"), (2, "01", "planned"),
-    ]  # fmt: skip
+        (1, "nothing", "planned"),
+        (2, "01", "planned"),
+    ]
 
 
 @pytest.mark.parametrize(

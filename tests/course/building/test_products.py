@@ -129,9 +129,12 @@ def test_the_gradescope_zip_grades(made: dict[str, bytes], scaffold: Path, tmp_p
     shutil.copyfile(scaffold / "light.py", submission / "light.py")
     words = ["17"]
     for option, file in {
-        "bundle": "hidden.zip", "secret-file": "secret.txt", "submission": "submission",
-        "metadata": "none.json", "results": "results.json",
-    }.items():  # fmt: skip
+        "bundle": "hidden.zip",
+        "secret-file": "secret.txt",
+        "submission": "submission",
+        "metadata": "none.json",
+        "results": "results.json",
+    }.items():
         words += [f"--{option}", str(tmp_path / file)]
     code = run_gradescope(words)
     results = json.loads((tmp_path / "results.json").read_text("utf-8"))

@@ -65,8 +65,10 @@ def test_a_helper_at_module_level_vanishes() -> None:
 def test_parts_of_the_solution() -> None:
     parts = solution_parts(MODULE)
     assert [(part.task, part.function) for part in parts] == [
-        ("02.3", "Value.exp"), ("02.3", ""), ("02.1", "plain"),
-    ]  # fmt: skip
+        ("02.3", "Value.exp"),
+        ("02.3", ""),
+        ("02.1", "plain"),
+    ]
     assert parts[0].text == "        return helper(self)\n"
 
 

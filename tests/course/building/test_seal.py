@@ -36,8 +36,12 @@ def test_what_was_sealed_is_read(sealed: bytes, tmp_path: Path) -> None:
     (tmp_path / "hidden.zip").write_bytes(sealed)
     bundle = read_bundle(tmp_path / "hidden.zip", SECRET)
     assert [check.id for check in bundle.checks] == [
-        "90.1.value", "90.1.hidden", "90.2.differences", "90.2.cost", "90.3.services",
-    ]  # fmt: skip
+        "90.1.value",
+        "90.1.hidden",
+        "90.2.differences",
+        "90.2.cost",
+        "90.3.services",
+    ]
     assert not bundle.is_public
     assert bundle.secret == SECRET
     assert bundle.hints == {"key": "You forgot the sign."}

@@ -18,10 +18,14 @@ SOURCE = "x = 1\n"
 def lock(letter: str = "a", assignment: str = "90") -> bytes:
     made = {"90.p1": letter}
     when = "2026-01-01T00:00:00+00:00"
-    return json.dumps({
-        "assignment": assignment, "answers": made, "locked_at": when,
-        "sha256": digest(assignment, made),
-    }).encode()  # fmt: skip
+    return json.dumps(
+        {
+            "assignment": assignment,
+            "answers": made,
+            "locked_at": when,
+            "sha256": digest(assignment, made),
+        }
+    ).encode()
 
 
 def scored(
@@ -83,9 +87,21 @@ def test_wrong_choices(bundle: Bundle, answer: str) -> None:
 
 @pytest.mark.parametrize(
     ("answer", "points"),
-    [("12.5", 1), ("12.6", 1), ('"12.5"', 1), ("12.7", 0), ("nan", 0), ("inf", 0), ('"nan"', 0),
-     ("true", 0), ("[12.5]", 0), ('"twelve"', 0), ("-12.5", 0), ("0", 0)],
-)  # fmt: skip
+    [
+        ("12.5", 1),
+        ("12.6", 1),
+        ('"12.5"', 1),
+        ("12.7", 0),
+        ("nan", 0),
+        ("inf", 0),
+        ('"nan"', 0),
+        ("true", 0),
+        ("[12.5]", 0),
+        ('"twelve"', 0),
+        ("-12.5", 0),
+        ("0", 0),
+    ],
+)
 def test_numbers(bundle: Bundle, answer: str, points: float) -> None:
     assert scored(bundle, f'[answers]\n"90.c1" = {answer}\n')["90.c1"].points == points
 

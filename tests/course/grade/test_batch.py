@@ -66,8 +66,11 @@ def test_tables_pages_and_records(run: Run, tmp_path: Path) -> None:
     assert sorted(report.student for report in reports) == sorted(STUDENTS)
     table = rows(tmp_path / "out" / "grades.csv")
     assert {name: row["score"] for name, row in table.items()} == {
-        "Ada": "3", "Bo": "0", "Cy": "0", "'=Di": "3",
-    }  # fmt: skip
+        "Ada": "3",
+        "Bo": "0",
+        "Cy": "0",
+        "'=Di": "3",
+    }
     assert table["Cy"]["status"] == "hand-in refused"
     assert "there is no toy.py" in table["Cy"]["notes"]
     for row in table.values():
@@ -133,9 +136,21 @@ def test_killed_and_resumed_gives_the_same_table(
 ) -> None:
     def command(out: str, *more: str) -> list[str]:
         return [
-            sys.executable, "-m", "photograd_course", "course", "grade", "90", str(hand_ins),
-            "--bundle", str(quick), "--mode", "E", "--out", str(tmp_path / out), *more,
-        ]  # fmt: skip
+            sys.executable,
+            "-m",
+            "photograd_course",
+            "course",
+            "grade",
+            "90",
+            str(hand_ins),
+            "--bundle",
+            str(quick),
+            "--mode",
+            "E",
+            "--out",
+            str(tmp_path / out),
+            *more,
+        ]
 
     subprocess.run(command("whole"), check=True, capture_output=True)
     process = subprocess.Popen(

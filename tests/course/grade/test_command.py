@@ -78,13 +78,11 @@ def test_a_short_secret_is_refused(
 
 
 @pytest.mark.parametrize(
-    ("words", "says"),
-    [(("nowhere",), "nothing"), (("{}", "--mode", "F"), "one of A, B, C, D, E")],
-)  # fmt: skip
+    ("words", "says"), [(("nowhere",), "nothing"), (("{}", "--mode", "F"), "one of A, B, C, D, E")]
+)
 def test_wrong_calls(
-    words: tuple[str, ...], says: str, hand_in: Path, toy: Path,
-    capsys: pytest.CaptureFixture[str],
-) -> None:  # fmt: skip
+    words: tuple[str, ...], says: str, hand_in: Path, toy: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     code, _, said = grade(capsys, *(w.format(hand_in) for w in words), "--bundle", toy)
     assert code == 1
     assert says in said

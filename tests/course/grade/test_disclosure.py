@@ -65,10 +65,18 @@ def test_public_checks_say_all(grade_text: Callable[..., Report], bundle: Bundle
 
 def outcome(**changes: object) -> Outcome:
     base = Outcome(
-        "1.a", "t", "1", "hidden", Status.FAILED, 0, 1, "wrong",
+        "1.a",
+        "t",
+        "1",
+        "hidden",
+        Status.FAILED,
+        0,
+        1,
+        "wrong",
         "d_w: relative error 3.7e-02, allowed 1e-06; yours at index (3,) is 4.4, expected positive",
-        "forgot w", {"error": 0.037, "tolerance": 1e-6, "worst_index": [3], "fingerprint": "f"},
-    )  # fmt: skip
+        "forgot w",
+        {"error": 0.037, "tolerance": 1e-6, "worst_index": [3], "fingerprint": "f"},
+    )
     return replace(base, **changes)  # type: ignore[arg-type]
 
 

@@ -16,11 +16,20 @@ from photograd_course.grade.attack_evidence import attack_evidence, summary
 TOY = Path(__file__).parents[1] / "fixture_course" / "90_toy"
 
 SOUND = {
-    "assignment": "90_toy", "ok": True, "findings": [], "checks": 5, "named_mutants": 8,
-    "named_mutants_as_listed": 8, "automatic_mutants": 36, "automatic_mutants_killed": 36,
-    "equivalent": 0, "alternatives": 3, "alternatives_accepted": 3, "margin_right": 1e-4,
+    "assignment": "90_toy",
+    "ok": True,
+    "findings": [],
+    "checks": 5,
+    "named_mutants": 8,
+    "named_mutants_as_listed": 8,
+    "automatic_mutants": 36,
+    "automatic_mutants_killed": 36,
+    "equivalent": 0,
+    "alternatives": 3,
+    "alternatives_accepted": 3,
+    "margin_right": 1e-4,
     "margin_wrong": 1e4,
-}  # fmt: skip
+}
 
 
 @pytest.fixture
@@ -136,9 +145,12 @@ def suite(**changes: Any) -> dict[str, Any]:
     mode = {"attacks": 10, "survived": 10, "violations": [], "results": results}
     naive = {f"{k:02}_x": True for k in range(8)}
     return {
-        "attacks": list(results), "naive": naive, "tokens": ["08_x", "09_x"],
-        "modes": {"A": mode}, **changes,
-    }  # fmt: skip
+        "attacks": list(results),
+        "naive": naive,
+        "tokens": ["08_x", "09_x"],
+        "modes": {"A": mode},
+        **changes,
+    }
 
 
 def test_attacks_are_counted_with_their_controls() -> None:

@@ -43,8 +43,10 @@ def test_gradescope(bundle: Bundle, tmp_path: Path) -> None:
     put(tmp_path / "submission_metadata.yml", names)
     assert is_batch(bundle.manifest, tmp_path)
     assert taken(bundle, tmp_path) == {
-        "Ada Lovelace": "a = 1\n", "Bo & Cy": "b = 1\n", "submission_13": "c = 1\n",
-    }  # fmt: skip
+        "Ada Lovelace": "a = 1\n",
+        "Bo & Cy": "b = 1\n",
+        "submission_13": "c = 1\n",
+    }
 
 
 YAML = r"""
@@ -68,9 +70,11 @@ def test_names_are_read_as_yaml(bundle: Bundle, tmp_path: Path) -> None:
         put(tmp_path / f"submission_{number}" / "toy.py", f"a = {number}\n")
     put(tmp_path / "submission_metadata.yml", YAML)
     assert taken(bundle, tmp_path) == {
-        "Jürgen": "a = 11\n", "O'Brien, A & Yes & Yes": "a = 12\n",
-        "submission_13": "a = 13\n", "submission_14": "a = 14\n",
-    }  # fmt: skip
+        "Jürgen": "a = 11\n",
+        "O'Brien, A & Yes & Yes": "a = 12\n",
+        "submission_13": "a = 13\n",
+        "submission_14": "a = 14\n",
+    }
 
 
 def test_yaml_that_grows_or_is_none(
@@ -104,8 +108,10 @@ def test_moodle(bundle: Bundle, tmp_path: Path) -> None:
     put(tmp_path / "Jane Doe_6_assignsubmission_file" / "toy.py", "b = 1\n")
     put_zip(tmp_path / "Jim Roe_7_assignsubmission_file_work.zip", "c = 1\n")
     assert taken(bundle, tmp_path) == {
-        "Jane Doe (5)": "a = 1\n", "Jane Doe (6)": "b = 1\n", "Jim Roe (7)": "c = 1\n",
-    }  # fmt: skip
+        "Jane Doe (5)": "a = 1\n",
+        "Jane Doe (6)": "b = 1\n",
+        "Jim Roe (7)": "c = 1\n",
+    }
 
 
 def test_zips_and_folders(bundle: Bundle, tmp_path: Path) -> None:
@@ -134,7 +140,11 @@ def test_bad_tables_and_empty_folders(bundle: Bundle, tmp_path: Path) -> None:
     put(tmp_path / "columns.csv", "name,file\nA,b\n")
     put(tmp_path / "twice.csv", "student,path\nA,b\nA,c\n")
     (tmp_path / "empty").mkdir()
-    for name, kind in (("columns.csv", SceneError), ("twice.csv", SceneError), ("empty", IoError),
-                       ("absent", IoError)):  # fmt: skip
+    for name, kind in (
+        ("columns.csv", SceneError),
+        ("twice.csv", SceneError),
+        ("empty", IoError),
+        ("absent", IoError),
+    ):
         with pytest.raises(kind):
             find_sources(bundle.manifest, tmp_path / name)

@@ -128,8 +128,11 @@ def test_a_batch_names_who_broke_it_and_grades_the_rest(
     with (tmp_path / "out" / "grades.csv").open(newline="") as file:
         rows = {row["student"]: row for row in csv.DictReader(file)}
     assert {name: row["score"] for name, row in rows.items()} == {
-        "Ada": "3", "Bo": "3", "Cy": "", "Di": "0",
-    }  # fmt: skip
+        "Ada": "3",
+        "Bo": "3",
+        "Cy": "",
+        "Di": "0",
+    }
     assert "a mistake of ours" in rows["Cy"]["notes"]
     assert (tmp_path / "out" / "pages" / rows["Cy"]["page"]).exists()
     assert '"Ada","Bo",1.00' in (tmp_path / "out" / "similarity.csv").read_text()

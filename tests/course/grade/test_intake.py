@@ -57,9 +57,16 @@ def test_a_plain_zip_and_one_with_a_folder_around(take_zip: Take) -> None:
 
 def test_what_does_not_belong_is_left_out_and_named(take_zip: Take) -> None:
     taken = take_zip(
-        zipped(("toy.py", GOOD), ("numpy.py", b"1"), ("conftest.py", b"1"), (".git/config", b"1"),
-               ("notes.txt", b"1"), ("__MACOSX/._toy.py", b"1"), ("sub/toy.pth", b"1"))
-    )  # fmt: skip
+        zipped(
+            ("toy.py", GOOD),
+            ("numpy.py", b"1"),
+            ("conftest.py", b"1"),
+            (".git/config", b"1"),
+            ("notes.txt", b"1"),
+            ("__MACOSX/._toy.py", b"1"),
+            ("sub/toy.pth", b"1"),
+        )
+    )
     assert set(taken.files) == {"toy.py"}
     named = " ".join(taken.ignored)
     for name in ("numpy.py", "conftest.py", ".git/config", "notes.txt", "sub/toy.pth"):

@@ -17,12 +17,22 @@ import pytest
 
 HANDED_IN = 100
 OPEN_FILES = 80  # two workers take some 20, and what runs at all 10
-HANGING = {7: "while True: pass", 50: "import time; time.sleep(1e6)", 51: "while True: pass",
-           80: "[0 for _ in iter(int, 1)]", 99: "sum(iter(int, 1))"}  # fmt: skip
+HANGING = {
+    7: "while True: pass",
+    50: "import time; time.sleep(1e6)",
+    51: "while True: pass",
+    80: "[0 for _ in iter(int, 1)]",
+    99: "sum(iter(int, 1))",
+}
 # Native crashes, and ends that leave no answer.
 CRASH = "import ctypes; ctypes.string_at(0)"
-CRASHING = {3: CRASH, 37: "import os; os.abort()", 38: "import os; os._exit(0)",
-            55: "import faulthandler; faulthandler._sigabrt()", 90: CRASH}  # fmt: skip
+CRASHING = {
+    3: CRASH,
+    37: "import os; os.abort()",
+    38: "import os; os._exit(0)",
+    55: "import faulthandler; faulthandler._sigabrt()",
+    90: CRASH,
+}
 MALFORMED = {20: b"no zip", 21: b"PK\x03\x04 half", 22: b""}
 WRONG = range(64, 74)
 
@@ -59,9 +69,22 @@ def test_a_hundred_hand_ins(quick: Path, solution: str, tmp_path: Path) -> None:
     for number in range(HANDED_IN):
         (folder / f"student{number:03}.zip").write_bytes(hand_in(solution, number))
     command = [
-        sys.executable, "-m", "photograd_course", "course", "grade", "90", str(folder),
-        "--bundle", str(quick), "--mode", "E", "--jobs", "2", "--out", str(tmp_path / "out"),
-    ]  # fmt: skip
+        sys.executable,
+        "-m",
+        "photograd_course",
+        "course",
+        "grade",
+        "90",
+        str(folder),
+        "--bundle",
+        str(quick),
+        "--mode",
+        "E",
+        "--jobs",
+        "2",
+        "--out",
+        str(tmp_path / "out"),
+    ]
     done = subprocess.run(
         command, check=False, capture_output=True, text=True, preexec_fn=_with_few_files
     )

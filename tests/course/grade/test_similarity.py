@@ -46,8 +46,14 @@ def smooth(values, width):
 
 def disguised(text: str) -> str:
     """Renamed, reordered, padded with comments, other numbers and docstrings."""
-    for old, new in (("trail", "path"), ("slope", "g"), ("total", "acc"), ("out", "res"),
-                     ("1e-12", "3e-9"), ('"""Steps."""', '"""Mine."""')):  # fmt: skip
+    for old, new in (
+        ("trail", "path"),
+        ("slope", "g"),
+        ("total", "acc"),
+        ("out", "res"),
+        ("1e-12", "3e-9"),
+        ('"""Steps."""', '"""Mine."""'),
+    ):
         text = text.replace(old, new)
     first, second = text.split("\n\n\n")
     lines = f"{second}\n\n\n{first}".splitlines()
@@ -62,13 +68,18 @@ def test_a_disguised_copy_surfaces() -> None:
 
 def laboured(text: str) -> str:
     """A statement that does nothing after every other, and functions for operators."""
-    for old, new in (("trail[-1] - tau * slope / (1 + 0.5 * k)",
-                      "np.subtract(trail[-1], np.divide(np.multiply(tau, slope), "
-                      "np.add(1, np.multiply(0.5, k))))"),
-                     ("sum(trail) / len(trail)", "np.divide(sum(trail), len(trail))"),
-                     ("sum(values[lo:hi]) / (hi - lo) + total * 0",
-                      "np.add(np.divide(sum(values[lo:hi]), np.subtract(hi, lo)), "
-                      "np.multiply(total, 0))")):  # fmt: skip
+    for old, new in (
+        (
+            "trail[-1] - tau * slope / (1 + 0.5 * k)",
+            "np.subtract(trail[-1], np.divide(np.multiply(tau, slope), "
+            "np.add(1, np.multiply(0.5, k))))",
+        ),
+        ("sum(trail) / len(trail)", "np.divide(sum(trail), len(trail))"),
+        (
+            "sum(values[lo:hi]) / (hi - lo) + total * 0",
+            "np.add(np.divide(sum(values[lo:hi]), np.subtract(hi, lo)), np.multiply(total, 0))",
+        ),
+    ):
         assert old in text
         text = text.replace(old, new)
     idle = ("pass", "_ = 0", "0", "...; None")

@@ -15,9 +15,13 @@ from photograd_course.grade.hand_in import SOURCE_BYTES
 
 SOURCES = sorted(Path(__file__).parents[3].glob("assignments/*/checks.py"))
 _SILENT = {
-    tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT,
+    tokenize.COMMENT,
+    tokenize.NL,
+    tokenize.NEWLINE,
+    tokenize.INDENT,
+    tokenize.DEDENT,
     tokenize.ENDMARKER,
-}  # fmt: skip
+}
 TRICKY = r"""
 x = 0x1e + 5 - 1_000.5e-3j ** .5 // 0b1_0 if a != b else rB'\'' ":=" 'it''s'
 s = u"a\

@@ -105,9 +105,7 @@ def breaks_always(t: Trial) -> None:
     raise KeyError("ours")
 
 
-def test_a_check_that_breaks_for_the_solution_too_is_ours(
-    outcome: Callable[..., Outcome],
-) -> None:
+def test_a_check_that_breaks_for_the_solution_too_is_ours(outcome: Callable[..., Outcome]) -> None:
     assert outcome(breaks_always).status is Status.ERROR_OURS
 
 

@@ -9,14 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
-from photograd_course.worker.codec import (
-    PREFIX,
-    FrameError,
-    FunctionId,
-    decode,
-    encode,
-    round_trip,
-)
+from photograd_course.worker.codec import PREFIX, FrameError, FunctionId, decode, encode, round_trip
 
 
 def reader(data: bytes):
@@ -155,7 +148,7 @@ def test_a_giant_frame_is_refused_before_it_is_read() -> None:
         [],
         7,
     ],
-)  # fmt: skip
+)
 def test_a_malformed_header_is_refused(header: object) -> None:
     head = json.dumps(header).encode()
     with pytest.raises(FrameError):

@@ -58,9 +58,7 @@ def trial() -> Trial:
         **dict.fromkeys(("backward", "by_steps", "remembered"), lambda x, g: -g * np.exp(-x)),
     )
     made = check("1.x", task="1", points=1, calls=(), tolerance=Tolerance(1e-9, "tests"))(body)
-    return Trial(
-        made, LocalStudent({"m": CODE}), seed=(1,), module="m", reference=reference
-    )  # fmt: skip
+    return Trial(made, LocalStudent({"m": CODE}), seed=(1,), module="m", reference=reference)
 
 
 def price(trial: Trial, forward: str, backward: str) -> None:

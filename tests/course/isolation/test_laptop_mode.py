@@ -31,8 +31,10 @@ def test_the_grader_needs_no_posix(expected: dict[str, Any]) -> None:
     done = subprocess.run(
         [sys.executable, "-c", POISON + GRADE],
         env={**os.environ, "PYTHONPATH": str(ROOT / "tests")},
-        capture_output=True, text=True, check=False,
-    )  # fmt: skip
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     assert done.returncode == 0, done.stderr
     assert json.loads(done.stdout) == expected["wrong"]
 

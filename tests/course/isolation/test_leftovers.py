@@ -66,10 +66,11 @@ def test_a_sweep_finds_every_session(home: WorkerHome) -> None:
     linux_root()
     uid = home.uid(3)
     started = [
-        subprocess.Popen(["/bin/sleep", "1000"], user=uid, group=uid, extra_groups=[],
-                         start_new_session=new)
+        subprocess.Popen(
+            ["/bin/sleep", "1000"], user=uid, group=uid, extra_groups=[], start_new_session=new
+        )
         for new in (True, False, True)
-    ]  # fmt: skip
+    ]
     assert sorted(processes.of_user(uid)) == sorted(each.pid for each in started)
     lifelines.sweep(uid)
     assert processes.of_user(uid) == []
@@ -160,10 +161,12 @@ def test_the_home_of_a_killed_grader_is_removed_by_the_next(
     killed, running = (
         subprocess.Popen(
             [sys.executable, "-c", code],
-            env={**os.environ, "TMPDIR": str(tmp_path)}, stdout=subprocess.PIPE, text=True,
+            env={**os.environ, "TMPDIR": str(tmp_path)},
+            stdout=subprocess.PIPE,
+            text=True,
         )
         for _ in range(2)
-    )  # fmt: skip
+    )
     assert killed.stdout is not None
     assert running.stdout is not None
     abandoned, alive = (Path(each.stdout.readline().strip()) for each in (killed, running))

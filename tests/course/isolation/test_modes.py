@@ -60,11 +60,7 @@ def folder_for_all(monkeypatch: pytest.MonkeyPatch) -> Path:
     ],
 )
 def test_the_strongest_that_works(
-    works: str,
-    minimum: str | None,
-    only: str | None,
-    chosen: str,
-    monkeypatch: pytest.MonkeyPatch,
+    works: str, minimum: str | None, only: str | None, chosen: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(modes, "self_test", lambda mode, _: "" if mode in works else "broken")
     assert modes.choose(minimum, only) == chosen

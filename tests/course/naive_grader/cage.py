@@ -91,9 +91,13 @@ def grade_naively(
     log = scratch.parent / f"{scratch.name}.log"
     with log.open("wb") as sink:
         process = subprocess.Popen(
-            command, cwd=scratch, env=environment(scratch), stdin=subprocess.DEVNULL, stdout=sink,
+            command,
+            cwd=scratch,
+            env=environment(scratch),
+            stdin=subprocess.DEVNULL,
+            stdout=sink,
             stderr=sink,
-        )  # fmt: skip
+        )
         try:
             process.wait(seconds)
             hung = False
@@ -123,10 +127,27 @@ def cage(scratch: Path, script: str) -> list[str]:
     wrap = bubblewrap()
     assert wrap is not None, "no bubblewrap"
     return [
-        wrap, "--ro-bind", "/", "/", "--dev", "/dev", "--proc", "/proc", "--tmpfs", "/tmp",
-        *bind(scratch), "--unshare-all", "--die-with-parent", "--new-session", "--chdir",
-        str(scratch), "sh", "-c", script, "sh",
-    ]  # fmt: skip
+        wrap,
+        "--ro-bind",
+        "/",
+        "/",
+        "--dev",
+        "/dev",
+        "--proc",
+        "/proc",
+        "--tmpfs",
+        "/tmp",
+        *bind(scratch),
+        "--unshare-all",
+        "--die-with-parent",
+        "--new-session",
+        "--chdir",
+        str(scratch),
+        "sh",
+        "-c",
+        script,
+        "sh",
+    ]
 
 
 def bind(scratch: Path) -> list[str]:

@@ -71,18 +71,35 @@ class Laptop:
     def call(self, command: list[str], cwd: Path) -> subprocess.CompletedProcess[str]:
         environment = {"PATH": "/usr/bin:/bin", "HOME": str(cwd), "COLUMNS": "100"}
         return subprocess.run(
-            command, cwd=cwd, env=environment, stdin=subprocess.DEVNULL,
-            capture_output=True, text=True, timeout=300, check=False,
-        )  # fmt: skip
+            command,
+            cwd=cwd,
+            env=environment,
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            text=True,
+            timeout=300,
+            check=False,
+        )
 
 
 def make_laptop(folder: Path) -> Laptop:
     """Build the course's wheel from this tree and lay it out with its requirements."""
     subprocess.run(
-        [sys.executable, "-m", "pip", "wheel", "-q", "--no-deps", "--no-build-isolation",
-         "-w", str(folder / "wheels"), str(COURSE)],
-        check=True, stdout=subprocess.DEVNULL,
-    )  # fmt: skip
+        [
+            sys.executable,
+            "-m",
+            "pip",
+            "wheel",
+            "-q",
+            "--no-deps",
+            "--no-build-isolation",
+            "-w",
+            str(folder / "wheels"),
+            str(COURSE),
+        ],
+        check=True,
+        stdout=subprocess.DEVNULL,
+    )
     subprocess.run([sys.executable, "-m", "venv", "--without-pip", str(folder / "env")], check=True)
     site = next((folder / "env").glob("lib/python3*/site-packages"))
     (wheel,) = (folder / "wheels").glob("photograd_course-*.whl")

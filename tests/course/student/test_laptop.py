@@ -36,9 +36,13 @@ def test_from_start_to_hand_in(laptop: Laptop, tmp_path: Path) -> None:
     work = tmp_path / "00_setup"
     laid_out = {path.relative_to(work).as_posix() for path in work.rglob("*") if path.is_file()}
     assert laid_out == {
-        "README.md", "answers.toml", "explore.ipynb", "explore.py", "figures/fig1_gradient.png",
+        "README.md",
+        "answers.toml",
+        "explore.ipynb",
+        "explore.py",
+        "figures/fig1_gradient.png",
         "first_gradient.py",
-    }  # fmt: skip
+    }
 
     red = laptop.run("course", "check", "00", "--json", cwd=work)
     assert red.returncode == 1, red.stderr

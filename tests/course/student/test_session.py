@@ -90,9 +90,15 @@ def test_a_long_title_and_both_kinds_of_arrays_are_drawn(tmp_path: Path) -> None
     for number, shape in enumerate([(7,), (3, 4)]):
         right = np.arange(float(np.prod(shape))).reshape(shape)
         outcome = Outcome(
-            id=f"1.{number}", task="1", title="a title that goes on " * 12, points=0.0, max=1.0,
-            visibility="public", status=Status.FAILED, arrays=(right + 1.0, right),
-        )  # fmt: skip
+            id=f"1.{number}",
+            task="1",
+            title="a title that goes on " * 12,
+            points=0.0,
+            max=1.0,
+            visibility="public",
+            status=Status.FAILED,
+            arrays=(right + 1.0, right),
+        )
         path = draw_failure(outcome, tmp_path)
         assert path is not None
         picture = imread(path)[..., :3]

@@ -21,10 +21,14 @@ QUESTIONS = (
     Question("90.p1", "prediction", 2, "Up or down?", ("up", "down")),
     Question("90.d1", "diagnosis", 3, "Which line?", ("first", "second", "third")),
     Question(
-        "90.g1", "generated", 5, "You wrote {quote}: f({a})?",
-        draw={"a": tuple(float(k) for k in range(2, 60))}, quote="weighted_sum",
+        "90.g1",
+        "generated",
+        5,
+        "You wrote {quote}: f({a})?",
+        draw={"a": tuple(float(k) for k in range(2, 60))},
+        quote="weighted_sum",
     ),
-)  # fmt: skip
+)
 ANSWERS = 'student = "Ada"  # name\n\n[answers]\n"90.p1" = ""\n"90.d1" = ""\n"90.g1" = ""\n'
 
 
@@ -74,12 +78,14 @@ def test_a_comment_behind_an_answer_stays(work: WorkFolder) -> None:
         ("[answers.90]\nd1 = 'a'\n", '[answers.90]\nd1 = "b"\n'),
         ('answers = {"90.d1" = ""}\n', 'answers = {"90.d1" = "b"}\n'),
         ('[answers]\r\n"90.d1" = ""\r\n', '[answers]\r\n"90.d1" = "b"\r\n'),
-        ('[answers]\n"90.p1" = """\n"90.d1" = 3"""\n',
-         '[answers]\n"90.p1" = """\n"90.d1" = 3"""\n"90.d1" = "b"\n'),
-        ("student = 'Ada'\n", "student = 'Ada'\n\n[answers]\n\"90.d1\" = \"b\"\n"),
+        (
+            '[answers]\n"90.p1" = """\n"90.d1" = 3"""\n',
+            '[answers]\n"90.p1" = """\n"90.d1" = 3"""\n"90.d1" = "b"\n',
+        ),
+        ("student = 'Ada'\n", 'student = \'Ada\'\n\n[answers]\n"90.d1" = "b"\n'),
         ("", '[answers]\n"90.d1" = "b"\n'),
     ],
-)  # fmt: skip
+)
 def test_any_toml_keeps_what_it_holds(work: WorkFolder, before: str, after: str) -> None:
     path = work.path / "answers.toml"
     path.write_bytes(before.encode())

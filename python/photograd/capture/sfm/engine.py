@@ -142,9 +142,13 @@ class _Pycolmap:
         options.num_threads = self.threads
         options.sift.max_num_features = self.settings.max_features
         self._run(
-            self.module.extract_features, self.database, self.photographs, image_names=list(names),
-            extraction_options=options, device=self.module.Device.cpu,
-        )  # fmt: skip
+            self.module.extract_features,
+            self.database,
+            self.photographs,
+            image_names=list(names),
+            extraction_options=options,
+            device=self.module.Device.cpu,
+        )
         missing = sorted(set(names) - self.extracted())
         if missing:
             expected = "features in every photograph"
@@ -170,10 +174,13 @@ class _Pycolmap:
         verification = self.module.TwoViewGeometryOptions()
         verification.ransac.random_seed = self.settings.seed
         self._run(
-            self.module.match_image_pairs, self.database, matching_options=matching,
-            pairing_options=pairing, verification_options=verification,
+            self.module.match_image_pairs,
+            self.database,
+            matching_options=matching,
+            pairing_options=pairing,
+            verification_options=verification,
             device=self.module.Device.cpu,
-        )  # fmt: skip
+        )
         listed.unlink()
 
     def map(
@@ -194,9 +201,14 @@ class _Pycolmap:
             on_photograph()
 
         found = self._run(
-            self.module.incremental_mapping, self.database, self.photographs, partial,
-            options=options, initial_image_pair_callback=two, next_image_callback=on_photograph,
-        )  # fmt: skip
+            self.module.incremental_mapping,
+            self.database,
+            self.photographs,
+            partial,
+            options=options,
+            initial_image_pair_callback=two,
+            next_image_callback=on_photograph,
+        )
         models = sorted(found.values(), key=lambda model: -model.num_reg_images())
         shutil.rmtree(partial)
         for index, model in enumerate(models):

@@ -40,9 +40,12 @@ def _draw(axes: Axes, capture: Capture, right: int, up: int) -> None:
         shown = np.concatenate([centres, [low, high]])
         colors = capture.point_colors
         axes.scatter(
-            points[:, 0], points[:, 1], s=1.5, linewidths=0,
+            points[:, 0],
+            points[:, 1],
+            s=1.5,
+            linewidths=0,
             c=style.GREY if colors is None else colors / 255.0,
-        )  # fmt: skip
+        )
     middle = 0.5 * (shown.min(axis=0) + shown.max(axis=0))
     half = 0.56 * max(float(np.ptp(shown, axis=0).max()), 1e-9)
     for views, color, name in (

@@ -72,9 +72,17 @@ def choose_pairs(count: int, *, exhaustive: bool | None = None) -> list[tuple[in
 
 STATE, PICTURE = MANIFEST, "cameras.png"
 _OURS = (
-    "sparse", ".sparse.partial", ".sparse_again", "..sparse_again.partial", PICTURE,
-    "database.db", "database.db-journal", "database.db-shm", "database.db-wal", "pairs.txt",
-)  # fmt: skip
+    "sparse",
+    ".sparse.partial",
+    ".sparse_again",
+    "..sparse_again.partial",
+    PICTURE,
+    "database.db",
+    "database.db-journal",
+    "database.db-shm",
+    "database.db-wal",
+    "pairs.txt",
+)
 PAIRS_AT_ONCE = 24
 AGREEING = (30, 15)
 """Points that must agree about the pose of a photograph, at first and when some got none."""
@@ -157,9 +165,14 @@ def reconstruct(
 
 
 def _prepare(
-    found: list[Photograph], source: Path, out: Path, settings: Settings, *, overwrite: bool,
+    found: list[Photograph],
+    source: Path,
+    out: Path,
+    settings: Settings,
+    *,
+    overwrite: bool,
     note: Note,
-) -> None:  # fmt: skip
+) -> None:
     """The folder, its state and the copies of the photographs."""
     if out.resolve() in (source.resolve(), *source.resolve().parents):
         expected = "a folder that does not hold the photographs"

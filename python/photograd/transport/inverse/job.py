@@ -64,9 +64,12 @@ class Recovery:
     """
 
     def __init__(
-        self, scene: Scene, targets: Any, unknowns: Sequence[Unknown | str],
+        self,
+        scene: Scene,
+        targets: Any,
+        unknowns: Sequence[Unknown | str],
         options: RecoveryOptions | None = None,
-    ) -> None:  # fmt: skip
+    ) -> None:
         """Check everything, and begin at the unknowns' starts.
 
         Raises:
@@ -115,10 +118,15 @@ class Recovery:
         for view in chosen:
             target = self.targets[view]
             part, gradients = loss_and_gradients(
-                tracer, target.image, self._weights[view], spp=self.options.spp,
-                seeds=self.seeds(step, view), camera=target.camera, options=self.options.path,
+                tracer,
+                target.image,
+                self._weights[view],
+                spp=self.options.spp,
+                seeds=self.seeds(step, view),
+                camera=target.camera,
+                options=self.options.path,
                 names=self.x,
-            )  # fmt: skip
+            )
             loss += part / len(chosen)
             for name, gradient in gradients.items():
                 total[name] += gradient / len(chosen)
@@ -154,9 +162,13 @@ class Recovery:
         return loss
 
     def run(
-        self, folder: Path | None = None, *, on_step: Callable[[Progress], None] | None = None,
-        should_stop: Callable[[], bool] = lambda: False, checkpoint_seconds: float = 30.0,
-    ) -> RecoveryResult:  # fmt: skip
+        self,
+        folder: Path | None = None,
+        *,
+        on_step: Callable[[Progress], None] | None = None,
+        should_stop: Callable[[], bool] = lambda: False,
+        checkpoint_seconds: float = 30.0,
+    ) -> RecoveryResult:
         """Step until the end or until `should_stop`; the folder then holds the checkpoint.
 
         Raises:
@@ -182,10 +194,14 @@ class Recovery:
         """What has been found so far."""
         params = self.values()
         return RecoveryResult(
-            params, scene_with(self.scene, params), np.array(self.history).reshape(-1, 3),
-            {name: np.array(rows) for name, rows in self.curves.items()}, self.step_number,
-            self.step_number >= self.options.steps, seconds,
-        )  # fmt: skip
+            params,
+            scene_with(self.scene, params),
+            np.array(self.history).reshape(-1, 3),
+            {name: np.array(rows) for name, rows in self.curves.items()},
+            self.step_number,
+            self.step_number >= self.options.steps,
+            seconds,
+        )
 
     def save(self, folder: Path) -> None:
         """Write the checkpoint DIR/recovery.npz atomically; IoError if that fails."""

@@ -33,8 +33,9 @@ from photograd.capture.camera import Camera
 from photograd.errors import RangeError, ShapeError, message
 from photograd.transport.accumulation import Accumulation, pair_counts
 from photograd.transport.incomplete import WholeGradients, require_whole
+from photograd.transport.path_options import DEFAULTS, PathOptions
 from photograd.transport.scene import Scene
-from photograd.transport.tracer import DEFAULTS, PathOptions, PathTracer
+from photograd.transport.tracer import PathTracer
 from photograd.types import Array
 
 
@@ -143,10 +144,17 @@ def cross_loss_backward(
 
 
 def loss_and_gradients(
-    tracer: PathTracer, target: Array, weight: Array, *, spp: int, seeds: tuple[int, int],
-    camera: Camera | None = None, options: PathOptions = DEFAULTS,
-    names: Iterable[str] | None = None, spread: str = "even",
-) -> tuple[float, dict[str, Array]]:  # fmt: skip
+    tracer: PathTracer,
+    target: Array,
+    weight: Array,
+    *,
+    spp: int,
+    seeds: tuple[int, int],
+    camera: Camera | None = None,
+    options: PathOptions = DEFAULTS,
+    names: Iterable[str] | None = None,
+    spread: str = "even",
+) -> tuple[float, dict[str, Array]]:
     """The loss of two half pictures, and its derivative with respect to the tracer's parameters.
 
     Args:
@@ -182,19 +190,23 @@ def loss_and_gradients(
     counts = None
     if spread != "even":
         pilot = tracer.render(
-            spp=max(2, 2 * spp // PILOT), seed=seeds[0] ^ PILOT_SEED, options=options,
-            camera=camera,
-        )  # fmt: skip
+            spp=max(2, 2 * spp // PILOT), seed=seeds[0] ^ PILOT_SEED, options=options, camera=camera
+        )
         spp = max(1, spp - pilot.count // 2)
         counts = pair_counts(pilot, weight * (pilot.mean - target), spp, spread)
     halves = np.zeros((2, *shape))
     found = tracer.add_up(
-        "loss_and_gradients", _core.dual_buffer_backward, view,
-        options=options.numbers(seeds[0]), other_seed=seeds[1],
-        spp=spp, counts=counts, pictures=halves,
+        "loss_and_gradients",
+        _core.dual_buffer_backward,
+        view,
+        options=options.numbers(seeds[0]),
+        other_seed=seeds[1],
+        spp=spp,
+        counts=counts,
+        pictures=halves,
         target=np.ascontiguousarray(target, np.float64),
         weight=np.ascontiguousarray(weight, np.float64) / np.size(weight),
-    )  # fmt: skip
+    )
     Accumulation(halves.sum(axis=0), halves.sum(axis=0), 2).check_finite("loss_and_gradients")
     wide = {name: d.astype(np.float64) for name, d in found.items()}
     names = wide if wanted is None else wanted

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from photograd.errors import RangeError, message
+from photograd.transport.path_options import PathOptions
 from photograd.transport.scene import Scene
-from photograd.transport.tracer import PathOptions
 from photograd.types import Array
 
 LOSSES = ("relative", "squared")

@@ -102,9 +102,13 @@ def scene_with(scene: Scene, params: Mapping[str, Any]) -> Scene:
         number, _, parameter = path.partition(".")
         lights[int(number)] = _light_with(lights[int(number)], parameter, value)
     return replace(
-        scene, shapes=shapes, materials=materials, environment=environment,
-        lights=tuple(lights), textures=textures,
-    )  # fmt: skip
+        scene,
+        shapes=shapes,
+        materials=materials,
+        environment=environment,
+        lights=tuple(lights),
+        textures=textures,
+    )
 
 
 def _light_with(light: Light, parameter: str, value: Any) -> Light:

@@ -14,10 +14,15 @@ from photograd.transport.scene import Scene
 
 
 def recover(
-    scene: Scene, targets: Any, unknowns: Sequence[Unknown | str], *,
-    options: RecoveryOptions | None = None, folder: Path | None = None, resume: bool = False,
+    scene: Scene,
+    targets: Any,
+    unknowns: Sequence[Unknown | str],
+    *,
+    options: RecoveryOptions | None = None,
+    folder: Path | None = None,
+    resume: bool = False,
     bar: bool = False,
-) -> RecoveryResult:  # fmt: skip
+) -> RecoveryResult:
     """Find parameters of a scene from pictures of it, through all bounces of light.
 
     Minimises the squared difference of the path traced pictures and the targets with Adam

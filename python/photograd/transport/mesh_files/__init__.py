@@ -13,5 +13,11 @@ from photograd.transport.mesh_files.read import SUFFIXES, read_model
 from photograd.transport.mesh_files.studio import STUDIO, model_scene
 
 __all__ = [
-    "STUDIO", "SUFFIXES", "ModelCamera", "ModelFile", "model_scene", "read_model", "save_gltf",
-]  # fmt: skip
+    "STUDIO",
+    "SUFFIXES",
+    "ModelCamera",
+    "ModelFile",
+    "model_scene",
+    "read_model",
+    "save_gltf",
+]

@@ -25,10 +25,7 @@ from photograd.types import Array
 DRACO = "KHR_draco_mesh_compression"
 READABLE = (TRANSFORM, "KHR_mesh_quantization", LIGHTS)
 """Extensions that a file may require, besides those of materials, which are noted one by one."""
-_LEFT_OUT = {
-    "animations": "the rest position is drawn",
-    "skins": "the rest position is drawn",
-}
+_LEFT_OUT = {"animations": "the rest position is drawn", "skins": "the rest position is drawn"}
 _TRIANGLES, _STRIP, _FAN = 4, 5, 6
 
 
@@ -155,9 +152,13 @@ def _arrays(
 
 
 def _attribute(
-    container: Container, attributes: JsonNode, key: str, width: int, count: int,
+    container: Container,
+    attributes: JsonNode,
+    key: str,
+    width: int,
+    count: int,
     note: Callable[[str], None],
-) -> Array | None:  # fmt: skip
+) -> Array | None:
     """(V, width), or None if absent or unusable."""
     if key not in attributes:
         return None

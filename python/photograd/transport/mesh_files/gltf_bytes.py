@@ -75,11 +75,16 @@ class GltfBytes:
         return json.dumps(root, ensure_ascii=False, allow_nan=False).encode("utf-8")
 
     def _accessor(self, rows: Array, target: int, more: dict[str, Any]) -> int:
-        return self.entry("accessors", {
-            "bufferView": self._view(rows.tobytes(), {"target": target}),
-            "componentType": _COMPONENTS[rows.dtype.newbyteorder("<").str],
-            "count": len(rows), "type": _TYPES[1 if rows.ndim == 1 else rows.shape[1]], **more,
-        })  # fmt: skip
+        return self.entry(
+            "accessors",
+            {
+                "bufferView": self._view(rows.tobytes(), {"target": target}),
+                "componentType": _COMPONENTS[rows.dtype.newbyteorder("<").str],
+                "count": len(rows),
+                "type": _TYPES[1 if rows.ndim == 1 else rows.shape[1]],
+                **more,
+            },
+        )
 
     def _view(self, data: bytes, more: dict[str, Any]) -> int:
         self._data += b"\0" * (-len(self._data) % 4)

@@ -28,9 +28,16 @@ from photograd.transport.mesh_files.gltf_draft import (
 )
 
 NAMES = (
-    "specular", "ior", "anisotropy", "iridescence", "sheen", "clearcoat", "transmission", "volume",
+    "specular",
+    "ior",
+    "anisotropy",
+    "iridescence",
+    "sheen",
+    "clearcoat",
+    "transmission",
+    "volume",
     "dispersion",
-)  # fmt: skip
+)
 """The extensions that it speaks for."""
 
 

@@ -34,10 +34,12 @@ class Words:
 
 def words_of(material: Material) -> Words:
     """The numbers of a material of a model in `WRITTEN`; textures and alpha are added elsewhere."""
-    return WRITTEN[material.model]({
-        name: [float(x) for x in value] if np.ndim(value) else float(value)
-        for name, value in material.values.items()
-    })  # fmt: skip
+    return WRITTEN[material.model](
+        {
+            name: [float(x) for x in value] if np.ndim(value) else float(value)
+            for name, value in material.values.items()
+        }
+    )
 
 
 def _core(color: Any, metalness: float, roughness: float) -> dict[str, Any]:

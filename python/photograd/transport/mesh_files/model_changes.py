@@ -36,10 +36,13 @@ def changes(before: ModelFile, after: ModelFile) -> list[str]:
             f"material '{name}': {parameter}: {text}"
             for parameter in sorted(material.textures.keys() | other.textures.keys())
             for text in _of_use(
-                material.textures.get(parameter), other.textures.get(parameter),
-                before.textures, after.textures, sizes[parameter],
+                material.textures.get(parameter),
+                other.textures.get(parameter),
+                before.textures,
+                after.textures,
+                sizes[parameter],
             )
-        ]  # fmt: skip
+        ]
     return found
 
 
@@ -140,9 +143,12 @@ def _of_map(
 
 
 def _of_use(
-    before: TextureUse | None, after: TextureUse | None, mine: Mapping[str, Texture],
-    its: Mapping[str, Texture], size: int,
-) -> Iterator[str]:  # fmt: skip
+    before: TextureUse | None,
+    after: TextureUse | None,
+    mine: Mapping[str, Texture],
+    its: Mapping[str, Texture],
+    size: int,
+) -> Iterator[str]:
     """The `size` channels that scale something are compared; white ones scale nothing."""
     pair = []
     for use, textures in ((before, mine), (after, its)):

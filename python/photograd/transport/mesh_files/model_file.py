@@ -50,9 +50,14 @@ class ModelFile:
 
 
 def placed_shapes(
-    names: Names, name: str, arrays: Arrays, material: str, emission: Any, places: Sequence[Array],
+    names: Names,
+    name: str,
+    arrays: Arrays,
+    material: str,
+    emission: Any,
+    places: Sequence[Array],
     note: Callable[[str], None],
-) -> list[Shape]:  # fmt: skip
+) -> list[Shape]:
     """A mesh at each of its places (4, 4): moved there if there is one, else as instances.
 
     What has no triangle left, or a place without volume, is left out with a note.
@@ -78,9 +83,13 @@ def placed_shapes(
 
 
 def _shape(
-    name: str, arrays: Arrays, material: str, emission: Any, places: tuple[Array, ...],
+    name: str,
+    arrays: Arrays,
+    material: str,
+    emission: Any,
+    places: tuple[Array, ...],
     note: Callable[[str], None],
-) -> list[Shape]:  # fmt: skip
+) -> list[Shape]:
     vertices, faces, normals, uv = arrays
     try:
         return [MeshShape(name, vertices, faces, material, emission, normals, uv, places)]

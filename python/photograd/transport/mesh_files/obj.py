@@ -96,9 +96,10 @@ def _add_face(part: _Part, words: list[str], counts: Corner) -> None:
             for index, count in zip(given + [0] * (3 - len(given)), counts, strict=True)
         ]
         if given[0] == 0 or any(
-            not (0 <= at < count) for at, count, index in zip(found, counts, given, strict=False)
+            not (0 <= at < count)
+            for at, count, index in zip(found, counts, given, strict=False)
             if index
-        ):  # fmt: skip
+        ):
             raise ValueError(f"{word[:40]}, with {counts} v, vt and vn so far")
         corner = (found[0], found[1], found[2])
         numbers.append(part.corners.setdefault(corner, len(part.corners)))

@@ -21,9 +21,12 @@ GREY = Material("lambert", {"albedo": [0.7, 0.7, 0.7]})
 
 
 def plain_model(
-    path: Path, meshes: list[tuple[str, Arrays, str]], materials: dict[str, Material],
-    textures: dict[str, Texture], note: Note,
-) -> ModelFile:  # fmt: skip
+    path: Path,
+    meshes: list[tuple[str, Arrays, str]],
+    materials: dict[str, Material],
+    textures: dict[str, Texture],
+    note: Note,
+) -> ModelFile:
     """A file of parts (name, arrays, material), with the materials that are used.
 
     Raises:

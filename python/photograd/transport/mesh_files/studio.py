@@ -48,9 +48,14 @@ def model_scene(
     view = _from_in_front(model, size) if seen is None else seen.fitted(size)
     if lights or (seen is not None and shines):
         return Scene(
-            name, model.shapes, model.materials, view, lights=lights, textures=model.textures,
+            name,
+            model.shapes,
+            model.materials,
+            view,
+            lights=lights,
+            textures=model.textures,
             media=model.media,
-        )  # fmt: skip
+        )
     box = model.box
     centre, radius = box.mean(axis=0), 0.5 * float(np.linalg.norm(box[1] - box[0]))
     sky = Environment(np.full(3, 0.9), np.full(3, 0.6), np.full(3, 0.25))

@@ -88,12 +88,7 @@ def random_words(
 
 
 def uniform(
-    seed: int,
-    *,
-    step: Address = 0,
-    pixel: Address = 0,
-    sample: Address = 0,
-    dimension: Address = 0,
+    seed: int, *, step: Address = 0, pixel: Address = 0, sample: Address = 0, dimension: Address = 0
 ) -> NDArray[np.float64]:
     """Uniform numbers in [0, 1) with 24 bits each, so that float32 holds them exactly.
 

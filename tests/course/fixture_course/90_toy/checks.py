@@ -14,9 +14,15 @@ from photograd_course.grading.adjoint_gate import (
 ROUNDING = Tolerance(1e-12, "two orders of summation differ by 2e-16")
 
 
-@check("90.1.value", task="90.1", points=3, calls=("weighted_sum",), tolerance=ROUNDING,
-       kills=("growing", "unweighted"),
-       sole="students need a public check; the hidden one repeats it")  # fmt: skip
+@check(
+    "90.1.value",
+    task="90.1",
+    points=3,
+    calls=("weighted_sum",),
+    tolerance=ROUNDING,
+    kills=("growing", "unweighted"),
+    sole="students need a public check; the hidden one repeats it",
+)
 def value_at_known_points(t):
     """exp(0) = 1 and exp(-log 2) = 1/2 give the sums they must."""
     w = t.rng.uniform(1.0, 2.0, 5)
@@ -25,9 +31,14 @@ def value_at_known_points(t):
     t.close("s", t.call("weighted_sum", w, halves, returns=Number()), w.sum() / 2, reveal=True)
 
 
-@check("90.2.differences", task="90.2", points=3, calls=("weighted_sum_backward",),
-       needs=("weighted_sum",),
-       kills=("sign", "unweighted_backward", "no_cotangent", "no_zero"))  # fmt: skip
+@check(
+    "90.2.differences",
+    task="90.2",
+    points=3,
+    calls=("weighted_sum_backward",),
+    needs=("weighted_sum",),
+    kills=("sign", "unweighted_backward", "no_cotangent", "no_zero"),
+)
 def derivatives_agree_with_differences(t):
     """Both derivatives agree with central differences of your own forward function."""
     point = {"w": t.rng.uniform(0.5, 2.0, 6), "x": t.rng.uniform(-1.0, 1.0, 6)}
@@ -43,8 +54,14 @@ def derivatives_agree_with_differences(t):
     require_zero_for_zero(t, {"w": d_w, "x": d_x})
 
 
-@check("90.3.services", task="90.3", points=3, calls=("descend",), tolerance=ROUNDING,
-       kills=("uphill",))  # fmt: skip
+@check(
+    "90.3.services",
+    task="90.3",
+    points=3,
+    calls=("descend",),
+    tolerance=ROUNDING,
+    kills=("uphill",),
+)
 def a_quadratic_contracts(t):
     """On a quadratic of curvature lambda each step shrinks x by 1 - tau lambda."""
     curvature = t.rng.uniform(0.5, 1.5, 3)
@@ -55,9 +72,16 @@ def a_quadratic_contracts(t):
 
 
 # >>> hidden
-@check("90.1.hidden", task="90.1", points=3, calls=("weighted_sum",), visibility="hidden",
-       tolerance=ROUNDING, kills=("growing", "unweighted"),
-       sole="the same mistakes, at points that are not known beforehand")  # fmt: skip
+@check(
+    "90.1.hidden",
+    task="90.1",
+    points=3,
+    calls=("weighted_sum",),
+    visibility="hidden",
+    tolerance=ROUNDING,
+    kills=("growing", "unweighted"),
+    sole="the same mistakes, at points that are not known beforehand",
+)
 def value_at_random_points(t):
     """The sum is right at random points."""
     w, x = t.rng.uniform(0.5, 2.0, 7), t.rng.uniform(-2.0, 2.0, 7)
@@ -65,10 +89,17 @@ def value_at_random_points(t):
     t.close("s", s, t.reference.weighted_sum(w, x))
 
 
-@check("90.2.cost", task="90.2", points=3, calls=("weighted_sum_backward",), visibility="hidden",
-       needs=("weighted_sum",), tolerance=ROUNDING,
-       kills=("differences", "sign", "unweighted_backward", "no_cotangent"),
-       seconds=5.0)  # fmt: skip
+@check(
+    "90.2.cost",
+    task="90.2",
+    points=3,
+    calls=("weighted_sum_backward",),
+    visibility="hidden",
+    needs=("weighted_sum",),
+    tolerance=ROUNDING,
+    kills=("differences", "sign", "unweighted_backward", "no_cotangent"),
+    seconds=5.0,
+)
 def the_derivative_is_cheap(t):
     """With 4,000 parameters the derivative is right, and costs a few forward calls."""
     w, x = t.rng.uniform(0.5, 2.0, 2000), t.rng.uniform(-2.0, 2.0, 2000)
@@ -78,9 +109,7 @@ def the_derivative_is_cheap(t):
     t.close("d_w", d_w, right[0])
     t.close("d_x", d_x, right[1])
     require_cheap(
-        t,
-        ("weighted_sum", (w, x), Number()),
-        ("weighted_sum_backward", (w, x, 0.7), pair),
+        t, ("weighted_sum", (w, x), Number()), ("weighted_sum_backward", (w, x, 0.7), pair)
     )
 
 

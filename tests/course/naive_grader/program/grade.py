@@ -107,9 +107,12 @@ def run_tests(folder, keep):
     after = str(Path("other").resolve())
     command = [sys.executable, str(HERE / "run_tests.py"), str(folder), after]
     process = subprocess.Popen(
-        command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, pass_fds=keep,
+        command,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        pass_fds=keep,
         env={key: value for key, value in os.environ.items() if key != "GRADER_ANSWERS"},
-    )  # fmt: skip
+    )
     output, _ = process.communicate()
     return output.decode("utf-8", errors="replace"), process.returncode
 

@@ -79,13 +79,27 @@ class Manifest:
 
 
 _KEYS: dict[str, Any] = {
-    "id": str, "name": str, "title": str, "module": str, "handin": list, "prerequisites": list,
-    "hours": (int, float), "tasks": list, "imports": list, "vocabulary": list,
-    "minimum_mode": str, "points": dict, "limits": dict,
-}  # fmt: skip
+    "id": str,
+    "name": str,
+    "title": str,
+    "module": str,
+    "handin": list,
+    "prerequisites": list,
+    "hours": (int, float),
+    "tasks": list,
+    "imports": list,
+    "vocabulary": list,
+    "minimum_mode": str,
+    "points": dict,
+    "limits": dict,
+}
 _OPTIONAL: dict[str, Any] = {
-    "prerequisites": [], "vocabulary": [], "minimum_mode": "C", "limits": {}, "tasks": [],
-}  # fmt: skip
+    "prerequisites": [],
+    "vocabulary": [],
+    "minimum_mode": "C",
+    "limits": {},
+    "tasks": [],
+}
 
 
 def read_manifest(folder: Path) -> Manifest:

@@ -14,8 +14,15 @@ from .archive import zip_bytes
 from .wheel import course_wheel
 
 PINNED = (
-    "numpy", "matplotlib", "pillow", "pyyaml", "rich", "tomlkit", "typer", "typing-extensions",
-)  # fmt: skip
+    "numpy",
+    "matplotlib",
+    "pillow",
+    "pyyaml",
+    "rich",
+    "tomlkit",
+    "typer",
+    "typing-extensions",
+)
 EXECUTABLE = ("setup.sh", "run_autograder")
 
 SETUP = """#!/usr/bin/env bash

@@ -148,16 +148,24 @@ class Judge:
     ) -> tuple[list[dict[str, Any]], str | None]:
         """Outcomes of one process, and the check in which it hung or died."""
         order = {
-            "folder": str(self.folder), "secret": self.secret.hex(), "text": job.text,
-            "first": job.first, "seconds": self.seconds,
-            "passed": list(passed), "failed": list(failed),
-        }  # fmt: skip
+            "folder": str(self.folder),
+            "secret": self.secret.hex(),
+            "text": job.text,
+            "first": job.first,
+            "seconds": self.seconds,
+            "passed": list(passed),
+            "failed": list(failed),
+        }
         program = [sys.executable, "-I", "-m", "photograd_course.build.judge_program"]
         try:
             ended = subprocess.run(
-                program, input=json.dumps(order).encode(), timeout=WALL * self.seconds, check=False,
-                capture_output=True, env=_environment(),
-            )  # fmt: skip
+                program,
+                input=json.dumps(order).encode(),
+                timeout=WALL * self.seconds,
+                check=False,
+                capture_output=True,
+                env=_environment(),
+            )
             written, problem = ended.stdout, ended.stderr.decode(errors="replace")
         except subprocess.TimeoutExpired as error:
             written, problem = error.stdout or b"", "no answer in time"

@@ -26,15 +26,36 @@ NAMES = 3
 SHORTEST = 3  # a name of one or two characters is an index or a symbol of the formula
 COMMON = frozenset({*keyword.kwlist, *dir(builtins), "np", "numpy", "linalg", "self"})
 WELL_KNOWN = (
-    "bisect", "collections", "colorsys", "fractions", "functools", "graphlib", "heapq", "itertools",
-    "operator", "queue", "random", "statistics", "numpy._core.numeric", "numpy._core.fromnumeric",
-    "numpy._core.shape_base", "numpy.lib._function_base_impl", "numpy.lib._index_tricks_impl",
-    "numpy.lib._shape_base_impl", "numpy.lib._twodim_base_impl", "numpy.linalg._linalg",
-)  # fmt: skip
+    "bisect",
+    "collections",
+    "colorsys",
+    "fractions",
+    "functools",
+    "graphlib",
+    "heapq",
+    "itertools",
+    "operator",
+    "queue",
+    "random",
+    "statistics",
+    "numpy._core.numeric",
+    "numpy._core.fromnumeric",
+    "numpy._core.shape_base",
+    "numpy.lib._function_base_impl",
+    "numpy.lib._index_tricks_impl",
+    "numpy.lib._shape_base_impl",
+    "numpy.lib._twodim_base_impl",
+    "numpy.linalg._linalg",
+)
 _LAYOUT = {
-    tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT,
-    tokenize.ENCODING, tokenize.ENDMARKER,
-}  # fmt: skip
+    tokenize.COMMENT,
+    tokenize.NL,
+    tokenize.NEWLINE,
+    tokenize.INDENT,
+    tokenize.DEDENT,
+    tokenize.ENCODING,
+    tokenize.ENDMARKER,
+}
 _FENCE = re.compile(r"^```(?:python|py)?\n(.*?)^```", re.MULTILINE | re.DOTALL)
 _WORD = re.compile(r"[A-Za-z_]\w*")
 

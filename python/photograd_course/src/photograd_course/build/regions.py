@@ -8,9 +8,14 @@ from dataclasses import dataclass
 from .markers import Region, RegionError, find_regions, region_error
 
 __all__ = [
-    "Region", "RegionError", "SolutionPart", "find_regions", "solution_parts", "strip_hidden",
+    "Region",
+    "RegionError",
+    "SolutionPart",
+    "find_regions",
+    "solution_parts",
+    "strip_hidden",
     "strip_solution",
-]  # fmt: skip
+]
 
 
 @dataclass(frozen=True)

@@ -27,14 +27,16 @@ def syllabus(track: str, root: Path) -> dict[str, Any]:
     for number, week in enumerate(chosen.weeks, start=1):
         for each in week:
             entry = course.entries[each]
-            rows.append({
-                "week": number,
-                "assignment": entry.id,
-                "title": entry.title,
-                "hours": entry.hours,
-                "needs": ", ".join(entry.prerequisites) or "nothing",
-                "state": "ready" if entry.ready else "planned",
-            })  # fmt: skip
+            rows.append(
+                {
+                    "week": number,
+                    "assignment": entry.id,
+                    "title": entry.title,
+                    "hours": entry.hours,
+                    "needs": ", ".join(entry.prerequisites) or "nothing",
+                    "state": "ready" if entry.ready else "planned",
+                }
+            )
     return {
         "track": chosen.name,
         "title": chosen.title,

@@ -52,9 +52,16 @@ from photograd_course.grading import Array, Tolerance, check
 ROUNDING = Tolerance(1e-12, "doubling is exact; the nearest wrong answer is off by half")
 
 
-@check("NN.1.known", task="NN.1", points=40, calls=("twice",), tolerance=ROUNDING,
-       kills=("not_doubled", "squared"), hint="handout, section 1",
-       sole="students need a public check; the hidden one looks at other points")  # fmt: skip
+@check(
+    "NN.1.known",
+    task="NN.1",
+    points=40,
+    calls=("twice",),
+    tolerance=ROUNDING,
+    kills=("not_doubled", "squared"),
+    hint="handout, section 1",
+    sole="students need a public check; the hidden one looks at other points",
+)
 def known_values_are_doubled(t):
     """1, 2 and 5 become 2, 4 and 10."""
     known = np.array([1.0, 2.0, 5.0])
@@ -62,9 +69,16 @@ def known_values_are_doubled(t):
 
 
 # >>> hidden
-@check("NN.1.random", task="NN.1", points=35, calls=("twice",), visibility="hidden",
-       tolerance=ROUNDING, kills=("not_doubled", "squared"),
-       sole="random points, so that the answers to the public check cannot be copied")  # fmt: skip
+@check(
+    "NN.1.random",
+    task="NN.1",
+    points=35,
+    calls=("twice",),
+    visibility="hidden",
+    tolerance=ROUNDING,
+    kills=("not_doubled", "squared"),
+    sole="random points, so that the answers to the public check cannot be copied",
+)
 def random_values_are_doubled(t):
     """Random values are doubled."""
     x = t.rng.uniform(-3.0, 3.0, 8)

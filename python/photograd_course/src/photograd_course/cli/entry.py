@@ -67,9 +67,7 @@ def _run(
     return ended_early(outcome if isinstance(outcome, int) else 0)
 
 
-def build_app(
-    plugins: Iterable[metadata.EntryPoint],
-) -> tuple[typer.Typer, list[PluginProblem]]:
+def build_app(plugins: Iterable[metadata.EntryPoint]) -> tuple[typer.Typer, list[PluginProblem]]:
     """The application with all commands, and the plugins that could not take part."""
     app = typer.Typer(
         name="photograd",

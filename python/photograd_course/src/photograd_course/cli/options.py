@@ -52,9 +52,7 @@ JsonOption = Annotated[
 DebugOption = Annotated[
     bool,
     typer.Option(
-        "--debug",
-        help="Show the full traceback when something goes wrong.",
-        rich_help_panel=PANEL,
+        "--debug", help="Show the full traceback when something goes wrong.", rich_help_panel=PANEL
     ),
 ]
 

@@ -14,22 +14,8 @@ from __future__ import annotations
 from .accumulation import check_accumulation
 from .differences import STEPS, check_gradient
 from .dot_product import dot_product_error
-from .probes import (
-    AccumulatingBackward,
-    Arrays,
-    Backward,
-    Function,
-    Outputs,
-    contract,
-    draw_like,
-)
-from .reports import (
-    AccumulationReport,
-    DotProductReport,
-    GradientReport,
-    GroupReport,
-    TaylorReport,
-)
+from .probes import AccumulatingBackward, Arrays, Backward, Function, Outputs, contract, draw_like
+from .reports import AccumulationReport, DotProductReport, GradientReport, GroupReport, TaylorReport
 from .taylor import taylor_slope
 
 __all__ = [

@@ -110,12 +110,5 @@ def _judge(
     elif not all(abs(value - 2.0) <= tolerance for value in finest):
         reason = f"a slope is further than {tolerance:g} from 2"
     return TaylorReport(
-        tuple(steps),
-        tuple(remainders),
-        tuple(slopes),
-        slope,
-        linear,
-        tolerance,
-        not reason,
-        reason,
+        tuple(steps), tuple(remainders), tuple(slopes), slope, linear, tolerance, not reason, reason
     )

@@ -128,10 +128,14 @@ def _batch_json(
     grades = []
     for report in reports:
         score, status = counted(report, earlier.get(report.student))
-        grades.append({
-            "student": report.student, "score": score, "max_score": report.max_score,
-            "status": status,
-        })  # fmt: skip
+        grades.append(
+            {
+                "student": report.student,
+                "score": score,
+                "max_score": report.max_score,
+                "status": status,
+            }
+        )
     differing = None if changed is None else [change.student for change in changed]
     return {
         "out": str(folder.path),

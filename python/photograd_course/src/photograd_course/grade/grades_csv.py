@@ -47,12 +47,20 @@ def grades_table(reports: Sequence[Report], earlier: Mapping[str, Report]) -> by
     for report in sorted(reports, key=lambda each: each.student):
         score, status = counted(report, earlier.get(report.student))
         points = report.points
-        rows.append([
-            report.student, report.assignment, "" if score is None else score, report.max_score,
-            status, report.mode, f"{page_name(report.student)}.html", report.hand_in[:16],
-            *(points.get(each, "") for each in ids),
-            "; ".join(_notes(report, declared)),
-        ])  # fmt: skip
+        rows.append(
+            [
+                report.student,
+                report.assignment,
+                "" if score is None else score,
+                report.max_score,
+                status,
+                report.mode,
+                f"{page_name(report.student)}.html",
+                report.hand_in[:16],
+                *(points.get(each, "") for each in ids),
+                "; ".join(_notes(report, declared)),
+            ]
+        )
     return _csv(rows)
 
 

@@ -110,11 +110,7 @@ def _answers(case: Case) -> Answers:
 
 
 def _report(
-    case: Case,
-    workers: Workers | None,
-    checks: Sequence[Outcome],
-    answers: Answers,
-    started: float,
+    case: Case, workers: Workers | None, checks: Sequence[Outcome], answers: Answers, started: float
 ) -> Report:
     answered, declared, warnings = answers
     manifest = case.bundle.manifest

@@ -30,9 +30,18 @@ FEWEST_SHARED = 8
 SHORTEST = 4  # tokens of a statement that counts; `pass`, `0` and `x = 0` have fewer
 _ARITHMETIC = {"+", "-", "*", "/", "//", "%", "**", "@", "(", ")", ","}
 _UFUNCS = {
-    "add", "subtract", "multiply", "divide", "true_divide", "floor_divide", "mod", "remainder",
-    "negative", "power", "matmul",
-}  # fmt: skip
+    "add",
+    "subtract",
+    "multiply",
+    "divide",
+    "true_divide",
+    "floor_divide",
+    "mod",
+    "remainder",
+    "negative",
+    "power",
+    "matmul",
+}
 
 
 def similar_pairs(sources: Mapping[str, str], starter: str = "") -> list[tuple[str, str, float]]:

@@ -81,9 +81,18 @@ def check(
         if not (body.__doc__ or "").strip():
             raise RangeError(message("check", id, "a docstring: the title students read", "none"))
         return Check(
-            id=id, task=task, points=points, body=body, calls=tuple(calls), visibility=visibility,
-            needs=tuple(needs), tolerance=tolerance, kills=tuple(kills), hint=hint,
-            seconds=seconds, sole=sole,
-        )  # fmt: skip
+            id=id,
+            task=task,
+            points=points,
+            body=body,
+            calls=tuple(calls),
+            visibility=visibility,
+            needs=tuple(needs),
+            tolerance=tolerance,
+            kills=tuple(kills),
+            hint=hint,
+            seconds=seconds,
+            sole=sole,
+        )
 
     return make

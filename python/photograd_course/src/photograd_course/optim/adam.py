@@ -31,12 +31,7 @@ class Adam(Optimizer):
     slots: ClassVar[tuple[str, ...]] = ("mean", "mean_square")
 
     def __init__(
-        self,
-        *,
-        beta_1: float = 0.9,
-        beta_2: float = 0.999,
-        epsilon: float = 1e-8,
-        threads: int = 2,
+        self, *, beta_1: float = 0.9, beta_2: float = 0.999, epsilon: float = 1e-8, threads: int = 2
     ) -> None:
         super().__init__(threads=threads)
         self.beta_1 = require_number("Adam", "beta_1", beta_1, least=0.0, most=1.0 - 1e-12)

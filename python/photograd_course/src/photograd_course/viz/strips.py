@@ -101,9 +101,7 @@ def _check_count(function: str, argument: str, given: Sequence[object], count: i
 
 
 def _pairs(
-    function: str,
-    truths: Sequence[NDArray[np.floating]],
-    renders: Sequence[NDArray[np.floating]],
+    function: str, truths: Sequence[NDArray[np.floating]], renders: Sequence[NDArray[np.floating]]
 ) -> tuple[list[NDArray[np.floating]], list[NDArray[np.floating]]]:
     """Both lists checked against each other: same count, one size."""
     true = check_images(function, "truths", truths)
@@ -119,9 +117,7 @@ def _pairs(
 
 
 def _masks(
-    function: str,
-    valid: Sequence[NDArray[np.bool_]] | None,
-    images: Sequence[NDArray[np.floating]],
+    function: str, valid: Sequence[NDArray[np.bool_]] | None, images: Sequence[NDArray[np.floating]]
 ) -> list[NDArray[np.bool_]]:
     """A mask (H, W) for each image, all True by default."""
     shape = images[0].shape[:2]

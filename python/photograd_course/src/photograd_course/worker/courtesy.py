@@ -11,14 +11,31 @@ from typing import Any
 
 WRITING = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC
 FILES = frozenset(
-    f"os.{name}" for name in (
-        "chmod", "chown", "link", "mkdir", "remove", "rename", "rmdir", "symlink", "truncate",
+    f"os.{name}"
+    for name in (
+        "chmod",
+        "chown",
+        "link",
+        "mkdir",
+        "remove",
+        "rename",
+        "rmdir",
+        "symlink",
+        "truncate",
     )
-)  # fmt: skip
+)
 PROCESSES = frozenset(
-    ("os.exec", "os.fork", "os.forkpty", "os.posix_spawn", "os.spawn", "os.system",
-     "subprocess.Popen", "os.kill")
-)  # fmt: skip
+    (
+        "os.exec",
+        "os.fork",
+        "os.forkpty",
+        "os.posix_spawn",
+        "os.spawn",
+        "os.system",
+        "subprocess.Popen",
+        "os.kill",
+    )
+)
 
 
 def behave() -> None:

@@ -22,9 +22,16 @@ from .processes import finish
 from .program import install_program, plain_command, scratch_folder
 
 __all__ = [
-    "Lifeline", "WorkerDied", "WorkerLied", "WorkerProcess", "WorkerTimeout", "contains_function",
-    "install_program", "plain_command", "scratch_folder",
-]  # fmt: skip
+    "Lifeline",
+    "WorkerDied",
+    "WorkerLied",
+    "WorkerProcess",
+    "WorkerTimeout",
+    "contains_function",
+    "install_program",
+    "plain_command",
+    "scratch_folder",
+]
 
 LONGEST_LOG = 64 << 10  # bytes of stderr kept
 HEARTBEAT = 0.2  # seconds between looks at the clock while a write is blocked

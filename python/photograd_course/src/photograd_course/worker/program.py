@@ -12,9 +12,19 @@ from pathlib import Path
 import numpy as np
 
 PROGRAM = (
-    "__init__.py", "__main__.py", "boot.py", "channel.py", "codec.py", "confine.py", "courtesy.py",
-    "kernel.py", "landlock.py", "modules.py", "preload.py", "screen.py",
-)  # fmt: skip
+    "__init__.py",
+    "__main__.py",
+    "boot.py",
+    "channel.py",
+    "codec.py",
+    "confine.py",
+    "courtesy.py",
+    "kernel.py",
+    "landlock.py",
+    "modules.py",
+    "preload.py",
+    "screen.py",
+)
 # One thread: a mathematics library that starts more would meet the limits on memory and processes.
 ENVIRONMENT = {
     "OPENBLAS_NUM_THREADS": "1",

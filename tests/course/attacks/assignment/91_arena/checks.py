@@ -24,8 +24,13 @@ def value_at_known_points(t):
     t.close("s", t.call("weighted_sum", w, halves, returns=Number()), w.sum() / 2, reveal=True)
 
 
-@check("91.2.differences", task="91.2", points=3, calls=("weighted_sum_backward",),
-       needs=("weighted_sum",))  # fmt: skip
+@check(
+    "91.2.differences",
+    task="91.2",
+    points=3,
+    calls=("weighted_sum_backward",),
+    needs=("weighted_sum",),
+)
 def derivatives_agree_with_differences(t):
     """Both derivatives agree with central differences of your own forward function."""
     point = {"w": t.rng.uniform(0.5, 2.0, 6), "x": t.rng.uniform(-1.0, 1.0, 6)}
@@ -52,8 +57,14 @@ def a_quadratic_contracts(t):
 
 
 # >>> hidden
-@check("91.1.hidden", task="91.1", points=3, calls=("weighted_sum",), visibility="hidden",
-       tolerance=ROUNDING)  # fmt: skip
+@check(
+    "91.1.hidden",
+    task="91.1",
+    points=3,
+    calls=("weighted_sum",),
+    visibility="hidden",
+    tolerance=ROUNDING,
+)
 def value_at_random_points(t):
     """The sum is right at random points."""
     w, x = t.rng.uniform(0.5, 2.0, 7), t.rng.uniform(-2.0, 2.0, 7)
@@ -61,8 +72,15 @@ def value_at_random_points(t):
     t.close("s", s, t.reference.weighted_sum(w, x))
 
 
-@check("91.2.cost", task="91.2", points=3, calls=("weighted_sum_backward",), visibility="hidden",
-       tolerance=ROUNDING, seconds=3.0)  # fmt: skip
+@check(
+    "91.2.cost",
+    task="91.2",
+    points=3,
+    calls=("weighted_sum_backward",),
+    visibility="hidden",
+    tolerance=ROUNDING,
+    seconds=3.0,
+)
 def the_derivative_is_cheap(t):
     """With 4,000 parameters the derivative is right, and costs a few forward calls."""
     w, x = t.rng.uniform(0.5, 2.0, 2000), t.rng.uniform(-2.0, 2.0, 2000)
@@ -72,14 +90,18 @@ def the_derivative_is_cheap(t):
     t.close("d_w", d_w, right[0])
     t.close("d_x", d_x, right[1])
     require_cheap(
-        t,
-        ("weighted_sum", (w, x), Number()),
-        ("weighted_sum_backward", (w, x, 0.7), pair),
+        t, ("weighted_sum", (w, x), Number()), ("weighted_sum_backward", (w, x, 0.7), pair)
     )
 
 
-@check("91.4.tail", task="91.4", points=3, calls=("brightness",), visibility="hidden",
-       tolerance=ROUNDING)  # fmt: skip
+@check(
+    "91.4.tail",
+    task="91.4",
+    points=3,
+    calls=("brightness",),
+    visibility="hidden",
+    tolerance=ROUNDING,
+)
 def the_mean_keeps_its_fireflies(t):
     """With a heavy tail, too, the mean is that of the samples drawn."""
     drawn = []
@@ -96,8 +118,9 @@ def the_mean_keeps_its_fireflies(t):
     t.close("mean", mean, np.concatenate(drawn).mean())
 
 
-@check("91.5.unseen", task="91.5", points=3, calls=("predict",), visibility="hidden",
-       tolerance=FITTED)  # fmt: skip
+@check(
+    "91.5.unseen", task="91.5", points=3, calls=("predict",), visibility="hidden", tolerance=FITTED
+)
 def poses_held_out_are_met(t):
     """The cubic that made the values is met at poses that were held out."""
     cubic = np.polynomial.Polynomial(t.rng.uniform(-1.0, 1.0, 4))

@@ -13,9 +13,19 @@ import typer
 
 # In the order in which --help lists them: what a student needs, then what an instructor needs.
 COMMANDS = (
-    "list", "start", "check", "predict", "questions", "handin",
-    "grade", "new", "build", "bundle", "syllabus", "doctor",
-)  # fmt: skip
+    "list",
+    "start",
+    "check",
+    "predict",
+    "questions",
+    "handin",
+    "grade",
+    "new",
+    "build",
+    "bundle",
+    "syllabus",
+    "doctor",
+)
 
 
 def register(app: typer.Typer) -> None:

@@ -20,12 +20,10 @@ def register(course: typer.Typer) -> None:
     def check(
         assignment: Annotated[str, typer.Argument(help="Number or name, such as 01.")],
         task: Annotated[
-            str | None,
-            typer.Option(help="Only this task: its id, or the name of a function."),
+            str | None, typer.Option(help="Only this task: its id, or the name of a function.")
         ] = None,
         folder: Annotated[
-            Path | None,
-            typer.Option("--dir", help="Folder of your code; by default here."),
+            Path | None, typer.Option("--dir", help="Folder of your code; by default here.")
         ] = None,
         pictures: Annotated[
             bool, typer.Option(help="Draw wrong arrays beside the right ones, as check_*.png.")

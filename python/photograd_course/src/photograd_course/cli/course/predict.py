@@ -14,14 +14,12 @@ def register(course: typer.Typer) -> None:
     """Add the command."""
 
     @course.command(
-        epilog="Example: photograd course predict 01",
-        short_help="Make and lock your predictions.",
+        epilog="Example: photograd course predict 01", short_help="Make and lock your predictions."
     )
     def predict(
         assignment: Annotated[str, typer.Argument(help="Number or name, such as 01.")],
         folder: Annotated[
-            Path | None,
-            typer.Option("--dir", help="Folder of your code; by default here."),
+            Path | None, typer.Option("--dir", help="Folder of your code; by default here.")
         ] = None,
         debug: DebugOption = False,  # noqa: ARG001
     ) -> None:

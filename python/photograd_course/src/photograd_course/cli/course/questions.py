@@ -20,8 +20,7 @@ def register(course: typer.Typer) -> None:
     def questions(
         assignment: Annotated[str, typer.Argument(help="Number or name, such as 01.")],
         folder: Annotated[
-            Path | None,
-            typer.Option("--dir", help="Folder of your code; by default here."),
+            Path | None, typer.Option("--dir", help="Folder of your code; by default here.")
         ] = None,
         debug: DebugOption = False,  # noqa: ARG001
     ) -> None:
