@@ -13,11 +13,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from photograd._fit_options import DENSITY_CONTROLS
 from photograd.capture.load import load_capture
+from photograd.fields import fittable
+from photograd.fitting import options_for
 from photograd.fitting.loop import Fit
 from photograd.fitting.model import Model
-from photograd.fitting.options import DENSITY_CONTROLS, options_for
-from photograd.fitting.start import FITTED
 
 # Few steps, but with every event: levels, pruning, clones, splits, motion of faint Gaussians.
 JOBS: dict[str, dict[str, Any]] = {
@@ -38,7 +39,7 @@ def digest(arrays: Mapping[str, Any]) -> str:
 
 def digests(folder: Path) -> dict[str, str]:
     """Of everything that a checkpoint holds after a fit of each kind, background learned."""
-    assert set(JOBS) == set(FITTED)
+    assert set(JOBS) == set(fittable())
     capture = load_capture(folder)
     x = np.linspace(0.1, 3.0, 999, dtype=np.float32)
     found = {"of the processor": digest({"exp": np.exp(x)})}
@@ -51,7 +52,7 @@ def digests(folder: Path) -> dict[str, str]:
             fit = Fit.start(capture, options, start_from=start if name == "octree_sh" else None)
             while fit.step_number < options.steps:
                 fit.step()
-            parts = fit.model.params, fit.model.state(), fit.optimiser.state()
+            parts = fit.model.params, fit.model.state(), fit.optimizer.state()
             arrays = {f"{k}/{key}": a for k, part in enumerate(parts) for key, a in part.items()}
             rest = {"background": fit.background, "history": np.array(fit.history)}
             found[f"{name}, {control}"] = digest(arrays | rest)

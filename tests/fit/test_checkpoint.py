@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from photograd._checkpoint import Checkpoint, load_checkpoint, save_checkpoint
 from photograd.errors import Error, IoError
-from photograd.fitting.checkpoint import Checkpoint, load_checkpoint, save_checkpoint
 from photograd.fitting.loop import Fit
 from photograd.fitting.model import load_model
 
@@ -46,7 +46,7 @@ def test_everything_comes_back(tmp_path: Path) -> None:
     for place in (tmp_path, tmp_path / "model.npz"):
         loaded = load_checkpoint(place)
         assert loaded.meta == {"version": 1, **saved.meta}
-        for part in ("params", "optimiser", "state"):
+        for part in ("params", "optimizer", "state"):
             before, after = getattr(saved, part), getattr(loaded, part)
             assert set(before) == set(after)
             for name, array in before.items():

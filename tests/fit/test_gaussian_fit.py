@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from photograd._compiled import _core
 from photograd.errors import RangeError, SceneError
+from photograd.fitting import FitOptions, options_for
 from photograd.fitting.evaluate import evaluate
 from photograd.fitting.loop import Fit
 from photograd.fitting.model import Model, load_model
-from photograd.fitting.options import FitOptions, options_for
 from photograd.splats.model import GaussianScene
 
 from tests.splats.scene import cloud_capture
@@ -137,7 +137,7 @@ def test_gaussians_begin_on_what_a_model_shows() -> None:
     )
     assert len(again.model.params["means"]) > 100  # a scene of Gaussians shows surfaces, too
     with pytest.raises(
-        RangeError, match="start_from: expected none, or 'gaussians' or 'octree_sh'"
+        RangeError, match="start_from: expected none, or 'octree_sh' or 'gaussians'"
     ):
         Fit.start(capture, grid.options, start_from=seen)
     empty = Fit.start(capture, FitOptions(resolution=16, sigma_t=1e-6)).model

@@ -10,10 +10,10 @@ import pytest
 from photograd._compiled import _core
 from photograd.capture.view import View
 from photograd.fields import DenseGrid
+from photograd.fitting import FitOptions
 from photograd.fitting.evaluate import as_result, evaluate
 from photograd.fitting.loop import Fit
 from photograd.fitting.model import Model
-from photograd.fitting.options import FitOptions
 from photograd.representation import RayBatch, RenderOptions
 from photograd_course.color import srgb_encode
 from photograd_course.gradcheck import check_gradient
@@ -104,7 +104,7 @@ def test_the_same_bits_on_one_and_two_threads() -> None:
             _core.set_thread_count(threads)
             fit = Fit.start(scene.capture(wall=WALL), scene.options())
             finish(fit)
-            results.append((fit.model.params["values"], fit.background, fit.optimiser.state()))
+            results.append((fit.model.params["values"], fit.background, fit.optimizer.state()))
     finally:
         _core.set_thread_count(0)
     (values, background, state), (other, other_background, other_state) = results
@@ -128,7 +128,7 @@ def test_gradient_of_a_whole_step(wall: Any) -> None:
     if wall is not None:
         assert fit.background is not None
         start["background"] = fit.background.astype(np.float64)
-    chosen = fit.pixels.draw(200, seed=9, step=0)
+    chosen = fit.data.draw(200, seed=9, step=0)
 
     def both(p: dict[str, Any]) -> tuple[float, dict[str, Any]]:
         fit.model.params = {"values": p["values"]}

@@ -18,10 +18,10 @@ from photograd.commands.evaluate import draw_picked
 from photograd.commands.fit import run_with_bar
 from photograd.commands.gradients import draw_gradients
 from photograd.commands.shared import out_option, stop_on_signals, use_threads
+from photograd.fitting import FitOptions
 from photograd.fitting.evaluate import display_image, evaluate
 from photograd.fitting.loop import Fit
 from photograd.fitting.model import load_model
-from photograd.fitting.options import FitOptions
 
 
 def register(app: typer.Typer) -> None:

@@ -15,12 +15,13 @@ from photograd.fields.sunlit_medium import SunlitMedium
 from photograd.fields.texture_2d import Texture2D
 from photograd.fields.tiny_network import TinyNetwork
 from photograd.fields.toy_blobs import ToyBlobs
-from photograd.representation import REGISTERED, Representation
+from photograd.representation import REGISTERED, Fittable, Representation, fittable
 from photograd.splats.model import GaussianScene
 
 __all__ = [
     "DenseGrid",
     "DenseSh",
+    "Fittable",
     "GaussianScene",
     "Gaussians2D",
     "OctreeSh",
@@ -30,6 +31,7 @@ __all__ = [
     "Texture2D",
     "TinyNetwork",
     "ToyBlobs",
+    "fittable",
     "representation",
     "representations",
 ]
