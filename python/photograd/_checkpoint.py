@@ -26,7 +26,7 @@ from photograd._files import read_npz
 from photograd.errors import DtypeError, IoError, RangeError, ShapeError, message
 from photograd.types import Array
 
-VERSION = 1
+VERSION = 2
 FILE_NAME = "model.npz"
 _EXPECTED, _REMEDY = "a photograd checkpoint", "the file is damaged: restore it or fit again"
 

@@ -51,4 +51,4 @@ def test_the_gradient_of_each_fit_is_drawn(
     missing = not all(field.active_voxels.all() for field in load_snapshots(model).values())
     assert missing == (name != "dense_sh")
     assert (share_of(steps, "gray") > 0.003) == missing
-    assert ("leaves begin with the matter of another model" in done.err) == (name == "octree_sh")
+    assert ("the fit began with the matter of another model" in done.err) == (name == "octree_sh")

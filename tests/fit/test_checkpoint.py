@@ -45,7 +45,7 @@ def test_everything_comes_back(tmp_path: Path) -> None:
     save_checkpoint(tmp_path / "model.npz", saved)
     for place in (tmp_path, tmp_path / "model.npz"):
         loaded = load_checkpoint(place)
-        assert loaded.meta == {"version": 1, **saved.meta}
+        assert loaded.meta == {"version": 2, **saved.meta}
         for part in ("params", "optimizer", "state"):
             before, after = getattr(saved, part), getattr(loaded, part)
             assert set(before) == set(after)
@@ -122,7 +122,7 @@ def with_meta(**entries: Any) -> Any:
 
 
 DAMAGES = {
-    "another version": (with_meta(version=99), "expected version 1, got 99"),
+    "another version": (with_meta(version=99), "expected version 2, got 99"),
     "no policy": (with_meta(policy=None), "of a fit, got .*MarchPolicy: expected an object"),
     "no options": (with_meta(options=None), "FitOptions: expected an object, got None"),
     "unknown option": (with_meta(options={"refine_at": [0, 0], "sharpness": 1}), "sharpness"),

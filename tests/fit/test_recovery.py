@@ -14,6 +14,7 @@ from photograd.fitting import FitOptions
 from photograd.fitting.evaluate import as_result, evaluate
 from photograd.fitting.loop import Fit
 from photograd.fitting.model import Model
+from photograd.fitting.steps import Background, background_color
 from photograd.representation import RayBatch, RenderOptions
 from photograd_course.color import srgb_encode
 from photograd_course.gradcheck import check_gradient
@@ -92,8 +93,9 @@ def test_fixed_backgrounds_stand_behind_every_ray() -> None:
     white, black = (
         Fit.start(capture, scene.options(background=kind)) for kind in ("white", "black")
     )
-    assert white.background_color(5).tolist() == [1, 1, 1]
-    assert black.background_color(5).tolist() == [0, 0, 0]
+    for fit, color in ((white, [1, 1, 1]), (black, [0, 0, 0])):
+        behind = Background(fit.background, fit.background_kind)
+        assert background_color(behind, 5, seed=1, step=0).tolist() == color
     assert white.step() != black.step()
 
 

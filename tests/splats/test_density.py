@@ -186,12 +186,12 @@ def test_faint_gaussians_wander_and_opaque_ones_stay() -> None:
     gaussians.opacity_logits[:100] = -7
     gaussians.opacity_logits[100:] = 0
     field = scene(gaussians, MarkovChain(budget=200))
-    field.explore(1e-5, 3)
+    field.after_step({"means": 1e-5}, 3)
     moved = np.linalg.norm(field.params["means"] - gaussians.means, axis=1)
     assert moved[:100].min() > 0
     assert not moved[100:].any()
     again = scene(gaussians, MarkovChain(budget=200))
-    again.explore(1e-5, 3)
+    again.after_step({"means": 1e-5}, 3)
     np.testing.assert_array_equal(again.params["means"], field.params["means"])
 
 
@@ -229,8 +229,9 @@ def test_grad2d_means_the_same_at_every_resolution() -> None:
             # The derivative of a mean over pixels: towards red on the left and blue on the right.
             ramp = np.linspace(-1, 1, size)[None, :, None] * np.array([1.0, 0, -1])
             d_color = np.broadcast_to(ramp, (size, size, 3)).reshape(-1, 3) / outputs.color.size
-            field.render_backward(context, Outputs(np.ascontiguousarray(d_color)))
-            field.observe(context)
+            d_outputs = Outputs(np.ascontiguousarray(d_color))
+            gradients = field.render_backward(context, d_outputs)
+            field.observe(context, gradients)
             raw.append(np.abs(context.screen).mean())
         chosen.append(field.grad2d.mean() > np.median(field.grad2d.mean()) * 1.5)
         middle = np.median(field.grad2d.mean())

@@ -11,7 +11,7 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from photograd_course.portable_math import softplus
+from photograd_course.portable_math import root, sigmoid, softplus
 
 from photograd import sh
 from photograd._checkpoint import FLOAT, Row
@@ -67,7 +67,7 @@ class VoxelField(Fittable):
     def density_slope(self) -> Array:
         """(N,) d sigma_t / d raw density of each row, in 1/m."""
         raw = self.density_rows(self.params).astype(np.float64)
-        slope: Array = self.policy.density_scale / (1 + np.exp(-raw))
+        slope: Array = self.policy.density_scale * sigmoid(raw)
         return slope
 
     def export(self, path: Path, background: Array | None) -> tuple[str, ...]:
@@ -150,7 +150,7 @@ class GridField(VoxelField):
     def memory(cls, box: Array, options: FitOptions, available: int) -> Sequence[Memory]:
         """Of the grid."""
         size = cls._bytes(box, options)
-        fits = int(options.resolution * min(1.0, available / (2 * size)) ** (1 / 3))
+        fits = int(options.resolution * float(root(min(1.0, available / (2 * size)), 3)))
         what = f"a grid of {options.resolution} voxels along an edge"
         remedy = f"--resolution {fits} takes half of it; or crop the capture's bounds"
         return (Memory("resolution", what, size, remedy),)
@@ -185,7 +185,8 @@ def require_room_to_refine(grid: GridField, resolution: int) -> None:
     little, of a capture without alpha, can grow eightfold.
     """
     now = sum(values.nbytes for values in grid.params.values())
-    needed = COPIES * int(now * (1 + (resolution / grid.resolution) ** 3))
+    finer = resolution / grid.resolution
+    needed = COPIES * int(now * (1 + finer * finer * finer))
     remedy = f"fit with --resolution {grid.resolution}, or crop the capture's bounds"
     what = f"a grid of {resolution} voxels along an edge"
     require_room("Fit.step", what, needed, argument="resolution", remedy=remedy)

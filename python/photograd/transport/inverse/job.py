@@ -12,7 +12,6 @@ the checkpoint: a resumed run ends with the same bits as an uninterrupted one.
 from __future__ import annotations
 
 import hashlib
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import asdict
 from pathlib import Path
@@ -30,12 +29,12 @@ from photograd._checkpoint import (
     check_optimizer,
     checked_step,
     load_checkpoint,
-    make_folder,
     save_checkpoint,
 )
+from photograd._descend import Progress, descend
 from photograd.errors import Error, IoError, RangeError, message
 from photograd.transport.inverse.loss import checked_targets, loss_and_gradients, loss_weights
-from photograd.transport.inverse.options import Progress, RecoveryOptions, RecoveryResult
+from photograd.transport.inverse.options import RecoveryOptions, RecoveryResult
 from photograd.transport.inverse.parameters import Unknown, is_light, scene_with
 from photograd.transport.scene import Scene
 from photograd.transport.scene_digest import scene_digest
@@ -132,6 +131,11 @@ class Recovery:
                 total[name] += gradient / len(chosen)
         return loss, total
 
+    @property
+    def steps(self) -> int:
+        """Of the whole descent."""
+        return self.options.steps
+
     def step(self) -> float:
         """One step of gradient descent; returns the loss before it.
 
@@ -175,20 +179,21 @@ class Recovery:
             IoError: the checkpoint cannot be written.
             Error: as `step`.
         """
-        if folder is not None:
-            make_folder(folder)
-        began = saved = time.perf_counter()
-        while self.step_number < self.options.steps and not should_stop():
-            self.step()
+
+        def after_step(now: float) -> None:
+            del now
             if on_step:
                 recent = [loss for _, loss, _ in self.history[-SMOOTH:]]
                 on_step(Progress(self.step_number, self.options.steps, float(np.mean(recent))))
-            if folder is not None and time.perf_counter() - saved > checkpoint_seconds:
-                self.save(folder)
-                saved = time.perf_counter()
-        if folder is not None:
-            self.save(folder)
-        return self.result(time.perf_counter() - began)
+
+        run = descend(
+            self,
+            folder,
+            after_step=after_step,
+            should_stop=should_stop,
+            checkpoint_seconds=checkpoint_seconds,
+        )
+        return self.result(run.seconds)
 
     def result(self, seconds: float = 0.0) -> RecoveryResult:
         """What has been found so far."""
