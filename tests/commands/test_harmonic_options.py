@@ -45,7 +45,7 @@ def test_each_representation_has_the_resolution_that_suits_it(photograd: Photogr
         (
             "dense_grid",
             ("--degree", 1),
-            "--degree: expected a fit of sparse_sh or dense_sh or octree_sh or gau",
+            "--degree: expected a fit of dense_sh or gaussians or octree_sh or sparse",
         ),
         ("dense_sh", ("--prune", 0.1), "--prune: expected a fit of sparse_sh, got 'dense_sh'"),
     ],

@@ -12,15 +12,17 @@ from typing import Any
 import numpy as np
 import pytest
 from photograd.errors import DtypeError, Error, IoError, RangeError
+from photograd.fields import TexturedMesh
 from photograd.fitting import FitOptions
 from photograd.fitting.loop import Fit
-from photograd.fitting.model import load_model
+from photograd.fitting.model import Model, load_model
 
 from tests.fit import scene
+from tests.fit.mesh_scene import cube
 
 Arrays = dict[str, Any]
 TINY: Arrays = {"resolution": 8, "steps": 12, "rays": 16, "degree": 1, "gaussians": 20}
-KINDS = ("dense_grid", "sparse_sh", "dense_sh", "octree_sh", "gaussians")
+KINDS = ("dense_grid", "sparse_sh", "dense_sh", "octree_sh", "gaussians", "textured_mesh")
 CAPTURE = replace(scene.capture(), train=scene.capture().train[:3])
 
 
@@ -34,6 +36,8 @@ def saved(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
         grid.model.params["values"][2:6, 2:6, 2:6, 3] = 10.0
         grid.save(folder)
         first = load_model(folder)
+    if request.param == "textured_mesh":
+        first = Model.of(TexturedMesh.of_mesh(cube()))
     options = scene.options(**TINY, representation=request.param, background="learned")
     if request.param == "gaussians":
         options = replace(options, background="auto")

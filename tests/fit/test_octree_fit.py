@@ -89,7 +89,9 @@ def test_it_has_to_be_cut_from_voxels(grid: Model, capture: Capture) -> None:
     leaves = Fit.start(capture, scene.options(**LEAVES), start_from=grid)
     with pytest.raises(RangeError, match="a model of dense_grid or sparse_sh or dense_sh"):
         Fit.start(capture, scene.options(**LEAVES), start_from=model_of(leaves))
-    with pytest.raises(RangeError, match="none, or 'octree_sh' or 'gaussians' to fit"):
+    with pytest.raises(
+        RangeError, match="none, or 'gaussians' or 'octree_sh' or 'textured_mesh' to fit"
+    ):
         Fit.start(capture, scene.options(**GRID), start_from=grid)
 
 
@@ -135,5 +137,5 @@ def test_compare_cuts_from_the_grid_before() -> None:
     listed = parse_candidates("sparse_sh:16,dense_grid:16,dense_grid:32,octree_sh:16")
     assert source_of(listed[3], listed) == listed[1]
     assert source_of(listed[0], listed) is None
-    with pytest.raises(RangeError, match=r"a grid of 32 before the octree.*sparse_sh:32 first"):
+    with pytest.raises(RangeError, match=r"octree_sh:32 starts from before it.*with 32 \(fit a"):
         parse_candidates("dense_grid:16,octree_sh:32,dense_grid:32")

@@ -22,13 +22,14 @@ from tests.fit import scene
     ("name", "words"),
     [
         ("dense_gird", r"a capture can start: .*, got 'dense_gird' .*mean 'dense_grid'"),
-        ("zebra", r"'octree_sh' or 'gaussians', got 'zebra'$"),
+        ("zebra", r"'sparse_sh' or 'textured_mesh', got 'zebra'$"),
         ("gaussian", r"got 'gaussian' \(did you mean 'gaussians'\?\)$"),
         ("texture_2d", r"got 'texture_2d' \(it lives on a 2D canvas\)"),
         (
             "tiny_network",
             "one that a capture can start: "
-            "'dense_grid' or 'sparse_sh' or 'dense_sh' or 'octree_sh' or 'gaussians', "
+            "'dense_grid' or 'dense_sh' or 'gaussians' or 'octree_sh' or 'sparse_sh' or "
+            "'textured_mesh', "
             "got 'tiny_network'",
         ),
     ],

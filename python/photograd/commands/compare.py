@@ -17,7 +17,7 @@ from photograd.capture.capture import Capture
 from photograd.capture.load import load_capture
 from photograd.commands.capture import make_capture
 from photograd.commands.evaluate import draw_strips
-from photograd.commands.fit import run_with_bar
+from photograd.commands.fit import first_model, run_with_bar
 from photograd.commands.shared import (
     AllowOutsideOption,
     DownscaleOption,
@@ -37,10 +37,19 @@ from photograd.fitting.compare import (
     worst_view,
 )
 from photograd.fitting.evaluate import Evaluation
+from photograd.fitting.model import Model
 from photograd.scenes.registry import scenes
 
 DEFAULTS = FitOptions()
 CONTRASTS = ("foliage", "smooth_curves", "fur", "flat_walls")
+StartFromOption = Annotated[
+    Path | None,
+    typer.Option(
+        "--start-from",
+        help="What a textured_mesh:N starts from, as for 'photograd fit'.",
+        metavar="MODEL",
+    ),
+]
 ValidateOption = Annotated[
     bool,
     typer.Option(
@@ -71,6 +80,7 @@ def compare(
     candidates: Annotated[
         str, typer.Option("--candidates", help="Representations with their resolution, or number.")
     ] = "dense_grid:64,dense_grid:128,sparse_sh:128,gaussians:20000",
+    start_from: StartFromOption = None,
     steps: Annotated[int, typer.Option("--steps", min=1, help="Steps of each fit.")] = 1000,
     rays: Annotated[int, typer.Option("--rays", min=1, help="Rays a step.")] = DEFAULTS.rays,
     views: Annotated[int, typer.Option("--views", min=2, help="Of a built-in scene.")] = 60,
@@ -90,12 +100,14 @@ def compare(
     held-out view), and each model in OUT/CAPTURE/. Stopped by Ctrl-C, the same command line goes
     on where it was.
 
-    An octree_sh:N is cut from the grid of N that stands before it, and refined.
+    An octree_sh:N is cut from the grid of N that stands before it, or from --start-from, and
+    refined.
 
     Example: photograd compare foliage fur --candidates dense_grid:128,sparse_sh:128
     """
     use_threads(threads)
-    parsed = parse_candidates(candidates)
+    first = first_model(start_from) if start_from else None
+    parsed = parse_candidates(candidates, first)
     context.with_resource(one_run_in("compare", out))
     shared = FitOptions(steps=steps, rays=rays, seed=seed)
     scores: list[Score] = []
@@ -107,7 +119,7 @@ def compare(
             capture = load_capture(folder, downscale=downscale, allow_outside=allow_outside)
             if validate:
                 name, capture = f"{name}_validation", capture.validating()
-            found = fit_all(name, capture, parsed, shared, out / name, stopping)
+            found = fit_all(name, capture, parsed, shared, out / name, stopping, first)
             scores += [score for score, _ in found]
             pictures.append(out / f"{name}.png")
             draw([evaluation for _, evaluation in found], parsed, name, pictures[-1])
@@ -139,6 +151,7 @@ def fit_all(
     shared: FitOptions,
     out: Path,
     stopping: StopRequest,
+    first: Model | None,
 ) -> list[tuple[Score, Evaluation]]:
     """Fit and score all candidates on one capture, under progress bars.
 
@@ -152,7 +165,7 @@ def fit_all(
     folder = {candidate: out / candidate.label.replace(":", "_") for candidate in candidates}
     for candidate in candidates:
         note(f"{name}: {candidate.label}")
-        source = source_of(candidate, candidates)
+        source = source_of(candidate, candidates, first)
         with one_run_in("compare", folder[candidate]):
             result = compare_one(
                 name,
@@ -161,7 +174,7 @@ def fit_all(
                 folder[candidate],
                 candidate.options(shared),
                 lambda job, folder: run_with_bar(job, folder, stopping),
-                source=None if source is None else folder[source],
+                source=folder[source] if isinstance(source, Candidate) else source,
             )
         if result is None:
             note("stopped; the same command goes on from here")

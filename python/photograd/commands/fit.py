@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable
 from dataclasses import fields
 from pathlib import Path
@@ -36,7 +37,7 @@ from photograd.fields import fittable
 from photograd.fitting.checks import require_startable
 from photograd.fitting.data import learned_background
 from photograd.fitting.loop import Fit
-from photograd.fitting.model import load_model
+from photograd.fitting.model import Model, load_model
 from photograd.fitting.options import (
     FitResult,
     options_for,
@@ -44,6 +45,8 @@ from photograd.fitting.options import (
     summary,
     users_of,
 )
+from photograd.transport.mesh_files import SUFFIXES as MESH_SUFFIXES
+from photograd.transport.mesh_files import read_textured_mesh
 
 
 def _defaults(option: str) -> str:
@@ -74,7 +77,7 @@ ResolutionOption: TypeAlias = Annotated[
     typer.Option(
         "--resolution",
         min=8,
-        help="Voxels along the longest edge.",
+        help="Voxels along the longest edge, or texels along that of a texture.",
         show_default=_defaults("resolution"),
     ),
 ]
@@ -116,7 +119,9 @@ StartFromOption: TypeAlias = Annotated[
     Path | None,
     typer.Option(
         "--start-from",
-        help="Model on whose surfaces Gaussians begin, or from whose voxels an octree is cut.",
+        help="Model on whose surfaces Gaussians begin, or from whose voxels an octree is cut; or, "
+        "for a textured_mesh, a mesh file with texture coordinates: "
+        f"{', '.join(MESH_SUFFIXES)}.",
         metavar="MODEL",
     ),
 ]
@@ -176,7 +181,7 @@ def fit(
     Writes OUT/model.npz: every 30 seconds, on Ctrl-C or SIGTERM, and at the end. --resume continues
     and ends with the same bits as a fit that was never interrupted. A fit of Gaussians also leaves
     OUT/gaussians.ply for other programs: with -y up, as they expect, and a learned background in a
-    comment.
+    comment. A fit of a textured_mesh, whose vertices are held, leaves OUT/mesh.glb.
 
     Example: photograd fit photos --out model --steps 1500 --resolution 128
     """
@@ -198,7 +203,7 @@ def fit(
         chosen |= {"background": background, "degree": degree, "prune": prune}
         chosen |= {"gaussians": gaussians, "density_control": density_control}
         options = options_for(representation, **chosen)
-        first = load_model(start_from) if start_from else None
+        first = first_model(start_from) if start_from else None
         job = Fit.start(loaded, options, allow_blind=allow_blind, start_from=first)
         note(job.start_rule)
     with stop_on_signals() as stopping:
@@ -207,6 +212,22 @@ def fit(
     if not result.finished:
         note(f"stopped at step {result.step}; continue with --resume")
         raise typer.Exit(stopping.exit_code or 1)
+
+
+def first_model(path: Path) -> Model:
+    """What a fit starts from: a model, or a mesh without a texture yet.
+
+    What a mesh file holds that is not supported is said on stderr. Raises what `load_model` or
+    `read_textured_mesh` raises.
+    """
+    if path.suffix.lower() not in MESH_SUFFIXES:
+        return load_model(path)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        field = read_textured_mesh(path)
+    for warning in caught:
+        note(f"{warning.message}")
+    return Model.of(field)
 
 
 def exported(job: Fit, out: Path) -> dict[str, str]:

@@ -73,11 +73,13 @@ class Score:
     protocol: str
 
 
-def parse_candidates(text: str) -> list[Candidate]:
+def parse_candidates(text: str, start_from: Model | None = None) -> list[Candidate]:
     """The candidates of "dense_grid:64,sparse_sh:128".
 
     Raises RangeError for another form, a resolution below 8, one that is given twice, a
-    representation that a capture cannot start, or an octree without a grid to be cut from.
+    representation that a capture cannot start, or one without the model that it starts from: an
+    octree without a grid before it, a textured mesh without `start_from`. Or a `start_from` that
+    none of them starts from.
     """
     candidates = []
     for word in text.split(","):
@@ -96,19 +98,26 @@ def parse_candidates(text: str) -> list[Candidate]:
         candidates.append(Candidate(name, int(size)))
     if len(set(candidates)) < len(candidates):
         raise RangeError(message("compare", "candidates", "each only once", text))
-    for candidate in candidates:
-        source_of(candidate, candidates)
+    sources = [source_of(candidate, candidates, start_from) for candidate in candidates]
+    if start_from is not None and start_from not in sources:
+        expected = f"a candidate that starts from a {start_from.field.name}"
+        raise RangeError(message("compare", "candidates", expected, text))
     return candidates
 
 
-def source_of(candidate: Candidate, candidates: Sequence[Candidate]) -> Candidate | None:
-    """The candidate whose model an octree is cut from; None for what starts by itself.
+def source_of(
+    candidate: Candidate, candidates: Sequence[Candidate], start_from: Model | None = None
+) -> Candidate | Model | None:
+    """The model that a candidate starts from; None for what starts by itself.
 
-    It is the nearest before it of the same resolution. Raises RangeError if there is none.
+    It is `start_from` where that is of a kind to start from, or the model of the nearest candidate
+    before it of the same resolution. Raises RangeError if there is none.
     """
     kind = fittable()[candidate.representation]
     if kind.first_model != "required":
         return None
+    if start_from is not None and start_from.field.name in kind.first_model_kinds:
+        return start_from
     before = candidates[: candidates.index(candidate)]
     for other in reversed(before):
         fits = other.representation in kind.first_model_kinds
@@ -118,9 +127,9 @@ def source_of(candidate: Candidate, candidates: Sequence[Candidate]) -> Candidat
         message(
             "compare",
             "candidates",
-            f"a grid of {candidate.resolution} before the octree that is cut from it",
-            candidate.label,
-            f"put sparse_sh:{candidate.resolution} first",
+            f"the model that {candidate.label} starts from before it",
+            f"none of {' or '.join(kind.first_model_kinds)} with {candidate.resolution}",
+            kind.first_model_help,
         )
     )
 
@@ -133,13 +142,13 @@ def compare_one(
     options: FitOptions,
     run: Run,
     *,
-    source: Path | None = None,
+    source: Path | Model | None = None,
 ) -> tuple[Score, Evaluation] | None:
     """Fit `candidate` to `capture` in `folder`, or continue there, and score it.
 
     `name` is what the table calls the capture; `options` holds what all candidates share; `source`
-    is the folder of the model that the fit starts from, whose seconds count, too. Returns None if
-    `run` ended before the fit did: the same call continues it, and its seconds add up.
+    is the model that the fit starts from, or its folder, and then its seconds count, too. Returns
+    None if `run` ended before the fit did: the same call continues it, and its seconds add up.
     """
     if (folder / FILE_NAME).exists():
         job = Fit.resume(capture, folder)
@@ -155,7 +164,7 @@ def compare_one(
                 )
             )
     else:
-        first = None if source is None else load_model(source)
+        first = load_model(source) if isinstance(source, Path) else source
         job = Fit.start(capture, options, start_from=first)
     spent = _spent(folder)
     if job.step_number < options.steps:
@@ -166,7 +175,7 @@ def compare_one(
             return None
     model = load_model(folder)
     evaluation = evaluate(model, capture.test)
-    if source is not None:
+    if isinstance(source, Path):
         spent += _spent(source)
     score = Score(
         name,

@@ -87,7 +87,7 @@ class Fit:
         """Begin from nearly empty space, or with what `start_from` shows.
 
         Gaussians may begin on the surfaces of another model; the leaves of an octree have to be cut
-        from one.
+        from one, and a textured mesh needs one with its mesh.
 
         Raises RangeError for an unknown or unfit representation, or options that take more memory
         than there is; SceneError naming the training cameras that do not see the scene's box (with

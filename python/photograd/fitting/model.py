@@ -42,6 +42,11 @@ class Model:
     meta: dict[str, Any]
     history: Array  # (n, 3): step, loss, PSNR of the batch
 
+    @classmethod
+    def of(cls, field: Fittable) -> Model:
+        """A field that no fit has made, to be drawn or for a fit to start from."""
+        return cls(field, None, FitOptions(field.name), {}, np.zeros((0, 3)))
+
 
 def load_model(path: str | Path) -> Model:
     """Load the model that a fit left in `path` (its folder, or the file). Raises IoError."""

@@ -49,6 +49,8 @@ class Representation(ABC):
     color_space: ClassVar[str] = "linear"
     teaching_example: ClassVar[str] = ""
     """Why no capture can be fitted with it; empty for what is a `Fittable`."""
+    no_camera_adjoint: ClassVar[str] = ""
+    """Why `render` refuses `camera_adjoint`; empty where it does not."""
     params: dict[str, Array]
 
     @classmethod

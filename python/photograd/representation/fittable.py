@@ -222,5 +222,5 @@ class Fittable(Representation):
 
 
 def fittable() -> dict[str, type[Fittable]]:
-    """The registered representations that a capture can start, by name."""
-    return {name: cls for name, cls in REGISTERED.items() if issubclass(cls, Fittable)}
+    """The registered representations that a capture can start, by name, in alphabetical order."""
+    return {name: cls for name, cls in sorted(REGISTERED.items()) if issubclass(cls, Fittable)}

@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 from photograd_course.atomic_io import atomic_write
 
+from photograd._gltf_bytes import GltfBytes
 from photograd.errors import IoError, SceneError, message
 from photograd.transport.medium import BOUNDARY, VACUUM
-from photograd.transport.mesh_files.gltf_bytes import GltfBytes
 from photograd.transport.mesh_files.gltf_cameras import camera_words
 from photograd.transport.mesh_files.gltf_lights import LIGHTS, light_words
 from photograd.transport.mesh_files.gltf_painted import SLOTS, Painted
