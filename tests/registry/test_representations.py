@@ -24,6 +24,8 @@ from photograd.representation import (
 from photograd_course.gradcheck import check_gradient, taylor_slope
 from photograd_course.mutants import check_mutants
 
+from support.bits import same_bits
+
 REPRESENTATIONS = photograd.representations()
 NAMES = sorted(REPRESENTATIONS)
 OPTIONS = RenderOptions(jitter=True)  # jitter is a function of the seed: differences do not see it
@@ -185,20 +187,11 @@ def test_float_agrees_with_double(name: str) -> None:
         assert np.linalg.norm(few[group] - gradient) <= 1e-4 * np.linalg.norm(gradient)
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_same_seed_same_bits_on_one_and_two_threads(name: str) -> None:
-    runs = []
-    try:
-        for threads in (1, 1, 2):
-            _core.set_thread_count(threads)
-            proof = Proof(name, 7, np.float32)
-            d = {k: v.astype(np.float32) for k, v in proof.cotangent().items()}
-            runs.append(proof.forward(proof.place) | proof.backward(proof.place, d))
-    finally:
-        _core.set_thread_count(0)
-    assert all(np.abs(value).max() > 0 for value in runs[0].values())
-    for other in runs[1:]:
-        assert all(np.array_equal(other[key], value) for key, value in runs[0].items())
+@same_bits("representation", each=NAMES)
+def outputs_and_gradients(name: str) -> list[Any]:
+    proof = Proof(name, 7, np.float32)
+    d = {k: v.astype(np.float32) for k, v in proof.cotangent().items()}
+    return list((proof.forward(proof.place) | proof.backward(proof.place, d)).values())
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -15,6 +15,8 @@ from photograd_course.gradcheck import check_accumulation, check_gradient, dot_p
 from photograd_course.mutants import check_mutants, check_overwriting_mutants
 from photograd_course.random import uniform
 
+from support.bits import same_bits
+
 COUNT = 24
 UNIT = np.array([2.0, 3.0, -6.0]) / 7.0
 CONSTANTS: dict[str, dict[str, Any]] = {
@@ -148,22 +150,16 @@ def test_lights_at_infinity_are_those_of_the_other_face(name: str) -> None:
     assert np.isinf(samples.distance).all()
 
 
-@pytest.mark.parametrize("name", sorted(CONSTANTS))
-def test_the_same_bits_on_any_number_of_threads(name: str) -> None:
+@same_bits("sampled light", each=sorted(CONSTANTS))
+def samples_and_gradients(name: str) -> list[Any]:
     # More rows than one block of 4096.
     many = np.ascontiguousarray(np.tile(points(), (500, 1)), "f4")
     u = uniform(7, pixel=np.arange(len(many))[:, None], dimension=np.arange(2)).astype("f4")
     light = light_of(name)
-    found = []
-    for threads in (1, 2, 5):
-        _core.set_thread_count(threads)
-        samples = light.sample(many, u)
-        d_samples = samples.radiance * (samples.pdf > 0)[:, None]
-        d = light.sample_backward(many, samples, d_samples)
-        parts = (samples.direction, samples.distance, samples.pdf, *d.values())
-        found.append(b"".join(np.asarray(part).tobytes() for part in parts))
-    _core.set_thread_count(0)
-    assert found[0] == found[1] == found[2]
+    samples = light.sample(many, u)
+    d_samples = samples.radiance * (samples.pdf > 0)[:, None]
+    d = light.sample_backward(many, samples, d_samples)
+    return [samples.direction, samples.distance, samples.pdf, *d.values()]
 
 
 @pytest.mark.parametrize(
