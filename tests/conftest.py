@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import os
+import sys
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 from types import ModuleType
 
 import pytest
-from tools.pools import COSTS, WAITING
+from tools.pools import COSTS, NO_BYTECODE, WAITING
 
 from support.missing import missing
 from support.tree import ROOT
@@ -36,6 +37,12 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         if left_out:
             config.hook.pytest_deselected(items=left_out)
             items[:] = [item for item in items if not item.get_closest_marker("exhaustive")]
+
+
+def pytest_collection_finish() -> None:
+    """From here on no bytecode: tests write a module twice in one second, and import it twice."""
+    sys.dont_write_bytecode = True
+    os.environ[NO_BYTECODE] = "1"
 
 
 @pytest.fixture(scope="session")
