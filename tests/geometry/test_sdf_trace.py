@@ -11,9 +11,9 @@ from photograd.geometry import Body, SdfHits, draw_body
 from photograd.geometry.sdf import GAVE_UP, HIT, MISSED, box, placed, plane, sphere, union
 from photograd.transport.builtin import camera_at
 from photograd_course.gradcheck import check_gradient
-from photograd_course.mutants import check_mutants
 
 from support.bits import same_bits
+from support.gradient_mutants import check_gradient_mutants
 
 from .shapes import Array, random_rays
 from .test_sdf import all_together
@@ -153,13 +153,15 @@ def test_derivatives_of_a_hit() -> None:
     steps = (1e-4, 1e-5, 1e-6)
     report = check_gradient(forward, backward, place, seed=4, coordinates=20, steps=steps)
     assert report, str(report)
-    mutants = check_mutants(
-        lambda wrong: check_gradient(
-            forward, wrong, place, seed=5, coordinates=6, directions=3, steps=steps[:2]
-        ),
+    mutants = check_gradient_mutants(
+        forward,
         backward,
         place,
         0.5 + np.arange(150) / 150,
+        seed=5,
+        coordinates=6,
+        directions=3,
+        steps=steps[:2],
     )
     assert mutants, str(mutants)
 

@@ -22,9 +22,9 @@ from photograd.representation import (
     dense_gradient,
 )
 from photograd_course.gradcheck import check_gradient, taylor_slope
-from photograd_course.mutants import check_mutants
 
 from support.bits import same_bits
+from support.gradient_mutants import check_gradient_mutants
 
 REPRESENTATIONS = photograd.representations()
 NAMES = sorted(REPRESENTATIONS)
@@ -154,19 +154,15 @@ def test_camera_gradient_only_where_asked(name: str) -> None:
 @pytest.mark.parametrize("name", NAMES)
 def test_automatic_mutants_die(name: str) -> None:
     proof = Proof(name, 5)
-    report = check_mutants(
-        lambda backward: check_gradient(
-            proof.forward,
-            backward,
-            proof.place,
-            seed=5,
-            directions=4,
-            coordinates=8,
-            steps=(1e-4, 1e-5, 1e-6),
-        ),
+    report = check_gradient_mutants(
+        proof.forward,
         proof.backward,
         proof.place,
         proof.cotangent(),
+        seed=5,
+        directions=4,
+        coordinates=8,
+        steps=(0.0001, 1e-05, 1e-06),
     )
     assert report, str(report)
     assert len(report.killed) >= 3 * len(proof.place)

@@ -12,10 +12,11 @@ from photograd.lights import RegisteredLight
 from photograd.lights.distant import cap_height, registry
 from photograd.lights.registered import CLASSES, from_values
 from photograd_course.gradcheck import check_accumulation, check_gradient, dot_product_error
-from photograd_course.mutants import check_mutants, check_overwriting_mutants
+from photograd_course.mutants import check_overwriting_mutants
 from photograd_course.random import uniform
 
 from support.bits import same_bits
+from support.gradient_mutants import check_gradient_mutants
 
 COUNT = 24
 UNIT = np.array([2.0, 3.0, -6.0]) / 7.0
@@ -117,13 +118,15 @@ def test_gradients(name: str, function: str) -> None:
     assert report, str(report)
     report = check_accumulation(proof.accumulate, proof.place, d_radiance())
     assert report, str(report)
-    report = check_mutants(
-        lambda b: check_gradient(
-            proof.forward, b, proof.place, seed=1, directions=3, coordinates=4, steps=(1e-4, 1e-5)
-        ),
+    report = check_gradient_mutants(
+        proof.forward,
         proof.backward,
         proof.place,
         d_radiance(),
+        seed=1,
+        directions=3,
+        coordinates=4,
+        steps=(0.0001, 1e-05),
     )
     assert report, str(report)
     report = check_overwriting_mutants(

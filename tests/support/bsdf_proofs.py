@@ -12,6 +12,7 @@ from photograd_course.gradcheck import check_accumulation, check_gradient, dot_p
 from photograd_course.mutants import check_overwriting_mutants, make_mutants
 from photograd_course.random import uniform
 
+from support.gradient_mutants import memoized
 from support.group_mutants import survives
 from support.statistics import chi_square_p, sidak, sphere_cell_masses, sphere_counts
 
@@ -157,14 +158,15 @@ def prove_gradients(model: BsdfModel, *, seed: int = 1) -> None:
     """T1, T3, accumulation, and the death of the automatic mutants."""
     proof = Proof(model, seed=seed)
     d_f = 0.5 + uniform(seed, step=9, pixel=np.arange(ROWS)[:, None], dimension=np.arange(3))
-    report: Any = check_gradient(proof.forward, proof.backward, proof.place, seed=seed)
+    forward = memoized(proof.forward)
+    report: Any = check_gradient(forward, proof.backward, proof.place, seed=seed)
     assert report, str(report)
     report = dot_product_error(proof.jvp, proof.backward, proof.place, seed=seed)
     assert report, str(report)
     report = check_accumulation(proof.accumulate, proof.place, d_f)
     assert report, str(report)
     for mutant in make_mutants(proof.backward, proof.place, d_f):
-        assert not survives(proof.forward, proof.place, mutant, seed=seed), mutant.name
+        assert not survives(forward, proof.place, mutant, seed=seed), mutant.name
     report = check_overwriting_mutants(
         lambda a: check_accumulation(a, proof.place, d_f), proof.accumulate, proof.place, d_f
     )

@@ -11,9 +11,9 @@ from photograd.errors import DtypeError, RangeError, ShapeError
 from photograd.fitting.loss import ssim, ssim_backward
 from photograd_course import metrics
 from photograd_course.gradcheck import check_gradient, taylor_slope
-from photograd_course.mutants import check_mutants
 
 from support.bits import same_bits
+from support.gradient_mutants import check_gradient_mutants
 
 
 def pictures(seed: int, channels: int = 3, dtype: Any = np.float64) -> tuple[Any, Any]:
@@ -61,11 +61,8 @@ def test_gradient_agrees_with_central_differences() -> None:
 
 def test_wrong_gradients_die() -> None:
     proof = Proof(4)
-    report = check_mutants(
-        lambda backward: check_gradient(proof.forward, backward, proof.place, seed=5, directions=4),
-        proof.backward,
-        proof.place,
-        {"value": np.array(0.7)},
+    report = check_gradient_mutants(
+        proof.forward, proof.backward, proof.place, {"value": np.array(0.7)}, seed=5, directions=4
     )
     assert report, str(report)
     assert len(report.killed) >= 3

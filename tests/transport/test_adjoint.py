@@ -12,9 +12,9 @@ from photograd.transport import Accumulation, Material, PathOptions, PathTracer,
 from photograd.transport.builtin import cornell_box, cornell_spheres, furnace_box
 from photograd.transport.material import MODELS
 from photograd_course.gradcheck import check_gradient
-from photograd_course.mutants import check_mutants
 
 from support.bits import same_bits
+from support.gradient_mutants import check_gradient_mutants
 from tests.transport.scenes import BLACK, GREY, any_material, picture_and_gradients, stage
 
 SPP = 4
@@ -60,11 +60,8 @@ def test_wrong_gradients_die() -> None:
     scene = stage(any_material("ggx_metal"), size=3, sky=0.4)
     function, backward, start = proof(scene, INDEPENDENT)
     d = 0.2 + np.random.default_rng(5).random((3, 3, 3))
-    deaths = check_mutants(
-        lambda b: check_gradient(function, b, start, seed=4, coordinates=2, directions=1),
-        backward,
-        start,
-        d,
+    deaths = check_gradient_mutants(
+        function, backward, start, d, seed=4, coordinates=2, directions=1
     )
     assert deaths, str(deaths)
 

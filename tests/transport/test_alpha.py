@@ -20,9 +20,9 @@ from photograd.transport import (
 )
 from photograd.transport.shapes import rectangle
 from photograd_course.gradcheck import check_gradient
-from photograd_course.mutants import check_mutants
 
 from support.bits import same_bits
+from support.gradient_mutants import check_gradient_mutants
 from tests.transport.scenes import FLOOR, GREY, LAMP, picture_and_gradients, view
 from tests.transport.test_adjoint import proof
 from tests.transport.test_textures import wall
@@ -149,11 +149,8 @@ def test_wrong_gradients_die() -> None:
     scene = shade(grey(0.8, textures={"alpha": TextureUse("t")}), size=3, textures={"t": checker()})
     function, backward, start = proof(scene, OPTIONS)
     d = 0.2 + np.random.default_rng(5).random((3, 3, 3))
-    deaths = check_mutants(
-        lambda b: check_gradient(function, b, start, seed=4, coordinates=2, directions=1),
-        backward,
-        start,
-        d,
+    deaths = check_gradient_mutants(
+        function, backward, start, d, seed=4, coordinates=2, directions=1
     )
     assert deaths, str(deaths)
 

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from photograd.transport import PathOptions, PathTracer
 from photograd_course.gradcheck import check_gradient
-from photograd_course.mutants import check_mutants
 
 from support.bits import same_bits
+from support.gradient_mutants import check_gradient_mutants
 from tests.transport.light_scenes import LIGHTS, TILT, environment_map, lit_by
 from tests.transport.scenes import GREY, picture_and_gradients
 from tests.transport.test_adjoint import proof
@@ -48,11 +48,8 @@ def test_wrong_gradients_die() -> None:
     lights = (environment_map(2, share=0.5), LIGHTS["point"][0], LIGHTS["rectangle"][0])
     function, backward, start = proof(lit_by(*lights, size=4, gloss=GREY), OPTIONS)
     d = 0.2 + np.random.default_rng(5).random((4, 4, 3))
-    deaths = check_mutants(
-        lambda b: check_gradient(function, b, start, seed=4, coordinates=2, directions=1),
-        backward,
-        start,
-        d,
+    deaths = check_gradient_mutants(
+        function, backward, start, d, seed=4, coordinates=2, directions=1
     )
     assert deaths, str(deaths)
 

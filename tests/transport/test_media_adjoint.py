@@ -10,9 +10,9 @@ import pytest
 from photograd.lights import DirectionalLight, PointLight
 from photograd.transport import Accumulation, Material, Medium, PathOptions, PathTracer, Scene
 from photograd_course.gradcheck import check_gradient
-from photograd_course.mutants import check_mutants
 
 from support.bits import same_bits
+from support.gradient_mutants import check_gradient_mutants
 from tests.transport.media_scenes import (
     FOG,
     FROSTED,
@@ -73,11 +73,8 @@ def test_wrong_gradients_die() -> None:
     scene = ball_of(FOG, size=3, floor=True)
     function, backward, start = proof(scene, OPTIONS)
     d = 0.2 + np.random.default_rng(5).random((3, 3, 3))
-    deaths = check_mutants(
-        lambda b: check_gradient(function, b, start, seed=4, coordinates=2, directions=1),
-        backward,
-        start,
-        d,
+    deaths = check_gradient_mutants(
+        function, backward, start, d, seed=4, coordinates=2, directions=1
     )
     assert deaths, str(deaths)
 

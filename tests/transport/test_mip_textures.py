@@ -28,10 +28,10 @@ from photograd.transport.builtin import camera_at
 from photograd.transport.shapes import rectangle
 from photograd.transport.texture import FILTERS
 from photograd_course.gradcheck import check_gradient
-from photograd_course.mutants import check_mutants
 from PIL import Image
 
 from support.bits import same_bits
+from support.gradient_mutants import check_gradient_mutants
 from tests.transport import test_textures as textures
 from tests.transport.scenes import picture_and_gradients
 from tests.transport.test_adjoint import proof
@@ -226,11 +226,8 @@ def test_wrong_gradients_die() -> None:
     wall = textures.wall(PAINT, {"t": textures.noise(2, 2)}, 3)
     function, backward, start = proof(filtered(wall, 8))
     d = 0.2 + np.random.default_rng(5).random((3, 3, 3))
-    deaths = check_mutants(
-        lambda b: check_gradient(function, b, start, seed=4, coordinates=2, directions=1),
-        backward,
-        start,
-        d,
+    deaths = check_gradient_mutants(
+        function, backward, start, d, seed=4, coordinates=2, directions=1
     )
     assert deaths, str(deaths)
 

@@ -23,10 +23,10 @@ from photograd.transport import (
 )
 from photograd.transport.shapes import rectangle
 from photograd_course.gradcheck import check_gradient
-from photograd_course.mutants import check_mutants
 from PIL import Image
 
 from support.bits import same_bits
+from support.gradient_mutants import check_gradient_mutants
 from tests.transport.scenes import BLACK, FLOOR, LAMP, picture_and_gradients, view
 from tests.transport.test_adjoint import OPTIONS, proof
 
@@ -162,11 +162,8 @@ def test_wrong_gradients_die() -> None:
     paint = Material("lambert", {"albedo": [0.9, 0.8, 0.7]}, {"albedo": TextureUse("t")})
     function, backward, start = proof(wall(paint, {"t": noise(3, 2)}, 3))
     d = 0.2 + np.random.default_rng(5).random((3, 3, 3))
-    deaths = check_mutants(
-        lambda b: check_gradient(function, b, start, seed=4, coordinates=2, directions=1),
-        backward,
-        start,
-        d,
+    deaths = check_gradient_mutants(
+        function, backward, start, d, seed=4, coordinates=2, directions=1
     )
     assert deaths, str(deaths)
 
