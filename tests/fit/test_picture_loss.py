@@ -92,7 +92,7 @@ def test_wrong_gradients_die() -> None:
         {"value": np.array(1.0)},
         seed=5,
         directions=4,
-        steps=(1e-05, 1e-06),
+        steps=(1e-5, 1e-6),
     )
     assert report, str(report)
 

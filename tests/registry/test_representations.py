@@ -162,7 +162,7 @@ def test_automatic_mutants_die(name: str) -> None:
         seed=5,
         directions=4,
         coordinates=8,
-        steps=(0.0001, 1e-05, 1e-06),
+        steps=(1e-4, 1e-5, 1e-6),
     )
     assert report, str(report)
     assert len(report.killed) >= 3 * len(proof.place)

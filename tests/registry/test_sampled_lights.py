@@ -126,7 +126,7 @@ def test_gradients(name: str, function: str) -> None:
         seed=1,
         directions=3,
         coordinates=4,
-        steps=(0.0001, 1e-05),
+        steps=(1e-4, 1e-5),
     )
     assert report, str(report)
     report = check_overwriting_mutants(

@@ -13,9 +13,8 @@ from photograd_course.gradcheck import (
     dot_product_error,
     taylor_slope,
 )
-from photograd_course.mutants import check_overwriting_mutants
+from photograd_course.mutants import check_mutants, check_overwriting_mutants
 
-from support.gradient_mutants import check_gradient_mutants
 from tests.render import rays as dense_rays
 from tests.render.sparse import GROUPS, Scene, march, march_backward, oracle, scene, with_rays
 
@@ -88,15 +87,13 @@ def test_dot_product_with_exact_derivatives(case: str) -> None:
 def test_mutants_die() -> None:
     s = scene(5)
     function, backward = problem(s)
-    report = check_gradient_mutants(
-        function,
+    report = check_mutants(
+        lambda b: check_gradient(
+            function, b, s.place, seed=5, directions=4, coordinates=8, steps=(1e-4, 1e-5, 1e-6)
+        ),
         backward,
         s.place,
         cotangents(s, 5),
-        seed=5,
-        directions=4,
-        coordinates=8,
-        steps=(0.0001, 1e-05, 1e-06),
     )
     assert report, str(report)
     assert len(report.killed) >= 9

@@ -84,7 +84,7 @@ def test_automatic_mutants_die() -> None:
         seed=6,
         coordinates=6,
         directions=4,
-        steps=(0.0001, 1e-05, 1e-06),
+        steps=(1e-4, 1e-5, 1e-6),
     )
     assert report, str(report)
 
