@@ -242,8 +242,7 @@ def prove_energy(model: BsdfModel, *, seed: int = 5) -> None:
             wi = model.sample(parameters, wo, u2)
             pdf = model.pdf(parameters, wo, wi)[:, None]
             power = power_factor(model, parameters, wo, wi)
-            weight = np.where(pdf > 0, model.f(parameters, wo, wi) * power, 0.0)
-            weight = weight / np.where(pdf > 0, pdf, 1.0)
+            weight = model.f(parameters, wo, wi) * power * (pdf > 0) / np.where(pdf > 0, pdf, 1.0)
             error = 3.0 * weight.std(axis=0) / np.sqrt(samples)
             slack = 1.001 if kind == "conserving" else 1.0 + 1e-9  # rounding
             for fine in (False, True):  # wide lobes need few directions
