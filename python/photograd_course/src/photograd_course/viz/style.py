@@ -212,14 +212,19 @@ def write_caption(figure: Figure, text: str | None, *, left: float, right: float
     )
 
 
+def png_bytes(figure: Figure) -> bytes:
+    """``figure`` as the bytes of a PNG file, the same every time."""
+    buffer = io.BytesIO()
+    with house_style():
+        # Without the Software entry the bytes carry neither a version nor a date.
+        figure.savefig(buffer, format="png", dpi=DPI, metadata={"Software": None})
+    return buffer.getvalue()
+
+
 def save_figure(figure: Figure, path: Path) -> Path:
     """Write ``figure`` as PNG, whole or not at all, with the same bytes every time.
 
     Raises:
         IoError: the folder does not exist or the disk is full; an older file stays as it was.
     """
-    buffer = io.BytesIO()
-    with house_style():
-        # Without the Software entry the bytes carry neither a version nor a date.
-        figure.savefig(buffer, format="png", dpi=DPI, metadata={"Software": None})
-    return atomic_write(Path(path), buffer.getvalue())
+    return atomic_write(Path(path), png_bytes(figure))

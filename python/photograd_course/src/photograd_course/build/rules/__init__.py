@@ -20,7 +20,6 @@ from . import (
     faces,
     figures,
     hints,
-    kills,
     leaked_names,
     leaked_shingles,
     margins,
@@ -50,7 +49,6 @@ RUNNING: dict[str, Look] = {
     "solution": solution.look,
     "starter": starter.look,
     "mutants": mutants.look,
-    "kills": kills.look,
     "alternatives": alternatives.look,
     "margins": margins.look,
     "automatic": automatic.look,
@@ -95,7 +93,7 @@ def seed_findings(dossier: Dossier) -> list[Finding]:
         return []
     found = _apply(dossier, {"solution": solution.look})
     if not found:
-        names = ("mutants", "kills", "alternatives", "margins")
+        names = ("mutants", "alternatives", "margins")
         found = _apply(dossier, {name: RUNNING[name] for name in names})
     return found
 
