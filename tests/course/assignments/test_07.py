@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from photograd_course.assignment.bundle import read_folder
 from photograd_course.assignment.checks_file import load_beside
+from photograd_course.build.regions import strip_solution
 
 from course.assignments.support import (
     ASSIGNMENTS,
@@ -20,7 +21,6 @@ from course.assignments.support import (
     judge,
     load_module,
     source,
-    starter,
 )
 
 FOLDER = ASSIGNMENTS / "07_path_tracing"
@@ -194,7 +194,9 @@ def test_generated_questions_have_the_answers_that_their_reasons_give() -> None:
 
 def test_the_kit_runs_without_the_solution() -> None:
     """What is given works before anything is written: a student can look at a scene first."""
-    module = load_beside("path_tracing", starter(FOLDER), read_folder(FOLDER).brought)
+    module = load_beside(
+        "path_tracing", strip_solution(source(FOLDER)), read_folder(FOLDER).brought
+    )
     scene = module.demo_room()
     hit = module.see(scene, *module.camera_rays(8, 6, [0, 1, 3.4], [0, 1, 0], 38))
     assert 5 in hit["thing"]

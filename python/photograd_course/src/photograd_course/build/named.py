@@ -3,7 +3,8 @@
 `mutants.toml` has a table for each task and in it a row for each mutant: the checks that fail, the
 sentence that a student with this mistake is told, then old and new text, in pairs. Checks are named
 without their task, those of other tasks in full. Which mutants a check kills follows from the
-rows, and the rules prove them. `alternatives/<name>.py` is a whole module that earns everything.
+rows, and the rules prove them. `alternatives/<name>.py` holds the functions of a
+solution that earns everything; the starter has the rest.
 """
 
 from __future__ import annotations
@@ -12,8 +13,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from ..assignment.manifest import read_manifest
 from ..assignment.toml import read_toml
 from ..errors import SceneError, message
+from .filling import fill
+from .regions import strip_solution
 
 ROW = '["checks", "what is wrong", "old", "new", ...]'
 
@@ -70,9 +74,12 @@ def read_mutants(folder: Path) -> tuple[NamedMutant, ...]:
 
 
 def read_alternatives(folder: Path) -> dict[str, str]:
-    """Name to text of the alternatives of an assignment's folder."""
+    """Name to text of the alternatives of an assignment's folder, filled into the starter."""
+    name = read_manifest(folder).module
+    source = (folder / f"{name}.py").read_text(encoding="utf-8")
+    starter = strip_solution(source, f"{name}.py")
     paths = sorted((folder / "alternatives").glob("*.py"))
-    return {path.stem: path.read_text(encoding="utf-8") for path in paths}
+    return {path.stem: fill(starter, path.read_text(encoding="utf-8"), name) for path in paths}
 
 
 def _mutant(task: str, name: str, row: object) -> NamedMutant:

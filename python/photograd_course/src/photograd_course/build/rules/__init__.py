@@ -22,6 +22,7 @@ from . import (
     hints,
     leaked_names,
     leaked_shingles,
+    likeness,
     margins,
     markers,
     mutants,
@@ -44,6 +45,7 @@ READING: dict[str, Look] = {
     "figures": figures.look,
     "leaked names": leaked_names.look,
     "leaked shingles": leaked_shingles.look,
+    "likeness": likeness.look,
 }
 RUNNING: dict[str, Look] = {
     "solution": solution.look,
