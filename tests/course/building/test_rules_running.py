@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from photograd_course.build.course_files import dossier_of
 from photograd_course.build.evidence import evidence
-from photograd_course.build.matrix import kills
+from photograd_course.build.matrix import cells, kills
 from photograd_course.build.rules import findings, seed_findings
 
 from .support import SECRET, Broken
@@ -80,7 +80,9 @@ def test_which_checks_kill_a_mutant_comes_from_the_run(broken: Broken) -> None:
         "17.1.random": ("not_doubled", "squared"),
     }
     broken.change("mutants.toml", "return x * x", "return np.abs(2.0 * x)")
-    assert kills(broken.dossier)["17.1.known"] == ("not_doubled",)
+    assert (known := kills(broken.dossier))["17.1.known"] == ("not_doubled",)
+    # The picture shows in another color what a single check kills.
+    assert cells(["not_doubled", "squared"], known).tolist() == [[1, 1], [0, 2]]
 
 
 def test_alternatives(broken: Broken) -> None:

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from ..viz.style import BLUE, FRAME, ORANGE, house_style, new_figure, place_axes, png_bytes
 from .dossier import Dossier
@@ -53,14 +54,19 @@ def kill_table(names: Sequence[str], by_check: Mapping[str, Sequence[str]]) -> s
     return "\n".join(lines) + "\n"
 
 
+def cells(names: Sequence[str], by_check: Mapping[str, Sequence[str]]) -> NDArray[np.int64]:
+    """(mutants, checks): 1 where the check kills the mutant, 2 where it is the only one, else 0."""
+    dead = np.array([[int(name in found) for found in by_check.values()] for name in names])
+    return np.where(dead.sum(axis=1, keepdims=True) == 1, 2 * dead, dead)
+
+
 def draw_kills(title: str, names: Sequence[str], by_check: Mapping[str, Sequence[str]]) -> Figure:
     """The matrix mutant x check as a picture.
 
     A cell is filled where the check kills the mutant, in orange where no other check does.
     """
-    dead = np.array([[name in found for found in by_check.values()] for name in names])
-    shown = dead + (dead & (dead.sum(axis=1, keepdims=True) == 1))
-    rows, columns = dead.shape
+    shown = cells(names, by_check)
+    rows, columns = shown.shape
     left, top = 0.2 + 0.07 * max(map(len, names)), 0.45 + 0.07 * max(map(len, by_check))
     figure = new_figure(left + CELL * columns + 0.15, top + CELL * rows + 0.15)
     axes = place_axes(figure, left, top, CELL * columns, CELL * rows)
