@@ -32,7 +32,7 @@ from photograd_course.build.regions import strip_solution
 from photograd_course.grading.local import LocalStudent
 from photograd_course.grading.outcome import Outcome, Status
 from photograd_course.grading.runner import run_checks
-from photograd_course.viz import save_figure
+from photograd_course.viz.style import HANDOUT_DPI, save_figure
 from PIL import Image
 
 from support.tree import ROOT
@@ -256,10 +256,8 @@ class AssignmentTests:
 
 
 def write_picture(folder: Path, figure: Any, path: Path) -> Path:
-    """Write a figure as the assignment's script does: its own `save`, or the house's."""
-    save = getattr(load_figures(folder), "save", save_figure)
-    save(figure, path)
-    return path
+    """Write a figure as the handout has it."""
+    return save_figure(figure, path, getattr(load_figures(folder), "DPI", HANDOUT_DPI))
 
 
 def _pixels(data: bytes) -> np.ndarray:
