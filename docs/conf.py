@@ -29,6 +29,7 @@ html_theme = "furo"
 html_title = "photograd"
 myst_enable_extensions = ["dollarmath"]
 myst_heading_anchors = 3
+smartquotes_action = "qe"  # -- stands before options
 
 default_role = "py:obj"
 autodoc_member_order = "bysource"
