@@ -39,7 +39,7 @@ TexelsOption = Annotated[
 ]
 SppOption = Annotated[int, typer.Option("--spp", min=1, help="Rays a texel.")]
 RadiusOption = Annotated[
-    float, typer.Option("--radius", help="Metres within which a surface occludes.")
+    float, typer.Option("--radius", help="Meters within which a surface occludes.")
 ]
 
 

@@ -41,6 +41,7 @@ from photograd.commands.trace_estimates import (
     PhotonsOption,
     write_derivative,
 )
+from photograd.commands.trace_settings import SetOption, traced
 from photograd.errors import SceneError, message
 from photograd.images.kind import LARGEST_SIDE, LINEAR_SUFFIXES
 from photograd.images.write import write_png, write_radiance
@@ -51,7 +52,6 @@ from photograd.transport.path_options import HEURISTICS, STRATEGIES, PathOptions
 from photograd.transport.scene import Scene
 from photograd.transport.scene_digest import scene_digest
 from photograd.transport.scene_file import read_scene
-from photograd.transport.tracer import PathTracer
 
 CameraOption = Annotated[
     str | None,
@@ -114,7 +114,7 @@ DepthOption = Annotated[
 ]
 RadiusOption = Annotated[
     float,
-    typer.Option("--radius", help="Metres within which a surface occludes, or photons count."),
+    typer.Option("--radius", help="Meters within which a surface occludes, or photons count."),
 ]
 ResumeOption = Annotated[
     bool, typer.Option("--resume", help="Add samples to those of an earlier run.")
@@ -133,6 +133,7 @@ def trace(
     spp: SppOption = 64,
     size: SizeOption = 256,
     camera: CameraOption = None,
+    settings: SetOption = None,
     integrator: IntegratorOption = "path",
     strategy: StrategyOption = "mis",
     heuristic: HeuristicOption = "power",
@@ -149,7 +150,7 @@ def trace(
     """Path trace a scene.
 
     A mesh file is seen by its own camera and lit by its own lights; without them, or with --camera
-    studio, from in front and above, under a pale sky and one lamp. What it has and cannot be drawn
+    studio, from in front and above, under a pale sky and one light. What it has and cannot be drawn
     is named.
 
     Writes the linear picture and a PNG preview beside it every ten seconds, and OUT.sums.npz,
@@ -167,7 +168,7 @@ def trace(
     estimate = Estimate(integrator, options, seed, radius, photons, derivative)
     described, fingerprint = load_scene(scene, size, camera)
     key = {
-        "scene": fingerprint,
+        "scene": " ".join([fingerprint, *(settings or [])]),
         "seed": seed,
         "integrator": integrator,
         "radius": repr(radius),
@@ -180,7 +181,7 @@ def trace(
         note(f"resumed at {sums.count} of {spp} samples")
     else:
         sums = Accumulation.empty(described.camera.height, described.camera.width)
-    add = estimate.adder(PathTracer(described), sums)
+    add = estimate.adder(traced(described, settings or []), sums)
 
     def save() -> None:
         sums.save(sums_path, key)
