@@ -28,6 +28,9 @@ from photograd.commands.drawable import check_traced
 from photograd.commands.shared import (
     PICTURES,
     SIGNED_PICTURES,
+    DepthOption,
+    RadiusOption,
+    SppOption,
     StopRequest,
     check_output_name,
     out_option,
@@ -90,7 +93,6 @@ SceneArgument = Annotated[
     ),
 ]
 OutOption = Annotated[Path, out_option("The picture: .exr, .hdr or .pfm, or .png alone.")]
-SppOption = Annotated[int, typer.Option("--spp", min=1, help="Samples a pixel.")]
 SizeOption = Annotated[
     int,
     typer.Option(
@@ -108,13 +110,6 @@ StrategyOption = Annotated[
 ]
 HeuristicOption = Annotated[
     str, typer.Option("--heuristic", help=f"How mis weighs: {', '.join(HEURISTICS)}.")
-]
-DepthOption = Annotated[
-    int, typer.Option("--max-depth", min=1, help="Segments of the longest path.")
-]
-RadiusOption = Annotated[
-    float,
-    typer.Option("--radius", help="Meters within which a surface occludes, or photons count."),
 ]
 ResumeOption = Annotated[
     bool, typer.Option("--resume", help="Add samples to those of an earlier run.")

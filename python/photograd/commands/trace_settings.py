@@ -51,8 +51,9 @@ def traced(scene: Scene, settings: Sequence[str]) -> PathTracer:
         scene_with(scene, {name: value for name, value in values.items() if name not in inside})
     )
     for name, value in inside.items():
-        if (value < 0).any() and not name.endswith(".g"):
-            raise RangeError(message("trace", f"--set {name}", "numbers of at least 0", value))
+        most = 1.0 if name.endswith(".albedo") else np.inf
+        if not name.endswith(".g") and not ((value >= 0) & (value <= most)).all():
+            raise RangeError(message("trace", f"--set {name}", f"numbers of 0 to {most}", value))
         tracer.params[name][...] = value
     return tracer
 
