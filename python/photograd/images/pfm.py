@@ -59,7 +59,7 @@ def encode_pfm(image: npt.NDArray[np.float32]) -> bytes:
     """
     if image.shape[2] != 3:
         raise ShapeError(message("write_pfm", "image", "shape (H, W, 3)", image.shape))
-    height, width, _ = image.shape
+    height, width = image.shape[:2]
     return b"PF\n%d %d\n-1.0\n" % (width, height) + image[::-1].astype("<f4").tobytes()
 
 

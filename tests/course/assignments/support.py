@@ -27,8 +27,10 @@ import numpy as np
 import pytest
 from photograd_course.assignment.bundle import Bundle, read_folder
 from photograd_course.assignment.checks_file import load_beside, load_module
+from photograd_course.build.course_files import dossier_of
 from photograd_course.build.named import NamedMutant, read_alternatives, read_mutants
 from photograd_course.build.regions import strip_solution
+from photograd_course.build.rules import reading_findings
 from photograd_course.grading.local import LocalStudent
 from photograd_course.grading.outcome import Outcome, Status
 from photograd_course.grading.runner import run_checks
@@ -155,6 +157,9 @@ class AssignmentTests:
     @property
     def bundle(self) -> Bundle:
         return bundle_of(self.folder)
+
+    def test_the_rules_that_read_find_nothing(self) -> None:
+        assert [str(each) for each in reading_findings(dossier_of(self.folder))] == []
 
     def test_points_and_tasks_add_up(self) -> None:
         bundle = self.bundle
