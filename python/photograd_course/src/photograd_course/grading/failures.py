@@ -51,3 +51,7 @@ class StudentFailure(Exception):
 
 class GraderFault(Error):
     """Our own mistake or a broken machine. Never costs a student points."""
+
+
+class MachineTooBusy(GraderFault):
+    """A submission's worker got so little processor time that nothing can be said about it."""

@@ -36,7 +36,7 @@ class LocalStudent:
     ) -> None:
         self._finder = SourceFinder(sources)
         self._names = list(sources)
-        self._started = time.process_time()
+        self._used = 0.0
         for name in sources:
             sys.modules.pop(name, None)
         sys.meta_path.insert(0, self._finder)
@@ -59,8 +59,10 @@ class LocalStudent:
         target = getattr(self.modules[module], attribute, None)
         if not callable(target):
             raise StudentFailure("missing", f"there is no function {attribute}")
+        given = [_crossing(arg) for arg in args]
+        began = time.process_time()
         try:
-            value = target(*[_crossing(arg) for arg in args])
+            value = target(*given)
         except NotImplementedError as error:
             raise not_implemented(function, str(error), line_of(error, self._names)) from error
         except Exception as error:
@@ -69,14 +71,16 @@ class LocalStudent:
             raise StudentFailure(
                 "raised", f"{attribute} raised an exception", text, line
             ) from error
+        finally:
+            self._used += time.process_time() - began
         try:
             return round_trip(value)
         except FrameError as error:
             raise StudentFailure("output", f"{attribute} returned {error}") from error
 
     def cpu_seconds(self) -> float | None:
-        """Processor time of this process since the start."""
-        return time.process_time() - self._started
+        """Processor time of this process in all calls so far."""
+        return self._used
 
     def close(self) -> None:
         """Nothing is left behind."""

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 from ..worker.codec import Frame
-from ..worker.process import WorkerDied, WorkerLied, WorkerTimeout, contains_function
-from .failures import StudentFailure
+from ..worker.process import WorkerDied, WorkerLied, WorkerStarved, WorkerTimeout, contains_function
+from .failures import MachineTooBusy, StudentFailure
 from .local import not_implemented
 
 START_SECONDS = 30.0
@@ -35,6 +35,10 @@ class Connection(Protocol):
 
     def request(self, kind: str, value: Any, *, seconds: float, callbacks: int = ...) -> Frame:
         """Send a frame and wait for its answer."""
+
+    @property
+    def spent(self) -> float:
+        """Seconds that requests have taken, without the waiting that is not the worker's own."""
 
     def cpu_seconds(self) -> float | None:
         """Processor time of the worker and its children, measured from outside."""
@@ -110,6 +114,8 @@ class RemoteStudent:
         except WorkerTimeout as late:
             said = f"{str(late) or f'no answer within {seconds:g} seconds'} {where}"
             raise StudentFailure("timeout", said) from None
+        except WorkerStarved as error:
+            raise MachineTooBusy(str(error)) from None
         except WorkerDied:
             said = f"the process ended {where} (a crash, an exit, or out of memory)"
             raise StudentFailure("died", said) from None

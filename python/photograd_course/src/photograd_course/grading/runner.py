@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from .check import Check
-from .failures import CheckFailed, GraderFault, StudentFailure
+from .failures import CheckFailed, GraderFault, MachineTooBusy, StudentFailure
 from .hints import find_hint
 from .outcome import Outcome, Status
 from .trial import Student, Trial
@@ -188,7 +188,8 @@ def _run(check: Check, setting: Setting, open_one: OpenControl) -> _Verdict:
         if failure.private and check.visibility == "public":
             verdict.details["exception"] = failure.private
     except Exception as error:
-        if trial is not None and not isinstance(error, (OSError, MemoryError)):
+        machine = (OSError, MemoryError, MachineTooBusy)
+        if trial is not None and not isinstance(error, machine):
             raise _BodyBroke(error) from error
         verdict = _ours(error)  # a worker that does not start, or a machine in trouble
     finally:
