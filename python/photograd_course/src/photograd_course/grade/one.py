@@ -19,7 +19,7 @@ from ..grading.check import Check
 from ..grading.failures import GraderFault, StudentFailure
 from ..grading.outcome import Outcome, Status
 from ..grading.remote import RemoteStudent
-from ..grading.runner import run_checks
+from ..grading.runner import adjoint_functions, run_checks
 from ..grading.trial import Student
 from .answers import Answered, all_answered, plain_answers, score_answers
 from .hand_in import HandIn
@@ -157,7 +157,8 @@ def _judge(
 
 def _run(case: Case, workers: Workers, slot: int, on_outcome: OnOutcome | None) -> list[Outcome]:
     bundle = case.bundle
-    hand = bundle.hand(case.hand_in.files)
+    adjoints = adjoint_functions(bundle.checks)
+    hand = replace(bundle.hand(case.hand_in.files), adjoints=adjoints)
     budget = Budget(time_allowed(bundle))
 
     def open_student(substitutes: Mapping[str, Callable[..., Any]]) -> Student:

@@ -10,6 +10,7 @@ from .tolerance import Tolerance
 from .trial import Trial
 
 VISIBILITIES = ("public", "hidden", "secret")
+NAMES_OF_ADJOINTS = ("_adjoint", "_backward")
 Body = Callable[[Trial], None]
 
 
@@ -31,6 +32,9 @@ class Check:
         hint: said on failure when no known mistake fits better.
         seconds: wall-clock limit of one call.
         sole: why the check stays although no mutant dies by it alone; empty where one does.
+        adjoints: those of `calls` in which a derivative has to be written, not computed by complex
+            steps, dual numbers or differencing; by default those whose names say so, and where
+            the body asks for the cost all.
         body: the function; its docstring's first line is the title.
     """
 
@@ -46,11 +50,17 @@ class Check:
     hint: str = ""
     seconds: float = 10.0
     sole: str = ""
+    adjoints: tuple[str, ...] = ()
 
     @property
     def title(self) -> str:
         """One sentence: what must hold."""
         return (self.body.__doc__ or self.id).strip().splitlines()[0]
+
+    @property
+    def is_price(self) -> bool:
+        """Whether it asks what an adjoint costs: then the points of its task depend on it."""
+        return _asks_price(self.body)
 
 
 def check(
@@ -66,6 +76,7 @@ def check(
     hint: str = "",
     seconds: float = 10.0,
     sole: str = "",
+    adjoints: Iterable[str] | None = None,
 ) -> Callable[[Body], Check]:
     """Make a check of the function below.
 
@@ -77,6 +88,8 @@ def check(
     if not points > 0:
         raise RangeError(message("check", f"points of {id}", "more than 0", points))
 
+    called = tuple(calls)
+
     def make(body: Body) -> Check:
         if not (body.__doc__ or "").strip():
             raise RangeError(message("check", id, "a docstring: the title students read", "none"))
@@ -85,7 +98,7 @@ def check(
             task=task,
             points=points,
             body=body,
-            calls=tuple(calls),
+            calls=called,
             visibility=visibility,
             needs=tuple(needs),
             tolerance=tolerance,
@@ -93,6 +106,18 @@ def check(
             hint=hint,
             seconds=seconds,
             sole=sole,
+            adjoints=_adjoints(called, body) if adjoints is None else tuple(adjoints),
         )
 
     return make
+
+
+def _adjoints(calls: tuple[str, ...], body: Body) -> tuple[str, ...]:
+    if _asks_price(body):
+        return calls
+    return tuple(name for name in calls if name.endswith(NAMES_OF_ADJOINTS))
+
+
+def _asks_price(body: Body) -> bool:
+    code = getattr(body, "__code__", None)
+    return code is not None and "require_cheap" in code.co_names

@@ -16,10 +16,13 @@ from typing import Any
 from ..worker.codec import FrameError, round_trip
 from ..worker.modules import SourceFinder, line_of
 from .failures import StudentFailure
+from .trial import Breach
 
 
 class LocalStudent:
     """Modules imported from sources into this process.
+
+    The rule that adjoints are written is for students: mutants may break it.
 
     Args:
         sources: module name to text; later ones may import earlier ones.
@@ -34,6 +37,7 @@ class LocalStudent:
         sources: Mapping[str, str],
         substitutes: Mapping[str, Callable[..., Any]] | None = None,
     ) -> None:
+        self.breaches: dict[str, Breach] = {}
         self._finder = SourceFinder(sources)
         self._names = list(sources)
         self._used = 0.0

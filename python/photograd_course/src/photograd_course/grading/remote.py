@@ -10,6 +10,7 @@ from ..worker.codec import Frame
 from ..worker.process import WorkerDied, WorkerLied, WorkerStarved, WorkerTimeout, contains_function
 from .failures import MachineTooBusy, StudentFailure
 from .local import not_implemented
+from .trial import Breach
 
 START_SECONDS = 30.0
 
@@ -22,12 +23,15 @@ class Hand:
         sources: module name to text, in the order of import.
         graded: names of those that the student wrote; their imports are screened.
         allowed: top-level modules these may import.
+        substitutes: "module.function" to the function that replaces it.
+        adjoints: functions that the rule is about that adjoints are written.
     """
 
     sources: Mapping[str, str]
     graded: Sequence[str]
     allowed: Sequence[str]
     substitutes: Mapping[str, Callable[..., Any]] = field(default_factory=dict)
+    adjoints: Sequence[str] = ()
 
 
 class Connection(Protocol):
@@ -52,11 +56,24 @@ class RemoteStudent:
 
     def __init__(self, connection: Connection, hand: Hand) -> None:
         self._connection = connection
+        self.breaches: dict[str, Breach] = {}
         try:
+            if hand.adjoints:
+                self._screen(hand)
             self._load(hand)
         except BaseException:
             connection.kill()
             raise
+
+    def _screen(self, hand: Hand) -> None:
+        """Nothing of the submission runs yet, so what the worker says is its own word."""
+        sources = {name: hand.sources[name] for name in hand.graded}
+        value = {"sources": sources, "adjoints": list(hand.adjoints)}
+        found = self._ask("screen", value, START_SECONDS, "while being read").value
+        for function, breach in found.items():
+            file, line, what = breach["file"], breach["line"], breach["what"]
+            said = f"{function} {what} ({file}, line {line}): write its derivative"
+            self.breaches[function] = said, (file, line)
 
     def _load(self, hand: Hand) -> None:
         frame = self._ask(

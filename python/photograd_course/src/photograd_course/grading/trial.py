@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Protocol
 
 import numpy as np
@@ -17,8 +17,15 @@ from .tolerance import Tolerance
 FINGERPRINT_DIGITS = 8
 
 
+Breach = tuple[str, tuple[str, int]]  # a sentence, and (file, line) in the submission
+
+
 class Student(Protocol):
     """Where calls go: into a worker, or into this process for code that we trust."""
+
+    @property
+    def breaches(self) -> Mapping[str, Breach]:
+        """Of the rule that adjoints are written, by function."""
 
     def call(self, function: str, args: Sequence[Any], *, seconds: float) -> Any:
         """The value of one function of the hand-in; raises StudentFailure."""

@@ -12,6 +12,7 @@ import sys
 from types import ModuleType
 from typing import Any
 
+from .adjoint_rule import breaches
 from .channel import Channel
 from .codec import FrameError
 from .courtesy import behave
@@ -28,7 +29,11 @@ def main() -> None:
     channel.send(
         "ready", {"python": list(sys.version_info[:3]), "layers": apply(start.value, channel)}
     )
-    load = channel.receive().value
+    request = channel.receive()
+    if request.kind == "screen":
+        channel.send("screened", breaches(request.value["sources"], request.value["adjoints"]))
+        request = channel.receive()
+    load = request.value
     modules = load_modules(channel, load)
     if modules is None:
         return

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import time
+from collections.abc import Iterator
 from typing import Protocol
 
 from . import processes
@@ -72,18 +74,29 @@ class Stopwatch:
 
     def __init__(self, limit: float, clock: Clock | None) -> None:
         self.limit, self._clock = limit, clock
-        self._began, self._excused = time.monotonic(), 0.0
+        self._began, self._late = time.monotonic(), 0.0
+        self._served, self._serving_since = 0.0, 0.0
         self._used, self._waited = clock.counted() if clock is not None else (0.0, 0.0)
 
     def excuse(self, seconds: float) -> None:
-        """Leave out time that the grader has spent."""
-        self._excused += seconds
+        """Leave out time in which the grader itself has waited for a processor."""
+        self._late += seconds
+
+    @contextlib.contextmanager
+    def serving(self) -> Iterator[None]:
+        """Leave out the time of this context, in which the grader works for the worker."""
+        self._serving_since = time.monotonic()
+        try:
+            yield
+        finally:
+            self._served += time.monotonic() - self._serving_since
+            self._serving_since = 0.0
 
     def spent(self) -> float:
         """Seconds that count."""
         used, waited = self._clock.counted() if self._clock is not None else (0.0, 0.0)
-        wall = time.monotonic() - self._began - self._excused
-        return max(used - self._used, wall - (waited - self._waited))
+        waited += self._late - self._waited
+        return max(used - self._used, self._wall() - waited)
 
     def left(self) -> float:
         """Seconds until the limit; not positive once it is reached."""
@@ -91,4 +104,8 @@ class Stopwatch:
 
     def is_starved(self) -> bool:
         """Whether the worker has hardly run for much longer than its limit."""
-        return time.monotonic() - self._began > MOST_WAITING * self.limit and self.left() > 0
+        return self._wall() > MOST_WAITING * self.limit and self.left() > 0
+
+    def _wall(self) -> float:
+        now, since = time.monotonic(), self._serving_since
+        return now - self._began - self._served - (now - since if since else 0.0)

@@ -164,9 +164,8 @@ class WorkerProcess:
                 raise WorkerLied("an answer to another question")
             if frame.kind != "callback":
                 return frame
-            began = time.monotonic()
-            reply = self._reply(frame) if frame.size <= MOST_SERVED else b""
-            stopwatch.excuse(time.monotonic() - began)
+            with stopwatch.serving():
+                reply = self._reply(frame) if frame.size <= MOST_SERVED else b""
             served += frame.size + len(reply)
             if served > MOST_SERVED:
                 most = f"{MOST_SERVED >> 20} MB"

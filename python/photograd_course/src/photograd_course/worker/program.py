@@ -14,6 +14,7 @@ import numpy as np
 PROGRAM = (
     "__init__.py",
     "__main__.py",
+    "adjoint_rule.py",
     "boot.py",
     "channel.py",
     "codec.py",
