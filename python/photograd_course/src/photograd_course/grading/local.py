@@ -14,6 +14,7 @@ from types import ModuleType
 from typing import Any
 
 from ..worker.codec import FrameError, round_trip
+from ..worker.layouts import laid_out, without_functions
 from ..worker.modules import SourceFinder, line_of
 from .failures import StudentFailure
 from .trial import Breach
@@ -59,11 +60,22 @@ class LocalStudent:
     def call(self, function: str, args: Sequence[Any], *, seconds: float) -> Any:
         """See Student; there is no clock here."""
         del seconds
+        return self._call(function, [_crossing(arg) for arg in args])
+
+    def look(
+        self, function: str, args: Sequence[Any], *, seconds: float, layout: str
+    ) -> tuple[Any, Any]:
+        """See Student."""
+        del seconds
+        given = laid_out([_crossing(arg) for arg in args], layout)
+        value = self._call(function, given)
+        return value, round_trip(without_functions(given))
+
+    def _call(self, function: str, given: Sequence[Any]) -> Any:
         module, _, attribute = function.rpartition(".")
         target = getattr(self.modules[module], attribute, None)
         if not callable(target):
             raise StudentFailure("missing", f"there is no function {attribute}")
-        given = [_crossing(arg) for arg in args]
         began = time.process_time()
         try:
             value = target(*given)

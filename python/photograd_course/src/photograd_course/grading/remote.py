@@ -100,8 +100,22 @@ class RemoteStudent:
 
     def call(self, function: str, args: Sequence[Any], *, seconds: float) -> Any:
         """See Student."""
+        return self._call({"function": function, "args": list(args)}, seconds)
+
+    def look(
+        self, function: str, args: Sequence[Any], *, seconds: float, layout: str
+    ) -> tuple[Any, Any]:
+        """See Student."""
+        request = {"function": function, "args": list(args), "layout": layout}
+        found = self._call(request, seconds)
+        if not isinstance(found, dict) or set(found) != {"value", "args"}:
+            raise StudentFailure("protocol", "the hand-in interfered with the worker")
+        return found["value"], found["args"]
+
+    def _call(self, request: dict[str, Any], seconds: float) -> Any:
+        function = request["function"]
         name = function.rpartition(".")[2]
-        frame = self._ask("call", {"function": function, "args": list(args)}, seconds, f"in {name}")
+        frame = self._ask("call", request, seconds, f"in {name}")
         if frame.kind == "result" and not contains_function(frame.value):
             return frame.value
         if frame.kind == "raised":

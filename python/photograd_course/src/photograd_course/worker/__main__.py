@@ -16,6 +16,7 @@ from .adjoint_rule import breaches
 from .channel import Channel
 from .codec import FrameError
 from .courtesy import behave
+from .layouts import laid_out, without_functions
 from .modules import SourceFinder, line_of
 from .screen import forbidden_imports
 
@@ -93,7 +94,12 @@ def answer(
         if not callable(function):
             channel.send("missing", attribute)
             return
-        value = function(*request["args"])
+        args = request["args"]
+        if "layout" in request:
+            args = laid_out(args, request["layout"])
+        value = function(*args)
+        if "layout" in request:
+            value = {"value": value, "args": without_functions(args)}
     except BaseException as error:
         channel.send("raised", describe(error, own))
         return

@@ -22,6 +22,7 @@ PROGRAM = (
     "courtesy.py",
     "kernel.py",
     "landlock.py",
+    "layouts.py",
     "modules.py",
     "preload.py",
     "screen.py",
