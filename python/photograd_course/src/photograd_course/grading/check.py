@@ -1,4 +1,4 @@
-"""A check: what it asks, what it is worth, and which wrong answers it must catch."""
+"""A check: what it asks and what it is worth."""
 
 from __future__ import annotations
 
@@ -28,7 +28,6 @@ class Check:
         needs: functions of earlier tasks that those use; where one of them has failed, the check is
             blocked, or run once more with the reference in their place.
         tolerance: for ``Trial.close``.
-        kills: names of the mutants that it must catch.
         hint: said on failure when no known mistake fits better.
         seconds: wall-clock limit of one call.
         sole: why the check stays although no mutant dies by it alone; empty where one does.
@@ -46,7 +45,6 @@ class Check:
     visibility: str = "public"
     needs: tuple[str, ...] = ()
     tolerance: Tolerance | None = None
-    kills: tuple[str, ...] = ()
     hint: str = ""
     seconds: float = 10.0
     sole: str = ""
@@ -72,7 +70,6 @@ def check(
     visibility: str = "public",
     needs: Iterable[str] = (),
     tolerance: Tolerance | None = None,
-    kills: Iterable[str] = (),
     hint: str = "",
     seconds: float = 10.0,
     sole: str = "",
@@ -102,7 +99,6 @@ def check(
             visibility=visibility,
             needs=tuple(needs),
             tolerance=tolerance,
-            kills=tuple(kills),
             hint=hint,
             seconds=seconds,
             sole=sole,
