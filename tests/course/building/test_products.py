@@ -22,6 +22,7 @@ from photograd_course.build.wheel import course_wheel
 from photograd_course.cli import run
 from photograd_course.grading.hints import hint_key
 
+from support.missing import need_module
 from support.tree import ROOT
 
 from .support import SECRET, TOY, Broken
@@ -210,7 +211,7 @@ def test_the_vendored_wheel_holds_stripped_kits(tmp_path: Path) -> None:
 
 
 def test_the_built_wheel_holds_stripped_kits(tmp_path: Path) -> None:
-    pytest.importorskip("hatchling")
+    need_module("hatchling")
     command = [sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", str(tmp_path)]
     subprocess.run(command, cwd=COURSE, check=True, capture_output=True)
     (path,) = tmp_path.glob("*.whl")
