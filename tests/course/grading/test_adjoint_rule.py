@@ -6,11 +6,14 @@ from pathlib import Path
 
 import pytest
 from photograd_course.assignment.bundle import read_folder
+from photograd_course.build.named import read_alternatives
 from photograd_course.grading.check import Check
 from photograd_course.grading.outcome import Status
 from photograd_course.grading.runner import adjoint_functions
 from photograd_course.student.checking import check_here
 from photograd_course.worker.adjoint_rule import COMPLEX, DIFFERENCES, DUAL, HIDDEN, breaches
+
+from course.attacks.attack import read_attacks
 
 ROOT = Path(__file__).parents[3]
 TOY = Path(__file__).parents[1] / "fixture_course" / "90_toy"
@@ -86,6 +89,17 @@ def test_a_breach_is_found(name: str) -> None:
     assert found["f_adjoint"]["file"] == "m.py"
 
 
+@pytest.mark.parametrize(
+    ("attack", "what"), [(72, COMPLEX), (73, DUAL), (74, DIFFERENCES)], ids=["72", "73", "74"]
+)
+def test_each_variant_of_an_attack_is_found_for_what_it_is(attack: int, what: str) -> None:
+    chosen = next(each for each in read_attacks() if each.number == attack)
+    for name, data in chosen.variants().items():
+        found = breaches({"arena": data.decode()}, ["weighted_sum_backward"])
+        said = HIDDEN if name == "by text" else what
+        assert found["weighted_sum_backward"]["what"] == said, name
+
+
 @pytest.mark.parametrize("name", HONEST)
 def test_honest_code_breaks_no_rule(name: str) -> None:
     assert breaches({"m": HONEST[name]}, ["f_adjoint"]) == {}
@@ -96,11 +110,8 @@ def test_no_solution_and_no_alternative_breaks_it(folder: Path) -> None:
     bundle = read_folder(folder)
     adjoints = adjoint_functions(bundle.checks)
     module = bundle.manifest.module
-    for path in (folder / f"{module}.py", *sorted((folder / "alternatives").glob("*.py"))):
-        if (folder.name, path.name) == ("11_spherical_harmonics", "handout_alone.py"):
-            continue  # takes complex steps: to be rewritten
-        texts = {**bundle.brought, module: path.read_text(encoding="utf-8")}
-        assert breaches(texts, adjoints) == {}, path.name
+    for name, text in {"solution": bundle.solution, **read_alternatives(folder)}.items():
+        assert breaches({**bundle.brought, module: text}, adjoints) == {}, name
 
 
 def test_a_breach_costs_every_check_of_the_adjoint_and_no_other() -> None:

@@ -10,7 +10,7 @@ from .tolerance import Tolerance
 from .trial import Trial
 
 VISIBILITIES = ("public", "hidden", "secret")
-NAMES_OF_ADJOINTS = ("_adjoint", "_backward")
+NAMES_OF_ADJOINTS = ("_adjoint", "_backward", "_gradient", "_grad", "_cotangent")
 Body = Callable[[Trial], None]
 
 

@@ -3,9 +3,10 @@
 Three ways to get a derivative without writing it leave marks: a complex step has a small imaginary
 part, a dual number is a class that overloads arithmetic, and differencing moves an argument by a
 small step and divides a difference by it. Looked at are an adjoint and all that it names of the
-submission, directly or not. Small constants in other places (a floor, a learning rate) are no
-marks. The worker looks before it loads the submission, when nothing can yet speak for it. What is
-disguised better is left to the check of the cost.
+submission, directly, by an alias, as an attribute or in a string. Small constants in other places
+(a floor, a learning rate) are no marks. The worker looks before it loads the submission, when
+nothing can yet speak for it. What is disguised better (a contour integral, a step read from the
+data) is left to the check of the cost.
 """
 
 from __future__ import annotations
@@ -13,18 +14,19 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterable, Iterator, Mapping
 
-SMALL = 1e-2  # the largest step taken for one
-LARGE = 1 / SMALL
+from .adjoint_values import Values, name_of, normalized
+
 OVERLOADS = frozenset(
     f"__{name}__" for name in ("mul", "rmul", "matmul", "truediv", "array_ufunc", "array_function")
 )
 ARRAY_BASES = frozenset(("ndarray", "NDArrayOperatorsMixin"))
-DYNAMIC = frozenset(("eval", "exec", "compile", "__import__"))
-PASSING_ON = frozenset(("float", "float64", "sqrt", "abs", "asarray", "array"))
+DYNAMIC = frozenset(
+    ("eval", "exec", "compile", "globals", "locals", "vars", "__import__", "__builtins__")
+)
 COMPLEX = "takes a complex step"
 DUAL = "uses a class that overloads arithmetic"
 DIFFERENCES = "divides a difference by a small step"
-HIDDEN = "runs code that is made from text"
+HIDDEN = "runs or names code by text"
 
 Top = tuple[str, ast.stmt]  # file, statement
 
@@ -46,12 +48,15 @@ def breaches(sources: Mapping[str, str], adjoints: Iterable[str]) -> dict[str, d
             for statement in ast.parse(text).body
         ]
         defined = _definitions(tops)
+        always = [top for top in tops if _patches(top[1])]
         found: dict[str, dict[str, object]] = {}
         for adjoint in adjoints:
             reached = _reached(adjoint, defined)
-            small = _small_names(reached)
-            for file, statement in reached:
-                for line, what in _marks(statement, small):
+            reached += [top for top in always if reached and top not in reached]
+            plain = [(file, normalized(statement)) for file, statement in reached]
+            values = Values(statement for _, statement in plain)
+            for file, statement in plain:
+                for line, what in _marks(statement, values):
                     found.setdefault(adjoint, {"file": file, "line": line, "what": what})
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return {}
@@ -62,22 +67,34 @@ def _definitions(tops: Iterable[Top]) -> dict[str, list[Top]]:
     """Statements at the top of the modules, by the names that they bind."""
     defined: dict[str, list[Top]] = {}
     for top in tops:
-        statement = top[1]
-        if isinstance(statement, (ast.FunctionDef, ast.ClassDef)):
-            names = {statement.name}
-        else:
-            names = {
-                node.id
-                for node in ast.walk(statement)
-                if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)
-            } | {
-                n.name
-                for n in ast.walk(statement)
-                if isinstance(n, (ast.FunctionDef, ast.ClassDef))
-            }
-        for name in names:
+        for name in _bound(top[1]):
             defined.setdefault(name, []).append(top)
     return defined
+
+
+def _bound(statement: ast.stmt) -> set[str]:
+    if isinstance(statement, (ast.FunctionDef, ast.ClassDef)):
+        return {statement.name}
+    names = set()
+    for node in ast.walk(statement):
+        if isinstance(node, (ast.FunctionDef, ast.ClassDef)):
+            names.add(node.name)
+        elif isinstance(node, ast.alias):
+            names.add(node.asname or node.name)
+        elif isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
+            names.add(node.id)
+    return names
+
+
+def _patches(statement: ast.stmt) -> bool:
+    """Whether it runs when the module is loaded and may bind names that its tree does not show."""
+    if isinstance(statement, (ast.FunctionDef, ast.ClassDef)) or _is_main(statement):
+        return False
+    return any(_is_dynamic(node) for node in ast.walk(statement))
+
+
+def _is_main(statement: ast.stmt) -> bool:
+    return isinstance(statement, ast.If) and "__name__" in ast.unparse(statement.test)
 
 
 def _reached(name: str, defined: Mapping[str, list[Top]]) -> list[Top]:
@@ -90,71 +107,20 @@ def _reached(name: str, defined: Mapping[str, list[Top]]) -> list[Top]:
                 continue
             reached.append(top)
             for node in ast.walk(top[1]):
-                if isinstance(node, ast.Name) and node.id not in known:
-                    known.add(node.id)
-                    names.append(node.id)
+                if (named := _named(node)) and named not in known:
+                    known.add(named)
+                    names.append(named)
     return reached
 
 
-def _small_names(reached: Iterable[Top]) -> set[str]:
-    """Variables and parameters that hold a small step."""
-    bound: list[tuple[str, ast.expr]] = []
-    functions, calls = {}, []
-    for _, statement in reached:
-        for node in ast.walk(statement):
-            if isinstance(node, ast.Assign):
-                bound += [(t.id, node.value) for t in node.targets if isinstance(t, ast.Name)]
-            elif isinstance(node, (ast.AnnAssign, ast.NamedExpr)) and node.value is not None:
-                if isinstance(node.target, ast.Name):
-                    bound.append((node.target.id, node.value))
-            elif isinstance(node, ast.FunctionDef):
-                functions[node.name] = [each.arg for each in node.args.args]
-                named = [each.arg for each in node.args.args]
-                given = node.args.defaults
-                bound += list(zip(named[len(named) - len(given) :], given, strict=True))
-            elif isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
-                calls.append((node.func.id, node.args))
-    for function, args in calls:
-        bound += list(zip(functions.get(function, ()), args, strict=False))
-    small: set[str] = set()
-    while more := {name for name, value in bound if _is_small(value, small)} - small:
-        small |= more
-    return small
-
-
-def _is_small(node: ast.expr, small: set[str]) -> bool:
-    """Whether an expression is a small step, or a product with one."""
+def _named(node: ast.AST) -> str:
+    """The name by which a node may refer to a statement at the top of a module."""
     if isinstance(node, ast.Constant):
-        return isinstance(node.value, (int, float)) and 0 < abs(node.value) <= SMALL
-    if isinstance(node, ast.Name):
-        return node.id in small
-    if isinstance(node, ast.UnaryOp):
-        return _is_small(node.operand, small)
-    if isinstance(node, ast.Attribute):
-        return node.attr == "eps"
-    if isinstance(node, ast.Call):
-        return _name_of(node.func) in PASSING_ON and any(_is_small(a, small) for a in node.args)
-    if isinstance(node, ast.BinOp):
-        left, right = _is_small(node.left, small), _is_small(node.right, small)
-        if isinstance(node.op, ast.Mult):
-            return left or right
-        if isinstance(node.op, ast.Div):
-            return left or (_is_constant(node.left) and _is_large(node.right))
-        if isinstance(node.op, ast.Pow):
-            return left or (_is_constant(node.left) and isinstance(node.right, ast.UnaryOp))
-    return False
+        return node.value if isinstance(node.value, str) else ""
+    return node.name if isinstance(node, ast.alias) else name_of(node)
 
 
-def _is_constant(node: ast.expr) -> bool:
-    return isinstance(node, ast.Constant) and isinstance(node.value, (int, float))
-
-
-def _is_large(node: ast.expr) -> bool:
-    is_number = isinstance(node, ast.Constant) and isinstance(node.value, (int, float))
-    return is_number and abs(node.value) >= LARGE  # type: ignore[attr-defined]
-
-
-def _marks(statement: ast.stmt, small: set[str]) -> Iterator[tuple[int, str]]:
+def _marks(statement: ast.stmt, values: Values) -> Iterator[tuple[int, str]]:
     """Line and kind of each mark."""
     nodes = list(ast.walk(statement))
     differences = {
@@ -164,68 +130,69 @@ def _marks(statement: ast.stmt, small: set[str]) -> Iterator[tuple[int, str]]:
         for target in node.targets
         if isinstance(target, ast.Name)
     }
-    is_moved = any(_moves(node, small) for node in nodes)
+    is_moved = any(_moves(node, values) for node in nodes)
     for node in nodes:
-        if isinstance(node, ast.ClassDef) and _overloads(node):
-            yield node.lineno, DUAL
-        elif isinstance(node, ast.Call) and _name_of(node.func) in DYNAMIC:
-            yield node.lineno, HIDDEN
-        elif isinstance(node, (ast.Constant, ast.BinOp, ast.Call)) and _is_imaginary(node, small):
-            yield node.lineno, COMPLEX
-        elif isinstance(node, ast.BinOp) and _divides(node, small):
-            parts = list(ast.walk(node))
-            if any(_name_of(part) == "imag" for part in parts):
-                yield node.lineno, COMPLEX
+        line = getattr(node, "lineno", 0)
+        if _is_dynamic(node):
+            yield line, HIDDEN
+        elif _is_dual(node, values):
+            yield line, DUAL
+        elif values.is_imaginary_step(node) or _sets_imaginary(node, values):
+            yield line, COMPLEX
+        elif isinstance(node, ast.BinOp) and values.divides(node):
+            if any(name_of(part) == "imag" for part in ast.walk(node)):
+                yield line, COMPLEX
             elif is_moved and _has_difference(node, differences):
-                yield node.lineno, DIFFERENCES
+                yield line, DIFFERENCES
 
 
-def _overloads(node: ast.ClassDef) -> bool:
-    methods = {each.name for each in node.body if isinstance(each, ast.FunctionDef)}
-    assigned = {
-        target.id
-        for each in node.body
-        if isinstance(each, ast.Assign)
-        for target in each.targets
-        if isinstance(target, ast.Name)
-    }
-    bases = {_name_of(base) for base in node.bases}
-    return bool((methods | assigned) & OVERLOADS or bases & ARRAY_BASES)
-
-
-def _is_imaginary(node: ast.expr, small: set[str]) -> bool:
-    """A small imaginary number: 1e-30j, 1j * h, complex(x, h)."""
-    if isinstance(node, ast.Constant):
-        return isinstance(node.value, complex) and 0 < abs(node.value.imag) <= SMALL
-    if isinstance(node, ast.BinOp):
-        sides = (node.left, node.right)
-        unit = any(isinstance(s, ast.Constant) and isinstance(s.value, complex) for s in sides)
-        return isinstance(node.op, ast.Mult) and unit and _is_small(node, small)
-    if isinstance(node, ast.Call):
-        is_made = _name_of(node.func) in ("complex", "complex128") and len(node.args) == 2
-        return is_made and _is_small(node.args[1], small)
+def _is_dynamic(node: ast.AST) -> bool:
+    """Whether it runs text, or names something by a text that is not written out."""
+    if isinstance(node, ast.Name):
+        return node.id in DYNAMIC
+    if isinstance(node, ast.Call) and name_of(node.func) in ("getattr", "setattr"):
+        return len(node.args) > 1 and not isinstance(node.args[1], ast.Constant)
     return False
 
 
-def _moves(node: ast.AST, small: set[str]) -> bool:
+def _is_dual(node: ast.AST, values: Values) -> bool:
+    """A class that overloads arithmetic, or a way to make one without a class statement."""
+    if isinstance(node, ast.ClassDef):
+        names = {each.name for each in node.body if isinstance(each, ast.FunctionDef)}
+        bound = (_bound(each) for each in node.body if isinstance(each, ast.Assign))
+        names.update(*bound)
+        return bool(names & OVERLOADS or {values.name(base) for base in node.bases} & ARRAY_BASES)
+    if isinstance(node, ast.Call):
+        return values.name(node.func) == "type" and len(node.args) == 3
+    if isinstance(node, ast.Attribute):
+        return isinstance(node.ctx, ast.Store) and node.attr in OVERLOADS
+    return isinstance(node, ast.Constant) and node.value in OVERLOADS
+
+
+def _sets_imaginary(node: ast.AST, values: Values) -> bool:
+    """z.imag = h, z.imag[i] += h, setattr(z, "imag", h)."""
+    if isinstance(node, ast.Assign):
+        targets, value = node.targets, node.value
+    elif isinstance(node, ast.AugAssign):
+        targets, value = [node.target], node.value
+    elif isinstance(node, ast.Call) and name_of(node.func) == "setattr" and len(node.args) == 3:
+        targets, value = [node.args[1]], node.args[2]
+    else:
+        return False
+    roots = [each.value if isinstance(each, ast.Subscript) else each for each in targets]
+    is_part = any(
+        name_of(root) == "imag" or (isinstance(root, ast.Constant) and root.value == "imag")
+        for root in roots
+    )
+    return is_part and values.is_small(value)
+
+
+def _moves(node: ast.AST, values: Values) -> bool:
     """Whether something is moved by a small step: x + h, x - h, x[i] += h."""
     if isinstance(node, ast.AugAssign):
-        return isinstance(node.op, (ast.Add, ast.Sub)) and _is_small(node.value, small)
+        return isinstance(node.op, (ast.Add, ast.Sub)) and values.is_small(node.value)
     if isinstance(node, ast.BinOp) and isinstance(node.op, (ast.Add, ast.Sub)):
-        return _is_small(node.left, small) or _is_small(node.right, small)
-    return False
-
-
-def _divides(node: ast.BinOp, small: set[str]) -> bool:
-    """Whether something is divided by a small step, or multiplied by the inverse of one."""
-    if isinstance(node.op, ast.Div):
-        return _is_small(node.right, small)
-    if isinstance(node.op, ast.Mult):
-        sides = (node.left, node.right)
-        return any(
-            isinstance(s, ast.BinOp) and isinstance(s.op, ast.Div) and _is_small(s.right, small)
-            for s in sides
-        )
+        return values.is_small(node.left) or values.is_small(node.right)
     return False
 
 
@@ -235,10 +202,3 @@ def _has_difference(node: ast.AST, differences: set[str]) -> bool:
         or (isinstance(part, ast.Name) and part.id in differences)
         for part in ast.walk(node)
     )
-
-
-def _name_of(node: ast.AST) -> str:
-    """The last part of a dotted name; empty for anything else."""
-    if isinstance(node, ast.Attribute):
-        return node.attr
-    return node.id if isinstance(node, ast.Name) else ""

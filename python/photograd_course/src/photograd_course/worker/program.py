@@ -15,6 +15,7 @@ PROGRAM = (
     "__init__.py",
     "__main__.py",
     "adjoint_rule.py",
+    "adjoint_values.py",
     "boot.py",
     "channel.py",
     "codec.py",
