@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
-from photograd_course.grading import Array, CheckFailed, Tolerance, Trial, check
+from photograd_course.errors import RangeError
+from photograd_course.grading import Array, CheckFailed, Status, Tolerance, Trial, check
 from photograd_course.grading.battery import (
     Subject,
-    require_inputs_unchanged,
     require_layouts,
     require_repeatable,
     require_rows_apart,
@@ -22,6 +23,7 @@ from photograd_course.grading.battery import (
 from photograd_course.grading.failures import GraderFault, StudentFailure
 from photograd_course.grading.local import LocalStudent
 from photograd_course.grading.remote import Hand, RemoteStudent
+from photograd_course.grading.runner import Setting, run_checks
 from photograd_course.grading.trial import Student
 from photograd_course.worker.process import WorkerProcess, install_program, plain_command
 
@@ -44,12 +46,18 @@ WRONG = {
 Open = Callable[[str], Trial]
 
 
-def make(n: int) -> tuple[Any, ...]:
-    rng = np.random.default_rng(n)
+def make(rng: np.random.Generator, n: int) -> tuple[Any, ...]:
     return rng.uniform(1.0, 2.0, (n, 3)), rng.uniform(1.0, 2.0, n)
 
 
-BLEND = Subject("blend", make, lambda n: Array((n, 3), finite=False))
+BLEND = Subject(
+    "blend",
+    make,
+    lambda n: Array((n, 3), finite=False),
+    sizes=(0, 1, 2, 64),
+    rows=(0, 1),
+    special={0: (np.nan, np.inf, -np.inf)},
+)
 
 
 @pytest.fixture(params=["local", "worker"])
@@ -80,19 +88,18 @@ def open_trial(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Open]
 
 def caught(open_trial: Open, text: str) -> set[str]:
     """The classes by which a text is caught."""
-    classes: dict[str, Callable[[Trial], None]] = {
-        "sizes": lambda t: require_sizes(t, BLEND, (0, 1, 2, 64)),
-        "unchanged": lambda t: require_inputs_unchanged(t, BLEND),
-        "layouts": lambda t: require_layouts(t, BLEND),
-        "repeatable": lambda t: require_repeatable(t, BLEND),
-        "rows": lambda t: require_rows_apart(t, BLEND, (0, 1)),
-        "special": lambda t: require_special(t, BLEND, 0),
+    classes: dict[str, Callable[[Trial, Subject], None]] = {
+        "sizes": require_sizes,
+        "layouts": require_layouts,
+        "repeatable": require_repeatable,
+        "rows": require_rows_apart,
+        "special": require_special,
     }
     found = set()
     for name, run in classes.items():
         trial = open_trial(text)
         try:
-            run(trial)
+            run(trial, BLEND)
         except (CheckFailed, StudentFailure):
             found.add(name)
         assert name in found or trial.margins or trial.asked
@@ -107,8 +114,8 @@ def test_right_code_passes_every_class(open_trial: Open) -> None:
     ("mistake", "classes"),
     [
         ("one weight for all", {"sizes", "rows"}),
-        ("writes into its argument", {"unchanged", "layouts"}),
-        ("sets its weights to zero", {"unchanged", "layouts"}),
+        ("writes into its argument", {"layouts"}),
+        ("sets its weights to zero", {"layouts"}),
         ("counts its calls", {"repeatable", "layouts"}),
         ("remembers the first call", {"sizes"}),
         ("reads memory", {"layouts"}),
@@ -124,6 +131,32 @@ def test_a_mistake_is_caught_by_its_class(
 
 
 def test_rows_that_are_all_equal_prove_nothing(open_trial: Open) -> None:
-    same = Subject("blend", lambda n: (np.ones((n, 3)), np.ones(n)), BLEND.returns)
+    same = replace(BLEND, make=lambda _, n: (np.ones((n, 3)), np.ones(n)))
     with pytest.raises(GraderFault, match="are equal"):
-        require_rows_apart(open_trial(RIGHT), same, (0, 1))
+        require_rows_apart(open_trial(RIGHT), same)
+
+
+def test_a_check_runs_its_battery_after_its_body() -> None:
+    def body(t: Trial) -> None:
+        """Something holds."""
+        t.require(True, "it does")
+
+    reference = SimpleNamespace(blend=lambda a, w: a * w[:, None])
+    made = check(
+        "1.x",
+        task="1",
+        points=1,
+        calls=("blend",),
+        visibility="hidden",
+        tolerance=Tolerance(1e-12, "sums"),
+        battery=[BLEND],
+    )(body)
+    for text, status in ((RIGHT, Status.PASSED), (WRONG["one weight for all"], Status.FAILED)):
+        (found,) = run_checks(
+            [made],
+            lambda _: Setting("m", (1,), reference),
+            lambda _, text=text: LocalStudent({"m": text}),
+        )
+        assert found.status is status, found.text
+    with pytest.raises(RangeError, match="a hidden check"):
+        check("1.x", task="1", points=1, calls=(), battery=[BLEND])

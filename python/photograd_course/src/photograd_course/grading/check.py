@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from ..errors import RangeError, message
+from .battery import Subject
 from .tolerance import Tolerance
 from .trial import Trial
 
@@ -34,6 +35,8 @@ class Check:
         adjoints: those of `calls` in which a derivative has to be written, not computed by complex
             steps, dual numbers or differencing; by default those whose names say so, and where
             the body asks for the cost all.
+        battery: functions that are asked for classes of mistakes after the body; hidden checks
+            only, for the expected values are the reference's.
         body: the function; its docstring's first line is the title.
     """
 
@@ -49,6 +52,7 @@ class Check:
     seconds: float = 10.0
     sole: str = ""
     adjoints: tuple[str, ...] = ()
+    battery: tuple[Subject, ...] = ()
 
     @property
     def title(self) -> str:
@@ -74,6 +78,7 @@ def check(
     seconds: float = 10.0,
     sole: str = "",
     adjoints: Iterable[str] | None = None,
+    battery: Iterable[Subject] = (),
 ) -> Callable[[Body], Check]:
     """Make a check of the function below.
 
@@ -85,7 +90,9 @@ def check(
     if not points > 0:
         raise RangeError(message("check", f"points of {id}", "more than 0", points))
 
-    called = tuple(calls)
+    called, subjects = tuple(calls), tuple(battery)
+    if subjects and visibility == "public":
+        raise RangeError(message("check", f"battery of {id}", "a hidden check", visibility))
 
     def make(body: Body) -> Check:
         if not (body.__doc__ or "").strip():
@@ -103,6 +110,7 @@ def check(
             seconds=seconds,
             sole=sole,
             adjoints=_adjoints(called, body) if adjoints is None else tuple(adjoints),
+            battery=subjects,
         )
 
     return make

@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+from .battery import run_battery
 from .check import Check
 from .failures import CheckFailed, GraderFault, MachineTooBusy, StudentFailure, TooExpensive
 from .hints import find_hint
@@ -172,6 +173,8 @@ def _run(check: Check, setting: Setting, open_one: OpenControl) -> _Verdict:
         seed = (*setting.seed, *check.id.encode())
         trial = Trial(check, student, seed=seed, module=setting.module, reference=setting.reference)
         check.body(trial)
+        for subject in check.battery:
+            run_battery(trial, subject)
         if not trial.margins and not trial.asked:
             raise GraderFault(f"{check.id}: passed without comparing anything")
         verdict = _Verdict(Status.PASSED)
