@@ -1,4 +1,4 @@
-"""From the handout alone: recurrence in lists, complex steps for the derivatives."""
+"""From the handout alone: recurrence in lists, differentiated step by step."""
 
 from __future__ import annotations
 
@@ -37,25 +37,30 @@ def sh_project(directions, weights, values, degree):
 
 
 def _slopes(d, degree):
-    """Derivatives of all harmonics by x, y, z: (N, K, 3), by complex steps."""
-    rows = []
-    for i in range(3):
-        moved = d.astype(complex)
-        moved[:, i] += 1e-30j
-        x, y, z = moved[:, 0], moved[:, 1], moved[:, 2]
-        columns = [None] * (degree + 1) ** 2
-        a, b, start = np.ones_like(z), np.zeros_like(z), np.ones_like(z)
-        for m in range(degree + 1):
-            older, old = 0 * z, start
-            for ell in range(m, degree + 1):
-                size = (2 * ell + 1) / (4 * np.pi) / np.prod(np.arange(ell - m + 1, ell + m + 1))
-                size = np.sqrt(size * (1 + (m > 0))) * (-1.0) ** m
-                columns[ell * (ell + 1) - m] = size * old * b
-                columns[ell * (ell + 1) + m] = size * old * a
-                older, old = old, ((2 * ell + 1) * z * old - (ell + m) * older) / (ell + 1 - m)
-            a, b, start = x * a - y * b, y * a + x * b, start * (2 * m + 1)
-        rows.append(np.stack(columns, axis=1).imag / 1e-30)
-    return np.stack(rows, axis=2)
+    """Derivatives of all harmonics with respect to x, y, z: (N, K, 3), by the recurrence's own."""
+    x, y, z = d[:, 0], d[:, 1], d[:, 2]
+    found = np.zeros((len(d), (degree + 1) ** 2, 3))
+    a, b, start = np.ones(len(z)), np.zeros(len(z)), np.ones(len(z))
+    less_a, less_b = 0 * z, 0 * z
+    for m in range(degree + 1):
+        older, old, older_z, old_z = 0 * z, start, 0 * z, 0 * z
+        for ell in range(m, degree + 1):
+            size = (2 * ell + 1) / (4 * np.pi) / np.prod(np.arange(ell - m + 1, ell + m + 1))
+            size = np.sqrt(size * (1 + (m > 0))) * (-1.0) ** m
+            for k, part, by_x, by_y in ((-m, b, less_b, less_a), (m, a, less_a, -less_b)):
+                parts = (m * old * by_x, m * old * by_y, old_z * part)
+                found[:, ell * (ell + 1) + k] = size * np.stack(parts, axis=1)
+            grown = (2 * ell + 1) * z * old - (ell + m) * older
+            grown_z = (2 * ell + 1) * (old + z * old_z) - (ell + m) * older_z
+            older, old, older_z, old_z = (
+                old,
+                grown / (ell + 1 - m),
+                old_z,
+                grown_z / (ell + 1 - m),
+            )
+        less_a, less_b = a, b
+        a, b, start = x * a - y * b, y * a + x * b, start * (2 * m + 1)
+    return found
 
 
 def sh_color_adjoint(coefficients, v, g):

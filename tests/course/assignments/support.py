@@ -83,11 +83,32 @@ def judge(
     secret: bytes = SECRET,
     tasks: Collection[str] = (),
 ) -> list[Outcome]:
-    """The outcome of every check, or of those of some tasks; by default for the solution."""
+    """The outcome of every check, or of those of some tasks; by default for the solution.
+
+    Each by itself: what the price of a derivative takes from the others is `points_by_task`'s.
+    """
+    alone: list[Outcome] = []
+    _run(folder, source_text or source(folder), secret, tasks, alone)
+    return alone
+
+
+def points_by_task(folder: Path, source_text: str, tasks: Collection[str]) -> dict[str, float]:
+    """What a text earns in some tasks, after the price of derivatives has been asked."""
+    earned = dict.fromkeys(tasks, 0.0)
+    for outcome in _run(folder, source_text, SECRET, tasks, []):
+        earned[outcome.task] += outcome.points
+    return earned
+
+
+def _run(
+    folder: Path, text: str, secret: bytes, tasks: Collection[str], alone: list[Outcome]
+) -> list[Outcome]:
     bundle = bundle_of(folder, secret)
     checks = [each for each in bundle.checks if not tasks or each.task in tasks]
-    hand = bundle.hand(bundle.solution_files(source_text or source(folder)))
-    return run_checks(checks, bundle.setting, lambda given: _open(hand.sources, given))
+    sources = bundle.hand(bundle.solution_files(text)).sources
+    return run_checks(
+        checks, bundle.setting, lambda given: _open(sources, given), on_outcome=alone.append
+    )
 
 
 def _open(sources: Mapping[str, str], given: Mapping[str, Callable[..., Any]]) -> LocalStudent:
@@ -200,6 +221,13 @@ class AssignmentTests:
         idle = {each.id for each in self.bundle.checks if not each.sole} - alone
         # Automatic mutants may do it too; then `sole` says so.
         assert idle == set()
+
+    def test_a_derivative_that_costs_too_much_earns_nothing(self) -> None:
+        prices = {each.id for each in self.bundle.checks if each.is_price}
+        for name, told in mutants_of(self.folder).items():
+            if set(told.loses) <= prices and "differences" in name:
+                text = apply_mutant(self.folder, name)
+                assert set(points_by_task(self.folder, text, told.tasks).values()) == {0.0}, name
 
     @pytest.mark.parametrize("secret", [SECRET, b"another"])
     def test_an_alternative_earns_everything(self, alternative: str, secret: bytes) -> None:
