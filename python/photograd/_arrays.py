@@ -32,11 +32,16 @@ class Arguments:
         dtype: in which it computes; None until the first array decides.
     """
 
-    def __init__(self, function: str, dtype: npt.DTypeLike | None = None) -> None:
-        """State `dtype` to convert every array of the call to it."""
+    def __init__(
+        self, function: str, dtype: npt.DTypeLike | None = None, *, convert: bool = True
+    ) -> None:
+        """State `dtype` to convert every array of the call to it; `convert` False refuses others.
+
+        The latter is for functions of one precision that take more numbers than one would copy.
+        """
         self.function = function
         self.dtype = None if dtype is None else np.dtype(dtype)
-        self._converts = dtype is not None
+        self._converts = dtype is not None and convert
         self._decided_by = ""
         self._axes: dict[str, tuple[int, str]] = {}  # length, and the argument that has it
 
@@ -88,14 +93,14 @@ class Arguments:
 
     def _call_dtype(self, name: str, array: Array, has_dtype: bool) -> np.dtype[Any]:
         """The dtype of the call, which the first array decides."""
-        if has_dtype and array.dtype not in (np.float32, np.float64):
+        if self.dtype is None and has_dtype and array.dtype not in (np.float32, np.float64):
             remedy = "convert it, with .astype(np.float64)"
             self._refuse(DtypeError, name, "float32 or float64", array.dtype, remedy)
         if self.dtype is None:
             self.dtype = array.dtype if has_dtype else np.dtype(np.float64)
             self._decided_by = name
         if has_dtype and array.dtype != self.dtype:
-            expected = f"{self.dtype} as {self._decided_by}"
+            expected = f"{self.dtype}" + (f" as {self._decided_by}" if self._decided_by else "")
             self._refuse(DtypeError, name, expected, array.dtype, "use .astype")
         return self.dtype
 

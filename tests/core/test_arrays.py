@@ -44,6 +44,13 @@ def test_a_stated_dtype_converts_everything(dtype: Any) -> None:
         np.testing.assert_array_equal(found, ROWS)
 
 
+def test_a_stated_dtype_may_be_the_only_one() -> None:
+    call = Arguments("f", np.float32, convert=False)
+    assert call.array("a", [1.0, 2.0], ("N",)).dtype == np.float32
+    with pytest.raises(DtypeError, match=r"^f: a: expected float32, got float64 \(use .astype\)$"):
+        call.array("a", np.ones(2), ("N",))
+
+
 def test_a_dtype_may_be_stated_for_one_argument() -> None:
     call = Arguments("f")
     call.array("a", ROWS, ("N", 3))

@@ -35,7 +35,7 @@ from tests.transport.scenes import FLOOR, GREY, view
         (lambda: Medium([1, 1]), ShapeError, "sigma_t: expected a number or three"),
         (lambda: Medium(1.0, 1.01), RangeError, "albedo: expected 0 to 1"),
         (lambda: Medium(1.0, -0.1), RangeError, "albedo: expected 0 to 1"),
-        (lambda: Medium(1.0, 0.5, "fair"), RangeError, "phase_function: name"),
+        (lambda: Medium(1.0, 0.5, "fair"), RangeError, "phase function: name"),
         (lambda: Medium(1.0, 0.5, values={"h": 1.0}), RangeError, "values: expected g"),
         (lambda: Medium(1.0, 0.5, values={"g": 1.0}), RangeError, "g: expected between -1 and 1"),
         (lambda: Medium.of(-1.0, 1.0), RangeError, "Medium.of: sigma_a"),

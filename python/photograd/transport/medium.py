@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from photograd.bsdf.phase import phase_function
+from photograd.bsdf.phase import registry as phase_functions
 from photograd.errors import RangeError, ShapeError, message
 from photograd.types import Array
 
@@ -114,7 +114,7 @@ class Medium:
         object.__setattr__(self, "sigma_t", _color("sigma_t", self.sigma_t))
         if self.albedo is not None:
             object.__setattr__(self, "albedo", _color("albedo", self.albedo))
-            known = [parameter.name for parameter in phase_function(self.phase).parameters]
+            known = [parameter.name for parameter in phase_functions()[self.phase].parameters]
             if sorted(self.values) != sorted(known):
                 got = ", ".join(self.values) or "none"
                 raise RangeError(message("Medium", "values", f"{', '.join(known)}", got))
@@ -140,7 +140,7 @@ class Medium:
         values = {"sigma_t": self.sigma_t}
         if self.albedo is not None:
             values["albedo"] = self.albedo
-            for parameter in phase_function(self.phase).parameters:
+            for parameter in phase_functions()[self.phase].parameters:
                 values[parameter.name] = np.asarray(self.values[parameter.name], np.float64)
         if self.density is not None:
             values["density"] = self.density.values

@@ -53,7 +53,8 @@ import numpy as np
 from photograd_course.input_files import read_text
 from photograd_course.toml_limits import parse_toml
 
-from photograd.bsdf import Parameter, pack_rows
+from photograd._arrays import Arguments
+from photograd._registry import Parameter, Parameters
 from photograd.capture.camera import Camera
 from photograd.geometry.sdf import Shape as SdfNode
 from photograd.transport.builtin import camera_at
@@ -170,7 +171,7 @@ def _environment(node: Node) -> Environment:
 
 def _check_value(model: str, parameter: Parameter, values: Mapping[str, Any]) -> None:
     named = {parameter.name: values[parameter.name]}
-    pack_rows(model, (parameter,), named, np.float64)
+    Parameters((parameter,)).pack_one(Arguments("Material", np.float64), model, named)
     check_range(model, parameter, named[parameter.name])
 
 

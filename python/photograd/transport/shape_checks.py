@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from photograd.bsdf import SMOOTH, Parameter
+from photograd._registry import SPECULAR, Parameter
 from photograd.errors import DtypeError, RangeError, ShapeError, message
 from photograd.geometry.mesh import drop_degenerate
 from photograd.types import Array
@@ -134,5 +134,5 @@ def check_range(model: str, parameter: Parameter, value: Any) -> None:
         return
     expected = f"{least:g} to {most:g}" if most < np.inf else f"at least {least:g}"
     smooth = "roughness" in parameter.name and float(np.min(value)) < least
-    remedy = SMOOTH if smooth else None
+    remedy = SPECULAR if smooth else None
     raise RangeError(message("Material", f"{model}.{parameter.name}", expected, value, remedy))
