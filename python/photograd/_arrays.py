@@ -11,13 +11,14 @@ same in all arguments of a call, and the function computes in that precision.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from types import EllipsisType
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from photograd.errors import DtypeError, RangeError, ShapeError, message
+from photograd.errors import DtypeError, Error, RangeError, ShapeError, message
 from photograd.types import Array
 
 Axis = int | str | EllipsisType
@@ -79,6 +80,14 @@ class Arguments:
         bounds = (low, high, above, below)
         self._check_range(name, array, finite and array.dtype.kind == "f", bounds)
         return array
+
+    def run(self, core: Callable[..., Any], *arguments: Any, **named: Any) -> Any:
+        """What a function of the core returns; its errors name the function that was called."""
+        try:
+            return core(*arguments, **named)
+        except Error as failure:
+            _, _, rest = str(failure).partition(": ")
+            raise type(failure)(f"{self.function}: {rest}") from failure
 
     def _converted(self, name: str, value: Any, stated: npt.DTypeLike | None) -> Array:
         array = _numbers(self.function, name, value)

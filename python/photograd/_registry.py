@@ -93,6 +93,7 @@ class Parameters(tuple[Parameter, ...]):
         """Rows (1, P) or (N, P) of a model's values, N as in other arguments of the call.
 
         Named values are converted to `dtype`, by default that of the call; packed ones have it.
+        Errors call a value `model`.name, or by its name alone where `model` is "".
 
         Raises:
             DtypeError: not numbers, or packed values of another dtype.
@@ -100,13 +101,16 @@ class Parameters(tuple[Parameter, ...]):
                 or less where the range of the parameter lies above 0.
             ShapeError: another shape, or another number of rows.
         """
-        return self._packed(call, model, values, dtype, one_row=False)
+        return self._packed(call, model, values, dtype)
 
     def pack_one(
-        self, call: Arguments, model: str, values: Values, dtype: npt.DTypeLike | None = None
+        self, call: Arguments, model: str, values: Values, *, positive: bool = True
     ) -> Array:
-        """(P,) of a model that has no values by row; otherwise as `pack`."""
-        (row,) = self._packed(call, model, values, dtype, one_row=True)
+        """(P,) of a model that has no values by row; otherwise as `pack`.
+
+        `positive` False leaves it to the core to refuse 0.
+        """
+        (row,) = self._packed(call, model, values, None, one_row=True, positive=positive)
         return np.asarray(row)
 
     def _packed(
@@ -116,7 +120,8 @@ class Parameters(tuple[Parameter, ...]):
         values: Values,
         dtype: npt.DTypeLike | None,
         *,
-        one_row: bool,
+        one_row: bool = False,
+        positive: bool = True,
     ) -> Array:
         def with_rows(*one: int) -> tuple[tuple[int | str, ...], ...]:
             return (one,) if one_row else (one, (1, *one), ("N", *one))
@@ -125,30 +130,25 @@ class Parameters(tuple[Parameter, ...]):
             rows = call.array(model, values, *with_rows(self.width), dtype=dtype)
             for name, part in self.unpack(rows).items():
                 parameter = next(each for each in self if each.name == name)
-                self._require_above(call.function, f"{model}.{name}", parameter, part)
+                if positive:
+                    _require_positive(call.function, _below(model, name), parameter, part)
             return rows.reshape(-1, self.width)
         names = [parameter.name for parameter in self]
         if set(values) != set(names):
             expected, got = f"exactly {names}", sorted(values)
-            raise RangeError(message(call.function, f"{model}.values", expected, got))
+            raise RangeError(message(call.function, _below(model, "values"), expected, got))
         columns = []
         for parameter in self:
             shapes = with_rows(parameter.size) if parameter.size > 1 else with_rows()
-            name = f"{model}.{parameter.name}"
+            name = _below(model, parameter.name)
             column = call.array(name, values[parameter.name], *shapes, dtype=np.float64)
-            self._require_above(call.function, name, parameter, column)
+            if positive:
+                _require_positive(call.function, name, parameter, column)
             columns.append(column.reshape(-1, parameter.size))
         count = max((len(column) for column in columns), default=1)
         wide = [np.broadcast_to(column, (count, column.shape[1])) for column in columns]
         target = call.dtype if dtype is None else dtype
         return np.ascontiguousarray(np.concatenate([np.zeros((count, 0)), *wide], axis=1), target)
-
-    @staticmethod
-    def _require_above(function: str, name: str, parameter: Parameter, column: Array) -> None:
-        """A lobe without width has no value, and an index of refraction of 0 none, either."""
-        if parameter.lo > 0 and not (column > 0).all():
-            remedy = SPECULAR if "roughness" in parameter.name else None
-            raise RangeError(message(function, name, "above 0", column.min(), remedy))
 
     def unpack(self, rows: Array) -> dict[str, Array]:
         """Rows (..., P) as {name: (...) or (..., size)}."""
@@ -157,3 +157,14 @@ class Parameters(tuple[Parameter, ...]):
             parameter.name: part[..., 0] if parameter.size == 1 else part
             for parameter, part in zip(self, np.split(rows, ends, axis=-1), strict=True)
         }
+
+
+def _below(model: str, name: str) -> str:
+    return f"{model}.{name}" if model else name
+
+
+def _require_positive(function: str, name: str, parameter: Parameter, column: Array) -> None:
+    """A lobe without width has no value, and an index of refraction of 0 none, either."""
+    if parameter.lo > 0 and not (column > 0).all():
+        remedy = SPECULAR if "roughness" in parameter.name else None
+        raise RangeError(message(function, name, "above 0", column.min(), remedy))

@@ -137,7 +137,12 @@ def test_every_kind_is_read(tmp_path: Path) -> None:
         ("intensity = 10\n", "", 0, "lights.0.intensity: expected a value, got none"),
         ("intensity = 10", "intensity = 10\npower = 3", 4, "lights.0.power: expected a key that"),
         ("position = [0, 3, 1]", "position = [0, 3]", 2, "3 finite numbers"),
-        ("axis = [0, -2, 0]", "axis = [0, 0, 0]", 4, "lights.1: spot: axis: expected a direction"),
+        (
+            "axis = [0, -2, 0]",
+            "axis = [0, 0, 0]",
+            4,
+            "lights.1: SpotLight: axis: expected a direction",
+        ),
         ("angle = 60", "angle = 190", 9, "lights.1.angle: expected degrees"),
         ("softness = 0.5", "softness = 0", 4, "softness: expected a number in (0, 1]"),
         ("direction = [1, 2, 0]", 'direction = "up"', 13, "3 finite numbers"),

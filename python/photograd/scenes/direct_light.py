@@ -9,8 +9,7 @@ import numpy.typing as npt
 
 from photograd.capture.camera import Camera
 from photograd.errors import ShapeError, message
-from photograd.lights import SunLight
-from photograd.lights.distant import cap_height
+from photograd.lights import SunLight, cap_height
 from photograd.scenes.description import SceneDescription, SceneMesh
 from photograd.transport.accumulation import Accumulation
 from photograd.transport.material import Material
