@@ -4,9 +4,9 @@
     wo = call.array("wo", wo, ("N", 3))
     wi = call.array("wi", wi, ("N", 3))  # as many rows as wo, and of its dtype
 
-Conversion follows one rule. Lists and other numbers without a dtype are converted. NumPy arrays are
-converted where the function has stated a dtype; without one they have to be float32 or float64, the
-same in all arguments of a call, and the function computes in that precision.
+Conversion follows one rule. Numbers and lists are converted. NumPy arrays with axes are converted
+where the function has stated a dtype; without one they have to be float32 or float64, the same in
+all arguments of a call, and the function computes in that precision.
 """
 
 from __future__ import annotations
@@ -52,6 +52,7 @@ class Arguments:
         value: Any,
         *shapes: tuple[Axis, ...],
         dtype: npt.DTypeLike | None = None,
+        floating: bool = False,
         finite: bool = True,
         min_length: int = 0,
         low: float | None = None,
@@ -66,6 +67,7 @@ class Arguments:
             value: an array, a nested list, or a number.
             shapes: those that are accepted, such as ("N", 3); the first that fits names its axes.
             dtype: of this argument alone; an integer type refuses fractions.
+            floating: refuses arrays of integers, such as images of bytes, in place of converting.
             finite: whether NaN and infinity are refused; bounds refuse NaN in any case.
             min_length: of the named axes.
             low, high, above, below: bounds, the first two included, the last two excluded.
@@ -75,7 +77,7 @@ class Arguments:
             ShapeError: another shape, or a named axis of another length than before.
             RangeError: a number that is not finite or out of bounds; names the first.
         """
-        array = self._converted(name, value, dtype)
+        array = self._converted(name, value, dtype, floating)
         self._bind(name, array.shape, shapes, min_length)
         bounds = (low, high, above, below)
         self._check_range(name, array, finite and array.dtype.kind == "f", bounds)
@@ -89,14 +91,19 @@ class Arguments:
             _, _, rest = str(failure).partition(": ")
             raise type(failure)(f"{self.function}: {rest}") from failure
 
-    def _converted(self, name: str, value: Any, stated: npt.DTypeLike | None) -> Array:
+    def _converted(
+        self, name: str, value: Any, stated: npt.DTypeLike | None, floating: bool
+    ) -> Array:
         array = _numbers(self.function, name, value)
         if stated is not None or self._converts:
             target = np.dtype(self.dtype if stated is None else stated)
             if target.kind in "iu":
                 self._check_integers(name, array, target)
+            elif floating and isinstance(value, np.ndarray) and array.dtype.kind != "f":
+                remedy = "convert it, with .astype"
+                self._refuse(DtypeError, name, "floating point numbers", array.dtype, remedy)
         else:
-            target = self._call_dtype(name, array, isinstance(value, np.ndarray | np.generic))
+            target = self._call_dtype(name, array, isinstance(value, np.ndarray) and value.ndim > 0)
         with np.errstate(over="ignore"):  # what float32 cannot hold becomes infinite
             return np.asarray(array, target, order="C")
 
@@ -198,6 +205,8 @@ def _numbers(function: str, name: str, value: Any) -> Array:
 def _interval(
     low: float | None, high: float | None, above: float | None, below: float | None
 ) -> str:
+    if low == -np.inf and high is None:
+        return ""  # anything but NaN
     left = f"[{low:g}" if low is not None else f"({above:g}" if above is not None else ""
     right = f"{high:g}]" if high is not None else f"{below:g})" if below is not None else ""
     if left and right:
