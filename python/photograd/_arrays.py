@@ -163,12 +163,14 @@ class Arguments:
         for shape in shapes:
             parts = ["..." if axis is ... else f"{axis}" for axis in shape]
             texts.append(f"({parts[0]},)" if len(parts) == 1 else f"({', '.join(parts)})")
+        arrays = " or ".join(text for text in texts if text != "()")
+        accepted = ["a number"] * (() in shapes) + [f"shape {arrays}"] * bool(arrays)
         letters = {str(axis).split()[-1] for s in shapes for axis in s if isinstance(axis, str)}
         known = sorted(letters & set(self._axes))
         facts = [f"{k} = {self._axes[k][0]} as in {self._axes[k][1]}" for k in known]
         if least and letters - set(known):
             facts.append(f"{', '.join(sorted(letters - set(known)))} >= {least}")
-        return f"shape {' or '.join(texts)}" + (f" with {' and '.join(facts)}" if facts else "")
+        return " or ".join(accepted) + (f" with {' and '.join(facts)}" if facts else "")
 
     def _check_range(
         self, name: str, array: Array, finite: bool, bounds: tuple[float | None, ...]

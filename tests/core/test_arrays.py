@@ -96,7 +96,7 @@ def test_one_call_has_one_dtype() -> None:
     [
         ([("N", 2)], r"^f: a: expected shape \(N, 2\), got \(2, 3\)$"),
         ([("N",)], r"expected shape \(N,\), got \(2, 3\)$"),
-        ([(), ("N",)], r"expected shape \(\) or \(N,\), got \(2, 3\)$"),
+        ([(), ("N",)], r"expected a number or shape \(N,\), got \(2, 3\)$"),
         ([("H", "2 H")], r"expected shape \(H, 2 H\), got \(2, 3\)$"),
         ([(..., 4)], r"expected shape \(..., 4\), got \(2, 3\)$"),
         ([(..., 1, 2, 3)], r"expected shape \(..., 1, 2, 3\), got"),

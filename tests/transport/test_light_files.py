@@ -172,8 +172,8 @@ def test_a_mistake_is_named_with_line_and_key(
     [
         (np.full((4, 8, 3), np.nan), "finite"),
         (np.full((4, 8, 3), -1.0), "numbers from 0 to 1e30"),
-        (np.ones((4, 4, 3)), "twice as wide as high"),
-        (np.ones((8, 4, 3)), "twice as wide as high"),
+        (np.ones((4, 4, 3)), "expected shape (H, 2 H, 3)"),
+        (np.ones((8, 4, 3)), "expected shape (H, 2 H, 3)"),
     ],
 )
 def test_pictures_that_are_no_environment_are_refused(
