@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import struct
-import zlib
 from collections.abc import Callable
 from pathlib import Path
 from typing import Literal
@@ -13,6 +11,7 @@ import numpy.typing as npt
 from photograd_course.atomic_io import atomic_write
 from PIL import Image
 
+from photograd._extras import import_extra
 from photograd.errors import IoError, RangeError, ShapeError, message
 from photograd.images import exr
 from photograd.images.pfm import encode_pfm
@@ -25,7 +24,7 @@ def write_png(path: Path, image: ImageArray, *, bits: Literal[8, 16] = 8) -> Non
 
     Raises:
         ShapeError, RangeError: wrong channels, empty, non-finite or outside 0..1 (clip first).
-        IoError: the file cannot be written.
+        IoError: the file cannot be written, or 16 bits without OpenCV (extra `png16`).
     """
     samples = _quantised("write_png", image, bits)
     if bits == 16:
@@ -105,22 +104,5 @@ def _quantised(function: str, image: ImageArray, bits: int) -> npt.NDArray[np.ui
 
 
 def _encode_png16(samples: npt.NDArray[np.uint16]) -> bytes:
-    """PNG with 16 bits a sample, which Pillow cannot write for colour: header, rows, end.
-
-    Every row is stored as the difference to the row above (filter 2), which compresses well.
-    """
-    height, width, channels = samples.shape
-    rows = samples.astype(">u2").view(np.uint8).reshape(height, -1)
-    filtered = np.diff(rows, axis=0, prepend=np.zeros_like(rows[:1]))
-    stream = np.concatenate([np.full((height, 1), 2, dtype=np.uint8), filtered], axis=1).tobytes()
-    color_type = 2 if channels == 3 else 6
-    header = struct.pack(">IIBBBBB", width, height, 16, color_type, 0, 0, 0)
-
-    def chunk(kind: bytes, body: bytes) -> bytes:
-        return (
-            struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
-        )
-
-    signature = b"\x89PNG\r\n\x1a\n"
-    data = chunk(b"IDAT", zlib.compress(stream, 6))
-    return signature + chunk(b"IHDR", header) + data + chunk(b"IEND", b"")
+    cv2 = import_extra("write_png", "cv2", "png16")
+    return bytes(cv2.imencode(".png", samples[..., [2, 1, 0, 3][: samples.shape[2]]])[1])
