@@ -94,7 +94,8 @@ def reflected(content: Any) -> None:
 
 
 NERFSTUDIO: list[tuple[Callable[[Any], None], type[Error], str]] = [
-    (top(camera_model="OPENCV_FISHEYE"), IoError, "got OPENCV_FISHEYE"),
+    (top(camera_model="EQUIRECTANGULAR"), IoError, "got EQUIRECTANGULAR"),
+    (top(camera_model="OPENCV_FISHEYE", p1=0.01), SceneError, "p1: expected 0, got 0.01"),
     (top(k3=0.01), SceneError, "k3: expected 0, got 0.01"),
     (top(k1=1e300), RangeError, "k1: expected a finite coefficient"),
     (top(fl_x=-5.0), RangeError, "fl_x: expected a positive focal length"),

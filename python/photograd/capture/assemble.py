@@ -11,6 +11,7 @@ from photograd_course.portable_math import matmul
 
 from photograd._files import TRUST, inside
 from photograd.capture.camera import Camera
+from photograd.capture.view import View
 from photograd.errors import Error, IoError, SceneError, message
 from photograd.images.kind import LINEAR_SUFFIXES
 from photograd.images.read import IMAGE_SUFFIXES, ColorSpace, ImageHeader, read_header
@@ -125,6 +126,36 @@ def unused_images(photographs: Sequence[Photograph]) -> list[str]:
         return []
     names = ", ".join(path.name for path in left[:4]) + (", ..." if len(left) > 4 else "")
     return [f"{len(left)} images without a pose, not used: {names}"]
+
+
+def undistortion_lines(views: Sequence[View]) -> list[str]:
+    """A sentence for the log if lenses are undone: of how many, and how much the views hold.
+
+    That is measured along the axes of the photograph in which the pinhole view cuts off most.
+    """
+    bent = [view for view in views if view.distortion is not None]
+    if not bent:
+        return []
+    shares = np.array([_share_of_photograph(view) for view in bent]).min(axis=0)
+    line = f"lens distortion removed on reading from {len(bent)} of {len(views)} images"
+    if shares.min() < 0.95:
+        width, height = (100 * shares).round().astype(int)
+        line += f"; a pinhole view holds the middle {width} x {height} % of its photograph"
+    return [line]
+
+
+def _share_of_photograph(view: View) -> FloatArray:
+    """(2,) of width and height of the photograph, what lies between the pinhole view's borders."""
+    assert view.distortion is not None
+    camera = view.camera
+    size, focal = np.array([camera.width, camera.height]), np.array([camera.fx, camera.fy])
+    left, top = -camera.cx / camera.fx, -camera.cy / camera.fy
+    right, bottom = left + camera.width / camera.fx, top + camera.height / camera.fy
+    borders = np.array([[left, 0.0], [0.0, top], [right, 0.0], [0.0, bottom]])
+    with np.errstate(all="ignore"):
+        shown = view.distortion.distort(borders) * focal
+        shares = np.array([shown[2, 0] - shown[0, 0], shown[3, 1] - shown[1, 1]]) / size
+    return np.where(np.isfinite(shares), shares, 1.0).clip(0.0, 1.0)
 
 
 def list_images(folder: Path) -> list[Path]:

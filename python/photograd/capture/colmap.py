@@ -14,6 +14,7 @@ from photograd.capture.assemble import (
     find_photograph,
     make_camera,
     transform_points,
+    undistortion_lines,
     unused_images,
 )
 from photograd.capture.camera import Camera
@@ -31,14 +32,23 @@ from photograd.capture.frames import (
     rotation_from_quaternion,
     world_from_estimated_up,
 )
-from photograd.capture.undistort import Distortion, distort
+from photograd.capture.undistort import ColmapLens, Distortion, FisheyeDistortion, Lens
 from photograd.capture.view import View
 from photograd.errors import IoError, RangeError, SceneError, message
 from photograd.types import FloatArray
 
 _NAME = "load_colmap"
 _MODEL_FOLDERS = ("sparse/0", "sparse", "colmap/sparse/0", "0", "")
-_SUPPORTED = ("SIMPLE_PINHOLE", "PINHOLE", "SIMPLE_RADIAL", "RADIAL", "OPENCV")
+_RADIAL = ("SIMPLE_PINHOLE", "PINHOLE", "SIMPLE_RADIAL", "RADIAL", "OPENCV")
+_FISHEYE = (
+    "SIMPLE_FISHEYE",
+    "FISHEYE",
+    "SIMPLE_RADIAL_FISHEYE",
+    "RADIAL_FISHEYE",
+    "OPENCV_FISHEYE",
+)
+_ONE_FOCAL_LENGTH = ("RADIAL", "RADIAL_FISHEYE")
+"""Models with one focal length, beside those that are called SIMPLE."""
 
 
 def find_model(folder: Path) -> Path | None:
@@ -81,9 +91,7 @@ def load_colmap(folder: Path, *, trust_poses: bool = False, allow_outside: bool 
     poses = [view.camera.world_from_camera for view, _ in pairs]
     world_from_source, up_line = world_from_estimated_up(poses, declared_z_up=False)
     views = [view.turned(world_from_source) for view, _ in pairs]
-    bent = sum(view.distortion is not None for view in views)
-    if bent:
-        lines.append(f"lens distortion removed on reading from {bent} of {len(views)} images")
+    lines.extend(undistortion_lines(views))
     lines.extend(unused_images(photographs))
     train, test, split_line = hold_out(views)
     points = None
@@ -147,28 +155,38 @@ def _read_view(
 
 def pinhole_and_lens(
     camera: ColmapCamera, camera_id: int, pose: FloatArray
-) -> tuple[Camera, Distortion | None]:
+) -> tuple[Camera, Lens | None]:
     """Split COLMAP's parameters into a pinhole at `pose` (world_from_camera) and a lens.
 
-    Parameters: SIMPLE_* have one focal length f, cx, cy; the others fx, fy, cx, cy (RADIAL has f).
-    SIMPLE_RADIAL adds k1; RADIAL k1, k2; OPENCV k1, k2, p1, p2.
+    Parameters are one focal length f or two, fx and fy, then cx, cy and the lens. The pinhole has
+    the same focal lengths and principal point: the middle of the photograph keeps its scale, and
+    what a fisheye lens shows beyond the pinhole's borders is cut off.
 
     Raises:
-        IoError: any other model.
+        IoError: a camera of no focal length, or a model that pycolmap has to compute, which is not
+            installed (extra `sfm`).
         RangeError: sizes or focal lengths that make no camera.
     """
-    if camera.model not in _SUPPORTED:
-        remedy = "run COLMAP's image_undistorter first"
-        expected = "one of " + ", ".join(_SUPPORTED)
-        raise IoError(message(_NAME, f"camera {camera_id}: model", expected, camera.model, remedy))
+    if camera.model == "EQUIRECTANGULAR":
+        remedy = "render perspective views of the panoramas with COLMAP first"
+        place = f"camera {camera_id}: model"
+        raise IoError(
+            message(_NAME, place, "a perspective or fisheye camera", camera.model, remedy)
+        )
     values = list(camera.parameters)
-    focals = 2 if camera.model in ("PINHOLE", "OPENCV") else 1
+    single = camera.model.startswith("SIMPLE_") or camera.model in _ONE_FOCAL_LENGTH
+    focals = 1 if single else 2
     fx, fy = values[0], values[focals - 1]
     cx, cy = values[focals : focals + 2]
     size, pixels = (camera.width, camera.height), (fx, fy, cx, cy)
     pinhole = make_camera(_NAME, f"camera {camera_id}", size, pixels, pose)
-    distortion = Distortion(*values[focals + 2 :])
-    return pinhole, None if distortion.is_identity else distortion
+    rest = values[focals + 2 :]
+    if camera.model in _RADIAL:
+        lens = Distortion(*rest)
+        return pinhole, None if lens.is_identity else lens
+    if camera.model in _FISHEYE:
+        return pinhole, FisheyeDistortion(*rest)
+    return pinhole, ColmapLens(camera.model, camera.parameters)
 
 
 def _check_observations(model: ColmapModel, views: list[View]) -> None:
@@ -200,8 +218,8 @@ def reproject(view: View, points: FloatArray) -> FloatArray:
     pixels, _ = camera.project(points)
     if view.distortion is None:
         return pixels
-    focal, centre = np.array([camera.fx, camera.fy]), np.array([camera.cx, camera.cy])
-    shown: FloatArray = distort(view.distortion, (pixels - centre) / focal) * focal + centre
+    focal, center = np.array([camera.fx, camera.fy]), np.array([camera.cx, camera.cy])
+    shown: FloatArray = view.distortion.distort((pixels - center) / focal) * focal + center
     return shown
 
 

@@ -23,6 +23,7 @@ from photograd.capture.assemble import (
     is_file,
     make_camera,
     transform_points,
+    undistortion_lines,
     unused_images,
 )
 from photograd.capture.capture import Capture, hold_out
@@ -153,10 +154,7 @@ def _remarks(root: JsonNode, views: list[View]) -> list[str]:
     ignored = [key for key in _IGNORED if key in root]
     if ignored:
         lines.append(f"ignored members: {', '.join(ignored)}")
-    bent = sum(view.distortion is not None for view in views)
-    if bent:
-        lines.append(f"lens distortion removed on reading from {bent} of {len(views)} images")
-    return lines
+    return [*lines, *undistortion_lines(views)]
 
 
 def _split(root: JsonNode, views: list[View]) -> tuple[dict[str, tuple[View, ...]], str]:

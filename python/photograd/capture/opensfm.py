@@ -20,6 +20,7 @@ from photograd.capture.assemble import (
     find_photograph,
     make_camera,
     transform_points,
+    undistortion_lines,
     unused_images,
 )
 from photograd.capture.capture import Capture, hold_out
@@ -66,9 +67,7 @@ def load_opensfm(path: Path, *, trust_poses: bool = False, allow_outside: bool =
     views = [view.turned(Y_UP_FROM_Z_UP) for view, _ in pairs]
     if len(parts) > 1:
         lines.append(f"largest of {len(parts)} reconstructions taken")
-    bent = sum(view.distortion is not None for view in views)
-    if bent:
-        lines.append(f"lens distortion removed on reading from {bent} of {len(views)} images")
+    lines.extend(undistortion_lines(views))
     lines.extend(unused_images(photographs))
     if not trust_poses:
         lines.extend(check_convention(_NAME, views, Y_UP_FROM_Z_UP, up_is_known=True))

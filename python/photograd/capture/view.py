@@ -12,7 +12,7 @@ from photograd_course.color import srgb_encode
 from photograd_course.portable_math import matmul
 
 from photograd.capture.camera import Camera
-from photograd.capture.undistort import Distortion, undistort_image
+from photograd.capture.undistort import Lens, undistort_image
 from photograd.errors import IoError, message
 from photograd.images.read import ColorSpace, ImageArray, downscale_image, read_image
 from photograd.types import FloatArray
@@ -42,7 +42,7 @@ class View:
     camera: Camera
     image: Path | ImageArray
     color_space: ColorSpace = "display"
-    distortion: Distortion | None = None
+    distortion: Lens | None = None
     downscale: int = 1
     source_size: tuple[int, int] | None = None
     mask_file: Path | None = None
