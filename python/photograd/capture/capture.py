@@ -7,6 +7,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -20,12 +21,12 @@ HOLD_OUT_EVERY = 8
 """Every eighth photograph, starting with the first: the custom since [Mildenhall2019]."""
 
 
-def hold_out(views: Sequence[View]) -> tuple[tuple[View, ...], tuple[View, ...], str]:
-    """Split views into training and test by their rank in the order of names.
+Split: TypeAlias = tuple[tuple[View, ...], tuple[View, ...], str]
+"""Training views, test views, and a sentence for the log."""
 
-    Returns:
-        Training views, test views, and a sentence for the log. A single view is not held out.
-    """
+
+def hold_out(views: Sequence[View]) -> Split:
+    """Training and test views by their rank in the order of names; a single one is not held out."""
     ordered = sorted(views, key=lambda view: view.name)
     if len(ordered) < 2:
         return tuple(ordered), (), "no view held out: there is only one"

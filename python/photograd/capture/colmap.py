@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from photograd.capture.assemble import (
     Photograph,
-    background_of,
     check_size,
-    common_color,
     find_photograph,
+    kind_of_images,
     make_camera,
+    make_capture,
     transform_points,
     undistortion_lines,
-    unused_images,
 )
 from photograd.capture.camera import Camera
 from photograd.capture.capture import Capture, hold_out
@@ -84,38 +84,23 @@ def load_colmap(folder: Path, *, trust_poses: bool = False, allow_outside: bool 
         _read_view(model, image, image_folder, allow_outside=allow_outside)
         for image in model.images
     ]
-    photographs = [photograph for _, photograph in pairs]
-    color_space, has_alpha, lines = common_color(_NAME, photographs)
+    images = kind_of_images(_NAME, [photograph for _, photograph in pairs])
     if not trust_poses:
         _check_observations(model, [view for view, _ in pairs])
     poses = [view.camera.world_from_camera for view, _ in pairs]
     world_from_source, up_line = world_from_estimated_up(poses, declared_z_up=False)
     views = [view.turned(world_from_source) for view, _ in pairs]
-    lines.extend(undistortion_lines(views))
-    lines.extend(unused_images(photographs))
-    train, test, split_line = hold_out(views)
-    points = None
-    if model.points is not None and len(model.points.ids):
-        points = _finite_points(model.points.positions, world_from_source)
-    return Capture(
-        train=train,
-        test=test,
-        format="colmap",
-        source=folder,
-        color_space=color_space,
-        has_alpha=has_alpha,
-        background=background_of(has_alpha),
-        points=points,
-        point_colors=None if points is None or model.points is None else model.points.colors,
-        world_from_source=world_from_source,
-        conversions=(
-            f"{'binary' if binary else 'text'} model in {model_folder.name}: camera_from_world "
-            "-> world_from_camera, OpenCV camera kept, scale arbitrary",
-            up_line,
-            *lines,
-            split_line,
-        ),
+    lines = (
+        f"{'binary' if binary else 'text'} model in {model_folder.name}: camera_from_world "
+        "-> world_from_camera, OpenCV camera kept, scale arbitrary",
+        up_line,
+        *undistortion_lines(views),
     )
+    capture = make_capture("colmap", folder, hold_out(views), images, world_from_source, lines)
+    if model.points is None or not len(model.points.ids):
+        return capture
+    points = _finite_points(model.points.positions, world_from_source)
+    return replace(capture, points=points, point_colors=model.points.colors)
 
 
 def _find_images(folder: Path, model_folder: Path) -> Path:

@@ -17,20 +17,17 @@ MODELS = {"PINHOLE", "SIMPLE_PINHOLE", "SIMPLE_RADIAL", "RADIAL", "OPENCV", "OPE
 
 @dataclass(frozen=True)
 class Intrinsics:
-    """Image size, focal lengths and principal point in pixels (centres at +0.5), and the lens."""
+    """Of a frame.
 
-    width: int
-    height: int
-    fx: float
-    fy: float
-    cx: float
-    cy: float
+    Attributes:
+        size: width and height of the image in pixels.
+        pixels: (fx, fy, cx, cy), pixel centers at +0.5.
+        distortion: the lens; None of a pinhole.
+    """
+
+    size: tuple[int, int]
+    pixels: tuple[float, float, float, float]
     distortion: Lens | None
-
-    @property
-    def pixels(self) -> tuple[float, float, float, float]:
-        """(fx, fy, cx, cy)."""
-        return self.fx, self.fy, self.cx, self.cy
 
 
 def read_intrinsics(shared: JsonNode, frame: JsonNode, image_size: tuple[int, int]) -> Intrinsics:
@@ -72,15 +69,8 @@ def read_intrinsics(shared: JsonNode, frame: JsonNode, image_size: tuple[int, in
             raise SceneError(message(frame.function, f"{frame.place}: {key}", 0, got, remedy))
     terms = [number(key, 0.0) for key in known]
     lens = FisheyeDistortion(*terms) if known == _FISHEYE else Distortion(*terms)
-    return Intrinsics(
-        width=width,
-        height=height,
-        fx=fx,
-        fy=fx if fy is None else fy,
-        cx=number("cx", 0.5 * width),
-        cy=number("cy", 0.5 * height),
-        distortion=None if lens == Distortion() else lens,
-    )
+    pixels = (fx, fx if fy is None else fy, number("cx", 0.5 * width), number("cy", 0.5 * height))
+    return Intrinsics((width, height), pixels, None if lens == Distortion() else lens)
 
 
 def _focal(pixels: JsonNode | None, angle: JsonNode | None, size: int) -> float | None:

@@ -6,6 +6,7 @@ distortion.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -16,17 +17,16 @@ from photograd._json_node import JsonNode, read_json
 from photograd._ply import read_ply
 from photograd.capture.assemble import (
     Photograph,
-    background_of,
     check_size,
-    common_color,
     find_photograph,
     is_file,
+    kind_of_images,
     make_camera,
+    make_capture,
     transform_points,
     undistortion_lines,
-    unused_images,
 )
-from photograd.capture.capture import Capture, hold_out
+from photograd.capture.capture import Capture, Split, hold_out
 from photograd.capture.convention import check_convention
 from photograd.capture.frames import (
     LARGEST_COORDINATE,
@@ -68,32 +68,20 @@ def load_nerfstudio(
         view, photograph = _read_frame(root, node, path.parent, allow_outside=allow_outside)
         views.append(view)
         photographs.append(photograph)
-    color_space, has_alpha, lines = common_color(_NAME, photographs)
+    images = kind_of_images(_NAME, photographs)
     poses = [view.camera.world_from_camera for view in views]
     world_from_source, up_line = world_from_estimated_up(poses, declared_z_up=True)
     views = [view.turned(world_from_source) for view in views]
-    lines = ["OpenGL camera -> OpenCV", up_line, *_remarks(root, views), *lines]
-    lines.extend(unused_images(photographs))
+    lines = ["OpenGL camera -> OpenCV", up_line, *_remarks(root), *undistortion_lines(views)]
     if not trust_poses:
         lines.extend(check_convention(_NAME, views, world_from_source, up_is_known=False))
-    splits, split_line = _split(root, views)
+    split, val = _split(root, views)
     points, colors, point_lines = _read_points(
         root, path.parent, world_from_source, allow_outside=allow_outside
     )
-    return Capture(
-        train=splits["train"],
-        test=splits["test"],
-        val=splits["val"],
-        format="nerfstudio",
-        source=path,
-        color_space=color_space,
-        has_alpha=has_alpha,
-        background=background_of(has_alpha),
-        points=points,
-        point_colors=colors,
-        world_from_source=world_from_source,
-        conversions=(*lines, *point_lines, split_line),
-    )
+    lines.extend(point_lines)
+    capture = make_capture("nerfstudio", path, split, images, world_from_source, lines)
+    return replace(capture, val=val, points=points, point_colors=colors)
 
 
 def _read_frame(
@@ -105,7 +93,7 @@ def _read_frame(
     photograph = find_photograph(_NAME, frame, folder, reference, allow_outside=allow_outside)
     size = (photograph.header.width, photograph.header.height)
     lens = read_intrinsics(root, node, size)
-    check_size(_NAME, frame, photograph, (lens.width, lens.height))
+    check_size(_NAME, frame, photograph, lens.size)
     matrix = node["transform_matrix"].numbers((4, 4), (3, 4))
     pose = check_pose(_NAME, f"{frame}: transform_matrix", matrix) @ OPENGL_FROM_OPENCV
     camera = make_camera(_NAME, frame, size, lens.pixels, pose)
@@ -145,7 +133,7 @@ def _read_points(
     return transform_points(world_from_source, positions), colors, []
 
 
-def _remarks(root: JsonNode, views: list[View]) -> list[str]:
+def _remarks(root: JsonNode) -> list[str]:
     lines = []
     if "applied_transform" in root:
         matrix = root["applied_transform"].numbers((3, 4), (4, 4))
@@ -154,13 +142,13 @@ def _remarks(root: JsonNode, views: list[View]) -> list[str]:
     ignored = [key for key in _IGNORED if key in root]
     if ignored:
         lines.append(f"ignored members: {', '.join(ignored)}")
-    return [*lines, *undistortion_lines(views)]
+    return lines
 
 
-def _split(root: JsonNode, views: list[View]) -> tuple[dict[str, tuple[View, ...]], str]:
+def _split(root: JsonNode, views: list[View]) -> tuple[Split, tuple[View, ...]]:
+    """The split, and the validation views."""
     if "train_filenames" not in root:
-        train, test, line = hold_out(views)
-        return {"train": train, "val": (), "test": test}, line
+        return hold_out(views), ()
     by_name = {view.name: view for view in views}
     splits: dict[str, tuple[View, ...]] = {}
     for split in _SPLITS:
@@ -173,7 +161,8 @@ def _split(root: JsonNode, views: list[View]) -> tuple[dict[str, tuple[View, ...
             chosen.append(by_name[name])
         splits[split] = tuple(chosen)
     counts = ", ".join(f"{len(splits[split])} {split}" for split in _SPLITS)
-    return splits, f"split as the file has it ({counts})"
+    line = f"split as the file has it ({counts})"
+    return (splits["train"], splits["test"], line), splits["val"]
 
 
 # Coloured points in .ply files: what structure from motion hands to what starts from it.
