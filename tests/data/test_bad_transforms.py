@@ -74,7 +74,7 @@ BLENDER: list[tuple[Callable[[Any], None], type[Error], str]] = [
     (top(camera_angle_x=None), IoError, "'fl_x' or 'camera_angle_x'"),
     (top(frames=[]), IoError, "frames: expected at least one frame"),
     (top(frames={}), IoError, "frames: expected an array"),
-    (top(aabb=[[1, 1, 1], [0, 0, 0]]), RangeError, "aabb: expected finite corners"),
+    (top(aabb=[[1, 1, 1], [0, 0, 0]]), RangeError, "aabb: expected corners, lower below upper"),
     (top(w=30), IoError, "expected an image of 30 x 20, got 24 x 20 in 0000.png"),
 ]
 

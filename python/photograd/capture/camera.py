@@ -8,8 +8,9 @@ import numpy as np
 import numpy.typing as npt
 from photograd_course.portable_math import matmul
 
+from photograd._arrays import Arguments
 from photograd.capture.frames import check_pose, invert_rigid
-from photograd.errors import DtypeError, RangeError, ShapeError, message
+from photograd.errors import DtypeError, RangeError, message
 from photograd.types import FloatArray
 
 
@@ -81,14 +82,9 @@ class Camera:
             ShapeError, DtypeError, RangeError: pixel_ids not (R,), not integers, outside the image.
         """
         count = self.width * self.height
-        ids = np.arange(count) if pixel_ids is None else np.asarray(pixel_ids)
-        if ids.ndim != 1:
-            raise ShapeError(message("rays", "pixel_ids", "shape (R,)", ids.shape))
-        if not np.issubdtype(ids.dtype, np.integer):
-            raise DtypeError(message("rays", "pixel_ids", "integers", ids.dtype))
-        if ids.size and not (int(ids.min()) >= 0 and int(ids.max()) < count):
-            got = f"{int(ids.min())} to {int(ids.max())}"
-            raise RangeError(message("rays", "pixel_ids", f"0 to {count - 1}", got))
+        ids = np.arange(count) if pixel_ids is None else pixel_ids
+        call = Arguments("Camera.rays", np.int64)
+        ids = call.array("pixel_ids", ids, ("R",), low=0, high=count - 1)
         x = (ids % self.width + 0.5 - self.cx) / self.fx
         y = (ids // self.width + 0.5 - self.cy) / self.fy
         local = np.stack([x, y, np.ones_like(x)], axis=-1)
@@ -105,9 +101,8 @@ class Camera:
         Raises:
             ShapeError: points not (N, 3).
         """
-        points = np.asarray(points, dtype=np.float64)
-        if points.ndim != 2 or points.shape[1] != 3:
-            raise ShapeError(message("project", "points", "shape (N, 3)", points.shape))
+        call = Arguments("Camera.project", np.float64)
+        points = call.array("points", points, ("N", 3), finite=False)
         camera_from_world = invert_rigid(self.world_from_camera)
         local = matmul(points, camera_from_world[:3, :3].T) + camera_from_world[:3, 3]
         depth = local[:, 2]

@@ -12,8 +12,9 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from photograd._arrays import Arguments
 from photograd.capture.view import View
-from photograd.errors import IoError, RangeError, ShapeError, message
+from photograd.errors import IoError, RangeError, message
 from photograd.images.read import ColorSpace
 from photograd.types import FloatArray
 
@@ -91,14 +92,12 @@ class Capture:
             check_box("Capture", "bounds", self.bounds)
 
     def _check_points(self) -> None:
-        if self.points is not None and (self.points.ndim != 2 or self.points.shape[1] != 3):
-            raise ShapeError(message("Capture", "points", "shape (N, 3)", self.points.shape))
-        colors = self.point_colors
-        shape = None if self.points is None else self.points.shape
-        if colors is not None and (colors.shape != shape or colors.dtype != np.uint8):
-            got = f"{colors.dtype} of shape {colors.shape}"
-            expected = f"uint8 of shape {shape} as points"
-            raise ShapeError(message("Capture", "point_colors", expected, got))
+        call = Arguments("Capture")
+        points = np.zeros((0, 3)) if self.points is None else self.points
+        call.array("points", points, ("N", 3), finite=False)
+        if self.point_colors is not None:
+            colors = call.array("point_colors", self.point_colors, ("N", 3), dtype=np.uint8)
+            object.__setattr__(self, "point_colors", colors)
 
     @property
     def views(self) -> tuple[View, ...]:
@@ -186,10 +185,8 @@ def check_box(function: str, argument: str, box: FloatArray) -> FloatArray:
     Raises:
         ShapeError, RangeError: anything else.
     """
-    box = np.asarray(box, dtype=np.float64)
-    if box.shape != (2, 3):
-        raise ShapeError(message(function, argument, "shape (2, 3)", box.shape))
-    if not bool(np.isfinite(box).all()) or not bool((box[0] < box[1]).all()):
-        expected = "finite corners, lower below upper"
+    box = Arguments(function, np.float64).array(argument, box, (2, 3))
+    if not bool((box[0] < box[1]).all()):
+        expected = "corners, lower below upper"
         raise RangeError(message(function, argument, expected, box.tolist()))
     return box

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
+from photograd._arrays import Arguments
 from photograd._files import read_npy
 from photograd.capture.assemble import (
     Photograph,
@@ -26,7 +27,7 @@ from photograd.capture.capture import Capture, hold_out
 from photograd.capture.convention import check_convention
 from photograd.capture.frames import check_pose, world_from_estimated_up
 from photograd.capture.view import View
-from photograd.errors import IoError, RangeError, ShapeError, message
+from photograd.errors import IoError, RangeError, message
 from photograd.images.read import read_header
 from photograd.types import FloatArray
 
@@ -47,8 +48,8 @@ def load_llff(folder: Path, *, trust_poses: bool = False) -> Capture:
         IoError, RangeError, ShapeError, SceneError: names the row or image at fault.
     """
     table = read_npy(_NAME, folder / "poses_bounds.npy")
-    if table.ndim != 2 or table.shape[1] != 17:
-        raise ShapeError(message(_NAME, "poses_bounds.npy", "shape (N, 17)", table.shape))
+    call = Arguments(_NAME, np.float64)
+    table = call.array("poses_bounds.npy", table, ("N", 17), finite=False)
     image_folder = folder / "images"
     if not image_folder.is_dir():
         raise IoError(message(_NAME, str(folder), "a folder 'images'", "none"))

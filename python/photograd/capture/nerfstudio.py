@@ -29,7 +29,7 @@ from photograd.capture.assemble import (
 from photograd.capture.capture import Capture, Split, hold_out
 from photograd.capture.convention import check_convention
 from photograd.capture.frames import (
-    LARGEST_COORDINATE,
+    MAX_COORDINATE,
     OPENGL_FROM_OPENCV,
     check_pose,
     world_from_estimated_up,
@@ -189,7 +189,7 @@ def read_point_ply(path: Path) -> tuple[FloatArray, npt.NDArray[np.uint8] | None
         got = f"none in {', '.join(bad)}"
         raise IoError(message(_READER, f"{path}", "numbers x, y and z for each point", got))
     positions = np.stack([vertex[name].astype(np.float64) for name in _POSITION], axis=1)
-    outside = ~(np.abs(positions) <= LARGEST_COORDINATE).all(axis=1)
+    outside = ~(np.abs(positions) <= MAX_COORDINATE).all(axis=1)
     if outside.any():
         row = int(np.flatnonzero(outside)[0])
         got = f"{positions[row].tolist()} in row {row}"

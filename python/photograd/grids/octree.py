@@ -14,6 +14,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 import numpy.typing as npt
 
+from photograd._arrays import Arguments
 from photograd._compiled import _core
 from photograd.errors import DtypeError, RangeError, ShapeError, message
 from photograd.types import Array
@@ -247,13 +248,7 @@ class _SpatialTree:
 
     def _cells(self, name: str, argument: str, array: Array, *, shift: bool) -> Array:
         """World coordinates in cells of the root, contiguous and in the same dtype."""
-        array = np.asarray(array)
-        if array.dtype not in (np.float32, np.float64):
-            raise DtypeError(message(name, argument, "float32 or float64", array.dtype))
-        if array.ndim != 2 or array.shape[1] != self.dimensions:
-            expected = f"shape (N, {self.dimensions})"
-            raise ShapeError(message(name, argument, expected, f"shape {array.shape}"))
-        _require_finite(name, argument, array)
+        array = Arguments(name).array(argument, array, ("N", self.dimensions))
         origin = self.bounds[0] if shift else np.zeros(self.dimensions)
         cells = (array - origin.astype(array.dtype)) / self.cell_size.astype(array.dtype)
         return np.ascontiguousarray(cells)
@@ -336,11 +331,9 @@ def _box(name: str, bounds: npt.ArrayLike | None, shape: tuple[int, ...]) -> Arr
     """(2, D) float64 with a positive size along each axis."""
     if bounds is None:
         return np.array([np.zeros(len(shape)), shape], np.float64)
-    box = np.array(bounds, np.float64)
-    if box.shape != (2, len(shape)):
-        raise ShapeError(message(name, "bounds", f"shape (2, {len(shape)})", f"shape {box.shape}"))
-    if not (np.isfinite(box).all() and (box[1] > box[0]).all()):
-        raise RangeError(message(name, "bounds", "finite, lower before upper", box.tolist()))
+    box = Arguments(name, np.float64).array("bounds", bounds, (2, len(shape))).copy()
+    if not (box[1] > box[0]).all():
+        raise RangeError(message(name, "bounds", "lower before upper", box.tolist()))
     return box
 
 

@@ -13,7 +13,8 @@ import numpy as np
 import numpy.typing as npt
 from photograd_course.input_files import read_file
 
-from photograd.errors import IoError, ShapeError, message
+from photograd._arrays import Arguments
+from photograd.errors import IoError, message
 from photograd.images.kind import require_size
 
 _HEADER = re.compile(rb"P([Ff])\s+(\d{1,9})\s+(\d{1,9})\s+(\S{1,40})\s")
@@ -57,8 +58,7 @@ def encode_pfm(image: npt.NDArray[np.float32]) -> bytes:
     Raises:
         ShapeError: alpha, for which there is no place.
     """
-    if image.shape[2] != 3:
-        raise ShapeError(message("write_pfm", "image", "shape (H, W, 3)", image.shape))
+    image = Arguments("write_pfm").array("image", image, ("H", "W", 3))
     height, width, _ = image.shape
     return b"PF\n%d %d\n-1.0\n" % (width, height) + image[::-1].astype("<f4").tobytes()
 

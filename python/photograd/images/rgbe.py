@@ -18,8 +18,9 @@ import numpy as np
 import numpy.typing as npt
 from photograd_course.input_files import read_file
 
+from photograd._arrays import Arguments
 from photograd._memory import available_memory
-from photograd.errors import IoError, RangeError, ShapeError, message
+from photograd.errors import IoError, RangeError, message
 from photograd.images.kind import require_size
 
 Bytes = npt.NDArray[np.uint8]
@@ -178,8 +179,7 @@ def encode_rgbe(image: npt.NDArray[np.float32]) -> bytes:
         ShapeError: alpha, for which there is no place.
         RangeError: values below 0, or beyond the largest exponent (1.7e38).
     """
-    if image.shape[2] != 3:
-        raise ShapeError(message("write_rgbe", "image", "shape (H, W, 3)", image.shape))
+    image = Arguments("write_rgbe").array("image", image, ("H", "W", 3))
     largest = image.max(axis=2).astype(np.float64)
     mantissa, exponent = np.frexp(largest)
     exponent += np.rint(256.0 * mantissa) > 255  # rounded up to the next power of two

@@ -23,7 +23,7 @@ from photograd_course.atomic_io import atomic_write
 from photograd_course.input_files import read_file, require_file
 
 from photograd._files import read_npz
-from photograd.capture.frames import LARGEST_COORDINATE
+from photograd.capture.frames import MAX_COORDINATE
 from photograd.errors import IoError, message
 from photograd.sh import Y_0
 from photograd.splats.coding import (
@@ -142,7 +142,7 @@ def read_point_npz(path: Path, *, memory_limit: int | None = None) -> tuple[Gaus
         got = f"{colors.dtype} of shape {colors.shape}"
         raise _refusal(path, f"colors: uint8 of shape ({n}, 3)", got)
     require_room(_NPZ_READER, path, n, 1, memory_limit)
-    bad = ~(np.abs(means) <= LARGEST_COORDINATE).all(axis=1)
+    bad = ~(np.abs(means) <= MAX_COORDINATE).all(axis=1)
     if bad.any():
         row = int(np.flatnonzero(bad)[0])
         raise _refusal(path, "finite means3d up to 1e9", f"{means[row].tolist()} in row {row}")

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from photograd._json_node import JsonNode
-from photograd.capture.frames import LARGEST_COORDINATE, OPENGL_FROM_OPENCV, RIGID_TOLERANCE
+from photograd.capture.frames import MAX_COORDINATE, OPENGL_FROM_OPENCV, RIGID_TOLERANCE
 from photograd.errors import IoError, message
 from photograd.transport.mesh_files.container import NAME, Container, whole
 from photograd.transport.mesh_files.model_camera import ModelCamera
@@ -75,7 +75,7 @@ def _projection(camera: JsonNode, note: Callable[[str], None]) -> tuple[float, f
 
 def _pose(world: Array) -> Array | None:
     """world_from_camera of a node without what it scales; None if no rotation is left."""
-    if not (np.isfinite(world).all() and np.abs(world).max() < LARGEST_COORDINATE):
+    if not (np.isfinite(world).all() and np.abs(world).max() < MAX_COORDINATE):
         return None
     lengths = np.linalg.norm(world[:3, :3], axis=0)
     if not lengths.min() > 0:

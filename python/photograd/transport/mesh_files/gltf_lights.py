@@ -23,7 +23,7 @@ from typing import Any
 import numpy as np
 
 from photograd._json_node import JsonNode
-from photograd.capture.frames import LARGEST_COORDINATE
+from photograd.capture.frames import MAX_COORDINATE
 from photograd.errors import IoError, message
 from photograd.lights import DirectionalLight, Light, PointLight, SpotLight
 from photograd.transport.mesh_files.container import NAME, Container, real, whole
@@ -80,7 +80,7 @@ def _placed(light: JsonNode, world: Array, note: Callable[[str], None]) -> Light
         note(f"{light.place}: range: left out: light falls with the square of distance alone")
     back, position = world[:3, 2], world[:3, 3]
     shape = _cone(light) if kind == "spot" else None
-    if not np.isfinite(world).all() or np.abs(position).max() > LARGEST_COORDINATE:
+    if not np.isfinite(world).all() or np.abs(position).max() > MAX_COORDINATE:
         return None
     if kind == "point":
         return PointLight(position, strength)

@@ -19,7 +19,7 @@ from photograd.types import Array
 
 Arrays = tuple[Array, Array, Array | None, Array | None]
 """Vertices (V, 3), faces (F, 3), shading normals (V, 3) or None, uv (V, 2) or None."""
-LARGEST_COORDINATE = 1e9
+MAX_COORDINATE = 1e9
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,7 +66,7 @@ def placed_shapes(
     for place in places:
         volume = float(np.linalg.det(place[:3, :3])) if np.isfinite(place).all() else 0.0
         reach = np.abs(place).max() if np.isfinite(place).all() else np.inf
-        if not (abs(volume) > 1e-30 and np.isfinite(volume) and reach < LARGEST_COORDINATE):
+        if not (abs(volume) > 1e-30 and np.isfinite(volume) and reach < MAX_COORDINATE):
             note(f"{name}: a transformation without volume, left out")
             continue
         usable.append((place, volume))
