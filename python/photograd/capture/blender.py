@@ -68,7 +68,7 @@ def load_blender(
     bounds = None
     if "aabb" in roots["train"]:
         node = roots["train"]["aabb"]
-        box = check_box(_NAME, node.place, node.numbers((2, 3)))
+        box = check_box(_NAME, node.where, node.numbers((2, 3)))
         bounds = box_from_source(Y_UP_FROM_Z_UP, box)
         lines.append("aabb: declared in the +Z up frame, turned like the poses")
     parts = (views["train"], views.get("test", ()), "split as the files have it")
@@ -89,7 +89,7 @@ def _read_split(
     views: list[View] = []
     for node in root["frames"].items():
         reference = node["file_path"].text()
-        frame = f"{node.place} '{reference}'"
+        frame = f"{node.where} '{reference}'"
         photograph = find_photograph(
             _NAME, frame, folder, reference, color_space, allow_outside=allow_outside
         )
@@ -106,5 +106,5 @@ def _read_split(
         views.append(View(name, camera, photograph.file, space, lens.distortion, source_size=size))
         found.append((frame, photograph))
     if not views:
-        raise IoError(message(_NAME, f"{root.place}: frames", "at least one frame", "none"))
+        raise IoError(message(_NAME, f"{root.where}: frames", "at least one frame", "none"))
     return tuple(views)

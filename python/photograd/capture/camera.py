@@ -21,7 +21,7 @@ class Camera:
     Attributes:
         width, height: image size in pixels.
         fx, fy: focal lengths in pixels.
-        cx, cy: principal point in pixels; the centre of the top left pixel is (0.5, 0.5).
+        cx, cy: principal point in pixels; the center of the top left pixel is (0.5, 0.5).
         world_from_camera: (4, 4) float64 rigid pose; camera axes +X right, +Y down, +Z forward.
 
     Raises:
@@ -49,16 +49,16 @@ class Camera:
             if not 1e-6 < focal < 1e9:
                 raise RangeError(message("Camera", name, "a positive focal length", focal))
         for name in ("cx", "cy"):
-            centre = getattr(self, name)
-            if not abs(centre) < 1e9:
-                raise RangeError(message("Camera", name, "a finite pixel position", centre))
+            center = getattr(self, name)
+            if not abs(center) < 1e9:
+                raise RangeError(message("Camera", name, "a finite pixel position", center))
         pose = check_pose("Camera", "world_from_camera", self.world_from_camera).copy()
         pose.setflags(write=False)
         object.__setattr__(self, "world_from_camera", pose)
 
     @property
     def position(self) -> FloatArray:
-        """Centre of projection, (3,), in the world."""
+        """Center of projection, (3,), in the world."""
         return self.world_from_camera[:3, 3]
 
     @property
@@ -69,7 +69,7 @@ class Camera:
     def rays(
         self, pixel_ids: npt.NDArray[np.integer] | None = None
     ) -> tuple[FloatArray, FloatArray]:
-        """Rays through pixel centres: pixel (column u, row v) looks along
+        """Rays through pixel centers: pixel (column u, row v) looks along
         ((u + 0.5 - cx) / fx, (v + 0.5 - cy) / fy, 1) in the camera frame.
 
         Args:
@@ -116,7 +116,7 @@ class Camera:
     def downscaled(self, factor: int) -> Camera:
         """The camera of the image reduced by an integer box filter.
 
-        Intrinsics divide exactly, as pixel centres sit at +0.5; a remainder of columns or rows that
+        Intrinsics divide exactly, as pixel centers sit at +0.5; a remainder of columns or rows that
         does not fill a box is cut off at the right and bottom, which moves nothing else.
 
         Raises:

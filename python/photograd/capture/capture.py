@@ -53,11 +53,11 @@ class Capture:
         source: folder or file that it was loaded from.
         color_space: of all views.
         has_alpha: every view carries alpha.
-        background: linear or display (3,) colour to composite over, as `color_space` says; None if
+        background: linear or display (3,) color to composite over, as `color_space` says; None if
             there is no alpha.
         points, point_colors: sparse points (N, 3) in the world of the cameras, and their 8-bit
-            display colours (N, 3), from formats that have them: COLMAP, OpenSfM, and nerfstudio
-            with a ply_file_path. There may be points without colours.
+            display colors (N, 3), from formats that have them: COLMAP, OpenSfM, and nerfstudio
+            with a ply_file_path. There may be points without colors.
         bounds: (2, 3) lower and upper corner that the file declares, else None.
         depth_range: nearest and farthest depth that the file declares, else None.
         world_from_source: (4, 4) turn from the file's world into ours.
@@ -117,7 +117,7 @@ class Capture:
         """The same capture with one more sentence in its log."""
         return replace(self, conversions=(*self.conversions, line))
 
-    def validating(self) -> Capture:
+    def with_validation_split(self) -> Capture:
         """The training views alone, every eighth of them held out; the test views are put away.
 
         For choosing a resolution or another option: a choice that looked at the test views would
@@ -128,7 +128,9 @@ class Capture:
         """
         train, test, _ = hold_out(self.train)
         if not test:
-            raise RangeError(message("validating", "capture", "two training views or more", "one"))
+            raise RangeError(
+                message("with_validation_split", "capture", "two training views or more", "one")
+            )
         line = (
             f"{len(test)} training views held out to choose by, {len(self.test)} test views unseen"
         )
@@ -154,14 +156,14 @@ class Capture:
         line = f"images reduced by a {factor} x {factor} box average in premultiplied alpha{rest}"
         return smaller.with_line(line)
 
-    def limited(self, count: int) -> Capture:
+    def subsample(self, count: int) -> Capture:
         """The same capture with at most `count` views in each split, evenly spaced in their order.
 
         Raises:
             RangeError: count below 1.
         """
         if count < 1:
-            raise RangeError(message("limited", "count", "at least 1", count))
+            raise RangeError(message("subsample", "count", "at least 1", count))
         line = f"at most {count} views of each split kept, evenly spaced"
         return replace(
             self,

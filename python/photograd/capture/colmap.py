@@ -89,7 +89,7 @@ def load_colmap(folder: Path, *, trust_poses: bool = False, allow_outside: bool 
         _check_observations(model, [view for view, _ in pairs])
     poses = [view.camera.world_from_camera for view, _ in pairs]
     world_from_source, up_line = world_from_estimated_up(poses, declared_z_up=False)
-    views = [view.turned(world_from_source) for view, _ in pairs]
+    views = [view.transformed(world_from_source) for view, _ in pairs]
     lines = (
         f"{'binary' if binary else 'text'} model in {model_folder.name}: camera_from_world "
         "-> world_from_camera, OpenCV camera kept, scale arbitrary",
@@ -154,9 +154,9 @@ def pinhole_and_lens(
     """
     if camera.model == "EQUIRECTANGULAR":
         remedy = "render perspective views of the panoramas with COLMAP first"
-        place = f"camera {camera_id}: model"
+        where = f"camera {camera_id}: model"
         raise IoError(
-            message(_NAME, place, "a perspective or fisheye camera", camera.model, remedy)
+            message(_NAME, where, "a perspective or fisheye camera", camera.model, remedy)
         )
     values = list(camera.parameters)
     single = camera.model.startswith("SIMPLE_") or camera.model in _ONE_FOCAL_LENGTH
@@ -185,8 +185,8 @@ def _check_observations(model: ColmapModel, views: list[View]) -> None:
         known = ids[rows] == image.point_ids
         if known.sum() < 8:
             continue
-        seen = reproject(view, model.points.positions[order[rows[known]]])
-        error = np.linalg.norm(seen - image.pixels[known], axis=1)
+        projected = reproject(view, model.points.positions[order[rows[known]]])
+        error = np.linalg.norm(projected - image.pixels[known], axis=1)
         error = np.where(np.isfinite(error), error, np.inf)
         if float(np.median(error)) > 0.05 * max(view.camera.width, view.camera.height):
             got = (

@@ -111,7 +111,7 @@ def mean_camera_up(poses: Sequence[FloatArray]) -> FloatArray:
     """Mean (3,) of the cameras' up directions in the frame of `poses` (OpenCV: up is -Y).
 
     Its length says how well the cameras agree: 1 if all stand alike, near 0 if they have no common
-    up. It is not normalised.
+    up. It is not normalized.
     """
     result: FloatArray = np.mean([-pose[:3, 1] for pose in poses], axis=0)
     return result

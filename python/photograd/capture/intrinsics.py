@@ -60,13 +60,13 @@ def read_intrinsics(shared: JsonNode, frame: JsonNode, image_size: tuple[int, in
     fy = _focal(lookup("fl_y"), lookup("camera_angle_y"), height)
     if fx is None:
         expected = "a member 'fl_x' or 'camera_angle_x'"
-        raise IoError(message(frame.function, frame.place, expected, "neither"))
+        raise IoError(message(frame.function, frame.where, expected, "neither"))
     known = _FISHEYE if model == "OPENCV_FISHEYE" else _RADIAL
     for key in sorted(_TERMS - set(known)):
         if number(key, 0.0) != 0.0:
             remedy = "undistort the images first"
             got = number(key, 0.0)
-            raise SceneError(message(frame.function, f"{frame.place}: {key}", 0, got, remedy))
+            raise SceneError(message(frame.function, f"{frame.where}: {key}", 0, got, remedy))
     terms = [number(key, 0.0) for key in known]
     lens = FisheyeDistortion(*terms) if known == _FISHEYE else Distortion(*terms)
     pixels = (fx, fx if fy is None else fy, number("cx", 0.5 * width), number("cy", 0.5 * height))
@@ -78,14 +78,14 @@ def _focal(pixels: JsonNode | None, angle: JsonNode | None, size: int) -> float 
         focal = pixels.number()
         if not 0.0 < focal < 1e9:
             expected = "a positive focal length in pixels"
-            raise RangeError(message(pixels.function, pixels.place, expected, focal))
+            raise RangeError(message(pixels.function, pixels.where, expected, focal))
         return focal
     if angle is None:
         return None
     radians = angle.number()
     if not 1e-6 < radians < math.pi - 1e-6:
         raise RangeError(
-            message(angle.function, angle.place, "an angle in (0, pi) radians", radians)
+            message(angle.function, angle.where, "an angle in (0, pi) radians", radians)
         )
     return 0.5 * size / math.tan(0.5 * radians)
 
@@ -95,5 +95,5 @@ def _model(node: JsonNode | None) -> str:
     if node is not None and model not in MODELS:
         expected = "one of " + ", ".join(sorted(MODELS))
         remedy = "undistort the images to a pinhole first"
-        raise IoError(message(node.function, node.place, expected, model, remedy))
+        raise IoError(message(node.function, node.where, expected, model, remedy))
     return model

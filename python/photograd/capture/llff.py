@@ -64,7 +64,7 @@ def load_llff(folder: Path, *, trust_poses: bool = False) -> Capture:
     views = [_read_row(row, photograph) for row, photograph in zip(table, photographs, strict=True)]
     poses = [view.camera.world_from_camera for view in views]
     world_from_source, up_line = world_from_estimated_up(poses, declared_z_up=False)
-    views = [view.turned(world_from_source) for view in views]
+    views = [view.transformed(world_from_source) for view in views]
     lines = ["camera axes (down, right, backwards) -> OpenCV, scale arbitrary", up_line]
     header = photographs[0].header
     if (table[0, 9], table[0, 4]) != (header.width, header.height):

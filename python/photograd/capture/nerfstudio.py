@@ -71,7 +71,7 @@ def load_nerfstudio(
     images = kind_of_images(_NAME, photographs)
     poses = [view.camera.world_from_camera for view in views]
     world_from_source, up_line = world_from_estimated_up(poses, declared_z_up=True)
-    views = [view.turned(world_from_source) for view in views]
+    views = [view.transformed(world_from_source) for view in views]
     lines = ["OpenGL camera -> OpenCV", up_line, *_remarks(root), *undistortion_lines(views)]
     if not trust_poses:
         lines.extend(check_convention(_NAME, views, world_from_source, up_is_known=False))
@@ -89,7 +89,7 @@ def _read_frame(
 ) -> tuple[View, Photograph]:
     """One view, still in the file's world."""
     reference = node["file_path"].text()
-    frame = f"{node.place} '{reference}'"
+    frame = f"{node.where} '{reference}'"
     photograph = find_photograph(_NAME, frame, folder, reference, allow_outside=allow_outside)
     size = (photograph.header.width, photograph.header.height)
     lens = read_intrinsics(root, node, size)
@@ -100,9 +100,9 @@ def _read_frame(
     mask_file = None
     if "mask_path" in node:
         mask_reference = node["mask_path"].text()
-        place = f"{frame}: mask_path"
-        mask = find_photograph(_NAME, place, folder, mask_reference, allow_outside=allow_outside)
-        check_size(_NAME, place, mask, size)
+        where = f"{frame}: mask_path"
+        mask = find_photograph(_NAME, where, folder, mask_reference, allow_outside=allow_outside)
+        check_size(_NAME, where, mask, size)
         mask_file = mask.file
     view = View(
         name=reference.removeprefix("./"),
@@ -123,8 +123,8 @@ def _read_points(
     if "ply_file_path" not in root:
         return None, None, []
     reference = root["ply_file_path"].text()
-    place = root["ply_file_path"].place
-    file = inside(_NAME, place, folder, reference, allow_outside=allow_outside, remedy=TRUST)
+    where = root["ply_file_path"].where
+    file = inside(_NAME, where, folder, reference, allow_outside=allow_outside, remedy=TRUST)
     if not is_file(file):
         return None, None, [f"ply_file_path: no file {reference}, so no sparse points"]
     positions, colors = read_point_ply(file)
@@ -137,7 +137,7 @@ def _remarks(root: JsonNode) -> list[str]:
     lines = []
     if "applied_transform" in root:
         matrix = root["applied_transform"].numbers((3, 4), (4, 4))
-        check_pose(_NAME, root["applied_transform"].place, matrix)
+        check_pose(_NAME, root["applied_transform"].where, matrix)
         lines.append("applied_transform: already contained in the poses, not taken back")
     ignored = [key for key in _IGNORED if key in root]
     if ignored:
@@ -157,7 +157,7 @@ def _split(root: JsonNode, views: list[View]) -> tuple[Split, tuple[View, ...]]:
         for node in root[key].items() if key in root else []:
             name = node.text().removeprefix("./")
             if name not in by_name:
-                raise IoError(message(_NAME, node.place, "the file_path of a frame", repr(name)))
+                raise IoError(message(_NAME, node.where, "the file_path of a frame", repr(name)))
             chosen.append(by_name[name])
         splits[split] = tuple(chosen)
     counts = ", ".join(f"{len(splits[split])} {split}" for split in _SPLITS)
@@ -165,7 +165,7 @@ def _split(root: JsonNode, views: list[View]) -> tuple[Split, tuple[View, ...]]:
     return (splits["train"], splits["test"], line), splits["val"]
 
 
-# Coloured points in .ply files: what structure from motion hands to what starts from it.
+# Colored points in .ply files: what structure from motion hands to what starts from it.
 
 
 _READER = "read_point_ply"
@@ -173,10 +173,10 @@ _POSITION, _COLOR = ("x", "y", "z"), ("red", "green", "blue")
 
 
 def read_point_ply(path: Path) -> tuple[FloatArray, npt.NDArray[np.uint8] | None]:
-    """Positions (N, 3) in the frame of the file and 8-bit display colours (N, 3), or None.
+    """Positions (N, 3) in the frame of the file and 8-bit display colors (N, 3), or None.
 
     Raises:
-        IoError: no file, a damaged one, or positions or colours that are none.
+        IoError: no file, a damaged one, or positions or colors that are none.
     """
     elements = read_ply(_READER, path)
     if "vertex" not in elements:
@@ -198,5 +198,5 @@ def read_point_ply(path: Path) -> tuple[FloatArray, npt.NDArray[np.uint8] | None
         return positions, None
     if any(vertex.dtype[name] != np.uint8 for name in _COLOR):
         got = ", ".join(str(vertex.dtype[name]) for name in _COLOR)
-        raise IoError(message(_READER, f"{path}", "colours as 8-bit numbers (uchar)", got))
+        raise IoError(message(_READER, f"{path}", "colors as 8-bit numbers (uchar)", got))
     return positions, np.stack([vertex[name] for name in _COLOR], axis=1)

@@ -63,7 +63,7 @@ def load_opensfm(path: Path, *, trust_poses: bool = False, allow_outside: bool =
         for name, shot in shots
     ]
     images = kind_of_images(_NAME, [photograph for _, photograph in pairs])
-    views = [view.turned(Y_UP_FROM_Z_UP) for view, _ in pairs]
+    views = [view.transformed(Y_UP_FROM_Z_UP) for view, _ in pairs]
     lines = [
         "camera_from_world -> world_from_camera, OpenCV camera kept",
         "+Z up (east, north, up) -> +Y up",
@@ -116,16 +116,16 @@ def _lens(
         focal_x, focal_y = node["focal_x"].number(), node["focal_y"].number()
         if number("k3") != 0.0:
             remedy = "undistort the images first"
-            raise SceneError(message(_NAME, f"{node.place}: k3", 0, number("k3"), remedy))
+            raise SceneError(message(_NAME, f"{node.where}: k3", 0, number("k3"), remedy))
     else:
-        raise IoError(message(_NAME, node["projection_type"].place, "perspective or brown", kind))
+        raise IoError(message(_NAME, node["projection_type"].where, "perspective or brown", kind))
     distortion = Distortion(number("k1"), number("k2"), number("p1"), number("p2"))
-    centre_x, centre_y = number("c_x") * longer, number("c_y") * longer
+    center_x, center_y = number("c_x") * longer, number("c_y") * longer
     pixels = (
         focal_x * longer,
         focal_y * longer,
-        0.5 * size[0] + centre_x,
-        0.5 * size[1] + centre_y,
+        0.5 * size[0] + center_x,
+        0.5 * size[1] + center_y,
     )
     return pixels, None if distortion.is_identity else distortion
 

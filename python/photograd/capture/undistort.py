@@ -262,7 +262,7 @@ def source_positions(camera: Camera, lens: Lens) -> tuple[FloatArray, npt.NDArra
 
     Returns:
         Pixel positions (H, W, 2), and which of them (H, W) can be read by bilinear interpolation:
-        one to one under the lens and inside the hull of the photograph's pixel centres.
+        one to one under the lens and inside the hull of the photograph's pixel centers.
     """
     u, v = np.meshgrid(np.arange(camera.width) + 0.5, np.arange(camera.height) + 0.5)
     ideal = np.stack([(u - camera.cx) / camera.fx, (v - camera.cy) / camera.fy], axis=-1)

@@ -19,7 +19,7 @@ from photograd.types import FloatArray
 
 
 def display_color(color: npt.NDArray[Any], color_space: ColorSpace) -> npt.NDArray[Any]:
-    """Colours of a view in display values: encoded if they are linear. Same shape and dtype."""
+    """Colors of a view in display values: encoded if they are linear. Same shape and dtype."""
     return srgb_encode(color) if color_space == "linear" else color
 
 
@@ -94,7 +94,7 @@ class View:
             self, camera=camera, downscale=self.downscale * factor, source_size=self._source_size()
         )
 
-    def turned(self, world_from_source: FloatArray) -> View:
+    def transformed(self, world_from_source: FloatArray) -> View:
         """The same view after the world was moved by a (4, 4) rigid transform."""
         pose = matmul(world_from_source, self.camera.world_from_camera)
         return replace(self, camera=replace(self.camera, world_from_camera=pose))

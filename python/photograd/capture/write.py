@@ -272,13 +272,13 @@ def _check_frame(
     if not name or name != Path(name).name or name.startswith("."):
         raise SceneError(message(_NAME, where, "a plain file name", repr(name)))
     same = (camera.width, camera.height, camera.fx) == (first.width, first.height, first.fx)
-    centred = np.allclose(
+    centerd = np.allclose(
         [camera.cx, camera.cy, camera.fy],
         [0.5 * camera.width, 0.5 * camera.height, camera.fx],
         rtol=1e-12,
         atol=0.0,
     )
-    if not (same and centred):
+    if not (same and centerd):
         expected = "one size, one focal length fx = fy, principal point in the middle"
         listed = (camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy)
         raise RangeError(message(_NAME, f"{where}: camera", expected, listed))

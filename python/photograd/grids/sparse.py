@@ -2,7 +2,7 @@
 
 OpenVDB holds the topology and the files (cpp/photograd/grid/sparse_grid.h). Voxel (i, j, k) has its
 value at the index-space point (i, j, k), the middle of the voxel; `world_from_index` (4, 4) takes
-such points to world metres. What is not active has the background's value. [Museth2013]
+such points to world meters. What is not active has the background's value. [Museth2013]
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from photograd._memory import require_room
 from photograd.errors import RangeError, message
 from photograd.types import Array
 
-MOST_STEPS = 200
+MAX_STEPS = 200
 """Of one dilation: a single voxel becomes a cube of 401^3, 64 million in a few seconds. Time and
 memory grow with the cube of the steps."""
 OWN_KEYS = ("name", "file_")
@@ -226,10 +226,10 @@ class SparseGrid:
         One step covers whatever a trilinear lookup reads around a point in an active voxel.
 
         Raises:
-            RangeError: steps outside of 1 to `MOST_STEPS`, or more voxels than memory may hold.
+            RangeError: steps outside of 1 to `MAX_STEPS`, or more voxels than memory may hold.
         """
-        if not 0 < steps <= MOST_STEPS:
-            raise RangeError(message("SparseGrid.dilate", "steps", f"1 to {MOST_STEPS}", steps))
+        if not 0 < steps <= MAX_STEPS:
+            raise RangeError(message("SparseGrid.dilate", "steps", f"1 to {MAX_STEPS}", steps))
         found = self.statistics
         around = [
             found.active_voxels * (2 * steps + 1) ** 3,

@@ -27,7 +27,7 @@ class VoxelHashStatistics:
     Attributes:
         count: voxels.
         row_limit: one more than the largest row in use.
-        slots: places for voxels; at most half of them are in use.
+        slots: of the table; at most half of them are in use.
         bytes: of the slots.
         longest_probe: slots that the longest search for a voxel looks at.
         mean_probe: the same on average over all voxels.

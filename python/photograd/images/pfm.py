@@ -18,7 +18,7 @@ from photograd.errors import IoError, message
 from photograd.images.kind import require_size
 
 _HEADER = re.compile(rb"P([Ff])\s+(\d{1,9})\s+(\d{1,9})\s+(\S{1,40})\s")
-_LONGEST_HEADER = 128
+_MAX_HEADER_BYTES = 128
 
 
 def read_pfm_header(path: Path) -> tuple[int, int]:
@@ -56,7 +56,7 @@ def encode_pfm(image: npt.NDArray[np.float32]) -> bytes:
     """(H, W, 3) as the bytes of a little-endian file, to the bit.
 
     Raises:
-        ShapeError: alpha, for which there is no place.
+        ShapeError: alpha, which the format lacks.
     """
     image = Arguments("write_pfm").array("image", image, ("H", "W", 3))
     height, width, _ = image.shape
@@ -65,7 +65,7 @@ def encode_pfm(image: npt.NDArray[np.float32]) -> bytes:
 
 def _header(path: Path) -> tuple[int, int, int, int, float]:
     """Where the samples start, width, height, channels and scale."""
-    found = _HEADER.match(read_file("read_pfm", path, _LONGEST_HEADER))
+    found = _HEADER.match(read_file("read_pfm", path, _MAX_HEADER_BYTES))
     try:
         scale = float(found[4]) if found else 0.0
     except ValueError:

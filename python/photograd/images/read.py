@@ -40,7 +40,7 @@ ImageArray: TypeAlias = npt.NDArray[np.float32]
 ALPHA_SLACK = 0.01
 """How far a lossy compression may push alpha out of 0..1."""
 
-LARGEST_RADIANCE = 1e12
+MAX_RADIANCE = 1e12
 """A thousand times the sun's disc; beyond it, squares of radiance leave the range of float."""
 
 IMAGE_SUFFIXES = (".png", ".jpg", ".jpeg", *LINEAR_SUFFIXES)
@@ -66,7 +66,7 @@ _MODES = {"1", "L", "LA", "P", "RGB", "RGBA", "I;16", "I;16B", "I;16L"}
 
 @dataclass(frozen=True)
 class ImageHeader:
-    """Width and height in pixels, whether the file carries alpha, and its colour space."""
+    """Width and height in pixels, whether the file carries alpha, and its color space."""
 
     width: int
     height: int
@@ -156,7 +156,7 @@ def _checked(path: Path, stored: ImageArray) -> ImageArray:
         got = f"{float(alpha.min()):.6g} to {float(alpha.max()):.6g}"
         raise IoError(message("read_image", str(path), "alpha in 0..1", got))
     largest = float(np.abs(stored[..., :3]).max())
-    if largest > LARGEST_RADIANCE:
+    if largest > MAX_RADIANCE:
         raise IoError(message("read_image", str(path), "radiance below 1e12", f"{largest:.6g}"))
     stored[..., 3] = alpha.clip(0.0, 1.0)
     return stored
@@ -198,16 +198,16 @@ def _with_channels(samples: npt.NDArray[Any], most: float) -> ImageArray:
     return rgba
 
 
-SMALLEST_ALPHA = 1e-6
-"""Below it a pixel counts as transparent: its colour is left as it is, since division would only
+MIN_ALPHA = 1e-6
+"""Below it a pixel counts as transparent: its color is left as it is, since division would only
 magnify rounding errors, up to infinity."""
 
 
 def _straight(premultiplied: ImageArray) -> ImageArray:
-    """Divide colour by alpha where alpha is not negligible."""
+    """Divide color by alpha where alpha is not negligible."""
     result = premultiplied.copy()
     alpha = premultiplied[..., 3:]
-    np.divide(result[..., :3], alpha, out=result[..., :3], where=alpha > SMALLEST_ALPHA)
+    np.divide(result[..., :3], alpha, out=result[..., :3], where=alpha > MIN_ALPHA)
     return result
 
 
@@ -252,7 +252,7 @@ def _require_file(function: str, path: Path) -> None:
 def _require_mode(function: str, path: Path, opened: Image.Image) -> None:
     if opened.mode not in _MODES:
         got = f"mode {opened.mode}"
-        raise IoError(message(function, str(path), "grey, RGB or RGBA", got, "convert it first"))
+        raise IoError(message(function, str(path), "gray, RGB or RGBA", got, "convert it first"))
     if opened.width < 1 or opened.height < 1:
         raise IoError(message(function, str(path), "at least one pixel", opened.size))
     require_pixels(function, str(path), opened.width, opened.height)
