@@ -64,7 +64,7 @@ from photograd.transport.medium import BOUNDARY
 from photograd.transport.motion import moved_on
 from photograd.transport.scene import Environment, Scene
 from photograd.transport.scene_meshes import (
-    Brought,
+    ImportedMeshes,
     camera_of_file,
     matrix_of,
     mesh_shapes,
@@ -103,27 +103,27 @@ def _scene(root: Node, name: str) -> Scene:
         materials = {key: _material(tables.table(key)) for key in tables.data}
     media, world = media_in(root)
     bodies = bodies_in(root)
-    brought = Brought(dict(materials), textures_in(root), dict(media))
+    imported = ImportedMeshes(dict(materials), textures_in(root), dict(media))
     shapes = [
         shape
         for i, node in enumerate(root.tables("shapes"))
         for shape in filled(
-            node, media, _moving(node, _shapes(node, i, materials, brought, bodies))
+            node, media, _moving(node, _shapes(node, i, materials, imported, bodies))
         )
     ]
     lights = tuple(map(light_of, root.tables("lights"))) if root.has("lights") else ()
-    lights += tuple(brought.lights)
+    lights += tuple(imported.lights)
     return Scene(
         name,
         tuple(shapes),
-        brought.materials,
+        imported.materials,
         camera,
         environment,
         lights,
-        textures=brought.textures,
+        textures=imported.textures,
         lens=lens,
         shutter=shutter,
-        media=brought.media,
+        media=imported.media,
         world=world,
     )
 
@@ -191,10 +191,10 @@ def _shapes(
     node: Node,
     index: int,
     materials: dict[str, Material],
-    brought: Brought,
+    imported: ImportedMeshes,
     bodies: dict[str, SdfNode],
 ) -> list[Shape]:
-    """What a table describes; materials, textures and media of its file are added to `brought`."""
+    """What a table describes; materials, textures and media of its file are added to `imported`."""
     node.has("interior")  # read by `filled`
     node.has("closing")  # read by `_moving`
     kind = node.choice("kind", (*KINDS, "mesh", "sdf"))
@@ -207,7 +207,7 @@ def _shapes(
     emission = node.color("emission") if node.has("emission") else None
     shapes, own = mesh_shapes(node, name, material, emission)
     node.refuse_other_keys()
-    brought.update(own)
+    imported.update(own)
     return [*shapes]
 
 
