@@ -110,7 +110,7 @@ def compare(
             name = Path(given).name
             capture = load_capture(folder, downscale=downscale, allow_outside=allow_outside)
             if validate:
-                name, capture = f"{name}_validation", capture.validating()
+                name, capture = f"{name}_validation", capture.with_validation_split()
             found = contest(name, capture, candidates, shared, out / name, stopping)
             scores += [score for score, _ in found]
             pictures.append(out / f"{name}.png")

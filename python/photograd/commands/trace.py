@@ -46,11 +46,11 @@ from photograd.commands.trace_estimates import (
 )
 from photograd.commands.trace_settings import SetOption, traced
 from photograd.errors import SceneError, message
-from photograd.images.kind import LARGEST_SIDE, LINEAR_SUFFIXES
+from photograd.images.kind import LINEAR_SUFFIXES, MAX_SIDE
 from photograd.images.write import write_png, write_radiance
 from photograd.transport.accumulation import Accumulation, load_accumulation
 from photograd.transport.builtin import BUILTIN, builtin_scene
-from photograd.transport.mesh_files import STUDIO, SUFFIXES, model_scene, read_model
+from photograd.transport.mesh_files import STUDIO, SUFFIXES, default_scene, read_model
 from photograd.transport.path_options import HEURISTICS, STRATEGIES, PathOptions
 from photograd.transport.scene import Scene
 from photograd.transport.scene_digest import scene_digest
@@ -98,7 +98,7 @@ SizeOption = Annotated[
     typer.Option(
         "--size",
         min=1,
-        max=LARGEST_SIDE,
+        max=MAX_SIDE,
         help="Pixels along an edge of a built-in scene, along the longer one for a mesh file.",
     ),
 ]
@@ -245,7 +245,7 @@ def load_scene(name: str, size: int, camera: str | None = None) -> tuple[Scene, 
             path = Path(name)
             meshes = path.suffix.lower() in SUFFIXES
             scene = (
-                model_scene(read_model(path), path.stem, size, camera=camera)
+                default_scene(read_model(path), path.stem, size, camera=camera)
                 if meshes
                 else read_scene(path)
             )

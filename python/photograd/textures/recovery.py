@@ -18,8 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 from photograd_course.portable_math import norm
 
+from photograd._arrays import Arguments
 from photograd.errors import Error, RangeError, message
-from photograd.textures.sample import TexturePlan, float_array, sample_backward
+from photograd.textures.sample import TexturePlan, sample_backward
 from photograd.types import Array
 
 SAFETY = 0.95  # of the bound that keeps descent from diverging
@@ -60,7 +61,7 @@ def stable_learning_rate(
     Raises:
         DtypeError, ShapeError, RangeError: points or shape that make no plan.
     """
-    uv = float_array("stable_learning_rate", "uv", uv)
+    uv = Arguments("stable_learning_rate").array("uv", uv, ("N", 2), finite=False)
     # With black targets the gradient is H T itself, here of a texture with one channel.
     plan = TexturePlan(uv, np.zeros((len(uv), 1), uv.dtype), shape)
     vector = np.ones(plan.shape, uv.dtype)
@@ -96,7 +97,7 @@ def recover(
             learning rate that is not positive.
         Error: the loss is no longer finite; the learning rate is too large.
     """
-    uv = float_array("recover", "uv", uv)
+    uv = Arguments("recover").array("uv", uv, ("N", 2), finite=False)
     plan = TexturePlan(uv, colors, shape)
     if steps < 1:
         raise RangeError(message("recover", "steps", "at least 1", steps))

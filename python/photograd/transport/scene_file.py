@@ -12,7 +12,8 @@ import numpy as np
 from photograd_course.input_files import read_text
 from photograd_course.toml_limits import parse_toml
 
-from photograd.bsdf import Parameter, pack_rows
+from photograd._arrays import Arguments
+from photograd._registry import Parameter, Parameters
 from photograd.capture.camera import Camera
 from photograd.geometry.sdf import Shape as SdfNode
 from photograd.transport.builtin import camera_at
@@ -22,7 +23,7 @@ from photograd.transport.medium import BOUNDARY
 from photograd.transport.motion import moved_on
 from photograd.transport.scene import Environment, Scene
 from photograd.transport.scene_meshes import (
-    Brought,
+    ImportedMeshes,
     camera_of_file,
     matrix_of,
     mesh_shapes,
@@ -61,27 +62,27 @@ def _scene(root: Node, name: str) -> Scene:
         materials = {key: _material(tables.table(key)) for key in tables.data}
     media, world = media_in(root)
     bodies = bodies_in(root)
-    brought = Brought(dict(materials), textures_in(root), dict(media))
+    imported = ImportedMeshes(dict(materials), textures_in(root), dict(media))
     shapes = [
         shape
         for i, node in enumerate(root.tables("shapes"))
         for shape in filled(
-            node, media, _moving(node, _shapes(node, i, materials, brought, bodies))
+            node, media, _moving(node, _shapes(node, i, materials, imported, bodies))
         )
     ]
     lights = tuple(map(light_of, root.tables("lights"))) if root.has("lights") else ()
-    lights += tuple(brought.lights)
+    lights += tuple(imported.lights)
     return Scene(
         name,
         tuple(shapes),
-        brought.materials,
+        imported.materials,
         camera,
         environment,
         lights,
-        textures=brought.textures,
+        textures=imported.textures,
         lens=lens,
         shutter=shutter,
-        media=brought.media,
+        media=imported.media,
         world=world,
     )
 
@@ -129,7 +130,7 @@ def _environment(node: Node) -> Environment:
 
 def _check_value(model: str, parameter: Parameter, values: Mapping[str, Any]) -> None:
     named = {parameter.name: values[parameter.name]}
-    pack_rows(model, (parameter,), named, np.float64)
+    Parameters((parameter,)).pack_one(Arguments("Material", np.float64), model, named)
     check_range(model, parameter, named[parameter.name])
 
 
@@ -149,10 +150,10 @@ def _shapes(
     node: Node,
     index: int,
     materials: dict[str, Material],
-    brought: Brought,
+    imported: ImportedMeshes,
     bodies: dict[str, SdfNode],
 ) -> list[Shape]:
-    """What a table describes; materials, textures and media of its file are added to `brought`."""
+    """What a table describes; materials, textures and media of its file are added to `imported`."""
     node.has("interior")  # read by `filled`
     node.has("closing")  # read by `_moving`
     kind = node.choice("kind", (*KINDS, "mesh", "sdf"))
@@ -165,7 +166,7 @@ def _shapes(
     emission = node.color("emission") if node.has("emission") else None
     shapes, own = mesh_shapes(node, name, material, emission)
     node.refuse_other_keys()
-    brought.update(own)
+    imported.update(own)
     return [*shapes]
 
 

@@ -10,12 +10,12 @@ from typing import Any
 
 import numpy as np
 
-from photograd.bsdf.phase import registry
+from photograd.bsdf.phase import registry as phase_functions
 from photograd.images.kind import LINEAR_SUFFIXES
 from photograd.images.read import read_radiance
 from photograd.lights import EnvironmentMap, Light, about_y
-from photograd.lights.distant import cap_height
-from photograd.lights.registered import CLASSES, RegisteredLight
+from photograd.lights.registered import RegisteredLight, cap_height
+from photograd.lights.registered import registry as lights
 from photograd.transport.density_files import is_placed, read_density
 from photograd.transport.medium import VACUUM, DensityGrid, Medium
 from photograd.transport.scene_node import Node
@@ -36,7 +36,7 @@ def light_of(node: Node) -> Light:
 
 def _registered(name: str) -> Callable[[Node], RegisteredLight]:
     """Reads the attributes of a light of the registry: colours, places and numbers."""
-    light = CLASSES[name]
+    light = lights()[name]
 
     def read(node: Node) -> RegisteredLight:
         values: dict[str, object] = {}
@@ -82,7 +82,7 @@ ANGLES: dict[str, Callable[[float], float]] = {"cos_outer": math.cos, "height": 
 """Attributes that a file gives as `angle`."""
 
 KINDS: dict[str, Callable[[Node], Light]] = {
-    **{name: _registered(name) for name in CLASSES if name not in ("constant", "quad")},
+    **{name: _registered(name) for name in lights() if name not in ("constant", "quad")},
     "ambient": _registered("constant"),
     "rectangle": _registered("quad"),
     "environment": _environment,
@@ -121,7 +121,7 @@ def _medium(node: Node) -> Medium:
         apart, coefficients[1] = False, None  # what does not scatter has no phase function
     more: dict[str, Any] = {"density": density}
     if coefficients[1] is not None:
-        known = registry()
+        known = phase_functions()
         name = node.choice("phase", known) if node.has("phase") else "henyey_greenstein"
         values = {p.name: node.number(p.name, 0.0) for p in known[name].parameters}
         more |= {"phase": name, "values": values}
