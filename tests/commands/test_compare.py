@@ -56,7 +56,7 @@ def test_validation_scores_training_views_that_the_fit_did_not_see(
     photograd: Photograd, capture_folder: Path, tmp_path: Path
 ) -> None:
     whole = load_capture(capture_folder)
-    split = whole.validating()
+    split = whole.with_validation_split()
     names = [{view.name for view in part} for part in (split.train, split.test, whole.test)]
     assert names[0] | names[1] == {view.name for view in whole.train}
     assert all(names)

@@ -159,8 +159,8 @@ def test_any_number_of_points(count: int) -> None:
 
 UV = np.zeros((4, 2))
 BAD: list[tuple[Any, Any, type[Exception], str]] = [
-    (np.zeros((3, 3, 3), int), UV, DtypeError, "sample: texture: expected a float32 or float64"),
-    (np.zeros((3, 3, 3)), UV.astype("f4"), DtypeError, "uv: expected dtype float64, got"),
+    (np.zeros((3, 3, 3), int), UV, DtypeError, "sample: texture: expected float32 or float64"),
+    (np.zeros((3, 3, 3)), UV.astype("f4"), DtypeError, "uv: expected float64 as texture, got"),
     (np.zeros((3, 3)), UV, ShapeError, r"texture: expected shape \(H, W, C\), got \(3, 3\)"),
     (np.zeros((3, 3, 3)), UV[:, :1], ShapeError, r"uv: expected shape \(N, 2\), got \(4, 1\)"),
     (np.zeros((0, 3, 3)), UV, RangeError, "texels along each axis, got 0 x 3"),

@@ -21,7 +21,11 @@ from photograd.commands.fit import first_model, run_with_bar
 from photograd.commands.shared import (
     AllowOutsideOption,
     DownscaleOption,
+    SizeOption,
+    SppOption,
+    StepsOption,
     StopRequest,
+    ViewsOption,
     out_option,
     stop_on_signals,
     use_threads,
@@ -81,11 +85,11 @@ def compare(
         str, typer.Option("--candidates", help="Representations with their resolution, or number.")
     ] = "dense_grid:64,dense_grid:128,sparse_sh:128,gaussians:20000",
     start_from: StartFromOption = None,
-    steps: Annotated[int, typer.Option("--steps", min=1, help="Steps of each fit.")] = 1000,
+    steps: StepsOption = 1000,
     rays: Annotated[int, typer.Option("--rays", min=1, help="Rays a step.")] = DEFAULTS.rays,
-    views: Annotated[int, typer.Option("--views", min=2, help="Of a built-in scene.")] = 60,
-    size: Annotated[int, typer.Option("--size", min=8, help="Its pixels along an edge.")] = 128,
-    spp: Annotated[int, typer.Option("--spp", min=1, help="Its samples a pixel.")] = 64,
+    views: ViewsOption = 60,
+    size: SizeOption = 128,
+    spp: SppOption = 64,
     downscale: DownscaleOption = 1,
     allow_outside: AllowOutsideOption = False,
     validate: ValidateOption = False,
@@ -118,7 +122,7 @@ def compare(
             name = Path(given).name
             capture = load_capture(folder, downscale=downscale, allow_outside=allow_outside)
             if validate:
-                name, capture = f"{name}_validation", capture.validating()
+                name, capture = f"{name}_validation", capture.with_validation_split()
             found = fit_all(name, capture, parsed, shared, out / name, stopping, first)
             scores += [score for score, _ in found]
             pictures.append(out / f"{name}.png")

@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 from photograd_course.portable_math import norm
 
+from photograd._arrays import Arguments
 from photograd._checkpoint import (
     Checkpoint,
     check_arrays,
@@ -30,7 +31,7 @@ from photograd._checkpoint import (
 )
 from photograd._descend import Progress, descend, progress_bar, run_folder
 from photograd.errors import Error, IoError, RangeError, message
-from photograd.textures.sample import TexturePlan, float_array, sample_backward
+from photograd.textures.sample import TexturePlan, sample_backward
 from photograd.types import Array
 
 FILE_NAME = "texture.npz"
@@ -72,7 +73,7 @@ def stable_learning_rate(
     Raises:
         DtypeError, ShapeError, RangeError: points or shape that make no plan.
     """
-    uv = float_array("stable_learning_rate", "uv", uv)
+    uv = Arguments("stable_learning_rate").array("uv", uv, ("N", 2), finite=False)
     # With black targets the gradient is H T itself, here of a texture with one channel.
     plan = TexturePlan(uv, np.zeros((len(uv), 1), uv.dtype), shape)
     vector = np.ones(plan.shape, uv.dtype)
@@ -118,7 +119,7 @@ def recover(
         IoError: a checkpoint that cannot be written, or is not there to resume from.
         Error: the loss is no longer finite; the learning rate is too large.
     """
-    uv = float_array("recover", "uv", uv)
+    uv = Arguments("recover").array("uv", uv, ("N", 2), finite=False)
     plan = TexturePlan(uv, colors, shape)
     if steps < 1:
         raise RangeError(message("recover", "steps", "at least 1", steps))
