@@ -65,7 +65,7 @@ def with_noise(view: View, *, inside: float, outside: float) -> Any:
     truth, valid = truth_image(view), view.valid_mask()
     noise = np.random.default_rng(1).uniform(-1, 1, truth.shape)
     changed = truth + np.where(valid[..., None], inside, outside) * noise
-    return module.round_to_8_bits(np.clip(changed, 0, 1))
+    return round_to_8_bits(np.clip(changed, 0, 1))
 
 
 @pytest.mark.parametrize("make", [distorted, masked, reduced])
