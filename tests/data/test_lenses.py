@@ -99,8 +99,8 @@ def test_the_models_are_those_of_colmap() -> None:
 def test_a_photograph_becomes_the_pinhole_picture(model: str) -> None:
     """Pixels of the photograph by pycolmap's inverse; the view has to be the ideal picture."""
     camera = stored(model, (OURS | THEIRS)[model])
-    pinhole, lens = lens_of(model, (OURS | THEIRS)[model])
     theirs = reference(camera)
+    pinhole, lens = lens_of(model, (OURS | THEIRS)[model])
     shown = np.asarray(theirs.cam_from_img(pixel_centers()))
     assert np.isfinite(shown).all()
     photograph = pattern(shown).reshape(HEIGHT, WIDTH, 4).astype(np.float32)
