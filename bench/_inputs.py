@@ -30,7 +30,7 @@ RECORDED = {
     "W10 evals=10000000 texture 1024": "8a436409dee41dd0",
     "W10 evals=2000 scalar 20": "f1e0f5d78c888c36",
     "W10 evals=2000 texture 20": "835310570d8723b4",
-    "W8 n=2000 res=64": "b9a1345105ac1026",
+    "W8 n=300 res=32": "8215033ff18857d7",
 }
 
 

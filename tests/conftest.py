@@ -1,16 +1,48 @@
-"""Fixtures for all tests."""
+"""Fixtures for all tests; which of them wait, and which run only where all are asked for."""
 
 from __future__ import annotations
 
+import os
+import sys
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 from types import ModuleType
 
 import pytest
+from tools.pools import COSTS, NO_BYTECODE, WAITING
 
 from support.missing import missing
 from support.tree import ROOT
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--exhaustive", action="store_true", help="tests with this mark run too")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    if COSTS in os.environ:
+        from support.costs import Costs
+
+        config.pluginmanager.register(Costs(Path(os.environ[COSTS])))
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Mark what waits, and leave out what is exhaustive."""
+    for item in items:
+        if any(item.path.is_relative_to(ROOT / folder) for folder in WAITING):
+            item.add_marker("waits")
+    if not config.getoption("--exhaustive"):
+        left_out = [item for item in items if item.get_closest_marker("exhaustive")]
+        if left_out:
+            config.hook.pytest_deselected(items=left_out)
+            items[:] = [item for item in items if not item.get_closest_marker("exhaustive")]
+
+
+def pytest_collection_finish() -> None:
+    """From here on no bytecode: tests write a module twice in one second, and import it twice."""
+    sys.dont_write_bytecode = True
+    os.environ[NO_BYTECODE] = "1"
 
 
 @pytest.fixture(scope="session")

@@ -16,7 +16,6 @@ ROUNDING = Tolerance(
     task="00.1",
     points=1,
     calls=("loss_gradient",),
-    kills=("sign", "not_doubled", "sum_not_mean", "squared", "first_row_only"),
     hint="handout, section 1: derive one square, divide as the mean does",
     sole="the derivative itself; the step below shows the same mistakes at work",
 )
@@ -37,7 +36,6 @@ def agrees_with_differences(t):
     points=1,
     calls=("loss_gradient",),
     tolerance=ROUNDING,
-    kills=("sign", "not_doubled", "sum_not_mean", "squared", "first_row_only"),
     sole="the same mistakes as a step downhill shows them: why they matter",
 )
 def one_step_reaches_the_photograph(t):

@@ -8,6 +8,8 @@ import numpy as np
 from matplotlib.figure import Figure
 from photograd_course.viz.style import house_style, signed_colour_map
 
+DPI = 160
+
 
 def fig1_gradient(module: ModuleType) -> tuple[Figure, dict[str, bool]]:
     """A picture, the photograph, and the derivative of the error by each pixel."""

@@ -81,7 +81,6 @@ def scripted(gradients):
     points=4,
     calls=("numeric_derivative",),
     tolerance=DIFFERENCE,
-    kills=("forward_difference", "missing_half", "keeps_moving"),
     hint="Move one coordinate at a time, both ways, and come back: Eq. (3).",
 )
 def central_differences_are_exact_for_quadratics(t):
@@ -105,7 +104,6 @@ def central_differences_are_exact_for_quadratics(t):
     task="01.1",
     points=4,
     calls=("numeric_derivative",),
-    kills=("forward_difference", "missing_half", "five_point"),
     sole="the order is what the handout is about; a wrong order fails a hidden check, too",
     hint="Halve eps: the error should fall to a quarter, Eq. (4).",
 )
@@ -143,7 +141,6 @@ def the_error_falls_with_the_square_of_the_step(t):
     points=4,
     calls=("gd_1d",),
     tolerance=EXACT,
-    kills=("uphill", "no_tau", "stale_gradient", "stale_loss", "relative_loss"),
     hint="Each step multiplies the distance to the minimum by the same factor, Eq. (6).",
 )
 def a_parabola_contracts_by_one_factor(t):
@@ -171,14 +168,6 @@ def a_parabola_contracts_by_one_factor(t):
     task="01.2",
     points=3,
     calls=("gd_1d",),
-    kills=(
-        "uphill",
-        "no_tau",
-        "stale_gradient",
-        "stale_loss",
-        "verdict_by_position",
-        "verdict_by_last_step_1d",
-    ),
     hint="Compare the last value with the first, Eq. (8), not the points.",
 )
 def the_verdict_changes_at_the_bound(t):
@@ -229,7 +218,6 @@ def the_verdict_changes_at_the_bound(t):
     points=4,
     calls=("gd_nd",),
     tolerance=EXACT,
-    kills=("aliased_trail", "one_at_a_time", "unit_steps", "stale_loss_nd", "relative_loss_nd"),
     hint="Take the gradient once, at the old point, and move all coordinates with it.",
 )
 def each_eigenvector_has_a_factor_of_its_own(t):
@@ -249,7 +237,6 @@ def each_eigenvector_has_a_factor_of_its_own(t):
     task="01.3",
     points=4,
     calls=("gd_nd",),
-    kills=("aliased_trail", "one_at_a_time", "unit_steps", "stale_loss_nd", "verdict_by_last_step"),
     hint="If 01.3.rates fails too, repair that first. The verdict compares the last value with the "
     "first, Eq. (8).",
 )
@@ -292,7 +279,6 @@ def the_largest_curvature_decides(t):
     points=4,
     calls=("momentum",),
     tolerance=EXACT,
-    kills=("averaged_velocity", "forgets_velocity", "late_velocity"),
     sole="arithmetic that a student can do by hand; the others need the walk to bend",
     hint="With a constant gradient the steps grow towards tau g / (1 - beta), Eq. (14).",
 )
@@ -311,7 +297,6 @@ def a_constant_slope_leads_to_a_terminal_velocity(t):
     points=3,
     calls=("momentum",),
     tolerance=EXACT,
-    kills=("late_velocity", "default_for_zero"),
     hint="With beta = 0 there is no memory: the walk is that of gradient descent.",
 )
 def without_memory_it_is_gradient_descent(t):
@@ -331,16 +316,6 @@ def without_memory_it_is_gradient_descent(t):
     points=3,
     calls=("adam",),
     tolerance=EXACT,
-    kills=(
-        "no_bias_correction",
-        "no_second_correction",
-        "exponent_off_by_one",
-        "shared_scale",
-        "eps_inside_root",
-        "no_square_root",
-        "late_moments",
-        "moment_of_mean",
-    ),
     sole="arithmetic that a student can do by hand: all corrections cancel",
     hint="With a constant gradient m_hat = g and v_hat = g^2 in every step, Eq. (21).",
 )
@@ -374,17 +349,6 @@ TRACE_POINTS = np.array(
     points=5,
     calls=("adam",),
     tolerance=EXACT,
-    kills=(
-        "no_bias_correction",
-        "no_second_correction",
-        "exponent_off_by_one",
-        "shared_scale",
-        "eps_inside_root",
-        "no_square_root",
-        "late_moments",
-        "swapped_betas",
-        "moment_of_mean",
-    ),
     sole="the five steps that the handout prints, so that a student can find the first wrong",
     hint="Print m, v, m_hat and v_hat for each of the five steps beside the table.",
 )
@@ -405,7 +369,6 @@ def five_steps_agree_with_the_table(t):
     points=4,
     calls=("backtracking",),
     tolerance=EXACT,
-    kills=("no_promise", "wrong_promise", "deaf_to_c", "slope_of_steepest", "one_too_short"),
     hint="The right-hand side of Eq. (22) falls with tau, along the direction you were given.",
 )
 def the_step_is_the_first_that_keeps_its_promise(t):
@@ -454,7 +417,6 @@ def the_step_is_the_first_that_keeps_its_promise(t):
     task="01.6",
     points=2,
     calls=("backtracking",),
-    kills=("walks_uphill",),
     hint="Raise ValueError unless the slope along d is negative; NaN is not negative.",
 )
 def a_direction_uphill_is_refused(t):
@@ -482,7 +444,6 @@ def a_direction_uphill_is_refused(t):
     calls=("numeric_derivative",),
     visibility="hidden",
     tolerance=DIFFERENCE,
-    kills=("forward_difference", "missing_half", "five_point", "scaled_step"),
     hint="For a x^3 the result is 3 a x^2 + a eps^2 exactly: Eq. (4) has no further term.",
 )
 def a_cubic_is_off_by_a_known_amount(t):
@@ -508,7 +469,6 @@ def a_cubic_is_off_by_a_known_amount(t):
     calls=("gd_1d",),
     visibility="hidden",
     tolerance=Tolerance(1e-9, "right answers differ by 1.1e-15 at most, wrong ones by 1"),
-    kills=("uphill", "no_tau", "stale_gradient", "clipped_step"),
     hint="Short steps stay in the valley where they began; a long one may jump out of it.",
 )
 def the_walk_ends_in_the_predicted_valley(t):
@@ -536,7 +496,6 @@ def the_walk_ends_in_the_predicted_valley(t):
     points=3,
     calls=("gd_1d",),
     visibility="hidden",
-    kills=("uphill", "no_tau", "verdict_blind_to_nan"),
     hint="NaN > 1 is False: write the verdict so that NaN counts as gone wrong, Eq. (8).",
 )
 def nothing_is_not_better(t):
@@ -564,7 +523,6 @@ def nothing_is_not_better(t):
         "over the last 20 steps the factor is right to 4e-16, so 2 % are not needed; "
         "wrong ones differ by 0.08 or more",
     ),
-    kills=("aliased_trail", "one_at_a_time", "unit_steps", "stops_early"),
     hint="At the best step length each step multiplies the distance by Eq. (11), to the end.",
 )
 def the_condition_number_gives_the_rate(t):
@@ -592,7 +550,6 @@ def the_condition_number_gives_the_rate(t):
     calls=("momentum",),
     visibility="hidden",
     tolerance=Tolerance(1e-11, "right answers differ by 4e-15 at most, wrong ones by 0.2 or more"),
-    kills=("averaged_velocity", "forgets_velocity", "late_velocity", "look_ahead"),
     hint="The gradient is taken at the point, not where the velocity would lead.",
 )
 def a_parabola_swings_as_two_roots_say(t):
@@ -617,18 +574,6 @@ def a_parabola_swings_as_two_roots_say(t):
     calls=("adam",),
     visibility="hidden",
     tolerance=EXACT,
-    kills=(
-        "no_bias_correction",
-        "no_second_correction",
-        "exponent_off_by_one",
-        "shared_scale",
-        "eps_inside_root",
-        "no_square_root",
-        "late_moments",
-        "swapped_betas",
-        "moment_of_mean",
-        "deaf_to_arguments",
-    ),
     hint="beta1, beta2 and eps are arguments; their defaults are only defaults.",
 )
 def random_gradients_are_weighted_as_they_should(t):
@@ -654,7 +599,6 @@ def random_gradients_are_weighted_as_they_should(t):
     points=2,
     calls=("backtracking",),
     visibility="hidden",
-    kills=("accepts_nan",),
     hint="Write the loop so that NaN is refused: `not value <= bound`.",
 )
 def a_step_out_of_the_domain_is_refused(t):
@@ -733,7 +677,6 @@ LOGISTIC_MINIMUM = 0.5052239008227084  # where the gradient is 1e-15
     points=4,
     calls=("backtracking",),
     visibility="hidden",
-    kills=("ignores_tau0", "one_too_short"),
     seconds=15.0,
     hint="Begin with the step length tau0 that you are given, also above 1.",
 )

@@ -11,22 +11,15 @@ import numpy as np
 from matplotlib.ticker import MaxNLocator
 from photograd_course.viz import style
 
-DPI = 110
 PURPLE = "#542788"
 BLUE, RED_, ORANGE, GREY, INK = style.BLUE, style.RED, style.ORANGE, style.GREY, style.INK
-
-
-def save(figure, path):
-    """Write a PNG, the same bytes every time."""
-    with style.house_style():
-        figure.savefig(path, dpi=DPI, metadata={"Software": None})
 
 
 def _panels(widths, height, *, gap=0.75, left=0.66, top=0.34, bottom=0.48, right=0.16):
     """A figure with panels of the given widths in inches side by side."""
     total = left + sum(widths) + gap * (len(widths) - 1) + right
     figure = style.new_figure(total, top + height + bottom)
-    figure.set_dpi(DPI)
+    figure.set_dpi(style.HANDOUT_DPI)
     axes, at = [], left
     for width in widths:
         axes.append(style.place_axes(figure, at, top, width, height))
@@ -458,7 +451,7 @@ def main() -> None:
 
     folder = Path(__file__).parent / "figures"
     for name, make in FIGURES.items():
-        save(make(descent)[0], folder / f"{name}.png")
+        style.save_figure(make(descent)[0], folder / f"{name}.png", style.HANDOUT_DPI)
 
 
 if __name__ == "__main__":

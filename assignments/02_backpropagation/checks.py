@@ -97,7 +97,6 @@ def away(rng, low, high, n):
     points=2,
     calls=("Value.__add__", "Value.__mul__"),
     tolerance=EXACT,
-    kills=("sum_of_absolutes",),
     sole="tells a wrong value from a wrong slope",
 )
 def sums_and_products_have_their_value(t):
@@ -113,7 +112,6 @@ def sums_and_products_have_their_value(t):
     task="02.1",
     points=4,
     calls=("Value.__add__", "Value.__mul__"),
-    kills=(*WRONG_SLOPES, "sum_of_absolutes", "product_no_swap"),
     sole="names the gate; whole graphs fail too",
 )
 def slopes_of_sums_and_products(t):
@@ -129,7 +127,6 @@ def slopes_of_sums_and_products(t):
     points=3,
     calls=("Value.__add__", "Value.__mul__"),
     tolerance=EXACT,
-    kills=(*WRONG_SLOPES, "square_counts_once"),
     sole="the same value on both sides; the worked graph fails too, for its x * x",
 )
 def the_same_value_twice(t):
@@ -147,7 +144,6 @@ def the_same_value_twice(t):
     points=4,
     calls=("Value.maximum",),
     tolerance=EXACT,
-    kills=(*WRONG_ROUTES, "max_is_min"),
     sole="names the gate; whole graphs fail too",
 )
 def the_larger_input_takes_all(t):
@@ -159,14 +155,7 @@ def the_larger_input_takes_all(t):
     require_slopes(t, "max", a, b)
 
 
-@check(
-    "02.2.tie",
-    task="02.2",
-    points=3,
-    calls=("Value.maximum",),
-    tolerance=EXACT,
-    kills=(*WRONG_ROUTES, *WRONG_TIES),
-)
+@check("02.2.tie", task="02.2", points=3, calls=("Value.maximum",), tolerance=EXACT)
 def a_tie_is_settled(t):
     """At a tie the second input takes all; no differences here, they would give 1/2 and 1/2."""
     x = float(t.rng.uniform(1.5, 3.0))
@@ -182,7 +171,6 @@ def a_tie_is_settled(t):
     points=3,
     calls=("Value.exp",),
     tolerance=EXACT,
-    kills=WRONG_EXP,
     sole="names the gate; whole graphs fail too",
 )
 def the_exponential(t):
@@ -198,7 +186,6 @@ def the_exponential(t):
     points=3,
     calls=("Value.log",),
     tolerance=EXACT,
-    kills=WRONG_LOG,
     sole="names the gate; whole graphs fail too",
 )
 def the_logarithm(t):
@@ -208,14 +195,7 @@ def the_logarithm(t):
     require_slopes(t, "log", t.rng.uniform(0.3, 3.0, 6))
 
 
-@check(
-    "02.3.power",
-    task="02.3",
-    points=4,
-    calls=("Value.__pow__",),
-    tolerance=EXACT,
-    kills=(*WRONG_POW, "pow_divides"),
-)
+@check("02.3.power", task="02.3", points=4, calls=("Value.__pow__",), tolerance=EXACT)
 def powers(t):
     """Powers agree with differences, at negative numbers and at zero too."""
     for n in (2, 3, -1):
@@ -312,7 +292,6 @@ def require_order(t, edges, root):
     task="02.4",
     points=5,
     calls=("topo_order",),
-    kills=("order_root_first", "order_breadth_first", "order_with_repeats", "order_leaves_out"),
     sole="`backward` gets its order given, so this alone looks at it in detail",
 )
 def inputs_stand_before_their_users(t):
@@ -374,14 +353,7 @@ def require_work(t, edges, what):
     )
 
 
-@check(
-    "02.4.chain",
-    task="02.4",
-    points=4,
-    calls=("topo_order",),
-    seconds=20.0,
-    kills=("order_root_first", "order_list_of_seen", "order_recursive", "order_leaves_out"),
-)
+@check("02.4.chain", task="02.4", points=4, calls=("topo_order",), seconds=20.0)
 def a_chain_of_a_hundred_thousand(t):
     """A chain of 100,000 values is put in order, without a recursion error."""
     require_work(t, chain(1500), "a chain")
@@ -414,17 +386,6 @@ WORKED = (  # program, inputs, value, gradients by the inputs
     points=2,
     calls=("backward",),
     tolerance=EXACT,
-    kills=(
-        *WRONG_SLOPES,
-        *WRONG_ROUTES,
-        *WRONG_LOOPS,
-        "product_no_swap",
-        "square_counts_once",
-        "max_is_min",
-        "order_root_first",
-        "overwrite",
-        "once_for_each_input",
-    ),
     sole="the numbers of the handout's figures, to compare by hand",
 )
 def the_graphs_of_the_handout(t):
@@ -457,7 +418,6 @@ def run_by_hand(t, edges, roots, seeds, default_seed=False):
     points=4,
     calls=("backward",),
     tolerance=EXACT,
-    kills=(*WRONG_LOOPS, "overwrite", "once_for_each_input"),
     sole="gates and order are given here, so that the loop alone is at fault",
 )
 def contributions_of_all_uses_are_added(t):
@@ -468,14 +428,7 @@ def contributions_of_all_uses_are_added(t):
         t.close("gradients", got[0], path_sums(edges, 13, 1.0))
 
 
-@check(
-    "02.5.seed",
-    task="02.5",
-    points=2,
-    calls=("backward",),
-    tolerance=EXACT,
-    kills=(*WRONG_LOOPS, "overwrite", "seed_ignored"),
-)
+@check("02.5.seed", task="02.5", points=2, calls=("backward",), tolerance=EXACT)
 def gradients_are_proportional_to_the_seed(t):
     """The seed multiplies all gradients, and a seed of zero gives zero."""
     edges = [[], [], [[0, 2.0], [1, -3.0]], [[2, 0.5], [0, 1.0]]]
@@ -486,14 +439,7 @@ def gradients_are_proportional_to_the_seed(t):
     t.require(not got.any(), "a seed of zero leaves gradients that are not zero")
 
 
-@check(
-    "02.5.again",
-    task="02.5",
-    points=3,
-    calls=("backward",),
-    tolerance=EXACT,
-    kills=("leaks", "leaks_in_leaves"),
-)
+@check("02.5.again", task="02.5", points=3, calls=("backward",), tolerance=EXACT)
 def a_second_call_starts_from_zero(t):
     """Called again, or from another root, backward gives what it gives the first time."""
     edges = random_edges(t.rng, 14)
@@ -614,21 +560,6 @@ def trusted_program(rng):
     task="02.5",
     points=3,
     calls=("backward",),
-    kills=(
-        *WRONG_SLOPES,
-        *WRONG_ROUTES,
-        *WRONG_EXP,
-        *WRONG_LOG,
-        *WRONG_POW,
-        *WRONG_LOOPS,
-        "sum_of_absolutes",
-        "product_no_swap",
-        "max_is_min",
-        "order_root_first",
-        "order_breadth_first",
-        "order_with_repeats",
-        "overwrite",
-    ),
     sole="whole graphs through all gates, where students can look at them",
 )
 def expressions_agree_with_differences(t):
@@ -658,7 +589,6 @@ def expressions_agree_with_differences(t):
     calls=("Value.__add__", "Value.__mul__"),
     visibility="hidden",
     tolerance=EXACT,
-    kills=(*WRONG_SLOPES, "sum_of_absolutes", "product_no_swap"),
     sole="the same mistakes, to rounding, at places not known beforehand",
 )
 def sums_and_products_at_random(t):
@@ -678,7 +608,6 @@ def sums_and_products_at_random(t):
     calls=("Value.maximum",),
     visibility="hidden",
     tolerance=EXACT,
-    kills=(*WRONG_ROUTES, "max_is_min"),
     sole="the same mistakes at places not known beforehand",
 )
 def maximum_at_random(t):
@@ -696,7 +625,6 @@ def maximum_at_random(t):
     calls=("Value.exp", "Value.log", "Value.__pow__"),
     visibility="hidden",
     tolerance=EXACT,
-    kills=(*WRONG_EXP, *WRONG_LOG, *WRONG_POW),
     sole="the same mistakes, to rounding, at places not known beforehand",
 )
 def gates_of_one_input_at_random(t):
@@ -713,20 +641,7 @@ def gates_of_one_input_at_random(t):
         t.close(f"slopes of {op}", found["slopes"][:, 0], slopes)
 
 
-@check(
-    "02.4.work",
-    task="02.4",
-    points=4,
-    calls=("topo_order",),
-    visibility="hidden",
-    kills=(
-        "order_root_first",
-        "order_with_repeats",
-        "order_walks_all_paths",
-        "order_list_of_seen",
-        "order_leaves_out",
-    ),
-)
+@check("02.4.work", task="02.4", points=4, calls=("topo_order",), visibility="hidden")
 def each_value_is_visited_once(t):
     """A ladder of diamonds, with 4096 paths through 37 values, costs what 37 values cost."""
     require_order(t, ladder(4), 12)
@@ -739,21 +654,6 @@ def each_value_is_visited_once(t):
     points=4,
     calls=("backward",),
     visibility="hidden",
-    kills=(
-        *WRONG_SLOPES,
-        *WRONG_ROUTES,
-        *WRONG_EXP,
-        *WRONG_LOG,
-        *WRONG_POW,
-        *WRONG_LOOPS,
-        "sum_of_absolutes",
-        "product_no_swap",
-        "max_is_min",
-        "order_root_first",
-        "order_breadth_first",
-        "order_with_repeats",
-        "overwrite",
-    ),
     sole="fifty expressions, against differences and complex steps of ours",
 )
 def fifty_random_expressions(t):
@@ -778,7 +678,6 @@ def fifty_random_expressions(t):
     calls=("backward",),
     visibility="hidden",
     tolerance=EXACT,
-    kills=(*WRONG_LOOPS, "recursive_paths"),
     seconds=20.0,
 )
 def a_long_chain_backward(t):
@@ -807,20 +706,7 @@ def smooth(rng, n):
     return f, rng.uniform(0.3, 1.5, n)
 
 
-@check(
-    "02.6.accepts",
-    task="02.6",
-    points=2,
-    calls=("grad_check",),
-    kills=(
-        "check_one_sided",
-        "check_calls_too_often",
-        "check_half",
-        "check_leaves_steps",
-        "check_all_at_once",
-        "check_moves_x",
-    ),
-)
+@check("02.6.accepts", task="02.6", points=2, calls=("grad_check",))
 def right_gradients_are_accepted(t):
     """Right gradients of smooth functions have an error close to 0, and x stays as it is."""
     for n in (1, 4, 7):
@@ -849,24 +735,7 @@ def right_gradients_are_accepted(t):
         t.require(calls <= 2 * n + 1, f"{calls} calls of f, {2 * n + 1} are enough")
 
 
-@check(
-    "02.6.rejects",
-    task="02.6",
-    points=3,
-    calls=("grad_check",),
-    tolerance=REPORTED,
-    kills=(
-        "check_one_sided",
-        "check_half",
-        "check_leaves_steps",
-        "check_all_at_once",
-        "check_lengths_only",
-        "check_angle_only",
-        "check_absolute",
-        "check_by_the_differences",
-        "check_moves_x",
-    ),
-)
+@check("02.6.rejects", task="02.6", points=3, calls=("grad_check",), tolerance=REPORTED)
 def wrong_gradients_are_measured(t):
     """The error of a wrong gradient is reported as Eq. (16) has it."""
     f, x = smooth(t.rng, 5)
@@ -897,14 +766,6 @@ def wrong_gradients_are_measured(t):
     task="02.6",
     points=1,
     calls=("grad_check",),
-    kills=(
-        "check_one_sided",
-        "check_half",
-        "check_all_at_once",
-        "check_moves_x",
-        "check_leaves_steps",
-        "check_fixed_step",
-    ),
     sole="Eq. (15) where students can see it; the hidden check measures the steps",
 )
 def large_coordinates_move_further(t):
@@ -928,7 +789,7 @@ def large_coordinates_move_further(t):
     )
 
 
-@check("02.6.not_finite", task="02.6", points=1, calls=("grad_check",), kills=("check_takes_nan",))
+@check("02.6.not_finite", task="02.6", points=1, calls=("grad_check",))
 def not_a_number_is_refused(t):
     """What is not finite gives infinity, and a constant's gradient of zero the error 0."""
     f, x = smooth(t.rng, 3)
@@ -958,16 +819,6 @@ def not_a_number_is_refused(t):
     points=1,
     calls=("grad_check",),
     visibility="hidden",
-    kills=(
-        "check_one_sided",
-        "check_half",
-        "check_leaves_steps",
-        "check_all_at_once",
-        "check_angle_only",
-        "check_absolute",
-        "check_fixed_step",
-        "check_moves_x",
-    ),
     sole="the steps themselves, and gradients of 1e-9",
 )
 def large_and_small_numbers(t):

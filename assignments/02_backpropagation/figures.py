@@ -5,39 +5,30 @@
 
 from __future__ import annotations
 
-import io
 import math
 import sys
 from pathlib import Path
 
 import numpy as np
 from matplotlib.patches import FancyArrowPatch
-from photograd_course.atomic_io import atomic_write
 from photograd_course.viz.style import (
     BLUE,
     FRAME,
     GREY,
+    HANDOUT_DPI,
     INK,
     ORANGE,
     house_style,
     new_figure,
     place_axes,
+    save_figure,
     signed_colour_map,
 )
 from photograd_course.viz.style import RED as DARK_RED
 
-PRINT_DPI = 110
 WIDTH = 6.6  # inches: 726 pixels
 TEXT = 9.0  # points: 11 pixels where the figure is shown 600 pixels wide
 SMALL = 8.5
-
-
-def save(figure, path):
-    """Write a figure as PNG, the same bytes every time."""
-    buffer = io.BytesIO()
-    with house_style():
-        figure.savefig(buffer, format="png", dpi=PRINT_DPI, metadata={"Software": None})
-    return atomic_write(Path(path), buffer.getvalue())
 
 
 def graph_axes(figure, left, top, width, height):
@@ -502,4 +493,5 @@ if __name__ == "__main__":
 
     for name, make in FIGURES.items():
         drawn, held = make(engine)
-        print(save(drawn, here / "figures" / f"{name}.png").stat().st_size, name, held)
+        path = save_figure(drawn, here / "figures" / f"{name}.png", HANDOUT_DPI)
+        print(path.stat().st_size, name, held)

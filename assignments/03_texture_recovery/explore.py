@@ -10,21 +10,14 @@
 from __future__ import annotations
 
 import importlib
-import sys
 import time
 from importlib.util import find_spec
 
 import numpy as np
 import texture_recovery as mine
 from matplotlib.figure import Figure
+from photograd_course.explore import option
 from PIL import Image
-
-
-def option(name, default):
-    """The value after --name on the command line; the default in a notebook."""
-    words = sys.argv[1:]
-    return words[words.index(f"--{name}") + 1] if f"--{name}" in words else default
-
 
 size = int(option("size", 96))
 samples_per_texel = float(option("samples", 16))

@@ -20,13 +20,6 @@ from photograd_course.viz.style import (
 from photograd_course.viz.style import RED as CRIMSON
 
 Facts = dict[str, bool | tuple[float, float, float]]
-DOTS = 110  # per inch: 7 inches wide gives 770 pixels
-
-
-def save(figure: Figure, path: object) -> None:
-    """Write a figure with the same bytes every time."""
-    with house_style():
-        figure.savefig(path, dpi=DOTS, facecolor="white", metadata={"Software": None})
 
 
 def fig1_surface(module: ModuleType) -> tuple[Figure, Facts]:

@@ -10,18 +10,11 @@
 from __future__ import annotations
 
 import importlib
-import sys
 
 import numpy as np
 import reflectance as mine
 from matplotlib.figure import Figure
-
-
-def option(name, default):
-    """The value after --name on the command line; the default in a notebook."""
-    words = sys.argv[1:]
-    return type(default)(words[words.index(f"--{name}") + 1]) if f"--{name}" in words else default
-
+from photograd_course.explore import option
 
 pixels, steps = option("pixels", 64), option("steps", 60)
 rough, metal_share, start = (

@@ -20,14 +20,7 @@ from photograd_course.viz.style import (
 )
 from photograd_course.viz.style import RED as CRIMSON
 
-DOTS = 110  # per inch: 7 inches wide gives 770 pixels
 LIGHTS = (((-0.5, 0.6, 0.62), 1.0), ((0.8, 0.1, 0.35), 0.35), ((0.1, -0.7, 0.5), 0.15))
-
-
-def save(figure, path):
-    """Write a figure with the same bytes every time."""
-    with house_style():
-        figure.savefig(path, dpi=DOTS, facecolor="white", metadata={"Software": None})
 
 
 def fig1_furnace(module):

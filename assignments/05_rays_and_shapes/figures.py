@@ -6,21 +6,13 @@ from collections.abc import Callable
 from types import ModuleType
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
-from photograd_course.viz.style import BLUE, GREY, INK, ORANGE, house_style
+from photograd_course.viz.style import BLUE, GREY, INK, ORANGE, house_style, plain_axes
 from photograd_course.viz.style import RED as CRIMSON
 
 Facts = dict[str, bool | tuple[float, float, float]]
 Array = np.ndarray
-DOTS = 110  # per inch: 7 inches wide gives 770 pixels
-
-
-def save(figure: Figure, path: object) -> None:
-    """Write a figure with the same bytes every time."""
-    with house_style():
-        figure.savefig(path, dpi=DOTS, facecolor="white", metadata={"Software": None})
 
 
 def fig1_far(module: ModuleType) -> tuple[Figure, Facts]:
@@ -63,7 +55,7 @@ def fig1_far(module: ModuleType) -> tuple[Figure, Facts]:
             "(5) and (6)", (away[6], ours[6]), (8, -12), color=BLUE, textcoords="offset points"
         )
         axes.set(xlabel="distance of the origin  [radii]", ylabel="off the sphere  [radii]")
-        _plain(axes)
+        plain_axes(axes)
     return figure, facts
 
 
@@ -157,7 +149,7 @@ def fig3_glass(module: ModuleType) -> tuple[Figure, Facts]:
         right.annotate("into glass", (60, 35), (0, -14), color=BLUE, textcoords="offset points")
         right.annotate("out of it", (35, 60), (-52, 4), color=ORANGE, textcoords="offset points")
         right.set(xlabel="angle before  [°]", ylabel="behind  [°]", xlim=(0, 90), ylim=(0, 90))
-        _plain(right)
+        plain_axes(right)
     return figure, facts
 
 
@@ -216,7 +208,7 @@ def fig4_march(module: ModuleType) -> tuple[Figure, Facts]:
         right.plot(y, slopes, color=BLUE)
         right.plot(y[::4], apart[::4], "o", color=INK, markersize=3)
         right.set(xlabel="height  [radii]", ylabel="∂t/∂p")
-        _plain(right)
+        plain_axes(right)
     return figure, facts
 
 
@@ -267,7 +259,7 @@ def fig5_tree(module: ModuleType) -> tuple[Figure, Facts]:
         right.set(xlabel="triangles", ylabel="asked for, by one ray", ylim=(5, 8000))
         right.set_xticks(sizes, [str(k) for k in sizes])
         right.minorticks_off()
-        _plain(right)
+        plain_axes(right)
     return figure, facts
 
 
@@ -352,11 +344,6 @@ def _asked(module: ModuleType, corners: Array, origins: Array, ways: Array) -> t
 
         found[r] = module.traverse(first, count, order, box, meet, o, d)[0]
     return asked, found
-
-
-def _plain(axes: Axes) -> None:
-    axes.grid(visible=True)
-    axes.spines[["top", "right"]].set_visible(False)
 
 
 FIGURES = {

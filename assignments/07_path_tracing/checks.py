@@ -209,7 +209,6 @@ def towards(scene, thing, point, uv):
     points=2,
     calls=("light_pdf",),
     tolerance=EXACT,
-    kills=("pdf_backs", "pdf_by_area", "pdf_distance_once", "pdf_one_lamp", "pdf_upside_down"),
     hint="equation (6): straight ahead the cosine is 1, and what is left is "
     "distance squared over area, for one of K lamps",
     sole="one number that can be worked out by head",
@@ -231,15 +230,6 @@ def straight_below(t):
     points=4,
     calls=("light_pdf",),
     tolerance=NODES,
-    kills=(
-        "pdf_backs",
-        "pdf_by_area",
-        "pdf_cosine_above",
-        "pdf_distance_once",
-        "pdf_no_cosine",
-        "pdf_one_lamp",
-        "pdf_upside_down",
-    ),
     hint="equations (4) to (6): an area turned away looks smaller, one twice as far "
     "away four times smaller",
     sole="a density by solid angle is known by the solid angle",
@@ -264,7 +254,6 @@ def densities_know_the_solid_angle(t):
     task="07.1",
     points=2,
     calls=("light_pdf",),
-    kills=("pdf_backs", "pdf_both_sides", "pdf_of_everything"),
     hint="only fronts of lamps are drawn: a lamp's front is where its normal points",
     sole="what is never drawn has density 0",
 )
@@ -297,15 +286,6 @@ def weights_of(t, pdf, other):
     points=3,
     calls=("mis_weight",),
     tolerance=EXACT,
-    kills=(
-        "mis_balance",
-        "mis_cube",
-        "mis_exchanged",
-        "mis_floor",
-        "mis_half",
-        "mis_no_square",
-        "mis_ratio",
-    ),
     hint="equation (7): the squares of densities",
     sole="three numbers that can be worked out by head",
 )
@@ -322,7 +302,6 @@ def known_weights(t):
     points=2,
     calls=("mis_weight",),
     tolerance=EXACT,
-    kills=("mis_floor", "mis_no_square", "mis_ratio"),
     hint="what one strategy leaves is the other one's",
     sole="no light is counted twice, and none forgotten",
 )
@@ -340,16 +319,6 @@ def weights_sum_to_one(t):
     points=2,
     calls=("mis_weight",),
     tolerance=EXACT,
-    kills=(
-        "mis_balance",
-        "mis_cube",
-        "mis_exchanged",
-        "mis_floor",
-        "mis_half",
-        "mis_no_square",
-        "mis_overflows",
-        "mis_ratio",
-    ),
     hint="divide by the larger of the two before you square",
     sole="mirrors have densities without bound, and what cannot be drawn has none",
 )
@@ -395,18 +364,6 @@ def lit_floor(t, n=2000, size=1.3, height=0.45):
     points=4,
     calls=("direct_light",),
     needs=TASK_3,
-    kills=(
-        "direct_average",
-        "direct_lamps_alone",
-        "direct_material_alone",
-        "direct_no_cosine",
-        "direct_no_division",
-        "direct_no_emission",
-        "direct_no_weights",
-        "direct_other_pdf",
-        "direct_weights_exchanged",
-        "direct_wrong_measure",
-    ),
     hint="equations (8) to (10): reflectance times cosine times radiance, over "
     "the density of the strategy that has drawn it, by its weight; weights sum to 1",
     sole="the irradiance from a rectangle has been known since Lambert",
@@ -452,15 +409,6 @@ def albedo(t, scene, hit):
     points=4,
     calls=("direct_light",),
     needs=TASK_3,
-    kills=(
-        "direct_lamps_alone",
-        "direct_material_alone",
-        "direct_no_cosine",
-        "direct_no_division",
-        "direct_no_weights",
-        "direct_other_pdf",
-        "direct_wrong_measure",
-    ),
     hint="in a room of radiance 1 direct light is the albedo: both strategies "
     "together must count every direction once",
     sole="the integral of assignment 04, with all directions lit",
@@ -478,18 +426,6 @@ def a_bright_room_shows_the_albedo(t):
     points=3,
     calls=("direct_light",),
     needs=TASK_3,
-    kills=(
-        "direct_lamps_alone",
-        "direct_material_alone",
-        "direct_no_cosine",
-        "direct_no_division",
-        "direct_no_weights",
-        "direct_other_pdf",
-        "direct_proposal_forgotten",
-        "direct_proposal_ignored",
-        "direct_proposal_reflects",
-        "direct_wrong_measure",
-    ),
     hint="directions, densities and weights by `proposal`, reflectance by `scene`",
     sole="the mean does not depend on how samples are drawn",
 )
@@ -515,7 +451,6 @@ def another_proposal_has_the_same_mean(t):
     points=2,
     calls=("direct_light",),
     needs=TASK_3,
-    kills=("direct_material_alone", "direct_through_walls"),
     hint="what counts is the first thing that is met along the direction, and it must "
     "be the lamp that was drawn",
     sole="shadows",
@@ -608,16 +543,6 @@ def played(t, beta, u):
     points=2,
     calls=("roulette",),
     tolerance=EXACT,
-    kills=(
-        "roulette_clamped",
-        "roulette_clamped_late",
-        "roulette_dead_carry",
-        "roulette_divided_by_rest",
-        "roulette_floor",
-        "roulette_mean_channel",
-        "roulette_no_division",
-        "roulette_reversed",
-    ),
     hint="equations (11) and (12): the brightest channel decides, u < q goes on",
     sole="one path that goes on and one that ends",
 )
@@ -647,14 +572,6 @@ def known_ends(t):
     points=3,
     calls=("roulette",),
     tolerance=EXACT,
-    kills=(
-        "roulette_clamped",
-        "roulette_dead_carry",
-        "roulette_divided_by_rest",
-        "roulette_mean_channel",
-        "roulette_no_division",
-        "roulette_reversed",
-    ),
     hint="who goes on carries 1 / q, for those who do not",
     sole="roulette must not change the mean",
 )
@@ -673,7 +590,6 @@ def the_mean_is_kept(t):
     points=2,
     calls=("roulette",),
     tolerance=EXACT,
-    kills=("roulette_floor", "roulette_gain", "roulette_mean_channel", "roulette_reversed"),
     hint="q is at most 1; and where q is 0 nothing may be divided by it",
     sole="bright paths stay as they are, and dark ones end",
 )
@@ -705,7 +621,6 @@ def traced(t, scene, origins, directions, depth):
     calls=("trace_paths",),
     needs=TASK_5,
     tolerance=EXACT,
-    kills=("trace_no_emission", "trace_one_more"),
     hint="a path of one piece ends at a lamp, or brings nothing",
     sole="what is seen by itself, exactly",
 )
@@ -749,7 +664,6 @@ MORE = "a piece too many: direct light is asked for depth - 1 times"
     points=3,
     calls=("trace_paths",),
     needs=TASK_5,
-    kills=("trace_double_emission", "trace_no_emission", "trace_one_less", "trace_one_more"),
     hint="two straight pieces are direct light and what is emitted, nothing else",
     sole="depth two is the integral of assignment 04",
 )
@@ -805,13 +719,6 @@ def depth_two(t):
     points=2,
     calls=("trace_paths",),
     needs=TASK_5,
-    kills=(
-        "trace_no_attenuation",
-        "trace_no_cosine",
-        "trace_no_pdf",
-        "trace_one_less",
-        "trace_one_more",
-    ),
     hint="three pieces: the direction of the material leads to the wall, and there "
     "direct light is asked for again, times what the floor reflects of it",
     sole="light from where the path went, and from nowhere else",
@@ -864,17 +771,6 @@ def rays_inside(t, n):
     points=4,
     calls=("trace_paths",),
     needs=TASK_5,
-    kills=(
-        "trace_double_emission",
-        "trace_last_surface_only",
-        "trace_no_attenuation",
-        "trace_no_cosine",
-        "trace_no_emission",
-        "trace_no_pdf",
-        "trace_one_less",
-        "trace_one_more",
-        "trace_roulette_ends_only",
-    ),
     hint="equation (15): e (1 + a + a^2 + ...), as many terms as pieces; each surface "
     "multiplies once, and lamps that a path finds by chance are counted already",
     sole="a room whose light is a geometric series",
@@ -943,17 +839,6 @@ def small_scene(t, n):
     calls=("direct_light_backward",),
     needs=(*TASK_3, "direct_light"),
     tolerance=GATE,
-    kills=(
-        "back_density_too",
-        "back_lamps_alone",
-        "back_no_cosine",
-        "back_no_emission",
-        "back_no_weights",
-        "back_overwritten",
-        "back_overwritten_in_turn",
-        "back_sign",
-        "back_weights_too",
-    ),
     hint="equation (17): reflectance is differentiated, all that was drawn stays",
     sole="the definition: your own direct light, its proposal held fixed",
 )
@@ -982,7 +867,6 @@ ROWS = (
     calls=("direct_light_backward",),
     needs=TASK_3,
     tolerance=GATE,
-    kills=("back_overwritten", "back_overwritten_in_turn", "back_through_lamps"),
     hint="it is linear in d_radiance, and what was not seen has no derivative",
     sole="what must be zero, and what must double",
 )
@@ -1025,15 +909,6 @@ def zeros_and_doubles(t):
     points=3,
     calls=("direct_light_backward",),
     needs=TASK_3,
-    kills=(
-        "back_density_too",
-        "back_lamps_alone",
-        "back_no_cosine",
-        "back_no_weights",
-        "back_overwritten",
-        "back_overwritten_in_turn",
-        "back_sign",
-    ),
     hint="equation (18): the mean over samples is the derivative of the integral",
     sole="the mean of the gradient is the gradient of the mean",
 )
@@ -1077,18 +952,6 @@ def the_mean_of_the_gradient(t):
     points=1,
     calls=("direct_light_backward",),
     needs=(*TASK_3, "direct_light"),
-    kills=(
-        "back_by_differences",
-        "back_density_too",
-        "back_lamps_alone",
-        "back_no_cosine",
-        "back_no_emission",
-        "back_no_weights",
-        "back_overwritten",
-        "back_overwritten_in_turn",
-        "back_sign",
-        "back_weights_too",
-    ),
     hint="one pass over the same samples gives the derivative by everything",
     sole="differences would pay two renderings for each number",
 )
@@ -1119,16 +982,6 @@ def the_gradient_is_cheap(t):
     calls=("light_pdf",),
     visibility="hidden",
     tolerance=EXACT,
-    kills=(
-        "pdf_backs",
-        "pdf_by_area",
-        "pdf_cosine_above",
-        "pdf_distance_once",
-        "pdf_no_cosine",
-        "pdf_of_everything",
-        "pdf_one_lamp",
-        "pdf_upside_down",
-    ),
     sole="rooms that are not known beforehand",
 )
 def densities_in_a_room(t):
@@ -1147,15 +1000,6 @@ def densities_in_a_room(t):
     calls=("mis_weight",),
     visibility="hidden",
     tolerance=EXACT,
-    kills=(
-        "mis_balance",
-        "mis_cube",
-        "mis_exchanged",
-        "mis_floor",
-        "mis_half",
-        "mis_no_square",
-        "mis_ratio",
-    ),
     sole="densities that are not known beforehand",
 )
 def random_weights(t):
@@ -1172,22 +1016,6 @@ def random_weights(t):
     needs=TASK_3,
     visibility="hidden",
     tolerance=EXACT,
-    kills=(
-        "direct_average",
-        "direct_lamps_alone",
-        "direct_material_alone",
-        "direct_no_cosine",
-        "direct_no_division",
-        "direct_no_emission",
-        "direct_no_weights",
-        "direct_other_pdf",
-        "direct_proposal_forgotten",
-        "direct_proposal_ignored",
-        "direct_proposal_reflects",
-        "direct_through_walls",
-        "direct_weights_exchanged",
-        "direct_wrong_measure",
-    ),
     sole="the same random numbers, two lamps, shadows, and another proposal",
 )
 def direct_light_of_a_room(t):
@@ -1213,17 +1041,6 @@ def direct_light_of_a_room(t):
     calls=("roulette",),
     visibility="hidden",
     tolerance=EXACT,
-    kills=(
-        "roulette_clamped",
-        "roulette_clamped_late",
-        "roulette_dead_carry",
-        "roulette_divided_by_rest",
-        "roulette_floor",
-        "roulette_gain",
-        "roulette_mean_channel",
-        "roulette_no_division",
-        "roulette_reversed",
-    ),
     sole="paths that are not known beforehand",
 )
 def random_roulette(t):
@@ -1243,16 +1060,6 @@ def random_roulette(t):
     calls=("trace_paths",),
     needs=TASK_5,
     visibility="hidden",
-    kills=(
-        "trace_double_emission",
-        "trace_last_surface_only",
-        "trace_no_attenuation",
-        "trace_no_cosine",
-        "trace_no_emission",
-        "trace_no_pdf",
-        "trace_one_less",
-        "trace_one_more",
-    ),
     sole="glossy things, shadows, and paths that leave the room",
 )
 def paths_of_a_room(t):
@@ -1293,18 +1100,6 @@ def paths_of_a_room(t):
     needs=TASK_3,
     visibility="hidden",
     tolerance=GATE,
-    kills=(
-        "back_density_too",
-        "back_lamps_alone",
-        "back_no_cosine",
-        "back_no_emission",
-        "back_no_weights",
-        "back_overwritten",
-        "back_overwritten_in_turn",
-        "back_sign",
-        "back_through_lamps",
-        "back_weights_too",
-    ),
     sole="two lamps, shadows, a ball and something matte",
 )
 def the_gradient_of_a_room(t):
@@ -1334,7 +1129,6 @@ def glossy_table(color, metalness, roughness):
     calls=("direct_light_backward",),
     needs=(*TASK_3, "direct_light"),
     visibility="hidden",
-    kills=("back_overwritten", "back_overwritten_in_turn", "back_sign"),
     sole="what it is for: a base colour and a roughness, found in a picture",
 )
 def a_material_is_recovered(t):

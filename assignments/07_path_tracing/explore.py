@@ -16,13 +16,7 @@ import time
 import numpy as np
 import path_tracing as mine
 from matplotlib.figure import Figure
-
-
-def option(name, default):
-    """The value after --name on the command line; the default in a notebook."""
-    words = sys.argv[1:]
-    return type(default)(words[words.index(f"--{name}") + 1]) if f"--{name}" in words else default
-
+from photograd_course.explore import option
 
 size, depth, samples = option("size", 48), option("depth", 5), option("samples", 16)
 steps, roughness = option("steps", 45), option("roughness", 0.35)

@@ -5,22 +5,14 @@ from __future__ import annotations
 from types import ModuleType
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from photograd_course.viz.style import BLUE, GREY, INK, ORANGE, house_style
+from photograd_course.viz.style import BLUE, GREY, INK, ORANGE, house_style, plain_axes
 from photograd_course.viz.style import RED as CRIMSON
 
 Facts = dict[str, bool | tuple[float, float, float]]
 Array = np.ndarray
-DOTS = 110  # per inch: 7 inches wide gives 770 pixels
 UP = np.array([0.0, 1.0, 0.0])
 GAMMA = 1 / 2.2
-
-
-def save(figure: Figure, path: object) -> None:
-    """Write a figure with the same bytes every time."""
-    with house_style():
-        figure.savefig(path, dpi=DOTS, facecolor="white", metadata={"Software": None})
 
 
 def fig1_measure(module: ModuleType) -> tuple[Figure, Facts]:
@@ -75,7 +67,7 @@ def fig1_measure(module: ModuleType) -> tuple[Figure, Facts]:
             textcoords="offset points",
         )
         axes.set(xlabel="aside of the lamp  [m]", ylabel="irradiance / radiance", ylim=(5e-3, 2))
-        _plain(axes)
+        plain_axes(axes)
     return figure, facts
 
 
@@ -197,7 +189,7 @@ def fig3_depth(module: ModuleType) -> tuple[Figure, Facts]:
         axes[3].plot(depths, means, "o", color=BLUE, markersize=4)
         axes[3].plot(depths, double, "x", color=CRIMSON, markersize=5)
         axes[3].set(xlabel="depth", title="radiance of a furnace", ylim=(0.8, 4.2))
-        _plain(axes[3])
+        plain_axes(axes[3])
     return figure, facts
 
 
@@ -255,7 +247,7 @@ def fig4_roulette(module: ModuleType) -> tuple[Figure, Facts]:
             axes, ("mean", "surfaces visited", "variance × surfaces"), strict=True
         ):
             each.set(xlabel="depth", title=title)
-            _plain(each)
+            plain_axes(each)
     return figure, facts
 
 
@@ -315,7 +307,7 @@ def fig5_gradient(module: ModuleType) -> tuple[Figure, Facts]:
         side.annotate("own numbers", (70, 0.66), (0, 8), color=BLUE, textcoords="offset points")
         side.set(xlabel="step", title="base colour", ylim=(0.25, 0.75))
         for each in (left, side):
-            _plain(each)
+            plain_axes(each)
     return figure, facts
 
 
@@ -364,7 +356,7 @@ def fig6_recover(module: ModuleType) -> tuple[Figure, Facts]:
         for k, name in enumerate(("red", "green", "blue", "roughness")):
             axis.annotate(name, (24, track[24, k]), (3, 4), textcoords="offset points")
         axis.set(xlabel="step", ylim=(0, 1))
-        _plain(axis)
+        plain_axes(axis)
     return figure, facts
 
 
@@ -477,11 +469,6 @@ def _descent(module: ModuleType, shared: bool) -> Array:
 
 def _apart(a: Array, b: Array) -> float:
     return float(np.linalg.norm(a - b) / np.linalg.norm(b))
-
-
-def _plain(axes: Axes) -> None:
-    axes.grid(visible=True)
-    axes.spines[["top", "right"]].set_visible(False)
 
 
 FIGURES = {

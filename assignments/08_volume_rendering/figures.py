@@ -5,7 +5,6 @@ from __future__ import annotations
 from types import ModuleType
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from photograd_course.viz.style import (
     BLUE,
@@ -14,24 +13,18 @@ from photograd_course.viz.style import (
     INK,
     ORANGE,
     house_style,
+    plain_axes,
     signed_colour_map,
 )
 from photograd_course.viz.style import RED as CRIMSON
 
 Facts = dict[str, bool | tuple[float, float, float]]
 Array = np.ndarray
-DOTS = 110  # per inch: 7 inches wide gives 770 pixels
 STEPS = 48  # along the ray of figures 1 and 3, which is 6 m long
 # The mistakes of figure 4, in the words of its caption.
 LEFT_OUT, ADDED, NO_STEP = "hidden part left out", "hidden part added", "without dt"
 OWN_LIGHT, NO_EXP = "own light among the hidden", "σ dt for opacity"
 TAKES_IN = "T takes in the step"
-
-
-def save(figure: Figure, path: object) -> None:
-    """Write a figure with the same bytes every time."""
-    with house_style():
-        figure.savefig(path, dpi=DOTS, facecolor="white", metadata={"Software": None})
 
 
 def fig1_ray(module: ModuleType) -> tuple[Figure, Facts]:
@@ -73,7 +66,7 @@ def fig1_ray(module: ModuleType) -> tuple[Figure, Facts]:
         panels[2].bar(x, w, width=dt, color=BLUE)
         panels[2].set(ylabel="weight w", xlabel="distance from the eye [m]", xlim=(0, 6))
         for axes in panels:
-            _plain(axes)
+            plain_axes(axes)
             axes.set_axisbelow(True)
     return figure, facts
 
@@ -139,7 +132,7 @@ def fig2_order(module: ModuleType) -> tuple[Figure, Facts]:
         axes.set(xlabel="steps", ylabel="relative error of the pixel", xlim=(7, 2200))
         axes.set_xticks(counts, [str(n) for n in counts])
         axes.minorticks_off()
-        _plain(axes)
+        plain_axes(axes)
     return figure, facts
 
 
@@ -199,7 +192,7 @@ def fig3_adjoint(module: ModuleType) -> tuple[Figure, Facts]:
         for text, at in (("dark cloud", 1.5), ("bright cloud", 4.5)):
             axes.annotate(text, (at, high - 0.07 * (high - low)), ha="center", fontsize=8)
         axes.set(xlabel="distance from the eye [m]", ylabel="∂ pixel / ∂σ", xlim=(0, 6))
-        _plain(axes)
+        plain_axes(axes)
     return figure, facts
 
 
@@ -245,7 +238,7 @@ def fig4_wrong(module: ModuleType) -> tuple[Figure, Facts]:
         axes.set_axisbelow(True)
         axes.minorticks_off()
         axes.invert_yaxis()
-        _plain(axes)
+        plain_axes(axes)
         axes.grid(visible=False, axis="y")
     return figure, facts
 
@@ -494,11 +487,6 @@ def _grown(mask: Array) -> Array:
 
 def _reach(x: Array, mask: Array, dt: Array) -> tuple[float, float]:
     return float(x[mask].min() - dt[0] / 2), float(x[mask].max() + dt[0] / 2)
-
-
-def _plain(axes: Axes) -> None:
-    axes.grid(visible=True)
-    axes.spines[["top", "right"]].set_visible(False)
 
 
 FIGURES = {

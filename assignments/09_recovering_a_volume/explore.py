@@ -11,21 +11,14 @@ from __future__ import annotations
 
 import importlib
 import json
-import sys
 import time
 from pathlib import Path
 
 import numpy as np
 import volume_recovery as mine
 from matplotlib.figure import Figure
+from photograd_course.explore import option
 from PIL import Image
-
-
-def option(name, default):
-    """The value after --name on the command line; the default in a notebook."""
-    words = sys.argv[1:]
-    return type(default)(words[words.index(f"--{name}") + 1]) if f"--{name}" in words else default
-
 
 count, pixels, voxels = option("views", 12), option("pixels", 24), option("voxels", 20)
 steps, capture = option("steps", 60), option("capture", "")

@@ -8,20 +8,21 @@ from types import ModuleType
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from photograd_course.viz.style import BLUE, GREY, INK, ORANGE, house_style, signed_colour_map
+from photograd_course.viz.style import (
+    BLUE,
+    GREY,
+    INK,
+    ORANGE,
+    house_style,
+    plain_axes,
+    signed_colour_map,
+)
 
 Facts = dict[str, bool | tuple[float, float, float]]
 Array = np.ndarray
 Views = dict[str, Array | float]
-DOTS = 110  # per inch: 7 inches wide gives 770 pixels
 BACKGROUND = np.array([0.04, 0.05, 0.08])
 LOW, HIGH = np.full(3, -1.0), np.full(3, 1.0)
-
-
-def save(figure: Figure, path: object) -> None:
-    """Write a figure with the same bytes every time."""
-    with house_style():
-        figure.savefig(path, dpi=DOTS, facecolor="white", metadata={"Software": None})
 
 
 def fig1_cameras(module: ModuleType) -> tuple[Figure, Facts]:
@@ -67,7 +68,7 @@ def fig1_cameras(module: ModuleType) -> tuple[Figure, Facts]:
         axes.annotate("box", (-0.92, 0.68), fontsize=8)
         # x to the right and y towards the reader: a right-handed z goes down.
         axes.set(xlim=(-5.6, 5.6), ylim=(4.1, -4.1), xlabel="x [m]", ylabel="z [m]", aspect="equal")
-        _plain(axes)
+        plain_axes(axes)
     drawn = axes.yaxis_inverted() and not axes.xaxis_inverted()
     facts["it is the view from above, not from below"] = bool(drawn)
     return figure, facts
@@ -151,7 +152,7 @@ def fig3_why(module: ModuleType) -> tuple[Figure, Facts]:
         )
         axes.legend(loc="upper right", ncols=2)
         axes.set_axisbelow(True)
-        _plain(axes)
+        plain_axes(axes)
     return figure, facts
 
 
@@ -203,7 +204,7 @@ def fig4_fit(module: ModuleType) -> tuple[Figure, Facts]:
             ha="right",
         )
         axes.set(xlabel="steps", ylabel="PSNR [dB]", xlim=(0, marks[-1]))
-        _plain(axes)
+        plain_axes(axes)
     return figure, facts
 
 
@@ -416,11 +417,6 @@ def _show(axes: Axes, picture: Array, title: str) -> None:
     axes.imshow(np.clip(picture, 0, 1) ** (1 / 2.2), interpolation="nearest")
     axes.set(xticks=[], yticks=[])
     axes.set_title(title)
-
-
-def _plain(axes: Axes) -> None:
-    axes.grid(visible=True)
-    axes.spines[["top", "right"]].set_visible(False)
 
 
 FIGURES = {

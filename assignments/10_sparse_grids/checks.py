@@ -125,7 +125,6 @@ def cells_of(t, tree, n):
     task="10.1",
     points=4,
     calls=("octree_from_dense",),
-    kills=("octree_full_by_one", "octree_mirrored", "octree_too_coarse", "octree_z_first"),
     hint="child 4 a + 2 b + c lies in the upper half along x where a is 1",
     sole="which cell is full comes before how few nodes say so",
 )
@@ -143,13 +142,6 @@ def the_tree_says_what_the_cube_says(t):
     task="10.1",
     points=3,
     calls=("octree_from_dense",),
-    kills=(
-        "octree_empty_cut",
-        "octree_full_by_one",
-        "octree_full_cut",
-        "octree_never_merged",
-        "octree_too_coarse",
-    ),
     hint="handout, equation (6): only the node that holds the odd cell is cut",
     sole="the exact formula for the memory",
 )
@@ -172,13 +164,6 @@ def one_cell_costs_eight_nodes_a_level(t):
     task="10.1",
     points=3,
     calls=("octree_from_dense",),
-    kills=(
-        "octree_empty_cut",
-        "octree_full_by_one",
-        "octree_full_cut",
-        "octree_never_merged",
-        "octree_too_coarse",
-    ),
     hint="handout, equation (4): a cube of equal cells, full or empty, is one leaf",
     sole="what an octree is for: counted, not timed",
 )
@@ -267,14 +252,6 @@ def same_samples(t, got, right):
     task="10.2",
     points=4,
     calls=("skip_empty",),
-    kills=(
-        "skip_farthest_face",
-        "skip_first_of_leaf",
-        "skip_nothing",
-        "skip_one_too_far",
-        "skip_stops_at_full",
-        "skip_takes_empty",
-    ),
     hint="the first face ahead is the nearest of three; samples before it share the leaf",
     sole="the picture depends on nothing else",
 )
@@ -293,14 +270,6 @@ def samples_in_full_leaves(t):
     task="10.2",
     points=2,
     calls=("skip_empty",),
-    kills=(
-        "skip_first_of_leaf",
-        "skip_nothing",
-        "skip_one_too_far",
-        "skip_stands_still",
-        "skip_stops_at_full",
-        "skip_takes_empty",
-    ),
     hint="a place on a common face belongs to the upper leaf: going down, the jump there is 0",
     sole="places that a random ray never meets, and a lattice always",
 )
@@ -323,18 +292,6 @@ def samples_on_faces(t):
     task="10.2",
     points=4,
     calls=("skip_empty",),
-    kills=(
-        "skip_cell_by_cell",
-        "skip_each_sample",
-        "skip_farthest_face",
-        "skip_first_of_leaf",
-        "skip_nothing",
-        "skip_one_too_far",
-        "skip_still_axes",
-        "skip_stops_at_full",
-        "skip_takes_empty",
-        "skip_upper_faces",
-    ),
     hint="one question for each leaf that a ray passes; then over all samples in it at once",
     sole="what skipping is for: questions are counted, not seconds",
 )
@@ -450,17 +407,6 @@ def require_sound(t, table, voxels, rows):
     task="10.3",
     points=3,
     calls=("voxel_hash_insert",),
-    kills=(
-        "hash_backwards",
-        "hash_ends_at_end",
-        "hash_from_zero",
-        "hash_in_leaps",
-        "hash_last_slot_unused",
-        "hash_lost_at_end",
-        "hash_overwrites",
-        "hash_part_of_voxel",
-        "hash_row_zero_free",
-    ),
     hint="handout, equation (9): the first free slot from the voxel's own onwards",
     sole="asks what a table is for: voxel in, row out",
 )
@@ -489,18 +435,6 @@ def what_was_put_in_is_found(t):
     task="10.3",
     points=3,
     calls=("voxel_hash_insert",),
-    kills=(
-        "hash_backwards",
-        "hash_ends_at_end",
-        "hash_first_row_stays",
-        "hash_from_zero",
-        "hash_in_leaps",
-        "hash_last_slot_unused",
-        "hash_lost_at_end",
-        "hash_overwrites",
-        "hash_row_zero_free",
-        "hash_twice",
-    ),
     hint="a slot that holds the very same voxel is as good as a free one",
     sole="a voxel that comes again is not a new one",
 )
@@ -523,14 +457,6 @@ def a_voxel_that_comes_again_gets_its_new_row(t):
     task="10.3",
     points=2,
     calls=("voxel_hash_insert",),
-    kills=(
-        "hash_ends_at_end",
-        "hash_full_is_silent",
-        "hash_last_slot_unused",
-        "hash_lost_at_end",
-        "hash_overwrites",
-        "hash_row_zero_free",
-    ),
     hint="count the slots that were looked at: after all of them, raise ValueError",
 )
 def a_full_table_says_so(t):
@@ -543,12 +469,7 @@ def a_full_table_says_so(t):
 
 
 @check(
-    "10.3.kept",
-    task="10.3",
-    points=1,
-    calls=("voxel_hash_insert",),
-    kills=("hash_in_place",),
-    hint="copy the table first",
+    "10.3.kept", task="10.3", points=1, calls=("voxel_hash_insert",), hint="copy the table first"
 )
 def the_old_table_stays(t):
     """Voxels inserted in a table are not in the table that was given."""
@@ -589,17 +510,6 @@ def back(t, count, row, weight, g):
     points=3,
     calls=("sample_sparse_adjoint",),
     tolerance=EXACT,
-    kills=(
-        "back_added_by_corner",
-        "back_added_once",
-        "back_first_channel",
-        "back_to_the_first",
-        "back_to_the_last",
-        "back_voxel_zero_lost",
-        "back_weights_made_one",
-        "back_without_g",
-        "back_without_weight",
-    ),
     hint="handout, equation (11): the same weights as forwards, from sample to voxel",
     sole="the definition of an adjoint",
 )
@@ -638,7 +548,6 @@ def is_the_transpose(t):
     points=3,
     calls=("sample_sparse_adjoint",),
     tolerance=EXACT,
-    kills=("back_to_the_first", "back_to_the_last", "back_weights_made_one"),
     hint="row -1 means that there is no voxel; as an index it means the last one",
     sole="what a voxel that does not exist gets, and who must not get it instead",
 )
@@ -666,17 +575,6 @@ def a_missing_voxel_gets_nothing(t):
     points=3,
     calls=("sample_sparse_adjoint",),
     tolerance=GATE,
-    kills=(
-        "back_added_by_corner",
-        "back_added_once",
-        "back_first_channel",
-        "back_to_the_first",
-        "back_to_the_last",
-        "back_voxel_zero_lost",
-        "back_weights_made_one",
-        "back_without_g",
-        "back_without_weight",
-    ),
     hint="loss_and_grad is right once your function is the transpose of sample_sparse",
     sole="the derivative of a picture, by differences",
 )
@@ -766,15 +664,6 @@ def some_shares(t, most):
     task="10.5",
     points=3,
     calls=("prune_and_dilate",),
-    kills=(
-        "grow_too_far",
-        "grow_unordered",
-        "prune_at_threshold",
-        "prune_by_last",
-        "prune_by_mean",
-        "prune_by_sum",
-        "prune_missing_counts",
-    ),
     hint="the largest share of any sample decides: one view that needs a voxel is enough",
     sole="who stays, asked without growing",
 )
@@ -799,13 +688,6 @@ def the_largest_share_decides(t):
     task="10.5",
     points=3,
     calls=("prune_and_dilate",),
-    kills=(
-        "grow_around_the_border",
-        "grow_faces_only",
-        "grow_too_far",
-        "grow_unordered",
-        "grow_without_itself",
-    ),
     hint="a cube around each voxel, edges and corners included, cut off at the cube's faces",
     sole="closed forms: one voxel, a corner, two steps at once",
 )
@@ -881,7 +763,6 @@ def photographed(t, n, voxels, values, rays):
     calls=("prune_and_dilate",),
     needs=EARLIER[:3],
     tolerance=SAME,
-    kills=("grow_faces_only",),
     hint="a sample in an empty cell reads the full cell next to it: grown by one, not less",
     sole="skipping may save work, never change a picture",
 )
@@ -953,15 +834,6 @@ def rates():
     calls=("fit_sparse",),
     needs=STEPS,
     tolerance=CHAINED,
-    kills=(
-        "fit_adam_each_step",
-        "fit_all_cut_at_zero",
-        "fit_colours_cut",
-        "fit_losses_late",
-        "fit_prunes_at_the_end",
-        "fit_sigma_below_zero",
-        "fit_uphill",
-    ),
     hint="handout, equation (14): one Adam for all four channels, then sigma cut off at 0",
     sole="asks about the first steps alone",
 )
@@ -1031,17 +903,6 @@ def two_rounds(t, *given):
     calls=("fit_sparse",),
     needs=STEPS,
     tolerance=CHAINED,
-    kills=(
-        "fit_forgets_values",
-        "fit_never_grows",
-        "fit_never_prunes",
-        "fit_new_like_the_last",
-        "fit_new_voxels_empty",
-        "fit_one_adam",
-        "fit_prunes_at_the_end",
-        "fit_shares_early",
-        "fit_uphill",
-    ),
     hint="handout, equations (15) and (16): between rounds prune, grow, carry over, and start "
     "Adam anew",
     sole="carries values over from one list of voxels to the next",
@@ -1078,7 +939,6 @@ def rounds_can_be_chained(t):
     points=1,
     calls=("fit_sparse",),
     needs=STEPS,
-    kills=("fit_one_adam", "fit_start_overwritten"),
     hint="an array of the start has changed: copy it first",
 )
 def the_start_is_left_alone(t):
@@ -1095,15 +955,6 @@ def the_start_is_left_alone(t):
     points=2,
     calls=("octree_from_dense",),
     visibility="hidden",
-    kills=(
-        "octree_empty_cut",
-        "octree_full_by_one",
-        "octree_full_cut",
-        "octree_mirrored",
-        "octree_never_merged",
-        "octree_too_coarse",
-        "octree_z_first",
-    ),
     sole="the same mistakes in cubes that are not known beforehand",
 )
 def trees_of_random_cubes(t):
@@ -1122,14 +973,6 @@ def trees_of_random_cubes(t):
     points=6,
     calls=("skip_empty",),
     visibility="hidden",
-    kills=(
-        "skip_farthest_face",
-        "skip_first_of_leaf",
-        "skip_nothing",
-        "skip_one_too_far",
-        "skip_stops_at_full",
-        "skip_takes_empty",
-    ),
     sole="the same mistakes on rays that are not known beforehand",
 )
 def samples_of_random_rays(t):
@@ -1161,16 +1004,6 @@ def samples_of_random_rays(t):
     points=1,
     calls=("voxel_hash_insert",),
     visibility="hidden",
-    kills=(
-        "hash_backwards",
-        "hash_ends_at_end",
-        "hash_from_zero",
-        "hash_in_leaps",
-        "hash_lost_at_end",
-        "hash_overwrites",
-        "hash_part_of_voxel",
-        "hash_row_zero_free",
-    ),
     sole="the same mistakes at voxels that are not known beforehand",
 )
 def tables_of_random_voxels(t):
@@ -1191,17 +1024,6 @@ def tables_of_random_voxels(t):
     calls=("sample_sparse_adjoint",),
     visibility="hidden",
     tolerance=EXACT,
-    kills=(
-        "back_added_by_corner",
-        "back_added_once",
-        "back_first_channel",
-        "back_to_the_first",
-        "back_to_the_last",
-        "back_voxel_zero_lost",
-        "back_weights_made_one",
-        "back_without_g",
-        "back_without_weight",
-    ),
     sole="the same mistakes at samples that are not known beforehand",
 )
 def the_adjoint_at_random_samples(t):
@@ -1219,17 +1041,6 @@ def the_adjoint_at_random_samples(t):
     points=2,
     calls=("prune_and_dilate",),
     visibility="hidden",
-    kills=(
-        "grow_around_the_border",
-        "grow_faces_only",
-        "grow_too_far",
-        "grow_unordered",
-        "grow_without_itself",
-        "prune_by_last",
-        "prune_by_mean",
-        "prune_by_sum",
-        "prune_missing_counts",
-    ),
     sole="the same mistakes at voxels that are not known beforehand",
 )
 def random_voxels_are_pruned_and_grow(t):
@@ -1252,22 +1063,6 @@ def random_voxels_are_pruned_and_grow(t):
     needs=STEPS,
     visibility="hidden",
     tolerance=CHAINED,
-    kills=(
-        "fit_adam_each_step",
-        "fit_all_cut_at_zero",
-        "fit_colours_cut",
-        "fit_forgets_values",
-        "fit_losses_late",
-        "fit_never_grows",
-        "fit_never_prunes",
-        "fit_new_like_the_last",
-        "fit_new_voxels_empty",
-        "fit_one_adam",
-        "fit_prunes_at_the_end",
-        "fit_shares_early",
-        "fit_sigma_below_zero",
-        "fit_uphill",
-    ),
     sole="the same mistakes at scenes that are not known beforehand",
 )
 def fits_of_random_scenes(t):
@@ -1302,13 +1097,6 @@ def rods(t, n):
     needs=STEPS,
     visibility="hidden",
     seconds=60.0,
-    kills=(
-        "fit_forgets_values",
-        "fit_never_grows",
-        "fit_never_prunes",
-        "fit_one_adam",
-        "fit_uphill",
-    ),
     sole="the experiment: what the gradient cannot bring back, and who can",
 )
 def what_is_pruned_too_early_is_lost(t):

@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import importlib
 import json
-import sys
 import tempfile
 import time
 from pathlib import Path
@@ -20,14 +19,8 @@ from pathlib import Path
 import numpy as np
 import sparse_grids as mine
 from matplotlib.figure import Figure
+from photograd_course.explore import option
 from PIL import Image
-
-
-def option(name, default):
-    """The value after --name on the command line; the default in a notebook."""
-    words = sys.argv[1:]
-    return type(default)(words[words.index(f"--{name}") + 1]) if f"--{name}" in words else default
-
 
 n, rounds, steps = option("voxels", 16), option("rounds", 8), option("steps", 5)
 threshold, views, size = option("threshold", 0.05), option("views", 16), option("size", 10)

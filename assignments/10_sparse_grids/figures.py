@@ -5,21 +5,21 @@ from __future__ import annotations
 from types import ModuleType
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
-from photograd_course.viz.style import BLUE, GREY, INK, ORANGE, house_style, signed_colour_map
+from photograd_course.viz.style import (
+    BLUE,
+    GREY,
+    INK,
+    ORANGE,
+    house_style,
+    plain_axes,
+    signed_colour_map,
+)
 from photograd_course.viz.style import RED as CRIMSON
 
 Facts = dict[str, bool | tuple[float, float, float]]
 Array = np.ndarray
-DOTS = 110  # per inch: 7 inches wide gives 770 pixels
-
-
-def save(figure: Figure, path: object) -> None:
-    """Write a figure with the same bytes every time."""
-    with house_style():
-        figure.savefig(path, dpi=DOTS, facecolor="white", metadata={"Software": None})
 
 
 def fig1_absent(module: ModuleType) -> tuple[Figure, Facts]:
@@ -63,7 +63,7 @@ def fig1_absent(module: ModuleType) -> tuple[Figure, Facts]:
             )
         right.set(xlabel="σ of the new step  [1/m]", ylabel="loss")
         for axes in (left, right):
-            _plain(axes)
+            plain_axes(axes)
     return figure, facts
 
 
@@ -117,7 +117,7 @@ def fig2_octree(module: ModuleType) -> tuple[Figure, Facts]:
         right.set(xlabel="cells along a side", xlim=(3.5, 170))
         right.set_xticks(sizes, [str(k) for k in sizes])
         right.minorticks_off()
-        _plain(right)
+        plain_axes(right)
     return figure, facts
 
 
@@ -229,7 +229,7 @@ def fig4_hash(module: ModuleType) -> tuple[Figure, Facts]:
         axes.set(xlabel="share of slots taken", ylabel="slots looked at", xlim=(0, 1.05))
         axes.set_yticks([1, 3, 10, 30], ["1", "3", "10", "30"])
         axes.minorticks_off()
-        _plain(axes)
+        plain_axes(axes)
     return figure, facts
 
 
@@ -365,7 +365,7 @@ def fig6_topology(module: ModuleType) -> tuple[Figure, Facts]:
         )
         axes.set_xticks(after, [str(k) for k in after])
         axes.minorticks_off()
-        _plain(axes)
+        plain_axes(axes)
     return figure, facts
 
 
@@ -478,11 +478,6 @@ def _picture(module: ModuleType, n: int, found: tuple[Array, ...], rays: Array) 
 
 def _decibels(a: Array, b: Array) -> float:
     return float(-10 * np.log10(max(float(np.mean((a - b) ** 2)), 1e-30)))
-
-
-def _plain(axes: Axes) -> None:
-    axes.grid(visible=True)
-    axes.spines[["top", "right"]].set_visible(False)
 
 
 FIGURES = {

@@ -10,19 +10,12 @@
 from __future__ import annotations
 
 import importlib
-import sys
 import time
 
 import numpy as np
 import plenoxels as mine
 from matplotlib.figure import Figure
-
-
-def option(name, default):
-    """The value after --name on the command line; the default in a notebook."""
-    words = sys.argv[1:]
-    return type(default)(words[words.index(f"--{name}") + 1]) if f"--{name}" in words else default
-
+from photograd_course.explore import option
 
 views, pixels, degree = option("views", 30), option("pixels", 12), option("degree", 2)
 levels, steps, coarse = option("levels", 3), option("steps", 36), option("coarse", 4)

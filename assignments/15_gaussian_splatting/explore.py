@@ -10,20 +10,13 @@
 from __future__ import annotations
 
 import importlib
-import sys
 import time
 
 import numpy as np
 import splatting as mine
 from matplotlib.figure import Figure
+from photograd_course.explore import option
 from PIL import Image
-
-
-def option(name, default):
-    """The value after --name on the command line; the default in a notebook."""
-    words = sys.argv[1:]
-    return type(default)(words[words.index(f"--{name}") + 1]) if f"--{name}" in words else default
-
 
 steps, size, count = option("steps", 600), option("pixels", 64), option("views", 12)
 most, every, seed = option("most", 500), option("every", 40), option("seed", 0)

@@ -12,13 +12,19 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Ellipse
 from photograd_course.assignment.bundle import read_folder
 from photograd_course.build.kits import source_folders
-from photograd_course.viz.style import BLUE, GREY, ORANGE, house_style, signed_colour_map
+from photograd_course.viz.style import (
+    BLUE,
+    GREY,
+    ORANGE,
+    house_style,
+    plain_axes,
+    signed_colour_map,
+)
 
 Facts = dict[str, bool | tuple[float, float, float]]
 Array = np.ndarray
 Scene = dict[str, Array]
 Camera = dict[str, object]
-DOTS = 110  # per inch: 7 inches wide gives 770 pixels
 BLACK = np.zeros(3)
 SIZE, VIEWS, MOST, STEPS = 32, 12, 180, 120
 BALLS = (
@@ -26,12 +32,6 @@ BALLS = (
     ((0.45, 0.2, -0.3), 0.35, (0.45, 0.75, 0.95)),
     ((0.3, -0.45, 0.35), 0.25, (0.9, 0.85, 0.4)),
 )
-
-
-def save(figure: Figure, path: object) -> None:
-    """Write a figure with the same bytes every time."""
-    with house_style():
-        figure.savefig(path, dpi=DOTS, facecolor="white", metadata={"Software": None})
 
 
 def fig1_projection(module: ModuleType) -> tuple[Figure, Facts]:
@@ -76,7 +76,7 @@ def fig1_projection(module: ModuleType) -> tuple[Figure, Facts]:
         right.set(xlabel="t_x / t_z", ylabel="width of the splat [pixels]")
         right.legend()
         for axes in (left, right):
-            _plain(axes)
+            plain_axes(axes)
     return figure, facts
 
 
@@ -113,7 +113,7 @@ def fig2_weights(module: ModuleType) -> tuple[Figure, Facts]:
         axes.set(xticks=x, xticklabels=[f"{depth[k]} m\nrow {k}" for k in order], ylim=(0, 1.05))
         axes.legend(ncols=3)
         axes.set_axisbelow(True)
-        _plain(axes)
+        plain_axes(axes)
     return figure, facts
 
 
@@ -176,7 +176,7 @@ def fig3_pull(module: ModuleType) -> tuple[Figure, Facts]:
         right.semilogy(curves[1], color=BLUE, label="up to sixty")
         right.set(xlabel="step", ylabel="loss")
         right.legend()
-        _plain(right)
+        plain_axes(right)
     return figure, facts
 
 
@@ -514,11 +514,6 @@ def _show(axes: Axes, picture: Array, title: str) -> None:
     axes.imshow(np.clip(picture, 0, 1), interpolation="nearest")
     axes.set(xticks=[], yticks=[])
     axes.set_title(title, fontsize=8)
-
-
-def _plain(axes: Axes) -> None:
-    axes.grid(visible=True)
-    axes.spines[["top", "right"]].set_visible(False)
 
 
 def _calm(

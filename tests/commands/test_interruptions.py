@@ -18,9 +18,9 @@ from photograd.fitting.loop import Fit
 from photograd.fitting.options import FitOptions
 from photograd_course.random import uniform
 
-# Levels of 8, 16 and 32 voxels, from steps 0, 180 and 480 on; some seconds in all, so that a kill
+# Levels of 8, 16 and 32 voxels; a second or two in all, so that a kill
 # within the first half second, and another as long after resuming, come before the end.
-OPTIONS: dict[str, Any] = {"steps": 1200, "resolution": 32, "rays": 256, "seed": 3}
+OPTIONS: dict[str, Any] = {"steps": 600, "resolution": 32, "rays": 256, "seed": 3}
 WORDS = [word for name, value in OPTIONS.items() for word in (f"--{name}", str(value))]
 
 

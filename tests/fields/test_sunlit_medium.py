@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd._compiled import _core
 from photograd.bsdf.phase import registry as phase_functions
 from photograd.errors import DtypeError, RangeError, ShapeError
 from photograd.fields import SunlitMedium
@@ -19,6 +18,9 @@ from photograd.fields.sunlit_medium import sun_visibility
 from photograd.geometry.mesh import Bvh, Mesh
 from photograd.representation import Outputs, RayBatch, RenderOptions
 from photograd_course.gradcheck import check_gradient
+
+from support.bits import same_bits
+from support.gradient_mutants import memoized
 
 pytestmark = pytest.mark.usefixtures("core")
 
@@ -213,47 +215,35 @@ class NoPhase(SunlitMedium):
         return d | {"sigma_t": super().render_backward(even, d_outputs)["sigma_t"]}
 
 
-def gradients_agree(kind: type[SunlitMedium]) -> bool:
-    medium = kind.example(seed=3)
-    batch, place = medium.example_batch(seed=3), dict(medium.params)
-
-    def render(params: dict[str, Any]) -> Any:
-        medium.params = dict(params)
-        return medium.render(batch, seed=0, step=0, options=OPTIONS)
-
-    assert np.abs(render(place)[0].color).min() > 1e-4
-    return bool(
-        check_gradient(
-            lambda p: render(p)[0].color,
-            lambda p, d: medium.render_backward(render(p)[1], Outputs(d)),
-            place,
-            seed=1,
-        )
-    )
-
-
 def test_wrong_adjoints_die() -> None:
-    assert gradients_agree(SunlitMedium)
-    for wrong in (NoShadow, NoVisibility, Swapped, NoPhase):
-        assert not gradients_agree(wrong), wrong.__name__
+    place = dict(SunlitMedium.example(seed=3).params)
+
+    def render(kind: type[SunlitMedium], params: dict[str, Any]) -> Any:
+        medium = kind.example(seed=3)
+        medium.params = dict(params)
+        batch = medium.example_batch(seed=3)
+        return medium, *medium.render(batch, seed=0, step=0, options=OPTIONS)
+
+    forward = memoized(lambda p: render(SunlitMedium, p)[1].color)
+    assert np.abs(forward(place)).min() > 1e-4
+    for kind in (SunlitMedium, NoShadow, NoVisibility, Swapped, NoPhase):
+
+        def backward(p: dict[str, Any], d: Any, kind: type[SunlitMedium] = kind) -> Any:
+            medium, _, context = render(kind, p)
+            return medium.render_backward(context, Outputs(d))
+
+        right = check_gradient(forward, backward, place, seed=1)
+        assert bool(right) == (kind is SunlitMedium), kind.__name__
 
 
-def test_thread_count_changes_nothing() -> None:
-    runs = []
-    for threads in (1, 2, 5):
-        _core.set_thread_count(threads)
-        medium = SunlitMedium.homogeneous(
-            1.5, (24, 24, 24), [[0, 0, 0], [1, 1, 1]], 1 / 48, g=0.4, sun=(1, 2, 0.5)
-        )
-        batch = medium.example_batch(seed=1)
-        outputs, context = medium.render(batch, seed=0, step=0, options=OPTIONS)
-        d = Outputs(np.ones_like(outputs.color))
-        runs.append([outputs.color, *medium.render_backward(context, d).values()])
-    _core.set_thread_count(0)
-    assert all(np.abs(array).max() > 0 for array in runs[0])
-    for other in runs[1:]:
-        for a, b in zip(runs[0], other, strict=True):
-            np.testing.assert_array_equal(a, b)
+@same_bits("sunlit medium")
+def picture_and_gradients() -> list[Any]:
+    medium = SunlitMedium.homogeneous(
+        1.5, (24, 24, 24), [[0, 0, 0], [1, 1, 1]], 1 / 48, g=0.4, sun=(1, 2, 0.5)
+    )
+    outputs, context = medium.render(medium.example_batch(seed=1), seed=0, step=0, options=OPTIONS)
+    gradients = medium.render_backward(context, Outputs(np.ones_like(outputs.color)))
+    return [outputs.color, *gradients.values()]
 
 
 def test_bad_input_is_refused() -> None:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
-from photograd._compiled import _core
 from photograd.errors import RangeError, SceneError
 from photograd.fitting.evaluate import evaluate
 from photograd.fitting.loop import Fit
@@ -15,6 +15,7 @@ from photograd.fitting.model import Model, load_model
 from photograd.fitting.options import FitOptions, options_for
 from photograd.splats.model import GaussianScene
 
+from support.bits import same_bits
 from tests.splats.scene import cloud_capture
 
 OPTIONS = options_for("gaussians", steps=400, gaussians=250, degree=1, seed=3, learning_rate=2.0)
@@ -62,19 +63,12 @@ def test_interrupted_and_resumed_ends_with_the_same_bits(control: str, tmp_path:
     np.testing.assert_array_equal(one.history, two.history)
 
 
-def test_the_same_bits_on_any_number_of_threads() -> None:
-    found = []
-    try:
-        for threads in (1, 2):
-            _core.set_thread_count(threads)
-            fit = Fit.start(cloud_capture(), replace(OPTIONS, steps=60))
-            for _ in range(25):
-                fit.step()
-            found.append(fit.model.params)
-    finally:
-        _core.set_thread_count(0)
-    for name, array in found[0].items():
-        np.testing.assert_array_equal(array, found[1][name])
+@same_bits("fit of Gaussians")
+def parameters_after_steps() -> list[Any]:
+    fit = Fit.start(cloud_capture(), replace(OPTIONS, steps=60))
+    for _ in range(25):
+        fit.step()
+    return list(fit.model.params.values())
 
 
 def test_a_background_is_learned_behind_opaque_photographs() -> None:

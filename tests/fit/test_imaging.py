@@ -19,7 +19,8 @@ from photograd.fitting.loss import image_loss, image_loss_backward
 from photograd.representation import Outputs
 from photograd_course.color import srgb_decode, srgb_encode
 from photograd_course.gradcheck import check_gradient, taylor_slope
-from photograd_course.mutants import check_mutants
+
+from support.gradient_mutants import check_gradient_mutants
 
 RAYS = 40
 
@@ -69,9 +70,7 @@ def test_gradient_of_the_loss_with_its_background(display: bool, shared: bool) -
 def test_automatic_mutants_of_the_loss_die() -> None:
     function, backward = problem(True)
     start = place(shared=True)
-    report = check_mutants(
-        lambda b: check_gradient(function, b, start, seed=2, coordinates=8), backward, start, 1.3
-    )
+    report = check_gradient_mutants(function, backward, start, 1.3, seed=2, coordinates=8)
     assert report, str(report)
 
 

@@ -14,7 +14,8 @@ from photograd.fitting.data import TrainingView, TrainingViews
 from photograd.fitting.loss import picture_loss, picture_loss_backward
 from photograd.representation import Outputs
 from photograd_course.gradcheck import check_gradient
-from photograd_course.mutants import check_mutants
+
+from support.gradient_mutants import check_gradient_mutants
 
 CAMERA = Camera(13, 12, 20.0, 20.0, 6.5, 6.0, np.eye(4))
 
@@ -84,13 +85,14 @@ def test_the_mean_square_is_that_of_valid_pixels() -> None:
 
 def test_wrong_gradients_die() -> None:
     proof = Proof(5, 0.2, view(6))
-    report = check_mutants(
-        lambda backward: check_gradient(
-            proof.forward, backward, proof.place, seed=5, directions=4, steps=(1e-5, 1e-6)
-        ),
+    report = check_gradient_mutants(
+        proof.forward,
         proof.backward,
         proof.place,
         {"value": np.array(1.0)},
+        seed=5,
+        directions=4,
+        steps=(1e-5, 1e-6),
     )
     assert report, str(report)
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from photograd._compiled import _core
-from photograd.geometry.mesh import Bvh, Hits, Instance, Mesh
+from photograd.geometry.mesh import Bvh, Instance, Mesh
 from photograd_course.random import uniform
+
+from support.bits import same_bits
 
 from .shapes import Array, brute_force, bumpy_sphere, camera_rays, random_rays
 
@@ -157,21 +158,11 @@ def test_texture_coordinates_are_interpolated() -> None:
     np.testing.assert_allclose(points.uv, [[0.5, 0.5], [1.8, 0.8]], atol=1e-12)
 
 
-def arrays_of(hits: Hits) -> list[bytes]:
-    return [a.tobytes() for a in (hits.t, hits.primitive, hits.instance, hits.barycentrics)]
-
-
-def test_same_bits_for_any_number_of_threads() -> None:
+@same_bits("BVH")
+def hits_of_many_rays() -> list[Array]:
     origins, directions = (a.astype("f4") for a in random_rays(150_000, seed=7))
-    seen = set()
-    for threads in (1, 2, 3):
-        _core.set_thread_count(threads)
-        try:
-            bvh = Bvh(Mesh(VERTICES, FACES))
-            seen.add(b"".join(arrays_of(bvh.trace(origins, directions))))
-        finally:
-            _core.set_thread_count(0)
-    assert len(seen) == 1
+    hits = Bvh(Mesh(VERTICES, FACES)).trace(origins, directions)
+    return [hits.t, hits.primitive, hits.instance, hits.barycentrics]
 
 
 def test_reordering_inside_does_not_show(bvh: Bvh) -> None:

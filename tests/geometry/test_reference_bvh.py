@@ -7,11 +7,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd._compiled import _core
 from photograd.errors import Error, RangeError, SceneError, ShapeError
 from photograd.geometry import BvhHits, ReferenceBvh
 from photograd.geometry.mesh import Bvh, Mesh
 from photograd_course.random import uniform
+
+from support.bits import same_bits
 
 from .shapes import Array, brute_force, bumpy_sphere, camera_rays, random_rays
 
@@ -137,17 +138,9 @@ def test_what_the_hierarchy_spares() -> None:
     assert (work[0].boxes + work[0].triangles).sum() < (work[1].boxes + work[1].triangles).sum()
 
 
-def test_same_bits_on_any_number_of_threads() -> None:
-    origins, directions = random_rays(5000, seed=7)
-    seen = set()
-    for threads in (1, 2, 5):
-        _core.set_thread_count(threads)
-        try:
-            found = ReferenceBvh(BUMPY).trace(origins, directions)
-            seen.add(b"".join(a.tobytes() for a in vars(found).values()))
-        finally:
-            _core.set_thread_count(0)
-    assert len(seen) == 1
+@same_bits("reference BVH")
+def hits_of_the_reference() -> list[Any]:
+    return list(vars(ReferenceBvh(BUMPY).trace(*random_rays(5000, seed=7))).values())
 
 
 def with_row(array: Array, row: int, value: Any) -> Array:

@@ -27,8 +27,9 @@ from photograd.geometry.sdf import (
     union,
 )
 from photograd_course.gradcheck import check_gradient
-from photograd_course.mutants import check_mutants
 from photograd_course.random import uniform
+
+from support.gradient_mutants import check_gradient_mutants
 
 from .shapes import Array
 
@@ -163,13 +164,14 @@ def test_derivatives(name: str) -> None:
     report = check_gradient(forward, backward, place, seed=6)
     assert report, str(report)
     if name == "all":
-        mutants = check_mutants(
-            lambda wrong: check_gradient(
-                forward, wrong, place, seed=7, coordinates=12, directions=4
-            ),
+        mutants = check_gradient_mutants(
+            forward,
             backward,
             place,
             0.5 + uniform(7, pixel=np.arange(len(p))),
+            seed=7,
+            coordinates=12,
+            directions=4,
         )
         assert mutants, str(mutants)
 

@@ -6,13 +6,14 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd._compiled import _core
 from photograd.errors import RangeError, ShapeError
 from photograd.geometry import Body, SdfHits, draw_body
 from photograd.geometry.sdf import GAVE_UP, HIT, MISSED, box, placed, plane, sphere, union
 from photograd.transport.builtin import camera_at
 from photograd_course.gradcheck import check_gradient
-from photograd_course.mutants import check_mutants
+
+from support.bits import same_bits
+from support.gradient_mutants import check_gradient_mutants
 
 from .shapes import Array, random_rays
 from .test_sdf import all_together
@@ -152,13 +153,15 @@ def test_derivatives_of_a_hit() -> None:
     steps = (1e-4, 1e-5, 1e-6)
     report = check_gradient(forward, backward, place, seed=4, coordinates=20, steps=steps)
     assert report, str(report)
-    mutants = check_mutants(
-        lambda wrong: check_gradient(
-            forward, wrong, place, seed=5, coordinates=6, directions=3, steps=steps[:2]
-        ),
+    mutants = check_gradient_mutants(
+        forward,
         backward,
         place,
         0.5 + np.arange(150) / 150,
+        seed=5,
+        coordinates=6,
+        directions=3,
+        steps=steps[:2],
     )
     assert mutants, str(mutants)
 
@@ -179,19 +182,13 @@ def test_the_hit_of_a_ball_in_closed_form() -> None:
         assert not d_origin[np.arange(4) != k].any()
 
 
-def test_same_bits_on_any_number_of_threads() -> None:
+@same_bits("sphere tracing")
+def hits_and_gradients() -> list[Any]:
     body = Body(all_together())
     origins, directions = random_rays(6000, seed=6, spread=2.0)
-    seen = set()
-    for threads in (1, 2, 5):
-        _core.set_thread_count(threads)
-        try:
-            hits = body.trace(origins, directions)
-            back = body.trace_backward(origins, directions, hits, np.ones(6000))
-        finally:
-            _core.set_thread_count(0)
-        seen.add(b"".join(a.tobytes() for a in (hits.t, hits.steps, hits.end, *back)))
-    assert len(seen) == 1
+    hits = body.trace(origins, directions)
+    back = body.trace_backward(origins, directions, hits, np.ones(6000))
+    return [hits.t, hits.steps, hits.end, *back]
 
 
 def test_how_rays_end() -> None:

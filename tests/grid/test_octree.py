@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import pytest
-from photograd._compiled import _core
 from photograd.grids.octree import Octree, Quadtree
 from photograd_course.random import uniform
+
+from support.bits import same_bits
 
 Array = npt.NDArray[Any]
 SHAPE = (30, 32, 27)
@@ -173,14 +174,10 @@ def test_a_function_gives_the_tree_of_its_samples() -> None:
     assert tree.statistics() == Quadtree.from_dense(grid).statistics()
 
 
-def test_the_same_visits_on_any_number_of_threads() -> None:
+@same_bits("octree traversal")
+def visits() -> list[Any]:
     tree = Octree.from_dense(ball(), BOUNDS)
     o, d = random_points(30_000, seed=8), random_points(30_000, seed=9) - [0.0, 3.0, 1.3]
-    results = []
-    for threads in (1, 4):
-        _core.set_thread_count(threads)
-        visits = tree.traverse(o, d)
-        results.append([a.tobytes() for a in vars(visits).values()])
-    _core.set_thread_count(0)
-    assert len(results[0][1]) > 100_000
-    assert results[0] == results[1]
+    found = list(vars(tree.traverse(o, d)).values())
+    assert found[1].nbytes > 100_000
+    return found

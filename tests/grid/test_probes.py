@@ -10,7 +10,8 @@ from photograd import sh
 from photograd.errors import DtypeError, RangeError, ShapeError
 from photograd.lights.probes import ProbeGrid, bake, sphere_quadrature
 from photograd_course.gradcheck import check_gradient, dot_product_error
-from photograd_course.mutants import check_mutants
+
+from support.gradient_mutants import check_gradient_mutants
 
 pytestmark = pytest.mark.usefixtures("core")
 
@@ -135,7 +136,7 @@ def test_derivatives(degree: int) -> None:
 def test_wrong_derivatives_die() -> None:
     forward, backward, place = irradiance_pair(2)
     d = random(9).normal(size=(12, 3))
-    report = check_mutants(lambda b: check_gradient(forward, b, place, seed=1), backward, place, d)
+    report = check_gradient_mutants(forward, backward, place, d, seed=1)
     assert report, str(report)
 
     def no_lobe(p: dict[str, Any], d: Any) -> dict[str, Any]:

@@ -30,7 +30,7 @@ def test_w10_computes_the_workload(monkeypatch: pytest.MonkeyPatch, kind: str) -
         "--params",
         kind,
         "--reps",
-        "2",
+        "1",
     ]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr

@@ -53,7 +53,7 @@ def image(occupied: Any, values: Any, origins: Any, directions: Any) -> Any:
 
 def test_w6b_computes_the_workload(monkeypatch: pytest.MonkeyPatch) -> None:
     words = [word for name, value in SIZE.items() for word in (f"--{name}", str(value))]
-    command = [sys.executable, str(BENCH / "w6b_plenoxel.py"), *words, "--reps", "2"]
+    command = [sys.executable, str(BENCH / "w6b_plenoxel.py"), *words, "--reps", "1"]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     row = json.loads(done.stdout)

@@ -16,14 +16,14 @@ from tests.splat import oracle
 from support.tree import ROOT
 
 BENCH = ROOT / "bench"
-SIZE = {"gaussians": 2000, "res": 64}
+SIZE = {"gaussians": 300, "res": 32}
 
 pytestmark = pytest.mark.usefixtures("core")
 
 
 def test_w8_computes_the_workload(monkeypatch: pytest.MonkeyPatch) -> None:
     words = [word for name, value in SIZE.items() for word in (f"--{name}", str(value))]
-    command = [sys.executable, str(BENCH / "w8_splat.py"), *words, "--reps", "2", "--breakdown"]
+    command = [sys.executable, str(BENCH / "w8_splat.py"), *words, "--reps", "1", "--breakdown"]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     row = json.loads(done.stdout)
@@ -38,7 +38,7 @@ def test_w8_computes_the_workload(monkeypatch: pytest.MonkeyPatch) -> None:
     inputs = import_module("_inputs")
     gaussians = Gaussians(**inputs.gaussians(SIZE["gaussians"])).astype(np.float64)
     view, focal = inputs.splat_camera(SIZE["res"])
-    camera = Camera(64, 64, focal, focal, 32.0, 32.0, np.eye(4))
+    camera = Camera(32, 32, focal, focal, 16.0, 16.0, np.eye(4))
     options, M = SplatOptions(), view.astype(np.float64)
     expected = oracle.render(gaussians, camera, np.zeros(3), options, M)["color"]
     quality = row["quality"]

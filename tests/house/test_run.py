@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import tomllib
 from pathlib import Path
@@ -86,6 +87,27 @@ def test_requirements_come_from_the_project_files() -> None:
     lines = call("python3", "tools/requirements.py", "build", "dev").stdout.splitlines()
     assert set(project["build-system"]["requires"]) < set(lines)
     assert set(project["project"]["optional-dependencies"]["dev"]) < set(lines)
+
+
+def test_what_all_holds() -> None:
+    """Each part is offered by name; continuous integration runs them, or the rest is named."""
+    script = (ROOT / "run").read_text(encoding="utf-8")
+    parts = re.findall(r"^PARTS=\((.*)\)$", script, re.MULTILINE)[0].split()
+    assert parts == ["docs", "modes", "mutants"]
+    assert all(f'" {part} "*' in script for part in parts)  # each does something
+    page = call("./run", "help").stdout
+    assert all(part in page for part in [*parts, "--all", "--with", "--asan", "--tsan"])
+    calls = (ROOT / ".ci/run").read_text(encoding="utf-8")
+    assert set(re.findall(r"--with (\w+)", calls)) == set(parts)
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    assert re.search(r"`./run test --asan` and `./run test --tsan` take about \d+ minutes", text)
+
+
+def test_an_unknown_part_is_refused() -> None:
+    for words in (("--with", "magic"), ("--with",)):
+        answer = call("./run", "test", *words)
+        assert answer.returncode == 2
+        assert "expected one of docs modes mutants" in answer.stderr
 
 
 def test_scripts_parse_and_may_be_executed() -> None:

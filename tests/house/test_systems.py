@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import re
 import tomllib
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -27,10 +28,16 @@ def module_file(module: str) -> Path | None:
     return next((top / tail for top in (ROOT, ROOT / "tests") if (top / tail).is_file()), None)
 
 
+@cache
+def parsed(path: Path) -> ast.Module:
+    return ast.parse(path.read_text(encoding="utf-8"))
+
+
+@cache
 def classes_of(path: Path) -> dict[str, set[str]]:
     """{class: its test methods} of a file, inherited ones included, and of what it imports."""
     found: dict[str, set[str]] = {}
-    for node in ast.parse(path.read_text(encoding="utf-8")).body:
+    for node in parsed(path).body:
         if isinstance(node, ast.ImportFrom) and (source := module_file(node.module or "")):
             known = classes_of(source)
             found |= {n.asname or n.name: known[n.name] for n in node.names if n.name in known}
@@ -46,11 +53,12 @@ def own_tests(body: list[ast.stmt]) -> set[str]:
     return {name for name in functions if name.startswith("test_")}
 
 
+@cache
 def collected(path: Path) -> set[str]:
     """What pytest collects from a file: "function" and "Class::method"."""
     if not path.name.startswith("test_"):
         return set()
-    found = own_tests(ast.parse(path.read_text(encoding="utf-8")).body)
+    found = own_tests(parsed(path).body)
     for name, methods in classes_of(path).items():
         found |= {f"{name}::{method}" for method in methods if name.startswith("Test")}
     return found

@@ -13,6 +13,7 @@ from photograd.lights import EnvironmentMap, LightSamples, about_y
 from photograd_course.random import uniform
 
 from light.seen import bilinear_oracle, environment, environment_irradiance, texels
+from support.bits import same_bits
 from support.light_proofs import Seen, prove_density, prove_irradiance, square
 
 
@@ -175,20 +176,13 @@ def test_small_and_odd_maps(height: int) -> None:
     check_lookup(light, texels(height), np.eye(3))
 
 
-def test_the_same_bits_on_any_number_of_threads() -> None:
-    image = texels(40).astype("f4")
-    points = np.zeros((20_000, 3), "f4")
-    u2 = square(20_000, seed=45).astype("f4")
-    found = []
-    for threads in (1, 2, 5):
-        _core.set_thread_count(threads)
-        light = EnvironmentMap(image, uniform_share=0.1)
-        samples = light.sample(points, u2)
-        d = light.L_backward(points, samples.direction, samples.radiance)
-        parts = (samples.direction, samples.radiance, samples.pdf, d["texels"])
-        found.append(b"".join(part.tobytes() for part in parts))
-    _core.set_thread_count(0)
-    assert found[0] == found[1] == found[2]
+@same_bits("environment map")
+def samples_and_gradients() -> list[Any]:
+    image, points = texels(40).astype("f4"), np.zeros((20_000, 3), "f4")
+    light = EnvironmentMap(image, uniform_share=0.1)
+    samples = light.sample(points, square(20_000, seed=45).astype("f4"))
+    d = light.L_backward(points, samples.direction, samples.radiance)
+    return [samples.direction, samples.radiance, samples.pdf, d["texels"]]
 
 
 def test_bad_maps_are_refused() -> None:

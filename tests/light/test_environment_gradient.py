@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 from photograd.lights import EnvironmentMap, about_y
 from photograd_course.gradcheck import check_accumulation, check_gradient, dot_product_error
-from photograd_course.mutants import check_mutants, check_overwriting_mutants
+from photograd_course.mutants import check_overwriting_mutants
 from photograd_course.random import uniform
 
 from light.seen import POINT, UP, texels
+from support.gradient_mutants import check_gradient_mutants
 from support.light_proofs import square
 
 COUNT = 300
@@ -62,12 +63,7 @@ def test_gradients(function: str) -> None:
     assert report, str(report)
     report = check_accumulation(proof.accumulate, proof.place, proof.d)
     assert report, str(report)
-    report = check_mutants(
-        lambda b: check_gradient(proof.forward, b, proof.place, seed=1),
-        proof.backward,
-        proof.place,
-        proof.d,
-    )
+    report = check_gradient_mutants(proof.forward, proof.backward, proof.place, proof.d, seed=1)
     assert report, str(report)
     report = check_overwriting_mutants(
         lambda a: check_accumulation(a, proof.place, proof.d),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from typing import Any
 
 import numpy as np
@@ -10,7 +9,7 @@ import pytest
 from photograd import sh
 from photograd._compiled import _core
 
-from support.instruction_sets import assert_same_bits
+from support.bits import same_bits
 
 pytestmark = pytest.mark.usefixtures("core")
 
@@ -83,22 +82,6 @@ def test_what_is_no_number_shows_in_its_own_row_only() -> None:
         assert np.isfinite(np.delete(array, bad, axis=0)).all()
 
 
-def digests() -> list[str]:
-    """One for each result of each degree."""
-    results = [r for degree in DEGREES for r in all_results(degree, 20_000, fused=True)]
-    return [hashlib.sha256(result.tobytes()).hexdigest() for result in results]
-
-
-def test_thread_count_changes_nothing() -> None:
-    seen = []
-    for threads in (1, 2, 5):
-        _core.set_thread_count(threads)
-        seen.append(digests())
-    _core.set_thread_count(0)
-    assert len(set(seen[0])) == 3 * len(DEGREES)
-    assert seen[0] == seen[1] == seen[2]
-
-
-@pytest.mark.slow
-def test_every_instruction_set_gives_the_same_bits() -> None:
-    assert_same_bits("from tests.ops.test_sh_bits import digests; print(*digests())")
+@same_bits("sh_colors", each=map(str, DEGREES), kernels=("sh_rgb", "sh_rgb_backward"))
+def many_rows(degree: str) -> list[Any]:
+    return all_results(int(degree), 20_000, fused=True)

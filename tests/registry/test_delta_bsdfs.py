@@ -9,9 +9,10 @@ import pytest
 from photograd.bsdf.specular import DeltaModel, registry
 from photograd.errors import DtypeError, ShapeError
 from photograd_course.gradcheck import check_accumulation, check_gradient, dot_product_error
-from photograd_course.mutants import check_mutants, check_overwriting_mutants
+from photograd_course.mutants import check_overwriting_mutants
 
 from support.bsdf_proofs import draw_parameters, hemisphere
+from support.gradient_mutants import check_gradient_mutants
 
 MODELS = registry()
 NAMES = sorted(MODELS)
@@ -83,11 +84,8 @@ def test_derivatives(name: str) -> None:
 @pytest.mark.parametrize("name", NAMES)
 def test_wrong_derivatives_die(name: str) -> None:
     proof = Proof(name)
-    report: Any = check_mutants(
-        lambda b: check_gradient(proof.forward, b, proof.place, seed=1, coordinates=8),
-        proof.backward,
-        proof.place,
-        proof.d,
+    report: Any = check_gradient_mutants(
+        proof.forward, proof.backward, proof.place, proof.d, seed=1, coordinates=8
     )
     assert report, str(report)
     report = check_overwriting_mutants(

@@ -13,8 +13,10 @@ from photograd_course.gradcheck import (
     dot_product_error,
     taylor_slope,
 )
-from photograd_course.mutants import check_mutants, check_overwriting_mutants
+from photograd_course.mutants import check_overwriting_mutants
 from photograd_course.random import uniform
+
+from support.gradient_mutants import check_gradient_mutants
 
 OPS = sorted(_core.ops)
 
@@ -111,11 +113,8 @@ def test_automatic_mutants_die(name: str) -> None:
     proof = Proof(name)
     place = draw(proof.op, 8)
     d_y = 0.5 + uniform(8, step=9, pixel=np.arange(proof.op.outputs), sample=0, dimension=0)
-    report = check_mutants(
-        lambda backward: check_gradient(proof.forward, backward, place, seed=8, coordinates=8),
-        proof.backward,
-        place,
-        d_y,
+    report = check_gradient_mutants(
+        proof.forward, proof.backward, place, d_y, seed=8, coordinates=8
     )
     assert report, str(report)
     report = check_overwriting_mutants(

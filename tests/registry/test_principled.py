@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from typing import Any
 
 import numpy as np
@@ -11,8 +10,8 @@ from photograd._compiled import _core
 from photograd.bsdf import principled, registry
 from photograd.errors import DtypeError, ShapeError
 
+from support.bits import same_bits
 from support.bsdf_proofs import albedo, hemisphere
-from support.instruction_sets import assert_same_bits
 
 pytestmark = pytest.mark.usefixtures("core")
 
@@ -136,22 +135,13 @@ def test_bad_arrays_are_named() -> None:
         principled.evaluate(parameters[:0], wo, wi)
 
 
-def digest() -> str:
-    """Of all results for two numbers of rows."""
+@same_bits("principled", kernels=("principled_values", "principled_values_backward"))
+def values_and_gradients() -> list[Any]:
+    """One material for all rows, and more materials than one task takes."""
     wo, wi = directions(70_000, 1), directions(70_000, 2)
-    hashes = hashlib.sha256()
+    results = []
     for rows in (1, 3000):
         parameters = parameter_rows(rows)
-        hashes.update(principled.evaluate(parameters, wo, wi, cosine=True).tobytes())
-        hashes.update(principled.evaluate_backward(parameters, wo, wi, wo).tobytes())
-    return hashes.hexdigest()
-
-
-def test_same_bits_on_any_threads_and_instruction_set() -> None:
-    found = []
-    for threads in (1, 2, 5):
-        _core.set_thread_count(threads)
-        found.append(digest())
-    _core.set_thread_count(0)
-    assert set(found) == {found[0]}
-    assert_same_bits("from tests.registry.test_principled import digest; print(digest())")
+        results.append(principled.evaluate(parameters, wo, wi, cosine=True))
+        results.append(principled.evaluate_backward(parameters, wo, wi, wo))
+    return results

@@ -22,7 +22,9 @@ from photograd.representation import (
     dense_gradient,
 )
 from photograd_course.gradcheck import check_gradient, taylor_slope
-from photograd_course.mutants import check_mutants
+
+from support.bits import same_bits
+from support.gradient_mutants import check_gradient_mutants
 
 REPRESENTATIONS = photograd.representations()
 NAMES = sorted(REPRESENTATIONS)
@@ -152,19 +154,15 @@ def test_camera_gradient_only_where_asked(name: str) -> None:
 @pytest.mark.parametrize("name", NAMES)
 def test_automatic_mutants_die(name: str) -> None:
     proof = Proof(name, 5)
-    report = check_mutants(
-        lambda backward: check_gradient(
-            proof.forward,
-            backward,
-            proof.place,
-            seed=5,
-            directions=4,
-            coordinates=8,
-            steps=(1e-4, 1e-5, 1e-6),
-        ),
+    report = check_gradient_mutants(
+        proof.forward,
         proof.backward,
         proof.place,
         proof.cotangent(),
+        seed=5,
+        directions=4,
+        coordinates=8,
+        steps=(1e-4, 1e-5, 1e-6),
     )
     assert report, str(report)
     assert len(report.killed) >= 3 * len(proof.place)
@@ -185,20 +183,11 @@ def test_float_agrees_with_double(name: str) -> None:
         assert np.linalg.norm(few[group] - gradient) <= 1e-4 * np.linalg.norm(gradient)
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_same_seed_same_bits_on_one_and_two_threads(name: str) -> None:
-    runs = []
-    try:
-        for threads in (1, 1, 2):
-            _core.set_thread_count(threads)
-            proof = Proof(name, 7, np.float32)
-            d = {k: v.astype(np.float32) for k, v in proof.cotangent().items()}
-            runs.append(proof.forward(proof.place) | proof.backward(proof.place, d))
-    finally:
-        _core.set_thread_count(0)
-    assert all(np.abs(value).max() > 0 for value in runs[0].values())
-    for other in runs[1:]:
-        assert all(np.array_equal(other[key], value) for key, value in runs[0].items())
+@same_bits("representation", each=NAMES)
+def outputs_and_gradients(name: str) -> list[Any]:
+    proof = Proof(name, 7, np.float32)
+    d = {k: v.astype(np.float32) for k, v in proof.cotangent().items()}
+    return list((proof.forward(proof.place) | proof.backward(proof.place, d)).values())
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -10,8 +10,11 @@ from photograd._compiled import _core
 from photograd.errors import DtypeError, Error, RangeError, ShapeError
 from photograd.lights import RegisteredLight, cap_height, registry
 from photograd_course.gradcheck import check_accumulation, check_gradient, dot_product_error
-from photograd_course.mutants import check_mutants, check_overwriting_mutants
+from photograd_course.mutants import check_overwriting_mutants
 from photograd_course.random import uniform
+
+from support.bits import same_bits
+from support.gradient_mutants import check_gradient_mutants
 
 CLASSES = registry()
 AT_INFINITY = ("constant", "sky", "sun")
@@ -115,13 +118,15 @@ def test_gradients(name: str, function: str) -> None:
     assert report, str(report)
     report = check_accumulation(proof.accumulate, proof.place, d_radiance())
     assert report, str(report)
-    report = check_mutants(
-        lambda b: check_gradient(
-            proof.forward, b, proof.place, seed=1, directions=3, coordinates=4, steps=(1e-4, 1e-5)
-        ),
+    report = check_gradient_mutants(
+        proof.forward,
         proof.backward,
         proof.place,
         d_radiance(),
+        seed=1,
+        directions=3,
+        coordinates=4,
+        steps=(1e-4, 1e-5),
     )
     assert report, str(report)
     report = check_overwriting_mutants(
@@ -144,22 +149,16 @@ def test_lights_at_infinity_look_the_same_from_everywhere(name: str) -> None:
         np.testing.assert_array_equal(here, function(nowhere, samples.direction))
 
 
-@pytest.mark.parametrize("name", sorted(CONSTANTS))
-def test_the_same_bits_on_any_number_of_threads(name: str) -> None:
+@same_bits("sampled light", each=sorted(CONSTANTS))
+def samples_and_gradients(name: str) -> list[Any]:
     # More rows than one block of 4096.
     many = np.ascontiguousarray(np.tile(points(), (500, 1)), "f4")
     u = uniform(7, pixel=np.arange(len(many))[:, None], dimension=np.arange(2)).astype("f4")
     light = light_of(name)
-    found = []
-    for threads in (1, 2, 5):
-        _core.set_thread_count(threads)
-        samples = light.sample(many, u)
-        d_samples = samples.radiance * (samples.pdf > 0)[:, None]
-        d = light.sample_backward(many, samples, d_samples)
-        parts = (samples.direction, samples.distance, samples.pdf, *d.values())
-        found.append(b"".join(np.asarray(part).tobytes() for part in parts))
-    _core.set_thread_count(0)
-    assert found[0] == found[1] == found[2]
+    samples = light.sample(many, u)
+    d_samples = samples.radiance * (samples.pdf > 0)[:, None]
+    d = light.sample_backward(many, samples, d_samples)
+    return [samples.direction, samples.distance, samples.pdf, *d.values()]
 
 
 @pytest.mark.parametrize(

@@ -1,7 +1,4 @@
-"""Fused and staged, one thread and many, every instruction set: the same bits.
-
-Float against double.
-"""
+"""The fused march has the bits of the staged one; float against double."""
 
 from __future__ import annotations
 
@@ -9,9 +6,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd._compiled import _core
 
-from support.instruction_sets import assert_same_bits
+from support.bits import same_bits
 from tests.render.rays import bundle, march, march_backward, settings
 
 VARIANTS = {
@@ -48,23 +44,13 @@ def test_fused_equals_staged_bit_for_bit(name: str) -> None:
         assert np.array_equal(a, b)
 
 
-def test_thread_count_changes_nothing() -> None:
-    one_or_more = []
-    for threads in (1, 2, 5):
-        _core.set_thread_count(threads)
-        one_or_more.append(run(VARIANTS["learning"]))
-    _core.set_thread_count(0)
-    for other in one_or_more[1:]:
-        for a, b in zip(one_or_more[0], other, strict=True):
-            assert np.array_equal(a, b)
-
-
-def test_every_instruction_set_gives_the_same_bits() -> None:
-    assert_same_bits(
-        "import hashlib; from tests.render.test_march_bits import run, VARIANTS\n"
-        "for v in VARIANTS.values():\n"
-        "    print(*(hashlib.sha256(a.tobytes()).hexdigest() for a in run(v)))"
-    )
+@same_bits(
+    "march_dense",
+    each=VARIANTS,
+    kernels=("march_dense_forward", "march_dense_backward", "march_dense_gather"),
+)
+def fused_results(name: str) -> list[Any]:
+    return run(VARIANTS[name])
 
 
 @pytest.mark.parametrize("name", ["learning", "exp", "riemann zero border"])

@@ -1,4 +1,4 @@
-"""The fused march: the bits of the staged one, on any threads and instruction set."""
+"""The fused march has the bits of the staged one; skipping changes none."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 from photograd._compiled import _core
 from photograd.fields.active_voxels import ActiveVoxels
 
-from support.instruction_sets import assert_same_bits
+from support.bits import same_bits
 from tests.render.sparse import GROUPS, Scene, march, march_backward, scene
 
 VARIANTS: dict[str, dict[str, Any]] = {
@@ -55,24 +55,27 @@ def test_fused_equals_staged_bit_for_bit(name: str) -> None:
         assert np.array_equal(a, b)
 
 
-def test_thread_count_changes_nothing() -> None:
-    runs = []
-    try:
-        for threads in (1, 2, 5):
-            _core.set_thread_count(threads)
-            runs.append(run(VARIANTS["learning"]) + run(VARIANTS["plenoxels"], fused=False))
-    finally:
-        _core.set_thread_count(0)
-    for other in runs[1:]:
-        assert all(np.array_equal(a, b) for a, b in zip(runs[0], other, strict=True))
+@same_bits(
+    "march_sparse_sh",
+    each=VARIANTS,
+    kernels=("march_sparse_sh_forward", "march_sparse_sh_backward", "march_sparse_sh_gather"),
+)
+def fused_results(name: str) -> list[Any]:
+    return run(VARIANTS[name])
 
 
-def test_every_instruction_set_gives_the_same_bits() -> None:
-    assert_same_bits(
-        "import hashlib; from tests.render.test_sparse_sh_bits import run, VARIANTS\n"
-        "for v in VARIANTS.values():\n"
-        "    print(*(hashlib.sha256((a + 0.0).tobytes()).hexdigest() for a in run(v)))"
-    )
+@same_bits("march_sparse_sh, staged")
+def staged_results() -> list[Any]:
+    return run(VARIANTS["plenoxels"], fused=False)
+
+
+@same_bits("greatest weights of voxels", kernels=("march_sparse_sh_weights",))
+def greatest_weights() -> list[Any]:
+    s = big(VARIANTS["learning"])
+    greatest = np.zeros(len(s.active), np.float32)
+    parameters, rays = [s.place[g] for g in GROUPS], (*s.rays, *s.samples())
+    _core.sparse_sh_weights(s.active.table, parameters, s.settings, rays, greatest)
+    return [greatest]
 
 
 def ball(seed: int, n: int = 96) -> Scene:

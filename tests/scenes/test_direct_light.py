@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd._compiled import _core
 from photograd.capture.camera import Camera
 from photograd.capture.orbit import look_at
 from photograd.errors import RangeError, ShapeError
@@ -15,6 +14,7 @@ from photograd.scenes.direct_light import DirectLight, vertex_color_texture
 from photograd.textures import sample
 
 from geometry.shapes import bumpy_sphere
+from support.bits import same_bits
 
 BLACK, WHITE = np.zeros(3), np.ones(3)
 BOX = np.array([[-2.0, -2.0, -2.0], [2.0, 2.0, 2.0]])
@@ -191,16 +191,9 @@ def test_vertex_colors_look_like_a_texture() -> None:
     np.testing.assert_allclose(one[0], other[0], rtol=1e-5)
 
 
-def test_thread_count_changes_nothing() -> None:
-    view, found = camera(24, eye=(0.3, 1.4, 0.9)), []
-    for threads in (1, 2, 3):
-        _core.set_thread_count(threads)
-        found.append(lively().render_view(view, 20, 9))
-    _core.set_thread_count(0)
-    assert found[0][0].any()
-    for other in found[1:]:
-        for a, b in zip(found[0], other, strict=True):
-            np.testing.assert_array_equal(a, b)
+@same_bits("direct light")
+def direct_light() -> list[Any]:
+    return list(lively().render_view(camera(24, eye=(0.3, 1.4, 0.9)), 20, 9))
 
 
 def test_bad_arguments_are_named() -> None:

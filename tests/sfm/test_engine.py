@@ -16,6 +16,7 @@ from photograd.capture.sfm.engine import Settings, _Pycolmap, open_engine
 from photograd.capture.sfm.reconstruct import reconstruct
 from photograd.errors import IoError
 
+from support.missing import need_module
 from tests.sfm.fake import photographs, similarity
 
 CONNECTED = ("0423", "0424", "0425", "0426", "0437", "0438")
@@ -96,7 +97,7 @@ def test_the_alignment_is_right() -> None:
 @pytest.mark.slow
 def test_bananas_from_nothing_but_photographs(shared_data: Path, tmp_path: Path) -> None:
     """Six reduced photographs of a real scene, twice: the same bits on two threads and on one."""
-    pytest.importorskip("pycolmap", reason="pycolmap is not installed (extra sfm)")
+    need_module("pycolmap", by_choice=True)  # extra sfm
     (tmp_path / "in").mkdir()
     for name in CONNECTED:
         shutil.copy(shared_data / f"posed/banana/images/dsc_{name}.jpg", tmp_path / "in")

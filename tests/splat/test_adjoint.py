@@ -17,8 +17,8 @@ from photograd.splats.splatting import (
     twist_gradient,
 )
 from photograd_course.gradcheck import check_gradient, taylor_slope
-from photograd_course.mutants import check_mutants
 
+from support.gradient_mutants import check_gradient_mutants
 from tests.splat import oracle
 
 SMOOTH = SplatOptions().smooth()
@@ -107,13 +107,8 @@ def test_automatic_mutants_die() -> None:
     shapes = scene.forward(scene.place)
     g = np.random.default_rng(5)
     d = {name: g.uniform(0.5, 1.5, array.shape) for name, array in shapes.items()}
-    report = check_mutants(
-        lambda backward: check_gradient(
-            scene.forward, backward, scene.place, seed=6, coordinates=6, directions=4
-        ),
-        scene.backward,
-        scene.place,
-        d,
+    report = check_gradient_mutants(
+        scene.forward, scene.backward, scene.place, d, seed=6, coordinates=6, directions=4
     )
     assert report, str(report)
 

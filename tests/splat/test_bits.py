@@ -1,4 +1,4 @@
-"""The same bits on any number of threads and every instruction set; float against double."""
+"""Registers pictures and gradients for the test of bits; float against double."""
 
 from __future__ import annotations
 
@@ -6,10 +6,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd._compiled import _core
 from photograd.splats.splatting import SplatOptions, render, render_backward
 
-from support.instruction_sets import assert_same_bits
+from support.bits import same_bits
 from tests.splat import oracle
 
 OPTIONS = {
@@ -36,25 +35,14 @@ def run(name: str, dtype: Any = np.float32, count: int = 300) -> list[Any]:
     ]
 
 
-@pytest.mark.parametrize("dtype", [np.float32, np.float64])
-def test_thread_count_changes_nothing(dtype: Any) -> None:
-    results = []
-    for threads in (1, 2, 5):
-        _core.set_thread_count(threads)
-        results.append(run("default", dtype, 9000))  # three tasks of Gaussians
-    _core.set_thread_count(0)
-    for other in results[1:]:
-        for a, b in zip(results[0], other, strict=True):
-            assert a.any()
-            assert np.array_equal(a, b)
+@same_bits("splats", each=("float32", "float64"))
+def many_splats(dtype: str) -> list[Any]:
+    return run("default", np.dtype(dtype), 9000)  # three tasks of Gaussians
 
 
-def test_every_instruction_set_gives_the_same_bits() -> None:
-    assert_same_bits(
-        "import hashlib; from tests.splat.test_bits import run, OPTIONS\n"
-        "for v in OPTIONS:\n"
-        "    print(*(hashlib.sha256(a.tobytes()).hexdigest() for a in run(v)))"
-    )
+@same_bits("splats with options", each=OPTIONS, kernels=("blend_tile", "blend_tile_backward"))
+def results_with_options(name: str) -> list[Any]:
+    return run(name)
 
 
 @pytest.mark.parametrize("name", OPTIONS)

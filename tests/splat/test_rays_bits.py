@@ -1,4 +1,4 @@
-"""The same bits on any number of threads and every instruction set; float against double."""
+"""Registers pictures and gradients for the test of bits; float against double."""
 
 from __future__ import annotations
 
@@ -7,10 +7,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd._compiled import _core
 from photograd.splats.rays import RayOptions, render, render_backward
 
-from support.instruction_sets import assert_same_bits
+from support.bits import same_bits
 from tests.splat import oracle, ray_oracle
 
 OPTIONS = {
@@ -41,17 +40,14 @@ def run(name: str, dtype: Any = np.float32, count: int = 300, rays: int = 700) -
     ]
 
 
-@pytest.mark.parametrize("dtype", [np.float32, np.float64])
-def test_thread_count_changes_nothing(dtype: Any) -> None:
-    results = []
-    for threads in (1, 2, 5):
-        _core.set_thread_count(threads)
-        results.append(run("default", dtype, 5000))  # two tasks of preparation
-    _core.set_thread_count(0)
-    for other in results[1:]:
-        for a, b in zip(results[0], other, strict=True):
-            assert a.any()
-            assert np.array_equal(a, b)
+@same_bits("splats on rays", each=("float32", "float64"))
+def many_splats(dtype: str) -> list[Any]:
+    return run("default", np.dtype(dtype), 5000)  # two tasks of preparation
+
+
+@same_bits("splats on rays with options", each=OPTIONS)
+def results_with_options(name: str) -> list[Any]:
+    return run(name)
 
 
 def test_several_slabs_add_up_to_one_picture() -> None:
@@ -71,14 +67,6 @@ def test_several_slabs_add_up_to_one_picture() -> None:
         np.testing.assert_allclose(
             halves[0][name] + halves[1][name], array, rtol=1e-5, atol=1e-5 * np.abs(array).max()
         )
-
-
-def test_every_instruction_set_gives_the_same_bits() -> None:
-    assert_same_bits(
-        "import hashlib; from tests.splat.test_rays_bits import run, OPTIONS\n"
-        "for v in OPTIONS:\n"
-        "    print(*(hashlib.sha256(a.tobytes()).hexdigest() for a in run(v)))"
-    )
 
 
 @pytest.mark.parametrize("name", OPTIONS)

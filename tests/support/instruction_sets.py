@@ -11,8 +11,8 @@ from support.missing import missing
 SETS = ("baseline", "v3", "v4")
 
 
-def assert_same_bits(program: str) -> None:
-    """Run `program` with each set that this processor has; it prints hashes, and all must agree.
+def lines_by_set(program: str) -> dict[str, list[str]]:
+    """What `program` prints under each set that this processor has; it must print something.
 
     Where there is only one set, nothing can be compared: the test is skipped, or fails in
     continuous integration.
@@ -28,10 +28,10 @@ def assert_same_bits(program: str) -> None:
             check=False,
         )
         if done.returncode == 0:
-            seen[name] = done.stdout.split()
+            seen[name] = done.stdout.splitlines()
         else:
             assert "one that this processor supports" in done.stderr, done.stderr
     assert seen["baseline"], "the program printed nothing"
     if len(seen) == 1:
         missing("this processor has one instruction set of the kernels' only")
-    assert all(found == seen["baseline"] for found in seen.values()), seen
+    return seen

@@ -3,13 +3,31 @@
 from __future__ import annotations
 
 import os
+from importlib import import_module
+from types import ModuleType
 from typing import NoReturn
 
 import pytest
 
+EVERYTHING = "PHOTOGRAD_EVERYTHING"  # the environment variable of `./run test --all`
 
-def missing(reason: str) -> NoReturn:
-    """Skip the test; fail it in continuous integration, where everything has to be there."""
-    if os.environ.get("CI") == "true":
+
+def missing(reason: str, *, by_choice: bool = False) -> NoReturn:
+    """Skip the test; fail it where everything has to be there.
+
+    That is in continuous integration, and under `./run test --all`. What is installed by choice,
+    or depends on what the machine permits, has to be there under the latter only.
+    """
+    if os.environ.get(EVERYTHING) == "true":
+        pytest.fail(f"{reason} (under --all everything has to be there)")
+    if os.environ.get("CI") == "true" and not by_choice:
         pytest.fail(f"{reason} (continuous integration has to have it)")
     pytest.skip(reason)
+
+
+def need_module(name: str, *, by_choice: bool = False) -> ModuleType:
+    """An installed module, or a test that is skipped or fails."""
+    try:
+        return import_module(name)
+    except ImportError:
+        missing(f"{name} is not installed", by_choice=by_choice)

@@ -11,7 +11,9 @@ from photograd.errors import DtypeError, RangeError, ShapeError
 from photograd.fitting.loss import ssim, ssim_backward
 from photograd_course import metrics
 from photograd_course.gradcheck import check_gradient, taylor_slope
-from photograd_course.mutants import check_mutants
+
+from support.bits import same_bits
+from support.gradient_mutants import check_gradient_mutants
 
 
 def pictures(seed: int, channels: int = 3, dtype: Any = np.float64) -> tuple[Any, Any]:
@@ -59,11 +61,8 @@ def test_gradient_agrees_with_central_differences() -> None:
 
 def test_wrong_gradients_die() -> None:
     proof = Proof(4)
-    report = check_mutants(
-        lambda backward: check_gradient(proof.forward, backward, proof.place, seed=5, directions=4),
-        proof.backward,
-        proof.place,
-        {"value": np.array(0.7)},
+    report = check_gradient_mutants(
+        proof.forward, proof.backward, proof.place, {"value": np.array(0.7)}, seed=5, directions=4
     )
     assert report, str(report)
     assert len(report.killed) >= 3
@@ -78,18 +77,16 @@ def test_backward_adds_and_returns_the_value() -> None:
     np.testing.assert_allclose(twice, 2 * d_x, rtol=1e-12)
 
 
-def test_float_agrees_with_double_and_threads_give_the_same_bits() -> None:
+@same_bits("SSIM")
+def value_and_gradient() -> list[Any]:
+    return list(ssim_backward(*pictures(6, dtype=np.float32)))
+
+
+def test_float_agrees_with_double() -> None:
     x, y = pictures(6, dtype=np.float32)
     exact = ssim_backward(x.astype(np.float64), y.astype(np.float64))[1]
-    runs = []
-    try:
-        for threads in (1, 2, 5):
-            _core.set_thread_count(threads)
-            runs.append(ssim_backward(x, y))
-    finally:
-        _core.set_thread_count(0)
-    assert np.linalg.norm(runs[0][1] - exact) <= 1e-4 * np.linalg.norm(exact)  # measured: 1e-6
-    assert all(run[0] == runs[0][0] and np.array_equal(run[1], runs[0][1]) for run in runs)
+    error = np.linalg.norm(value_and_gradient()[1] - exact)
+    assert error <= 1e-4 * np.linalg.norm(exact)  # measured: 1e-6
 
 
 def test_what_does_not_fit_is_refused() -> None:

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 from photograd.capture.camera import Camera
-from photograd.transport import Environment, Material, MeshShape, Scene, SphereShape
+from photograd.transport import Environment, Material, MeshShape, PathTracer, Scene, SphereShape
 from photograd.transport.builtin import camera_at, cornell_box
 from photograd.transport.material import MODELS
 from photograd.transport.shapes import rectangle
@@ -100,3 +100,12 @@ STRATEGY_SCENES = {
     "bent normals": bent_floor,
     "room": lambda: cornell_box(8),
 }
+
+
+def picture_and_gradients(scene: Scene, spp: int) -> list[Any]:
+    """Radiance, its squares, and the gradients of a random cotangent; without what is empty."""
+    tracer = PathTracer(scene)
+    sums = tracer.render(spp=spp, seed=9)
+    d = np.random.default_rng(8).uniform(-1, 1, sums.radiance.shape)
+    gradient = tracer.render_backward(d, spp=spp, seed=9)
+    return [sums.radiance, sums.squares, *gradient.values()]

@@ -7,15 +7,15 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd._compiled import _core
 from photograd.errors import DtypeError, RangeError, ShapeError
 from photograd.transport import Accumulation, Material, PathOptions, PathTracer, Scene
 from photograd.transport.builtin import cornell_box, cornell_spheres, furnace_box
 from photograd.transport.material import MODELS
 from photograd_course.gradcheck import check_gradient
-from photograd_course.mutants import check_mutants
 
-from tests.transport.scenes import BLACK, GREY, any_material, stage
+from support.bits import same_bits
+from support.gradient_mutants import check_gradient_mutants
+from tests.transport.scenes import BLACK, GREY, any_material, picture_and_gradients, stage
 
 SPP = 4
 OPTIONS = PathOptions(max_depth=5, roulette_from=2)
@@ -60,11 +60,8 @@ def test_wrong_gradients_die() -> None:
     scene = stage(any_material("ggx_metal"), size=3, sky=0.4)
     function, backward, start = proof(scene, INDEPENDENT)
     d = 0.2 + np.random.default_rng(5).random((3, 3, 3))
-    deaths = check_mutants(
-        lambda b: check_gradient(function, b, start, seed=4, coordinates=2, directions=1),
-        backward,
-        start,
-        d,
+    deaths = check_gradient_mutants(
+        function, backward, start, d, seed=4, coordinates=2, directions=1
     )
     assert deaths, str(deaths)
 
@@ -117,25 +114,17 @@ def test_a_loss_needs_paths_of_its_own() -> None:
     assert np.mean(own) - truth > 8 * spread
 
 
-def test_twice_is_twice_and_any_number_of_threads() -> None:
-    scene = cornell_box(24)
-    d = np.random.default_rng(8).uniform(-1, 1, (24, 24, 3))
-    found = []
-    for threads in (1, 2, 5):
-        _core.set_thread_count(threads)
-        tracer = PathTracer(scene)
-        sums = tracer.render(spp=20, seed=9)
-        gradient = tracer.render_backward(d, spp=20, seed=9)
-        found.append([sums.radiance, sums.squares, *gradient.values()])
-    _core.set_thread_count(0)
-    assert np.abs(found[0][0]).max() > 0
-    assert all(np.abs(part).max() > 0 for part in found[0] if part.size)
-    for other in found[1:]:
-        for a, b in zip(found[0], other, strict=True):
-            np.testing.assert_array_equal(a, b)
-    double = tracer.render_backward(2 * d, spp=20, seed=9)
-    for name, value in gradient.items():
-        np.testing.assert_allclose(double[name], 2 * value, rtol=1e-6)
+@same_bits("path tracing")
+def cornell_picture_and_gradients() -> list[Any]:
+    return picture_and_gradients(cornell_box(24), 20)
+
+
+def test_twice_the_cotangent_is_twice_the_gradient() -> None:
+    tracer = PathTracer(cornell_box(12))
+    d = np.random.default_rng(8).uniform(-1, 1, (12, 12, 3))
+    once, twice = (tracer.render_backward(f * d, spp=8, seed=9) for f in (1, 2))
+    for name, value in once.items():
+        np.testing.assert_allclose(twice[name], 2 * value, rtol=1e-6)
 
 
 @pytest.mark.parametrize("scene", [cornell_box, cornell_spheres])

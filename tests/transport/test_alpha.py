@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd._compiled import _core
 from photograd.errors import SceneError
 from photograd.transport import (
     Environment,
@@ -21,9 +20,10 @@ from photograd.transport import (
 )
 from photograd.transport.shapes import rectangle
 from photograd_course.gradcheck import check_gradient
-from photograd_course.mutants import check_mutants
 
-from tests.transport.scenes import FLOOR, GREY, LAMP, view
+from support.bits import same_bits
+from support.gradient_mutants import check_gradient_mutants
+from tests.transport.scenes import FLOOR, GREY, LAMP, picture_and_gradients, view
 from tests.transport.test_adjoint import proof
 from tests.transport.test_textures import wall
 
@@ -149,11 +149,8 @@ def test_wrong_gradients_die() -> None:
     scene = shade(grey(0.8, textures={"alpha": TextureUse("t")}), size=3, textures={"t": checker()})
     function, backward, start = proof(scene, OPTIONS)
     d = 0.2 + np.random.default_rng(5).random((3, 3, 3))
-    deaths = check_mutants(
-        lambda b: check_gradient(function, b, start, seed=4, coordinates=2, directions=1),
-        backward,
-        start,
-        d,
+    deaths = check_gradient_mutants(
+        function, backward, start, d, seed=4, coordinates=2, directions=1
     )
     assert deaths, str(deaths)
 
@@ -192,22 +189,10 @@ def test_a_mask_cuts_a_shape_out() -> None:
     assert np.abs(d["materials.card.albedo"]).max() > 0
 
 
-def test_same_bits_on_any_threads() -> None:
-    scene = shade(
-        grey(0.8, textures={"alpha": TextureUse("t")}), size=24, textures={"t": checker()}
-    )
-    d = np.random.default_rng(8).uniform(-1, 1, (24, 24, 3))
-    found = []
-    for threads in (1, 2, 5):
-        _core.set_thread_count(threads)
-        tracer = PathTracer(scene)
-        sums = tracer.render(spp=16, seed=9)
-        found.append([sums.radiance, *tracer.render_backward(d, spp=16, seed=9).values()])
-    _core.set_thread_count(0)
-    assert all(np.abs(part).max() > 0 for part in found[0])
-    for other in found[1:]:
-        for a, b in zip(found[0], other, strict=True):
-            np.testing.assert_array_equal(a, b)
+@same_bits("path tracing with opacity")
+def checkered_picture_and_gradients() -> list[Any]:
+    material = grey(0.8, textures={"alpha": TextureUse("t")})
+    return picture_and_gradients(shade(material, size=24, textures={"t": checker()}), 16)
 
 
 def test_what_cannot_be_is_refused() -> None:

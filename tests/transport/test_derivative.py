@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd._compiled import _core
 from photograd.errors import RangeError, ShapeError
 from photograd.transport import (
     Accumulation,
@@ -22,6 +21,7 @@ from photograd.transport import (
 from photograd.transport.builtin import cornell_box, furnace_box
 from photograd.transport.material import MODELS
 
+from support.bits import same_bits
 from tests.transport import test_textures as textures
 from tests.transport.light_scenes import LIGHTS, TILT, environment_map, lit_by
 from tests.transport.scenes import any_material, bent_floor, stage
@@ -142,26 +142,23 @@ def test_wrong_derivatives_die() -> None:
         assert (gap <= TOLERANCE) == (image is right)
 
 
-def test_the_same_pass_and_the_same_bits() -> None:
-    scene = cornell_box(24)
-    tracer = PathTracer(scene, dtype=np.float64)
-    found = []
-    for threads in (1, 2, 5):
-        _core.set_thread_count(threads)
-        both = derivative_image(tracer, "materials.red.albedo[0]", spp=8, seed=9)
-        found.append([part for sums in both for part in (sums.radiance, sums.squares)])
-    _core.set_thread_count(0)
-    assert all(np.abs(part).max() > 0 for part in found[0])
-    for other in found[1:]:
-        for a, b in zip(found[0], other, strict=True):
-            np.testing.assert_array_equal(a, b)
+@same_bits("derivative images")
+def picture_and_derivative() -> list[Any]:
+    tracer = PathTracer(cornell_box(24), dtype=np.float64)
+    both = derivative_image(tracer, "materials.red.albedo[0]", spp=8, seed=9)
+    return [part for sums in both for part in (sums.radiance, sums.squares)]
+
+
+def test_the_pass_is_that_of_the_picture_and_of_its_parts() -> None:
+    tracer = PathTracer(cornell_box(24), dtype=np.float64)
+    found = picture_and_derivative()
     # Paths that have turned black are followed here, and add nothing.
     picture = tracer.render(spp=8, seed=9)
-    np.testing.assert_allclose(found[0][0], picture.radiance, rtol=1e-12)
+    np.testing.assert_allclose(found[0], picture.radiance, rtol=1e-12)
     parts = Accumulation.empty(24, 24), Accumulation.empty(24, 24)
     for count in (3, 5):
         add_derivative_samples(tracer, *parts, "materials.red.albedo[0]", count, seed=9)
-    np.testing.assert_allclose(parts[1].radiance, found[0][2], rtol=1e-12, atol=1e-12)
+    np.testing.assert_allclose(parts[1].radiance, found[2], rtol=1e-12, atol=1e-12)
 
 
 def test_spelling_and_mistakes() -> None:

@@ -19,8 +19,8 @@ from photograd.transport import (
 )
 from photograd.transport.shapes import rectangle
 from photograd_course.gradcheck import check_gradient
-from photograd_course.mutants import check_mutants
 
+from support.gradient_mutants import check_gradient_mutants
 from tests.transport.scenes import BLACK, FLOOR, GREY, LAMP, view
 from tests.transport.test_adjoint import proof
 
@@ -107,11 +107,8 @@ def test_derivatives(triangles: bool) -> None:
 def test_wrong_gradients_die() -> None:
     function, backward, start = proof(room(size=3), OPTIONS)
     d = 0.2 + np.random.default_rng(5).random((3, 3, 3))
-    deaths = check_mutants(
-        lambda b: check_gradient(function, b, start, seed=4, coordinates=2, directions=1),
-        backward,
-        start,
-        d,
+    deaths = check_gradient_mutants(
+        function, backward, start, d, seed=4, coordinates=2, directions=1
     )
     assert deaths, str(deaths)
 

@@ -6,13 +6,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd._compiled import _core
 from photograd.transport import PathOptions, PathTracer
 from photograd_course.gradcheck import check_gradient
-from photograd_course.mutants import check_mutants
 
+from support.bits import same_bits
+from support.gradient_mutants import check_gradient_mutants
 from tests.transport.light_scenes import LIGHTS, TILT, environment_map, lit_by
-from tests.transport.scenes import GREY
+from tests.transport.scenes import GREY, picture_and_gradients
 from tests.transport.test_adjoint import proof
 
 OPTIONS = PathOptions(max_depth=4, roulette_from=2)
@@ -48,11 +48,8 @@ def test_wrong_gradients_die() -> None:
     lights = (environment_map(2, share=0.5), LIGHTS["point"][0], LIGHTS["rectangle"][0])
     function, backward, start = proof(lit_by(*lights, size=4, gloss=GREY), OPTIONS)
     d = 0.2 + np.random.default_rng(5).random((4, 4, 3))
-    deaths = check_mutants(
-        lambda b: check_gradient(function, b, start, seed=4, coordinates=2, directions=1),
-        backward,
-        start,
-        d,
+    deaths = check_gradient_mutants(
+        function, backward, start, d, seed=4, coordinates=2, directions=1
     )
     assert deaths, str(deaths)
 
@@ -100,20 +97,9 @@ def test_radiance_is_linear_in_lights_whatever_the_number_of_samples() -> None:
         assert total == pytest.approx(float((d * picture).sum()), rel=1e-9)
 
 
-def test_any_number_of_threads_gives_the_same_texels() -> None:
-    scene = lit_by(*LIGHTS["all"], EVERYWHERE, size=24)
-    d = np.random.default_rng(8).uniform(-1, 1, (24, 24, 3))
-    found: list[list[Any]] = []
-    for threads in (1, 2, 5):
-        _core.set_thread_count(threads)
-        tracer = PathTracer(scene)
-        gradient = tracer.render_backward(d, spp=20, seed=9)
-        found.append([tracer.render(spp=20, seed=9).radiance, *gradient.values()])
-    _core.set_thread_count(0)
-    assert all(np.abs(part).max() > 0 for part in found[0])
-    for other in found[1:]:
-        for a, b in zip(found[0], other, strict=True):
-            np.testing.assert_array_equal(a, b)
+@same_bits("lights and texels of the environment")
+def gradients_of_all_lights() -> list[Any]:
+    return picture_and_gradients(lit_by(*LIGHTS["all"], EVERYWHERE, size=24), 20)
 
 
 def test_float_agrees_with_double() -> None:

@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd._compiled import _core
 from photograd.capture.camera import Camera
 from photograd.errors import RangeError, ShapeError
 from photograd.lights import DirectionalLight, PointLight
@@ -24,6 +23,7 @@ from photograd.transport import (
 from photograd.transport.builtin import cornell_box, furnace_box
 from photograd.transport.shapes import rectangle
 
+from support.bits import same_bits
 from support.glass_ball import flux_below_ball
 from support.light_proofs import polygon_irradiance
 from tests.transport.scenes import BLACK, FLOOR, GREY, LAMP, any_material, bent_floor, stage, view
@@ -194,22 +194,25 @@ def test_the_caustic_of_a_ball_has_the_power_of_theory() -> None:
     assert flux_below_ball(0.4, 0.6, 0.15) > 3 * 4 * 0.15**2
 
 
-def test_the_same_bits_and_parts() -> None:
+def traced(seed: int = 7) -> Any:
     tracer = PathTracer(stage(any_material("gltf"), sky=0.4), dtype=np.float64)
-    found = []
-    for threads in (1, 2, 5):
-        _core.set_thread_count(threads)
-        found.append(trace_light(tracer, patch(4), 20_000, seed=7))
-    _core.set_thread_count(0)
-    assert found[0].mean.min() > 0
-    for other in found[1:]:
-        np.testing.assert_array_equal(found[0].radiance, other.radiance)
-        np.testing.assert_array_equal(found[0].squares, other.squares)
+    return trace_light(tracer, patch(4), 20_000, seed=seed)
+
+
+@same_bits("light tracing")
+def light_map() -> list[Any]:
+    sums = traced()
+    return [sums.radiance, sums.squares]
+
+
+def test_parts_add_up_and_seeds_differ() -> None:
+    tracer = PathTracer(stage(any_material("gltf"), sky=0.4), dtype=np.float64)
     parts = trace_light(tracer, patch(4), 4096, seed=7)
     trace_light(tracer, patch(4), 20_000 - 4096, seed=7, sums=parts)
-    np.testing.assert_allclose(parts.radiance, found[0].radiance, rtol=1e-12)
-    other = trace_light(tracer, patch(4), 20_000, seed=8)
-    assert (other.radiance != found[0].radiance).any()
+    whole = traced()
+    assert whole.mean.min() > 0
+    np.testing.assert_allclose(parts.radiance, whole.radiance, rtol=1e-12)
+    assert (traced(seed=8).radiance != whole.radiance).any()
 
 
 def test_mistakes_are_named() -> None:

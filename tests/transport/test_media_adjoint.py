@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
-from photograd._compiled import _core
 from photograd.lights import DirectionalLight, PointLight
 from photograd.transport import Accumulation, Material, Medium, PathOptions, PathTracer, Scene
 from photograd_course.gradcheck import check_gradient
-from photograd_course.mutants import check_mutants
 
+from support.bits import same_bits
+from support.gradient_mutants import check_gradient_mutants
 from tests.transport.media_scenes import (
     FOG,
     FROSTED,
@@ -24,6 +25,7 @@ from tests.transport.media_scenes import (
     pencil,
     smoke,
 )
+from tests.transport.scenes import picture_and_gradients
 from tests.transport.test_adjoint import proof
 from tests.transport.test_media_closed_forms import h_function, slab
 from tests.transport.test_strategies import assert_same_mean
@@ -71,11 +73,8 @@ def test_wrong_gradients_die() -> None:
     scene = ball_of(FOG, size=3, floor=True)
     function, backward, start = proof(scene, OPTIONS)
     d = 0.2 + np.random.default_rng(5).random((3, 3, 3))
-    deaths = check_mutants(
-        lambda b: check_gradient(function, b, start, seed=4, coordinates=2, directions=1),
-        backward,
-        start,
-        d,
+    deaths = check_gradient_mutants(
+        function, backward, start, d, seed=4, coordinates=2, directions=1
     )
     assert deaths, str(deaths)
 
@@ -160,25 +159,18 @@ def test_paths_of_other_media_keep_the_mean(medium: Medium) -> None:
         assert_same_mean(unmoved, other, 2, 0.05)
 
 
+@same_bits("path tracing in media", each=("fog", "smoke"))
+def picture_and_gradients_of_a_medium(name: str) -> list[Any]:
+    return picture_and_gradients(fog_box({"fog": FOG, "smoke": smoke()}[name], size=24), 6)
+
+
 @pytest.mark.parametrize("medium", [FOG, smoke()])
-def test_twice_is_twice_and_any_number_of_threads(medium: Medium) -> None:
-    scene = fog_box(medium, size=24)
-    d = np.random.default_rng(8).uniform(-1, 1, (24, 24, 3))
-    found = []
-    for threads in (1, 2, 5):
-        _core.set_thread_count(threads)
-        tracer = PathTracer(scene)
-        sums = tracer.render(spp=6, seed=9)
-        gradient = tracer.render_backward(d, spp=6, seed=9)
-        found.append([sums.radiance, sums.squares, *gradient.values()])
-    _core.set_thread_count(0)
-    assert all(np.abs(part).max() > 0 for part in found[0])
-    for other in found[1:]:
-        for a, b in zip(found[0], other, strict=True):
-            np.testing.assert_array_equal(a, b)
-    double = tracer.render_backward(2 * d, spp=6, seed=9)
-    for key, value in gradient.items():
-        np.testing.assert_allclose(double[key], 2 * value, rtol=1e-5, atol=1e-7)
+def test_twice_the_cotangent_is_twice_the_gradient(medium: Medium) -> None:
+    tracer = PathTracer(fog_box(medium, size=12))
+    d = np.random.default_rng(8).uniform(-1, 1, (12, 12, 3))
+    once, twice = (tracer.render_backward(f * d, spp=6, seed=9) for f in (1, 2))
+    for key, value in once.items():
+        np.testing.assert_allclose(twice[key], 2 * value, rtol=1e-5, atol=1e-7)
 
 
 def test_float_agrees_with_double() -> None:

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd._compiled import _core
 from photograd.lights import DirectionalLight, PointLight
 from photograd.transport import (
     BOUNDARY,
@@ -24,8 +23,9 @@ from photograd.transport import (
 from photograd.transport.shapes import box, rectangle
 from photograd_course.gradcheck import check_gradient
 
+from support.bits import same_bits
 from tests.transport.media_scenes import FOG, INK, fog_box, pencil, smoke, with_interior
-from tests.transport.scenes import GREY
+from tests.transport.scenes import GREY, picture_and_gradients
 from tests.transport.test_adjoint import proof
 from tests.transport.test_alpha import checker, grey
 from tests.transport.test_strategies import assert_same_mean
@@ -228,17 +228,6 @@ def test_a_mask_cuts_a_hole_into_a_shell_of_ink() -> None:
     np.testing.assert_allclose(found.mean[0, 0], np.exp(-SIGMA), rtol=1e-8)
 
 
-def test_same_bits_on_any_threads() -> None:
-    scene = veiled(grey(0.6), smoke(), size=16)
-    d = np.random.default_rng(8).uniform(-1, 1, (16, 16, 3))
-    found = []
-    for threads in (1, 2, 5):
-        _core.set_thread_count(threads)
-        tracer = PathTracer(scene)
-        sums = tracer.render(spp=8, seed=9)
-        found.append([sums.radiance, *tracer.render_backward(d, spp=8, seed=9).values()])
-    _core.set_thread_count(0)
-    assert all(np.abs(part).max() > 0 for part in found[0])
-    for other in found[1:]:
-        for a, b in zip(found[0], other, strict=True):
-            np.testing.assert_array_equal(a, b)
+@same_bits("media behind partial opacity")
+def picture_and_gradients_behind_opacity() -> list[Any]:
+    return picture_and_gradients(veiled(grey(0.6), smoke(), size=16), 8)

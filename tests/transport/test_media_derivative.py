@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
-from photograd._compiled import _core
 from photograd.lights import DirectionalLight, PointLight
 from photograd.transport import (
     Accumulation,
@@ -19,6 +19,7 @@ from photograd.transport import (
     direction_of,
 )
 
+from support.bits import same_bits
 from tests.transport.media_scenes import (
     FOG,
     FROSTED,
@@ -120,18 +121,10 @@ def test_single_scattering_in_closed_form() -> None:
         assert (np.abs(found.mean[0, 0] - value) < 0.01 * size).all(), name
 
 
-def test_same_bits_on_any_threads() -> None:
-    traced = PathTracer(fog_box(smoke(), size=16))
-    found = []
-    for threads in (1, 2, 5):
-        _core.set_thread_count(threads)
-        pictures = derivative_image(traced, "media.fog.density", spp=4, seed=9)
-        found.append([sums.radiance for sums in pictures])
-    _core.set_thread_count(0)
-    assert all(np.abs(part).max() > 0 for part in found[0])
-    for other in found[1:]:
-        for a, b in zip(found[0], other, strict=True):
-            np.testing.assert_array_equal(a, b)
+@same_bits("derivative images of media")
+def picture_and_derivative() -> list[Any]:
+    tracer = PathTracer(fog_box(smoke(), size=16))
+    return [s.radiance for s in derivative_image(tracer, "media.fog.density", spp=4, seed=9)]
 
 
 def test_two_media_keep_apart() -> None:

@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd._compiled import _core
 from photograd.lights import DirectionalLight, PointLight, SpotLight
 from photograd.transport import (
     BOUNDARY,
@@ -27,6 +26,7 @@ from photograd.transport import (
 )
 from photograd.transport.shapes import box, rectangle
 
+from support.bits import same_bits
 from tests.transport.media_scenes import (
     FOG,
     FROSTED,
@@ -242,17 +242,16 @@ def test_photons_pass_boundaries() -> None:
         np.testing.assert_allclose(found, np.pi, rtol=0.1)  # some 2000 photons
 
 
-def test_the_same_bits_and_parts() -> None:
+@same_bits("light tracing in media")
+def light_map() -> list[Any]:
     tracer = PathTracer(under(smoke(), LIGHT), dtype=np.float64)
-    found = []
-    for threads in (1, 2, 5):
-        _core.set_thread_count(threads)
-        found.append(trace_light(tracer, patch(3), 10_000, seed=7))
-    _core.set_thread_count(0)
-    assert found[0].mean.min() > 0
-    for other in found[1:]:
-        np.testing.assert_array_equal(found[0].radiance, other.radiance)
-        np.testing.assert_array_equal(found[0].squares, other.squares)
+    sums = trace_light(tracer, patch(3), 10_000, seed=7)
+    return [sums.radiance, sums.squares]
+
+
+def test_parts_add_up() -> None:
+    tracer = PathTracer(under(smoke(), LIGHT), dtype=np.float64)
     parts = trace_light(tracer, patch(3), 4096, seed=7)
     trace_light(tracer, patch(3), 10_000 - 4096, seed=7, sums=parts)
-    np.testing.assert_allclose(parts.radiance, found[0].radiance, rtol=1e-12)
+    assert parts.mean.min() > 0
+    np.testing.assert_allclose(parts.radiance, light_map()[0], rtol=1e-12)

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from photograd.transport import PathTracer, Scene, TextureUse
 from photograd_course.gradcheck import check_gradient
-from photograd_course.mutants import check_mutants
 
+from support.gradient_mutants import check_gradient_mutants
 from tests.transport.test_adjoint import proof
 from tests.transport.test_alpha import checker, grey, shade
 from tests.transport.test_derivative import check
@@ -47,10 +47,7 @@ def test_texels_of_alpha_have_derivatives_through_all_levels(number: int) -> Non
 def test_wrong_gradients_die() -> None:
     function, backward, start = proof(filtered(wall(VEIL, {"t": checker()}, 3), 8))
     d = 0.2 + np.random.default_rng(5).random((3, 3, 3))
-    deaths = check_mutants(
-        lambda b: check_gradient(function, b, start, seed=4, coordinates=2, directions=1),
-        backward,
-        start,
-        d,
+    deaths = check_gradient_mutants(
+        function, backward, start, d, seed=4, coordinates=2, directions=1
     )
     assert deaths, str(deaths)

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd._compiled import _core
 from photograd.capture.camera import Camera
 from photograd.errors import RangeError, SceneError
 from photograd.lights import DirectionalLight, PointLight
@@ -29,10 +28,12 @@ from photograd.transport.builtin import camera_at
 from photograd.transport.shapes import rectangle
 from photograd.transport.texture import FILTERS
 from photograd_course.gradcheck import check_gradient
-from photograd_course.mutants import check_mutants
 from PIL import Image
 
+from support.bits import same_bits
+from support.gradient_mutants import check_gradient_mutants
 from tests.transport import test_textures as textures
+from tests.transport.scenes import picture_and_gradients
 from tests.transport.test_adjoint import proof
 from tests.transport.test_derivative import check
 
@@ -225,11 +226,8 @@ def test_wrong_gradients_die() -> None:
     wall = textures.wall(PAINT, {"t": textures.noise(2, 2)}, 3)
     function, backward, start = proof(filtered(wall, 8))
     d = 0.2 + np.random.default_rng(5).random((3, 3, 3))
-    deaths = check_mutants(
-        lambda b: check_gradient(function, b, start, seed=4, coordinates=2, directions=1),
-        backward,
-        start,
-        d,
+    deaths = check_gradient_mutants(
+        function, backward, start, d, seed=4, coordinates=2, directions=1
     )
     assert deaths, str(deaths)
 
@@ -247,21 +245,17 @@ def test_the_derivative_of_a_far_texture_is_spread_over_what_was_seen() -> None:
     assert (found["mip"] > 0).mean() > 0.98
 
 
-def test_same_bits_on_any_threads() -> None:
+@same_bits("path tracing with mip maps")
+def picture_and_gradients_of_mips() -> list[Any]:
+    return picture_and_gradients(filtered(textures.stage(24), 96), 8)
+
+
+def test_float_agrees_with_double() -> None:
     d = np.random.default_rng(8).uniform(-1, 1, (24, 24, 3))
-    found = []
-    for threads in (1, 2, 5):
-        _core.set_thread_count(threads)
-        tracer = PathTracer(filtered(textures.stage(24), 96))
-        sums = tracer.render(spp=8, seed=9)
-        found.append([sums.radiance, *tracer.render_backward(d, spp=8, seed=9).values()])
-    _core.set_thread_count(0)
-    assert all(np.abs(part).max() > 0 for part in found[0])
-    for other in found[1:]:
-        for a, b in zip(found[0], other, strict=True):
-            np.testing.assert_array_equal(a, b)
-    wide = PathTracer(filtered(textures.stage(24), 96), dtype=np.float64)
-    gradient, exact = (t.render_backward(d, spp=8, seed=9) for t in (tracer, wide))
+    gradient, exact = (
+        PathTracer(filtered(textures.stage(24), 96), dtype=dtype).render_backward(d, spp=8, seed=9)
+        for dtype in (np.float32, np.float64)
+    )
     for name in ("textures.paint", "textures.rough"):
         error = np.linalg.norm(gradient[name] - exact[name]) / np.linalg.norm(exact[name])
         assert error < 1e-3  # measured: 3e-6

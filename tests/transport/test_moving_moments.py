@@ -24,6 +24,7 @@ from photograd.transport.motion import moved_on
 from photograd.transport.shapes import box, rectangle
 from photograd_course.gradcheck import check_gradient
 
+from support.bits import same_bits
 from tests.transport.media_scenes import FOG, INK, pencil, smoke, with_interior
 from tests.transport.scenes import BLACK, FLOOR, GREY, any_material, view
 from tests.transport.test_adjoint import proof
@@ -235,12 +236,7 @@ def test_derivatives_by_media_that_move() -> None:
     assert report, str(report)
 
 
-def test_same_bits_through_media() -> None:
-    tracer, pictures = PathTracer(replace(filled(smoke()), camera=view(16))), []
-    for threads in (1, 2, 5):
-        _core.set_thread_count(threads)
-        pictures.append(tracer.render(spp=4, seed=3).radiance)
-    _core.set_thread_count(0)
-    assert pictures[0].any()
-    for radiance in pictures[1:]:
-        np.testing.assert_array_equal(radiance, pictures[0])
+@same_bits("media that move")
+def picture_of_moving_media() -> list[Any]:
+    tracer = PathTracer(replace(filled(smoke()), camera=view(16)))
+    return [tracer.render(spp=4, seed=3).radiance]

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd._compiled import _core
 from photograd.errors import RangeError, SceneError, ShapeError
 from photograd.geometry.sdf import sphere
 from photograd.transport import (
@@ -38,6 +37,7 @@ from photograd.transport.mesh_files import save_gltf
 from photograd.transport.motion import moved_on
 from photograd_course.gradcheck import check_gradient
 
+from support.bits import same_bits
 from tests.transport.scenes import BLACK, GREY, any_material, stage, view
 from tests.transport.test_adjoint import OPTIONS, proof
 from tests.transport.test_derivative import check
@@ -154,15 +154,9 @@ def test_derivatives_see_the_same_moments() -> None:
     assert report, str(report)
 
 
-def test_same_bits_on_any_threads() -> None:
-    tracer, pictures = PathTracer(moving(24)), []
-    for threads in (1, 2, 5):
-        _core.set_thread_count(threads)
-        pictures.append(tracer.render(spp=4, seed=3).radiance)
-    _core.set_thread_count(0)
-    assert pictures[0].any()
-    for radiance in pictures[1:]:
-        np.testing.assert_array_equal(radiance, pictures[0])
+@same_bits("shapes that move")
+def picture_of_moving_shapes() -> list[Any]:
+    return [PathTracer(moving(24)).render(spp=4, seed=3).radiance]
 
 
 def test_boxes_hold_the_whole_way() -> None:

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd._compiled import _core
 from photograd.errors import RangeError, SceneError
 from photograd.textures import sample
 from photograd.transport import (
@@ -26,6 +25,7 @@ from photograd.transport import (
 from photograd.transport.occlusion_map import MARGIN, OcclusionBake, continued, texel_points
 from photograd.transport.shapes import box, rectangle
 
+from support.bits import same_bits
 from tests.transport.scenes import BLACK, GREY, view
 
 Array = Any
@@ -198,21 +198,19 @@ def test_a_map_is_the_direct_light_of_an_even_sky() -> None:
     assert float(seen.mean()) < 0.9
 
 
-def test_same_bits_on_any_threads_and_in_any_passes() -> None:
-    scene, found = scene_of(*room()), []
-    for threads in (1, 2, 5):
-        _core.set_thread_count(threads)
-        found.append(bake_ambient_occlusion(scene, "floor", 24, spp=48, seed=9).values)
-    _core.set_thread_count(0)
-    assert 0.1 < found[0].mean() < 0.99
-    bake = OcclusionBake(scene, "floor", 24, seed=9)
+@same_bits("ambient occlusion")
+def occlusion(seed: int = 9) -> list[Any]:
+    return [bake_ambient_occlusion(scene_of(*room()), "floor", 24, spp=48, seed=seed).values]
+
+
+def test_passes_add_up_and_seeds_differ() -> None:
+    (whole,) = occlusion()
+    assert 0.1 < whole.mean() < 0.99
+    bake = OcclusionBake(scene_of(*room()), "floor", 24, seed=9)
     for spp in (16, 32):
         bake.add_samples(spp)
-    found.append(bake.texture().values)
-    for other in found[1:]:
-        np.testing.assert_array_equal(other, found[0])
-    other = bake_ambient_occlusion(scene, "floor", 24, spp=48, seed=10).values
-    assert (other != found[0]).any()
+    np.testing.assert_array_equal(bake.texture().values, whole)
+    assert (occlusion(seed=10)[0] != whole).any()
 
 
 def test_a_mesh_that_is_placed_is_baked_where_it_stands() -> None:

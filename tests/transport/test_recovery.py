@@ -25,8 +25,8 @@ from photograd.transport.builtin import cornell_box, evening, evening_map
 from photograd.transport.inverse import cross_loss, cross_loss_backward, loss_and_gradients
 from photograd.transport.inverse.parameters import Activation
 from photograd_course.gradcheck import check_gradient
-from photograd_course.mutants import check_mutants
 
+from support.gradient_mutants import check_gradient_mutants
 from tests.transport.scenes import any_material, stage
 
 PATH = PathOptions(max_depth=4, roulette_from=2)
@@ -110,11 +110,8 @@ def test_the_gradient_is_that_of_the_loss_with_paths_held() -> None:
 
 def test_wrong_gradients_die() -> None:
     function, backward, start = proof(3, 2, "materials.ball")
-    deaths = check_mutants(
-        lambda b: check_gradient(function, b, start, seed=7, coordinates=2, directions=1),
-        backward,
-        start,
-        np.array(1.3),
+    deaths = check_gradient_mutants(
+        function, backward, start, np.array(1.3), seed=7, coordinates=2, directions=1
     )
     assert deaths, str(deaths)
 

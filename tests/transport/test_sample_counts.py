@@ -6,11 +6,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd._compiled import _core
 from photograd.errors import RangeError
 from photograd.transport import PathOptions, PathTracer
 from photograd.transport.accumulation import EVEN_SHARE, MOST, sample_counts
 from photograd.transport.builtin import cornell_box
+
+from support.bits import same_bits
 
 pytestmark = pytest.mark.usefixtures("core")
 OPTIONS = PathOptions(max_depth=4, roulette_from=None)
@@ -84,16 +85,10 @@ def test_the_mean_stays_and_noise_falls() -> None:
     assert even.var() > 2 * focused.var()
 
 
-def test_same_bits_on_any_threads() -> None:
-    found = []
-    for threads in (1, 2, 5):
-        _core.set_thread_count(threads)
-        tracer = PathTracer(cornell_box(SIZE))
-        gradient = tracer.render_backward(
-            few_bright(), spp=SPP, seed=9, options=OPTIONS, spread="cotangent"
-        )
-        found.append(np.concatenate([value.ravel() for value in gradient.values()]))
-    _core.set_thread_count(0)
-    assert np.abs(found[0]).max() > 0
-    for other in found[1:]:
-        np.testing.assert_array_equal(found[0], other)
+@same_bits("samples where the cotangent is")
+def gradients_of_spread_samples() -> list[Any]:
+    tracer = PathTracer(cornell_box(SIZE))
+    gradient = tracer.render_backward(
+        few_bright(), spp=SPP, seed=9, options=OPTIONS, spread="cotangent"
+    )
+    return list(gradient.values())

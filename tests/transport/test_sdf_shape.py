@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd._compiled import _core
 from photograd.errors import RangeError, SceneError
 from photograd.geometry.sdf import (
     box,
@@ -38,7 +37,16 @@ from photograd.transport.builtin import camera_at
 from photograd.transport.shapes import box as box_mesh
 from photograd_course.gradcheck import check_gradient
 
-from tests.transport.scenes import BLACK, GREY, any_material, rough_dielectric_stage, stage, view
+from support.bits import same_bits
+from tests.transport.scenes import (
+    BLACK,
+    GREY,
+    any_material,
+    picture_and_gradients,
+    rough_dielectric_stage,
+    stage,
+    view,
+)
 from tests.transport.test_adjoint import proof
 from tests.transport.test_mip_textures import in_a_ball, swing
 
@@ -150,19 +158,9 @@ def test_derivatives_by_materials_of_bodies() -> None:
     assert report, str(report)
 
 
-def test_same_bits_on_any_threads() -> None:
-    tracer, pictures = PathTracer(replace(busy(), camera=view(24))), []
-    for threads in (1, 2, 5):
-        _core.set_thread_count(threads)
-        sums = tracer.render(spp=4, seed=3)
-        gradient = tracer.render_backward(np.ones((24, 24, 3)), spp=4, seed=3)
-        pictures.append((sums.radiance, gradient["materials.shiny.roughness"]))
-    _core.set_thread_count(0)
-    assert pictures[0][0].any()
-    assert pictures[0][1].any()
-    for radiance, gradient in pictures[1:]:
-        np.testing.assert_array_equal(radiance, pictures[0][0])
-        np.testing.assert_array_equal(gradient, pictures[0][1])
+@same_bits("path tracing of SDFs")
+def picture_and_gradients_of_bodies() -> list[Any]:
+    return picture_and_gradients(replace(busy(), camera=view(24)), 4)
 
 
 def test_boxes_are_derived() -> None:

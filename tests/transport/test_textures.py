@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd._compiled import _core
 from photograd.errors import DtypeError, IoError, RangeError, SceneError, ShapeError
 from photograd.transport import (
     Environment,
@@ -24,10 +23,11 @@ from photograd.transport import (
 )
 from photograd.transport.shapes import rectangle
 from photograd_course.gradcheck import check_gradient
-from photograd_course.mutants import check_mutants
 from PIL import Image
 
-from tests.transport.scenes import BLACK, FLOOR, LAMP, view
+from support.bits import same_bits
+from support.gradient_mutants import check_gradient_mutants
+from tests.transport.scenes import BLACK, FLOOR, LAMP, picture_and_gradients, view
 from tests.transport.test_adjoint import OPTIONS, proof
 
 BARE = PathOptions("bsdf")
@@ -162,11 +162,8 @@ def test_wrong_gradients_die() -> None:
     paint = Material("lambert", {"albedo": [0.9, 0.8, 0.7]}, {"albedo": TextureUse("t")})
     function, backward, start = proof(wall(paint, {"t": noise(3, 2)}, 3))
     d = 0.2 + np.random.default_rng(5).random((3, 3, 3))
-    deaths = check_mutants(
-        lambda b: check_gradient(function, b, start, seed=4, coordinates=2, directions=1),
-        backward,
-        start,
-        d,
+    deaths = check_gradient_mutants(
+        function, backward, start, d, seed=4, coordinates=2, directions=1
     )
     assert deaths, str(deaths)
 
@@ -192,21 +189,15 @@ def test_value_and_texture_share_the_derivative_of_their_product() -> None:
     np.testing.assert_allclose(paint, values, rtol=1e-9)
 
 
-def test_same_bits_on_any_threads_and_twice_is_twice() -> None:
+@same_bits("path tracing with textures")
+def picture_and_gradients_of_textures() -> list[Any]:
+    return picture_and_gradients(stage(24), 20)
+
+
+def test_twice_the_cotangent_is_twice_the_gradient_and_float_agrees_with_double() -> None:
     d = np.random.default_rng(8).uniform(-1, 1, (24, 24, 3))
-    found = []
-    for threads in (1, 2, 5):
-        _core.set_thread_count(threads)
-        tracer = PathTracer(stage(24))
-        sums = tracer.render(spp=20, seed=9)
-        found.append([sums.radiance, *tracer.render_backward(d, spp=20, seed=9).values()])
-    _core.set_thread_count(0)
-    assert all(np.abs(part).max() > 0 for part in found[0])
-    for other in found[1:]:
-        for a, b in zip(found[0], other, strict=True):
-            np.testing.assert_array_equal(a, b)
-    gradient = tracer.render_backward(d, spp=20, seed=9)
-    double = tracer.render_backward(2 * d, spp=20, seed=9)
+    tracer = PathTracer(stage(24))
+    gradient, double = (tracer.render_backward(f * d, spp=20, seed=9) for f in (1, 2))
     for name, value in gradient.items():
         np.testing.assert_allclose(double[name], 2 * value, rtol=1e-6)
     wide = PathTracer(stage(24), dtype=np.float64).render_backward(d, spp=20, seed=9)

@@ -5,11 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 
-def loss(picture, photograph):
-    residual = picture - photograph
-    return float(np.vdot(residual, residual) / residual.size)
-
-
 def loss_gradient(picture, photograph):
     weight = 2.0 / np.prod(picture.shape)
     return weight * picture - weight * photograph

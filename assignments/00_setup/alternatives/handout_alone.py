@@ -2,13 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-
-
-def loss(p, q):
-    N = p.size
-    return float(1 / N * np.sum((p - q) ** 2))
-
 
 def loss_gradient(p, q):
     N = p.size

@@ -5,14 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 
-def loss(picture, photograph):
-    total = 0.0
-    for row in range(picture.shape[0]):
-        for column in range(picture.shape[1]):
-            total += (picture[row, column] - photograph[row, column]) ** 2
-    return total / picture.size
-
-
 def loss_gradient(picture, photograph):
     gradient = np.zeros(picture.shape)
     for row in range(picture.shape[0]):

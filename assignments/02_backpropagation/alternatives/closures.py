@@ -64,9 +64,6 @@ class Value:
     def __rmul__(self, other):
         return self.__mul__(other)
 
-    def __neg__(self):
-        return self * -1.0
-
     def __sub__(self, other):
         return self + -(other if isinstance(other, Value) else Value(other))
 
@@ -115,10 +112,3 @@ def grad_check(f, x, eps=1e-5):
         return math.inf
     scale = max(np.sqrt((g * g).sum()), np.sqrt((d * d).sum()))
     return 0.0 if scale == 0 else float(np.sqrt(((g - d) ** 2).sum()) / scale)
-
-
-def value_and_gradient(f, x):
-    leaves = [Value(number) for number in x]
-    root = f(leaves)
-    backward(root)
-    return root.data, np.array([leaf.grad for leaf in leaves])

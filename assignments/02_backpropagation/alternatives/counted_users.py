@@ -5,15 +5,11 @@ from __future__ import annotations
 from collections import deque
 
 import numpy as np
+from engine import as_value
 
 
 class Value:
     """A number with its inputs."""
-
-    def __init__(self, data, inputs=()):
-        self.data = float(data)
-        self.grad = 0.0
-        self.inputs = inputs
 
     def _gate(self, other, value, slopes):
         return Value(value, ((self, float(slopes[0])), (other, float(slopes[1]))))
@@ -56,16 +52,6 @@ class Value:
 
     def __sub__(self, other):
         return self + (-as_value(other))
-
-    def __rsub__(self, other):
-        return as_value(other) - self
-
-    def __rtruediv__(self, other):
-        return as_value(other) / self
-
-
-def as_value(number):
-    return number if isinstance(number, Value) else Value(number)
 
 
 def topo_order(root):
@@ -113,10 +99,3 @@ def grad_check(f, x, eps=1e-5):
     if not np.isfinite(top):
         return float("inf")
     return float(np.linalg.norm(d - g) / top) if top else 0.0
-
-
-def value_and_gradient(f, x):
-    leaves = [Value(number) for number in x]
-    root = f(leaves)
-    backward(root)
-    return root.data, np.array([leaf.grad for leaf in leaves])

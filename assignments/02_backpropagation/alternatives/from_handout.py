@@ -5,14 +5,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from engine import as_value
 
 
 class Value:
-    def __init__(self, data, inputs=()):
-        self.data = float(data)
-        self.grad = 0.0
-        self.inputs = inputs
-
     def __add__(self, other):
         other = as_value(other)
         # Moving either one by h moves the sum by h.
@@ -42,34 +38,6 @@ class Value:
     def __pow__(self, n):
         x = self.data
         return Value(x**n, [(self, n * x ** (n - 1))])
-
-    def __truediv__(self, other):
-        other = as_value(other)
-        quotient = self.data / other.data
-        d_self, d_other = 1.0 / other.data, -quotient / other.data
-        return Value(quotient, ((self, d_self), (other, d_other)))
-
-    def __radd__(self, other):
-        return self + other
-
-    def __rmul__(self, other):
-        return self * other
-
-    def __neg__(self):
-        return self * -1.0
-
-    def __sub__(self, other):
-        return self + as_value(other) * -1.0
-
-    def __rsub__(self, other):
-        return as_value(other) - self
-
-    def __rtruediv__(self, other):
-        return as_value(other) / self
-
-
-def as_value(number):
-    return number if isinstance(number, Value) else Value(number)
 
 
 def topo_order(root):
@@ -118,10 +86,3 @@ def grad_check(f, x, eps=1e-5):
     if longest == 0:
         return 0.0
     return np.linalg.norm(g - d) / longest
-
-
-def value_and_gradient(f, x):
-    leaves = [Value(number) for number in x]
-    root = f(leaves)
-    backward(root)
-    return root.data, np.array([leaf.grad for leaf in leaves])

@@ -8,6 +8,8 @@ import math
 import numpy as np
 
 WRITTEN = [0]
+
+
 SLOPES = {
     "add": lambda _x, _y, _z: (1.0, 1.0),
     "mul": lambda x, y, _z: (y, x),
@@ -48,15 +50,6 @@ class Value:
 
     def __pow__(self, n):
         return write("pow", lambda x, y: x**y, self, power=n)
-
-    def __radd__(self, other):
-        return self + other
-
-    def __rmul__(self, other):
-        return self * other
-
-    def __neg__(self):
-        return self * -1.0
 
     def __sub__(self, other):
         return self + (-1.0) * (other if isinstance(other, Value) else Value(other))
@@ -122,10 +115,3 @@ def grad_check(f, x, eps=1e-5):
     off = math.dist(gradient, slopes)
     scale = max(math.hypot(*gradient), math.hypot(*slopes))
     return off / scale if scale else 0.0
-
-
-def value_and_gradient(f, x):
-    leaves = [Value(number) for number in x]
-    root = f(leaves)
-    backward(root)
-    return root.data, np.array([leaf.grad for leaf in leaves])

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-
-CURVATURE_ROUNDS = 40
-SAFETY = 0.95
+from texture_recovery import CURVATURE_ROUNDS, SAFETY
 
 
 def _hats(n, place):

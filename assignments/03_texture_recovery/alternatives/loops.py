@@ -5,9 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-
-CURVATURE_ROUNDS = 40
-SAFETY = 0.95
+from texture_recovery import CURVATURE_ROUNDS, SAFETY
 
 
 def _four(shape, place):

@@ -3,32 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-
-
-def above(wo, wi):
-    return (wo[:, 2] > 0) & (wi[:, 2] > 0)
-
-
-def half_vector(wo, wi):
-    sums = wo + wi
-    return sums / np.maximum(np.linalg.norm(sums, axis=1, keepdims=True), 1e-300)
-
-
-def stretched(w, alpha):
-    return np.sqrt(alpha**2 * (w[:, 0] ** 2 + w[:, 1] ** 2) + w[:, 2] ** 2)
-
-
-def schlick(f0, cos_theta):
-    return f0 + (1 - f0) * (1 - cos_theta) ** 5
-
-
-def hemisphere(heights=48, turns=96):
-    nodes, weights = np.polynomial.legendre.leggauss(heights)
-    root = (nodes + 1) / 2
-    z, phi = np.meshgrid(root**2, (np.arange(turns) + 0.5) * (2 * np.pi / turns), indexing="ij")
-    r = np.sqrt(1 - z * z)
-    wi = np.stack([r * np.cos(phi), r * np.sin(phi), z], axis=-1).reshape(-1, 3)
-    return wi, np.repeat(root * weights * (2 * np.pi / turns), turns)
+from reflectance import above, half_vector, hemisphere, schlick, stretched
 
 
 def furnace(f, cosines):

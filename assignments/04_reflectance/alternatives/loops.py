@@ -5,35 +5,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from reflectance import hemisphere
 
 PI = math.pi
-
-
-def above(wo, wi):
-    return (wo[:, 2] > 0) & (wi[:, 2] > 0)
-
-
-def half_vector(wo, wi):
-    sums = wo + wi
-    return sums / np.maximum(np.linalg.norm(sums, axis=1, keepdims=True), 1e-300)
-
-
-def stretched(w, alpha):
-    return np.sqrt(alpha**2 * (w[:, 0] ** 2 + w[:, 1] ** 2) + w[:, 2] ** 2)
-
-
-def hemisphere(heights=48, turns=96):
-    nodes, weights = np.polynomial.legendre.leggauss(heights)
-    directions, angles = [], []
-    for node, weight in zip(nodes.tolist(), weights.tolist(), strict=True):
-        z = ((node + 1) / 2) ** 2
-        for turn in range(turns):
-            phi = (turn + 0.5) * 2 * PI / turns
-            directions.append(
-                [math.sqrt(1 - z * z) * math.cos(phi), math.sqrt(1 - z * z) * math.sin(phi), z]
-            )
-            angles.append((node + 1) / 2 * weight * 2 * PI / turns)
-    return np.array(directions), np.array(angles)
 
 
 def furnace(f, cosines):

@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-
-T_MIN = 1e-9
-CLOSE = 1e-9
-LEAF = 2
+from rays import CLOSE, LEAF, T_MIN
 
 
 def hit_sphere(origins, directions, center, radius):
@@ -119,21 +116,3 @@ def traverse(first, count, order, box, meet, origin, direction):
         return best
 
     return search(0, entry(0), (np.inf, -1))
-
-
-def trace_mesh(corners, origins, directions):
-    boxes, first, count, order = build_bvh(corners.min(axis=1), corners.max(axis=1))
-
-    def one(o, d):
-        return traverse(
-            first,
-            count,
-            order,
-            lambda node: boxes[node],
-            lambda things: hit_triangle(o, d, corners[things])[0],
-            o,
-            d,
-        )
-
-    found = [one(o, d) for o, d in zip(origins, directions, strict=True)]
-    return np.array([t for t, _ in found]), np.array([k for _, k in found])

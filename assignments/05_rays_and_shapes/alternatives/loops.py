@@ -5,10 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-
-T_MIN = 1e-9
-CLOSE = 1e-9
-LEAF = 2
+from rays import CLOSE, LEAF, T_MIN
 
 
 def dot(a, b):
@@ -156,15 +153,3 @@ def traverse(first, count, order, box, meet, origin, direction):
 
     visit(0, enter(0))
     return best[0], best[1]
-
-
-def trace_mesh(corners, origins, directions):
-    boxes, first, count, order = build_bvh(corners.min(axis=1), corners.max(axis=1))
-    answers = []
-    for o, d in zip(origins, directions, strict=True):
-
-        def meet(things, o=o, d=d):
-            return hit_triangle(o, d, corners[things])[0]
-
-        answers.append(traverse(first, count, order, boxes.__getitem__, meet, o, d))
-    return np.array([t for t, _ in answers]), np.array([k for _, k in answers])

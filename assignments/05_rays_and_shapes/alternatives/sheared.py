@@ -5,10 +5,7 @@ from __future__ import annotations
 import heapq
 
 import numpy as np
-
-T_MIN = 1e-9
-CLOSE = 1e-9
-LEAF = 2
+from rays import CLOSE, LEAF, T_MIN
 
 
 def hit_sphere(origins, directions, center, radius):
@@ -142,20 +139,3 @@ def traverse(first, count, order, box, meet, origin, direction):
             if t < best:
                 best, number = t, int(thing)
     return float(best), number
-
-
-def trace_mesh(corners, origins, directions):
-    boxes, first, count, order = build_bvh(corners.min(axis=1), corners.max(axis=1))
-    t, number = np.full(len(origins), np.inf), np.full(len(origins), -1)
-    for r in range(len(origins)):
-        o, d = origins[r], directions[r]
-        t[r], number[r] = traverse(
-            first,
-            count,
-            order,
-            lambda node: boxes[node],
-            lambda things, o=o, d=d: hit_triangle(o, d, corners[things])[0],
-            o,
-            d,
-        )
-    return t, number

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from volume_rendering import ray_samples
 
 
 def composite(sigma, color, dt, background):
@@ -72,21 +73,6 @@ def trilinear_adjoint(shape, u, g):
     x, y, z = _hats(X, u[:, 0]), _hats(Y, u[:, 1]), _hats(Z, u[:, 2])
     outer = y[:, :, None, None] * z[:, None, :, None] * g[:, None, None, :]
     return (x.T @ outer.reshape(len(u), -1)).reshape(X, Y, Z, g.shape[1])
-
-
-def ray_samples(low, high, origins, directions, n):
-    t_near, t_far = ray_box(low, high, origins, directions)
-    step = (t_far - t_near) / n
-    t = t_near[:, None] + (np.arange(n) + 0.5) * step[:, None]
-    points = origins[:, None, :] + t[:, :, None] * directions[:, None, :]
-    metres = step * np.linalg.norm(directions, axis=1)
-    return (points - low) / (high - low), np.repeat(metres[:, None], n, axis=1)
-
-
-def render_rays(grid, low, high, origins, directions, n, background):
-    u, dt = ray_samples(low, high, origins, directions, n)
-    samples = trilinear(grid, u.reshape(-1, 3)).reshape(len(origins), n, 4)
-    return composite(samples[:, :, 3], samples[:, :, :3], dt, background)[0]
 
 
 def render_adjoint(grid, low, high, origins, directions, n, background, d_pixel):

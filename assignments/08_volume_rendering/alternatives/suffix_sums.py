@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from volume_rendering import ray_samples
 
 
 def _weights(sigma, dt):
@@ -66,21 +67,6 @@ def trilinear_adjoint(shape, u, g):
         for c in range(g.shape[1])
     ]
     return np.stack(channels, axis=-1).reshape(*shape, g.shape[1])
-
-
-def ray_samples(low, high, origins, directions, n):
-    t_near, t_far = ray_box(low, high, origins, directions)
-    step = (t_far - t_near) / n
-    t = t_near[:, None] + (np.arange(n) + 0.5) * step[:, None]
-    points = origins[:, None, :] + t[:, :, None] * directions[:, None, :]
-    metres = step * np.linalg.norm(directions, axis=1)
-    return (points - low) / (high - low), np.repeat(metres[:, None], n, axis=1)
-
-
-def render_rays(grid, low, high, origins, directions, n, background):
-    u, dt = ray_samples(low, high, origins, directions, n)
-    samples = trilinear(grid, u.reshape(-1, 3)).reshape(len(origins), n, 4)
-    return composite(samples[:, :, 3], samples[:, :, :3], dt, background)[0]
 
 
 def render_adjoint(grid, low, high, origins, directions, n, background, d_pixel):

@@ -3,14 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
+from volume_recovery import FLOOR, SAMPLES, SMOOTH, TV, Adam, draw
 from volume_rendering import render_adjoint, render_rays
-
-SAMPLES = 16
-RAYS = 192
-SMOOTH = 0.1
-TV = 1e-2
-FLOOR = 1e-6
-RATES = np.array([0.05, 0.05, 0.05, 0.5])
 
 
 def psnr(picture, truth):
@@ -67,34 +61,6 @@ def tv_loss_adjoint(grid, eps):
         d[i, 1:] += y[:-1]
         d[i, :, 1:] += z[:, :-1]
     return float(total) / (X * Y * Z), d / (X * Y * Z)
-
-
-class Adam:
-    """Steps of Adam for one volume, as in assignment 01, with beta 0.9 and 0.99."""
-
-    def __init__(self):
-        self.m = self.v = self.k = 0
-
-    def step(self, grid, d_grid):
-        """The volume after one step of RATES; grid itself stays as it is."""
-        self.k += 1
-        self.m = 0.9 * self.m + 0.1 * d_grid
-        self.v = 0.99 * self.v + 0.01 * d_grid**2
-        m, v = self.m / (1 - 0.9**self.k), self.v / (1 - 0.99**self.k)
-        return grid - RATES * m / (np.sqrt(v) + 1e-8)
-
-
-def fog(shape):
-    """Given: where a fit may begin, thin grey fog of a shape (X, Y, Z)."""
-    grid = np.full((*shape, 4), 0.5)
-    grid[..., 3] = 0.1
-    return grid
-
-
-def draw(views, rng):
-    """Given: the pixels of one step, RAYS different ones at random; all, where there are fewer."""
-    total = views["pictures"][..., 0].size
-    return rng.choice(total, min(RAYS, total), replace=False)
 
 
 def gradient_sign_map(grid, views):

@@ -3,25 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
+from splatting import CROSS, FAINT, LOW_PASS, NEAR, SHRINK, SMALL, THRESHOLD, depths, limits
 
-LOW_PASS = 0.3  # pixels squared: no splat is thinner than about a pixel
-MARGIN = 0.15  # of the picture's size: how far outside of it slopes are still taken where they are
-NEAR = 0.01  # metres; Gaussians that are closer are not drawn
 ALPHA_MIN, ALPHA_MAX = 1 / 255, 0.999
-FAINT = 0.02  # opacity below which a Gaussian is dropped
-SMALL = 0.06  # metres; longer ones are split, the others cloned
-THRESHOLD = 0.002  # of the pressure
-SHRINK = 1.6  # a part of a split Gaussian is smaller by this
-TILE = 16  # pixels
-RATES = {"means": 0.008, "log_scales": 0.03, "quats": 0.03, "opacity_logits": 0.05, "colors": 0.02}
-# The matrix that takes v to the cross product u x v has the entries sum_k CROSS[i, j, k] u_k.
-CROSS = np.array(
-    [
-        [[0, 0, 0], [0, 0, -1], [0, 1, 0]],
-        [[0, 0, 1], [0, 0, 0], [-1, 0, 0]],
-        [[0, -1, 0], [1, 0, 0], [0, 0, 0]],
-    ]
-)
 
 
 def covariance(quats, log_scales):
@@ -44,19 +28,6 @@ def covariance(quats, log_scales):
         return d_unit / np.sqrt((quats**2).sum(axis=1))[:, None], np.einsum("nij,nij->nj", d_M, M)
 
     return np.einsum("nik,njk->nij", M, M), back
-
-
-def depths(means, camera):
-    """Given: how far in front of the camera means lie, along its axis; (N,)."""
-    view = camera["camera_from_world"]
-    return means @ view[2, :3] + view[2, 3]
-
-
-def limits(camera):
-    """Given: (low, high), (2,) each: where t_x / t_z and t_y / t_z are held for the slopes."""
-    size = np.array([camera["width"], camera["height"]], np.float64)
-    low = (-MARGIN * size - camera["centre"]) / camera["focal"]
-    return low, ((1 + MARGIN) * size - camera["centre"]) / camera["focal"]
 
 
 def project(means, cov, camera):
@@ -143,138 +114,58 @@ def composite(alpha, colors, depth, background):
 
 
 def render(gaussians, camera, pixels, background):
-    """What some pixels show of a scene."""
-    drawn = depths(gaussians["means"], camera) > NEAR
-    part = {key: values[drawn] for key, values in gaussians.items()}
-    cov, shape_back = covariance(part["quats"], part["log_scales"])
-    mean2d, cov2d, depth, lens_back = project(part["means"], cov, camera)
-    alpha, alpha_back = screen_alpha(mean2d, cov2d, part["opacity_logits"], pixels)
-    shown, blend_back = composite(alpha, part["colors"], depth, background)
+    """What some pixels show: what is not in front is put there, and has no opacity."""
+    pose = camera["camera_from_world"]
+    ahead = depths(gaussians["means"], camera) > NEAR
+    somewhere = pose[:, :3].T @ (np.array([0.0, 0.0, 1.0 + NEAR]) - pose[:, 3])
+    means = np.where(ahead[:, None], gaussians["means"], somewhere)
+    logits = np.where(ahead, gaussians["opacity_logits"], -50.0)
+    shapes, from_shapes = covariance(gaussians["quats"], gaussians["log_scales"])
+    *on_screen, z, from_screen = project(means, shapes, camera)
+    alpha, from_alpha = screen_alpha(*on_screen, logits, pixels)
+    shown, from_shown = composite(alpha, gaussians["colors"], z, background)
 
     def back(d_shown):
-        found = {}
-        d_alpha, found["colors"], d_background = blend_back(d_shown)
-        d_mean2d, d_cov2d, found["opacity_logits"], found["pull"] = alpha_back(d_alpha)
-        found["means"], d_cov = lens_back(d_mean2d, d_cov2d)
-        found["quats"], found["log_scales"] = shape_back(d_cov)
-        rows = {key: np.zeros((len(drawn), *each.shape[1:])) for key, each in found.items()}
-        for key, each in found.items():
-            rows[key][drawn] = each
-        return {**rows, "background": d_background}
+        d_alpha, d_colors, d_background = from_shown(d_shown)
+        *d_on_screen, d_logits, pull = from_alpha(d_alpha)
+        d_means, d_shapes = from_screen(*d_on_screen)
+        d_quats, d_log_scales = from_shapes(d_shapes)
+        return {
+            "means": d_means,
+            "log_scales": d_log_scales,
+            "quats": d_quats,
+            "opacity_logits": d_logits,
+            "colors": d_colors,
+            "background": d_background,
+            "pull": pull,
+        }
 
     return shown, back
 
 
 def densify(gaussians, pressure, rng, most):
-    """Clone, split and drop Gaussians."""
+    """Clone, split and drop Gaussians: sets of rows, and a scene in four parts."""
     opacity = 1 / (1 + np.exp(-gaussians["opacity_logits"]))
-    kept = opacity >= FAINT
-    rows = np.argsort(-pressure, kind="stable")
-    chosen = rows[(kept & (pressure > THRESHOLD))[rows]][: max(most - kept.sum(), 0)]
-    small = np.exp(gaussians["log_scales"]).max(axis=1) <= SMALL
-    clone, split = (np.sort(chosen[each]) for each in (small[chosen], ~small[chosen]))
-    kept[split] = False
-    stay = np.flatnonzero(kept)
-    rows = np.concatenate([stay, clone, split, split])
-    logits = gaussians["opacity_logits"].copy()
-    logits[clone] = np.log(np.sqrt(1 + np.exp(logits[clone])) - 1)
-    after = {key: part[rows] for key, part in {**gaussians, "opacity_logits": logits}.items()}
-    fresh = slice(len(rows) - 2 * len(split), None)
-    whole, _ = covariance(after["quats"][fresh], after["log_scales"][fresh])
-    drawn = rng.standard_normal((2 * len(split), 3))
-    after["means"][fresh] += np.einsum("nij,nj->ni", np.linalg.cholesky(whole), drawn)
-    after["log_scales"][fresh] -= np.log(SHRINK)
-    return after, np.where(np.arange(len(rows)) < len(stay), rows, -1)
-
-
-def reach(gaussians, camera):
-    """Given: (low, high), (N, 2) each: outside of this box alpha is below ALPHA_MIN."""
-    ahead = depths(gaussians["means"], camera) > NEAR
-    low, high = np.full((len(ahead), 2), np.inf), np.full((len(ahead), 2), -np.inf)
-    visible = {key: values[ahead] for key, values in gaussians.items()}
-    spread, _ = covariance(visible["quats"], visible["log_scales"])
-    middle, extent, *_ = project(visible["means"], spread, camera)
-    solid = 1 / (1 + np.exp(-visible["opacity_logits"]))
-    sigmas = np.sqrt(2 * np.log(np.maximum(solid / ALPHA_MIN, 1)))
-    half = sigmas[:, None] * np.sqrt(extent[:, ::2] + LOW_PASS)
-    low[ahead], high[ahead] = middle - half, middle + half
-    return low, high
-
-
-def picture(gaussians, camera, background):
-    """Given: all pixels by `render`, TILE x TILE of them at a time, with what can reach them."""
-    low, high = reach(gaussians, camera)
-    height, width = camera["height"], camera["width"]
-    shown, tiles = np.zeros((height, width, 3)), []
-    for top in range(0, height, TILE):
-        for left in range(0, width, TILE):
-            block = slice(top, min(top + TILE, height)), slice(left, min(left + TILE, width))
-            y, x = (each.ravel() + 0.5 for each in np.mgrid[block])
-            here = (high > [x[0], y[0]]) & (low < [x[-1], y[-1]])
-            here = np.flatnonzero(here.all(axis=1))
-            some = {key: values[here] for key, values in gaussians.items()}
-            colors, tile_back = render(some, camera, np.stack([x, y], axis=1), background)
-            shown[block] = colors.reshape(shown[block].shape)
-            tiles.append((block, here, tile_back))
-
-    def back(d_shown):
-        total = {key: np.zeros_like(values) for key, values in gaussians.items()}
-        total.update(pull=np.zeros((len(low), 2)), background=np.zeros(3))
-        for block, here, tile_back in tiles:
-            for key, values in tile_back(d_shown[block].reshape(-1, 3)).items():
-                total[key][... if key == "background" else here] += values
-        return total
-
-    return shown, back
-
-
-class Adam:
-    """Steps of Adam for a scene, as in assignment 01, with beta 0.9 and 0.99."""
-
-    def __init__(self, gaussians):
-        self.m = {key: np.zeros_like(values) for key, values in gaussians.items()}
-        self.v = {key: np.zeros_like(values) for key, values in gaussians.items()}
-        self.k = 0
-
-    def step(self, gaussians, gradient):
-        """The scene after one step; the given one stays as it is."""
-        self.k += 1
-        moved = {}
-        for key, values in gaussians.items():
-            self.m[key] = 0.9 * self.m[key] + 0.1 * gradient[key]
-            self.v[key] = 0.99 * self.v[key] + 0.01 * gradient[key] ** 2
-            m, v = self.m[key] / (1 - 0.9**self.k), self.v[key] / (1 - 0.99**self.k)
-            moved[key] = values - RATES[key] * m / (np.sqrt(v) + 1e-8)
-        return moved
-
-    def follow(self, source):
-        """Rows keep their moments when a scene has changed; new ones begin with none."""
-        for moments in (self.m, self.v):
-            for key, values in moments.items():
-                old = (source >= 0).reshape(-1, *[1] * (values.ndim - 1))
-                moments[key] = np.where(old, values[source], 0.0)
-
-
-def fit(gaussians, views, steps, rng, background, most, every=50, watch=None):
-    """Given: fit a scene to photographs, one of them in each step."""
-    adam, losses = Adam(gaussians), np.zeros(steps)
-    total, times = np.zeros(len(gaussians["means"])), np.zeros(len(gaussians["means"]))
-    for step in range(steps):
-        camera, truth = views[rng.integers(len(views))]
-        shown, back = picture(gaussians, camera, background)
-        error = shown - truth
-        losses[step] = np.sum(error**2) / error[..., 0].size
-        if watch is not None:
-            watch(step, gaussians, losses[step])
-        gradient = back(2 * error / error[..., 0].size)
-        pull = np.linalg.norm(gradient["pull"], axis=1)
-        # The loss is a mean over pixels: with this factor a threshold holds for any picture's size.
-        total += pull * max(camera["width"], camera["height"]) / 2
-        times += pull > 0
-        gaussians = adam.step(gaussians, gradient)
-        if most and (step + 1) % every == 0 and 3 * step < 2 * steps:
-            pressure = total / np.maximum(times, 1)
-            gaussians, source = densify(gaussians, pressure, rng, most)
-            adam.follow(source)
-            total, times = np.zeros(len(source)), np.zeros(len(source))
-    return gaussians, losses
+    alive = np.flatnonzero(opacity >= FAINT)
+    asking = alive[pressure[alive] > THRESHOLD]
+    first = asking[np.lexsort((asking, -pressure[asking]))]
+    first = first[: max(0, most - alive.size)]
+    longest = np.exp(np.max(gaussians["log_scales"], axis=1))
+    split = np.sort(first[longest[first] > SMALL])
+    clone = np.setdiff1d(first, split)
+    halved = gaussians["opacity_logits"].copy()
+    a = 1 - np.sqrt(1 - opacity[clone])  # Eq. (31): two of these let through what one did
+    halved[clone] = -np.log(1 / a - 1)
+    scene = {**gaussians, "opacity_logits": halved}
+    parents = {key: part[split] for key, part in scene.items()}
+    factor = np.linalg.cholesky(covariance(parents["quats"], parents["log_scales"])[0])
+    thinner = parents["log_scales"] - np.log(SHRINK)
+    z = rng.standard_normal((2 * len(split), 3)).reshape(2, -1, 3)
+    children = [
+        {**parents, "log_scales": thinner, "means": parents["means"] + (factor @ each)[:, :, 0]}
+        for each in z[..., None]
+    ]
+    stay = np.setdiff1d(alive, split)
+    parts = [{key: part[rows] for key, part in scene.items()} for rows in (stay, clone)]
+    after = {key: np.concatenate([part[key] for part in parts + children]) for key in scene}
+    return after, np.append(stay, np.full(len(after["means"]) - len(stay), -1))

@@ -20,7 +20,11 @@ from photograd.commands.fit import run_with_bar
 from photograd.commands.shared import (
     AllowOutsideOption,
     DownscaleOption,
+    SizeOption,
+    SppOption,
+    StepsOption,
     StopRequest,
+    ViewsOption,
     out_option,
     stop_on_signals,
     use_threads,
@@ -71,11 +75,11 @@ def compare(
     contenders: Annotated[
         str, typer.Option("--contenders", help="Representations with their resolution, or number.")
     ] = "dense_grid:64,dense_grid:128,sparse_sh:128,gaussians:20000",
-    steps: Annotated[int, typer.Option("--steps", min=1, help="Steps of each fit.")] = 1000,
+    steps: StepsOption = 1000,
     rays: Annotated[int, typer.Option("--rays", min=1, help="Rays a step.")] = DEFAULTS.rays,
-    views: Annotated[int, typer.Option("--views", min=2, help="Of a built-in scene.")] = 60,
-    size: Annotated[int, typer.Option("--size", min=8, help="Its pixels along an edge.")] = 128,
-    spp: Annotated[int, typer.Option("--spp", min=1, help="Its samples a pixel.")] = 64,
+    views: ViewsOption = 60,
+    size: SizeOption = 128,
+    spp: SppOption = 64,
     downscale: DownscaleOption = 1,
     allow_outside: AllowOutsideOption = False,
     validate: ValidateOption = False,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import fields
 from pathlib import Path
-from typing import Annotated, TypeAlias
+from typing import Annotated, Any, TypeAlias
 
 import typer
 from photograd_course.cli import (
@@ -209,7 +209,8 @@ def fit(
         note(f"resumed at step {job.step_number} of {job.options.steps}")
     else:
         refuse_without_effect(context, representation)
-        chosen = {"steps": steps, "resolution": resolution, "rays": rays, "seed": seed}
+        chosen: dict[str, Any] = {"steps": steps, "resolution": resolution}
+        chosen |= {"rays": rays, "seed": seed}
         chosen |= {"learning_rate": learning_rate, "total_variation": total_variation}
         chosen |= {"background": background, "degree": degree, "prune": prune}
         chosen |= {"gaussians": gaussians, "density_control": density_control}

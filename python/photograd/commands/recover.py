@@ -21,7 +21,14 @@ from photograd_course.cli import (
 from photograd_course.cli import Progress as Bar
 
 from photograd._run_lock import one_run_in
-from photograd.commands.shared import StopRequest, out_option, stop_on_signals, use_threads
+from photograd.commands.shared import (
+    DepthOption,
+    StepsOption,
+    StopRequest,
+    out_option,
+    stop_on_signals,
+    use_threads,
+)
 from photograd.commands.trace import SceneArgument, load_scene
 from photograd.errors import IoError, RangeError, message
 from photograd.images.kind import LINEAR_SUFFIXES
@@ -44,7 +51,7 @@ TargetOption = Annotated[
 ]
 CameraOption = Annotated[
     list[Path] | None,
-    typer.Option("--camera", help="A scene file whose camera took a target; one for each."),
+    typer.Option("--camera-from", help="A scene file whose camera took a target; one for each."),
 ]
 UnknownOption = Annotated[
     list[str],
@@ -56,16 +63,12 @@ UnknownOption = Annotated[
     ),
 ]
 OutOption = Annotated[Path, out_option("Folder for the result and checkpoints.")]
-StepsOption = Annotated[int, typer.Option("--steps", min=1, help="Steps of gradient descent.")]
 SppOption = Annotated[
     int, typer.Option("--spp", min=1, help="Samples a pixel of each of a step's two halves.")
 ]
 RateOption = Annotated[float, typer.Option("--learning-rate", help="Of Adam, at the first step.")]
 LossOption = Annotated[
     str, typer.Option("--loss", help=f"What is made small: {', '.join(LOSSES)}.")
-]
-DepthOption = Annotated[
-    int, typer.Option("--max-depth", min=1, help="Segments of the longest path.")
 ]
 ViewsOption = Annotated[
     int, typer.Option("--views", min=0, help="Targets a step looks at; 0 looks at all.")

@@ -21,7 +21,7 @@ from photograd_course.cli import (
 
 from photograd.capture.orbit import orbit_cameras
 from photograd.commands.drawable import check_rendered, is_volume
-from photograd.commands.shared import check_output_name, use_threads
+from photograd.commands.shared import SizeOption, check_output_name, out_option, use_threads
 from photograd.errors import RangeError, message
 from photograd.fitting.evaluate import display_image
 from photograd.fitting.fog import RAMPS, load_fog
@@ -37,10 +37,9 @@ AUTO = "auto"
 STILL = ".png"
 OutOption = Annotated[
     Path,
-    typer.Option(
-        "--out",
-        help="A .gif file; a name without a suffix: a folder for PNG frames; or, with --orbit 1, a "
-        ".png file.",
+    out_option(
+        "A .gif file; a name without a suffix: a folder for PNG frames; or, with --orbit 1, a "
+        ".png file."
     ),
 ]
 UpOption = Annotated[
@@ -69,7 +68,7 @@ def render(
     ],
     orbit: Annotated[int, typer.Option("--orbit", min=1, help="Frames on the circle.")] = 60,
     out: OutOption = Path("turntable.gif"),
-    size: Annotated[int, typer.Option("--size", min=8, help="Pixels along an edge.")] = 256,
+    size: SizeOption = 256,
     elevation: Annotated[
         float, typer.Option("--elevation", min=-89.0, max=89.0, help="Degrees above the horizon.")
     ] = 25.0,

@@ -225,12 +225,12 @@ def check_arrays(
             for size, found in zip(shape, array.shape, strict=True)
         )
         if not fits:
-            told = f"({', '.join(_size(size, sizes) for size in shape)})"
+            told = f"({', '.join(_size_text(size, sizes) for size in shape)})"
             raise ShapeError(message(_NAME, f"{part}.{name}", f"shape {told}", array.shape))
         _require_finite(f"{part}.{name}", array)
 
 
-def _size(size: int | str, sizes: Mapping[str, int]) -> str:
+def _size_text(size: int | str, sizes: Mapping[str, int]) -> str:
     known = isinstance(size, str) and size in sizes
     return f"{size} = {sizes[str(size)]}" if known else f"{size}"
 

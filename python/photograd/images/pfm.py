@@ -59,7 +59,7 @@ def encode_pfm(image: npt.NDArray[np.float32]) -> bytes:
         ShapeError: alpha, which the format lacks.
     """
     image = Arguments("write_pfm").array("image", image, ("H", "W", 3))
-    height, width, _ = image.shape
+    height, width = image.shape[:2]
     return b"PF\n%d %d\n-1.0\n" % (width, height) + image[::-1].astype("<f4").tobytes()
 
 

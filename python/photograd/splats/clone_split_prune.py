@@ -50,14 +50,16 @@ SPLIT = 1.6
 
 @dataclass(frozen=True)
 class CloneSplitPrune(DensityControl):
-    """Attributes:
-    budget: there are never more Gaussians; those with the largest grad2d go first.
-    schedule: of cloning, splitting and pruning.
-    threshold: grad2d above which a Gaussian is cloned or split.
-    small: in extents; Gaussians whose longest scale is below are cloned, others split.
-    faint: opacity below which a Gaussian is dropped.
-    large: in extents; Gaussians with a longer scale are dropped.
-    fading: opacity that every Gaussian loses each time; what is needed recovers.
+    """Density control by cloning, splitting and pruning [Kerbl2023].
+
+    Attributes:
+        budget: there are never more Gaussians; those with the largest grad2d go first.
+        schedule: of cloning, splitting and pruning.
+        threshold: grad2d above which a Gaussian is cloned or split.
+        small: in extents; Gaussians whose longest scale is below are cloned, others split.
+        faint: opacity below which a Gaussian is dropped.
+        large: in extents; Gaussians with a longer scale are dropped.
+        fading: opacity that every Gaussian loses each time; what is needed recovers.
     """
 
     budget: int

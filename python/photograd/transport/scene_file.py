@@ -1,45 +1,4 @@
-"""Scenes in TOML files: what may stand in one is what `_shape`, `_camera` and `_environment` read.
-
-[camera]
-position = [0, 1, 6.8]
-look_at = [0, 1, 0]
-field_of_view = 19.5          # degrees, vertical
-size = [256, 256]             # width, height in pixels
-aperture = 0.05               # optional: radius of the lens, metres
-focus = 6.8                   # of what is sharp; the point looked at, if absent
-closing = { position = [0.1, 1, 6.8], look_at = [0, 1, 0] }   # optional: where it has moved to
-
-[camera]                      # or one of a mesh file, in that file's world
-file = "room.glb"
-name = "above"                # optional: the first, if absent
-size = [256, 256]
-
-[environment]                 # optional; or zenith, horizon and ground
-radiance = 0.2
-
-[materials.white]
-model = "lambert"             # and the parameters of that model
-albedo = [0.7, 0.7, 0.7]
-
-[[shapes]]
-kind = "rectangle"            # or box, sphere, triangles, mesh, sdf
-corner = [-1, 0, 1]
-edge_u = [2, 0, 0]
-edge_v = [0, 0, -2]
-material = "white"
-emission = [0, 0, 0]          # optional, of the front
-closing = { translate = [0.1, 0, 0] }   # optional: how it moves while the shutter is open; keys as
-                              # of `places` in `scene_meshes`, each point goes straight on
-glow = "sign"                 # optional: the texture that scales it, where there are coordinates
-
-[[lights]]                    # optional; kinds and keys: scene_tables.py
-kind = "directional"
-direction = [0.3, 1, 0.2]     # towards the light
-irradiance = 2
-
-Textures, and meshes from files, are described in `scene_meshes`; fog, milk and coloured glass in
-`scene_tables`; bodies of signed distances in `sdf_nodes`.
-"""
+"""Scenes in TOML files: camera, environment, materials and shapes (docs/scene_file.md)."""
 
 from __future__ import annotations
 

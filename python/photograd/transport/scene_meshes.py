@@ -1,32 +1,4 @@
-"""Mesh files and textures in scene files, and the cameras and lights that mesh files bring.
-
-[textures.wood]
-file = "wood.png"             # beside the scene file
-encoding = "srgb"             # or "linear": numbers that are not colours; "alpha": the opacity
-wrap = "repeat"               # or mirror, clamp
-filter = "bilinear"           # or "mip": the mean over what a pixel sees (texture.py)
-
-[materials.floor]
-model = "gltf"
-base_color = [1, 1, 1]        # times the texture
-metalness = 0
-roughness = 1
-textures = { base_color = "wood", roughness = ["rough", 1] }   # channel 1 of another one
-alpha = 1                     # optional: covers that part; textures may scale it
-alpha_cutoff = 0.5            # optional: a mask, which covers all or nothing
-normal_map = "bumps.png"
-
-[[shapes]]
-kind = "mesh"
-file = "chair.glb"            # or .gltf, .obj, .ply, .stl
-material = "floor"            # optional; without it the file's own materials
-lights = true                 # optional: the lights of a .glb or .gltf shine, too
-filter = "bilinear"           # optional: of all textures of the file, instead of its own
-scale = 2                     # then rotate (degrees about x, then y, then z), then translate
-rotate = [0, 90, 0]
-translate = [0, 1, 0]
-places = [{ translate = [1, 0, 0] }, { scale = 2 }]   # optional: an instance at each
-"""
+"""Mesh files and textures in scene files, and the cameras and lights that mesh files bring."""
 
 from __future__ import annotations
 

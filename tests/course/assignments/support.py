@@ -19,7 +19,6 @@ import io
 import re
 import tempfile
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -28,10 +27,14 @@ import numpy as np
 import pytest
 from photograd_course.assignment.bundle import Bundle, read_folder
 from photograd_course.assignment.checks_file import load_beside, load_module
+from photograd_course.build.course_files import dossier_of
+from photograd_course.build.named import NamedMutant, read_alternatives, read_mutants
+from photograd_course.build.regions import strip_solution
+from photograd_course.build.rules import reading_findings
 from photograd_course.grading.local import LocalStudent
 from photograd_course.grading.outcome import Outcome, Status
 from photograd_course.grading.runner import run_checks
-from photograd_course.viz import save_figure
+from photograd_course.viz.style import HANDOUT_DPI, save_figure
 from PIL import Image
 
 from support.tree import ROOT
@@ -45,32 +48,21 @@ PICTURE_DIFFERENCE = 3.0
 Fact = bool | tuple[float, float, float]
 
 
-@dataclass(frozen=True)
-class Mutant:
-    """A named wrong solution: what is wrong, the checks it fails, how it differs."""
-
-    diagnosis: str
-    tasks: tuple[str, ...]
-    loses: frozenset[str]
-    replace: list[tuple[str, str]]
-
-
 def names(folder: Path, kind: str) -> list[str]:
     """Names of the mutants or alternatives of an assignment."""
-    return sorted(path.stem for path in (folder / kind).glob("*.py"))
+    return sorted(mutants_of(folder) if kind == "mutants" else read_alternatives(folder))
+
+
+@functools.cache
+def mutants_of(folder: Path) -> dict[str, NamedMutant]:
+    """The named mutants of an assignment, by name."""
+    return {each.name: each for each in read_mutants(folder)}
 
 
 @functools.cache
 def bundle_of(folder: Path, secret: bytes = SECRET) -> Bundle:
     """What judges hand-ins of an assignment."""
     return read_folder(folder, secret=secret)
-
-
-@functools.cache
-def read_mutant(folder: Path, name: str) -> Mutant:
-    module = load_module(name, (folder / "mutants" / f"{name}.py").read_text("utf-8"))
-    diagnosis = (module.__doc__ or "").strip().splitlines()[0]
-    return Mutant(diagnosis, module.TASKS, frozenset(module.LOSES), module.REPLACE)
 
 
 def source(folder: Path) -> str:
@@ -81,23 +73,7 @@ def source(folder: Path) -> str:
 
 def apply_mutant(folder: Path, name: str) -> str:
     """The instructor source with a mutant's replacements."""
-    text = source(folder)
-    for old, new in read_mutant(folder, name).replace:
-        assert text.count(old) == 1, f"{name}: {old!r} occurs {text.count(old)} times"
-        text = text.replace(old, new)
-    return text
-
-
-def starter(folder: Path) -> str:
-    """What students start from, as far as behaviour goes: every region in a function raises."""
-    text = re.sub(
-        r"^( *)# >>> solution (\S+)\n.*?# <<< solution",
-        lambda found: f"{found[1]}raise NotImplementedError('{found[2]}')" if found[1] else "",
-        source(folder),
-        flags=re.MULTILINE | re.DOTALL,
-    )
-    assert "<<< solution" not in text
-    return text
+    return mutants_of(folder)[name].apply(source(folder))
 
 
 def judge(
@@ -107,11 +83,32 @@ def judge(
     secret: bytes = SECRET,
     tasks: Collection[str] = (),
 ) -> list[Outcome]:
-    """The outcome of every check, or of those of some tasks; by default for the solution."""
+    """The outcome of every check, or of those of some tasks; by default for the solution.
+
+    Each by itself: what the price of a derivative takes from the others is `points_by_task`'s.
+    """
+    alone: list[Outcome] = []
+    _run(folder, source_text or source(folder), secret, tasks, alone)
+    return alone
+
+
+def points_by_task(folder: Path, source_text: str, tasks: Collection[str]) -> dict[str, float]:
+    """What a text earns in some tasks, after the price of derivatives has been asked."""
+    earned = dict.fromkeys(tasks, 0.0)
+    for outcome in _run(folder, source_text, SECRET, tasks, []):
+        earned[outcome.task] += outcome.points
+    return earned
+
+
+def _run(
+    folder: Path, text: str, secret: bytes, tasks: Collection[str], alone: list[Outcome]
+) -> list[Outcome]:
     bundle = bundle_of(folder, secret)
     checks = [each for each in bundle.checks if not tasks or each.task in tasks]
-    hand = bundle.hand(bundle.solution_files(source_text or source(folder)))
-    return run_checks(checks, bundle.setting, lambda given: _open(hand.sources, given))
+    sources = bundle.hand(bundle.solution_files(text)).sources
+    return run_checks(
+        checks, bundle.setting, lambda given: _open(sources, given), on_outcome=alone.append
+    )
 
 
 def _open(sources: Mapping[str, str], given: Mapping[str, Callable[..., Any]]) -> LocalStudent:
@@ -182,6 +179,9 @@ class AssignmentTests:
     def bundle(self) -> Bundle:
         return bundle_of(self.folder)
 
+    def test_the_rules_that_read_find_nothing(self) -> None:
+        assert [str(each) for each in reading_findings(dossier_of(self.folder))] == []
+
     def test_points_and_tasks_add_up(self) -> None:
         bundle = self.bundle
         assert sum(check.points for check in bundle.checks) == bundle.manifest.points["code"]
@@ -201,34 +201,37 @@ class AssignmentTests:
         assert {id: value for id, value in margins.items() if value > 0.1} == {}
 
     def test_the_starter_earns_nothing(self) -> None:
-        outcomes = judge(self.folder, starter(self.folder))
+        outcomes = judge(self.folder, strip_solution(source(self.folder)))
         assert {each.reason for each in outcomes} == {"not implemented"}
         assert sum(each.points for each in outcomes) == 0.0
 
     def test_a_mutant_loses_exactly_what_it_says(self, mutant: str) -> None:
-        told = read_mutant(self.folder, mutant)
+        told = mutants_of(self.folder)[mutant]
         outcomes = judge(self.folder, apply_mutant(self.folder, mutant), tasks=told.tasks)
-        assert lost(outcomes) == told.loses
+        assert lost(outcomes) == set(told.loses)
         assert told.loses
         assert told.tasks == tuple(sorted({e.task for e in outcomes if e.id in told.loses}))
         # It fails by ten times the tolerance, wherever a tolerance decides.
         errors = [e.details for e in outcomes if e.id in told.loses and "tolerance" in e.details]
         assert [each for each in errors if not each["error"] > 10 * each["tolerance"]] == []
 
-    def test_the_checks_name_the_mutants_they_kill(self, mutant: str) -> None:
-        named = {check.id for check in self.bundle.checks if mutant in check.kills}
-        assert named == read_mutant(self.folder, mutant).loses
-
     def test_a_check_kills_a_mutant_alone_or_says_why_it_stays(self) -> None:
-        losses = [read_mutant(self.folder, name).loses for name in names(self.folder, "mutants")]
-        alone = {next(iter(ids)) for ids in losses if len(ids) == 1}
+        losses = [each.loses for each in mutants_of(self.folder).values()]
+        alone = {ids[0] for ids in losses if len(ids) == 1}
         idle = {each.id for each in self.bundle.checks if not each.sole} - alone
         # Automatic mutants may do it too; then `sole` says so.
         assert idle == set()
 
+    def test_a_derivative_that_costs_too_much_earns_nothing(self) -> None:
+        prices = {each.id for each in self.bundle.checks if each.is_price}
+        for name, told in mutants_of(self.folder).items():
+            if set(told.loses) <= prices and "differences" in name:
+                text = apply_mutant(self.folder, name)
+                assert set(points_by_task(self.folder, text, told.tasks).values()) == {0.0}, name
+
     @pytest.mark.parametrize("secret", [SECRET, b"another"])
     def test_an_alternative_earns_everything(self, alternative: str, secret: bytes) -> None:
-        text = (self.folder / "alternatives" / f"{alternative}.py").read_text("utf-8")
+        text = read_alternatives(self.folder)[alternative]
         outcomes = judge(self.folder, text, secret=secret)
         assert {each.id: each.text for each in outcomes if each.points < each.max} == {}
         margins = {each.id: each.details.get("margin", 0.0) for each in outcomes}
@@ -286,10 +289,8 @@ class AssignmentTests:
 
 
 def write_picture(folder: Path, figure: Any, path: Path) -> Path:
-    """Write a figure as the assignment's script does: its own `save`, or the house's."""
-    save = getattr(load_figures(folder), "save", save_figure)
-    save(figure, path)
-    return path
+    """Write a figure as the handout has it."""
+    return save_figure(figure, path, getattr(load_figures(folder), "DPI", HANDOUT_DPI))
 
 
 def _pixels(data: bytes) -> np.ndarray:

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from photograd_course.assignment.bundle import read_folder
 from photograd_course.assignment.checks_file import load_module
+from photograd_course.build.named import read_alternatives
 from photograd_course.grading.outcome import Status
 
 from course.assignments.support import (
@@ -146,7 +147,7 @@ def test_random_expressions_use_every_gate_and_every_input() -> None:
 def test_quadratic_work_is_seen_without_a_clock() -> None:
     """Reads and comparisons: ten times below the bound when right, ten times above when not."""
     module = checks_module()
-    right = {path.stem: path.read_text("utf-8") for path in (FOLDER / "alternatives").glob("*.py")}
+    right = read_alternatives(FOLDER)
     for name, text in {"solution": source(FOLDER), **right}.items():
         assert work_per_node(text, module.ladder(12)) <= module.WORK_PER_NODE / 10, name
         assert work_per_node(text, module.chain(1500)) <= module.WORK_PER_NODE / 10, name

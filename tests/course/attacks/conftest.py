@@ -15,6 +15,7 @@ from photograd_course.worker.self_test import self_test
 
 from course.attacks.attack import read_attacks
 from course.attacks.suite import Results, run_suite
+from support.missing import missing
 
 
 @pytest.fixture(scope="module")
@@ -28,7 +29,7 @@ def results(request: pytest.FixtureRequest) -> Iterator[Callable[[str], Results]
     @cache
     def run(mode: str) -> Results:
         if reason := self_test(mode):
-            pytest.skip(f"mode {mode}: {reason}")
+            missing(f"mode {mode}: {reason}", by_choice=True)
         found: Results = run_suite([mode], chosen)[mode]["results"]
         return found
 

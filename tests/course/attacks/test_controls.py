@@ -13,6 +13,7 @@ import pytest
 from course.attacks.attack import ASSIGNMENT, MODULE, Attack, read_attacks
 from course.attacks.controls import has_naive_control, run_control
 from course.naive_grader.cage import FULL, Naive, bubblewrap, grade_naively
+from support.missing import missing
 
 NAIVE = [attack for attack in read_attacks() if has_naive_control(attack)]
 AT_ONCE = 3  # of those that hang
@@ -47,14 +48,14 @@ def control(request: pytest.FixtureRequest) -> Iterator[Callable[[Attack], Contr
 @pytest.mark.parametrize("attack", NAIVE, ids=lambda attack: attack.name)
 def test_the_attack_is_one(attack: Attack, control: Callable[[Attack], Control]) -> None:
     if bubblewrap() is None:
-        pytest.skip("attacks are let loose on the naive grader only under bubblewrap")
+        missing("attacks are let loose on the naive grader only under bubblewrap")
     succeeded, found = control(attack)
     assert succeeded, found
 
 
 def test_the_naive_grader_is_fair_to_the_honest(tmp_path: Path) -> None:
     if bubblewrap() is None:
-        pytest.skip("no bubblewrap")
+        missing("no bubblewrap")
     solution = ASSIGNMENT / MODULE
     empty, full = tmp_path / "empty", tmp_path / "full"
     for folder, upload, score in ((empty, b"", 0.0), (full, solution.read_bytes(), FULL)):

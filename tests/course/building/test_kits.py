@@ -11,6 +11,7 @@ from photograd_course.build.notebook import notebook_of
 from photograd_course.build.toml_text import toml_key, toml_value
 from photograd_course.errors import DtypeError, RangeError
 
+from support.missing import need_module
 from support.tree import ROOT
 
 from .support import TOY, Broken
@@ -96,7 +97,7 @@ def test_a_script_becomes_a_notebook() -> None:
 
 
 def test_the_notebook_has_the_cells_that_jupytext_makes() -> None:
-    jupytext = pytest.importorskip("jupytext")
+    jupytext = need_module("jupytext", by_choice=True)
     theirs = [(cell.cell_type, cell.source) for cell in jupytext.reads(SCRIPT, "py:percent").cells]
     ours = json.loads(notebook_of(SCRIPT))["cells"]
     assert [(cell["cell_type"], "".join(cell["source"])) for cell in ours] == theirs

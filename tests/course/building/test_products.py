@@ -22,6 +22,7 @@ from photograd_course.build.wheel import course_wheel
 from photograd_course.cli import run
 from photograd_course.grading.hints import hint_key
 
+from support.missing import need_module
 from support.tree import ROOT
 
 from .support import SECRET, TOY, Broken
@@ -42,7 +43,8 @@ def test_there_are_five_products(made: dict[str, bytes]) -> None:
     tops = {path.partition("/")[0] for path in made}
     assert tops == {"kit", "checks", "solution", "hidden.zip", "gradescope.zip"}
     assert b"return 2.0 * x" in made["solution/light.py"]
-    assert "solution/mutants/squared.py" in made
+    assert {"solution/mutants.toml", "solution/kills.png"} < set(made)
+    assert "squared        x  x\n" in made["solution/kills.txt"].decode()
 
 
 def test_the_same_input_gives_the_same_bytes(
@@ -86,14 +88,21 @@ def test_the_publishable_tree_holds_no_answer(
     names = {path.relative_to(tree).as_posix() for path in tree.rglob("*")}
     assert names == {"assignment.toml", "checks.py", "hints.json", "toy.py"}
     everything = b"".join((tree / name).read_bytes() for name in names)
-    for answer in (b"np.exp(-x)", b"falling", b"90.1.hidden", b"t.reference", b"REPLACE", b">>>"):
+    for answer in (
+        b"np.exp(-x)",
+        b"falling",
+        b"90.1.hidden",
+        b"t.reference",
+        b"grows with x",
+        b">>>",
+    ):
         assert answer not in everything
 
 
 def test_the_publishable_tree_of_questions_and_handout(broken: Broken) -> None:
     files = publishable(broken.folder)
     assert {"handout.md", "questions.toml", "explore.py", "light.py"} < set(files)
-    assert not {"answers.py", "figures.py", "mutants/squared.py"} & set(files)
+    assert not {"answers.py", "figures.py", "mutants.toml"} & set(files)
     assert b"answer =" not in files["questions.toml"]
     assert b"because" not in files["questions.toml"]
 
@@ -202,7 +211,7 @@ def test_the_vendored_wheel_holds_stripped_kits(tmp_path: Path) -> None:
 
 
 def test_the_built_wheel_holds_stripped_kits(tmp_path: Path) -> None:
-    pytest.importorskip("hatchling")
+    need_module("hatchling")
     command = [sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", str(tmp_path)]
     subprocess.run(command, cwd=COURSE, check=True, capture_output=True)
     (path,) = tmp_path.glob("*.whl")

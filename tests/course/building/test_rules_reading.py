@@ -185,3 +185,11 @@ def test_what_shingles_tell() -> None:
     assert says_something(("i", ",", "j", ",", "gain"))
     assert not says_something(("i", ",", "j", ",", "k"))
     assert not says_something(("linalg", ".", "norm", "(", "x"))
+
+
+def test_likeness(broken: Broken) -> None:
+    assert broken.says("likeness") == []
+    broken.change("alternatives/vectorised.py", "def twice(x):", "def twice(values):")
+    broken.change("alternatives/vectorised.py", "return x + x", "return 2.0 * values")
+    said = ["twice of the alternative vectorised is the solution's"]
+    assert broken.says("likeness") == said

@@ -7,8 +7,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
 from photograd_course.build.course_files import dossier_of
 from photograd_course.build.evidence import evidence
+from photograd_course.build.matrix import cells, kills
 from photograd_course.build.rules import findings, seed_findings
 
 from .support import SECRET, Broken
@@ -41,12 +43,12 @@ def test_starter_that_crashes(broken: Broken) -> None:
 
 
 def test_mutants(broken: Broken) -> None:
-    broken.change("mutants/squared.py", '"17.1.known", ', '"17.1.none", ')
+    broken.change("mutants.toml", 'squared = ["known random"', 'squared = ["none random"')
     assert broken.says("mutants") == [
         "squared should lose 17.1.none, which is no check",
-        "squared loses 17.1.known, which LOSES does not list",
+        "squared loses 17.1.known, which its row does not list",
     ]
-    broken.change("mutants/squared.py", "return x * x", "return x + x")
+    broken.change("mutants.toml", "return x * x", "return x + x")
     assert "squared survives 17.1.random, which it should lose" in broken.says("mutants")
 
 
@@ -57,17 +59,30 @@ def test_mutants_that_no_longer_apply(broken: Broken) -> None:
     )
 
 
-def test_mutants_without_a_sentence(broken: Broken) -> None:
-    broken.add("mutants/silent.py", 'TASKS = ("17.1",)\nLOSES = ()\nREPLACE = [("2", "3")]\n')
-    assert "no docstring" in str(findings(broken.dossier)[0])
+@pytest.mark.parametrize(
+    ("row", "what"),
+    [
+        ('bad = ["known", "", "2", "3"]', "4 texts, the second ['']"),
+        ('bad = ["known", "It is wrong.", "2"]', "3 texts"),
+        ('bad = ["known", "It is wrong.", "2", 3]', "'2', 3]"),
+        ('["17.2"]\nsquared = ["known", "It is wrong.", "2", "3"]', "it occurs twice"),
+    ],
+)
+def test_rows_of_another_form(broken: Broken, row: str, what: str) -> None:
+    path = broken.folder / "mutants.toml"
+    path.write_text(f"{path.read_text('utf-8')}{row}\n", "utf-8")
+    assert what in str(findings(broken.dossier)[0])
 
 
-def test_kills(broken: Broken) -> None:
-    broken.change("checks.py", '"squared"), hint', '"squared", "halved"), hint')
-    assert broken.says("kills") == ["17.1.known should kill halved, and there is no such mutant"]
-    same = (broken.folder / "mutants/squared.py").read_text("utf-8").replace("x * x", "x + x")
-    broken.add("mutants/halved.py", same)
-    assert broken.says("kills") == ["17.1.known should kill halved, which survives it"]
+def test_which_checks_kill_a_mutant_comes_from_the_run(broken: Broken) -> None:
+    assert kills(broken.dossier) == {
+        "17.1.known": ("not_doubled", "squared"),
+        "17.1.random": ("not_doubled", "squared"),
+    }
+    broken.change("mutants.toml", "return x * x", "return np.abs(2.0 * x)")
+    assert (known := kills(broken.dossier))["17.1.known"] == ("not_doubled",)
+    # The picture shows in another color what a single check kills.
+    assert cells(["not_doubled", "squared"], known).tolist() == [[1, 1], [0, 2]]
 
 
 def test_alternatives(broken: Broken) -> None:
@@ -85,7 +100,7 @@ def test_margins_of_right_answers(broken: Broken) -> None:
 
 
 def test_margins_of_wrong_answers(broken: Broken) -> None:
-    broken.change("mutants/squared.py", "return x * x", "return (2.0 + 4e-12) * x")
+    broken.change("mutants.toml", "return x * x", "return (2.0 + 4e-12) * x")
     assert "17.1.known: squared is wrong by only 2 times the tolerance" in broken.says("margins")[0]
 
 
@@ -109,11 +124,9 @@ def test_sole(broken: Broken) -> None:
     broken.change("checks.py", 'sole="random', 'hint="random')
     assert "17.1.random is never the only check to notice a mutant" in broken.says("sole")[0]
     # A mistake that shows at negative values only: the public check has none.
-    broken.add(
-        "mutants/folded.py",
-        '"""Negative values come out positive."""\n\nTASKS = ("17.1",)\nLOSES = ("17.1.random",)\n'
-        'REPLACE = [("return 2.0 * x", "return np.abs(2.0 * x)")]\n',
-    )
+    path = broken.folder / "mutants.toml"
+    folded = 'folded = ["random", "It is positive.", "return 2.0 * x", "return np.abs(2.0 * x)"]'
+    path.write_text(f"{path.read_text('utf-8')}{folded}\n", "utf-8")
     assert broken.says("sole") == []
 
 
@@ -126,7 +139,7 @@ def test_sole_by_an_automatic_mutant(broken: Broken) -> None:
 
 def test_hints(broken: Broken) -> None:
     assert broken.says("hints") == []
-    broken.change("mutants/squared.py", "Your result is the square", "Your result is a square")
+    broken.change("mutants.toml", "Your result is the square", "Your result is a square")
     assert broken.says("hints") == [
         "hints.json is not up to date: run 'photograd course build --update-hints'"
     ]

@@ -74,11 +74,11 @@ def test_a_sound_course_and_then_a_broken_mutant(
     assert toy["margin_wrong"] > 10
     assert toy["grading_seconds"] > 0
 
-    mutant = sorted((root / "90_toy" / "mutants").glob("*.py"))[0]
-    swap(mutant, "LOSES = (", 'LOSES = ("90.3.services", ')  # an id that it does not lose
+    rows = root / "90_toy" / "mutants.toml"
+    swap(rows, 'differences = ["', 'differences = ["90.3.services ')  # a check that it passes
     code, result = diagnose()
     assert (code, result["ok"]) == (1, False)
-    assert any(mutant.stem in finding for finding in result["findings"])
+    assert any("differences survives 90.3.services" in finding for finding in result["findings"])
 
 
 def test_a_broken_manifest_turns_the_verdict(

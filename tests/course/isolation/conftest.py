@@ -9,22 +9,29 @@ from photograd_course.worker.home import WorkerHome
 from photograd_course.worker.self_test import self_test
 
 from course.isolation.support import TEXTS, essence, outcomes_of
+from support.missing import missing
 
 
 def need(mode: str) -> str:
     """The mode, or skip the test with the reason that the self-test gives."""
     if reason := self_test(mode):
-        pytest.skip(f"mode {mode}: {reason}")
+        missing(f"mode {mode}: {reason}", by_choice=True)
     return mode
 
 
-@pytest.fixture(params=["A", "B", "C", "D", "E"])
+def modes(names: str) -> list[Any]:
+    """A and C run always, the others with --exhaustive."""
+    marks = {name: () if name in "AC" else (pytest.mark.exhaustive,) for name in names}
+    return [pytest.param(name, marks=found) for name, found in marks.items()]
+
+
+@pytest.fixture(params=modes("ABCDE"))
 def mode(request: pytest.FixtureRequest) -> str:
     """Every mode that this machine has."""
     return need(request.param)
 
 
-@pytest.fixture(params=["A", "B", "C", "D"])
+@pytest.fixture(params=modes("ABCD"))
 def strict(request: pytest.FixtureRequest) -> str:
     """Every mode that enforces something."""
     return need(request.param)

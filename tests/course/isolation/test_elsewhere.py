@@ -15,6 +15,7 @@ import pytest
 from photograd_course.worker import bubblewrap, landlock
 from photograd_course.worker.program import interpreter
 
+from support.missing import missing, need_module
 from support.tree import ROOT
 
 WITNESS = [sys.executable, "-m", "course.isolation.witness"]
@@ -47,7 +48,7 @@ def assert_good(found: dict[str, Any], expected: dict[str, Any]) -> None:
 
 @pytest.mark.skipif(sys.platform != "linux" or os.geteuid() != 0, reason="needs root on Linux")
 def test_root_in_a_container_gets_mode_c(tmp_path: Path, expected: dict[str, Any]) -> None:
-    pytest.importorskip("pyseccomp")
+    need_module("pyseccomp")
     launcher = str(Path(__file__).parent / "container.py")
     found = run([sys.executable, launcher, *WITNESS, "C"], tmp_path)
     assert found["uid"] == 0
@@ -59,8 +60,8 @@ def test_root_in_a_container_gets_mode_c(tmp_path: Path, expected: dict[str, Any
 
 def test_without_root(expected: dict[str, Any], tmp_path: Path) -> None:
     if sys.platform != "linux" or landlock.version() == 0:
-        pytest.skip("needs Linux with Landlock")
-    pytest.importorskip("pyseccomp")
+        missing("needs Linux with Landlock", by_choice=True)
+    need_module("pyseccomp")
     prefix, folder = another_user() if os.geteuid() == 0 else ([], tmp_path)
     found = run([*prefix, *WITNESS, "AD"], folder)
     shutil.rmtree(folder, ignore_errors=True)
@@ -77,7 +78,7 @@ def another_user() -> tuple[list[str], Path]:
     """How to run something as a user without rights, for whom root's home is made passable."""
     program = bubblewrap.find()
     if program is None:
-        pytest.skip("needs bubblewrap to let another user reach the interpreter")
+        missing("needs bubblewrap to let another user reach the interpreter")
     # Those of pytest are for this user only.
     folder = Path(tempfile.mkdtemp(prefix="photograd-stranger-"))
     folder.chmod(0o777)

@@ -12,6 +12,7 @@ from photograd_course.worker import launch, modes, self_test, syscall_filter
 from photograd_course.worker.home import WorkerHome
 
 from course.isolation.support import LIMITS, SOLUTION, outcomes_of
+from support.missing import need_module
 
 
 def test_the_promises_hold_here(mode: str, tmp_path: Path) -> None:
@@ -144,7 +145,7 @@ def test_without_libseccomp_only_bubblewrap_serves(monkeypatch: pytest.MonkeyPat
 
 
 def test_every_name_in_the_filter_is_a_system_call() -> None:
-    pyseccomp = pytest.importorskip("pyseccomp")
+    pyseccomp = need_module("pyseccomp")
     newer = {"fchmodat2", "memfd_secret"}  # than the oldest libseccomp in use
     names = " ".join(syscall_filter.REFUSED.values()).split()
     assert len(names) == len(set(names))

@@ -20,7 +20,6 @@ ROUNDING = Tolerance(1e-12, "two orders of summation differ by 2e-16")
     points=3,
     calls=("weighted_sum",),
     tolerance=ROUNDING,
-    kills=("growing", "unweighted"),
     sole="students need a public check; the hidden one repeats it",
 )
 def value_at_known_points(t):
@@ -37,7 +36,6 @@ def value_at_known_points(t):
     points=3,
     calls=("weighted_sum_backward",),
     needs=("weighted_sum",),
-    kills=("sign", "unweighted_backward", "no_cotangent", "no_zero"),
 )
 def derivatives_agree_with_differences(t):
     """Both derivatives agree with central differences of your own forward function."""
@@ -54,14 +52,7 @@ def derivatives_agree_with_differences(t):
     require_zero_for_zero(t, {"w": d_w, "x": d_x})
 
 
-@check(
-    "90.3.services",
-    task="90.3",
-    points=3,
-    calls=("descend",),
-    tolerance=ROUNDING,
-    kills=("uphill",),
-)
+@check("90.3.services", task="90.3", points=3, calls=("descend",), tolerance=ROUNDING)
 def a_quadratic_contracts(t):
     """On a quadratic of curvature lambda each step shrinks x by 1 - tau lambda."""
     curvature = t.rng.uniform(0.5, 1.5, 3)
@@ -79,7 +70,6 @@ def a_quadratic_contracts(t):
     calls=("weighted_sum",),
     visibility="hidden",
     tolerance=ROUNDING,
-    kills=("growing", "unweighted"),
     sole="the same mistakes, at points that are not known beforehand",
 )
 def value_at_random_points(t):
@@ -97,7 +87,6 @@ def value_at_random_points(t):
     visibility="hidden",
     needs=("weighted_sum",),
     tolerance=ROUNDING,
-    kills=("differences", "sign", "unweighted_backward", "no_cotangent"),
     seconds=5.0,
 )
 def the_derivative_is_cheap(t):

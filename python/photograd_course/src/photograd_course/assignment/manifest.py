@@ -26,7 +26,7 @@ class Task:
 class Limits:
     """What one check may use in a worker."""
 
-    seconds: float = 30.0  # wall clock of a whole check, start-up included
+    seconds: float = 30.0  # of a whole check, as worker.clocks.Stopwatch counts them
     cpu_seconds: float = 30.0
     memory_mb: int = 768
     output_kb: int = 64

@@ -1,23 +1,38 @@
 """Named mutants and alternatives of an assignment: solutions that are wrong, or right otherwise.
 
-`mutants/<name>.py` opens with the sentence that a student with this mistake is told, and holds
-``TASKS`` (where the mistake is), ``LOSES`` (exactly the checks that fail) and ``REPLACE``, pairs of
-old and new text of the solution. `alternatives/<name>.py` is a whole module that earns everything.
+`mutants.toml` has a table for each task and in it a row for each mutant: the checks that fail, the
+sentence that a student with this mistake is told, then old and new text, in pairs. Checks are named
+without their task, those of other tasks in full. Which mutants a check kills follows from the
+rows, and the rules prove them. `alternatives/<name>.py` holds the functions of a
+solution that earns everything; the starter has the rest.
 """
 
 from __future__ import annotations
 
-import ast
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from ..assignment.manifest import read_manifest
+from ..assignment.toml import read_toml
 from ..errors import SceneError, message
+from .filling import fill
+from .regions import strip_solution
+
+ROW = '["checks", "what is wrong", "old", "new", ...]'
 
 
 @dataclass(frozen=True)
 class NamedMutant:
-    """One mistake: its name, the hint, its tasks, the checks it fails, and how to make it."""
+    """One mistake.
+
+    Attributes:
+        name: unique in the assignment.
+        diagnosis: the sentence that a student with this mistake is told.
+        tasks: those of the checks that fail, sorted; the mistake is in the first of them.
+        loses: ids of exactly the checks that fail.
+        replace: pairs of an old text, once in the solution, and a new one.
+    """
 
     name: str
     diagnosis: str
@@ -40,48 +55,43 @@ class NamedMutant:
 
 
 def read_mutants(folder: Path) -> tuple[NamedMutant, ...]:
-    """The named mutants of an assignment's folder, by name.
+    """The named mutants of an assignment's folder, in the order of its file; none without one.
 
     Raises:
-        SceneError: a file lacks its sentence or one of its three names, or they hold no literals.
+        SceneError: a row has another form, or a name occurs twice.
     """
-    return tuple(_read_mutant(path) for path in sorted((folder / "mutants").glob("*.py")))
+    path = folder / "mutants.toml"
+    tables = read_toml(path) if path.exists() else {}
+    found: dict[str, NamedMutant] = {}
+    for task, rows in tables.items():
+        if not isinstance(rows, dict):
+            raise _bad(task, f"a table of rows name = {ROW}", repr(rows))
+        for name, row in rows.items():
+            if name in found:
+                raise _bad(name, "a name of its own", "it occurs twice")
+            found[name] = _mutant(task, name, row)
+    return tuple(found.values())
 
 
 def read_alternatives(folder: Path) -> dict[str, str]:
-    """Name to text of the alternatives of an assignment's folder."""
+    """Name to text of the alternatives of an assignment's folder, filled into the starter."""
+    name = read_manifest(folder).module
+    source = (folder / f"{name}.py").read_text(encoding="utf-8")
+    starter = strip_solution(source, f"{name}.py")
     paths = sorted((folder / "alternatives").glob("*.py"))
-    return {path.stem: path.read_text(encoding="utf-8") for path in paths}
+    return {path.stem: fill(starter, path.read_text(encoding="utf-8"), name) for path in paths}
 
 
-def _read_mutant(path: Path) -> NamedMutant:
-    tree = ast.parse(path.read_text(encoding="utf-8"), path.name)
-    values: dict[str, object] = {}
-    for node in tree.body:
-        if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):
-            try:
-                values[node.targets[0].id] = ast.literal_eval(node.value)
-            except ValueError as error:
-                raise _bad(path, "literals only", f"line {node.lineno}") from error
-    sentence = (ast.get_docstring(tree) or "").strip()
-    if not sentence:
-        raise _bad(path, "a first line that says what is wrong", "no docstring")
-    tasks, loses = (_strings(path, key, values.get(key)) for key in ("TASKS", "LOSES"))
-    replace = values.get("REPLACE")
-    if not isinstance(replace, Sequence) or not replace:
-        raise _bad(path, "REPLACE = [(old, new), ...]", repr(replace))
-    pairs = []
-    for pair in replace:
-        old, new = _strings(path, "REPLACE", pair)
-        pairs.append((old, new))
-    return NamedMutant(path.stem, sentence.splitlines()[0], tasks, loses, tuple(pairs))
+def _mutant(task: str, name: str, row: object) -> NamedMutant:
+    if not isinstance(row, Sequence) or not all(isinstance(each, str) for each in row):
+        raise _bad(name, ROW, repr(row))
+    if len(row) < 4 or len(row) % 2 or not row[1].strip():
+        raise _bad(name, ROW, f"{len(row)} texts, the second {row[1:2]}")
+    loses = tuple(each if "." in each else f"{task}.{each}" for each in row[0].split())
+    tasks = tuple(sorted({each.rpartition(".")[0] for each in loses} | {task}))
+    pairs = tuple(zip(row[2::2], row[3::2], strict=True))
+    return NamedMutant(name, row[1], tasks, loses, pairs)
 
 
-def _strings(path: Path, key: str, value: object) -> tuple[str, ...]:
-    if not isinstance(value, (tuple, list)) or not all(isinstance(each, str) for each in value):
-        raise _bad(path, f"{key}, a tuple of strings", repr(value))
-    return tuple(value)
-
-
-def _bad(path: Path, expected: str, got: str) -> SceneError:
-    return SceneError(message("read_mutants", f"mutants/{path.name}", expected, got))
+def _bad(name: str, expected: str, got: str) -> SceneError:
+    return SceneError(message("read_mutants", f"mutants.toml: {name}", expected, got))

@@ -10,6 +10,7 @@ from pathlib import Path
 from .dossier import Dossier
 from .gradescope import EXECUTABLE, gradescope_zip
 from .hint_table import hints_of
+from .matrix import matrix_files
 from .public import kit_files, public_files
 from .seal import bundle_files, seal_bundle
 
@@ -24,7 +25,8 @@ class Products:
         kit: the student's folder.
         checks: the public checks.
         hidden: the sealed bundle, a zip.
-        solution: module, worked handout, figures, mutants, alternatives, questions with keys.
+        solution: module, worked handout, figures, mutants, alternatives, questions with keys, and
+            which check kills which mutant.
         gradescope: the autograder's zip.
     """
 
@@ -71,8 +73,8 @@ def sealed(dossier: Dossier) -> bytes:
 
 
 def solution_files(dossier: Dossier) -> dict[str, bytes]:
-    """What instructors read: everything of the source folder but what tools left there."""
-    found = {}
+    """What instructors read: the source folder without what tools left there, and `kills.png`."""
+    found = matrix_files(dossier)
     for path in sorted(dossier.folder.rglob("*")):
         inside = path.relative_to(dossier.folder)
         hidden = any(part.startswith((".", "__pycache__")) for part in inside.parts)

@@ -85,6 +85,11 @@ def readme(manifest: Manifest, handout: str) -> str:
 > to four significant digits. `photograd course handin {number}` packs the archive to hand in.
 > Green is not finished: some checks run only after you have handed in. `explore.py`, or the
 > notebook `explore.ipynb`, is for play.
+>
+> **A derivative is written, not computed.** No complex steps, dual numbers, finite differences or
+> code made from text in a function that returns a derivative, nor in what it calls. The grader
+> looks for them in the source, and a derivative that costs many forward calls earns none of its
+> task's points.
 """
     return f"{title}\n{work}{rest}"
 

@@ -58,7 +58,6 @@ ROUNDING = Tolerance(1e-12, "doubling is exact; the nearest wrong answer is off 
     points=40,
     calls=("twice",),
     tolerance=ROUNDING,
-    kills=("not_doubled", "squared"),
     hint="handout, section 1",
     sole="students need a public check; the hidden one looks at other points",
 )
@@ -76,7 +75,6 @@ def known_values_are_doubled(t):
     calls=("twice",),
     visibility="hidden",
     tolerance=ROUNDING,
-    kills=("not_doubled", "squared"),
     sole="random points, so that the answers to the public check cannot be copied",
 )
 def random_values_are_doubled(t):
@@ -124,21 +122,17 @@ from NAME import twice
 print(twice(np.array([1.0, 2.0])))
 """
 
-NOT_DOUBLED = '''\
-"""Your result equals x itself: it is not doubled."""
+MUTANTS = """\
+# The checks that a mutant loses, what a student with this mistake is told, old and new text.
 
-TASKS = ("NN.1",)
-LOSES = ("NN.1.known", "NN.1.random")
-REPLACE = [("return 2.0 * x", "return 1.0 * x")]
-'''
-
-SQUARED = '''\
-"""Your result is the square of x: the product of x with itself, not with two."""
-
-TASKS = ("NN.1",)
-LOSES = ("NN.1.known", "NN.1.random")
-REPLACE = [("return 2.0 * x", "return x * x")]
-'''
+["NN.1"]
+not_doubled = ["known random",
+  "Your result equals x itself: it is not doubled.",
+  "return 2.0 * x", "return 1.0 * x"]
+squared = ["known random",
+  "Your result is the square of x: the product of x with itself, not with two.",
+  "return 2.0 * x", "return x * x"]
+"""
 
 ALTERNATIVE = '''\
 """WHAT"""
@@ -167,8 +161,7 @@ def template(number: str, name: str) -> dict[str, str]:
         "questions.toml": QUESTIONS,
         "handout.md": HANDOUT,
         "explore.py": EXPLORE,
-        "mutants/not_doubled.py": NOT_DOUBLED,
-        "mutants/squared.py": SQUARED,
+        "mutants.toml": MUTANTS,
     }
     for way, (what, body) in ways.items():
         text = ALTERNATIVE.replace("WHAT", what).replace("BODY", body)

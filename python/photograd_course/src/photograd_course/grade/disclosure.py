@@ -19,6 +19,7 @@ _KEPT = ("tolerance", "expected_sign", "expected_scale")
 
 # Reasons whose sentence is made before a check's input exists, or holds nothing of the hand-in's.
 _HARMLESS = {"", "not implemented", "missing", "blocked", "hand-in", "forbidden", "unreadable"}
+_HARMLESS |= {"rule"}  # of the text alone
 _SENTENCES = {
     "raised": "a function raised an exception",
     "output": "a function returned something that cannot be compared",
@@ -51,7 +52,7 @@ def magnitude(value: float) -> float:
 
 
 def _hidden_text(outcome: Outcome, details: dict[str, Any]) -> str:
-    if outcome.reason == "wrong":
+    if outcome.reason in ("wrong", "cost"):
         return _wrong(outcome, details)
     if outcome.reason in _HARMLESS:
         return outcome.text

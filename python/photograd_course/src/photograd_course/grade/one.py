@@ -19,13 +19,13 @@ from ..grading.check import Check
 from ..grading.failures import GraderFault, StudentFailure
 from ..grading.outcome import Outcome, Status
 from ..grading.remote import RemoteStudent
-from ..grading.runner import run_checks
+from ..grading.runner import adjoint_functions, run_checks
 from ..grading.trial import Student
 from .answers import Answered, all_answered, plain_answers, score_answers
 from .hand_in import HandIn
 from .printable import printable
 from .report import Report, staff_notes, versions
-from .workers import Clocked, Workers
+from .workers import Budget, Clocked, Workers
 
 LONGEST = 240.0  # seconds for a whole hand-in; grading services allow a few minutes
 Answers = tuple[list[Answered], str, list[str]]
@@ -157,25 +157,20 @@ def _judge(
 
 def _run(case: Case, workers: Workers, slot: int, on_outcome: OnOutcome | None) -> list[Outcome]:
     bundle = case.bundle
-    hand = bundle.hand(case.hand_in.files)
-    end = time.monotonic() + time_allowed(bundle)
+    adjoints = adjoint_functions(bundle.checks)
+    hand = replace(bundle.hand(case.hand_in.files), adjoints=adjoints)
+    budget = Budget(time_allowed(bundle))
 
     def open_student(substitutes: Mapping[str, Callable[..., Any]]) -> Student:
-        now = time.monotonic()
-        if now >= end:
+        if budget.left <= 0:
             said = f"the {time_allowed(bundle):g} seconds for this hand-in were used up before"
             raise StudentFailure("timeout", said)
-        connection = workers.open(slot)
-        deadline = min(end, time.monotonic() + bundle.manifest.limits.seconds)
-        return RemoteStudent(
-            Clocked(connection, deadline), replace(hand, substitutes=dict(substitutes))
-        )
+        connection = Clocked(workers.open(slot), budget)
+        return RemoteStudent(connection, replace(hand, substitutes=dict(substitutes)))
 
     def open_control() -> Student:
-        connection = workers.open(slot)
-        deadline = time.monotonic() + bundle.manifest.limits.seconds
         solution = bundle.hand(bundle.solution_files(bundle.solution))
-        return RemoteStudent(Clocked(connection, deadline), solution)
+        return RemoteStudent(workers.open(slot), solution)
 
     found = run_checks(
         bundle.checks,

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import contextlib
-import time
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -69,21 +69,35 @@ def isolated_workers(
         yield IsolatedWorkers(home, mode, manifest)
 
 
-class Clocked:
-    """A connection whose requests end at a deadline, however long each may take by itself."""
+@dataclass
+class Budget:
+    """Seconds that the workers of one submission may still take, all together."""
 
-    def __init__(self, connection: Connection, deadline: float) -> None:
-        self._connection = connection
-        self._deadline = deadline
+    left: float
+
+
+class Clocked:
+    """A connection whose requests are taken from a budget, however long each may take by itself."""
+
+    def __init__(self, connection: Connection, budget: Budget) -> None:
+        self._connection, self._budget = connection, budget
 
     def request(self, kind: str, value: Any, *, seconds: float, callbacks: int = 200_000) -> Frame:
         """See Connection."""
-        left = self._deadline - time.monotonic()
+        left, before = self._budget.left, self._connection.spent
         if left <= 0:
-            raise WorkerTimeout("the time for this check is used up")
-        return self._connection.request(
-            kind, value, seconds=min(seconds, left), callbacks=callbacks
-        )
+            raise WorkerTimeout("the time for this submission is used up")
+        try:
+            return self._connection.request(
+                kind, value, seconds=min(seconds, left), callbacks=callbacks
+            )
+        finally:
+            self._budget.left -= self._connection.spent - before
+
+    @property
+    def spent(self) -> float:
+        """See Connection."""
+        return self._connection.spent
 
     def cpu_seconds(self) -> float | None:
         """See Connection."""

@@ -5,6 +5,7 @@ An assignment's `checks.py` needs only what this module exports.
 
 from __future__ import annotations
 
+from .battery import Subject
 from .check import Check, check
 from .cost import agree
 from .failures import CheckFailed, GraderFault, StudentFailure
@@ -25,6 +26,7 @@ __all__ = [
     "Record",
     "Status",
     "StudentFailure",
+    "Subject",
     "Text",
     "Tolerance",
     "Trial",

@@ -1,4 +1,4 @@
-"""A check: what it asks, what it is worth, and which wrong answers it must catch."""
+"""A check: what it asks and what it is worth."""
 
 from __future__ import annotations
 
@@ -6,10 +6,12 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from ..errors import RangeError, message
+from .battery import Subject
 from .tolerance import Tolerance
 from .trial import Trial
 
 VISIBILITIES = ("public", "hidden", "secret")
+NAMES_OF_ADJOINTS = ("_adjoint", "_backward", "_gradient", "_grad", "_cotangent")
 Body = Callable[[Trial], None]
 
 
@@ -27,10 +29,14 @@ class Check:
         needs: functions of earlier tasks that those use; where one of them has failed, the check is
             blocked, or run once more with the reference in their place.
         tolerance: for ``Trial.close``.
-        kills: names of the mutants that it must catch.
         hint: said on failure when no known mistake fits better.
         seconds: wall-clock limit of one call.
         sole: why the check stays although no mutant dies by it alone; empty where one does.
+        adjoints: those of `calls` in which a derivative has to be written, not computed by complex
+            steps, dual numbers or differencing; by default those whose names say so, and where
+            the body asks for the cost all.
+        battery: functions that are asked for classes of mistakes after the body; hidden checks
+            only, for the expected values are the reference's.
         body: the function; its docstring's first line is the title.
     """
 
@@ -42,15 +48,21 @@ class Check:
     visibility: str = "public"
     needs: tuple[str, ...] = ()
     tolerance: Tolerance | None = None
-    kills: tuple[str, ...] = ()
     hint: str = ""
     seconds: float = 10.0
     sole: str = ""
+    adjoints: tuple[str, ...] = ()
+    battery: tuple[Subject, ...] = ()
 
     @property
     def title(self) -> str:
         """One sentence: what must hold."""
         return (self.body.__doc__ or self.id).strip().splitlines()[0]
+
+    @property
+    def is_price(self) -> bool:
+        """Whether it asks what an adjoint costs: then the points of its task depend on it."""
+        return _asks_price(self.body)
 
 
 def check(
@@ -62,10 +74,11 @@ def check(
     visibility: str = "public",
     needs: Iterable[str] = (),
     tolerance: Tolerance | None = None,
-    kills: Iterable[str] = (),
     hint: str = "",
     seconds: float = 10.0,
     sole: str = "",
+    adjoints: Iterable[str] | None = None,
+    battery: Iterable[Subject] = (),
 ) -> Callable[[Body], Check]:
     """Make a check of the function below.
 
@@ -77,6 +90,10 @@ def check(
     if not points > 0:
         raise RangeError(message("check", f"points of {id}", "more than 0", points))
 
+    called, subjects = tuple(calls), tuple(battery)
+    if subjects and visibility == "public":
+        raise RangeError(message("check", f"battery of {id}", "a hidden check", visibility))
+
     def make(body: Body) -> Check:
         if not (body.__doc__ or "").strip():
             raise RangeError(message("check", id, "a docstring: the title students read", "none"))
@@ -85,14 +102,26 @@ def check(
             task=task,
             points=points,
             body=body,
-            calls=tuple(calls),
+            calls=called,
             visibility=visibility,
             needs=tuple(needs),
             tolerance=tolerance,
-            kills=tuple(kills),
             hint=hint,
             seconds=seconds,
             sole=sole,
+            adjoints=_adjoints(called, body) if adjoints is None else tuple(adjoints),
+            battery=subjects,
         )
 
     return make
+
+
+def _adjoints(calls: tuple[str, ...], body: Body) -> tuple[str, ...]:
+    if _asks_price(body):
+        return calls
+    return tuple(name for name in calls if name.endswith(NAMES_OF_ADJOINTS))
+
+
+def _asks_price(body: Body) -> bool:
+    code = getattr(body, "__code__", None)
+    return code is not None and "require_cheap" in code.co_names

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from .failures import CheckFailed
+from .failures import CheckFailed, TooExpensive
 from .specs import Spec
 from .trial import Trial
 
@@ -49,7 +49,8 @@ def require_cheap(trial: Trial, forward: Call, backward: Call, ratio: float = CO
         ratio: the cap.
 
     Raises:
-        CheckFailed: too expensive, or the answer to a timed call is another than the reference's.
+        TooExpensive: it does not.
+        CheckFailed: the answer to a timed call is another than the reference's.
     """
     if trial.cpu_seconds() is None:
         return
@@ -64,11 +65,11 @@ def require_cheap(trial: Trial, forward: Call, backward: Call, ratio: float = CO
             return
     advice = "an adjoint visits each value about once; finite differences do not count"
     if measured <= ratio:
-        raise CheckFailed(
+        raise TooExpensive(
             f"{backward[0]}: costs more than {REFERENCE_RATIO:.0f} forward calls should",
             {"advice": f"{advice}, nor does slowing down {forward[0]}"},
         )
-    raise CheckFailed(
+    raise TooExpensive(
         f"{backward[0]}: costs {measured:.0f} forward calls, allowed {ratio:.0f}",
         {"advice": advice},
     )

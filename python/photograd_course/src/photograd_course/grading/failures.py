@@ -28,13 +28,18 @@ class CheckFailed(Exception):
         return self.text
 
 
+class TooExpensive(CheckFailed):
+    """The answer is right, at a price that no written adjoint has."""
+
+
 @dataclass
 class StudentFailure(Exception):
     """No answer came, through the hand-in's own doing.
 
     Attributes:
         reason: "not implemented", "raised", "missing", "timeout", "died", "protocol", "forbidden",
-            "unreadable", "broken" (it does not import) or "output".
+            "unreadable", "broken" (it does not import), "output" or "rule" (a derivative is not
+            written).
         text: one sentence for the student.
         private: what may hold input of a check (an exception's text); shown for public checks only.
         line: (file, line) in the hand-in.
@@ -51,3 +56,7 @@ class StudentFailure(Exception):
 
 class GraderFault(Error):
     """Our own mistake or a broken machine. Never costs a student points."""
+
+
+class MachineTooBusy(GraderFault):
+    """A submission's worker got so little processor time that nothing can be said about it."""

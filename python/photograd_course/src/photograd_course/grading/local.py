@@ -14,12 +14,16 @@ from types import ModuleType
 from typing import Any
 
 from ..worker.codec import FrameError, round_trip
+from ..worker.layouts import laid_out, without_functions
 from ..worker.modules import SourceFinder, line_of
 from .failures import StudentFailure
+from .trial import Breach
 
 
 class LocalStudent:
     """Modules imported from sources into this process.
+
+    The rule that adjoints are written is for students: mutants may break it.
 
     Args:
         sources: module name to text; later ones may import earlier ones.
@@ -34,9 +38,10 @@ class LocalStudent:
         sources: Mapping[str, str],
         substitutes: Mapping[str, Callable[..., Any]] | None = None,
     ) -> None:
+        self.breaches: dict[str, Breach] = {}
         self._finder = SourceFinder(sources)
         self._names = list(sources)
-        self._started = time.process_time()
+        self._used = 0.0
         for name in sources:
             sys.modules.pop(name, None)
         sys.meta_path.insert(0, self._finder)
@@ -55,12 +60,25 @@ class LocalStudent:
     def call(self, function: str, args: Sequence[Any], *, seconds: float) -> Any:
         """See Student; there is no clock here."""
         del seconds
+        return self._call(function, [_crossing(arg) for arg in args])
+
+    def look(
+        self, function: str, args: Sequence[Any], *, seconds: float, layout: str
+    ) -> tuple[Any, Any]:
+        """See Student."""
+        del seconds
+        given = laid_out([_crossing(arg) for arg in args], layout)
+        value = self._call(function, given)
+        return value, round_trip(without_functions(given))
+
+    def _call(self, function: str, given: Sequence[Any]) -> Any:
         module, _, attribute = function.rpartition(".")
         target = getattr(self.modules[module], attribute, None)
         if not callable(target):
             raise StudentFailure("missing", f"there is no function {attribute}")
+        began = time.process_time()
         try:
-            value = target(*[_crossing(arg) for arg in args])
+            value = target(*given)
         except NotImplementedError as error:
             raise not_implemented(function, str(error), line_of(error, self._names)) from error
         except Exception as error:
@@ -69,14 +87,16 @@ class LocalStudent:
             raise StudentFailure(
                 "raised", f"{attribute} raised an exception", text, line
             ) from error
+        finally:
+            self._used += time.process_time() - began
         try:
             return round_trip(value)
         except FrameError as error:
             raise StudentFailure("output", f"{attribute} returned {error}") from error
 
     def cpu_seconds(self) -> float | None:
-        """Processor time of this process since the start."""
-        return time.process_time() - self._started
+        """Processor time of this process in all calls so far."""
+        return self._used
 
     def close(self) -> None:
         """Nothing is left behind."""

@@ -7,9 +7,10 @@ from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 from ..worker.codec import Frame
-from ..worker.process import WorkerDied, WorkerLied, WorkerTimeout, contains_function
-from .failures import StudentFailure
+from ..worker.process import WorkerDied, WorkerLied, WorkerStarved, WorkerTimeout, contains_function
+from .failures import MachineTooBusy, StudentFailure
 from .local import not_implemented
+from .trial import Breach
 
 START_SECONDS = 30.0
 
@@ -22,12 +23,15 @@ class Hand:
         sources: module name to text, in the order of import.
         graded: names of those that the student wrote; their imports are screened.
         allowed: top-level modules these may import.
+        substitutes: "module.function" to the function that replaces it.
+        adjoints: functions that the rule is about that adjoints are written.
     """
 
     sources: Mapping[str, str]
     graded: Sequence[str]
     allowed: Sequence[str]
     substitutes: Mapping[str, Callable[..., Any]] = field(default_factory=dict)
+    adjoints: Sequence[str] = ()
 
 
 class Connection(Protocol):
@@ -35,6 +39,10 @@ class Connection(Protocol):
 
     def request(self, kind: str, value: Any, *, seconds: float, callbacks: int = ...) -> Frame:
         """Send a frame and wait for its answer."""
+
+    @property
+    def spent(self) -> float:
+        """Seconds that requests have taken, without the waiting that is not the worker's own."""
 
     def cpu_seconds(self) -> float | None:
         """Processor time of the worker and its children, measured from outside."""
@@ -48,11 +56,24 @@ class RemoteStudent:
 
     def __init__(self, connection: Connection, hand: Hand) -> None:
         self._connection = connection
+        self.breaches: dict[str, Breach] = {}
         try:
+            if hand.adjoints:
+                self._screen(hand)
             self._load(hand)
         except BaseException:
             connection.kill()
             raise
+
+    def _screen(self, hand: Hand) -> None:
+        """Nothing of the submission runs yet, so what the worker says is its own word."""
+        sources = {name: hand.sources[name] for name in hand.graded}
+        value = {"sources": sources, "adjoints": list(hand.adjoints)}
+        found = self._ask("screen", value, START_SECONDS, "while being read").value
+        for function, breach in found.items():
+            file, line, what = breach["file"], breach["line"], breach["what"]
+            said = f"{function} {what} ({file}, line {line}): write its derivative"
+            self.breaches[function] = said, (file, line)
 
     def _load(self, hand: Hand) -> None:
         frame = self._ask(
@@ -79,8 +100,22 @@ class RemoteStudent:
 
     def call(self, function: str, args: Sequence[Any], *, seconds: float) -> Any:
         """See Student."""
+        return self._call({"function": function, "args": list(args)}, seconds)
+
+    def look(
+        self, function: str, args: Sequence[Any], *, seconds: float, layout: str
+    ) -> tuple[Any, Any]:
+        """See Student."""
+        request = {"function": function, "args": list(args), "layout": layout}
+        found = self._call(request, seconds)
+        if not isinstance(found, dict) or set(found) != {"value", "args"}:
+            raise StudentFailure("protocol", "the hand-in interfered with the worker")
+        return found["value"], found["args"]
+
+    def _call(self, request: dict[str, Any], seconds: float) -> Any:
+        function = request["function"]
         name = function.rpartition(".")[2]
-        frame = self._ask("call", {"function": function, "args": list(args)}, seconds, f"in {name}")
+        frame = self._ask("call", request, seconds, f"in {name}")
         if frame.kind == "result" and not contains_function(frame.value):
             return frame.value
         if frame.kind == "raised":
@@ -110,6 +145,8 @@ class RemoteStudent:
         except WorkerTimeout as late:
             said = f"{str(late) or f'no answer within {seconds:g} seconds'} {where}"
             raise StudentFailure("timeout", said) from None
+        except WorkerStarved as error:
+            raise MachineTooBusy(str(error)) from None
         except WorkerDied:
             said = f"the process ended {where} (a crash, an exit, or out of memory)"
             raise StudentFailure("died", said) from None

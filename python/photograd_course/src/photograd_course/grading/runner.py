@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
+from .battery import run_battery
 from .check import Check
-from .failures import CheckFailed, GraderFault, StudentFailure
+from .failures import CheckFailed, GraderFault, MachineTooBusy, StudentFailure, TooExpensive
 from .hints import find_hint
 from .outcome import Outcome, Status
 from .trial import Student, Trial
@@ -67,7 +68,8 @@ def run_checks(
         setting_of: what the assignment adds to a check, such as `Bundle.setting`.
         open_student: starts the hand-in; gets the functions to be replaced by the reference's.
         open_control: starts the solution in the same way; None where it is not at hand.
-        on_outcome: called after each check.
+        on_outcome: called after each check; where the price of an adjoint proves too high later,
+            the outcomes that are returned have the last word.
     """
     failed: dict[str, str] = {}  # function of the hand-in to the check in which it failed
     judge = _Judge(open_student, open_control)
@@ -97,7 +99,7 @@ def run_checks(
         outcomes.append(outcome)
         if on_outcome is not None:
             on_outcome(outcome)
-    return outcomes
+    return _without_price(checks, outcomes)
 
 
 @dataclass(frozen=True)
@@ -167,16 +169,20 @@ def _run(check: Check, setting: Setting, open_one: OpenControl) -> _Verdict:
     trial: Trial | None = None
     try:
         student = open_one()
+        _require_written(check, student)
         seed = (*setting.seed, *check.id.encode())
         trial = Trial(check, student, seed=seed, module=setting.module, reference=setting.reference)
         check.body(trial)
+        for subject in check.battery:
+            run_battery(trial, subject)
         if not trial.margins and not trial.asked:
             raise GraderFault(f"{check.id}: passed without comparing anything")
         verdict = _Verdict(Status.PASSED)
     except CheckFailed as failure:
         hint = find_hint(setting.hints, setting.salt, check.id, failure)
         advice = str(failure.details.pop("advice", ""))
-        verdict = _Verdict(Status.FAILED, "wrong", failure.text, hint or advice or check.hint)
+        reason = "cost" if isinstance(failure, TooExpensive) else "wrong"
+        verdict = _Verdict(Status.FAILED, reason, failure.text, hint or advice or check.hint)
         verdict.details.update(failure.details)
         verdict.arrays = failure.arrays
         if failure.fingerprint is not None:
@@ -188,7 +194,8 @@ def _run(check: Check, setting: Setting, open_one: OpenControl) -> _Verdict:
         if failure.private and check.visibility == "public":
             verdict.details["exception"] = failure.private
     except Exception as error:
-        if trial is not None and not isinstance(error, (OSError, MemoryError)):
+        machine = (OSError, MemoryError, MachineTooBusy)
+        if trial is not None and not isinstance(error, machine):
             raise _BodyBroke(error) from error
         verdict = _ours(error)  # a worker that does not start, or a machine in trouble
     finally:
@@ -197,6 +204,41 @@ def _run(check: Check, setting: Setting, open_one: OpenControl) -> _Verdict:
     if trial is not None and trial.margins:
         verdict.details["margin"] = max(trial.margins)
     return verdict
+
+
+def _require_written(check: Check, student: Student) -> None:
+    """Raise StudentFailure where a derivative that the check is about is not written."""
+    for function in check.adjoints:
+        if function in student.breaches:
+            said, line = student.breaches[function]
+            raise StudentFailure("rule", said, line=line)
+
+
+def _without_price(checks: Sequence[Check], outcomes: Sequence[Outcome]) -> list[Outcome]:
+    """The outcomes; those about an adjoint whose price is too high have failed, whatever they were.
+
+    Right values prove nothing about a derivative that was found by brute force.
+    """
+    unpaid = [
+        check
+        for check, outcome in zip(checks, outcomes, strict=True)
+        if check.is_price and outcome.reason in ("cost", "timeout")
+    ]
+    found = []
+    for check, outcome in zip(checks, outcomes, strict=True):
+        about = [p.id for p in unpaid if p.task == check.task and {*p.calls} & {*check.calls}]
+        if about and outcome.status is Status.PASSED:
+            text = f"counts only with {about[0]}, which found the derivative too expensive"
+            lost = replace(outcome, status=Status.FAILED, points=0.0, reason="rule", text=text)
+            found.append(lost)
+        else:
+            found.append(outcome)
+    return found
+
+
+def adjoint_functions(checks: Sequence[Check]) -> list[str]:
+    """All functions in which the checks want a derivative to be written."""
+    return list(dict.fromkeys(name for check in checks for name in check.adjoints))
 
 
 def _ours(error: Exception) -> _Verdict:

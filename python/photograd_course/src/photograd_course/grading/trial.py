@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..worker.codec import encode, round_trip
+from ..worker.layouts import without_functions
 from .failures import CheckFailed, GraderFault, StudentFailure
 from .specs import Spec
 from .tolerance import Tolerance
@@ -17,11 +19,28 @@ from .tolerance import Tolerance
 FINGERPRINT_DIGITS = 8
 
 
+Breach = tuple[str, tuple[str, int]]  # a sentence, and (file, line) in the submission
+
+
 class Student(Protocol):
     """Where calls go: into a worker, or into this process for code that we trust."""
 
+    @property
+    def breaches(self) -> Mapping[str, Breach]:
+        """Of the rule that adjoints are written, by function."""
+
     def call(self, function: str, args: Sequence[Any], *, seconds: float) -> Any:
         """The value of one function of the hand-in; raises StudentFailure."""
+
+    def look(
+        self, function: str, args: Sequence[Any], *, seconds: float, layout: str
+    ) -> tuple[Any, Any]:
+        """The value as `call` has it, and the arguments as the function has left them.
+
+        Args:
+            function, args, seconds: as for `call`.
+            layout: of the arrays, a name in `worker.layouts.LAYOUTS`.
+        """
 
     def cpu_seconds(self) -> float | None:
         """Processor time used so far, measured from outside; None where that is not possible."""
@@ -111,12 +130,35 @@ class Trial:
         returns.require(value, function.rpartition(".")[2])
         return value
 
-    def _answer(self, function: str, args: Sequence[Any]) -> Any:
+    def look(self, function: str, *args: Any, returns: Spec, layout: str = "plain") -> Any:
+        """Like `call`, and require that the arguments stay as they were, to the last bit.
+
+        The worker looks at them: nothing has to be asked of the submission. Code that patches the
+        worker can lie about its arguments here, never about a value.
+
+        Args:
+            function, args, returns: as for `call`.
+            layout: of the arrays, a name in `worker.layouts.LAYOUTS`.
+        """
+        name = function.rpartition(".")[2]
+        value, after = self._answer(function, args, layout)
+        returns.require(value, name)
+        before = round_trip(without_functions(list(args)))
+        self.asked += 1
+        if encode("args", 0, after) != encode("args", 0, before):
+            raise CheckFailed(f"{name}: changes an argument, which belongs to its caller")
+        return value
+
+    def _answer(self, function: str, args: Sequence[Any], layout: str | None = None) -> Any:
         """What the submission returns, unless a function among ``args`` has given the verdict."""
         where = function if "." in function else f"{self._module}.{function}"
         try:
             given = [self._watched(arg) for arg in args]
-            value = self._student.call(where, given, seconds=self.check.seconds)
+            seconds = self.check.seconds
+            if layout is None:
+                value = self._student.call(where, given, seconds=seconds)
+            else:
+                value = self._student.look(where, given, seconds=seconds, layout=layout)
         except StudentFailure:
             if self._verdict is not None:
                 raise self._verdict from None

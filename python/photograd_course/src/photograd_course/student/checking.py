@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,8 +12,8 @@ from ..assignment.bundle import Bundle
 from ..errors import RangeError, message
 from ..grading.check import Check
 from ..grading.outcome import Outcome
-from ..grading.remote import Hand, RemoteStudent
-from ..grading.runner import run_checks
+from ..grading.remote import RemoteStudent
+from ..grading.runner import adjoint_functions, run_checks
 from ..grading.trial import Student
 from ..suggest import choose_from
 from ..worker.process import WorkerProcess, install_program, plain_command, scratch_folder
@@ -43,16 +44,14 @@ def check_here(
     on_outcome: Callable[[Outcome], None] | None = None,
 ) -> list[Outcome]:
     """Run `checks` on a hand-in of this machine's user. The verdict is indicative only."""
-    hand = bundle.hand(files)
+    hand = replace(bundle.hand(files), adjoints=adjoint_functions(checks))
     with scratch_folder() as scratch:
         home = install_program(Path(scratch))
 
         def open_student(substitutes: Mapping[str, Callable[..., Any]]) -> Student:
             worker = WorkerProcess(plain_command(home), environment=_environment(), cwd=home)
             worker.request("start", {}, seconds=START_SECONDS)
-            return RemoteStudent(
-                worker, Hand(hand.sources, hand.graded, hand.allowed, dict(substitutes))
-            )
+            return RemoteStudent(worker, replace(hand, substitutes=dict(substitutes)))
 
         return run_checks(checks, bundle.setting, open_student, on_outcome=on_outcome)
 

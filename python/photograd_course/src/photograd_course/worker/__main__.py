@@ -12,9 +12,11 @@ import sys
 from types import ModuleType
 from typing import Any
 
+from .adjoint_rule import breaches
 from .channel import Channel
 from .codec import FrameError
 from .courtesy import behave
+from .layouts import laid_out, without_functions
 from .modules import SourceFinder, line_of
 from .screen import forbidden_imports
 
@@ -28,7 +30,11 @@ def main() -> None:
     channel.send(
         "ready", {"python": list(sys.version_info[:3]), "layers": apply(start.value, channel)}
     )
-    load = channel.receive().value
+    request = channel.receive()
+    if request.kind == "screen":
+        channel.send("screened", breaches(request.value["sources"], request.value["adjoints"]))
+        request = channel.receive()
+    load = request.value
     modules = load_modules(channel, load)
     if modules is None:
         return
@@ -88,7 +94,12 @@ def answer(
         if not callable(function):
             channel.send("missing", attribute)
             return
-        value = function(*request["args"])
+        args = request["args"]
+        if "layout" in request:
+            args = laid_out(args, request["layout"])
+        value = function(*args)
+        if "layout" in request:
+            value = {"value": value, "args": without_functions(args)}
     except BaseException as error:
         channel.send("raised", describe(error, own))
         return

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import os
 import subprocess
+import sys
 from typing import TYPE_CHECKING
 
 from ..grading.failures import GraderFault
 from . import bubblewrap, places
+from .clocks import FamilyClock, ProcessorClock
 from .home import WorkerHome, remove_tree
 from .lifelines import NamespaceLifeline, PlainLifeline, UserLifeline
 from .policy import TITLES, Policy, resource_limits
@@ -26,8 +28,8 @@ def open_worker(
 ) -> WorkerProcess:
     """A worker that waits for a hand-in, with every layer of the mode in force.
 
-    It is ended when the thread that opened it ends (modes A to D), when `limits.seconds` have
-    passed, and by `kill`.
+    It is ended when the thread that opened it ends (modes A to D), when its requests have taken
+    `limits.seconds`, and by `kill`.
 
     Args:
         home: of this grading run.
@@ -60,6 +62,9 @@ def open_worker(
     except BaseException:
         worker.kill()
         raise
+    # Only the filter keeps a submission from starting processes and from lowering its priority.
+    is_filtered = "system calls" in policy.layers and sys.platform == "linux"
+    worker.measure(ProcessorClock(worker.pid) if is_filtered else FamilyClock(worker.pid))
     return worker
 
 

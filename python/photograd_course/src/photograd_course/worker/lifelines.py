@@ -1,4 +1,4 @@
-"""How the workers of each mode are ended so that nothing of them survives, and measured."""
+"""How the workers of each mode are ended so that nothing of them survives."""
 
 from __future__ import annotations
 
@@ -25,10 +25,6 @@ os.kill(-1, 9)
 @dataclass(frozen=True)
 class PlainLifeline:
     """A process in a session of its own; on Linux with its descendants. Any system."""
-
-    def cpu_seconds(self, pid: int) -> float | None:
-        """See Lifeline."""
-        return processes.cpu_seconds(pid)
 
     def end(self, process: subprocess.Popen[bytes]) -> None:
         """See Lifeline. What has left family and session escapes."""

@@ -17,6 +17,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, Protocol
 
+from .clocks import MOST_WAITING, Clock, Stopwatch
 from .codec import MAX_BODY, Frame, FrameError, FunctionId, decode, encode
 from .processes import finish
 from .program import install_program, plain_command, scratch_folder
@@ -26,6 +27,7 @@ __all__ = [
     "WorkerDied",
     "WorkerLied",
     "WorkerProcess",
+    "WorkerStarved",
     "WorkerTimeout",
     "contains_function",
     "install_program",
@@ -51,11 +53,12 @@ class WorkerLied(Exception):
     """The worker sent something that is no valid answer."""
 
 
+class WorkerStarved(Exception):
+    """The machine gave the worker no processor: nothing can be said about the submission."""
+
+
 class Lifeline(Protocol):
     """What a mode of isolation knows about its processes beyond the one that was started."""
-
-    def cpu_seconds(self, pid: int) -> float | None:
-        """Processor time of the process and all below it, seen from outside."""
 
     def end(self, process: subprocess.Popen[bytes]) -> None:
         """Kill the process and all that belongs to it."""
@@ -80,14 +83,15 @@ class WorkerProcess:
 
         Args:
             command, environment, cwd: as for Popen.
-            lifeline: how to end and measure it; the plain way where None.
-            seconds: wall-clock limit of its whole life.
+            lifeline: how to end it; the plain way where None.
+            seconds: limit of all its requests together, as a Stopwatch counts them.
             max_body: bytes; an answer that announces more is a lie.
             longest_log: bytes of its output that are kept; the rest is drained.
             on_end: called once, after it has ended.
         """
-        self._deadline = time.monotonic() + seconds
-        self._request_deadline = self._deadline
+        self._seconds, self._spent = seconds, 0.0
+        self._clock: Clock | None = None
+        self._stopwatch: Stopwatch | None = None
         self._lifeline, self._on_end = lifeline, on_end
         self._max_body, self._longest_log = max_body, longest_log
         self._process = subprocess.Popen(
@@ -119,43 +123,61 @@ class WorkerProcess:
         """What the worker wrote to stdout and stderr, cut short."""
         return bytes(self._log).decode("utf-8", errors="replace")
 
+    def measure(self, clock: Clock) -> None:
+        """Count time by this clock from now on; before, by the wall clock."""
+        self._clock = clock
+
+    @property
+    def spent(self) -> float:
+        """Seconds that its requests have taken so far, without waiting that is not its own."""
+        return self._spent
+
     def request(self, kind: str, value: Any, *, seconds: float, callbacks: int = 200_000) -> Frame:
         """Send a frame and wait for its answer, serving callbacks on the way.
 
         Args:
             kind, value: as for ``codec.encode``; the worker can call functions in ``value``.
-            seconds: wall-clock limit of the whole exchange.
+            seconds: limit of the whole exchange, as a Stopwatch counts it.
             callbacks: how many calls of such functions are served. What passes through them is
                 limited too: a check may keep all that it was asked.
 
         Raises:
             WorkerTimeout, WorkerDied, WorkerLied: no valid answer came.
+            WorkerStarved: nor can it be expected on this machine.
         """
         self._number += 1
-        deadline = min(self._deadline, time.monotonic() + seconds)
-        self._request_deadline = deadline
-        self._send(encode(kind, self._number, value, self._name))
+        data = encode(kind, self._number, value, self._name)
+        stopwatch = Stopwatch(min(seconds, self._seconds - self._spent), self._clock)
+        self._stopwatch = stopwatch
+        try:
+            return self._exchange(data, stopwatch, callbacks)
+        finally:
+            self._stopwatch = None
+            self._spent += stopwatch.spent()
+
+    def _exchange(self, data: bytes, stopwatch: Stopwatch, callbacks: int) -> Frame:
+        self._send(data, stopwatch)
         served = 0
         for _ in range(callbacks + 1):
-            frame = self._next(deadline)
+            frame = self._next(stopwatch)
             if frame.number != self._number:
                 raise WorkerLied("an answer to another question")
             if frame.kind != "callback":
-                self._request_deadline = self._deadline
                 return frame
-            reply = self._reply(frame) if frame.size <= MOST_SERVED else b""
+            with stopwatch.serving():
+                reply = self._reply(frame) if frame.size <= MOST_SERVED else b""
             served += frame.size + len(reply)
             if served > MOST_SERVED:
                 most = f"{MOST_SERVED >> 20} MB"
                 raise WorkerLied(f"more than {most} through the functions it was given")
-            self._send(reply)
+            self._send(reply, stopwatch)
         raise WorkerLied(f"more than {callbacks} calls of the functions it was given")
 
     def cpu_seconds(self) -> float | None:
         """Processor time of the worker and all it has started; None where nobody can tell."""
-        if self._lifeline is None or self._ended.is_set():
+        if self._clock is None or self._ended.is_set():
             return None
-        return self._lifeline.cpu_seconds(self.pid)
+        return self._clock.used()
 
     def kill(self) -> None:
         """End the worker and all that belongs to it; returns when it is gone. Can be repeated."""
@@ -180,7 +202,8 @@ class WorkerProcess:
     def _watch(self) -> None:
         """End the worker when its time is over, so that no write to it can block for longer."""
         while not self._ended.wait(HEARTBEAT):
-            if time.monotonic() > self._request_deadline + HEARTBEAT:
+            stopwatch = self._stopwatch
+            if stopwatch is not None and (stopwatch.left() < -HEARTBEAT or stopwatch.is_starved()):
                 finish(self._process)
                 return
 
@@ -197,7 +220,7 @@ class WorkerProcess:
             said = f"a function given to you cannot take these arguments ({type(error).__name__})"
             return encode("refusal", self._number, said)
 
-    def _send(self, data: bytes) -> None:
+    def _send(self, data: bytes, stopwatch: Stopwatch) -> None:
         stream = self._process.stdin
         assert stream is not None
         view = memoryview(data)
@@ -205,30 +228,47 @@ class WorkerProcess:
             while view:
                 view = view[stream.write(view) :]
         except (OSError, ValueError) as error:
-            raise self._cause_of_death() from error
+            raise self._cause_of_death(stopwatch) from error
 
-    def _next(self, deadline: float) -> Frame:
+    def _next(self, stopwatch: Stopwatch) -> Frame:
         self._wanted.release()
-        try:
-            item = self._frames.get(timeout=max(0.0, deadline - time.monotonic()))
-        except queue.Empty:
-            raise self._late() from None
+        while True:
+            pause, asked = min(HEARTBEAT, max(0.001, stopwatch.left())), time.monotonic()
+            try:
+                item = self._frames.get(timeout=pause)
+                break
+            except queue.Empty:
+                # What goes beyond the pause, this process itself has waited for a processor.
+                stopwatch.excuse(max(0.0, time.monotonic() - asked - pause))
+            if stopwatch.left() <= 0:
+                raise self._late(stopwatch)
+            if stopwatch.is_starved():
+                raise self._starved(stopwatch)
         if isinstance(item, FrameError):
             raise WorkerLied(str(item))
         if isinstance(item, Exception):
-            raise self._cause_of_death()
+            raise self._cause_of_death(stopwatch)
         return item
 
-    def _late(self) -> WorkerTimeout:
+    def _late(self, stopwatch: Stopwatch) -> WorkerTimeout:
         """Whose time is over: one answer's, or that of the whole process."""
-        if time.monotonic() >= self._deadline:
+        if self._spent + stopwatch.spent() >= self._seconds:
             return WorkerTimeout("the time of the whole process is used up")
         return WorkerTimeout()
 
-    def _cause_of_death(self) -> WorkerTimeout | WorkerDied:
+    def _starved(self, stopwatch: Stopwatch) -> WorkerStarved:
+        spent, limit = stopwatch.spent(), stopwatch.limit
+        return WorkerStarved(
+            f"the machine is too busy: after {MOST_WAITING:g} times the limit of {limit:g} s "
+            f"the worker has had {spent:.1f} s"
+        )
+
+    def _cause_of_death(self, stopwatch: Stopwatch) -> WorkerTimeout | WorkerDied | WorkerStarved:
         """Why the pipe is closed: the clock, the limit on processor time, or the hand-in."""
-        if time.monotonic() >= self._request_deadline:
-            return self._late()
+        if stopwatch.left() <= 0:
+            return self._late(stopwatch)
+        if stopwatch.is_starved():
+            return self._starved(stopwatch)
         with contextlib.suppress(subprocess.TimeoutExpired):
             self._process.wait(HEARTBEAT)
         status = self._process.returncode

@@ -67,11 +67,24 @@ def cpu_seconds(pid: int) -> float | None:
         if not fields:
             continue
         total += (int(fields[13]) + int(fields[14])) / TICKS
-        try:
-            total += time.clock_gettime(~member << 3 | 2)  # man 3 clock_getcpuclockid
-        except OSError:  # it has just ended
-            total += (int(fields[11]) + int(fields[12])) / TICKS
+        total += process_clock(member) or (int(fields[11]) + int(fields[12])) / TICKS
     return total
+
+
+def process_clock(pid: int) -> float:
+    """Processor time of one process and its threads, to the nanosecond; 0 once it is gone."""
+    try:
+        return time.clock_gettime(~pid << 3 | 2)  # man 3 clock_getcpuclockid
+    except OSError:
+        return 0.0
+
+
+def run_delay(pid: int) -> float:
+    """Seconds that a process's main thread was ready and waited; 0 where the kernel is silent."""
+    try:
+        return int((PROC / str(pid) / "schedstat").read_bytes().split()[1]) / 1e9
+    except (OSError, ValueError, IndexError):
+        return 0.0
 
 
 def is_alive(pid: int) -> bool:

@@ -14,6 +14,8 @@ import numpy as np
 PROGRAM = (
     "__init__.py",
     "__main__.py",
+    "adjoint_rule.py",
+    "adjoint_values.py",
     "boot.py",
     "channel.py",
     "codec.py",
@@ -21,6 +23,7 @@ PROGRAM = (
     "courtesy.py",
     "kernel.py",
     "landlock.py",
+    "layouts.py",
     "modules.py",
     "preload.py",
     "screen.py",

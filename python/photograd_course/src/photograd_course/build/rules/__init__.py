@@ -20,9 +20,9 @@ from . import (
     faces,
     figures,
     hints,
-    kills,
     leaked_names,
     leaked_shingles,
+    likeness,
     margins,
     markers,
     mutants,
@@ -45,12 +45,12 @@ READING: dict[str, Look] = {
     "figures": figures.look,
     "leaked names": leaked_names.look,
     "leaked shingles": leaked_shingles.look,
+    "likeness": likeness.look,
 }
 RUNNING: dict[str, Look] = {
     "solution": solution.look,
     "starter": starter.look,
     "mutants": mutants.look,
-    "kills": kills.look,
     "alternatives": alternatives.look,
     "margins": margins.look,
     "automatic": automatic.look,
@@ -95,7 +95,7 @@ def seed_findings(dossier: Dossier) -> list[Finding]:
         return []
     found = _apply(dossier, {"solution": solution.look})
     if not found:
-        names = ("mutants", "kills", "alternatives", "margins")
+        names = ("mutants", "alternatives", "margins")
         found = _apply(dossier, {name: RUNNING[name] for name in names})
     return found
 

@@ -17,7 +17,7 @@ def look(dossier: Dossier) -> Iterator[str]:
         for check in sorted((says & known) - lost):
             yield f"{mutant.name} survives {check}, which it should lose"
         for check in sorted(lost - says):
-            yield f"{mutant.name} loses {check}, which LOSES does not list"
+            yield f"{mutant.name} loses {check}, which its row does not list"
         if not says:
             yield f"{mutant.name} loses nothing"
         for each in dossier.mutant_verdicts[mutant.name].ours:

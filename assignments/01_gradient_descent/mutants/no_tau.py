@@ -1,5 +1,0 @@
-"""your step is the derivative itself: the step length is missing"""
-
-TASKS = ("01.2",)
-LOSES = ("01.2.rate", "01.2.verdict", "01.2.basins", "01.2.undefined")
-REPLACE = [("x[k] - tau * df(float(x[k]))", "x[k] - df(float(x[k]))")]

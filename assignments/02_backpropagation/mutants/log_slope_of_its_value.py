@@ -1,5 +1,0 @@
-"""The slope of your logarithm is 1 / log x; it is 1 / x."""
-
-TASKS = ("02.3", "02.5")
-LOSES = ("02.3.log", "02.3.many", "02.5.expressions", "02.5.random")
-REPLACE = [("1.0 / self.data),))", "1.0 / (math.log(self.data) or 1.0)),))")]

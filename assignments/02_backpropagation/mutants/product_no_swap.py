@@ -1,5 +1,0 @@
-"""Your product notes each factor's own number as its slope; it is the other one's."""
-
-TASKS = ("02.1", "02.5")
-LOSES = ("02.1.slopes", "02.1.many", "02.5.worked", "02.5.expressions", "02.5.random")
-REPLACE = [("((self, other.data), (other, self.data))", "((self, self.data), (other, other.data))")]

@@ -1,5 +1,0 @@
-"""Your gradient lacks the factor 2 of the derivative of a square."""
-
-TASKS = ("03.3",)
-LOSES = ("03.3.differences", "03.3.hidden")
-REPLACE = [("2 * residual / count", "residual / count")]

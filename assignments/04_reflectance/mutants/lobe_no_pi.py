@@ -1,7 +1,0 @@
-"""Your D lacks 1 / pi: it covers the surface more than three times."""
-
-TASKS = ("04.2",)
-LOSES = ("04.2.peak", "04.2.ball", "04.2.energy", "04.2.hidden")
-REPLACE = [
-    ("lobe[up] = 1 / (2 * np.pi * alpha**2 * q**2 * L)", "lobe[up] = 1 / (2 * alpha**2 * q**2 * L)")
-]

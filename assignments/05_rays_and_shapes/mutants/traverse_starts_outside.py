@@ -1,5 +1,0 @@
-"""A box in which the ray starts counts as missed."""
-
-TASKS = ("05.6",)
-LOSES = ("05.6.nearest", "05.6.axes", "05.6.cost", "05.6.hidden")
-REPLACE = [("return near if near <= far else np.inf", "return near if 0 < near <= far else np.inf")]

@@ -1,5 +1,0 @@
-"""Paths have one piece too few."""
-
-TASKS = ("07.5",)
-LOSES = ("07.5.corner", "07.5.furnace", "07.5.hidden", "07.5.integral")
-REPLACE = [("for bounce in range(depth - 1):", "for bounce in range(depth - 2):")]

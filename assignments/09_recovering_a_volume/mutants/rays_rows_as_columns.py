@@ -1,8 +1,0 @@
-"""Columns go to the right, rows go down: yours are exchanged."""
-
-TASKS = ("09.2",)
-LOSES = ("09.2.projected", "09.2.hidden")
-REPLACE = [
-    ("right = (col + 0.5 - pictures.shape[2] / 2)", "right = (row + 0.5 - pictures.shape[1] / 2)"),
-    ("down = (row + 0.5 - pictures.shape[1] / 2)", "down = (col + 0.5 - pictures.shape[2] / 2)"),
-]

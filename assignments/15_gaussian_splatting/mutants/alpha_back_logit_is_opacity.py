@@ -1,5 +1,0 @@
-"""You return the derivative by the opacity: the logit's slope is o (1 - o)."""
-
-TASKS = ("15.3",)
-LOSES = ("15.3.differences", "15.3.hidden")
-REPLACE = [("(1 - o) * g.sum(axis=1)", "g.sum(axis=1) / o")]

@@ -1,5 +1,0 @@
-"""Small ones are cloned, not split."""
-
-TASKS = ("15.6",)
-LOSES = ("15.6.rows", "15.6.values", "15.6.most", "15.6.hidden")
-REPLACE = [(".max(axis=1) <= SMALL", ".max(axis=1) <= 0")]

@@ -1,0 +1,177 @@
+"""Classes of mistakes, asked of any function of arrays; `check(battery=...)` names the functions.
+
+A list of known mistakes leaves through all others. These ask for properties, at sizes, layouts and
+values that no example shows; the expected values are the reference's, and some need none.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from ..worker.layouts import LAYOUTS
+from .cost import agree
+from .failures import GraderFault
+from .specs import Spec
+from .tolerance import Tolerance
+from .trial import Trial
+
+SIZES = (1, 2, 7)
+
+
+@dataclass(frozen=True)
+class Subject:
+    """A function of the submission, how to make arguments for it, and what its text promises.
+
+    Attributes:
+        function: its name; of the graded module, or "module.name" for another.
+        make: arguments for n rows (pixels, samples, parameters, steps, whatever the function is
+            about), from random numbers.
+        returns: what comes back for n rows.
+        right: the right answer, from the reference's module and the arguments; by default what
+            the reference's function of this name returns.
+        sizes: numbers of rows, 0 where the text allows none.
+        rows: positions of the arguments with a row for each row of the answer, where each row of
+            the answer depends on its own row alone.
+        special: by position of an argument, the values of which the text speaks, such as NaN.
+        tolerance: of comparisons; by default the check's.
+    """
+
+    function: str
+    make: Callable[[np.random.Generator, int], Sequence[Any]]
+    returns: Callable[[int], Spec]
+    right: Callable[..., Any] | None = None
+    sizes: Sequence[int] = SIZES
+    rows: Sequence[int] = ()
+    special: Mapping[int, Sequence[float]] = field(default_factory=dict)
+    tolerance: Tolerance | None = None
+
+    def answer(self, trial: Trial, args: Sequence[Any]) -> Any:
+        """The right answer."""
+        if self.right is not None:
+            return self.right(trial.reference, *args)
+        return getattr(trial.reference, self.function)(*args)
+
+
+def run_battery(trial: Trial, subject: Subject) -> None:
+    """Every class that the subject's text promises.
+
+    Raises:
+        CheckFailed, StudentFailure: the submission makes a mistake of a class.
+        GraderFault: the subject's arguments prove nothing.
+    """
+    require_sizes(trial, subject)
+    require_layouts(trial, subject)
+    require_repeatable(trial, subject)
+    if subject.rows:
+        require_rows_apart(trial, subject)
+    require_special(trial, subject)
+
+
+def require_sizes(trial: Trial, subject: Subject) -> None:
+    """The values are right for each number of rows: one and, where 0 is named, none included.
+
+    The number of iterations is a size too: ``make`` may take it for one.
+    """
+    for n in subject.sizes:
+        args = subject.make(trial.rng, n)
+        got = trial.call(subject.function, *args, returns=subject.returns(n))
+        what = f"{subject.function} at size {n}"
+        _require_equal(trial, subject, got, subject.answer(trial, args), what)
+
+
+def require_layouts(trial: Trial, subject: Subject, n: int = 5) -> None:
+    """Arguments stay as they are; read-only, with gaps or run backwards they give equal values.
+
+    The worker looks at the arguments: the submission's word is not asked.
+    """
+    args = subject.make(trial.rng, n)
+    right = subject.answer(trial, args)
+    for layout in LAYOUTS:
+        got = trial.look(subject.function, *args, returns=subject.returns(n), layout=layout)
+        _require_equal(trial, subject, got, right, f"{subject.function} of {layout} arrays")
+
+
+def require_repeatable(trial: Trial, subject: Subject, n: int = 5) -> None:
+    """Equal arguments give equal values, after a call with other arguments as well."""
+    args, others = subject.make(trial.rng, n), subject.make(trial.rng, n)
+    first = trial.call(subject.function, *args, returns=subject.returns(n))
+    trial.call(subject.function, *others, returns=subject.returns(n))
+    again = trial.call(subject.function, *args, returns=subject.returns(n))
+    _require_equal(trial, subject, again, first, f"{subject.function}, called again")
+
+
+def require_rows_apart(trial: Trial, subject: Subject, n: int = 6) -> None:
+    """Each row of the answer depends on the same row of the arguments alone.
+
+    Every argument in ``subject.rows`` gets values of its own in every row, so that a function which
+    reads one row for all is found.
+    """
+    args = list(subject.make(trial.rng, n))
+    for k in subject.rows:
+        if len(np.unique(args[k], axis=0)) < 2:
+            raise GraderFault(f"{trial.check.id}: all rows of argument {k} are equal")
+    whole = _parts(trial.call(subject.function, *args, returns=subject.returns(n)))
+    for row in (0, n // 2, n - 1):
+        alone = list(args)
+        for k in subject.rows:
+            alone[k] = args[k][[row]]
+        parts = _parts(trial.call(subject.function, *alone, returns=subject.returns(1)))
+        what = f"{subject.function}: row {row} alone against the same row among {n}"
+        _require_equal(trial, subject, parts, [part[[row]] for part in whole], what)
+
+
+def require_special(trial: Trial, subject: Subject, n: int = 4) -> None:
+    """What the text says of NaN, infinity and the like in the first element of an argument."""
+    for position, values in subject.special.items():
+        for value in values:
+            args = list(subject.make(trial.rng, n))
+            args[position] = np.array(args[position], np.float64)
+            args[position].flat[0] = value
+            got = trial.call(subject.function, *args, returns=subject.returns(n))
+            said = f"{subject.function} where an argument holds {value}: not what the text asks for"
+            trial.require(_same(got, subject.answer(trial, args)), said)
+
+
+def _parts(answer: Any) -> list[Any]:
+    return list(answer) if isinstance(answer, (list, tuple)) else [answer]
+
+
+def _require_equal(trial: Trial, subject: Subject, got: Any, right: Any, what: str) -> None:
+    """Equal within the tolerance; what is empty or not finite, of one kind."""
+    if isinstance(right, dict) and isinstance(got, dict):
+        trial.require(set(got) == set(right), f"{what}: other names")
+        for name in right:
+            _require_equal(trial, subject, got[name], right[name], f"{what}, {name}")
+        return
+    if isinstance(right, (list, tuple)) and isinstance(got, (list, tuple)):
+        trial.require(len(got) == len(right), f"{what}: another number of values")
+        for k, (mine, theirs) in enumerate(zip(got, right, strict=True)):
+            part = f"{what}, item {k}" if len(right) > 1 else what
+            _require_equal(trial, subject, mine, theirs, part)
+        return
+    is_number = isinstance(right, (float, np.ndarray, np.floating))
+    if is_number and np.size(right) and np.isfinite(right).all():
+        trial.close(what, got, right, subject.tolerance)
+    else:
+        trial.require(_same(got, right), f"{what}: another answer")
+
+
+def _same(got: Any, right: Any) -> bool:
+    """Whether two answers agree; NaN agrees with NaN, an infinity with itself."""
+    if isinstance(right, dict):
+        return isinstance(got, dict) and all(_same(got.get(k), v) for k, v in right.items())
+    if isinstance(right, (list, tuple)):
+        return len(got) == len(right) and all(map(_same, got, right))
+    if not isinstance(right, (int, float, np.ndarray, np.number)):
+        return bool(got == right)
+    a, b = np.asarray(got, np.float64), np.asarray(right, np.float64)
+    if a.shape != b.shape:
+        return False
+    special = ~np.isfinite(b)
+    if not np.array_equal(a[special], b[special], equal_nan=True):
+        return False
+    return agree(a[~special], b[~special])

@@ -1,0 +1,162 @@
+"""Each class of mistakes catches its wrong functions and lets right ones pass, in a worker too."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from photograd_course.errors import RangeError
+from photograd_course.grading import Array, CheckFailed, Status, Tolerance, Trial, check
+from photograd_course.grading.battery import (
+    Subject,
+    require_layouts,
+    require_repeatable,
+    require_rows_apart,
+    require_sizes,
+    require_special,
+)
+from photograd_course.grading.failures import GraderFault, StudentFailure
+from photograd_course.grading.local import LocalStudent
+from photograd_course.grading.remote import Hand, RemoteStudent
+from photograd_course.grading.runner import Setting, run_checks
+from photograd_course.grading.trial import Student
+from photograd_course.worker.process import WorkerProcess, install_program, plain_command
+
+HEAD = "import numpy as np\nSEEN = []\ndef blend(a, w):\n"
+RIGHT = HEAD + "    return a * w[:, None]\n"
+WRONG = {
+    "one weight for all": HEAD + "    return a * w[0]\n",
+    "writes into its argument": HEAD + "    a *= w[:, None]\n    return a\n",
+    "sets its weights to zero": HEAD + "    b = a * w[:, None]\n    w[:] = 0\n    return b\n",
+    "remembers the first call": HEAD
+    + "    SEEN.append(w[0])\n    return a * w[:, None] / SEEN[0]\n",
+    "counts its calls": HEAD + "    SEEN.append(1)\n    return a * w[:, None] * len(SEEN)\n",
+    "reads memory": HEAD + "    flat = np.lib.stride_tricks.as_strided(a, a.shape, "
+    "(8 * a.shape[1], 8))\n    return flat * w[:, None]\n",
+    "stops at 32 rows": HEAD + "    b = np.zeros_like(a)\n    b[:32] = (a * w[:, None])[:32]\n"
+    "    return b\n",
+    "squeezes one row": HEAD + "    return np.squeeze(a * w[:, None])\n",
+    "NaN becomes zero": HEAD + "    return np.nan_to_num(a * w[:, None])\n",
+}
+Open = Callable[[str], Trial]
+
+
+def make(rng: np.random.Generator, n: int) -> tuple[Any, ...]:
+    return rng.uniform(1.0, 2.0, (n, 3)), rng.uniform(1.0, 2.0, n)
+
+
+BLEND = Subject(
+    "blend",
+    make,
+    lambda n: Array((n, 3), finite=False),
+    sizes=(0, 1, 2, 64),
+    rows=(0, 1),
+    special={0: (np.nan, np.inf, -np.inf)},
+)
+
+
+@pytest.fixture(params=["local", "worker"])
+def open_trial(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Open]:
+    """A trial of a text, in this process or in another."""
+    opened: list[Student] = []
+    program = install_program(tmp_path) if request.param == "worker" else tmp_path
+
+    def body(t: Trial) -> None:
+        """Something holds."""
+
+    made = check("1.x", task="1", points=1, calls=("blend",), tolerance=Tolerance(1e-12, "sums"))
+
+    def open_one(text: str) -> Trial:
+        student: Student = LocalStudent({"m": text})
+        if request.param == "worker":
+            worker = WorkerProcess(plain_command(program), environment={}, cwd=tmp_path)
+            worker.request("start", {}, seconds=60.0)
+            student = RemoteStudent(worker, Hand({"m": text}, ("m",), ("numpy",)))
+        opened.append(student)
+        reference = SimpleNamespace(blend=lambda a, w: a * w[:, None])
+        return Trial(made(body), student, seed=(1,), module="m", reference=reference)
+
+    yield open_one
+    for each in opened:
+        each.close()
+
+
+def caught(open_trial: Open, text: str) -> set[str]:
+    """The classes by which a text is caught."""
+    classes: dict[str, Callable[[Trial, Subject], None]] = {
+        "sizes": require_sizes,
+        "layouts": require_layouts,
+        "repeatable": require_repeatable,
+        "rows": require_rows_apart,
+        "special": require_special,
+    }
+    found = set()
+    for name, run in classes.items():
+        trial = open_trial(text)
+        try:
+            run(trial, BLEND)
+        except (CheckFailed, StudentFailure):
+            found.add(name)
+        assert name in found or trial.margins or trial.asked
+    return found
+
+
+def test_right_code_passes_every_class(open_trial: Open) -> None:
+    assert caught(open_trial, RIGHT) == set()
+
+
+@pytest.mark.parametrize(
+    ("mistake", "classes"),
+    [
+        ("one weight for all", {"sizes", "rows"}),
+        ("writes into its argument", {"layouts"}),
+        ("sets its weights to zero", {"layouts"}),
+        ("counts its calls", {"repeatable", "layouts"}),
+        ("remembers the first call", {"sizes"}),
+        ("reads memory", {"layouts"}),
+        ("stops at 32 rows", {"sizes"}),
+        ("squeezes one row", {"sizes", "rows"}),
+        ("NaN becomes zero", {"special"}),
+    ],
+)
+def test_a_mistake_is_caught_by_its_class(
+    open_trial: Open, mistake: str, classes: set[str]
+) -> None:
+    assert classes <= caught(open_trial, WRONG[mistake])
+
+
+def test_rows_that_are_all_equal_prove_nothing(open_trial: Open) -> None:
+    same = replace(BLEND, make=lambda _, n: (np.ones((n, 3)), np.ones(n)))
+    with pytest.raises(GraderFault, match="are equal"):
+        require_rows_apart(open_trial(RIGHT), same)
+
+
+def test_a_check_runs_its_battery_after_its_body() -> None:
+    def body(t: Trial) -> None:
+        """Something holds."""
+        t.require(True, "it does")
+
+    reference = SimpleNamespace(blend=lambda a, w: a * w[:, None])
+    made = check(
+        "1.x",
+        task="1",
+        points=1,
+        calls=("blend",),
+        visibility="hidden",
+        tolerance=Tolerance(1e-12, "sums"),
+        battery=[BLEND],
+    )(body)
+    for text, status in ((RIGHT, Status.PASSED), (WRONG["one weight for all"], Status.FAILED)):
+        (found,) = run_checks(
+            [made],
+            lambda _: Setting("m", (1,), reference),
+            lambda _, text=text: LocalStudent({"m": text}),
+        )
+        assert found.status is status, found.text
+    with pytest.raises(RangeError, match="a hidden check"):
+        check("1.x", task="1", points=1, calls=(), battery=[BLEND])
