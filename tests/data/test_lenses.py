@@ -16,6 +16,7 @@ from photograd.errors import IoError, RangeError, ShapeError
 from PIL import Image
 
 from support import capture_files as files
+from support.missing import need_module
 
 WIDTH, HEIGHT = 120, 90
 FOCAL, CENTER = (75.0, 72.0), (58.0, 47.0)
@@ -51,7 +52,7 @@ THEIRS = {
 
 
 def pycolmap() -> Any:
-    return pytest.importorskip("pycolmap", reason="pycolmap is not installed (extra sfm)")
+    return need_module("pycolmap", by_choice=True)  # extra sfm
 
 
 def stored(model: str, terms: list[float]) -> ColmapCamera:
