@@ -442,31 +442,31 @@ def a_direction_uphill_is_refused(t):
 
 
 # >>> hidden
-def cubics(rng, n):
+def cubics(t, n):
     """A function of n variables with a third derivative, where, and how far to move."""
-    a = rng.uniform(0.5, 2.0, n)
-    return lambda x: float(np.sum(a * x**3 - x**2)), rng.uniform(1.0, 2.0, n), 0.1
+    a = t.rng.uniform(0.5, 2.0, n)
+    return lambda x: float(np.sum(a * x**3 - x**2)), t.rng.uniform(1.0, 2.0, n), 0.1
 
 
-def bowls(rng, n):
+def bowls(t, n):
     """A bowl, its gradient and a start; of n variables, or of one."""
-    a = rng.uniform(0.5, 2.0, max(n, 1))
+    a = t.rng.uniform(0.5, 2.0, max(n, 1))
     f, grad = lambda x: float(0.5 * x @ (a * x)), lambda x: a * x
-    return *on_points(len(a), f, grad), rng.uniform(1.0, 2.0, len(a))
+    return *on_points(len(a), f, grad), t.rng.uniform(1.0, 2.0, len(a))
 
 
-def left_domain(rng, n):
+def left_domain(t, n):
     """What `gd_nd` takes, for n steps of which each ends where f is NaN."""
 
     def f(x):
         return float(np.sum(x - np.log(x))) if (x > 0.0).all() else math.nan
 
-    return *on_points(2, f, lambda x: 1.0 - 1.0 / x), rng.uniform(1.15, 1.2, 2), 12.0, n
+    return *on_points(2, f, lambda x: 1.0 - 1.0 / x), t.rng.uniform(1.15, 1.2, 2), 12.0, n
 
 
-def refused(rng, n):
+def refused(t, n):
     """What `backtracking` takes: n step lengths are refused."""
-    x, reach = rng.uniform(1.0, 2.0, 3), float(rng.uniform(1.2, 1.8))
+    x, reach = t.rng.uniform(1.0, 2.0, 3), float(t.rng.uniform(1.2, 1.8))
     return Patient(lambda y: float(0.5 * y @ y)), lambda y: y, x, -(2.0**n) * reach * x
 
 
@@ -510,7 +510,7 @@ def a_cubic_is_off_by_a_known_amount(t):
     battery=[
         Subject(
             "gd_1d",
-            lambda rng, n: (math.cos, lambda x: -math.sin(x), float(rng.uniform(0.3, 3.0)), 0.3, n),
+            lambda t, n: (math.cos, lambda x: -math.sin(x), float(t.rng.uniform(0.3, 3.0)), 0.3, n),
             walk,
             sizes=FAR,
         )
@@ -572,7 +572,7 @@ def nothing_is_not_better(t):
     battery=[
         Subject(
             "gd_nd",
-            lambda rng, n: (*bowls(rng, n), 0.3, n),
+            lambda t, n: (*bowls(t, n), 0.3, n),
             lambda n: walk(n, max(n, 1)),
             sizes=FAR,
             tolerance=EXACT,
@@ -614,7 +614,7 @@ def the_condition_number_gives_the_rate(t):
     battery=[
         Subject(
             "momentum",
-            lambda rng, n: (*bowls(rng, n)[1:], 0.3, 0.7, n),
+            lambda t, n: (*bowls(t, n)[1:], 0.3, 0.7, n),
             lambda n: Array((n + 1, max(n, 1))),
             sizes=FAR,
         )
@@ -646,7 +646,7 @@ def a_parabola_swings_as_two_roots_say(t):
     battery=[
         Subject(
             "adam",
-            lambda rng, n: (*bowls(rng, n)[1:], 0.1, n),
+            lambda t, n: (*bowls(t, n)[1:], 0.1, n),
             lambda n: Array((n + 1, max(n, 1))),
             sizes=FAR,
         )

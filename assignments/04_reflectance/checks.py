@@ -790,20 +790,20 @@ def nothing_leaks(t):
 
 
 # >>> hidden
-def some_model(rng, n):
+def some_model(t, n):
     """A model that `furnace` integrates, and the cosines of n viewers."""
-    a, b = rng.uniform(0.5, 2.0, (3, 2)), rng.uniform(0.3, 1.0, (1, 2))
-    return lambda wo, wi: np.exp(wi @ a * wo[:, 2:]) * b + wo @ a, rng.uniform(0.1, 1.0, n)
+    a, b = t.rng.uniform(0.5, 2.0, (3, 2)), t.rng.uniform(0.3, 1.0, (1, 2))
+    return lambda wo, wi: np.exp(wi @ a * wo[:, 2:]) * b + wo @ a, t.rng.uniform(0.1, 1.0, n)
 
 
-def pairs(rng, n):
+def pairs(t, n):
     """Pairs of directions and their roughness."""
-    return directions(rng, n), directions(rng, n), rng.uniform(0.3, 1.0, n)
+    return directions(t.rng, n), directions(t.rng, n), t.rng.uniform(0.3, 1.0, n)
 
 
-def painted(rng, n):
+def painted(t, n):
     """What `gltf` takes."""
-    return *pairs(rng, n)[:2], *material(rng, n)
+    return *pairs(t, n)[:2], *material(t.rng, n)
 
 
 @check(
@@ -880,7 +880,7 @@ def densities_anywhere(t):
     battery=[
         Subject(
             "sample_ggx",
-            lambda rng, n: (directions(rng, n), rng.uniform(0.3, 1.0, n), rng.random((n, 2))),
+            lambda t, n: (directions(t.rng, n), t.rng.uniform(0.3, 1.0, n), t.rng.random((n, 2))),
             lambda n: Array((n, 3)),
             rows=(0, 1, 2),
             tolerance=EXACT,
@@ -935,7 +935,7 @@ def materials_anywhere(t):
     battery=[
         Subject(
             "gltf_backward",
-            lambda rng, n: (*painted(rng, n), random_cotangent(rng, (n, 3))),
+            lambda t, n: (*painted(t, n), random_cotangent(t.rng, (n, 3))),
             lambda n: Items(Array((n, 3)), Array((n,)), Array((n,)), names=NAMES),
             rows=range(6),
         )

@@ -29,7 +29,7 @@ class Subject:
     Attributes:
         function: its name; of the graded module, or "module.name" for another.
         make: arguments for n rows (pixels, samples, parameters, steps, whatever the function is
-            about), from random numbers.
+            about), from the random numbers of a trial.
         returns: what comes back for n rows.
         right: the right answer, from the reference's module and the arguments; by default what
             the reference's function of this name returns.
@@ -43,7 +43,7 @@ class Subject:
     """
 
     function: str
-    make: Callable[[np.random.Generator, int], Sequence[Any]]
+    make: Callable[[Trial, int], Sequence[Any]]
     returns: Callable[[int], Spec]
     right: Callable[..., Any] | None = None
     sizes: Sequence[int] = SIZES
@@ -80,7 +80,7 @@ def require_sizes(trial: Trial, subject: Subject) -> None:
     The number of iterations is a size too: ``make`` may take it for one.
     """
     for n in subject.sizes:
-        args = subject.make(trial.rng, n)
+        args = subject.make(trial, n)
         got = trial.call(subject.function, *args, returns=subject.returns(n))
         if subject.has_right:
             what = f"{subject.function} at size {n}"
@@ -92,7 +92,7 @@ def require_layouts(trial: Trial, subject: Subject, n: int = 5) -> None:
 
     The worker looks at the arguments: the submission's word is not asked.
     """
-    args = subject.make(trial.rng, n)
+    args = subject.make(trial, n)
     right = subject.answer(trial, args) if subject.has_right else None
     for layout in LAYOUTS:  # the plain one first
         got = trial.look(subject.function, *args, returns=subject.returns(n), layout=layout)
@@ -102,7 +102,7 @@ def require_layouts(trial: Trial, subject: Subject, n: int = 5) -> None:
 
 def require_repeatable(trial: Trial, subject: Subject, n: int = 5) -> None:
     """Equal arguments give equal values, after a call with other arguments as well."""
-    args, others = subject.make(trial.rng, n), subject.make(trial.rng, n)
+    args, others = subject.make(trial, n), subject.make(trial, n)
     first = trial.call(subject.function, *args, returns=subject.returns(n))
     trial.call(subject.function, *others, returns=subject.returns(n))
     again = trial.call(subject.function, *args, returns=subject.returns(n))
@@ -115,7 +115,7 @@ def require_rows_apart(trial: Trial, subject: Subject, n: int = 6) -> None:
     Every argument in ``subject.rows`` gets values of its own in every row, so that a function which
     reads one row for all is found.
     """
-    args = list(subject.make(trial.rng, n))
+    args = list(subject.make(trial, n))
     for k in subject.rows:
         if len(np.unique(args[k], axis=0)) < 2:
             raise GraderFault(f"{trial.check.id}: all rows of argument {k} are equal")
@@ -133,7 +133,7 @@ def require_special(trial: Trial, subject: Subject, n: int = 4) -> None:
     """What the text says of NaN, infinity and the like in the first element of an argument."""
     for position, values in subject.special.items():
         for value in values:
-            args = list(subject.make(trial.rng, n))
+            args = list(subject.make(trial, n))
             args[position] = np.array(args[position], np.float64)
             args[position].flat[0] = value
             got = trial.call(subject.function, *args, returns=subject.returns(n))
