@@ -34,8 +34,8 @@ class Subject:
         right: the right answer, from the reference's module and the arguments; by default what
             the reference's function of this name returns.
         sizes: numbers of rows, 0 where the text allows none.
-        rows: positions of the arguments with a row for each row of the answer, where each row of
-            the answer depends on its own row alone.
+        rows: positions of the arguments (arrays, or dicts of them) with a row for each row of the
+            answer, where each row of the answer depends on its own row alone.
         special: by position of an argument, the values of which the text speaks, such as NaN.
         tolerance: of comparisons; by default the check's.
         has_right: False where right answers differ, such as samples: what is asked then is that
@@ -117,13 +117,13 @@ def require_rows_apart(trial: Trial, subject: Subject, n: int = 6) -> None:
     """
     args = list(subject.make(trial, n))
     for k in subject.rows:
-        if len(np.unique(args[k], axis=0)) < 2:
+        if not isinstance(args[k], dict) and len(np.unique(args[k], axis=0)) < 2:
             raise GraderFault(f"{trial.check.id}: all rows of argument {k} are equal")
     whole = _parts(trial.call(subject.function, *args, returns=subject.returns(n)))
     for row in (0, n // 2, n - 1):
         alone = list(args)
         for k in subject.rows:
-            alone[k] = args[k][[row]]
+            alone[k] = _one_row(args[k], row)
         parts = _parts(trial.call(subject.function, *alone, returns=subject.returns(1)))
         what = f"{subject.function}: row {row} alone against the same row among {n}"
         _require_equal(trial, subject, parts, [part[[row]] for part in whole], what)
@@ -139,6 +139,12 @@ def require_special(trial: Trial, subject: Subject, n: int = 4) -> None:
             got = trial.call(subject.function, *args, returns=subject.returns(n))
             said = f"{subject.function} where an argument holds {value}: not what the text asks for"
             trial.require(_same(got, subject.answer(trial, args)), said)
+
+
+def _one_row(value: Any, row: int) -> Any:
+    if isinstance(value, dict):
+        return {name: array[[row]] for name, array in value.items()}
+    return value[[row]]
 
 
 def _parts(answer: Any) -> list[Any]:
