@@ -194,11 +194,7 @@ class AssignmentTests:
 
     @pytest.mark.parametrize("secret", [SECRET, b"another", b"a third"])
     def test_the_solution_earns_everything(self, secret: bytes) -> None:
-        outcomes = judge(self.folder, secret=secret)
-        assert {each.id: each.text for each in outcomes if each.points < each.max} == {}
-        # Tolerances stand ten times above the worst correct answer.
-        margins = {each.id: each.details.get("margin", 0.0) for each in outcomes}
-        assert {id: value for id, value in margins.items() if value > 0.1} == {}
+        assert_everything(judge(self.folder, secret=secret))
 
     def test_the_starter_earns_nothing(self) -> None:
         outcomes = judge(self.folder, strip_solution(source(self.folder)))
@@ -232,10 +228,7 @@ class AssignmentTests:
     @pytest.mark.parametrize("secret", [SECRET, b"another"])
     def test_an_alternative_earns_everything(self, alternative: str, secret: bytes) -> None:
         text = read_alternatives(self.folder)[alternative]
-        outcomes = judge(self.folder, text, secret=secret)
-        assert {each.id: each.text for each in outcomes if each.points < each.max} == {}
-        margins = {each.id: each.details.get("margin", 0.0) for each in outcomes}
-        assert {id: value for id, value in margins.items() if value > 0.1} == {}
+        assert_everything(judge(self.folder, text, secret=secret))
 
     def test_there_are_enough_mutants_and_alternatives(self) -> None:
         assert len(names(self.folder, "mutants")) >= 10
@@ -286,6 +279,13 @@ class AssignmentTests:
         known = set(re.findall(r"^@\w+\{([^,\s]+),", _bibliography(), re.MULTILINE))
         assert keys
         assert keys <= known
+
+
+def assert_everything(outcomes: list[Outcome]) -> None:
+    """All points; and tolerances stand ten times above the worst correct answer."""
+    assert {each.id: each.text for each in outcomes if each.points < each.max} == {}
+    margins = {each.id: each.details.get("margin", 0.0) for each in outcomes}
+    assert {id: value for id, value in margins.items() if value > 0.1} == {}
 
 
 def write_picture(folder: Path, figure: Any, path: Path) -> Path:
