@@ -276,7 +276,8 @@ class AssignmentTests:
     def test_papers_are_cited_by_a_key_of_the_bibliography(self) -> None:
         text = (self.folder / "handout.md").read_text("utf-8")
         keys = set(re.findall(r"\[([A-Z][A-Za-z]*\d{4}[a-z]?)[^\]]*\]", text))
-        known = set(re.findall(r"^@\w+\{([^,\s]+),", _bibliography(), re.MULTILINE))
+        bibliography = (ROOT / "cpp" / "references.bib").read_text("utf-8")
+        known = set(re.findall(r"^@\w+\{([^,\s]+),", bibliography, re.MULTILINE))
         assert keys
         assert keys <= known
 
@@ -295,7 +296,3 @@ def write_picture(folder: Path, figure: Any, path: Path) -> Path:
 
 def _pixels(data: bytes) -> np.ndarray:
     return np.asarray(Image.open(io.BytesIO(data)).convert("RGB"), dtype=np.float64)
-
-
-def _bibliography() -> str:
-    return (ROOT / "cpp" / "references.bib").read_text("utf-8")
