@@ -16,6 +16,7 @@ from photograd.errors import IoError, RangeError, ShapeError
 from PIL import Image
 
 from support import capture_files as files
+from support.missing import need_module
 
 WIDTH, HEIGHT = 120, 90
 FOCAL, CENTER = (75.0, 72.0), (58.0, 47.0)
@@ -51,7 +52,7 @@ THEIRS = {
 
 
 def pycolmap() -> Any:
-    return pytest.importorskip("pycolmap", reason="pycolmap is not installed (extra sfm)")
+    return need_module("pycolmap", by_choice=True)  # extra sfm
 
 
 def stored(model: str, terms: list[float]) -> ColmapCamera:
@@ -99,8 +100,8 @@ def test_the_models_are_those_of_colmap() -> None:
 def test_a_photograph_becomes_the_pinhole_picture(model: str) -> None:
     """Pixels of the photograph by pycolmap's inverse; the view has to be the ideal picture."""
     camera = stored(model, (OURS | THEIRS)[model])
-    pinhole, lens = lens_of(model, (OURS | THEIRS)[model])
     theirs = reference(camera)
+    pinhole, lens = lens_of(model, (OURS | THEIRS)[model])
     shown = np.asarray(theirs.cam_from_img(pixel_centers()))
     assert np.isfinite(shown).all()
     photograph = pattern(shown).reshape(HEIGHT, WIDTH, 4).astype(np.float32)

@@ -12,6 +12,7 @@ from photograd.errors import IoError
 from photograd.images import read_image, write_png
 from photograd.images.read import read_header
 
+from support.missing import need_module
 from support.png import SIGNATURE, chunk, header, sixteen_bits
 
 LEVELS = np.random.default_rng(3).integers(0, 65536, (6, 5, 4))
@@ -19,7 +20,7 @@ KEY = chunk(b"tRNS", struct.pack(">HHH", *LEVELS[2, 3, :3]))
 
 
 def opencv() -> None:
-    pytest.importorskip("cv2", reason="OpenCV is not installed (extra png16)")
+    need_module("cv2")
 
 
 @pytest.mark.parametrize("channels", [1, 2, 3, 4])

@@ -10,9 +10,10 @@ import numpy as np
 import pytest
 from photograd.transport import read_model
 
+from support.missing import need_module
 from tests.transport.test_mesh_files import corners
 
-trimesh = pytest.importorskip("trimesh", reason="trimesh is not installed (extra dev)")
+trimesh = need_module("trimesh")
 
 
 def random_mesh(seed: int, textured: bool) -> Any:

@@ -12,9 +12,10 @@ from hypothesis import given, seed, settings
 from hypothesis import strategies as st
 from photograd.grids.volumes import read_volume
 
+from support.missing import need_module
 from tests.volumes.files import nifti
 
-nibabel = pytest.importorskip("nibabel", reason="nibabel is not installed (extra dev)")
+nibabel = need_module("nibabel")
 
 OURS_FROM_THEIRS = np.array([[1.0, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
 METERS = {"meter": 1.0, "mm": 1e-3, "micron": 1e-6, "unknown": 1.0}
