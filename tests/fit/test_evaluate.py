@@ -16,7 +16,7 @@ from photograd.fields import DenseGrid
 from photograd.fitting import evaluate as module
 from photograd.fitting.evaluate import Evaluation, display_image, evaluate, truth_image
 from photograd.fitting.model import Model
-from photograd_course.metrics import psnr, ssim
+from photograd_course.metrics import psnr, round_to_8_bits, ssim
 from PIL import Image
 
 from tests.fit import scene
