@@ -20,6 +20,7 @@ from photograd_course.cli import (
 )
 from photograd_course.cli import Progress as Bar
 
+from photograd._checks import typed
 from photograd._run_lock import one_run_in
 from photograd.commands.shared import (
     DepthOption,
@@ -36,7 +37,7 @@ from photograd.images.read import read_radiance
 from photograd.images.write import write_exr
 from photograd.transport.inverse import Recovery, RecoveryOptions, RecoveryResult, Target, Unknown
 from photograd.transport.inverse.job import FILE_NAME
-from photograd.transport.inverse.options import LOSSES, Progress
+from photograd.transport.inverse.options import LOSSES, Loss, Progress
 from photograd.transport.path_options import PathOptions
 from photograd.transport.scene_file import read_scene
 from photograd.transport.tracer import PathTracer
@@ -132,7 +133,7 @@ def recover(
         steps=steps,
         spp=spp,
         learning_rate=learning_rate,
-        loss=loss,
+        loss=typed("recover", "--loss", Loss, loss),
         views=views,
         seed=seed,
         path=PathOptions(max_depth=max_depth),
