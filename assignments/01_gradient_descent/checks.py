@@ -10,6 +10,7 @@ from photograd_course.grading import (
     CheckFailed,
     Items,
     Number,
+    Subject,
     Tolerance,
     Truth,
     asks,
@@ -81,6 +82,7 @@ def scripted(gradients):
     points=4,
     calls=("numeric_derivative",),
     tolerance=DIFFERENCE,
+    sole="what students can run; hidden checks find its mistakes as well",
     hint="Move one coordinate at a time, both ways, and come back: Eq. (3).",
 )
 def central_differences_are_exact_for_quadratics(t):
@@ -141,6 +143,7 @@ def the_error_falls_with_the_square_of_the_step(t):
     points=4,
     calls=("gd_1d",),
     tolerance=EXACT,
+    sole="what students can run; hidden checks find its mistakes as well",
     hint="Each step multiplies the distance to the minimum by the same factor, Eq. (6).",
 )
 def a_parabola_contracts_by_one_factor(t):
@@ -168,6 +171,7 @@ def a_parabola_contracts_by_one_factor(t):
     task="01.2",
     points=3,
     calls=("gd_1d",),
+    sole="what students can run; hidden checks find its mistakes as well",
     hint="Compare the last value with the first, Eq. (8), not the points.",
 )
 def the_verdict_changes_at_the_bound(t):
@@ -219,6 +223,7 @@ def the_verdict_changes_at_the_bound(t):
     calls=("gd_nd",),
     tolerance=EXACT,
     hint="Take the gradient once, at the old point, and move all coordinates with it.",
+    sole="what students can run; hidden checks find its mistakes as well",
 )
 def each_eigenvector_has_a_factor_of_its_own(t):
     """On a bowl the part along each eigenvector is multiplied by 1 - tau lambda_i."""
@@ -437,6 +442,37 @@ def a_direction_uphill_is_refused(t):
 
 
 # >>> hidden
+def cubics(t, n):
+    """A function of n variables with a third derivative, where, and how far to move."""
+    a = t.rng.uniform(0.5, 2.0, n)
+    return lambda x: float(np.sum(a * x**3 - x**2)), t.rng.uniform(1.0, 2.0, n), 0.1
+
+
+def bowls(t, n):
+    """A bowl, its gradient and a start; of n variables, or of one."""
+    a = t.rng.uniform(0.5, 2.0, max(n, 1))
+    f, grad = lambda x: float(0.5 * x @ (a * x)), lambda x: a * x
+    return *on_points(len(a), f, grad), t.rng.uniform(1.0, 2.0, len(a))
+
+
+def left_domain(t, n):
+    """What `gd_nd` takes, for n steps of which each ends where f is NaN."""
+
+    def f(x):
+        return float(np.sum(x - np.log(x))) if (x > 0.0).all() else math.nan
+
+    return *on_points(2, f, lambda x: 1.0 - 1.0 / x), t.rng.uniform(1.15, 1.2, 2), 12.0, n
+
+
+def refused(t, n):
+    """What `backtracking` takes: n step lengths are refused."""
+    x, reach = t.rng.uniform(1.0, 2.0, 3), float(t.rng.uniform(1.2, 1.8))
+    return Patient(lambda y: float(0.5 * y @ y)), lambda y: y, x, -(2.0**n) * reach * x
+
+
+FAR = (0, 1, 2, 200)  # steps: none, and more than any example takes
+
+
 @check(
     "01.1.cubic",
     task="01.1",
@@ -445,6 +481,7 @@ def a_direction_uphill_is_refused(t):
     visibility="hidden",
     tolerance=DIFFERENCE,
     hint="For a x^3 the result is 3 a x^2 + a eps^2 exactly: Eq. (4) has no further term.",
+    battery=[Subject("numeric_derivative", cubics, lambda n: Array((n,)))],
 )
 def a_cubic_is_off_by_a_known_amount(t):
     """For a cubic the error is eps^2 times a sixth of the third derivative, exactly."""
@@ -470,6 +507,14 @@ def a_cubic_is_off_by_a_known_amount(t):
     visibility="hidden",
     tolerance=Tolerance(1e-9, "right answers differ by 1.1e-15 at most, wrong ones by 1"),
     hint="Short steps stay in the valley where they began; a long one may jump out of it.",
+    battery=[
+        Subject(
+            "gd_1d",
+            lambda t, n: (math.cos, lambda x: -math.sin(x), float(t.rng.uniform(0.3, 3.0)), 0.3, n),
+            walk,
+            sizes=FAR,
+        )
+    ],
 )
 def the_walk_ends_in_the_predicted_valley(t):
     """With two valleys, start and step length decide in which one the walk ends."""
@@ -524,6 +569,21 @@ def nothing_is_not_better(t):
         "wrong ones differ by 0.08 or more",
     ),
     hint="At the best step length each step multiplies the distance by Eq. (11), to the end.",
+    battery=[
+        Subject(
+            "gd_nd",
+            lambda t, n: (*bowls(t, n), 0.3, n),
+            lambda n: walk(n, max(n, 1)),
+            sizes=FAR,
+            tolerance=EXACT,
+        ),
+        Subject(
+            "gd_nd",
+            left_domain,
+            lambda n: Items(Array((n + 1, 2)), Array((n + 1,), finite=False), Truth()),
+            sizes=(1, 2),
+        ),
+    ],
 )
 def the_condition_number_gives_the_rate(t):
     """At the best step length the distance shrinks by (kappa - 1) / (kappa + 1) a step."""
@@ -551,6 +611,14 @@ def the_condition_number_gives_the_rate(t):
     visibility="hidden",
     tolerance=Tolerance(1e-11, "right answers differ by 4e-15 at most, wrong ones by 0.2 or more"),
     hint="The gradient is taken at the point, not where the velocity would lead.",
+    battery=[
+        Subject(
+            "momentum",
+            lambda t, n: (*bowls(t, n)[1:], 0.3, 0.7, n),
+            lambda n: Array((n + 1, max(n, 1))),
+            sizes=FAR,
+        )
+    ],
 )
 def a_parabola_swings_as_two_roots_say(t):
     """On a bowl each part of the walk is a sum of two powers, damped waves among them."""
@@ -575,6 +643,14 @@ def a_parabola_swings_as_two_roots_say(t):
     visibility="hidden",
     tolerance=EXACT,
     hint="beta1, beta2 and eps are arguments; their defaults are only defaults.",
+    battery=[
+        Subject(
+            "adam",
+            lambda t, n: (*bowls(t, n)[1:], 0.1, n),
+            lambda n: Array((n + 1, max(n, 1))),
+            sizes=FAR,
+        )
+    ],
 )
 def random_gradients_are_weighted_as_they_should(t):
     """With other decays and random gradients the points are those of the sums, written out."""
@@ -679,6 +755,9 @@ LOGISTIC_MINIMUM = 0.5052239008227084  # where the gradient is 1e-15
     visibility="hidden",
     seconds=15.0,
     hint="Begin with the step length tau0 that you are given, also above 1.",
+    battery=[
+        Subject("backtracking", refused, lambda _: Number(), sizes=(0, 1, 40, 200), tolerance=EXACT)
+    ],
 )
 def it_needs_no_tuning(t):
     """On five functions the loss never rises, in at most twice the steps of the best fixed tau."""

@@ -9,6 +9,7 @@ from photograd_course.grading import (
     Items,
     Number,
     StudentFailure,
+    Subject,
     Tolerance,
     agree,
     check,
@@ -417,6 +418,7 @@ def steps_can_be_chained(t):
     calls=("recover_texture",),
     needs=EARLIER,
     hint="T0 itself has changed: copy it first",
+    sole="what students can run; the hidden checks find its mistakes as well",
 )
 def the_start_is_left_alone(t):
     """A second descent from the same array T0 finds what the first one found."""
@@ -530,6 +532,26 @@ def a_spot_keeps_its_place(t):
 
 
 # >>> hidden
+def sampled(t, n):
+    """A texture and n places."""
+    return t.rng.uniform(-1.0, 1.0, (3, 5, 2)), t.rng.uniform(-0.1, 1.1, (n, 2))
+
+
+def measured(t, n):
+    """A texture, n places and what was measured there."""
+    return *sampled(t, n), t.rng.uniform(0.0, 1.0, (n, 2))
+
+
+def tile(n):
+    """Rows and columns of a texture, powers of two, and two channels."""
+    return 1 << n // 2, 1 << (n + 1) // 2, 2
+
+
+def tiled(t, n):
+    """What `build_mips` takes."""
+    return (t.rng.uniform(-1.0, 1.0, tile(n)),)
+
+
 @check(
     "03.1.hidden",
     task="03.1",
@@ -538,6 +560,7 @@ def a_spot_keeps_its_place(t):
     visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes at places that are not known beforehand",
+    battery=[Subject("bilinear_sample", sampled, lambda n: Array((n, 2)), rows=(1,))],
 )
 def samples_at_random_places(t):
     """Samples are right at random places of random textures, one texel wide ones included."""
@@ -555,6 +578,13 @@ def samples_at_random_places(t):
     visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes at places that are not known beforehand",
+    battery=[
+        Subject(
+            "bilinear_sample_adjoint",
+            lambda t, n: ((3, 5), *measured(t, n)[1:]),
+            lambda _: Array((3, 5, 2)),
+        )
+    ],
 )
 def the_adjoint_at_random_places(t):
     """The adjoint is right at random places, one texel wide textures included."""
@@ -595,6 +625,7 @@ def the_adjoint_is_cheap(t):
     needs=("bilinear_sample", "bilinear_sample_adjoint"),
     tolerance=EXACT,
     sole="the same mistakes at values that are not known beforehand",
+    battery=[Subject("loss_and_grad", measured, lambda _: Items(Number(), Array((3, 5, 2))))],
 )
 def loss_and_gradient_of_random_textures(t):
     """Loss and gradient are right, cheap or not, on random textures and measurements."""
@@ -617,6 +648,14 @@ def loss_and_gradient_of_random_textures(t):
     needs=("bilinear_sample", "bilinear_sample_adjoint", "loss_and_grad"),
     tolerance=CHAINED,
     sole="the same mistakes at places that are not known beforehand",
+    battery=[
+        Subject(
+            "largest_curvature",
+            lambda t, n: ((3, 5), sampled(t, 40)[1], n),
+            lambda _: Number(),
+            sizes=(0, 1, 60),
+        )
+    ],
 )
 def the_estimate_at_random_places(t):
     """The estimate is right after any number of rounds."""
@@ -635,6 +674,15 @@ def the_estimate_at_random_places(t):
     visibility="hidden",
     seconds=20.0,
     sole="the whole: a texture that nobody has seen, recovered from samples",
+    battery=[
+        Subject(
+            "recover_texture",
+            lambda t, n: (*measured(t, 40), n),
+            lambda n: Items(Array((3, 5, 2)), Array((n + 1,)), Array((3, 5), "bool")),
+            sizes=(0, 1, 60),
+            tolerance=CHAINED,
+        )
+    ],
 )
 def a_texture_is_recovered(t):
     """Fifty steps recover an unknown texture from 1,500 samples to 55 dB or better."""
@@ -656,6 +704,7 @@ def a_texture_is_recovered(t):
     visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes on textures not known",
+    battery=[Subject("build_mips", tiled, lambda n: pyramid(tile(n))[1], sizes=(0, 1, 2, 7))],
 )
 def pyramids_of_random_textures(t):
     """All levels are right for random textures."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from photograd_course.grading import Array, CheckFailed, Items, Tolerance, check
+from photograd_course.grading import Array, CheckFailed, Items, Subject, Tolerance, check
 from photograd_course.grading.adjoint_gate import (
     random_cotangent,
     require_gradients,
@@ -790,6 +790,22 @@ def nothing_leaks(t):
 
 
 # >>> hidden
+def some_model(t, n):
+    """A model that `furnace` integrates, and the cosines of n viewers."""
+    a, b = t.rng.uniform(0.5, 2.0, (3, 2)), t.rng.uniform(0.3, 1.0, (1, 2))
+    return lambda wo, wi: np.exp(wi @ a * wo[:, 2:]) * b + wo @ a, t.rng.uniform(0.1, 1.0, n)
+
+
+def pairs(t, n):
+    """Pairs of directions and their roughness."""
+    return directions(t.rng, n), directions(t.rng, n), t.rng.uniform(0.3, 1.0, n)
+
+
+def painted(t, n):
+    """What `gltf` takes."""
+    return *pairs(t, n)[:2], *material(t.rng, n)
+
+
 @check(
     "04.1.hidden",
     task="04.1",
@@ -798,6 +814,7 @@ def nothing_leaks(t):
     visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes with models that are not known beforehand",
+    battery=[Subject("furnace", some_model, lambda n: Array((n, 2)), rows=(1,))],
 )
 def other_models(t):
     """A model that nobody has seen is integrated rightly."""
@@ -819,6 +836,7 @@ def other_models(t):
     visibility="hidden",
     tolerance=SHARP,
     sole="the same mistakes at unknown directions, and on polished surfaces",
+    battery=[Subject("ggx_lobe", pairs, lambda n: Array((n,)), rows=(0, 1, 2))],
 )
 def lobes_anywhere(t):
     """The lobe is right anywhere, and where it is sharp."""
@@ -842,6 +860,7 @@ def lobes_anywhere(t):
     visibility="hidden",
     tolerance=SHARP,
     sole="the same mistakes at directions that are not known beforehand",
+    battery=[Subject("ggx_pdf", pairs, lambda n: Array((n,)), rows=(0, 1, 2))],
 )
 def densities_anywhere(t):
     """The density is right anywhere."""
@@ -858,6 +877,16 @@ def densities_anywhere(t):
     calls=("sample_ggx",),
     visibility="hidden",
     sole="the right density, whatever that of the hand-in is",
+    battery=[
+        Subject(
+            "sample_ggx",
+            lambda t, n: (directions(t.rng, n), t.rng.uniform(0.3, 1.0, n), t.rng.random((n, 2))),
+            lambda n: Array((n, 3)),
+            rows=(0, 1, 2),
+            tolerance=EXACT,
+            has_right=False,
+        )
+    ],
 )
 def samples_have_the_right_density(t):
     """Samples at random views fall into cells as often as they should (chi-square)."""
@@ -884,6 +913,7 @@ def samples_have_the_right_density(t):
     visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes with materials that are not known beforehand",
+    battery=[Subject("gltf", painted, lambda n: Array((n, 3)), rows=range(5))],
 )
 def materials_anywhere(t):
     """Random materials, the ends of all parameters among them."""
@@ -902,6 +932,14 @@ def materials_anywhere(t):
     visibility="hidden",
     tolerance=EXACT,
     sole="eleven digits, which differences do not have",
+    battery=[
+        Subject(
+            "gltf_backward",
+            lambda t, n: (*painted(t, n), random_cotangent(t.rng, (n, 3))),
+            lambda n: Items(Array((n, 3)), Array((n,)), Array((n,)), names=NAMES),
+            rows=range(6),
+        )
+    ],
 )
 def derivatives_anywhere(t):
     """Every part of the adjoint is right to eleven digits."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from photograd_course.grading import Array, Items, Tolerance, check
+from photograd_course.grading import Array, Items, Subject, Tolerance, check
 from photograd_course.grading.adjoint_gate import (
     require_cheap,
     require_gradients,
@@ -863,6 +863,27 @@ def rays_add_up_and_misses_see_the_background(t):
 
 
 # >>> hidden
+def cast(t, n):
+    """What `ray_box` takes: n rays about a box, some of which hit."""
+    return *random_box(t), t.rng.uniform(-2.0, 2.0, (n, 3)), t.rng.normal(size=(n, 3))
+
+
+def placed(t, n):
+    """A grid, and n places."""
+    return t.rng.uniform(-1.0, 1.0, (3, 1, 4, 2)), t.rng.uniform(-0.1, 1.1, (n, 3))
+
+
+def moved(t, n):
+    """What `composite_adjoint` takes for n rays of 6 steps."""
+    return *random_rays(t, n), t.rng.uniform(-1, 1, (n, 3)), t.rng.uniform(-1, 1, n)
+
+
+def pictured(t, n):
+    """What `render_adjoint` takes for n rays of 5 steps."""
+    background, d_pixel = t.rng.uniform(0.0, 1.0, 3), t.rng.uniform(-1.0, 1.0, (n, 3))
+    return *random_view(t, n, (4, 3, 5)), 5, background, d_pixel
+
+
 @check(
     "08.1.hidden",
     task="08.1",
@@ -871,6 +892,15 @@ def rays_add_up_and_misses_see_the_background(t):
     visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes at values that are not known beforehand",
+    battery=[
+        Subject("composite", random_rays, lambda n: seen(n, 3), rows=(0, 1, 2)),
+        Subject(
+            "composite",
+            lambda t, n: random_rays(t, 2, n, 1, 0.1),
+            lambda _: seen(2, 1),
+            sizes=(1, 300),
+        ),
+    ],
 )
 def random_rays_are_composited(t):
     """Pixels and T_end are right for random rays, of one step and of many."""
@@ -891,6 +921,7 @@ def random_rays_are_composited(t):
     visibility="hidden",
     tolerance=SUMS,
     sole="the same mistakes at values that are not known beforehand",
+    battery=[Subject("composite_adjoint", moved, lambda n: slopes_of((n, 6), 3))],
 )
 def adjoints_of_random_rays(t):
     """All derivatives are right for random rays, of one step and of many."""
@@ -933,6 +964,7 @@ def the_adjoint_of_a_ray_is_cheap(t):
     visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes at rays that are not known beforehand",
+    battery=[Subject("ray_box", cast, spans, rows=(2, 3))],
 )
 def random_rays_and_boxes(t):
     """Entry and exit are right for random rays, hits and misses, from outside and inside."""
@@ -953,6 +985,7 @@ def random_rays_and_boxes(t):
     visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes at places that are not known beforehand",
+    battery=[Subject("trilinear", placed, lambda n: Array((n, 2)), rows=(1,))],
 )
 def samples_at_random_places(t):
     """Samples are right at random places of random grids, one voxel wide ones included."""
@@ -971,6 +1004,13 @@ def samples_at_random_places(t):
     tolerance=EXACT,
     needs=("trilinear",),
     sole="the same mistakes at places that are not known beforehand",
+    battery=[
+        Subject(
+            "trilinear_adjoint",
+            lambda t, n: ((3, 1, 4), placed(t, n)[1], t.rng.uniform(-1, 1, (n, 2))),
+            lambda _: Array((3, 1, 4, 2)),
+        )
+    ],
 )
 def the_adjoint_at_random_places(t):
     """The adjoint is right at random places, one voxel wide grids included, and cheap."""
@@ -997,6 +1037,7 @@ def the_adjoint_at_random_places(t):
     visibility="hidden",
     tolerance=SUMS,
     sole="the same mistakes in views that are not known beforehand",
+    battery=[Subject("render_adjoint", pictured, lambda _: slopes_of_view((4, 3, 5)))],
 )
 def the_picture_of_a_random_volume(t):
     """All derivatives are right for random volumes and rays, and cost a few pictures."""

@@ -40,7 +40,7 @@ def test_a_colour_is_found_and_resumed(
         assert np.ptp(np.asarray(Image.open(out / name))) > 100
     again = photograd(*words)
     assert again.code == 1
-    assert "a folder without a recovery" in " ".join(again.err.split())
+    assert "a folder without recovery.npz" in " ".join(again.err.split())
     more = photograd(*words, "--camera-from", scene, "--resume")
     assert more.code == 0, more.err
     assert "resumed at step 60 of 60" in more.err

@@ -169,7 +169,7 @@ BAD: list[tuple[Any, Any, type[Exception], str]] = [
         np.zeros((3, 3, 3)),
         np.array([[0, 0.5], [np.nan, np.inf]]),
         RangeError,
-        "uv: expected finite numbers, got 2 that are not, the first in point 1",
+        "uv: expected finite numbers, got 2 that are not, the first in row 1",
     ),
 ]
 
@@ -186,7 +186,7 @@ def test_bad_input_is_refused(texture: Any, uv: Any, error: type[Exception], wor
 def test_one_coordinate_that_is_no_number_is_found(channels: int, point: int, value: float) -> None:
     uv = points(4997, 2).astype(np.float32)
     uv[point, point % 2] = value
-    with pytest.raises(RangeError, match=f"got 1 that are not, the first in point {point}"):
+    with pytest.raises(RangeError, match=f"got 1 that are not, the first in row {point}"):
         sample(noise((9, 8, channels), 1).astype(np.float32), uv)
 
 

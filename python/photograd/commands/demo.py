@@ -26,10 +26,10 @@ from photograd.commands.shared import (
     stop_on_signals,
     use_threads,
 )
+from photograd.fitting import FitOptions
 from photograd.fitting.evaluate import display_image, evaluate
 from photograd.fitting.loop import Fit
 from photograd.fitting.model import load_model
-from photograd.fitting.options import FitOptions
 
 
 def register(app: typer.Typer) -> None:

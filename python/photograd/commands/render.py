@@ -28,8 +28,7 @@ from photograd.fitting.fog import RAMPS, load_fog
 from photograd.fitting.model import Model, load_model
 from photograd.images.write import write_png
 from photograd.splats.files import holds_gaussians, read_gaussians
-from photograd.splats.frames import UP_AXES, USUAL_UP, WORLD_UP, Presentation
-from photograd.splats.model import GaussianScene
+from photograd.splats.frames import UP_AXES, USUAL_UP
 from photograd.splats.orbit import orbit_splats
 from photograd.types import Array
 
@@ -130,12 +129,11 @@ def _splat_views(path: Path, up: str, circle: Mapping[str, Any]) -> Iterable[Arr
 
 
 def _model_views(model: Model, circle: Mapping[str, Any]) -> Iterable[Array]:
-    """The pictures of a model; of Gaussians, the same that its gaussians.ply gives."""
-    scene = model.field
-    if isinstance(scene, GaussianScene):
-        told = Presentation.of_fit(WORLD_UP, model.background, antialiased=scene.policy.antialiased)
-        return orbit_splats(scene.gaussians, presentation=told, **circle)
-    cameras = orbit_cameras(scene.box, **circle)
+    """The pictures of a model: its own turntable, or cameras around its box."""
+    own = model.field.turntable(background=model.background, **circle)
+    if own is not None:
+        return own
+    cameras = orbit_cameras(model.field.box, **circle)
     return (display_image(model, camera) for camera in cameras)
 
 

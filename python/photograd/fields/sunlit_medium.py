@@ -112,6 +112,7 @@ class SunlitMedium(Representation):
 
     name: ClassVar[str] = "sunlit_medium"
     capabilities: ClassVar[frozenset[str]] = frozenset({"rays"})
+    teaching_example: ClassVar[str] = "start it from Python, with parameters of your own"
 
     def __init__(
         self,

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from photograd_course.viz import SignReport, sign_report
 
 from photograd.capture.capture import Capture
+from photograd.fields.voxel_field import VoxelField
 from photograd.fitting.data import TrainingPixels
-from photograd.fitting.start import VoxelField
 from photograd.fitting.voxel_gradients import density_gradient, voxel_masks
 from photograd.types import Array
 

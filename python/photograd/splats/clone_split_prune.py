@@ -26,6 +26,7 @@ a fit that costs up to two decibels.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -62,6 +63,7 @@ class CloneSplitPrune(DensityControl):
         fading: opacity that every Gaussian loses each time; what is needed recovers.
     """
 
+    first_share: ClassVar[float] = 1 / 3
     budget: int
     schedule: Schedule = field(default_factory=Schedule)
     threshold: float = 2e-4

@@ -46,8 +46,8 @@ WRONG = {
 Open = Callable[[str], Trial]
 
 
-def make(rng: np.random.Generator, n: int) -> tuple[Any, ...]:
-    return rng.uniform(1.0, 2.0, (n, 3)), rng.uniform(1.0, 2.0, n)
+def make(t: Trial, n: int) -> tuple[Any, ...]:
+    return t.rng.uniform(1.0, 2.0, (n, 3)), t.rng.uniform(1.0, 2.0, n)
 
 
 BLEND = Subject(

@@ -2,10 +2,12 @@
 
 `read_model` reads one; `default_scene` puts it under a light and before a camera, its own if the
 file has them; `save_gltf` writes a scene's shapes and materials, its camera and its lights.
+`read_textured_mesh` makes one mesh of all shapes, whose texture is to be fitted.
 """
 
 from __future__ import annotations
 
+from photograd.transport.mesh_files.as_field import read_textured_mesh
 from photograd.transport.mesh_files.gltf_save import save_gltf
 from photograd.transport.mesh_files.model_camera import ModelCamera
 from photograd.transport.mesh_files.model_file import ModelFile
@@ -19,5 +21,6 @@ __all__ = [
     "ModelFile",
     "default_scene",
     "read_model",
+    "read_textured_mesh",
     "save_gltf",
 ]

@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 from photograd_course.atomic_io import atomic_write
 
+from photograd._gltf_bytes import GltfBytes
 from photograd.errors import IoError, SceneError, message
 from photograd.transport.medium import BOUNDARY, VACUUM
-from photograd.transport.mesh_files.gltf_bytes import GltfBytes
 from photograd.transport.mesh_files.gltf_cameras import gltf_camera
 from photograd.transport.mesh_files.gltf_lights import LIGHTS, gltf_light
 from photograd.transport.mesh_files.gltf_material_writer import (

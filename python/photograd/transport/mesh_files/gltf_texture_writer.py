@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 from photograd_course.color import srgb_encode
 
+from photograd._gltf_bytes import GltfBytes
 from photograd.errors import SceneError, message
 from photograd.transport.material import Material
-from photograd.transport.mesh_files.gltf_bytes import GltfBytes
 from photograd.transport.mesh_files.gltf_material_writer import GltfMaterial
 from photograd.transport.mesh_files.gltf_samplers import gltf_sampler
 from photograd.transport.texture import Filter, NormalMap, OcclusionMap, Texture, TextureUse, Wrap

@@ -90,6 +90,10 @@ def readme(manifest: Manifest, handout: str) -> str:
 > code made from text in a function that returns a derivative, nor in what it calls. The grader
 > looks for them in the source, and a derivative that costs many forward calls earns none of its
 > task's points.
+>
+> **Every function** leaves its arguments as they are, reads arrays of any memory layout (read-only
+> ones and views too), and gives equal answers to equal calls, for one row as for many. Hidden
+> checks ask for it.
 """
     return f"{title}\n{work}{rest}"
 

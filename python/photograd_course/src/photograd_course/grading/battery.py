@@ -29,25 +29,28 @@ class Subject:
     Attributes:
         function: its name; of the graded module, or "module.name" for another.
         make: arguments for n rows (pixels, samples, parameters, steps, whatever the function is
-            about), from random numbers.
+            about), from the random numbers of a trial.
         returns: what comes back for n rows.
         right: the right answer, from the reference's module and the arguments; by default what
             the reference's function of this name returns.
         sizes: numbers of rows, 0 where the text allows none.
-        rows: positions of the arguments with a row for each row of the answer, where each row of
-            the answer depends on its own row alone.
+        rows: positions of the arguments (arrays, or dicts of them) with a row for each row of the
+            answer, where each row of the answer depends on its own row alone.
         special: by position of an argument, the values of which the text speaks, such as NaN.
         tolerance: of comparisons; by default the check's.
+        has_right: False where right answers differ, such as samples: what is asked then is that
+            the function agrees with itself.
     """
 
     function: str
-    make: Callable[[np.random.Generator, int], Sequence[Any]]
+    make: Callable[[Trial, int], Sequence[Any]]
     returns: Callable[[int], Spec]
     right: Callable[..., Any] | None = None
     sizes: Sequence[int] = SIZES
     rows: Sequence[int] = ()
     special: Mapping[int, Sequence[float]] = field(default_factory=dict)
     tolerance: Tolerance | None = None
+    has_right: bool = True
 
     def answer(self, trial: Trial, args: Sequence[Any]) -> Any:
         """The right answer."""
@@ -77,10 +80,11 @@ def require_sizes(trial: Trial, subject: Subject) -> None:
     The number of iterations is a size too: ``make`` may take it for one.
     """
     for n in subject.sizes:
-        args = subject.make(trial.rng, n)
+        args = subject.make(trial, n)
         got = trial.call(subject.function, *args, returns=subject.returns(n))
-        what = f"{subject.function} at size {n}"
-        _require_equal(trial, subject, got, subject.answer(trial, args), what)
+        if subject.has_right:
+            what = f"{subject.function} at size {n}"
+            _require_equal(trial, subject, got, subject.answer(trial, args), what)
 
 
 def require_layouts(trial: Trial, subject: Subject, n: int = 5) -> None:
@@ -88,16 +92,17 @@ def require_layouts(trial: Trial, subject: Subject, n: int = 5) -> None:
 
     The worker looks at the arguments: the submission's word is not asked.
     """
-    args = subject.make(trial.rng, n)
-    right = subject.answer(trial, args)
-    for layout in LAYOUTS:
+    args = subject.make(trial, n)
+    right = subject.answer(trial, args) if subject.has_right else None
+    for layout in LAYOUTS:  # the plain one first
         got = trial.look(subject.function, *args, returns=subject.returns(n), layout=layout)
+        right = got if right is None else right
         _require_equal(trial, subject, got, right, f"{subject.function} of {layout} arrays")
 
 
 def require_repeatable(trial: Trial, subject: Subject, n: int = 5) -> None:
     """Equal arguments give equal values, after a call with other arguments as well."""
-    args, others = subject.make(trial.rng, n), subject.make(trial.rng, n)
+    args, others = subject.make(trial, n), subject.make(trial, n)
     first = trial.call(subject.function, *args, returns=subject.returns(n))
     trial.call(subject.function, *others, returns=subject.returns(n))
     again = trial.call(subject.function, *args, returns=subject.returns(n))
@@ -110,15 +115,15 @@ def require_rows_apart(trial: Trial, subject: Subject, n: int = 6) -> None:
     Every argument in ``subject.rows`` gets values of its own in every row, so that a function which
     reads one row for all is found.
     """
-    args = list(subject.make(trial.rng, n))
+    args = list(subject.make(trial, n))
     for k in subject.rows:
-        if len(np.unique(args[k], axis=0)) < 2:
+        if not isinstance(args[k], dict) and len(np.unique(args[k], axis=0)) < 2:
             raise GraderFault(f"{trial.check.id}: all rows of argument {k} are equal")
     whole = _parts(trial.call(subject.function, *args, returns=subject.returns(n)))
     for row in (0, n // 2, n - 1):
         alone = list(args)
         for k in subject.rows:
-            alone[k] = args[k][[row]]
+            alone[k] = _one_row(args[k], row)
         parts = _parts(trial.call(subject.function, *alone, returns=subject.returns(1)))
         what = f"{subject.function}: row {row} alone against the same row among {n}"
         _require_equal(trial, subject, parts, [part[[row]] for part in whole], what)
@@ -128,12 +133,18 @@ def require_special(trial: Trial, subject: Subject, n: int = 4) -> None:
     """What the text says of NaN, infinity and the like in the first element of an argument."""
     for position, values in subject.special.items():
         for value in values:
-            args = list(subject.make(trial.rng, n))
+            args = list(subject.make(trial, n))
             args[position] = np.array(args[position], np.float64)
             args[position].flat[0] = value
             got = trial.call(subject.function, *args, returns=subject.returns(n))
             said = f"{subject.function} where an argument holds {value}: not what the text asks for"
             trial.require(_same(got, subject.answer(trial, args)), said)
+
+
+def _one_row(value: Any, row: int) -> Any:
+    if isinstance(value, dict):
+        return {name: array[[row]] for name, array in value.items()}
+    return value[[row]]
 
 
 def _parts(answer: Any) -> list[Any]:
