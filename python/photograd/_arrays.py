@@ -83,6 +83,17 @@ class Arguments:
         self._check_range(name, array, finite and array.dtype.kind == "f", bounds)
         return array
 
+    def box(self, name: str, value: Any, axes: int = 3) -> Array:
+        """Corners (2, axes), lower below upper along each axis; converted as by `array`.
+
+        Raises:
+            DtypeError, ShapeError, RangeError: anything else.
+        """
+        box = self.array(name, value, (2, axes))
+        if not bool((box[0] < box[1]).all()):
+            self._refuse(RangeError, name, "corners, lower below upper", box.tolist())
+        return box
+
     def run(self, core: Callable[..., Any], *arguments: Any, **named: Any) -> Any:
         """What a function of the core returns; its errors name the function that was called."""
         try:

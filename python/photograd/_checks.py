@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import MISSING, fields
-from typing import Any, Literal, TypeVar, get_args, get_origin, get_type_hints
+from types import NoneType, UnionType
+from typing import Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
 
 import numpy as np
 from numpy.typing import NDArray
@@ -80,15 +81,35 @@ def require_types(options: Any) -> None:
         typed(kind.__name__, name, hint, getattr(options, name))
 
 
+def require_choices(options: Any) -> None:
+    """Raise RangeError for a field of a dataclass that is none of the names of its `Literal`."""
+    kind = type(options)
+    for name, hint in get_type_hints(kind).items():
+        if _has_names(hint):
+            typed(kind.__name__, name, hint, getattr(options, name))
+
+
+def _has_names(hint: Any) -> bool:
+    return get_origin(hint) is Literal or any(map(_has_names, get_args(hint)))
+
+
 def typed(function: str, name: str, hint: Any, value: Any) -> Any:
     """The value if it is of the annotated type, lists as tuples.
+
+    Args:
+        function, name: that was called, and its argument or field, for errors.
+        hint: a class, a `Literal` of names, a tuple of these, or one of these or None.
+        value: what was given.
 
     Raises:
         DtypeError: it is not. RangeError: none of the names of a `Literal`.
     """
+    if get_origin(hint) in (Union, UnionType):
+        (hint,) = [each for each in get_args(hint) if each is not NoneType]
+        return None if value is None else typed(function, name, hint, value)
     if get_origin(hint) is Literal:
         if not isinstance(value, str) or value not in get_args(hint):
-            expected = f"one of {list(get_args(hint))}"
+            expected = f"one of {', '.join(get_args(hint))}"
             raise RangeError(message(function, name, expected, shortened(value)))
         return value
     if get_origin(hint) is tuple:

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from photograd._arrays import Arguments
+from photograd._checks import typed
 from photograd._compiled import _core
 from photograd.errors import RangeError, message
 from photograd.types import Array
@@ -168,9 +169,7 @@ def from_convention(coefficients: Array, convention: Convention) -> Array:
 
     "splat" is ours; "no_phase" lacks the sign (-1)^m, as most textbooks of computer graphics.
     """
-    if convention not in ("splat", "no_phase"):
-        expected = "'splat' or 'no_phase'"
-        raise RangeError(message("sh.from_convention", "convention", expected, repr(convention)))
+    typed("sh.from_convention", "convention", Convention, convention)
     if convention == "splat":
         return coefficients.copy()
     degree = degree_of(coefficients.shape[-2])

@@ -190,3 +190,18 @@ def test_bounds_that_are_kept() -> None:
 def test_integers(value: Any, error: type[Exception], text: str) -> None:
     with pytest.raises(error, match=text):
         Arguments("f").array("faces", value, dtype=np.uint32)
+
+
+@pytest.mark.parametrize(
+    ("box", "error", "text"),
+    [
+        ([[0, 0, 0], [1, 1]], DtypeError, "^f: box: expected numbers"),
+        ([[0, 0], [1, 1]], ShapeError, r"expected shape \(2, 3\), got \(2, 2\)"),
+        ([[0, 0, 0], [1, 0, 1]], RangeError, "expected corners, lower below upper, got"),
+        ([[0, 0, 0], [1, np.nan, 1]], RangeError, "expected finite numbers"),
+    ],
+)
+def test_boxes_have_a_size_along_each_axis(box: Any, error: type[Exception], text: str) -> None:
+    with pytest.raises(error, match=text):
+        Arguments("f", np.float64).box("box", box)
+    assert Arguments("f", np.float64).box("box", [[0, 0], [1, 2]], 2).tolist() == [[0, 0], [1, 2]]

@@ -30,7 +30,7 @@ CASES: list[tuple[Callable[[], object], type[Error], str]] = [
     (
         lambda: Octree.from_dense(CELLS, np.zeros((2, 3))),
         RangeError,
-        "bounds: expected lower before upper",
+        "bounds: expected corners, lower below upper",
     ),
     (lambda: Octree.from_dense(CELLS, np.zeros((3, 2))), ShapeError, "bounds"),
     (lambda: Octree.from_function(lambda *_: None, 1), RangeError, "every single cell"),

@@ -97,7 +97,7 @@ def test_without_test_views_there_is_no_test_split() -> None:
 def test_bad_input_is_refused() -> None:
     with pytest.raises(ShapeError, match="capture_cameras: bounds"):
         capture_cameras(BOX[0], 3, size=8, seed=0)
-    with pytest.raises(RangeError, match="low < high"):
+    with pytest.raises(RangeError, match="lower below upper"):
         capture_cameras(BOX[::-1], 3, size=8, seed=0)
     with pytest.raises(RangeError, match="views"):
         capture_cameras(BOX, 0, size=8, seed=0)

@@ -111,7 +111,7 @@ def test_the_sun_by_its_irradiance() -> None:
         (lambda: replace(sky(), zenith=np.ones((1, 3))), ShapeError, "SkyDescription: zenith"),
         (lambda: scene(meshes=()), SceneError, "meshes: expected at least one"),
         (lambda: scene(bounds=np.array([[0.1] * 3, [2.0] * 3])), SceneError, r"meshes\[0\]"),
-        (lambda: scene(bounds=np.array([[2.0] * 3, [0.0] * 3])), RangeError, "low < high"),
+        (lambda: scene(bounds=np.array([[2.0] * 3, [0.0] * 3])), RangeError, "lower below upper"),
         (lambda: scene(bounds=np.zeros(6)), ShapeError, "bounds"),
     ],
 )

@@ -146,7 +146,7 @@ def test_a_hundred_thousand_behind_the_camera_cost_no_pairs() -> None:
 
 def test_wrong_arrays_are_refused() -> None:
     g = oracle.cloud(4, 1)
-    with pytest.raises(ShapeError, match=r"Gaussians: quats: expected shape \(4, 4\)"):
+    with pytest.raises(ShapeError, match=r"Gaussians: quats: expected shape \(N, 4\) with N = 4"):
         replace(g, quats=g.quats[:3])
     with pytest.raises(DtypeError, match="Gaussians: sh: expected float64"):
         replace(g, sh=g.sh.astype(np.float32))

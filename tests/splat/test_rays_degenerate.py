@@ -125,7 +125,7 @@ def test_wrong_arrays_are_refused() -> None:
         rays[name][7] = change
         with pytest.raises(RangeError, match=f"splat_rays.render: {name}: .* row 7"):
             render(g, **rays)
-    with pytest.raises(ShapeError, match=r"directions: expected shape \(80, 3\)"):
+    with pytest.raises(ShapeError, match=r"directions: expected shape \(R, 3\) with R = 80"):
         render(g, origins, directions[:5])
     with pytest.raises(ShapeError, match=r"origins: expected shape \(R, 3\)"):
         render(g, origins[:, :2], directions)

@@ -235,15 +235,15 @@ def test_mistakes_are_named(room: tuple[Any, Any], tmp_path: Path) -> None:
         recover(scene, picture, [])
     with pytest.raises(RangeError, match="got one twice"):
         recover(scene, picture, ["emission.lamp", "emission.lamp"])
-    with pytest.raises(RangeError, match=r"start: expected 0.0 to 1.0, got 2.0"):
+    with pytest.raises(RangeError, match=r"start: expected finite numbers in \[0, 1\], got 2.0"):
         recover(scene, picture, [Unknown("materials.red.albedo", start=2.0)])
-    with pytest.raises(ShapeError, match=r"start: expected one number, or shape \(3,\)"):
+    with pytest.raises(ShapeError, match=r"start: expected a number or shape \(3,\)"):
         recover(scene, picture, [Unknown("materials.red.albedo", start=[0.5, 0.5])])
     with pytest.raises(ShapeError, match="image: expected 16 x 16 pixels as the camera has"):
         recover(scene, picture[:8], ["emission.lamp"])
     with pytest.raises(ShapeError, match="at least one picture"):
         recover(scene, [], ["emission.lamp"])
-    with pytest.raises(RangeError, match=r"first in pixel \(2, 1\)"):
+    with pytest.raises(RangeError, match=r"image: expected finite numbers, got nan at \[1, 2, 0\]"):
         recover(scene, np.where(np.arange(768).reshape(16, 16, 3) == 54, np.nan, picture), ["x"])
     with pytest.raises(RangeError, match="lo < hi"):
         Unknown("emission.lamp", bounds=(1.0, 0.0))

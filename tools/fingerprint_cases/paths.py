@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from photograd.transport import Accumulation, PathOptions, PathTracer, derivative_image
 from photograd.transport.inverse.loss import loss_and_gradients
+from photograd.transport.path_options import Sampler
 
 from fingerprint_cases.case import PRECISIONS, Array, Arrays, Case, numbers_of
 from fingerprint_cases.scenes import BASIC, Scenes, view, without_unused
@@ -26,7 +27,7 @@ ESTIMATORS = {
     "mis-balance": PathOptions("mis", "balance", max_depth=6),
     "mis-power": PathOptions("mis", "power", max_depth=6),
 }
-SAMPLERS = {"independent": "independent", "sobol": "even"}
+SAMPLERS: dict[str, Sampler] = {"independent": "independent", "sobol": "even"}
 CROSSED = ("large-surfaces", "lights-all", "opacity-textured", "fog-lights", "opacity-smoke")
 """Scenes for which all estimators, samplers and ends of paths are tried."""
 ENDS = {

@@ -10,6 +10,7 @@ import numpy as np
 from photograd.transport import Material, MeshShape, NormalMap, Scene, Texture, TextureUse
 from photograd.transport.material import MODELS
 from photograd.transport.shapes import rectangle
+from photograd.transport.texture import FILTERS, WRAPS, Filter, WrapMode
 
 from fingerprint_cases.scenes import GLASS, GLOSS, GRAY, Scenes, ball, dome, stage
 
@@ -57,7 +58,7 @@ def model_scene(model: str) -> Scene:
     )
 
 
-def textured(wrap: str, kind: str, *, bent: bool = True) -> Scene:
+def textured(wrap: WrapMode, kind: Filter, *, bent: bool = True) -> Scene:
     """A floor and a dome whose coordinates leave 0..1, under a texture and a normal map."""
     g = np.random.default_rng(2)
     tilt = g.uniform(-0.3, 0.3, (3, 4, 3)) + np.array([0, 0, 1.0])
@@ -73,7 +74,7 @@ def textured(wrap: str, kind: str, *, bent: bool = True) -> Scene:
     return replace(scene, shapes=(floor, *scene.shapes[1:]))
 
 
-def channels(kind: str) -> Scene:
+def channels(kind: Filter) -> Scene:
     """Domes under textures of one, two and three channels."""
     uses = {
         "one": {"roughness": TextureUse("one")},
@@ -105,7 +106,7 @@ def card(alpha: float, **more: Any) -> Material:
     return Material("lambert", {"albedo": [0.3, 0.4, 0.5], "alpha": alpha}, **more)
 
 
-def shaded(material: Material, *, kind: str = "bilinear", **more: Any) -> Scene:
+def shaded(material: Material, *, kind: Filter = "bilinear", **more: Any) -> Scene:
     """A card of some opacity between the light and the floor, a ball of glass below it."""
     opacity = np.random.default_rng(5).uniform(0.1, 0.9, (6, 4, 1))
     sheet = of_model("gltf_transmission", values={"alpha": 0.6})
@@ -140,17 +141,13 @@ def _model(name: str) -> Callable[[], Scene]:
     return lambda: model_scene(name)
 
 
-def _textured(wrap: str, kind: str) -> Callable[[], Scene]:
+def _textured(wrap: WrapMode, kind: Filter) -> Callable[[], Scene]:
     return lambda: textured(wrap, kind)
 
 
 MODEL_SCENES: Scenes = {f"model-{name}": _model(name) for name in MODELS}
 SURFACES: Scenes = {
-    **{
-        f"texture-{wrap}-{kind}": _textured(wrap, kind)
-        for wrap in ("repeat", "mirror", "clamp")
-        for kind in ("bilinear", "mip")
-    },
+    **{f"texture-{wrap}-{kind}": _textured(wrap, kind) for wrap in WRAPS for kind in FILTERS},
     "texture-without-normal-map": lambda: textured("repeat", "mip", bent=False),
     "texture-channels-bilinear": lambda: channels("bilinear"),
     "texture-channels-mip": lambda: channels("mip"),

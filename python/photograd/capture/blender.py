@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
+from photograd._arrays import Arguments
 from photograd._json_node import JsonNode, read_json
 from photograd.capture.assemble import (
     Photograph,
@@ -20,7 +21,7 @@ from photograd.capture.assemble import (
     make_capture,
     undistortion_lines,
 )
-from photograd.capture.capture import Capture, check_box, hold_out
+from photograd.capture.capture import Capture, hold_out
 from photograd.capture.convention import check_convention
 from photograd.capture.frames import OPENGL_FROM_OPENCV, Y_UP_FROM_Z_UP, check_pose
 from photograd.capture.intrinsics import read_intrinsics
@@ -68,7 +69,7 @@ def load_blender(
     bounds = None
     if "aabb" in roots["train"]:
         node = roots["train"]["aabb"]
-        box = check_box(_NAME, node.where, node.numbers((2, 3)))
+        box = Arguments(_NAME).box(node.where, node.numbers((2, 3)))
         bounds = box_from_source(Y_UP_FROM_Z_UP, box)
         lines.append("aabb: declared in the +Z up frame, turned like the poses")
     parts = (views["train"], views.get("test", ()), "split as the files have it")

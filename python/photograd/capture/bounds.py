@@ -10,9 +10,10 @@ import numpy as np
 import numpy.typing as npt
 from photograd_course.portable_math import matmul, norm
 
+from photograd._arrays import Arguments
 from photograd.capture.assemble import box_corners
 from photograd.capture.camera import Camera
-from photograd.capture.capture import Capture, check_box
+from photograd.capture.capture import Capture
 from photograd.capture.convention import focus_point_of_axes
 from photograd.capture.view import View
 from photograd.errors import SceneError, message
@@ -109,7 +110,7 @@ def sees_box(camera: Camera, box: FloatArray) -> bool:
     crossed = np.cross(edges[:, None, :], np.eye(3)[None, :, :]).reshape(-1, 3)
     axes = np.concatenate([np.eye(3), sides, crossed])
     axes = np.concatenate([axes, -axes])
-    relative = box_corners(check_box("sees_box", "box", box)) - camera.position
+    relative = box_corners(Arguments("sees_box", np.float64).box("box", box)) - camera.position
     slack = 1e-12 * (1.0 + float(np.abs(edges).max()))
     pyramid_below = (matmul(axes, edges.T) <= slack).all(axis=1)
     box_above = matmul(axes, relative.T).min(axis=1) > 0.0

@@ -93,7 +93,7 @@ class Capture:
             raise IoError(message("Capture", str(self.source), "different names of views", got))
         self._check_points()
         if self.bounds is not None:
-            check_box("Capture", "bounds", self.bounds)
+            Arguments("Capture", np.float64).box("bounds", self.bounds)
 
     def _check_points(self) -> None:
         call = Arguments("Capture")
@@ -202,16 +202,3 @@ def evenly_spaced(views: Sequence[View], count: int) -> tuple[View, ...]:
     if len(views) <= count:
         return tuple(views)
     return tuple(views[index * len(views) // count] for index in range(count))
-
-
-def check_box(function: str, argument: str, box: FloatArray) -> FloatArray:
-    """Return a (2, 3) box of finite corners, lower below upper on each axis, or refuse it.
-
-    Raises:
-        ShapeError, RangeError: anything else.
-    """
-    box = Arguments(function, np.float64).array(argument, box, (2, 3))
-    if not bool((box[0] < box[1]).all()):
-        expected = "corners, lower below upper"
-        raise RangeError(message(function, argument, expected, box.tolist()))
-    return box

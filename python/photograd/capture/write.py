@@ -20,7 +20,6 @@ from photograd._arrays import Arguments
 from photograd._files import leads_outside
 from photograd.capture.assemble import box_from_source
 from photograd.capture.camera import Camera
-from photograd.capture.capture import check_box
 from photograd.capture.frames import OPENGL_FROM_OPENCV, Y_UP_FROM_Z_UP, invert_rigid
 from photograd.errors import IoError, RangeError, SceneError, message
 from photograd.images.read import ImageArray
@@ -156,7 +155,7 @@ def write_blender_capture(
     _check_splits(splits)
     extra: dict[str, object] = {}
     if aabb is not None:
-        box = check_box(_NAME, "aabb", aabb)
+        box = Arguments(_NAME, np.float64).box("aabb", aabb)
         extra["aabb"] = box_from_source(invert_rigid(Y_UP_FROM_Z_UP), box).tolist()
     new = [*_file_names(splits), MANIFEST]
     partial, aside = (path / name for name in (".capture.partial", ".capture.replaced"))

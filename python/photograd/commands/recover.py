@@ -11,6 +11,7 @@ import typer
 from photograd_course.atomic_io import atomic_write
 from photograd_course.cli import DebugOption, JsonOption, SeedOption, ThreadsOption, emit, note
 
+from photograd._checks import typed
 from photograd._descend import progress_bar, run_folder
 from photograd.commands.shared import (
     DepthOption,
@@ -27,7 +28,7 @@ from photograd.images.read import read_radiance
 from photograd.images.write import write_exr
 from photograd.transport.inverse import Recovery, RecoveryOptions, RecoveryResult, Target, Unknown
 from photograd.transport.inverse.job import FILE_NAME
-from photograd.transport.inverse.options import LOSSES
+from photograd.transport.inverse.options import LOSSES, Loss
 from photograd.transport.path_options import PathOptions
 from photograd.transport.scene_file import read_scene
 from photograd.transport.tracer import PathTracer
@@ -123,7 +124,7 @@ def recover(
         steps=steps,
         spp=spp,
         learning_rate=learning_rate,
-        loss=loss,
+        loss=typed("recover", "--loss", Loss, loss),
         views=views,
         seed=seed,
         path=PathOptions(max_depth=max_depth),

@@ -23,6 +23,7 @@ from photograd_course.cli import (
 )
 from photograd_course.color import srgb_encode
 
+from photograd._checks import typed
 from photograd._run_lock import one_run_for
 from photograd.commands.drawable import check_traced
 from photograd.commands.shared import (
@@ -51,7 +52,13 @@ from photograd.images.write import write_png, write_radiance
 from photograd.transport.accumulation import Accumulation, load_accumulation
 from photograd.transport.builtin import BUILTIN, builtin_scene
 from photograd.transport.mesh_files import STUDIO, SUFFIXES, default_scene, read_model
-from photograd.transport.path_options import HEURISTICS, STRATEGIES, PathOptions
+from photograd.transport.path_options import (
+    HEURISTICS,
+    STRATEGIES,
+    Heuristic,
+    PathOptions,
+    Strategy,
+)
 from photograd.transport.scene import Scene
 from photograd.transport.scene_digest import scene_digest
 from photograd.transport.scene_file import read_scene
@@ -159,7 +166,11 @@ def trace(
     use_threads(threads)
     check_output_name("trace", out, SIGNED_PICTURES if derivative else PICTURES)
     context.with_resource(one_run_for("trace", out))
-    options = PathOptions(strategy, heuristic, 2 if integrator == "direct" else max_depth)
+    options = PathOptions(
+        typed("trace", "--strategy", Strategy, strategy),
+        typed("trace", "--heuristic", Heuristic, heuristic),
+        2 if integrator == "direct" else max_depth,
+    )
     estimate = Estimate(integrator, options, seed, radius, photons, derivative)
     described, fingerprint = load_scene(scene, size, camera)
     key = {

@@ -14,7 +14,8 @@ import numpy as np
 from photograd_course.portable_math import norm
 from photograd_course.random import uniform
 
-from photograd._checks import require_finite
+from photograd._arrays import Arguments
+from photograd._checks import require_choices, require_finite
 from photograd._compiled import _core
 from photograd.errors import DtypeError, Error, RangeError, message
 from photograd.representation import Outputs, RayBatch, RenderOptions
@@ -67,15 +68,8 @@ class MarchPolicy:
     density_scale: float = 1.0  # 1/m
 
     def __post_init__(self) -> None:
-        box = np.asarray(self.box)
-        if box.dtype.kind not in "fiu" or box.shape != (2, 3):
-            raise DtypeError(
-                message("MarchPolicy", "box", "two corners of three numbers", self.box)
-            )
-        extent = box[1].astype(np.float64) - box[0]
-        if not (np.isfinite(box).all() and (extent > 0).all()):
-            expected = "finite, lower corner below upper"
-            raise RangeError(message("MarchPolicy", "box", expected, self.box))
+        box = Arguments("MarchPolicy", np.float64).box("box", self.box)
+        extent = box[1] - box[0]
         for name in ("dt", "density_scale"):
             value = getattr(self, name)
             if isinstance(value, bool) or not isinstance(value, int | float | np.number):
@@ -87,11 +81,7 @@ class MarchPolicy:
         if not math.isfinite(self.density_scale):
             got = self.density_scale
             raise RangeError(message("MarchPolicy", "density_scale", "a finite number", got))
-        for name, codes in CODES.items():
-            value = getattr(self, name)
-            if not isinstance(value, str) or value not in codes:
-                expected = f"one of {list(codes)}"
-                raise RangeError(message("MarchPolicy", name, expected, repr(value)))
+        require_choices(self)
 
     def settings(self, stop: float) -> Any:
         """The core's form of this policy."""

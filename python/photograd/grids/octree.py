@@ -230,10 +230,8 @@ class _SpatialTree:
         Raises:
             ShapeError: not of the shape of the dense array.
         """
-        d_dense = np.asarray(d_dense)
-        if d_dense.shape[:-1] != self.shape or d_dense.ndim != self.dimensions + 1:
-            expected = f"shape {(*self.shape, 'C')}"
-            raise ShapeError(message("expand_backward", "d_dense", expected, d_dense.shape))
+        call = Arguments("expand_backward")
+        d_dense = call.array("d_dense", d_dense, (*self.shape, "C"), finite=False)
         leaf, count = self._leaf_of_cell().ravel(), len(self.values)
         rows = d_dense.reshape(len(leaf), -1)
         sums = [np.bincount(leaf, rows[:, c], count) for c in range(rows.shape[1])]
@@ -331,10 +329,7 @@ def _box(name: str, bounds: npt.ArrayLike | None, shape: tuple[int, ...]) -> Arr
     """(2, D) float64 with a positive size along each axis."""
     if bounds is None:
         return np.array([np.zeros(len(shape)), shape], np.float64)
-    box = Arguments(name, np.float64).array("bounds", bounds, (2, len(shape))).copy()
-    if not (box[1] > box[0]).all():
-        raise RangeError(message(name, "bounds", "lower before upper", box.tolist()))
-    return box
+    return Arguments(name, np.float64).box("bounds", bounds, len(shape)).copy()
 
 
 def _spread(

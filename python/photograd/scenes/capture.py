@@ -66,10 +66,7 @@ def capture_cameras(
         ShapeError, RangeError, DtypeError: a bad box, number of views, size, seed or radius.
     """
     name = "capture_cameras"
-    box = Arguments(name, np.float64).array("bounds", bounds, (2, 3))
-    if not bool((box[0] < box[1]).all()):
-        expected = "a box, low < high on every axis"
-        raise RangeError(message(name, "bounds", expected, box.tolist()))
+    box = Arguments(name, np.float64).box("bounds", bounds)
     require_integer(name, "views", views, least=1, most=1 << 16)
     require_integer(name, "test_views", test_views, least=0, most=1 << 16)
     require_integer(name, "size", size, least=1, most=1 << 16)

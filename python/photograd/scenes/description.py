@@ -196,10 +196,7 @@ class SceneDescription:
         if not self.meshes:
             raise SceneError(message("SceneDescription", "meshes", "at least one", "none"))
         call = Arguments("SceneDescription", np.float64)
-        bounds = _read_only(call.array("bounds", self.bounds, (2, 3)))
-        if not bool((bounds[0] < bounds[1]).all()):
-            expected = "a box, low < high on every axis"
-            raise RangeError(message("SceneDescription", "bounds", expected, bounds.tolist()))
+        bounds = _read_only(call.box("bounds", self.bounds))
         for index, mesh in enumerate(self.meshes):
             low, high = mesh.box
             if (low < bounds[0] - _BOX_SLACK).any() or (high > bounds[1] + _BOX_SLACK).any():

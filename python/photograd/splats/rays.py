@@ -24,9 +24,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from photograd._arrays import Arguments
 from photograd._checks import require_finite
 from photograd._compiled import _core
-from photograd.errors import RangeError, ShapeError, message
+from photograd.errors import RangeError, message
 from photograd.splats.splatting import Gaussians, filled_cotangents
 from photograd.types import Array
 
@@ -141,37 +142,19 @@ def render(
         ShapeError: an array of another shape.
         Error: what is seen is not finite, since colors overflow; the ray is named.
     """
-    dtype = gaussians.means.dtype
-    rays = [_rays(name, a, dtype) for name, a in (("origins", origins), ("directions", directions))]
-    if rays[0].shape != rays[1].shape:
-        expected = f"shape {rays[0].shape} as origins"
-        raise ShapeError(message("splat_rays.render", "directions", expected, rays[1].shape))
-    length = np.linalg.norm(rays[1].astype(np.float64), axis=1)
-    _refuse("directions", (length > 1e-15) & (length < 1e15), "lengths from 1e-15 to 1e15")
-    behind = np.ascontiguousarray(background, dtype)
-    if not np.isfinite(behind).all():
-        raise RangeError(message("splat_rays.render", "background", "finite numbers", "others"))
+    call = Arguments("splat_rays.render", gaussians.means.dtype)
+    starts = call.array("origins", origins, ("R", 3))
+    along = call.array("directions", directions, ("R", 3))
+    length = np.linalg.norm(along.astype(np.float64), axis=1)
+    call.array("directions: lengths", length, above=1e-15, below=1e15, dtype=np.float64)
+    behind = call.array("background", background, (3,))
     policies = options or RayOptions()
     arrays = list(gaussians.arrays().values())
     core_options = _core.RayOptions(**vars(policies))
-    prepared = _core.prepare_splat_rays(arrays, core_options, rays[0], rays[1], behind)
+    prepared = _core.prepare_splat_rays(arrays, core_options, starts, along, behind)
     picture = RayPicture(*prepared.render(arrays))
     require_finite("splat_rays.render", vars(picture), lambda at: f"ray {at[0]}")
     return picture, RayContext(gaussians, picture, prepared)
-
-
-def _rays(name: str, given: ArrayLike, dtype: np.dtype[Any]) -> Array:
-    array = np.ascontiguousarray(given, dtype)
-    if array.ndim != 2 or array.shape[1] != 3:
-        raise ShapeError(message("splat_rays.render", name, "shape (R, 3)", array.shape))
-    _refuse(name, np.isfinite(array).all(axis=1), "finite numbers")
-    return array
-
-
-def _refuse(name: str, good: NDArray[np.bool_], expected: str) -> None:
-    if not good.all():
-        found = f"others in row {int(np.argmin(good))}"
-        raise RangeError(message("splat_rays.render", name, expected, found))
 
 
 def render_backward(

@@ -19,14 +19,24 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from photograd import sh
-from photograd._checks import require_finite
+from photograd._arrays import Arguments
+from photograd._checks import require_choices, require_finite
 from photograd._compiled import _core
 from photograd.capture.camera import Camera
 from photograd.capture.frames import invert_rigid
-from photograd.errors import DtypeError, RangeError, ShapeError, message
+from photograd.errors import RangeError, message
 from photograd.types import Array
 
 MAX_DEGREE = 3
+
+
+SHAPES: dict[str, tuple[str | int, ...]] = {
+    "means": ("N", 3),
+    "log_scales": ("N", 3),
+    "quats": ("N", 4),
+    "opacity_logits": ("N",),
+    "sh": ("N", "K", 3),
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,26 +64,11 @@ class Gaussians:
     sh: Array
 
     def __post_init__(self) -> None:
-        if self.means.dtype not in (np.dtype(np.float32), np.dtype(np.float64)):
-            found = self.means.dtype
-            raise DtypeError(message("Gaussians", "means", "float32 or float64", found))
-        n = len(self.means) if self.means.ndim else 0
-        k = self.sh.shape[1] if self.sh.ndim == 3 else 1
-        shapes = {
-            "means": (n, 3),
-            "log_scales": (n, 3),
-            "quats": (n, 4),
-            "opacity_logits": (n,),
-            "sh": (n, k, 3),
-        }
-        for name, shape in shapes.items():
-            array = getattr(self, name)
-            if array.dtype != self.means.dtype:
-                expected = f"{self.means.dtype} as means"
-                raise DtypeError(message("Gaussians", name, expected, array.dtype))
-            if array.shape != shape:
-                raise ShapeError(message("Gaussians", name, f"shape {shape}", array.shape))
-            object.__setattr__(self, name, np.ascontiguousarray(array))
+        call = Arguments("Gaussians")
+        for name, shape in SHAPES.items():
+            array = call.array(name, getattr(self, name), shape, finite=False)
+            object.__setattr__(self, name, array)
+        k = self.sh.shape[1]
         if k not in [sh.count(degree) for degree in range(MAX_DEGREE + 1)]:
             raise RangeError(message("Gaussians", "sh", "1, 4, 9 or 16 coefficients", k))
 
@@ -142,9 +137,7 @@ class SplatOptions:
             value = getattr(self, name)
             if not low <= value <= high:
                 raise RangeError(message("SplatOptions", name, f"{low} to {high}", value))
-        if self.clamped_gradient not in ("zero", "pass"):
-            found = repr(self.clamped_gradient)
-            raise RangeError(message("SplatOptions", "clamped_gradient", "'zero' or 'pass'", found))
+        require_choices(self)
 
     def smooth(self) -> SplatOptions:
         """The same without cut-offs: every splat reaches every pixel, and no pixel ends early."""
@@ -242,11 +235,9 @@ def render(
     dtype = gaussians.means.dtype
     if camera_from_world is None:
         camera_from_world = invert_rigid(camera.world_from_camera)[:3]
-    view = np.ascontiguousarray(camera_from_world, dtype)
-    behind = np.ascontiguousarray(background, dtype)
-    for name, array in (("camera_from_world", view), ("background", behind)):
-        if not np.isfinite(array).all():
-            raise RangeError(message("splat.render", name, "finite numbers", "others"))
+    call = Arguments("splat.render", dtype)
+    view = call.array("camera_from_world", camera_from_world, (3, 4))
+    behind = call.array("background", background, (3,))
     image = _core.SplatImage(
         camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy
     )

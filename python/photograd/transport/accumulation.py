@@ -15,13 +15,14 @@ import io
 import json
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from photograd_course.atomic_io import atomic_write
 from photograd_course.color import srgb_encode
 
+from photograd._checks import typed
 from photograd._files import read_npz
 from photograd._notebook import png, smaller
 from photograd.errors import Error, IoError, RangeError, ShapeError, message
@@ -182,7 +183,7 @@ def load_accumulation(path: Path, key: dict[str, Any]) -> Accumulation:
 # Where the paths of a derivative go: as many to each pixel, or more to those that matter.
 
 
-SPREADS = ("even", "cotangent")
+Spread = Literal["even", "cotangent"]
 EVEN_SHARE = 0.25
 """Of all paths: a pixel may hide a large s_p behind a small d_p, so that none goes without."""
 PAIR_EVEN_SHARE = 0.75
@@ -193,24 +194,23 @@ MOST = 64
 """Times `spp`, so that one pixel does not keep one thread busy alone."""
 
 
-def sample_counts(d_image: Array, spp: int, spread: str) -> Array | None:
+def sample_counts(d_image: Array, spp: int, spread: Spread) -> Array | None:
     """Paths of each pixel, (H, W) uint32, at least 1; None where all have `spp`.
 
     Args:
         d_image: dL/dimage (H, W, 3).
         spp: paths a pixel, on average; the sum is off by the rounding of each pixel.
-        spread: of `SPREADS`.
+        spread: "even", or "cotangent" for more where the loss looks.
 
     Raises:
         RangeError: another spread.
     """
-    if spread not in SPREADS:
-        raise RangeError(message("render_backward", "spread", SPREADS, spread))
+    typed("PathTracer.render_backward", "spread", Spread, spread)
     size = np.abs(np.asarray(d_image, np.float64)).sum(axis=-1)
     return None if spread == "even" else _dealt(size, spp, EVEN_SHARE)
 
 
-def pair_counts(pilot: Accumulation, d_image: Array, spp: int, spread: str) -> Array | None:
+def pair_counts(pilot: Accumulation, d_image: Array, spp: int, spread: Spread) -> Array | None:
     """The same for two pictures that are each other's cotangent (inverse/loss.py).
 
     A pixel's paths serve its derivative, where |d_p| s_p says how many are wanted, and its picture,
@@ -221,13 +221,11 @@ def pair_counts(pilot: Accumulation, d_image: Array, spp: int, spread: str) -> A
         pilot: a picture of a few other paths, two at least.
         d_image: dL/dimage (H, W, 3) as that picture says.
         spp: paths a pixel, on average.
-        spread: of `SPREADS`.
+        spread: "even", or "cotangent" for more where the loss looks.
 
     Raises:
         RangeError: another spread.
     """
-    if spread not in SPREADS:
-        raise RangeError(message("loss_and_gradients", "spread", SPREADS, spread))
     if spread == "even":
         return None
     variance = np.maximum(pilot.squares / pilot.count - pilot.mean**2, 0.0).sum(axis=-1)

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from photograd.errors import ShapeError, message
+from photograd._arrays import Arguments
 from photograd.lights import (
     EnvironmentMap,
     Light,
@@ -151,16 +151,15 @@ class ListedLight:
         Raises:
             ShapeError: params of another shape than at the start.
         """
-        for name, value in self.start.items():
-            if np.shape(params[name]) != value.shape:
-                got = np.shape(params[name])
-                raise ShapeError(message("PathTracer", name, f"shape {value.shape}", got))
+        call = Arguments("PathTracer", dtype)
+        parts = [
+            call.array(name, params[name], value.shape, finite=False)
+            for name, value in self.start.items()
+        ]
         core, (_, constants) = self.light.core_call(dtype)
         if isinstance(self.light, EnvironmentMap):
-            (name,) = self.start
-            return "environment", np.ascontiguousarray(params[name], dtype), constants, core
-        parts = [np.reshape(params[name], -1) for name in self.start]
-        return self.light.core_name, np.concatenate(parts).astype(dtype), constants
+            return "environment", parts[0], constants, core
+        return self.light.core_name, np.concatenate([part.ravel() for part in parts]), constants
 
     def named(self, derivative: Array) -> dict[str, Array]:
         """A derivative by the second entry of `row`, under the names of the params."""

@@ -10,8 +10,9 @@ import numpy.typing as npt
 from photograd_course.suggest import choose_from
 
 from photograd import bsdf
+from photograd._arrays import Arguments
 from photograd.bsdf import specular
-from photograd.errors import SceneError, ShapeError, message
+from photograd.errors import SceneError, message
 from photograd.transport.material import Material
 from photograd.transport.medium import BOUNDARY, VACUUM, Medium
 from photograd.transport.shapes import MeshShape, Shape
@@ -169,15 +170,14 @@ class ListedMedia:
             ShapeError: params of another shape than at the start.
             RangeError: params that are no medium.
         """
+        call = Arguments("PathTracer", dtype)
         found = []
         for name, medium in self.media.items():
             prefix = f"media.{name}."
-            for key, value in medium.start.items():
-                if np.shape(params[prefix + key]) != value.shape:
-                    got = np.shape(params[prefix + key])
-                    expected = f"shape {value.shape}"
-                    raise ShapeError(message("PathTracer", prefix + key, expected, got))
-            values = {key: np.asarray(params[prefix + key], dtype) for key in medium.start}
+            values = {
+                key: call.array(prefix + key, params[prefix + key], value.shape, finite=False)
+                for key, value in medium.start.items()
+            }
             row = np.ascontiguousarray(medium.row("PathTracer", prefix, values), dtype)
             density, sigma_maj = values.get("density"), 0.0
             if medium.density is not None and density is not None:

@@ -3,12 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal, get_args
 
+from photograd._checks import require_choices
 from photograd.errors import RangeError, message
 
-STRATEGIES = ("light", "bsdf", "mis")
-HEURISTICS = ("balance", "power")
-SAMPLERS = ("independent", "even")
+Strategy = Literal["light", "bsdf", "mis"]
+Heuristic = Literal["balance", "power"]
+Sampler = Literal["independent", "even"]
+# In the core's order.
+STRATEGIES: tuple[Strategy, ...] = get_args(Strategy)
+HEURISTICS: tuple[Heuristic, ...] = get_args(Heuristic)
+SAMPLERS: tuple[Sampler, ...] = get_args(Sampler)
 NEVER = 1 << 20  # a vertex that no path reaches
 
 
@@ -32,20 +38,14 @@ class PathOptions:
         RangeError: none of these.
     """
 
-    strategy: str = "mis"
-    heuristic: str = "power"
+    strategy: Strategy = "mis"
+    heuristic: Heuristic = "power"
     max_depth: int = 64
     roulette_from: int | None = 4
-    sampler: str = "even"
+    sampler: Sampler = "even"
 
     def __post_init__(self) -> None:
-        for name, known in (
-            ("strategy", STRATEGIES),
-            ("heuristic", HEURISTICS),
-            ("sampler", SAMPLERS),
-        ):
-            if getattr(self, name) not in known:
-                raise RangeError(message("PathOptions", name, known, getattr(self, name)))
+        require_choices(self)
         if not 1 <= self.max_depth <= 4096:
             raise RangeError(message("PathOptions", "max_depth", "1 to 4096", self.max_depth))
         if self.roulette_from is not None and self.roulette_from < 0:

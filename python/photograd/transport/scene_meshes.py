@@ -23,6 +23,7 @@ from photograd.transport.texture import (
     ENCODINGS,
     FILTERS,
     WRAPS,
+    Filter,
     NormalMap,
     Texture,
     TextureUse,
@@ -207,7 +208,7 @@ def _placed(
     )
 
 
-def _renamed(model: ModelFile, name: str, looked_up: str | None) -> ImportedMeshes:
+def _renamed(model: ModelFile, name: str, looked_up: Filter | None) -> ImportedMeshes:
     materials = {
         f"{name}/{own}": replace(
             material,

@@ -64,6 +64,7 @@ def _parts(key: str) -> KeyPath:
 
 
 Built = TypeVar("Built")
+Name = TypeVar("Name", bound=str)
 BEYOND = 1e15
 """Numbers are smaller. Squares of them and areas are then finite in float32, and coordinates within
 what the ray tracer takes (core/world_limit.h).
@@ -151,13 +152,14 @@ class Node:
             raise self.wrong(key, "a string", found)
         return found
 
-    def choice(self, key: str, known: Iterable[str]) -> str:
+    def choice(self, key: str, known: Iterable[Name]) -> Name:
         """One of the known names."""
         names = list(known)
         found = self.text(key)
-        if found not in names:
-            raise self.wrong(key, f"one of {', '.join(names)}", found, choose_from(found, names))
-        return found
+        for name in names:
+            if name == found:
+                return name
+        raise self.wrong(key, f"one of {', '.join(names)}", found, choose_from(found, names))
 
     def flag(self, key: str) -> bool:
         """A truth value; false if absent."""

@@ -19,12 +19,13 @@ normalized_diffusion.h.
 
 from __future__ import annotations
 
-from typing import Any, Literal, get_args
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from photograd._arrays import Arguments
+from photograd._checks import typed
 from photograd._compiled import _core
 from photograd.errors import RangeError, ShapeError, message
 from photograd.types import FloatArray
@@ -272,10 +273,8 @@ def _rows(name: str, **arguments: ArrayLike) -> tuple[FloatArray, tuple[int, ...
 
 
 def _known(name: str, fit: DiffusionFit) -> DiffusionFit:
-    if fit not in get_args(DiffusionFit):
-        expected = "one of " + ", ".join(get_args(DiffusionFit))
-        raise RangeError(message(name, "fit", expected, repr(fit)))
-    return fit
+    known: DiffusionFit = typed(name, "fit", DiffusionFit, fit)
+    return known
 
 
 def _cotangent(name: str, argument: str, value: ArrayLike, shape: tuple[int, ...]) -> FloatArray:

@@ -18,20 +18,25 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal, get_args
 
 import numpy as np
 from photograd_course.color import srgb_decode
 
 from photograd._arrays import Arguments
+from photograd._checks import require_choices, typed
 from photograd.errors import RangeError, message
 from photograd.images.read import read_header, read_image
 from photograd.textures import sample
 from photograd.types import Array
 
-WRAPS = ("repeat", "mirror", "clamp")
-FILTERS = ("bilinear", "mip")
-ENCODINGS = ("srgb", "linear", "alpha")
+WrapMode = Literal["repeat", "mirror", "clamp"]
+Wrap = tuple[WrapMode, WrapMode]
+Filter = Literal["bilinear", "mip"]
+Encoding = Literal["srgb", "linear", "alpha"]
+WRAPS: tuple[WrapMode, ...] = get_args(WrapMode)  # in the core's order
+FILTERS: tuple[Filter, ...] = get_args(Filter)
+ENCODINGS: tuple[Encoding, ...] = get_args(Encoding)
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,15 +54,12 @@ class Texture:
     """
 
     values: Array
-    wrap: tuple[str, str] = ("repeat", "repeat")
-    filter: str = "bilinear"
+    wrap: Wrap = ("repeat", "repeat")
+    filter: Filter = "bilinear"
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "values", _picture("Texture", self.values, (1, 2, 3, 4)))
-        if len(self.wrap) != 2 or any(kind not in WRAPS for kind in self.wrap):
-            raise RangeError(message("Texture", "wrap", f"two of {WRAPS}", self.wrap))
-        if self.filter not in FILTERS:
-            raise RangeError(message("Texture", "filter", f"one of {FILTERS}", self.filter))
+        require_choices(self)
 
     @property
     def channels(self) -> int:
@@ -91,16 +93,15 @@ class NormalMap:
     """
 
     values: Array
-    wrap: tuple[str, str] = ("repeat", "repeat")
+    wrap: Wrap = ("repeat", "repeat")
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "values", _picture("NormalMap", self.values, (3,)))
-        if len(self.wrap) != 2 or any(kind not in WRAPS for kind in self.wrap):
-            raise RangeError(message("NormalMap", "wrap", f"two of {WRAPS}", self.wrap))
+        require_choices(self)
 
     @classmethod
     def from_image(
-        cls, image: Array, scale: float = 1.0, wrap: tuple[str, str] = ("repeat", "repeat")
+        cls, image: Array, scale: float = 1.0, wrap: Wrap = ("repeat", "repeat")
     ) -> NormalMap:
         """Of an image (H, W, 3 or more) that holds (n + 1) / 2; `scale` is of the tilt."""
         values = 2 * np.asarray(image, np.float32)[..., :3] - 1
@@ -125,12 +126,11 @@ class OcclusionMap:
 
     values: Array
     strength: float = 1.0
-    wrap: tuple[str, str] = ("repeat", "repeat")
+    wrap: Wrap = ("repeat", "repeat")
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "values", _picture("OcclusionMap", self.values, (1,)))
-        if len(self.wrap) != 2 or any(kind not in WRAPS for kind in self.wrap):
-            raise RangeError(message("OcclusionMap", "wrap", f"two of {WRAPS}", self.wrap))
+        require_choices(self)
         if not 0 <= self.strength <= 1:
             raise RangeError(message("OcclusionMap", "strength", "0 to 1", self.strength))
 
@@ -153,9 +153,9 @@ class OcclusionMap:
 
 def read_texture(
     path: Path,
-    encoding: str = "srgb",
-    wrap: tuple[str, str] = ("repeat", "repeat"),
-    filter: str = "bilinear",
+    encoding: Encoding = "srgb",
+    wrap: Wrap = ("repeat", "repeat"),
+    filter: Filter = "bilinear",
 ) -> Texture:
     """The colours of an image file, without its alpha; or its alpha alone.
 
@@ -169,8 +169,7 @@ def read_texture(
         IoError: no such image.
         RangeError: an unknown encoding, wrap or filter.
     """
-    if encoding not in ENCODINGS:
-        raise RangeError(message("read_texture", "encoding", ENCODINGS, encoding))
+    typed("read_texture", "encoding", Encoding, encoding)
     color = read_image(path)
     if encoding == "alpha":
         return Texture(color[..., 3:], wrap, filter)

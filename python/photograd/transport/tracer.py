@@ -15,7 +15,7 @@ from photograd._arrays import Arguments
 from photograd._compiled import _core
 from photograd.capture.camera import Camera
 from photograd.errors import DtypeError, RangeError, message
-from photograd.transport.accumulation import Accumulation, sample_counts
+from photograd.transport.accumulation import Accumulation, Spread, sample_counts
 from photograd.transport.core_arrays import (
     blocks_of,
     cutoffs_of,
@@ -199,7 +199,7 @@ class PathTracer:
         seed: int,
         options: PathOptions = DEFAULTS,
         camera: Camera | None = None,
-        spread: str = "even",
+        spread: Spread = "even",
     ) -> dict[str, Array]:
         """dL/dparams for dL/dimage (H, W, 3), estimated with `spp` paths a pixel.
 

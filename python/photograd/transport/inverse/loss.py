@@ -28,10 +28,12 @@ from typing import Any
 
 import numpy as np
 
+from photograd._arrays import Arguments
+from photograd._checks import typed
 from photograd._compiled import _core
 from photograd.capture.camera import Camera
 from photograd.errors import RangeError, ShapeError, message
-from photograd.transport.accumulation import Accumulation, pair_counts
+from photograd.transport.accumulation import Accumulation, Spread, pair_counts
 from photograd.transport.incomplete import WholeGradients, require_whole
 from photograd.transport.path_options import DEFAULTS, PathOptions
 from photograd.transport.scene import Scene
@@ -59,25 +61,16 @@ class Target:
     weight: Any = None
 
     def __post_init__(self) -> None:
-        image = np.ascontiguousarray(self.image, np.float64)
-        if image.ndim != 3 or image.shape[2] != 3 or not image.size:
-            raise ShapeError(message("Target", "image", "shape (H, W, 3)", image.shape))
-        if not np.isfinite(image).all():
-            row, column = np.argwhere(~np.isfinite(image))[0][:2]
-            got = f"others, first in pixel ({column}, {row})"
-            raise RangeError(message("Target", "image", "finite numbers", got))
+        call = Arguments("Target", np.float64)
+        image = call.array("image", self.image, ("H", "W", 3), min_length=1)
         object.__setattr__(self, "image", image)
         if self.camera is not None:
             require_size(image, self.camera)
         if self.weight is None:
             return
-        weight = np.asarray(self.weight, np.float64)
+        shapes = (("H", "W"), ("H", "W", 1), ("H", "W", 3))
+        weight = call.array("weight", self.weight, *shapes, low=0.0)
         weight = weight[..., None] if weight.ndim == 2 else weight
-        if weight.shape not in (image.shape, (*image.shape[:2], 1)):
-            expected = f"shape {image.shape[:2]} or {image.shape}"
-            raise ShapeError(message("Target", "weight", expected, np.shape(self.weight)))
-        if not bool((np.isfinite(weight) & (weight >= 0)).all()):
-            raise RangeError(message("Target", "weight", "finite numbers of at least 0", "others"))
         object.__setattr__(self, "weight", np.array(np.broadcast_to(weight, image.shape)))
 
 
@@ -153,7 +146,7 @@ def loss_and_gradients(
     camera: Camera | None = None,
     options: PathOptions = DEFAULTS,
     names: Iterable[str] | None = None,
-    spread: str = "even",
+    spread: Spread = "even",
 ) -> tuple[float, dict[str, Array]]:
     """The loss of two half pictures, and its derivative with respect to the tracer's parameters.
 
@@ -176,15 +169,14 @@ def loss_and_gradients(
         As `PathTracer.render` and `render_backward`; RangeError: names whose derivative is
         incomplete.
     """
+    typed("loss_and_gradients", "spread", Spread, spread)
     wanted = None if names is None else list(names)
     require_whole("loss_and_gradients", "names", wanted or (), tracer.incomplete)
     view = tracer.scene.camera if camera is None else camera
     shape = (view.height, view.width, 3)
-    given = {"target": target, "weight": weight}
-    for name, values in given.items():
-        if np.shape(values) != shape:
-            got = np.shape(values)
-            raise ShapeError(message("loss_and_gradients", name, f"shape {shape}", got))
+    call = Arguments("loss_and_gradients", np.float64)
+    target = call.array("target", target, shape, finite=False)
+    weight = call.array("weight", weight, shape, finite=False)
     if spp < 1:
         raise RangeError(message("loss_and_gradients", "spp", "at least 1", spp))
     counts = None
@@ -204,8 +196,8 @@ def loss_and_gradients(
         spp=spp,
         counts=counts,
         pictures=halves,
-        target=np.ascontiguousarray(target, np.float64),
-        weight=np.ascontiguousarray(weight, np.float64) / np.size(weight),
+        target=target,
+        weight=weight / weight.size,
     )
     Accumulation(halves.sum(axis=0), halves.sum(axis=0), 2).check_finite("loss_and_gradients")
     wide = {name: d.astype(np.float64) for name, d in found.items()}

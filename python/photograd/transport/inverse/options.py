@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Literal, get_args
 
+from photograd._checks import require_choices
 from photograd.errors import RangeError, message
 from photograd.transport.path_options import PathOptions
 from photograd.transport.scene import Scene
 from photograd.types import Array
 
-LOSSES = ("relative", "squared")
+Loss = Literal["relative", "squared"]
+LOSSES: tuple[Loss, ...] = get_args(Loss)
 
 
 @dataclass(frozen=True)
@@ -41,7 +44,7 @@ class RecoveryOptions:
     spp: int = 8
     learning_rate: float = 0.2
     final_rate: float = 0.02
-    loss: str = "relative"
+    loss: Loss = "relative"
     views: int = 0
     resample_every: int = 50
     path: PathOptions = field(default_factory=lambda: PathOptions(max_depth=8))
@@ -58,8 +61,7 @@ class RecoveryOptions:
         if not 0 < self.final_rate <= 1:
             got = self.final_rate
             raise RangeError(message("RecoveryOptions", "final_rate", "above 0, at most 1", got))
-        if self.loss not in LOSSES:
-            raise RangeError(message("RecoveryOptions", "loss", LOSSES, self.loss))
+        require_choices(self)
         if not 0 <= self.seed < 2**64:
             raise RangeError(message("RecoveryOptions", "seed", "0 to 2^64 - 1", self.seed))
 

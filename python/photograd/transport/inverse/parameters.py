@@ -13,20 +13,22 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from photograd_course.portable_math import exp, log, log1p, sigmoid
 from photograd_course.suggest import choose_from
 
-from photograd.errors import RangeError, ShapeError, message
+from photograd._arrays import Arguments
+from photograd._checks import require_choices
+from photograd.errors import RangeError, message
 from photograd.lights import EnvironmentMap, Light
 from photograd.transport.incomplete import require_whole
 from photograd.transport.scene import Environment, Scene
 from photograd.transport.tracer import PathTracer
 from photograd.types import Array
 
-KINDS = ("logit", "log")
+ActivationKind = Literal["logit", "log"]
 MARGIN = 1e-3
 """How far inside of its range a start is kept; at an end, dp/dx is 0 and nothing would move."""
 LARGEST = 60.0
@@ -35,9 +37,9 @@ LARGEST = 60.0
 
 @dataclass(frozen=True)
 class Activation:
-    """One of `KINDS` with its bounds; `hi` means nothing to a log."""
+    """Of numbers between bounds; `hi` means nothing to a log."""
 
-    kind: str
+    kind: ActivationKind
     lo: float
     hi: float
 
@@ -143,12 +145,11 @@ class Unknown:
     name: str
     start: Any = None
     bounds: tuple[float, float] | None = None
-    activation: str | None = None
+    activation: ActivationKind | None = None
     rate: float = 1.0
 
     def __post_init__(self) -> None:
-        if self.activation is not None and self.activation not in KINDS:
-            raise RangeError(message("Unknown", "activation", KINDS, self.activation))
+        require_choices(self)
         if not (math.isfinite(self.rate) and self.rate > 0):
             raise RangeError(message("Unknown", f"{self.name}.rate", "above 0", self.rate))
         if self.bounds is None:
@@ -168,7 +169,7 @@ class Unknown:
             RangeError: the activation does not fit the bounds that the scene gives.
         """
         lo, hi = self.bounds or default_bounds(self.name, scene)
-        kind = "log" if math.isinf(hi) else "logit"
+        kind: ActivationKind = "log" if math.isinf(hi) else "logit"
         if self.activation == "log" and kind == "logit":  # the range of a model has two ends
             hi, kind = math.inf, "log"
         if self.activation == "logit" and kind == "log":
@@ -192,15 +193,16 @@ class Unknown:
         own = np.asarray(tracer.params[self.name], np.float64)
         if self.start is None:
             return own.copy()
-        start = np.asarray(self.start, np.float64)
-        if start.shape not in ((), own.shape):
-            expected = f"one number, or shape {own.shape}"
-            raise ShapeError(message("Unknown", f"{self.name}.start", expected, start.shape))
         activation = self.activation_in(tracer.scene)
-        lo, hi = activation.lo, activation.hi
-        if not bool(((start >= lo) & (start <= hi) & np.isfinite(start)).all()):
-            got = f"{float(start.min())} to {float(start.max())}"
-            raise RangeError(message("Unknown", f"{self.name}.start", f"{lo} to {hi}", got))
+        call = Arguments("Unknown", np.float64)
+        start = call.array(
+            f"{self.name}.start",
+            self.start,
+            (),
+            own.shape,
+            low=activation.lo,
+            high=None if math.isinf(activation.hi) else activation.hi,
+        )
         return np.array(np.broadcast_to(start, own.shape))
 
 

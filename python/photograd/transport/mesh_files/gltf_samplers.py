@@ -12,9 +12,9 @@ from collections.abc import Callable
 
 from photograd._json_node import JsonNode
 from photograd.transport.mesh_files.container import whole
+from photograd.transport.texture import Filter, Wrap, WrapMode
 
-Wrap = tuple[str, str]
-WRAPS = {"repeat": 10497, "mirror": 33648, "clamp": 33071}
+WRAPS: dict[WrapMode, int] = {"repeat": 10497, "mirror": 33648, "clamp": 33071}
 LINEAR, TRILINEAR = 9729, 9987
 FILTERS = {
     9728: "NEAREST",
@@ -28,7 +28,7 @@ _MAGNIFYING = (9728, LINEAR)
 _KNOWN_WRAPS = {number: name for name, number in WRAPS.items()}
 
 
-def read_sampler(sampler: JsonNode, note: Callable[[str], None]) -> tuple[Wrap, str]:
+def read_sampler(sampler: JsonNode, note: Callable[[str], None]) -> tuple[Wrap, Filter]:
     """Wrap along u and v, and filter, as of `photograd.transport.Texture`.
 
     Raises:
@@ -40,7 +40,7 @@ def read_sampler(sampler: JsonNode, note: Callable[[str], None]) -> tuple[Wrap, 
     return wrap, "bilinear" if shrunk == LINEAR else "mip"
 
 
-def _wrap(sampler: JsonNode, key: str, note: Callable[[str], None]) -> str:
+def _wrap(sampler: JsonNode, key: str, note: Callable[[str], None]) -> WrapMode:
     number = whole(sampler, 0, 1 << 16, key, WRAPS["repeat"])
     if number not in _KNOWN_WRAPS:
         note(f"{sampler.where}: {key}: {number}: unknown, read as REPEAT")
@@ -58,7 +58,7 @@ def _filter(sampler: JsonNode, key: str, default: int, note: Callable[[str], Non
     return taken
 
 
-def gltf_sampler(wrap: Wrap, looked_up: str) -> dict[str, int]:
+def gltf_sampler(wrap: Wrap, looked_up: Filter) -> dict[str, int]:
     """An entry of the table of samplers; nothing for what a file means without one.
 
     A bilinear texture asks for no filter: viewers that take one sample a pixel should not be kept

@@ -14,8 +14,8 @@ from photograd._gltf_bytes import GltfBytes
 from photograd.errors import SceneError, message
 from photograd.transport.material import Material
 from photograd.transport.mesh_files.gltf_material_writer import GltfMaterial
-from photograd.transport.mesh_files.gltf_samplers import Wrap, gltf_sampler
-from photograd.transport.texture import NormalMap, OcclusionMap, Texture, TextureUse
+from photograd.transport.mesh_files.gltf_samplers import gltf_sampler
+from photograd.transport.texture import Filter, NormalMap, OcclusionMap, Texture, TextureUse, Wrap
 from photograd.types import Array
 
 _LABEL = re.compile(r" \((srgb|linear|alpha|mask|direction|span [^,]*), \d+\)$")
@@ -114,7 +114,7 @@ class TextureWriter:
                 for t, (encoding, _, _) in zip(found, uses, strict=True)
                 if encoding != "mask"
             }
-            looked_up = max(filters, default="bilinear")
+            looked_up: Filter = max(filters, default="bilinear")
             if len({(t.values.shape[:2], t.wrap) for t in found}) > 1 or len(filters) > 1:
                 names = ", ".join(use.texture for _, _, use in uses)
                 expected = f"one size, wrap and filter for {member}, which is one image"
@@ -125,7 +125,7 @@ class TextureWriter:
             self._numbers[key] = self._texture(name, pixels, found[0].wrap, looked_up)
         return self._numbers[key]
 
-    def _texture(self, name: str, pixels: Array, wrap: Wrap, looked_up: str) -> int:
+    def _texture(self, name: str, pixels: Array, wrap: Wrap, looked_up: Filter) -> int:
         entry = {"source": self.file.image(name, pixels)}
         sampler = gltf_sampler(wrap, looked_up)
         if sampler:

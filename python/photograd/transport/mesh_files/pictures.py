@@ -14,8 +14,8 @@ from photograd._json_node import JsonNode
 from photograd.errors import Error, IoError, message
 from photograd.images.kind import PILLOW_KINDS, allow_pixels, require_pixels, too_many_pixels
 from photograd.transport.mesh_files.container import NAME, Container, real, whole
-from photograd.transport.mesh_files.gltf_samplers import Wrap, read_sampler
-from photograd.transport.texture import OcclusionMap, Texture, decode
+from photograd.transport.mesh_files.gltf_samplers import read_sampler
+from photograd.transport.texture import Filter, OcclusionMap, Texture, Wrap, decode
 from photograd.types import Array
 
 TRANSFORM = "KHR_texture_transform"
@@ -130,9 +130,9 @@ class Pictures:
     def _sees_points(self, info: JsonNode) -> None:
         self.note(f"{info.where}: mip maps of its sampler: not supported, sampled without mip maps")
 
-    def _pixels(self, info: JsonNode) -> tuple[Array, tuple[Wrap, str], str] | None:
+    def _pixels(self, info: JsonNode) -> tuple[Array, tuple[Wrap, Filter], str] | None:
         texture = self.container.entry("textures", info["index"])
-        looks: tuple[Wrap, str] = (("repeat", "repeat"), "bilinear")
+        looks: tuple[Wrap, Filter] = (("repeat", "repeat"), "bilinear")
         if "sampler" in texture:
             sampler = self.container.entry("samplers", texture["sampler"])
             looks = read_sampler(sampler, self.note)
