@@ -469,8 +469,12 @@ def a_full_table_says_so(t):
 
 
 @check(
-    "10.3.kept", task="10.3", points=1, calls=("voxel_hash_insert",), hint="copy the table first"
-    sole="what students can run; the hidden checks find its mistakes as well",
+    "10.3.kept",
+    task="10.3",
+    points=1,
+    calls=("voxel_hash_insert",),
+    hint="copy the table first",
+    sole="what students can run; hidden checks find its mistakes as well",
 )
 def the_old_table_stays(t):
     """Voxels inserted in a table are not in the table that was given."""

@@ -583,7 +583,7 @@ def levels_can_be_chained(t):
     calls=("fit_plenoxels",),
     needs=EARLIER,
     hint="an array of the start has changed: copy it first",
-    sole="what students can run; the hidden checks find its mistakes as well",
+    sole="what students can run; hidden checks find its mistakes as well",
 )
 def the_start_is_left_alone(t):
     """A second fit from the same arrays finds what the first one found."""
