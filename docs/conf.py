@@ -1,13 +1,73 @@
-"""Settings of the book: Sphinx with Markdown, citations from cpp/references.bib."""
+"""Settings of the book: Sphinx with Markdown, citations from cpp/references.bib, docstrings."""
 
 from __future__ import annotations
 
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from pybtex.plugin import register_plugin
+from pybtex.style.formatting.unsrt import Style
+from pybtex.style.labels import BaseLabelStyle
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+import api_pages
+import docstrings
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from sphinx.application import Sphinx
+
 project = "photograd"
 author = "the photograd authors"
-extensions = ["myst_parser", "sphinxcontrib.bibtex"]
+extensions = ["myst_parser", "sphinxcontrib.bibtex", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
 bibtex_bibfiles = ["../cpp/references.bib"]
+bibtex_default_style = "keys"
 exclude_patterns = ["README.md"]
 html_theme = "furo"
 html_title = "photograd"
 myst_enable_extensions = ["dollarmath"]
 myst_heading_anchors = 3
+smartquotes_action = "qe"  # -- stands before options
+
+default_role = "py:obj"
+autodoc_member_order = "bysource"
+autodoc_typehints_format = "short"
+autodoc_preserve_defaults = True
+autodoc_type_aliases = {name: f"photograd.types.{name}" for name in ("Array", "FloatArray")}
+napoleon_numpy_docstring = False
+napoleon_custom_sections = [("Fields", "params_style")]
+napoleon_use_rtype = False
+python_use_unqualified_type_names = True
+toc_object_entries_show_parents = "hide"
+
+
+class KeyLabels(BaseLabelStyle):
+    """The label of a reference is the key under which the sources cite it."""
+
+    def format_labels(self, entries: list[Any]) -> Iterator[str]:
+        """Labels in the order of the entries."""
+        for entry in entries:
+            yield entry.key
+
+
+class KeyStyle(Style):
+    """The plain style with keys as labels."""
+
+    default_label_style = KeyLabels
+
+
+register_plugin("pybtex.style.formatting", "keys", KeyStyle)
+
+
+def _edit_docstring(
+    _app: Sphinx, _what: str, _name: str, _thing: object, _options: object, lines: list[str]
+) -> None:
+    lines[:] = docstrings.to_rst(lines)
+
+
+def setup(app: Sphinx) -> None:
+    """Write the pages of the reference before Sphinx looks for pages."""
+    app.connect("config-inited", lambda *_: api_pages.write())
+    app.connect("autodoc-process-docstring", _edit_docstring, priority=100)  # before napoleon

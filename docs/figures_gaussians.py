@@ -80,7 +80,7 @@ def main(folder: Path = IMAGES) -> None:
     rows: dict[int, tuple[ViewGradients, Array]] = {}
     frames = []
     while True:
-        scene, views = fit.model, fit.pixels
+        scene, views = fit.model, fit.data
         assert isinstance(scene, GaussianScene)
         assert isinstance(views, TrainingViews)
         camera = views.views[VIEW].camera

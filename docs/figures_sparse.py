@@ -23,10 +23,10 @@ from photograd.capture.view import View
 from photograd.fields import DenseGrid, SparseSh
 from photograd.fields.active_voxels import ActiveVoxels
 from photograd.fields.march import MarchPolicy
+from photograd.fitting import FitOptions
 from photograd.fitting.evaluate import evaluate, render_camera
 from photograd.fitting.loop import Fit
 from photograd.fitting.model import Model
-from photograd.fitting.options import FitOptions
 from photograd_course.color import srgb_encode, unpremultiply
 from photograd_course.row_map import RowMap
 from photograd_course.viz import save_figure, style
@@ -94,11 +94,11 @@ def prune(fit: Fit, *, dilate: bool) -> None:
     """Drop all voxels below the threshold; `refine` dilates by one, which is undone if unwanted."""
     field = fit.model
     assert isinstance(field, SparseSh)
-    weight = field.greatest_weights(fit.pixels.batches(1 << 20))
+    weight = field.greatest_weights(fit.data.batches(1 << 20))
     if dilate:
         rows = field.refine(0, {"weight": weight, "threshold": np.array(THRESHOLD)})
         assert rows is not None
-        fit.optimiser.apply_row_map(rows, field.params)
+        fit.optimizer.apply_row_map(rows, field.params)
         return
     mask = np.zeros(field.active.shape, bool)
     i, j, k = field.active.voxels[weight >= THRESHOLD].T
@@ -110,7 +110,7 @@ def prune(fit: Fit, *, dilate: bool) -> None:
     fit.model = SparseSh(
         after, density, coefficients, field.policy, background_density=field.background_density
     )
-    fit.optimiser.apply_row_map(RowMap(source, len(field.active)), fit.model.params)
+    fit.optimizer.apply_row_map(RowMap(source, len(field.active)), fit.model.params)
 
 
 def run(name: str, photographs: Capture, policy: str) -> Curve:

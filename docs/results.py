@@ -19,7 +19,7 @@ from typing import Any
 ROOT = Path(__file__).resolve().parent.parent
 RESULTS = ROOT / "docs" / "results.md"
 CAPTURES = {"nerf_synthetic_chair": 1, "banana": 2, "opensfm_berlin": 8}  # name -> downscale
-CONTENDERS = (
+CANDIDATES = (
     "dense_grid:64",
     "dense_grid:128",
     "dense_grid:192",
@@ -51,20 +51,20 @@ def command(*words: str) -> dict[str, Any]:
     return {**result, "wall": os.times().elapsed - before.elapsed, "gib": usage.ru_maxrss / 2**20}
 
 
-def model_folder(out: Path, name: str, contender: str) -> Path:
+def model_folder(out: Path, name: str, candidate: str) -> Path:
     """Where the model of a row lies."""
-    return out / f"{name}_{contender.replace(':', '_')}"
+    return out / f"{name}_{candidate.replace(':', '_')}"
 
 
-def fit_row(data: Path, out: Path, name: str, contender: str) -> str:
+def fit_row(data: Path, out: Path, name: str, candidate: str) -> str:
     """Fit a row's model; the row as far as its memory."""
-    representation, size = contender.split(":")
+    representation, size = candidate.split(":")
     option = "--gaussians" if representation == "gaussians" else "--resolution"
     fit = command(
         "fit",
         str(data / name),
         "--out",
-        str(model_folder(out, name, contender)),
+        str(model_folder(out, name, candidate)),
         "--downscale",
         str(CAPTURES[name]),
         "--representation",
@@ -78,9 +78,9 @@ def fit_row(data: Path, out: Path, name: str, contender: str) -> str:
     )
 
 
-def score(data: Path, out: Path, name: str, contender: str) -> str:
+def score(data: Path, out: Path, name: str, candidate: str) -> str:
     """The rest of the row."""
-    model = model_folder(out, name, contender)
+    model = model_folder(out, name, candidate)
     found = command(
         "evaluate",
         str(model),
@@ -109,7 +109,7 @@ def main() -> None:
     parser.add_argument("data", type=Path)
     parser.add_argument("--out", type=Path, default=ROOT / "out" / "results")
     parser.add_argument("--captures", nargs="*", default=list(CAPTURES))
-    parser.add_argument("--contenders", nargs="*", default=list(CONTENDERS))
+    parser.add_argument("--candidates", nargs="*", default=list(CANDIDATES))
     parser.add_argument("--score", action="store_true", help="score the models in OUT again")
     given = parser.parse_args()
     text = RESULTS.read_text() if RESULTS.exists() else "<!-- table -->\n<!-- end -->\n"
@@ -117,10 +117,10 @@ def main() -> None:
     table, tail = rest.split("<!-- end -->", 1)
     rows = stored_rows(table)
     for name in given.captures:
-        for contender in given.contenders:
-            place = given.data, given.out, name, contender
+        for candidate in given.candidates:
+            place = given.data, given.out, name, candidate
             if given.score:
-                representation, size = contender.split(":")
+                representation, size = candidate.split(":")
                 known = rows[name, representation, f"{int(size):,}"]
                 fit = "|".join(known.split("|")[:7]) + "|"
             else:

@@ -18,9 +18,10 @@ from photograd._compiled import _core
 from photograd.capture.capture import Capture
 from photograd.capture.load import load_capture
 from photograd.commands.fit import run_with_bar
+from photograd.fields.voxel_field import PRUNE_AT
 from photograd.fitting.compare import frame_seconds, stored_bytes
 from photograd.fitting.evaluate import evaluate
-from photograd.fitting.loop import PRUNE_AT, Fit
+from photograd.fitting.loop import Fit
 from photograd.fitting.model import Model, load_model
 from photograd.fitting.options import options_for
 

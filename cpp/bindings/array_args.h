@@ -11,6 +11,7 @@
 #include <pybind11/numpy.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -20,6 +21,7 @@
 #include <vector>
 
 #include "photograd/core/errors.h"
+#include "photograd/core/parallel.h"
 #include "photograd/core/world_limit.h"
 
 namespace photograd {
@@ -45,8 +47,14 @@ public:
     const T* within(const char* name, const py::array& array, std::string_view axes, double most) {
         const T* values = in<T>(name, array, axes);
         const T limit = static_cast<T>(std::min(most, double(std::numeric_limits<T>::max())));
-        std::int64_t bad = 0;
-        for (std::int64_t i = 0; i < array.size(); ++i) bad += !(std::abs(values[i]) <= limit);
+        constexpr std::int64_t piece = 1 << 16;
+        std::atomic<std::int64_t> bad = 0;
+        parallel_for((array.size() + piece - 1) / piece, [&](std::int64_t p) {
+            int count = 0;  // a sum of integers turns into lanes
+            for (std::int64_t i = p * piece; i < std::min(array.size(), (p + 1) * piece); ++i)
+                count += !(std::abs(values[i]) <= limit);
+            bad += count;
+        });
         if (bad > 0)
             refuse_numbers(name, array, bad, most,
                            [&](std::int64_t i) { return !(std::abs(values[i]) <= limit); });

@@ -12,10 +12,7 @@ template <int K, class Value>
 py::array profile_values(const char* function, const py::array& rows, Value&& value) {
     ArrayArgs args(function);
     const double* row = args.in<double>("rows", rows, "N " + std::to_string(K));
-    py::array_t<double> out(args.size("N"));
-    double* to = out.mutable_data();
-    for_each_row(args.size("N"), [&](std::int64_t n) { to[n] = value(row + K * n); });
-    return out;
+    return value_rows<double>(args, [&](std::int64_t n) { return value(row + K * n); });
 }
 
 /// Adds to d_rows (N, K) for d_values (N,).

@@ -59,22 +59,12 @@ void bind_environment(py::module_& m) {
                                    "Samples directions towards the bright parts of a map.")
         .def(py::init(&make_sampler), t, py::arg("uniform_share"),
              "Texels (H, 2 H, 3); uniform_share of the samples go everywhere alike.")
-        .def("sample",
-             environment_rows(
-                 "sample",
-                 [](auto real, auto&... given) { return sample_rows<decltype(real)>(given...); }),
-             t, r, py::arg("points"), py::arg("u2"),
-             "(direction (N, 3), distance (N,), radiance (N, 3), pdf (N,)).")
-        .def("radiance",
-             environment_rows(
-                 "radiance",
-                 [](auto real, auto&... given) { return radiance_rows<decltype(real)>(given...); }),
-             t, r, py::arg("points"), py::arg("w"), "What arrives from w, (N, 3).")
-        .def("pdf",
-             environment_rows(
-                 "pdf",
-                 [](auto real, auto&... given) { return pdf_rows<decltype(real)>(given...); }),
-             t, r, py::arg("points"), py::arg("w"), "Density of `sample` over solid angle, (N,).")
+        .def("sample", environment_rows("sample", call_sample_rows), t, r, py::arg("points"),
+             py::arg("u2"), "(direction (N, 3), distance (N,), radiance (N, 3), pdf (N,)).")
+        .def("radiance", environment_rows("radiance", call_radiance_rows), t, r, py::arg("points"),
+             py::arg("w"), "What arrives from w, (N, 3).")
+        .def("pdf", environment_rows("pdf", call_pdf_rows), t, r, py::arg("points"), py::arg("w"),
+             "Density of `sample` over solid angle, (N,).")
         .def("radiance_backward", &backward, t, r, py::arg("points"), py::arg("w"),
              py::arg("d_radiance"), py::arg("d_texels"),
              "Adds dL/dtexels to d_texels (H, 2 H, 3) and returns it.")

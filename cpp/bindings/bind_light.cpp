@@ -141,22 +141,11 @@ void bind_sampled_light(py::module_& m) {
         m, "SampledLight",
         "A light. parameters (P,), constants (C,); points (N, 3) in the world, directions w "
         "(N, 3) of unit length, from the points.")
-        .def("sample",
-             light_rows(
-                 "sample",
-                 [](auto real, auto&... given) { return sample_rows<decltype(real)>(given...); }),
-             p, c, py::arg("points"), py::arg("u2"),
-             "(direction (N, 3), distance (N,), radiance (N, 3), pdf (N,)).")
-        .def("radiance",
-             light_rows(
-                 "radiance",
-                 [](auto real, auto&... given) { return radiance_rows<decltype(real)>(given...); }),
-             p, c, py::arg("points"), py::arg("w"),
-             "What arrives at the points from w, (N, 3); 0 of delta lights.")
-        .def("pdf",
-             light_rows("pdf", [](auto real,
-                                  auto&... given) { return pdf_rows<decltype(real)>(given...); }),
-             p, c, py::arg("points"), py::arg("w"),
+        .def("sample", light_rows("sample", call_sample_rows), p, c, py::arg("points"),
+             py::arg("u2"), "(direction (N, 3), distance (N,), radiance (N, 3), pdf (N,)).")
+        .def("radiance", light_rows("radiance", call_radiance_rows), p, c, py::arg("points"),
+             py::arg("w"), "What arrives at the points from w, (N, 3); 0 of delta lights.")
+        .def("pdf", light_rows("pdf", call_pdf_rows), p, c, py::arg("points"), py::arg("w"),
              "Density of `sample` over solid angle, (N,); 0 of delta lights.")
         .def("radiance_backward", &light_backward<false>, p, c, py::arg("points"), py::arg("w"),
              py::arg("d_radiance"), py::arg("d_parameters"),

@@ -2,8 +2,6 @@
 // into, arrays that the Python face (photograd.textures) makes.
 #include <pybind11/stl.h>
 
-#include <atomic>
-#include <cmath>
 #include <memory>
 #include <optional>
 #include <variant>
@@ -22,6 +20,10 @@ namespace {
 
 constexpr std::int64_t largest_side = 1 << 16;
 constexpr std::int64_t most_points = std::int64_t{1} << 31;
+
+std::string text_of(TextureShape shape) {
+    return std::to_string(shape.height) + " x " + std::to_string(shape.width);
+}
 
 void check_side(const ArrayArgs& args, std::int64_t height, std::int64_t width,
                 const char* name = "shape") {
@@ -48,27 +50,9 @@ ImageView<const R> texture_in(ArrayArgs& args, const py::array& texture) {
 /// Numbers of points (N, ...), all of them finite: a NaN has no texels.
 template <class R>
 const R* finite_in(ArrayArgs& args, const char* name, const py::array& array, const char* axes) {
-    const R* values = args.in<R>(name, array, axes);
-    const std::int64_t size = array.size(), rows = args.size("N");
-    if (rows >= most_points) args.range(name, "fewer than 2^31 points", std::to_string(rows));
-    constexpr std::int64_t piece = 1 << 16;
-    std::vector<std::int64_t> bad(static_cast<std::size_t>((size + piece - 1) / piece), 0);
-    parallel_for(static_cast<std::int64_t>(bad.size()), [&](std::int64_t p) {
-        // x - x is 0 for finite x and NaN otherwise; a sum of integers turns into lanes.
-        int count = 0;
-        for (std::int64_t i = p * piece; i < std::min(size, (p + 1) * piece); ++i)
-            count += values[i] - values[i] == R(0) ? 0 : 1;
-        bad[static_cast<std::size_t>(p)] = count;
-    });
-    std::int64_t total = 0;
-    for (const std::int64_t count : bad) total += count;
-    if (total > 0) {
-        std::int64_t first = 0;
-        while (std::isfinite(values[first])) ++first;
-        args.range(name, "finite numbers",
-                   std::to_string(total) + " that are not, the first in point " +
-                       std::to_string(first / (size / rows)));
-    }
+    const R* values = args.finite<R>(name, array, axes);
+    if (args.size("N") >= most_points)
+        args.range(name, "fewer than 2^31 points", std::to_string(args.size("N")));
     return values;
 }
 
@@ -122,34 +106,34 @@ std::vector<ImageView<T>> mips_in(const char* function, const char* name,
         if (k >= shapes.size() || shape.height != wanted.height || shape.width != wanted.width ||
             (k > 0 && channels != views[0].channels))
             args.range(label, "the shapes that build_mips makes",
-                       std::to_string(shape.height) + " x " + std::to_string(shape.width) + " x " +
-                           std::to_string(channels));
+                       text_of(shape) + " x " + std::to_string(channels));
         views.push_back({texels, shape, channels});
     }
     if (views.empty()) fail(ErrorKind::range, function, name, "at least one level", "none");
     return views;
 }
 
-void build(std::vector<py::array> mips) {
-    if (mips.empty()) fail(ErrorKind::range, "build_mips", "mips", "at least one level", "none");
-    dispatch_real("build_mips", "texture", mips[0], [&](auto real, ArrayArgs&) {
-        using R = decltype(real);
-        const auto views = mips_in<R, R>("build_mips", "mips", mips);
+/// Calls body(views) with checked views of levels that it may write to, without the interpreter.
+template <class Body>
+void with_mips(const char* function, const char* name, std::vector<py::array>& levels, Body body) {
+    if (levels.empty()) fail(ErrorKind::range, function, name, "at least one level", "none");
+    dispatch_real(function, name, levels[0], [&](auto real, ArrayArgs&) {
+        const auto views = mips_in<decltype(real), decltype(real)>(function, name, levels);
         const py::gil_scoped_release release;
-        for (std::size_t k = 0; k + 1 < views.size(); ++k)
-            halve<R>({views[k].texels, views[k].shape, views[k].channels}, views[k + 1]);
+        body(views);
+    });
+}
+
+void build(std::vector<py::array> mips) {
+    with_mips("build_mips", "mips", mips, [](const auto& views) {
+        for (std::size_t k = 0; k + 1 < views.size(); ++k) halve(read_only(views[k]), views[k + 1]);
     });
 }
 
 void build_backward(std::vector<py::array> d_mips) {
-    const char* name = "build_mips_backward";
-    if (d_mips.empty()) fail(ErrorKind::range, name, "d_mips", "at least one level", "none");
-    dispatch_real(name, "d_mips", d_mips[0], [&](auto real, ArrayArgs&) {
-        using R = decltype(real);
-        const auto views = mips_in<R, R>(name, "d_mips", d_mips);
-        const py::gil_scoped_release release;
+    with_mips("build_mips_backward", "d_mips", d_mips, [](const auto& views) {
         for (std::size_t k = views.size() - 1; k > 0; --k)
-            halve_backward<R>({views[k].texels, views[k].shape, views[k].channels}, views[k - 1]);
+            halve_backward(read_only(views[k]), views[k - 1]);
     });
 }
 
@@ -201,11 +185,8 @@ void sample_mips_any_backward(std::vector<py::array> mips, const py::array& uv,
     });
 }
 
-using AnyPlan =
-    std::variant<std::unique_ptr<TexturePlan<float>>, std::unique_ptr<TexturePlan<double>>>;
-
 struct BoundPlan {
-    AnyPlan plan;
+    std::variant<std::unique_ptr<TexturePlan<float>>, std::unique_ptr<TexturePlan<double>>> plan;
 };
 
 BoundPlan make_plan(std::int64_t height, std::int64_t width, const py::array& uv,
@@ -235,8 +216,7 @@ double plan_loss(const TexturePlan<R>& plan, const py::array& texture, py::array
     if (view.shape.height != plan.shape().height || view.shape.width != plan.shape().width ||
         view.channels != plan.channels())
         args.range("texture", "the shape that the plan was made for",
-                   std::to_string(view.shape.height) + " x " + std::to_string(view.shape.width) +
-                       " x " + std::to_string(view.channels));
+                   text_of(view.shape) + " x " + std::to_string(view.channels));
     const py::gil_scoped_release release;
     return plan.loss_and_gradient(view.texels, d_texels);
 }
@@ -249,8 +229,7 @@ std::pair<ImageView<const R>, const R*> pictures_in(ArrayArgs& args, const py::a
     const R* second = args.in<R>("y", y, "H W C");
     const TextureShape shape = checked_shape(args, "x");
     if (std::min(shape.height, shape.width) < ssim_window)
-        args.range("x", "at least 11 x 11 pixels",
-                   std::to_string(shape.height) + " x " + std::to_string(shape.width));
+        args.range("x", "at least 11 x 11 pixels", text_of(shape));
     return {{first, shape, static_cast<int>(args.size("C"))}, second};
 }
 

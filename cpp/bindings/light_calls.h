@@ -90,6 +90,17 @@ py::array pdf_rows(ArrayArgs& args, const L& light, const py::array& points, con
         args, [&](std::int64_t n) { return light_pdf(light, vec3_at(x, n), vec3_at(in, n)); });
 }
 
+// The functions above as objects, of a number of their type.
+inline constexpr auto call_sample_rows = [](auto real, auto&... given) {
+    return sample_rows<decltype(real)>(given...);
+};
+inline constexpr auto call_radiance_rows = [](auto real, auto&... given) {
+    return radiance_rows<decltype(real)>(given...);
+};
+inline constexpr auto call_pdf_rows = [](auto real, auto&... given) {
+    return pdf_rows<decltype(real)>(given...);
+};
+
 /// Adds the derivative of one row to d_row, zeros at first; `of_sample`: w is a direction that
 /// `sample` gave.
 template <class R, class L>

@@ -13,6 +13,7 @@ from typing import Any, Literal, TypeVar, get_args, get_origin, get_type_hints
 import numpy as np
 from numpy.typing import NDArray
 
+from photograd._arrays import shortened
 from photograd.errors import DtypeError, Error, RangeError, message
 
 Place = Callable[[tuple[int, ...]], str]
@@ -61,7 +62,7 @@ def from_plain(function: str, kind: type[T], data: object) -> T:
         RangeError: a field that is unknown or missing, and whatever `kind` itself refuses.
     """
     if not isinstance(data, Mapping):
-        raise DtypeError(message(function, kind.__name__, "an object", _told(data)))
+        raise DtypeError(message(function, kind.__name__, "an object", shortened(data)))
     hints = get_type_hints(kind)
     known: Any = kind
     needed = {f.name for f in fields(known) if f.default is MISSING}
@@ -88,22 +89,17 @@ def typed(function: str, name: str, hint: Any, value: Any) -> Any:
     if get_origin(hint) is Literal:
         if not isinstance(value, str) or value not in get_args(hint):
             expected = f"one of {list(get_args(hint))}"
-            raise RangeError(message(function, name, expected, _told(value)))
+            raise RangeError(message(function, name, expected, shortened(value)))
         return value
     if get_origin(hint) is tuple:
         members = get_args(hint)
         if not isinstance(value, list | tuple) or len(value) != len(members):
-            raise DtypeError(message(function, name, f"{len(members)} values", _told(value)))
+            raise DtypeError(message(function, name, f"{len(members)} values", shortened(value)))
         return tuple(
             typed(function, name, member, each) for member, each in zip(members, value, strict=True)
         )
     accepted = (int, float) if hint is float else hint
     if not isinstance(value, accepted) or (isinstance(value, bool) and hint is not bool):
         words = {int: "a whole number", float: "a number", bool: "true or false"}
-        raise DtypeError(message(function, name, words.get(hint, "a text"), _told(value)))
+        raise DtypeError(message(function, name, words.get(hint, "a text"), shortened(value)))
     return value
-
-
-def _told(value: object) -> str:
-    text = repr(value)
-    return text if len(text) < 60 else text[:57] + "..."

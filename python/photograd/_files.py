@@ -34,7 +34,7 @@ def leads_outside(name: str) -> bool:
 
 def inside(
     function: str,
-    place: str,
+    where: str,
     folder: Path,
     name: str,
     *,
@@ -45,7 +45,7 @@ def inside(
     """The path of what `name` says, relative to `folder`.
 
     Args:
-        function, place: on whose behalf the error speaks, and where the name stands.
+        function, where: on whose behalf the error speaks, and where the name stands.
         folder: where the file that says so lies.
         name: as it stands in that file.
         allow_outside: also a name that leads out of the folder.
@@ -59,7 +59,7 @@ def inside(
     refused = not name or leads_outside(name) or (portable and ":" in name)
     if refused and not allow_outside:
         shown = name if len(name) <= 80 else f"{name[:77]}..."
-        raise IoError(message(function, place, f"a file in {folder}", repr(shown), remedy))
+        raise IoError(message(function, where, f"a file in {folder}", repr(shown), remedy))
     return folder / name
 
 

@@ -21,12 +21,12 @@ class JsonNode:
 
     Attributes:
         function: the reader on whose behalf errors speak.
-        place: file and path inside it, for example ``"transforms.json: frames[3]"``.
+        where: file and path inside it, for example ``"transforms.json: frames[3]"``.
         value: what `json` returned.
     """
 
     function: str
-    place: str
+    where: str
     value: object
 
     def __contains__(self, key: str) -> bool:
@@ -42,8 +42,8 @@ class JsonNode:
             raise self.wrong("an object")
         if self.value.get(key) is None:
             known = ", ".join(sorted(map(str, self.value))[:12]) or "nothing"
-            raise IoError(message(self.function, self.place, f"a member '{key}'", f"only {known}"))
-        return JsonNode(self.function, f"{self.place}: {key}", self.value[key])
+            raise IoError(message(self.function, self.where, f"a member '{key}'", f"only {known}"))
+        return JsonNode(self.function, f"{self.where}: {key}", self.value[key])
 
     def members(self) -> Iterator[tuple[str, JsonNode]]:
         """Names and values of an object, in the order of the file.
@@ -54,7 +54,7 @@ class JsonNode:
         if not isinstance(self.value, dict):
             raise self.wrong("an object")
         for key, value in self.value.items():
-            yield key, JsonNode(self.function, f"{self.place}: {key}", value)
+            yield key, JsonNode(self.function, f"{self.where}: {key}", value)
 
     def items(self) -> list[JsonNode]:
         """The elements of an array.
@@ -65,7 +65,7 @@ class JsonNode:
         if not isinstance(self.value, list):
             raise self.wrong("an array")
         return [
-            JsonNode(self.function, f"{self.place}[{index}]", value)
+            JsonNode(self.function, f"{self.where}[{index}]", value)
             for index, value in enumerate(self.value)
         ]
 
@@ -93,7 +93,7 @@ class JsonNode:
         except OverflowError:
             number = math.inf
         if not math.isfinite(number):
-            raise RangeError(message(self.function, self.place, "a finite number", number))
+            raise RangeError(message(self.function, self.where, "a finite number", number))
         return number
 
     def count(self) -> int:
@@ -104,7 +104,7 @@ class JsonNode:
         """
         number = self.number()
         if number != round(number) or not 1 <= number < 2**31:
-            raise RangeError(message(self.function, self.place, "a positive whole number", number))
+            raise RangeError(message(self.function, self.where, "a positive whole number", number))
         return int(number)
 
     def numbers(self, *shapes: tuple[int, ...]) -> FloatArray:
@@ -128,7 +128,7 @@ class JsonNode:
         """The error that says that something else was expected here."""
         text = repr(self.value)
         got = f"{type(self.value).__name__} {text if len(text) < 60 else text[:57] + '...'}"
-        return IoError(message(self.function, self.place, expected, got))
+        return IoError(message(self.function, self.where, expected, got))
 
 
 def _nesting_matches(value: object, shape: tuple[int, ...]) -> bool:

@@ -18,7 +18,7 @@ from plyfile import PlyData
 from photograd.errors import IoError, message
 
 Table = NDArray[Any]
-LONGEST_HEADER = 1 << 16
+MAX_HEADER_BYTES = 1 << 16
 _COUNT = re.compile(rb"^\s*element\s+(\S+)\s+(\d+)\s*$", re.MULTILINE)
 
 
@@ -32,7 +32,7 @@ def read_ply(function: str, path: Path) -> dict[str, Table]:
     Raises:
         IoError: no file, a damaged one, or a header that promises more than the file holds.
     """
-    header = read_file(function, path, LONGEST_HEADER).partition(b"end_header")[0]
+    header = read_file(function, path, MAX_HEADER_BYTES).partition(b"end_header")[0]
     size = path.stat().st_size
     for name, digits in _COUNT.findall(header):
         # The shortest row there is takes a byte.

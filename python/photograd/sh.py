@@ -13,8 +13,9 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from photograd._arrays import Arguments
 from photograd._compiled import _core
-from photograd.errors import RangeError, ShapeError, message
+from photograd.errors import RangeError, message
 from photograd.types import Array
 
 Convention = Literal["splat", "no_phase"]
@@ -63,9 +64,11 @@ def evaluate(coefficients: Array, directions: Array, *, out: Array | None = None
     Raises:
         DtypeError, RangeError, ShapeError: arrays other than these.
     """
-    n, _, channels = _three_axes("sh.evaluate", coefficients)
-    values = np.empty((n, channels), coefficients.dtype) if out is None else out
-    _core.sh_colors(_whole(directions), _whole(coefficients), values)
+    call = Arguments("sh.evaluate")
+    coefficients = call.array("coefficients", coefficients, ("N", "K", "C"), finite=False)
+    directions = call.array("directions", directions, ("N", 3), finite=False)
+    values = np.empty(coefficients.shape[::2], coefficients.dtype) if out is None else out
+    call.run(_core.sh_colors, directions, coefficients, values)
     return values
 
 
@@ -76,22 +79,20 @@ def evaluate_backward(
     *,
     out: tuple[Array, Array] | None = None,
 ) -> tuple[Array, Array]:
-    """Derivatives of a loss by the coefficients (N, K, C) and by the directions (N, 3).
+    """Derivatives of a loss with respect to coefficients (N, K, C) and directions (N, 3).
 
-    The derivative by a direction is that of the polynomials, before any normalisation. `out`, a
-    pair of such arrays, is overwritten; by default they are new.
+    That with respect to a direction is the derivative of the polynomials, before
+    normalization. `out`, a pair of such arrays, is overwritten; by default they are new.
     """
-    if out is None:
-        out = np.empty(coefficients.shape, coefficients.dtype), np.empty_like(_whole(directions))
-    d_coefficients, d_directions = out
-    _core.sh_colors_backward(
-        _whole(directions),
-        _whole(coefficients),
-        _whole(d_values),
-        d_directions,
-        d_coefficients,
-        add=False,
+    call = Arguments("sh.evaluate_backward")
+    coefficients = call.array("coefficients", coefficients, ("N", "K", "C"), finite=False)
+    directions = call.array("directions", directions, ("N", 3), finite=False)
+    d_values = call.array("d_values", d_values, ("N", "C"), finite=False)
+    d_coefficients, d_directions = (
+        (np.empty_like(coefficients), np.empty_like(directions)) if out is None else out
     )
+    arrays = (directions, coefficients, d_values, d_directions, d_coefficients)
+    call.run(_core.sh_colors_backward, *arrays, add=False)
     return d_coefficients, d_directions
 
 
@@ -181,15 +182,3 @@ def from_convention(coefficients: Array, convention: Convention) -> Array:
 def to_convention(coefficients: Array, convention: Convention) -> Array:
     """Our coefficients (..., K, C) in another convention; the inverse of `from_convention`."""
     return from_convention(coefficients, convention)  # a change of signs is its own inverse
-
-
-def _three_axes(function: str, coefficients: Array) -> tuple[int, int, int]:
-    if coefficients.ndim != 3:
-        shape = coefficients.shape
-        raise ShapeError(message(function, "coefficients", "shape (N, K, C)", f"shape {shape}"))
-    n, k, c = coefficients.shape
-    return n, k, c
-
-
-def _whole(array: Array) -> Array:
-    return np.ascontiguousarray(array)

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from photograd._checkpoint import load_checkpoint
 from photograd._compiled import _core
 from photograd.capture.write import write_blender_capture
 from photograd.commands.version_info import describe_core
-from photograd.fitting.checkpoint import load_checkpoint
 from photograd.images.read import read_image
 from PIL import Image
 

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from photograd._checkpoint import load_checkpoint
 from photograd.capture.load import load_capture
 from photograd.errors import RangeError
-from photograd.fitting.checkpoint import load_checkpoint
-from photograd.fitting.compare import Contender, Score, markdown, parse_contenders
+from photograd.fitting.compare import Candidate, Score, markdown, parse_candidates
 from photograd.fitting.evaluate import evaluate
 from photograd.fitting.loop import Fit
 from photograd.fitting.model import load_model
@@ -21,14 +21,14 @@ FEW = ("--steps", 15, "--rays", 256, "--seed", 1)
 PAIR = "dense_grid:8,dense_grid:16"
 
 
-def test_two_contenders_are_fitted_scored_and_drawn(
+def test_two_candidates_are_fitted_scored_and_drawn(
     photograd: Photograd, capture_folder: Path, tmp_path: Path
 ) -> None:
-    words = ("compare", capture_folder, "--contenders", PAIR, "--out", tmp_path, *FEW, "--json")
+    words = ("compare", capture_folder, "--candidates", PAIR, "--out", tmp_path, *FEW, "--json")
     done = photograd(*words)
     assert done.code == 0, done.err
     coarse, fine = done.result()["scores"]
-    assert [coarse["contender"], fine["contender"]] == PAIR.split(",")
+    assert [coarse["candidate"], fine["candidate"]] == PAIR.split(",")
     for score, resolution in ((coarse, 8), (fine, 16)):
         folder = tmp_path / capture_folder.name / f"dense_grid_{resolution}"
         shape = load_checkpoint(folder).params["values"].shape
@@ -42,7 +42,7 @@ def test_two_contenders_are_fitted_scored_and_drawn(
     assert table.count("dense_grid") == 2
     assert f"**{max(coarse['psnr'], fine['psnr']):.2f}**" in table
     pictures = [Path(name) for name in done.result()["pictures"]]
-    assert [path.name for path in pictures] == [f"{capture_folder.name}.png", "ranking.png"]
+    assert [path.name for path in pictures] == [f"{capture_folder.name}.png", "quality.png"]
     for picture in pictures:
         assert read_image(picture)[..., :3].std() > 0.05
 
@@ -56,13 +56,13 @@ def test_validation_scores_training_views_that_the_fit_did_not_see(
     photograd: Photograd, capture_folder: Path, tmp_path: Path
 ) -> None:
     whole = load_capture(capture_folder)
-    split = whole.validating()
+    split = whole.with_validation_split()
     names = [{view.name for view in part} for part in (split.train, split.test, whole.test)]
     assert names[0] | names[1] == {view.name for view in whole.train}
     assert all(names)
     assert not names[0] & names[1]
     assert not names[1] & names[2]
-    words = ("compare", capture_folder, "--contenders", "dense_grid:8", "--out", tmp_path, *FEW)
+    words = ("compare", capture_folder, "--candidates", "dense_grid:8", "--out", tmp_path, *FEW)
     done = photograd(*words, "--validate", "--json")
     assert done.code == 0, done.err
     (score,) = done.result()["scores"]
@@ -76,7 +76,7 @@ def test_validation_scores_training_views_that_the_fit_did_not_see(
 def test_a_folder_of_other_options_is_not_taken_for_these(
     photograd: Photograd, capture_folder: Path, tmp_path: Path
 ) -> None:
-    words = ("compare", capture_folder, "--contenders", "dense_grid:8", "--out", tmp_path)
+    words = ("compare", capture_folder, "--candidates", "dense_grid:8", "--out", tmp_path)
     assert photograd(*words, *FEW).code == 0
     other = photograd(*words, "--steps", 16, "--rays", 256, "--seed", 1)
     assert other.code == 1
@@ -87,7 +87,7 @@ def test_a_built_in_scene_is_photographed_once(photograd: Photograd, tmp_path: P
     words = (
         "compare",
         "flat_walls",
-        "--contenders",
+        "--candidates",
         "dense_grid:8",
         "--out",
         tmp_path,
@@ -107,15 +107,15 @@ def test_a_built_in_scene_is_photographed_once(photograd: Photograd, tmp_path: P
     assert photographs.stat().st_mtime_ns == made
 
 
-def test_a_dense_and_a_sparse_contender(
+def test_a_dense_and_a_sparse_candidate(
     photograd: Photograd, capture_folder: Path, tmp_path: Path
 ) -> None:
     pair = "dense_grid:16,sparse_sh:16"
-    words = ("compare", capture_folder, "--contenders", pair, "--out", tmp_path, *FEW, "--json")
+    words = ("compare", capture_folder, "--candidates", pair, "--out", tmp_path, *FEW, "--json")
     done = photograd(*words)
     assert done.code == 0, done.err
     dense, sparse = done.result()["scores"]
-    assert [dense["contender"], sparse["contender"]] == pair.split(",")
+    assert [dense["candidate"], sparse["candidate"]] == pair.split(",")
     saved = load_checkpoint(tmp_path / capture_folder.name / "sparse_sh_16")
     assert sparse["parameter_bytes"] >= sum(a.nbytes for a in saved.params.values()) > 0
     assert 5 < sparse["psnr"] < 60
@@ -132,15 +132,15 @@ def test_a_dense_and_a_sparse_contender(
         ("dens_grid:8", "did you mean 'dense_grid'"),
     ],
 )
-def test_contenders_that_cannot_be(text: str, words: str) -> None:
+def test_candidates_that_cannot_be(text: str, words: str) -> None:
     with pytest.raises(RangeError, match=words):
-        parse_contenders(text)
+        parse_candidates(text)
 
 
-def test_contenders_are_read() -> None:
-    assert parse_contenders("dense_grid:8, dense_grid:16") == [
-        Contender("dense_grid", 8),
-        Contender("dense_grid", 16),
+def test_candidates_are_read() -> None:
+    assert parse_candidates("dense_grid:8, dense_grid:16") == [
+        Candidate("dense_grid", 8),
+        Candidate("dense_grid", 16),
     ]
 
 
@@ -151,8 +151,8 @@ def test_neither_folder_nor_scene(photograd: Photograd, tmp_path: Path) -> None:
 
 
 def test_the_best_of_each_capture_is_bold() -> None:
-    def score(capture: str, contender: str, psnr: float) -> Score:
-        return Score(capture, contender, psnr, 0.9, 1 << 20, 12.3, 45.6, 2, "8 held-out views")
+    def score(capture: str, candidate: str, psnr: float) -> Score:
+        return Score(capture, candidate, psnr, 0.9, 1 << 20, 12.3, 45.6, 2, "8 held-out views")
 
     text = markdown([score("a", "x", 30.0), score("a", "y", 20.0), score("b", "x", 25.0)])
     assert "| a | x | **30.00** | 0.900 | 1.0 | 12 | 46 |" in text
@@ -164,10 +164,10 @@ def test_the_best_of_each_capture_is_bold() -> None:
 def test_gaussians_stand_beside_grids(
     photograd: Photograd, capture_folder: Path, tmp_path: Path
 ) -> None:
-    words = ("--contenders", "dense_grid:8,gaussians:120", "--out", tmp_path, *FEW, "--json")
+    words = ("--candidates", "dense_grid:8,gaussians:120", "--out", tmp_path, *FEW, "--json")
     done = photograd("compare", capture_folder, *words)
     assert done.code == 0, done.err
     score = done.result()["scores"][1]
-    assert score["contender"] == "gaussians:120"
+    assert score["candidate"] == "gaussians:120"
     assert score["parameter_bytes"] == 4 * 120 * (3 + 3 + 4 + 1 + 3 * 16)
     assert 5 < score["psnr"] < 60

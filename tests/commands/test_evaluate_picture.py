@@ -9,7 +9,7 @@ import pytest
 from photograd.capture.load import load_capture
 from photograd.commands import compare
 from photograd.commands.evaluate import picked_views
-from photograd.fitting.compare import parse_contenders
+from photograd.fitting.compare import parse_candidates
 from photograd.fitting.evaluate import evaluate
 from photograd.fitting.model import load_model
 from photograd_course import viz
@@ -53,7 +53,7 @@ def test_the_border_of_a_lens_is_reported_and_not_drawn_as_an_error(
     assert [view["valid_share"] for view in done.result()["views"]] == shares
     assert "over valid pixels" in done.result()["protocol"]
     result = evaluate(load_model(model_folder), views)
-    labels = parse_contenders("dense_grid:8,dense_grid:16")
+    labels = parse_candidates("dense_grid:8,dense_grid:16")
     compare.draw([result, result], labels, "balls", tmp_path / "compare.png")
     for figure, caption in figures:
         errors = [a.images[0].get_array() for a in figure.axes if a.get_xlabel().endswith("dB")]

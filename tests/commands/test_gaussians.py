@@ -8,13 +8,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 from photograd.capture.orbit import orbit_cameras
-from photograd.commands.fit import PLY_NAME, exported
+from photograd.commands.fit import exported
 from photograd.fitting.evaluate import display_image
 from photograd.fitting.loop import Fit
 from photograd.fitting.model import load_model
 from photograd.fitting.options import options_for
 from photograd.images.read import read_image
 from photograd.splats.frames import Presentation, half_turn
+from photograd.splats.model import GaussianScene
 from photograd.splats.orbit import orbit_splats
 from photograd.splats.ply_files import read_gaussian_ply
 from photograd.types import Array
@@ -41,11 +42,11 @@ def test_the_fit_leaves_a_file_for_other_viewers(
     done = photograd("fit", capture_folder, "--out", tmp_path, *FIT, "--json")
     assert done.code == 0, done.err
     assert done.result()["finished"] is True
-    assert done.result()["gaussians"] == str(tmp_path / PLY_NAME)
+    assert done.result()["gaussians"] == str(tmp_path / GaussianScene.exported_as)
     start = "Gaussians: 300 random points in the silhouettes of all views"
     for words in (start, "Gaussians 300", "gaussians.ply: -y is up"):
         assert words in done.err
-    gaussians = read_gaussian_ply(tmp_path / PLY_NAME)
+    gaussians = read_gaussian_ply(tmp_path / GaussianScene.exported_as)
     assert len(gaussians) == 300
     assert gaussians.degree == 3
 
@@ -68,7 +69,7 @@ def walled(tmp_path_factory: pytest.TempPathFactory) -> Path:
     options = options_for("gaussians", steps=60, gaussians=300, degree=2, seed=1)
     job = Fit.start(scene.capture(wall=(0.2, 0.4, 0.7)), options)
     job.run(out)
-    assert exported(job, out) == {"gaussians": str(out / PLY_NAME)}
+    assert exported(job, out) == {"gaussians": str(out / GaussianScene.exported_as)}
     return out
 
 
@@ -76,7 +77,7 @@ def test_the_file_shows_what_the_model_shows(
     photograd: Photograd, walled: Path, tmp_path: Path
 ) -> None:
     shown = frame(photograd, walled, tmp_path / "model.png")
-    from_file = frame(photograd, walled / PLY_NAME, tmp_path / "file.png")
+    from_file = frame(photograd, walled / GaussianScene.exported_as, tmp_path / "file.png")
     assert shown[0, 0, 2] > shown[0, 0, 0] + 30  # the wall, not white
     assert np.ptp(shown) > 100
     model = load_model(walled)
@@ -86,7 +87,9 @@ def test_the_file_shows_what_the_model_shows(
         # Measured: no difference. A value between two levels may be rounded to either.
         assert np.abs(picture - own).max() <= 1
         assert (picture == own).mean() > 0.99
-    turned = frame(photograd, walled / PLY_NAME, tmp_path / "turned.png", "--up", "+y")
+    turned = frame(
+        photograd, walled / GaussianScene.exported_as, tmp_path / "turned.png", "--up", "+y"
+    )
     assert np.abs(turned - own).max() > 50
 
 
@@ -94,12 +97,12 @@ def test_the_file_shows_what_the_model_shows(
 def test_other_formats_show_it_upright_and_name_what_they_drop(
     photograd: Photograd, walled: Path, tmp_path: Path, name: str, degree: int, notes: int
 ) -> None:
-    done = photograd("convert", walled / PLY_NAME, tmp_path / name, "--json")
+    done = photograd("convert", walled / GaussianScene.exported_as, tmp_path / name, "--json")
     dropped = [row["note"] for row in done.result()["notes"] if "dropped" in row["note"]]
     assert sum("background 0." in line for line in dropped) == 1
     assert len(dropped) == notes  # how it was antialiased; harmonics
     assert photograd("convert", tmp_path / name, tmp_path / "back.ply").code == 0
-    g = half_turn(read_gaussian_ply(walled / PLY_NAME))
+    g = half_turn(read_gaussian_ply(walled / GaussianScene.exported_as))
     kept = replace(g, sh=g.sh[:, : (degree + 1) ** 2])
     (expected,) = orbit_splats(kept, 1, presentation=Presentation("+y"), **CIRCLE)
     for file in (name, "back.ply"):

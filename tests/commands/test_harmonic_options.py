@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from photograd.fitting.checkpoint import load_checkpoint
-from photograd.fitting.compare import Contender
-from photograd.fitting.options import FitOptions, options_for
+from photograd._checkpoint import load_checkpoint
+from photograd.fitting import FitOptions, options_for
+from photograd.fitting.compare import Candidate
 
 from tests.commands.conftest import Photograd
 from tests.commands.test_bad_input import FEW, assert_one_line
@@ -30,11 +30,11 @@ def test_harmonics_and_pruning_are_options_of_a_fit(
 
 
 def test_each_representation_has_the_resolution_that_suits_it(photograd: Photograd) -> None:
-    """A contender keeps the size that it is called by."""
+    """A candidate keeps the size that it is called by."""
     assert options_for("sparse_sh").resolution == 256
     assert options_for("sparse_sh", resolution=40).resolution == 40
     assert options_for("dense_grid").resolution == 128
-    assert Contender("sparse_sh", 128).options(FitOptions()).resolution == 128
+    assert Candidate("sparse_sh", 128).options(FitOptions()).resolution == 128
     shown = photograd("fit", "--help").out
     assert "128; sparse_sh: 256" in " ".join(shown.replace("│", " ").split())
 
@@ -45,7 +45,7 @@ def test_each_representation_has_the_resolution_that_suits_it(photograd: Photogr
         (
             "dense_grid",
             ("--degree", 1),
-            "--degree: expected a fit of sparse_sh or dense_sh or octree_sh or gau",
+            "--degree: expected a fit of dense_sh or gaussians or octree_sh or sparse",
         ),
         ("dense_sh", ("--prune", 0.1), "--prune: expected a fit of sparse_sh, got 'dense_sh'"),
     ],

@@ -12,10 +12,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from photograd._checkpoint import Checkpoint, load_checkpoint
 from photograd.capture.load import load_capture
-from photograd.fitting.checkpoint import Checkpoint, load_checkpoint
+from photograd.fitting import FitOptions
 from photograd.fitting.loop import Fit
-from photograd.fitting.options import FitOptions
 from photograd_course.random import uniform
 
 # Levels of 8, 16 and 32 voxels; a second or two in all, so that a kill
@@ -64,7 +64,7 @@ def straight(capture_folder: Path, tmp_path_factory: pytest.TempPathFactory) -> 
 
 
 def assert_same(one: Checkpoint, two: Checkpoint) -> None:
-    for part in ("params", "optimiser", "state"):
+    for part in ("params", "optimizer", "state"):
         first, second = getattr(one, part), getattr(two, part)
         assert set(first) == set(second)
         assert all(np.array_equal(first[name], second[name]) for name in first)

@@ -31,7 +31,7 @@ def test_a_colour_is_found_and_resumed(
     scene, target = taken
     out = tmp_path / "found"
     words = ("recover", scene, "--target", target, *WORDS, "--steps", 60, "--out", out)
-    done = photograd(*words, "--camera", scene, "--json")
+    done = photograd(*words, "--camera-from", scene, "--json")
     assert done.code == 0, done.err
     found = json.loads((out / "found.json").read_text(encoding="utf-8"))
     np.testing.assert_allclose(found["found"]["materials.grey.albedo"], 0.5, atol=0.03)
@@ -40,8 +40,8 @@ def test_a_colour_is_found_and_resumed(
         assert np.ptp(np.asarray(Image.open(out / name))) > 100
     again = photograd(*words)
     assert again.code == 1
-    assert "a folder without a recovery" in " ".join(again.err.split())
-    more = photograd(*words, "--camera", scene, "--resume")
+    assert "a folder without recovery.npz" in " ".join(again.err.split())
+    more = photograd(*words, "--camera-from", scene, "--resume")
     assert more.code == 0, more.err
     assert "resumed at step 60 of 60" in more.err
 
@@ -51,7 +51,10 @@ def test_a_colour_is_found_and_resumed(
     [
         (("--unknown", "materials.gray.albedo"), "did you mean 'materials.grey.albedo'"),
         (("--unknown", "materials.grey.albedo=red"), "NAME=NUMBER"),
-        ((*WORDS, "--camera", "none.toml", "--camera", "none.toml"), "one for each of 1 targets"),
+        (
+            (*WORDS, "--camera-from", "none.toml", "--camera-from", "none.toml"),
+            "one for each of 1 targets",
+        ),
         ((*WORDS, "--loss", "hope"), "loss: expected"),
         ((*WORDS, "--resume"), "expected a recovery"),
     ],

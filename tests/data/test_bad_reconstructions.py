@@ -73,9 +73,8 @@ def test_colmap_folders(tmp_path: Path) -> None:
 
 
 def test_colmap_models_without_a_pinhole_are_named(tmp_path: Path) -> None:
-    line = "7 OPENCV_FISHEYE 24 20 26 26 12 10 0 0 0 0\n"
-    (colmap(tmp_path) / "cameras.txt").write_text(line)
-    with pytest.raises(IoError, match=r"camera 7: model: .*got OPENCV_FISHEYE .*undistorter"):
+    (colmap(tmp_path) / "cameras.txt").write_text("7 EQUIRECTANGULAR 24 20 24 20\n")
+    with pytest.raises(IoError, match=r"camera 7: model: .*got EQUIRECTANGULAR .*perspective"):
         load_capture(tmp_path)
 
 

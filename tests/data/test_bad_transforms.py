@@ -74,7 +74,7 @@ BLENDER: list[tuple[Callable[[Any], None], type[Error], str]] = [
     (top(camera_angle_x=None), IoError, "'fl_x' or 'camera_angle_x'"),
     (top(frames=[]), IoError, "frames: expected at least one frame"),
     (top(frames={}), IoError, "frames: expected an array"),
-    (top(aabb=[[1, 1, 1], [0, 0, 0]]), RangeError, "aabb: expected finite corners"),
+    (top(aabb=[[1, 1, 1], [0, 0, 0]]), RangeError, "aabb: expected corners, lower below upper"),
     (top(w=30), IoError, "expected an image of 30 x 20, got 24 x 20 in 0000.png"),
 ]
 
@@ -94,7 +94,8 @@ def reflected(content: Any) -> None:
 
 
 NERFSTUDIO: list[tuple[Callable[[Any], None], type[Error], str]] = [
-    (top(camera_model="OPENCV_FISHEYE"), IoError, "got OPENCV_FISHEYE"),
+    (top(camera_model="EQUIRECTANGULAR"), IoError, "got EQUIRECTANGULAR"),
+    (top(camera_model="OPENCV_FISHEYE", p1=0.01), SceneError, "p1: expected 0, got 0.01"),
     (top(k3=0.01), SceneError, "k3: expected 0, got 0.01"),
     (top(k1=1e300), RangeError, "k1: expected a finite coefficient"),
     (top(fl_x=-5.0), RangeError, "fl_x: expected a positive focal length"),

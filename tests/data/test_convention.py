@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from photograd.capture import Camera, load_capture
-from photograd.capture.convention import meeting_of_axes
+from photograd.capture.convention import focus_point_of_axes
 from photograd_course.errors import SceneError
 
 from support import capture_files as files
@@ -136,10 +136,10 @@ def test_a_world_lying_on_its_side_is_warned_about(tmp_path: Path) -> None:
 
 
 def test_where_axes_meet() -> None:
-    meeting = meeting_of_axes([camera.world_from_camera for camera in files.orbit(9)])
-    np.testing.assert_allclose(meeting.point, [0.1, 0.0, 0.05], atol=1e-12)
-    assert meeting.inward
-    assert meeting.miss < 1e-12
+    focus = focus_point_of_axes([camera.world_from_camera for camera in files.orbit(9)])
+    np.testing.assert_allclose(focus.point, [0.1, 0.0, 0.05], atol=1e-12)
+    assert focus.is_inward
+    assert focus.miss < 1e-12
     parallel = [np.eye(4) + np.eye(4, k=3) * shift for shift in range(5)]
-    assert not meeting_of_axes(parallel).inward
-    assert not meeting_of_axes([np.eye(4)] * 5).inward
+    assert not focus_point_of_axes(parallel).is_inward
+    assert not focus_point_of_axes([np.eye(4)] * 5).is_inward

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import struct
 import tracemalloc
 import zlib
 from collections.abc import Callable
@@ -20,6 +19,8 @@ from photograd_course.errors import IoError
 from PIL import Image
 from tests.transport.gltf_samples import core, square
 
+from support.png import SIGNATURE, chunk, header
+
 
 def textured(picture: bytes) -> bytes:
     """A .glb whose one material has the colors of an image file."""
@@ -34,14 +35,7 @@ RAISE = "set PHOTOGRAD_MAX_PIXELS to a larger number"
 
 def claimed_png(side: int) -> bytes:
     """The beginning of a 1-bit PNG whose header states side x side pixels."""
-    chunks = b""
-    for kind, data in (
-        (b"IHDR", struct.pack(">IIBBBBB", side, side, 1, 0, 0, 0, 0)),
-        (b"IDAT", zlib.compress(bytes(100))),
-    ):
-        chunks += struct.pack(">I", len(data)) + kind + data
-        chunks += struct.pack(">I", zlib.crc32(kind + data))
-    return b"\x89PNG\r\n\x1a\n" + chunks
+    return SIGNATURE + header(side, side, 1, 0) + chunk(b"IDAT", zlib.compress(bytes(100)))
 
 
 @pytest.mark.filterwarnings("ignore::PIL.Image.DecompressionBombWarning")

@@ -15,16 +15,14 @@ RNG = np.random.default_rng(5)
 PICTURE = RNG.random((7, 9, 4), dtype=np.float32)
 
 
-@pytest.mark.parametrize("bits", [8, 16])
 @pytest.mark.parametrize("channels", [3, 4])
-def test_png_round_trip(tmp_path: Path, bits: int, channels: int) -> None:
-    levels = 2**bits - 1
-    samples = np.rint(PICTURE[..., :channels] * levels)
-    write_png(tmp_path / "a.png", (samples / levels).astype(np.float32), bits=bits)
+def test_png_round_trip(tmp_path: Path, channels: int) -> None:
+    samples = np.rint(PICTURE[..., :channels] * 255)
+    write_png(tmp_path / "a.png", (samples / 255).astype(np.float32))
     again = read_image(tmp_path / "a.png")
     assert again.shape == (7, 9, 4)
     assert again.dtype == np.float32
-    np.testing.assert_array_equal(np.rint(again[..., :channels] * levels), samples)
+    np.testing.assert_array_equal(np.rint(again[..., :channels] * 255), samples)
     if channels == 3:
         assert (again[..., 3] == 1.0).all()
     header = read_header(tmp_path / "a.png")

@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from photograd._checkpoint import load_checkpoint
 from photograd._files import read_npz
 from photograd.errors import IoError
-from photograd.fitting.checkpoint import load_checkpoint
 from photograd.splats.splat_files import read_point_npz
 
 

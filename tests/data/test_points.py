@@ -128,7 +128,7 @@ def test_points_that_are_none_are_refused(tmp_path: Path) -> None:
 def test_colours_belong_to_points(posed: Path) -> None:
     capture = load_capture(posed / "opensfm_berlin")
     assert capture.point_colors is not None
-    with pytest.raises(ShapeError, match=r"point_colors: expected uint8 of shape \(1430, 3\)"):
+    with pytest.raises(ShapeError, match=r"shape \(N, 3\) with N = 1430 as in points"):
         replace(capture, point_colors=capture.point_colors[1:])
     with pytest.raises(ShapeError, match="point_colors"):
         replace(capture, points=None)

@@ -8,13 +8,13 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from photograd._checkpoint import load_checkpoint
 from photograd._files import read_npy, read_npz
 from photograd.capture import load_capture
 from photograd.capture.colmap_model import read_binary_model, read_text_model
 from photograd.capture.nerfstudio import read_point_ply
 from photograd.capture.sfm.photographs import find_photographs
 from photograd.errors import Error, IoError
-from photograd.fitting.checkpoint import load_checkpoint
 from photograd.grids.vdb import read_vdb
 from photograd.grids.volumes import read_volume
 from photograd.images import read_image

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from photograd.capture import Camera, Distortion, distort, undistort, undistort_image
-from photograd.capture.undistort import distort_jacobian, inside_fold
+from photograd.capture import Camera, Distortion, undistort_image
 from photograd_course.errors import RangeError, ShapeError
 
 LENSES = [
@@ -26,42 +25,44 @@ def ideal_points() -> np.ndarray:
 @pytest.mark.parametrize("lens", LENSES)
 def test_round_trip(lens: Distortion) -> None:
     points = ideal_points()
-    bent = distort(lens, points)
+    bent = lens.distort(points)
     assert np.abs(bent - points).max() * 130.0 > 0.1  # the lens does something
     # Newton stops at residuals of 1e-12; times the focal length that is far below 1e-6 px.
-    np.testing.assert_allclose(undistort(lens, bent) * 130.0, points * 130.0, atol=1e-6)
-    again = distort(lens, undistort(lens, points))
+    np.testing.assert_allclose(lens.undistort(bent) * 130.0, points * 130.0, atol=1e-6)
+    again = lens.distort(lens.undistort(points))
     np.testing.assert_allclose(again * 130.0, points * 130.0, atol=1e-6)
 
 
 @pytest.mark.parametrize("lens", LENSES)
 def test_jacobian_is_the_derivative(lens: Distortion) -> None:
     points = ideal_points()[::37]
-    jacobian = distort_jacobian(lens, points)
+    jacobian = lens.jacobian(points)
     assert np.abs(jacobian - np.eye(2)).max() > 1e-4
     for axis in range(2):
         step = 1e-6 * np.eye(2)[axis]
-        slope = (distort(lens, points + step) - distort(lens, points - step)) / 2e-6
+        slope = (lens.distort(points + step) - lens.distort(points - step)) / 2e-6
         # Central differences: 1e-12 from truncation, 1e-10 from rounding.
         np.testing.assert_allclose(jacobian[:, :, axis], slope, atol=1e-9)
 
 
 def test_radial_distortion_by_hand() -> None:
-    bent = distort(Distortion(k1=0.1, k2=0.01), np.array([[0.6, 0.8]]))
+    bent = Distortion(k1=0.1, k2=0.01).distort(np.array([[0.6, 0.8]]))
     np.testing.assert_allclose(bent, [[0.6 * 1.11, 0.8 * 1.11]], rtol=1e-15)
-    tangential = distort(Distortion(p1=0.1, p2=0.01), np.array([[0.6, 0.8]]))
+    tangential = Distortion(p1=0.1, p2=0.01).distort(np.array([[0.6, 0.8]]))
     expected = [0.6 + 0.2 * 0.48 + 0.01 * 1.72, 0.8 + 0.1 * 2.28 + 0.02 * 0.48]
     np.testing.assert_allclose(tangential, [expected], rtol=1e-15)
 
 
 def test_points_beyond_the_fold_are_refused() -> None:
     lens = Distortion(k1=-0.3)  # r - 0.3 r^3 is largest, 0.703, at r = 1.054
-    assert inside_fold(lens, np.array([[1.05, 0.0], [1.06, 0.0]])).tolist() == [True, False]
-    assert undistort(lens, np.array([[0.70, 0.0]]))[0, 0] < 1.054
-    with pytest.raises(RangeError, match="undistort: points: expected points that the lens shows"):
-        undistort(lens, np.array([[0.1, 0.0], [0.71, 0.0]]))
-    with pytest.raises(ShapeError, match="distort: points"):
-        distort(lens, np.zeros((3, 3)))
+    assert lens.inside_fold(np.array([[1.05, 0.0], [1.06, 0.0]])).tolist() == [True, False]
+    assert lens.undistort(np.array([[0.70, 0.0]]))[0, 0] < 1.054
+    with pytest.raises(
+        RangeError, match=r"Distortion\.undistort: points: expected points that the lens shows"
+    ):
+        lens.undistort(np.array([[0.1, 0.0], [0.71, 0.0]]))
+    with pytest.raises(ShapeError, match=r"Distortion\.distort: points"):
+        lens.distort(np.zeros((3, 3)))
     with pytest.raises(RangeError, match="Distortion: k2"):
         Distortion(k2=float("nan"))
 
@@ -75,7 +76,7 @@ def pattern(points: np.ndarray) -> np.ndarray:
 
 def test_a_photograph_becomes_the_pinhole_picture() -> None:
     lens = Distortion(k1=0.09, k2=-0.02, p1=0.003, p2=-0.002)
-    photograph = pattern(undistort(lens, ideal_points())).reshape(90, 120, 4).astype(np.float32)
+    photograph = pattern(lens.undistort(ideal_points())).reshape(90, 120, 4).astype(np.float32)
     expected = pattern(ideal_points()).reshape(90, 120, 4)
     assert np.abs(photograph - expected)[..., :3].max() > 0.02  # 40 times the error allowed below
     result, valid = undistort_image(photograph, CAMERA, lens)

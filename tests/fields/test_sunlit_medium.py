@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.bsdf.phase import phase_function
+from photograd.bsdf.phase import registry as phase_functions
 from photograd.errors import DtypeError, RangeError, ShapeError
 from photograd.fields import SunlitMedium
 from photograd.fields.sunlit_medium import sun_visibility
@@ -65,7 +65,7 @@ def closed_form(sigma_t: float, sun: Any, ray: Any, g: float) -> Any:
     """
     m, n = (np.asarray(v, float)[1] / np.linalg.norm(v) for v in (ray, sun))
     cos = np.dot(ray, sun) / np.linalg.norm(ray) / np.linalg.norm(sun)
-    p = phase_function("henyey_greenstein").p(np.array([g]), np.array([cos]))[0]
+    p = phase_functions()["henyey_greenstein"].p(np.array([g]), np.array([cos]))[0]
     if m < 0:
         rate = 1 / abs(m) + 1 / n
         share = (1 - np.exp(-sigma_t * rate)) / (rate * abs(m))
@@ -176,7 +176,7 @@ def test_phase_functions_can_be_chosen() -> None:
     names = "henyey_greenstein", "cornette_shanks"
     one, two = (radiance(slab(1.0, (0.6, 0.8, 0), phase=name), batch) for name in names)
     g, cos = np.array([0.3]), np.array([-0.8])
-    p_one, p_two = (phase_function(name).p(g, cos)[0] for name in names)
+    p_one, p_two = (phase_functions()[name].p(g, cos)[0] for name in names)
     np.testing.assert_allclose(two / one, p_two / p_one, rtol=1e-12)
 
 

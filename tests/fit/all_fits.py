@@ -13,11 +13,14 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from photograd._fit_options import DENSITY_CONTROLS
 from photograd.capture.load import load_capture
+from photograd.fields import TexturedMesh, fittable
+from photograd.fitting import options_for
 from photograd.fitting.loop import Fit
 from photograd.fitting.model import Model
-from photograd.fitting.options import DENSITY_CONTROLS, options_for
-from photograd.fitting.start import FITTED
+
+from tests.fit.mesh_scene import cube
 
 # Few steps, but with every event: levels, pruning, clones, splits, motion of faint Gaussians.
 JOBS: dict[str, dict[str, Any]] = {
@@ -26,6 +29,7 @@ JOBS: dict[str, dict[str, Any]] = {
     "sparse_sh": {"resolution": 16, "rays": 256, "steps": 20},
     "octree_sh": {"rays": 64, "steps": 5, "degree": 1},
     "gaussians": {"gaussians": 200, "steps": 12},
+    "textured_mesh": {"resolution": 16, "rays": 64, "steps": 8},
 }
 
 
@@ -38,25 +42,25 @@ def digest(arrays: Mapping[str, Any]) -> str:
 
 def digests(folder: Path) -> dict[str, str]:
     """Of everything that a checkpoint holds after a fit of each kind, background learned."""
-    assert set(JOBS) == set(FITTED)
+    assert set(JOBS) == set(fittable())
     capture = load_capture(folder)
     x = np.linspace(0.1, 3.0, 999, dtype=np.float32)
     found = {"of the processor": digest({"exp": np.exp(x)})}
-    start = None
+    first = {"textured_mesh": Model.of(TexturedMesh.of_mesh(cube()))}
     for name, changes in JOBS.items():
         for control in DENSITY_CONTROLS if name == "gaussians" else ("mcmc",):
             options = options_for(
                 name, seed=1, background="learned", density_control=control, **changes
             )
-            fit = Fit.start(capture, options, start_from=start if name == "octree_sh" else None)
+            fit = Fit.start(capture, options, start_from=first.get(name))
             while fit.step_number < options.steps:
                 fit.step()
-            parts = fit.model.params, fit.model.state(), fit.optimiser.state()
+            parts = fit.model.params, fit.model.state(), fit.optimizer.state()
             arrays = {f"{k}/{key}": a for k, part in enumerate(parts) for key, a in part.items()}
             rest = {"background": fit.background, "history": np.array(fit.history)}
             found[f"{name}, {control}"] = digest(arrays | rest)
             if name == "sparse_sh":
-                start = Model(fit.model, None, options, {}, np.zeros((0, 3)))
+                first["octree_sh"] = Model(fit.model, None, options, {}, np.zeros((0, 3)))
     return found
 
 

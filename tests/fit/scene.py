@@ -14,9 +14,9 @@ from photograd.capture.view import View
 from photograd.capture.write import write_blender_capture
 from photograd.fields import DenseGrid
 from photograd.fields.march import MarchPolicy
+from photograd.fitting import FitOptions
 from photograd.fitting.evaluate import render_camera
 from photograd.fitting.model import Model
-from photograd.fitting.options import FitOptions
 from photograd_course.color import srgb_encode, unpremultiply
 
 BOX = np.array([[-0.8, -0.6, -0.7], [0.8, 0.6, 0.7]])

@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from photograd._checkpoint import Checkpoint, load_checkpoint, save_checkpoint
 from photograd.errors import Error, IoError
-from photograd.fitting.checkpoint import Checkpoint, load_checkpoint, save_checkpoint
 from photograd.fitting.loop import Fit
 from photograd.fitting.model import load_model
 
@@ -45,8 +45,8 @@ def test_everything_comes_back(tmp_path: Path) -> None:
     save_checkpoint(tmp_path / "model.npz", saved)
     for place in (tmp_path, tmp_path / "model.npz"):
         loaded = load_checkpoint(place)
-        assert loaded.meta == {"version": 1, **saved.meta}
-        for part in ("params", "optimiser", "state"):
+        assert loaded.meta == {"version": 2, **saved.meta}
+        for part in ("params", "optimizer", "state"):
             before, after = getattr(saved, part), getattr(loaded, part)
             assert set(before) == set(after)
             for name, array in before.items():
@@ -122,7 +122,7 @@ def with_meta(**entries: Any) -> Any:
 
 
 DAMAGES = {
-    "another version": (with_meta(version=99), "expected version 1, got 99"),
+    "another version": (with_meta(version=99), "expected version 2, got 99"),
     "no policy": (with_meta(policy=None), "of a fit, got .*MarchPolicy: expected an object"),
     "no options": (with_meta(options=None), "FitOptions: expected an object, got None"),
     "unknown option": (with_meta(options={"refine_at": [0, 0], "sharpness": 1}), "sharpness"),

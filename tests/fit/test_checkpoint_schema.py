@@ -12,15 +12,17 @@ from typing import Any
 import numpy as np
 import pytest
 from photograd.errors import DtypeError, Error, IoError, RangeError
+from photograd.fields import TexturedMesh
+from photograd.fitting import FitOptions
 from photograd.fitting.loop import Fit
-from photograd.fitting.model import load_model
-from photograd.fitting.options import FitOptions
+from photograd.fitting.model import Model, load_model
 
 from tests.fit import scene
+from tests.fit.mesh_scene import cube
 
 Arrays = dict[str, Any]
 TINY: Arrays = {"resolution": 8, "steps": 12, "rays": 16, "degree": 1, "gaussians": 20}
-KINDS = ("dense_grid", "sparse_sh", "dense_sh", "octree_sh", "gaussians")
+KINDS = ("dense_grid", "sparse_sh", "dense_sh", "octree_sh", "gaussians", "textured_mesh")
 CAPTURE = replace(scene.capture(), train=scene.capture().train[:3])
 
 
@@ -34,6 +36,8 @@ def saved(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
         grid.model.params["values"][2:6, 2:6, 2:6, 3] = 10.0
         grid.save(folder)
         first = load_model(folder)
+    if request.param == "textured_mesh":
+        first = Model.of(TexturedMesh.of_mesh(cube()))
     options = scene.options(**TINY, representation=request.param, background="learned")
     if request.param == "gaussians":
         options = replace(options, background="auto")
@@ -110,7 +114,7 @@ def mutations(arrays: Arrays) -> list[tuple[str, Arrays]]:
             for k, other in enumerate(other_arrays(old))
         ]
         found.append((f"{name} missing", {n: a for n, a in arrays.items() if n != name}))
-    for name in ("params.more", "state.more", "optimiser.mean/more", "more", "params."):
+    for name in ("params.more", "state.more", "optimizer.mean/more", "more", "params."):
         found.append((f"{name} added", arrays | {name: np.zeros(3, np.float32)}))
     found.append(("meta.options.more", with_option(arrays, more=1)))
     return found
@@ -157,16 +161,16 @@ WRONG: dict[str, tuple[Callable[[Arrays], Any], str]] = {
     "NaN": (lambda a: a["params.density"].fill(np.nan), "params.density: expected finite values"),
     "infinite harmonics": (lambda a: a["params.sh"].fill(np.inf), "params.sh: expected finite"),
     "moments of others": (
-        lambda a: a.update({"optimiser.mean/sh": a["optimiser.mean/sh"][1:]}),
-        "optimiser.mean/sh: expected shape",
+        lambda a: a.update({"optimizer.mean/sh": a["optimizer.mean/sh"][1:]}),
+        "optimizer.mean/sh: expected shape",
     ),
     "negative squares": (
-        lambda a: a["optimiser.mean_square/sh"].fill(-1),
-        "optimiser.mean_square/sh: expected 0 or more, got -1.0",
+        lambda a: a["optimizer.mean_square/sh"].fill(-1),
+        "optimizer.mean_square/sh: expected 0 or more, got -1.0",
     ),
     "other degree": (
         lambda a: a.update({"params.sh": a["params.sh"][:, :1]}),
-        r"params.sh: expected shape \(N = 336, K = 4, 3\)",
+        r"params.sh: expected shape \(N = 336, 4, 3\)",
     ),
     "a mask of others": (
         lambda a: a["state.shape"].fill(2**20),
@@ -197,7 +201,7 @@ def test_a_tree_with_a_hole_is_refused_before_it_is_built(saved: Arrays, tmp_pat
     leaves = {"lower": np.full((1, 3), 2**20 - 1), "side": np.ones(1), "row": np.zeros(1)}
     changed = {f"state.{name}": value.astype(np.int32) for name, value in leaves.items()}
     rows = {name: x[:1] for name, x in saved.items() if name.startswith(("params.d", "params.s"))}
-    rest = {name: x for name, x in saved.items() if not name.startswith("optimiser.")}
+    rest = {name: x for name, x in saved.items() if not name.startswith("optimizer.")}
     write(tmp_path, rest | rows | changed)
     with pytest.raises(IoError, match="side: expected 1 cubes that fill one of 1048576"):
         load_model(tmp_path)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+from photograd._checkpoint import load_checkpoint
 from photograd.fields import DenseSh
-from photograd.fitting.checkpoint import load_checkpoint
 from photograd.fitting.loop import Fit
 from photograd.fitting.model import load_model
 

@@ -6,9 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from photograd._fit_options import DENSITY_CONTROLS
+from photograd.fitting import options_for
 from photograd.fitting.loop import Fit
 from photograd.fitting.loss import picture_loss
-from photograd.fitting.options import DENSITY_CONTROLS, options_for
 from photograd.representation import ImageBatch, RenderOptions
 from photograd.splats.model import GaussianScene
 
@@ -20,7 +21,7 @@ OPTIONS = options_for("gaussians", steps=200, gaussians=250, degree=1, seed=3, l
 def training_psnr(fit: Fit) -> float:
     """Mean over the training views, over white, in dB."""
     found = []
-    for view in fit.pixels.views:
+    for view in fit.data.views:
         batch, options = ImageBatch(view.camera), RenderOptions(stop=fit.options.stop)
         outputs, _ = fit.model.render(batch, seed=0, step=0, options=options)
         loss = picture_loss(outputs, view, np.ones(3), ssim_weight=0.0)
@@ -38,7 +39,7 @@ def test_no_event_of_a_fit_costs_half_a_decibel(control: str) -> None:
         if scene.control.schedule.due(fit.step_number):
             scene.active_degree = fit.options.active_degree(fit.step_number)
             before = training_psnr(fit)
-            fit._refine()  # what a step begins with
+            fit.model.adapted(fit)  # what a step begins with
             costs.append(before - training_psnr(fit))
             sizes.add(scene.resolution)
         fit.step()

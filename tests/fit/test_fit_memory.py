@@ -10,10 +10,11 @@ import numpy as np
 import pytest
 from photograd.capture import load_capture
 from photograd.errors import RangeError
-from photograd.fitting.checks import COPIES, require_room_to_start
+from photograd.fitting.checks import require_room_to_start
 from photograd.fitting.data import TrainingPixels, TrainingViews
 from photograd.fitting.loop import Fit
 from photograd.fitting.options import options_for
+from photograd.representation import COPIES
 from PIL import Image
 
 from support import capture_files as files

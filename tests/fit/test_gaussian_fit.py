@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 from photograd.errors import RangeError, SceneError
+from photograd.fitting import FitOptions, options_for
 from photograd.fitting.evaluate import evaluate
 from photograd.fitting.loop import Fit
 from photograd.fitting.model import Model, load_model
-from photograd.fitting.options import FitOptions, options_for
 from photograd.splats.model import GaussianScene
 
 from support.bits import same_bits

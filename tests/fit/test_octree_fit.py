@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +10,7 @@ import pytest
 from photograd.capture.capture import Capture
 from photograd.errors import RangeError, ShapeError
 from photograd.fields import OctreeSh, SparseSh
-from photograd.fitting.compare import parse_contenders, source_of
+from photograd.fitting.compare import parse_candidates, source_of
 from photograd.fitting.evaluate import evaluate
 from photograd.fitting.loop import Fit
 from photograd.fitting.model import Model, load_model
@@ -45,7 +46,7 @@ def test_what_tabulating_loses_partly_comes_back(
 ) -> None:
     fit = Fit.start(capture, scene.options(**LEAVES), start_from=grid)
     assert isinstance(fit.model, OctreeSh)
-    assert isinstance(fit.optimiser, RowAdam)
+    assert isinstance(fit.optimizer, RowAdam)
     before = fit.model.state()
     whole, cut = (evaluate(model, capture.test).psnr for model in (grid, model_of(fit)))
     run(fit, tmp_path)
@@ -58,7 +59,7 @@ def test_what_tabulating_loses_partly_comes_back(
     assert all(np.array_equal(before[name], after[name]) for name in before)
     shorter = {**after, "row": after["row"][1:]}
     with pytest.raises(ShapeError, match="OctreeSh: row"):
-        OctreeSh.of_state(loaded.field.params, shorter, fit.model.policy)
+        OctreeSh.restored(loaded.field.params, shorter, asdict(fit.model.policy), loaded.options)
 
 
 def test_a_stopped_fit_ends_with_the_same_bits(
@@ -83,12 +84,14 @@ def test_a_learned_background_is_kept(capture: Capture) -> None:
 
 
 def test_it_has_to_be_cut_from_voxels(grid: Model, capture: Capture) -> None:
-    with pytest.raises(RangeError, match=r"'octree_sh' is cut from, got none \(fit a dense_"):
+    with pytest.raises(RangeError, match=r"'octree_sh' starts from, got none \(fit a dense_"):
         Fit.start(capture, scene.options(**LEAVES))
     leaves = Fit.start(capture, scene.options(**LEAVES), start_from=grid)
     with pytest.raises(RangeError, match="a model of dense_grid or sparse_sh or dense_sh"):
         Fit.start(capture, scene.options(**LEAVES), start_from=model_of(leaves))
-    with pytest.raises(RangeError, match="none, or 'gaussians' or 'octree_sh' to fit"):
+    with pytest.raises(
+        RangeError, match="none, or 'gaussians' or 'octree_sh' or 'textured_mesh' to fit"
+    ):
         Fit.start(capture, scene.options(**GRID), start_from=grid)
 
 
@@ -131,8 +134,8 @@ def test_leaves_that_are_no_tree_are_refused() -> None:
 
 
 def test_compare_cuts_from_the_grid_before() -> None:
-    listed = parse_contenders("sparse_sh:16,dense_grid:16,dense_grid:32,octree_sh:16")
+    listed = parse_candidates("sparse_sh:16,dense_grid:16,dense_grid:32,octree_sh:16")
     assert source_of(listed[3], listed) == listed[1]
     assert source_of(listed[0], listed) is None
-    with pytest.raises(RangeError, match=r"a grid of 32 before the octree.*sparse_sh:32 first"):
-        parse_contenders("dense_grid:16,octree_sh:32,dense_grid:32")
+    with pytest.raises(RangeError, match=r"octree_sh:32 starts from before it.*with 32 \(fit a"):
+        parse_candidates("dense_grid:16,octree_sh:32,dense_grid:32")

@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 from photograd.capture.view import View
 from photograd.fields import DenseGrid
+from photograd.fitting import FitOptions
 from photograd.fitting.evaluate import as_result, evaluate
 from photograd.fitting.loop import Fit
 from photograd.fitting.model import Model
-from photograd.fitting.options import FitOptions
+from photograd.fitting.steps import Background, background_color
 from photograd.representation import RayBatch, RenderOptions
 from photograd_course.color import srgb_encode
 from photograd_course.gradcheck import check_gradient
@@ -92,8 +93,9 @@ def test_fixed_backgrounds_stand_behind_every_ray() -> None:
     white, black = (
         Fit.start(capture, scene.options(background=kind)) for kind in ("white", "black")
     )
-    assert white.background_color(5).tolist() == [1, 1, 1]
-    assert black.background_color(5).tolist() == [0, 0, 0]
+    for fit, color in ((white, [1, 1, 1]), (black, [0, 0, 0])):
+        behind = Background(fit.background, fit.background_kind)
+        assert background_color(behind, 5, seed=1, step=0).tolist() == color
     assert white.step() != black.step()
 
 
@@ -101,7 +103,7 @@ def test_fixed_backgrounds_stand_behind_every_ray() -> None:
 def all_state_of_a_fit(seed: int = 1) -> list[Any]:
     fit = Fit.start(scene.capture(wall=WALL), scene.options(seed=seed))
     finish(fit)
-    return [fit.model.params["values"], fit.background, *fit.optimiser.state().values()]
+    return [fit.model.params["values"], fit.background, *fit.optimizer.state().values()]
 
 
 def test_another_seed_gives_another_fit() -> None:
@@ -120,7 +122,7 @@ def test_gradient_of_a_whole_step(wall: Any) -> None:
     if wall is not None:
         assert fit.background is not None
         start["background"] = fit.background.astype(np.float64)
-    chosen = fit.pixels.draw(200, seed=9, step=0)
+    chosen = fit.data.draw(200, seed=9, step=0)
 
     def both(p: dict[str, Any]) -> tuple[float, dict[str, Any]]:
         fit.model.params = {"values": p["values"]}

@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from photograd._checkpoint import load_checkpoint
 from photograd.errors import Error, RangeError, SceneError
-from photograd.fitting.checkpoint import load_checkpoint
+from photograd.fitting import FitOptions
 from photograd.fitting.data import TrainingPixels
 from photograd.fitting.evaluate import evaluate
 from photograd.fitting.loop import Fit
-from photograd.fitting.options import FitOptions
 
 from tests.fit import scene
 
@@ -22,13 +22,14 @@ from tests.fit import scene
     ("name", "words"),
     [
         ("dense_gird", r"a capture can start: .*, got 'dense_gird' .*mean 'dense_grid'"),
-        ("zebra", r"'octree_sh' or 'gaussians', got 'zebra'$"),
+        ("zebra", r"'sparse_sh' or 'textured_mesh', got 'zebra'$"),
         ("gaussian", r"got 'gaussian' \(did you mean 'gaussians'\?\)$"),
         ("texture_2d", r"got 'texture_2d' \(it lives on a 2D canvas\)"),
         (
             "tiny_network",
             "one that a capture can start: "
-            "'dense_grid' or 'sparse_sh' or 'dense_sh' or 'octree_sh' or 'gaussians', "
+            "'dense_grid' or 'dense_sh' or 'gaussians' or 'octree_sh' or 'sparse_sh' or "
+            "'textured_mesh', "
             "got 'tiny_network'",
         ),
     ],
@@ -91,7 +92,7 @@ def test_a_fit_that_diverges_stops_and_keeps_its_last_checkpoint(tmp_path: Path)
 def test_a_loss_that_is_not_finite_is_reported_with_its_step(tmp_path: Path) -> None:
     fit = Fit.start(scene.capture(), scene.options(resolution=8, steps=20, rays=64))
     fit.step()
-    fit.pixels.premultiplied[:] = np.nan
+    fit.data.premultiplied[:] = np.nan
     values = fit.model.params["values"].copy()
     with pytest.raises(Error, match=r"Fit.step: loss: expected a finite number, got nan at step 1"):
         fit.run(tmp_path)
@@ -101,14 +102,14 @@ def test_a_loss_that_is_not_finite_is_reported_with_its_step(tmp_path: Path) -> 
 def test_a_gradient_that_is_not_finite_moves_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     fit = Fit.start(scene.capture(), scene.options(resolution=8, steps=20, rays=64))
     fit.step()
-    values, state = fit.model.params["values"].copy(), fit.optimiser.state()
-    loss, gradients = fit.loss_and_gradients(fit.pixels.draw(64, seed=1, step=1))
+    values, state = fit.model.params["values"].copy(), fit.optimizer.state()
+    loss, gradients = fit.loss_and_gradients(fit.data.draw(64, seed=1, step=1))
     gradients["values"][1, 2, 3, 0] = np.inf
     monkeypatch.setattr(fit, "loss_and_gradients", lambda _: (loss, gradients))
     with pytest.raises(RangeError, match=r"gradients\['values'\]: expected finite .* got 1 of"):
         fit.step()
     assert np.array_equal(fit.model.params["values"], values)
-    assert all(np.array_equal(fit.optimiser.state()[key], array) for key, array in state.items())
+    assert all(np.array_equal(fit.optimizer.state()[key], array) for key, array in state.items())
 
 
 def test_a_grid_that_does_not_fit_into_memory_is_refused_before_it_is_made(

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from photograd._checkpoint import load_checkpoint
 from photograd.capture.load import load_capture
 from photograd.errors import RangeError
-from photograd.fitting.checkpoint import load_checkpoint
 from photograd.fitting.loop import Fit
 from photograd.fitting.model import load_snapshots
 
@@ -24,9 +24,9 @@ def run(fit: Fit, folder: Path, *, until: int = 10**9) -> None:
 
 
 def assert_same(a: Path, b: Path) -> None:
-    """Parameters, optimiser, history: every array of the checkpoints, bit for bit."""
+    """Parameters, optimizer, history: every array of the checkpoints, bit for bit."""
     one, two = load_checkpoint(a), load_checkpoint(b)
-    for part in ("params", "optimiser", "state"):
+    for part in ("params", "optimizer", "state"):
         first, second = getattr(one, part), getattr(two, part)
         assert set(first) == set(second)
         for name, array in first.items():
@@ -48,7 +48,7 @@ def test_stopped_at_each_kind_of_step(tmp_path: Path, wall: Any) -> None:
     straight = load_checkpoint(tmp_path / "straight")
     assert straight.params["values"].shape[0] == 32
     assert ("background" in straight.params) == (wall is not None)
-    assert np.abs(straight.optimiser["mean/values"]).max() > 0
+    assert np.abs(straight.optimizer["mean/values"]).max() > 0
     assert_same(tmp_path / "straight", tmp_path / "stopped")
     for folder in ("straight", "stopped"):
         assert list(load_snapshots(tmp_path / folder)) == [0, 1, 4, 12, 40]

@@ -7,14 +7,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+from photograd._checkpoint import load_checkpoint
 from photograd.fields import SparseSh
 from photograd.fields.active_voxels import dilated
-from photograd.fitting.checkpoint import load_checkpoint
+from photograd.fitting import FitOptions
 from photograd.fitting.evaluate import evaluate
 from photograd.fitting.loop import Fit
 from photograd.fitting.model import load_model, load_snapshots
-from photograd.fitting.options import FitOptions
-from photograd.fitting.steps import RowAdam, prune_voxels
+from photograd.fitting.steps import RowAdam
 from photograd_course.optim import Adam
 
 from tests.fit import scene
@@ -35,7 +35,7 @@ def test_stopped_at_each_kind_of_step(tmp_path: Path) -> None:
         assert fit.step_number == until
     straight = load_checkpoint(tmp_path / "straight")
     assert straight.state["shape"].tolist() == [32, 24, 28]
-    assert np.abs(straight.optimiser["mean/sh"]).max() > 0
+    assert np.abs(straight.optimizer["mean/sh"]).max() > 0
     assert_same(tmp_path / "straight", tmp_path / "stopped")
     assert list(load_snapshots(tmp_path / "stopped")) == [0, 1, 4, 12, 40]
 
@@ -63,18 +63,21 @@ def test_no_voxel_that_wants_density_is_lost_at_any_pruning_of_a_fit(
     """At the product's own settings; wanting is judged by the gradient of all pixels."""
     wanted, lost, lost_by_weight = [], [], []
 
-    def spy(field: SparseSh, pixels: Any, gradients: Any, *, threshold: float, step: int) -> Any:
-        d_density = gradients(np.arange(len(pixels)))[1]["density"]
+    prune = SparseSh.prune
+
+    def spy(field: SparseSh, fit: Any) -> None:
+        pixels = fit.data
+        d_density = fit.loss_and_gradients(np.arange(len(pixels)))[1]["density"]
         wants = mask_of(field, d_density < -0.05 * np.abs(d_density).max())
-        heavy = mask_of(field, field.greatest_weights(pixels.batches(1 << 20)) >= threshold)
-        rows = prune_voxels(field, pixels, gradients, threshold=threshold, step=step)
+        weights = field.greatest_weights(pixels.batches(1 << 20))
+        heavy = mask_of(field, weights >= fit.options.prune)
+        prune(field, fit)
         wanted.append(int(wants.sum()))
         lost.append(int((wants & ~field.active.mask).sum()))
         lost_by_weight.append(int((wants & ~dilated(heavy)).sum()))
         assert not field.active.mask.all()
-        return rows
 
-    monkeypatch.setattr("photograd.fitting.loop.prune_voxels", spy)
+    monkeypatch.setattr(SparseSh, "prune", spy)
     fit = Fit.start(scene.capture(), scene.options(**{**OPTIONS, "rays": 512}))
     assert fit.options.prune == FitOptions().prune == 0.02
     while fit.step_number <= 20:
@@ -92,9 +95,9 @@ def test_one_view_alone_would_prune_what_others_need() -> None:
         fit.step()
     field = fit.model
     assert isinstance(field, SparseSh)
-    every = field.greatest_weights(fit.pixels.batches(1 << 20))
-    pixels = len(fit.pixels) // len(capture.train)
-    one = field.greatest_weights([fit.pixels.rays(np.arange(pixels))])
+    every = field.greatest_weights(fit.data.batches(1 << 20))
+    pixels = len(fit.data) // len(capture.train)
+    one = field.greatest_weights([fit.data.rays(np.arange(pixels))])
     assert (one <= every).all()
     needed = every >= FitOptions().prune
     assert needed.sum() > 1000  # measured: 1902

@@ -6,12 +6,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.fields import DenseGrid, SparseSh
+from photograd.fields import DenseGrid, Fittable, SparseSh
 from photograd.fields.march import MarchPolicy
+from photograd.fitting import FitOptions
 from photograd.fitting.evaluate import VISIBLE, step_change
 from photograd.fitting.loop import Fit
-from photograd.fitting.options import FitOptions
-from photograd.fitting.start import FittedField
 from photograd.splats.model import GaussianScene
 
 from tests.fit import scene
@@ -33,7 +32,7 @@ def fog(width: float, steps: float, dtype: Any = np.float64) -> DenseGrid:
     )
 
 
-def change(field: FittedField) -> Any:
+def change(field: Fittable) -> Any:
     return step_change(scene.as_model(field), scene.capture().test)
 
 

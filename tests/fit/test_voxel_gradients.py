@@ -10,16 +10,9 @@ import numpy as np
 import pytest
 from photograd.fields import DenseGrid, DenseSh, OctreeSh, SparseSh
 from photograd.fields.active_voxels import ActiveVoxels
+from photograd.fields.voxel_field import VoxelField
 from photograd.fitting.data import TrainingPixels
-from photograd.fitting.start import VoxelField
-from photograd.fitting.voxel_gradients import (
-    active_voxels,
-    density_gradient,
-    density_rows,
-    to_voxels,
-    voxel_masks,
-    voxel_shape,
-)
+from photograd.fitting.voxel_gradients import density_gradient, voxel_masks
 from photograd_course.gradcheck import check_gradient
 from PIL import Image
 
@@ -64,7 +57,7 @@ def rows_of(field: VoxelField, voxels: Any) -> Any:
 def test_what_is_drawn_is_the_gradient(name: str) -> None:
     field = FIELDS[name]()
     pixels = TrainingPixels(ball().train, "display")
-    raw = density_rows(field, field.params)
+    raw = field.density_rows(field.params)
     scale = field.policy.density_scale
     sigma_t = np.random.default_rng(1).uniform(0.1, 2.0, len(raw))
 
@@ -93,9 +86,9 @@ def test_what_is_drawn_is_the_gradient(name: str) -> None:
 @pytest.mark.parametrize("name", FIELDS)
 def test_rows_come_to_their_voxels(name: str) -> None:
     field = FIELDS[name]()
-    rows = 1.0 + np.arange(len(density_rows(field, field.params)))
-    voxels, active = to_voxels(field, rows), active_voxels(field)
-    assert voxels.shape == active.shape == voxel_shape(field)
+    rows = 1.0 + np.arange(len(field.density_rows(field.params)))
+    voxels, active = field.to_voxels(rows), field.active_voxels
+    assert voxels.shape == active.shape == field.voxel_shape
     assert np.array_equal(active, voxels > 0)
     assert np.array_equal(rows_of(field, voxels), rows)
     assert active.all() == (name in ("dense_grid", "dense_sh"))

@@ -24,6 +24,7 @@ from photograd_course.errors import Error
 from PIL import Image
 
 from support import capture_files as files
+from support.png import sixteen_bits
 
 pytestmark = pytest.mark.fuzz
 
@@ -55,7 +56,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
         write(root / form / "sparse", CAMERAS, names, files.sphere_points(10))
     image = np.random.default_rng(0).random((6, 5, 4), dtype=np.float32)
     write_png(root / "eight.png", image)
-    write_png(root / "sixteen.png", image, bits=16)
+    (root / "sixteen.png").write_bytes(sixteen_bits(np.rint(image * 65535)))
     write_exr(root / "radiance.exr", image)
     return root
 

@@ -10,7 +10,7 @@ import pytest
 from photograd.errors import IoError
 from photograd.sh import Y_0
 from photograd.splats.files import holds_gaussians, read_gaussians
-from photograd.splats.splat_files import neighbour_spacing
+from photograd.splats.splat_files import neighbor_spacing
 
 from tests.gaussian_files.words import ROW, write_words
 
@@ -132,12 +132,12 @@ def test_the_garden_is_points_that_can_be_seen(shared_data: Path) -> None:
 
 
 def test_points_in_odd_numbers_have_sizes() -> None:
-    assert neighbour_spacing(np.zeros((1, 3))).tolist() == [1e-3]
-    assert neighbour_spacing(np.zeros((5, 3))).tolist() == [1e-3] * 5
+    assert neighbor_spacing(np.zeros((1, 3))).tolist() == [1e-3]
+    assert neighbor_spacing(np.zeros((5, 3))).tolist() == [1e-3] * 5
     line = np.arange(20.0)[:, None] * [1.0, 0.0, 0.0]
-    size = neighbour_spacing(line)
+    size = neighbor_spacing(line)
     np.testing.assert_allclose(size[1:-1], 0.5 * (1 + 1 + 2) / 3)
-    np.testing.assert_allclose(neighbour_spacing(line[:2]), 0.5)
+    np.testing.assert_allclose(neighbor_spacing(line[:2]), 0.5)
 
 
 def test_other_archives_are_refused(tmp_path: Path) -> None:

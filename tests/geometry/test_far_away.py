@@ -91,7 +91,7 @@ def said() -> dict[str, str]:
 @pytest.mark.parametrize("ask", ["trace", "occluded"])
 @pytest.mark.parametrize("change", RAYS)
 def test_rays_out_of_range_are_refused(said: dict[str, str], ask: str, change: str) -> None:
-    assert said[f"{ask}: {change}"].startswith(f"RangeError: {ask}: ")
+    assert said[f"{ask}: {change}"].startswith(f"RangeError: Bvh.{ask}: ")
     assert RAYS[change] in said[f"{ask}: {change}"]
 
 

@@ -41,7 +41,7 @@ CASES: dict[str, tuple[type[Error], str, dict[str, Any]]] = {
     "no face": (SceneError, "at least one triangle", {"faces": np.zeros((0, 3), int)}),
     "negative": (
         RangeError,
-        r"\[0, -1, 2\] in triangle 3",
+        r"Mesh: faces: expected numbers in .*, got \[ 0 -1  2\] in row 3",
         {"faces": with_row(FACES.astype(int), 3, [0, -1, 2])},
     ),
     "float faces": (DtypeError, "faces: expected integer", {"faces": FACES.astype(float)}),
@@ -88,7 +88,6 @@ def test_ray_arrays_must_fit() -> None:
     o, d = random_rays(10, seed=2)
     bad: list[tuple[type[Error], tuple[Any, ...]]] = [
         (DtypeError, (o.astype(int), d)),
-        (DtypeError, (o.tolist(), d)),
         (DtypeError, (o, d.astype("f4"))),
         (ShapeError, (o[:5], d)),
         (ShapeError, (o[:, :2], d[:, :2])),
@@ -99,6 +98,7 @@ def test_ray_arrays_must_fit() -> None:
     for kind, arguments in bad:
         with pytest.raises(kind):
             bvh.trace(*arguments)
+    np.testing.assert_array_equal(bvh.trace(o.tolist(), d).t, bvh.trace(o, d).t)
     no_triangle = np.full(10, 10**6, np.int32)
     hits = Hits(o[:, 0], no_triangle, np.zeros(10, np.int32), o[:, :2])
     with pytest.raises(RangeError, match="numbers from trace, got 1000000, 0 in row 0"):

@@ -27,7 +27,11 @@ CASES: list[tuple[Callable[[], object], type[Error], str]] = [
     (lambda: Octree.from_dense(CELLS[..., :1] > 0, tolerance=0.1), RangeError, "tolerance"),
     (lambda: Octree.from_dense(CELLS, background=(1, 2, 3)), ShapeError, "background"),
     (lambda: Octree.from_dense(CELLS, background=np.inf), RangeError, "background"),
-    (lambda: Octree.from_dense(CELLS, np.zeros((2, 3))), RangeError, "bounds: expected finite"),
+    (
+        lambda: Octree.from_dense(CELLS, np.zeros((2, 3))),
+        RangeError,
+        "bounds: expected lower before upper",
+    ),
     (lambda: Octree.from_dense(CELLS, np.zeros((3, 2))), ShapeError, "bounds"),
     (lambda: Octree.from_function(lambda *_: None, 1), RangeError, "every single cell"),
     (lambda: Octree.from_function(lambda *_: [1, 2], 1), ShapeError, "None or 1 channels, got 2"),

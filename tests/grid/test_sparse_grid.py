@@ -161,12 +161,12 @@ def bad_nan() -> Array:
     [
         (np.zeros((3, 3), np.float32), {}, ShapeError, r"got \(3, 3\)"),
         (np.zeros((3, 3, 3, 2), np.float32), {}, ShapeError, r"got \(3, 3, 3, 2\)"),
-        (np.zeros((3, 3, 3)), {}, DtypeError, "expected float32, got float64"),
-        (bad_nan(), {}, Error, "finite values, got 1 that are not"),
+        (np.zeros((3, 3, 3), bool), {}, DtypeError, "expected numbers, got an array of bool"),
+        (bad_nan(), {}, RangeError, r"values: expected finite numbers, got nan at \["),
         (spotted(), {"background": np.nan}, Error, "background: expected finite"),
         (spotted(), {"tolerance": -1.0}, RangeError, "0 or more, got -1.0"),
         (spotted(), {"tolerance": np.nan}, RangeError, "0 or more, got nan"),
-        (spotted(), {"origin": (2**31, 0, 0)}, RangeError, "indices within"),
+        (spotted(), {"origin": (2**31, 0, 0)}, RangeError, r"numbers in \[-1.07374e\+09"),
         (spotted(), {"origin": (0.5, 0, 0)}, DtypeError, "integers, got float64"),
         (spotted(), {"world_from_index": np.zeros((4, 4))}, RangeError, "affine"),
         (spotted(), {"world_from_index": np.diag([1.0, 1, 0, 1])}, RangeError, "singular"),
@@ -192,5 +192,5 @@ def test_a_dense_array_beyond_memory_is_refused_before_it_is_made() -> None:
 
 @pytest.mark.parametrize("value", [np.nan, np.inf, 1e12])
 def test_points_far_away_are_refused(value: float) -> None:
-    with pytest.raises(RangeError, match="finite, near"):
+    with pytest.raises(RangeError, match=r"SparseGrid\.sample: points: expected finite"):
         spotted_grid().sample(np.full((2, 3), value))

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 from photograd.errors import DtypeError, Error, RangeError, ShapeError
-from photograd.grids.voxel_hash import LEAST, MOST, VoxelHash
+from photograd.grids.voxel_hash import MAX_COORDINATE, MIN_COORDINATE, VoxelHash
 from photograd_course.random import uniform
 
 from support.bits import same_bits
@@ -88,7 +88,9 @@ def test_statistics_of_a_coarse_lattice() -> None:
 
 
 def test_the_corners_of_the_range_fit() -> None:
-    corners = np.stack(np.meshgrid(*[[LEAST, MOST]] * 3, indexing="ij"), -1).reshape(-1, 3)
+    corners = np.stack(
+        np.meshgrid(*[[MIN_COORDINATE, MAX_COORDINATE]] * 3, indexing="ij"), -1
+    ).reshape(-1, 3)
     table = VoxelHash(corners)
     assert len(table) == 8
     np.testing.assert_array_equal(table.items()[0], corners)
@@ -99,10 +101,14 @@ def test_the_corners_of_the_range_fit() -> None:
     ("voxels", "kind", "words"),
     [
         (np.zeros((3, 3)), DtypeError, "voxels: expected integers, got float64"),
-        (np.zeros((3, 2), int), ShapeError, "voxels: expected shape (N, 3), got shape (3, 2)"),
-        (np.array([[0, 0, MOST + 1]]), RangeError, "got 1 beyond, the first in row 0"),
-        (np.array([[1, 2, 3], [0, LEAST - 1, 0]]), RangeError, "the first in row 1: [0, -1048577"),
-        (np.array([[2**32, 0, 0]]), RangeError, "coordinates from -2^20 to 2^20 - 1"),
+        (np.zeros((3, 2), int), ShapeError, "voxels: expected shape (N, 3), got (3, 2)"),
+        (np.array([[0, 0, MAX_COORDINATE + 1]]), RangeError, "0 1048576] in row 0"),
+        (
+            np.array([[1, 2, 3], [0, MIN_COORDINATE - 1, 0]]),
+            RangeError,
+            "-1048577        0] in row 1",
+        ),
+        (np.array([[2**32, 0, 0]]), RangeError, "got [4294967296"),
         (np.array([[2**63, 0, 0]], np.uint64), RangeError, "9223372036854775808"),
     ],
 )

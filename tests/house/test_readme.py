@@ -28,7 +28,7 @@ try:
 finally:
     sys.path.pop(0)
 
-PAGES = ["README.md", "CONTRIBUTING.md"]
+PAGES = ["README.md", "CONTRIBUTING.md", "docs/architecture.md"]
 KINDS = {"run", "commands", "text"}
 BLOCK = re.compile(r"(?:^<!-- check: (\w+) -->\n)?^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 PATH = re.compile(r"`((?:cpp|python|tests|docs|bench|tools|assignments)/[\w./-]*)`")

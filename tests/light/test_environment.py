@@ -195,14 +195,14 @@ def test_bad_maps_are_refused() -> None:
         with pytest.raises(RangeError, match="texels"):
             EnvironmentMap(good).with_texels(bad)
     for shape in ((8, 15, 3), (8, 8, 3), (0, 0, 3)):
-        with pytest.raises(ShapeError, match="twice as wide"):
+        with pytest.raises(ShapeError, match=r"^EnvironmentMap: texels: .*\(H, 2 H, 3\)"):
             EnvironmentMap(np.ones(shape))
     with pytest.raises(ShapeError, match=r"\(H, 2 H, 3\)"):
         EnvironmentMap(np.ones((8, 16)))
     with pytest.raises(DtypeError, match="texels"):
         EnvironmentMap(np.ones((8, 16, 3), int))
     for matrix in (np.diag([1.0, 1.0, -1.0]), 2.0 * np.eye(3), np.full((3, 3), np.nan)):
-        with pytest.raises(RangeError, match="a rotation"):
+        with pytest.raises(RangeError, match="world_from_map"):
             EnvironmentMap(good, matrix)
     with pytest.raises(ShapeError, match="world_from_map"):
         EnvironmentMap(good, np.eye(4))

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from photograd.bsdf.phase import phase_function, registry
+from photograd.bsdf.phase import registry
 from photograd.errors import DtypeError, RangeError, ShapeError
 from photograd_course.gradcheck import check_accumulation, check_gradient, dot_product_error
 from photograd_course.mutants import check_overwriting_mutants
@@ -128,10 +128,24 @@ def test_float_agrees_with_double(name: str) -> None:
 
 
 def test_bad_input_is_refused() -> None:
-    phase = phase_function("henyey_greenstein")
-    with pytest.raises(RangeError, match="henyey_greenstein"):
-        phase_function("mie")
-    with pytest.raises(ShapeError):
-        phase.p(np.zeros(2), COS)
-    with pytest.raises(DtypeError):
+    phase = PHASES["henyey_greenstein"]
+    with pytest.raises(RangeError, match="did you mean 'henyey_greenstein'"):
+        PHASES["henyey_greenstien"]
+    for values in (np.zeros(2), {"g": [0.1, 0.2]}):
+        with pytest.raises(ShapeError, match=r"^PhaseModel\.p: henyey_greenstein"):
+            phase.p(values, COS)
+    with pytest.raises(RangeError, match=r"^PhaseModel\.p: henyey_greenstein.values: .*\['g'\]"):
+        phase.p({"h": 0.1}, COS)
+    with pytest.raises(DtypeError, match=r"^PhaseModel\.p: henyey_greenstein: expected float64 as"):
         phase.p(np.zeros(1, np.float32), COS)
+    with pytest.raises(DtypeError, match=r"^PhaseModel\.p_backward: d_p"):
+        phase.p_backward({"g": 0.1}, COS, COS.astype(np.float32))
+
+
+def test_values_by_name_and_packed_are_the_same() -> None:
+    phase = PHASES["henyey_greenstein"]
+    by_name = phase.p({"g": 0.3}, [0.5, 0.1])
+    np.testing.assert_array_equal(by_name, phase.p([0.3], np.array([0.5, 0.1])))
+    d_values, d_cos = phase.p_backward({"g": 0.3}, COS, COS)
+    assert d_values["g"].shape == ()
+    assert d_cos.shape == COS.shape

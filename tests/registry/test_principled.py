@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from photograd._compiled import _core
 from photograd.bsdf import principled, registry
-from photograd.errors import DtypeError, RangeError, ShapeError
+from photograd.errors import DtypeError, ShapeError
 
 from support.bits import same_bits
 from support.bsdf_proofs import albedo, hemisphere
@@ -129,9 +129,9 @@ def test_bad_arrays_are_named() -> None:
     parameters = parameter_rows(1)
     with pytest.raises(ShapeError, match="wi: expected"):
         principled.evaluate(parameters, wo, wi[:3])
-    with pytest.raises(DtypeError, match="parameters: expected"):
+    with pytest.raises(DtypeError, match=r"^principled\.evaluate: parameters: expected float32"):
         principled.evaluate(parameters.astype(np.float64), wo, wi)
-    with pytest.raises(RangeError, match="at least one row"):
+    with pytest.raises(ShapeError, match=r"\(T, 5\) with T >= 1"):
         principled.evaluate(parameters[:0], wo, wi)
 
 

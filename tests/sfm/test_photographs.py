@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from photograd.capture.sfm.photographs import copy_photographs, find_photographs
-from photograd.capture.sfm.reconstruct import KEYS, NEIGHBOURS, choose_pairs
+from photograd.capture.sfm.reconstruct import KEYS, NEIGHBORS, choose_pairs
 from photograd.errors import IoError, SceneError
 from PIL import Image, ImageOps
 
@@ -131,7 +131,7 @@ def test_a_walk_compares_neighbours_and_comes_back(count: int) -> None:
     assert {(i, i + 1) for i in range(count - 1)} <= set(pairs)
     assert (0, count - 1) in pairs  # the end with the start
     # The work grows with the number, not with its square.
-    assert len(pairs) <= count * (NEIGHBOURS + 6) + NEIGHBOURS**2 + KEYS**2 / 2
+    assert len(pairs) <= count * (NEIGHBORS + 6) + NEIGHBORS**2 + KEYS**2 / 2
     if count > 60:
         assert choose_pairs(count) == pairs
         assert len(choose_pairs(count)) < count * (count - 1) // 2

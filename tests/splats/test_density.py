@@ -1,4 +1,4 @@
-"""Density control: what becomes of the picture, of the rows, and of the optimiser's state."""
+"""Density control: what becomes of the picture, of the rows, and of the optimizer's state."""
 
 from __future__ import annotations
 
@@ -132,20 +132,20 @@ def test_moments_follow_their_rows() -> None:
     gaussians.log_scales[:3] = np.log(0.01)  # small: cloned if pressed
     gaussians.log_scales[3:] = np.log(0.1)  # large: split if pressed
     field = scene(gaussians, CloneSplitPrune(budget=99, schedule=ALWAYS, large=9.0))
-    optimiser = RowAdam()
+    optimizer = RowAdam()
     gradients = {
         name: np.arange(1.0, 7.0).reshape(6, *[1] * (a.ndim - 1)) * np.ones_like(a)
         for name, a in field.params.items()
     }
-    optimiser.step(field.params, gradients, 1e-6)
+    optimizer.step(field.params, gradients, 1e-6)
     press(field, np.array([1, 5]))
     rows = field.refine(1, {})
     assert rows is not None
-    optimiser.apply_row_map(rows, field.params)
+    optimizer.apply_row_map(rows, field.params)
     # 0, 1, 2, 3 stay (4 is faint, 5 is split); then 1's clone and two parts of 5.
     assert rows.source.tolist() == [0, 1, 2, 3, FRESH, FRESH, FRESH]
     for name, array in field.params.items():
-        mean = optimiser.state()[f"mean/{name}"].reshape(7, -1)
+        mean = optimizer.state()[f"mean/{name}"].reshape(7, -1)
         assert mean.shape[1] == array.reshape(7, -1).shape[1]
         np.testing.assert_allclose(mean[:4].T, 0.1 * np.array([1.0, 2, 3, 4]) + 0 * mean[:4].T)
         assert not mean[4:].any()
@@ -186,12 +186,12 @@ def test_faint_gaussians_wander_and_opaque_ones_stay() -> None:
     gaussians.opacity_logits[:100] = -7
     gaussians.opacity_logits[100:] = 0
     field = scene(gaussians, MarkovChain(budget=200))
-    field.explore(1e-5, 3)
+    field.after_step({"means": 1e-5}, 3)
     moved = np.linalg.norm(field.params["means"] - gaussians.means, axis=1)
     assert moved[:100].min() > 0
     assert not moved[100:].any()
     again = scene(gaussians, MarkovChain(budget=200))
-    again.explore(1e-5, 3)
+    again.after_step({"means": 1e-5}, 3)
     np.testing.assert_array_equal(again.params["means"], field.params["means"])
 
 
@@ -229,8 +229,9 @@ def test_grad2d_means_the_same_at_every_resolution() -> None:
             # The derivative of a mean over pixels: towards red on the left and blue on the right.
             ramp = np.linspace(-1, 1, size)[None, :, None] * np.array([1.0, 0, -1])
             d_color = np.broadcast_to(ramp, (size, size, 3)).reshape(-1, 3) / outputs.color.size
-            field.render_backward(context, Outputs(np.ascontiguousarray(d_color)))
-            field.observe(context)
+            d_outputs = Outputs(np.ascontiguousarray(d_color))
+            gradients = field.render_backward(context, d_outputs)
+            field.observe(context, gradients)
             raw.append(np.abs(context.screen).mean())
         chosen.append(field.grad2d.mean() > np.median(field.grad2d.mean()) * 1.5)
         middle = np.median(field.grad2d.mean())

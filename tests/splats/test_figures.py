@@ -20,11 +20,11 @@ import figures_gaussians as figures
 def test_the_rim_wants_less_and_the_inside_more() -> None:
     fit = Fit.start(figures.photographs(40, views=12), options_for("gaussians", gaussians=600))
     assert isinstance(fit.model, GaussianScene)
-    assert isinstance(fit.pixels, TrainingViews)
-    found = view_gradients(fit.model, fit.pixels, 0)
+    assert isinstance(fit.data, TrainingViews)
+    found = view_gradients(fit.model, fit.data, 0)
     # The share of a small window around each mean that is covered, in the view where it is least.
     least = np.ones(fit.model.resolution)
-    for view in fit.pixels.views:
+    for view in fit.data.views:
         alpha = np.pad(view.premultiplied[..., 3], 3)
         mean = np.mean([np.roll(alpha, (a, b), (0, 1)) for a in (-3, 0, 3) for b in (-3, 0, 3)], 0)
         pixels, _ = view.camera.project(fit.model.params["means"].astype(np.float64))

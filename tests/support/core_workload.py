@@ -104,7 +104,8 @@ def representations() -> None:
         for dtype in BOTH:
             field = made.example(seed=1, dtype=dtype)
             batch = field.example_batch(seed=2)
-            for options in (RenderOptions(), RenderOptions(jitter=True, camera_adjoint=True)):
+            camera = not made.no_camera_adjoint
+            for options in (RenderOptions(), RenderOptions(jitter=True, camera_adjoint=camera)):
                 out, context = field.render(batch, seed=1, step=2, options=options)
                 ones = {k: np.ones_like(v) for k, v in vars(out).items() if v is not None}
                 field.render_backward(context, Outputs(**ones))

@@ -22,7 +22,7 @@ def missing(reason: str, *, by_choice: bool = False) -> NoReturn:
         pytest.fail(f"{reason} (under --all everything has to be there)")
     if os.environ.get("CI") == "true" and not by_choice:
         pytest.fail(f"{reason} (continuous integration has to have it)")
-    pytest.skip(reason)
+    pytest.skip(reason, allow_module_level=True)
 
 
 def need_module(name: str, *, by_choice: bool = False) -> ModuleType:

@@ -10,9 +10,9 @@ COURSE, CORE = "python/photograd_course/src/photograd_course/", "python/photogra
 PROMISED = (
     *(COURSE + name for name in ("color.py", "losses.py", "optim/", "priors.py", "random.py")),
     *(COURSE + name for name in ("resample.py", "row_map.py", "schedules.py")),
-    *(CORE + name for name in ("fields/", "textures/", "transport/inverse/")),
+    *(CORE + name for name in ("fields/", "representation/", "textures/", "transport/inverse/")),
     *(CORE + "fitting/" + name for name in ("data.py", "loop.py", "loss.py", "model.py")),
-    *(CORE + "fitting/" + name for name in ("start.py", "steps.py", "surface_points.py")),
+    *(CORE + "fitting/" + name for name in ("steps.py", "surface_points.py")),
     *(
         CORE + "splats/" + name
         for name in ("clone_split_prune.py", "density.py", "markov_chain.py")

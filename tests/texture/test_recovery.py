@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from photograd.errors import DtypeError, Error, RangeError, ShapeError
+from photograd.errors import DtypeError, Error, IoError, RangeError, ShapeError
 from photograd.textures import (
     TexturePlan,
     loss_and_gradient,
@@ -138,7 +139,7 @@ def test_bad_input_is_refused() -> None:
         ShapeError, match=r"TexturePlan: colors: expected shape \(N, C\) with N = 10"
     ):
         recover(uv, colors[:9], (4, 4), steps=1)
-    with pytest.raises(DtypeError, match="TexturePlan: colors: expected dtype float64"):
+    with pytest.raises(DtypeError, match="TexturePlan: colors: expected float64 as uv"):
         recover(uv, colors.astype(np.float32), (4, 4), steps=1)
     with pytest.raises(RangeError, match="recover: steps: expected at least 1, got 0"):
         recover(uv, colors, (4, 4), steps=0)
@@ -146,7 +147,7 @@ def test_bad_input_is_refused() -> None:
         recover(uv, colors, (4, 4), steps=1, learning_rate=-1.0)
     with pytest.raises(RangeError, match="TexturePlan: uv: expected at least one point, got none"):
         recover(uv[:0], colors[:0], (4, 4), steps=1)
-    with pytest.raises(ShapeError, match=r"shape: expected \(H, W\), got \(4, 4, 3\)"):
+    with pytest.raises(ShapeError, match=r"shape: expected shape \(2,\), got \(3,\)"):
         recover(uv, colors, (4, 4, 3), steps=1)
     with pytest.raises(RangeError, match="got 0 x 4"):
         TexturePlan(uv, colors, (0, 4))
@@ -155,3 +156,27 @@ def test_bad_input_is_refused() -> None:
         plan.loss_and_gradient(np.zeros((4, 5, 3)))
     with pytest.raises(DtypeError, match="loss_and_gradient: texture: expected dtype float64"):
         plan.loss_and_gradient(np.zeros((4, 4, 3), np.float32))
+
+
+def test_a_stopped_recovery_goes_on_to_the_same_bits(tmp_path: Path) -> None:
+    uv, colors = points(300, 2).astype(np.float32), noise((300, 3), 3).astype(np.float32)
+    straight = recover(uv, colors, (6, 5), steps=9)
+    stopped = iter([False] * 4 + [True] * 9)
+    part = recover(uv, colors, (6, 5), steps=9, folder=tmp_path, should_stop=lambda: next(stopped))
+    assert len(part.losses) == 4
+    with pytest.raises(RangeError, match=r"recover: folder: .* without texture\.npz"):
+        recover(uv, colors, (6, 5), steps=9, folder=tmp_path)
+    with pytest.raises(RangeError, match=r"recover: resume: expected the points, colors and"):
+        recover(uv, 1 - colors, (6, 5), steps=9, folder=tmp_path, resume=True)
+    resumed = recover(uv, colors, (6, 5), steps=9, folder=tmp_path, resume=True)
+    assert np.array_equal(resumed.texture, straight.texture)
+    assert np.array_equal(resumed.losses, straight.losses)
+    assert len(straight.losses) == 10
+    path = tmp_path / "texture.npz"
+    with np.load(path) as archive:
+        arrays: dict[str, Any] = {name: archive[name] for name in archive.files}
+    for name, value in (("params.texture", arrays["params.texture"][:-1]), ("history", np.ones(3))):
+        np.savez(path, **arrays | {name: value})
+        with pytest.raises(IoError):
+            recover(uv, colors, (6, 5), steps=9, folder=tmp_path, resume=True)
+    assert not (tmp_path / ".photograd.lock").exists()

@@ -159,8 +159,8 @@ def test_any_number_of_points(count: int) -> None:
 
 UV = np.zeros((4, 2))
 BAD: list[tuple[Any, Any, type[Exception], str]] = [
-    (np.zeros((3, 3, 3), int), UV, DtypeError, "sample: texture: expected a float32 or float64"),
-    (np.zeros((3, 3, 3)), UV.astype("f4"), DtypeError, "uv: expected dtype float64, got"),
+    (np.zeros((3, 3, 3), int), UV, DtypeError, "sample: texture: expected float32 or float64"),
+    (np.zeros((3, 3, 3)), UV.astype("f4"), DtypeError, "uv: expected float64 as texture, got"),
     (np.zeros((3, 3)), UV, ShapeError, r"texture: expected shape \(H, W, C\), got \(3, 3\)"),
     (np.zeros((3, 3, 3)), UV[:, :1], ShapeError, r"uv: expected shape \(N, 2\), got \(4, 1\)"),
     (np.zeros((0, 3, 3)), UV, RangeError, "texels along each axis, got 0 x 3"),
@@ -169,7 +169,7 @@ BAD: list[tuple[Any, Any, type[Exception], str]] = [
         np.zeros((3, 3, 3)),
         np.array([[0, 0.5], [np.nan, np.inf]]),
         RangeError,
-        "uv: expected finite numbers, got 2 that are not, the first in point 1",
+        "uv: expected finite numbers, got 2 that are not, the first in row 1",
     ),
 ]
 
@@ -186,7 +186,7 @@ def test_bad_input_is_refused(texture: Any, uv: Any, error: type[Exception], wor
 def test_one_coordinate_that_is_no_number_is_found(channels: int, point: int, value: float) -> None:
     uv = points(4997, 2).astype(np.float32)
     uv[point, point % 2] = value
-    with pytest.raises(RangeError, match=f"got 1 that are not, the first in point {point}"):
+    with pytest.raises(RangeError, match=f"got 1 that are not, the first in row {point}"):
         sample(noise((9, 8, channels), 1).astype(np.float32), uv)
 
 

@@ -10,8 +10,8 @@ import pytest
 from hypothesis import strategies as st
 from photograd.transport import Material, Medium, ModelFile, NormalMap, Texture, TextureUse
 from photograd.transport.material import MODELS
-from photograd.transport.mesh_files.gltf_painted import SLOTS
-from photograd.transport.mesh_files.gltf_words import BODIES
+from photograd.transport.mesh_files.gltf_material_writer import BODIES
+from photograd.transport.mesh_files.gltf_texture_writer import SLOTS
 from photograd.transport.shapes import box
 from photograd.transport.texture import FILTERS, decode
 

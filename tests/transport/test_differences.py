@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from photograd._compiled import _core
 from photograd.bsdf import phase
-from photograd.lights.registered import CLASSES
+from photograd.lights import registry as lights
 from photograd.transport import PathOptions, PathTracer
 from photograd.transport.incomplete import TURNING
 from photograd.transport.material import MODELS
@@ -64,7 +64,7 @@ def registered(models: Any, lights: Any, phases: Any) -> set[str]:
 def test_every_parameter_of_every_registry_has_a_row() -> None:
     rows = [row.name for case in cases() for row in case.rows]
     assert len(rows) == len(set(rows))
-    assert registered(MODELS, CLASSES, phase.registry()) <= set(rows)
+    assert registered(MODELS, lights(), phase.registry()) <= set(rows)
     for other in ("environment map.texels", "grid.density", "veil.texels"):
         assert any(name.startswith(other) for name in rows)
     assert list(KNOWN) == rows  # else: python docs/results_differences.py
@@ -75,7 +75,7 @@ def test_every_parameter_of_every_registry_has_a_row() -> None:
 def test_a_model_without_rows_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(MODELS, "chalk", MODELS["lambert"])
     new = {f"chalk.albedo[{c}]" for c in range(3)}
-    assert registered(MODELS, CLASSES, phase.registry()) - set(KNOWN) == new
+    assert registered(MODELS, lights(), phase.registry()) - set(KNOWN) == new
     assert {row.name for case in cases() for row in case.rows} - set(KNOWN) == new
 
 

@@ -18,7 +18,7 @@ from photograd.transport import (
     ModelFile,
     PathTracer,
     Scene,
-    model_scene,
+    default_scene,
     read_scene,
 )
 from photograd.transport.builtin import camera_at
@@ -139,7 +139,7 @@ def test_a_scene_comes_back_with_its_camera_and_lights(tmp_path: Path) -> None:
     for name in ("m.glb", "m.gltf"):
         model, said = written(before, tmp_path / name)
         assert said == []
-        after = model_scene(model, "m", 24)
+        after = default_scene(model, "m", 24)
         assert (after.camera.width, after.camera.height) == (24, 16)
         pictures = [PathTracer(s).render(spp=8, seed=3).mean for s in (before, after)]
         assert (pictures[0] > 0).mean() > 0.5
@@ -176,14 +176,16 @@ def test_whose_view_and_whose_light() -> None:
     scene = stage()
     cameras = tuple(replace(ModelCamera.of(scene.camera), name=name) for name in ("near", "far"))
     full = ModelFile(scene.shapes, scene.materials, cameras=cameras, lights=scene.lights)
-    own = model_scene(full, "m", 24)
+    own = default_scene(full, "m", 24)
     assert (len(own.shapes), len(own.lights), own.environment) == (3, 3, None)
     np.testing.assert_allclose(own.camera.position, [1, 2, 5])
     far = replace(cameras[1], world_from_camera=np.eye(4))
     two = replace(full, cameras=(cameras[0], far))
-    np.testing.assert_array_equal(model_scene(two, "m", 24, camera="far").camera.position, [0] * 3)
+    np.testing.assert_array_equal(
+        default_scene(two, "m", 24, camera="far").camera.position, [0] * 3
+    )
     # In the studio nothing of the file's is left but its shapes.
-    studio = model_scene(full, "m", 24, camera="studio")
+    studio = default_scene(full, "m", 24, camera="studio")
     assert (len(studio.shapes), len(studio.lights)) == (4, 0)
     assert isinstance(studio.environment, Environment)
     assert studio.camera.width == studio.camera.height == 24
@@ -194,9 +196,9 @@ def test_whose_view_and_whose_light() -> None:
         (replace(full, shapes=full.shapes[:2], lights=()), 3),
         (replace(full, cameras=()), 3),
     ):
-        assert len(model_scene(model, "m", 24).shapes) == shapes
+        assert len(default_scene(model, "m", 24).shapes) == shapes
     with pytest.raises(SceneError, match="camera: expected a camera of the file, got fra"):
-        model_scene(full, "m", camera="fra")
+        default_scene(full, "m", camera="fra")
 
 
 SCENE = """\

@@ -34,7 +34,7 @@ from tests.transport.test_mesh_files import read
 pytestmark = pytest.mark.usefixtures("core")
 BLACK = {"albedo": [0.0] * 3, "alpha": 1.0}
 GREY = np.full((4, 4, 3), 128, np.uint8)
-SEEN = "mip maps of its sampler: not supported, seen point by point"
+NO_MIPS = "mip maps of its sampler: not supported, sampled without mip maps"
 
 
 def sampled(**sampler: Any) -> Glb:
@@ -90,7 +90,7 @@ def test_what_is_no_filter_is_refused(tmp_path: Path, value: Any) -> None:
         read(tmp_path, sampled(minFilter=value).bytes())
 
 
-def test_what_is_seen_point_by_point_is_named(tmp_path: Path) -> None:
+def test_what_is_sampled_without_mip_maps_is_named(tmp_path: Path) -> None:
     glb = sampled(minFilter=9987)
     glb.json["materials"][0] |= {
         "normalTexture": {"index": 0},
@@ -99,7 +99,7 @@ def test_what_is_seen_point_by_point_is_named(tmp_path: Path) -> None:
     }
     _, told = read(tmp_path, glb.bytes())
     place = "m.glb: materials[0]"
-    assert told == [f"{place}: normalTexture: {SEEN}", f"{place}: emissiveTexture: {SEEN}"]
+    assert told == [f"{place}: normalTexture: {NO_MIPS}", f"{place}: emissiveTexture: {NO_MIPS}"]
 
 
 def net(mode: str) -> Glb:
@@ -119,13 +119,13 @@ def test_a_mask_far_away_is_still_a_net(tmp_path: Path) -> None:
     for mode in ("MASK", "BLEND"):
         model, told = read(tmp_path, net(mode).bytes())
         place = "m.glb: materials[0]: pbrMetallicRoughness: baseColorTexture"
-        assert told == ([f"{place}: {SEEN}"] if mode == "MASK" else [])
+        assert told == ([f"{place}: {NO_MIPS}"] if mode == "MASK" else [])
         uses = model.materials["m"].textures
         assert model.textures[uses["base_color"].texture].filter == "mip"
         alpha = model.textures[uses["alpha"].texture]
         assert alpha.filter == ("bilinear" if mode == "MASK" else "mip")
         again, said = written(model, tmp_path / "again.glb")
-        assert said == ([f"again.glb: read back: again.glb{place[5:]}: {SEEN}"] if told else [])
+        assert said == ([f"again.glb: read back: again.glb{place[5:]}: {NO_MIPS}"] if told else [])
         same(model, again)
         # Black before an even sky of 1, in a picture of 8 x 8: what is there is missing from it.
         black = {

@@ -26,13 +26,13 @@ from photograd.transport import (
     Texture,
     TextureUse,
     builtin_scene,
-    model_scene,
+    default_scene,
     read_model,
     save_gltf,
 )
 from photograd.transport.material import MODELS
-from photograd.transport.mesh_files.gltf_painted import normals_as_bytes
-from photograd.transport.mesh_files.gltf_words import WRITTEN
+from photograd.transport.mesh_files.gltf_material_writer import WRITTEN
+from photograd.transport.mesh_files.gltf_texture_writer import normals_as_bytes
 from photograd.transport.shapes import box
 
 from support.tree import ROOT
@@ -207,7 +207,7 @@ def test_surroundings_and_unused_materials_are_named(tmp_path: Path) -> None:
     assert said == ["m.glb: material 'spare': no shape has it, left out"]
     assert [s.name for s in model.shapes] == [s.name for s in scene.shapes]
     # The file has the camera and the lamp, and the walls are as matt as before.
-    read = model_scene(model, "box", 16)
+    read = default_scene(model, "box", 16)
     assert len(read.shapes) == len(scene.shapes)
     found, expected = (PathTracer(s).render(spp=2, seed=1).mean for s in (read, scene))
     assert expected.mean() > 0.1
@@ -292,7 +292,7 @@ def test_sample_files(tmp_path: Path, name: str) -> None:
 
 
 def test_a_scene_around_a_model(tmp_path: Path) -> None:
-    scene = model_scene(square(at_half("clearcoat")), "cube", 16)
+    scene = default_scene(square(at_half("clearcoat")), "cube", 16)
     lamp = next(s for s in scene.shapes if isinstance(s, MeshShape) and s.emission.any())
     found, said = written(scene, tmp_path / "m.gltf")
     assert said[0] == "m.gltf: not written: environment"

@@ -137,7 +137,12 @@ def test_every_kind_is_read(tmp_path: Path) -> None:
         ("intensity = 10\n", "", 0, "lights.0.intensity: expected a value, got none"),
         ("intensity = 10", "intensity = 10\npower = 3", 4, "lights.0.power: expected a key that"),
         ("position = [0, 3, 1]", "position = [0, 3]", 2, "3 finite numbers"),
-        ("axis = [0, -2, 0]", "axis = [0, 0, 0]", 4, "lights.1: spot: axis: expected a direction"),
+        (
+            "axis = [0, -2, 0]",
+            "axis = [0, 0, 0]",
+            4,
+            "lights.1: SpotLight: axis: expected a direction",
+        ),
         ("angle = 60", "angle = 190", 9, "lights.1.angle: expected degrees"),
         ("softness = 0.5", "softness = 0", 4, "softness: expected a number in (0, 1]"),
         ("direction = [1, 2, 0]", 'direction = "up"', 13, "3 finite numbers"),
@@ -167,8 +172,8 @@ def test_a_mistake_is_named_with_line_and_key(
     [
         (np.full((4, 8, 3), np.nan), "finite"),
         (np.full((4, 8, 3), -1.0), "numbers from 0 to 1e30"),
-        (np.ones((4, 4, 3)), "twice as wide as high"),
-        (np.ones((8, 4, 3)), "twice as wide as high"),
+        (np.ones((4, 4, 3)), "expected shape (H, 2 H, 3)"),
+        (np.ones((8, 4, 3)), "expected shape (H, 2 H, 3)"),
     ],
 )
 def test_pictures_that_are_no_environment_are_refused(

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from photograd.errors import SceneError
-from photograd.transport import ModelFile, PathTracer, model_scene, read_model
+from photograd.transport import ModelFile, PathTracer, default_scene, read_model
 
 from tests.transport.gltf_samples import CORNERS, FACES, UV, Glb, square
 
@@ -70,7 +70,7 @@ def test_every_format_gives_the_same_triangles(tmp_path: Path, name: str) -> Non
     np.testing.assert_array_equal(corners(model), corners(read(tmp_path, obj(), "o.obj")[0]))
     assert len(corners(model)) == 4
     np.testing.assert_array_equal(model.box, [[0, 0, 0], [1, 1, 1]])
-    tracer = PathTracer(model_scene(model, "pyramid", 16))
+    tracer = PathTracer(default_scene(model, "pyramid", 16))
     first = [tracer.path(pixel, 0, seed=1)[0]["shape"] for pixel in (0, 16 * 8 + 8)]
     assert first == [-1, 0]  # sky in the corner, the pyramid in the middle
 
@@ -222,5 +222,5 @@ def test_what_no_solid_could_be_is_drawn(tmp_path: Path) -> None:
     assert told == []
     assert len(corners(model)) == 5
     assert model.box[1].tolist() == [1, 1, 1]  # what no triangle has does not count
-    picture = PathTracer(model_scene(model, "odd", 16)).render(spp=4, seed=1).mean
+    picture = PathTracer(default_scene(model, "odd", 16)).render(spp=4, seed=1).mean
     assert np.ptp(picture) > 0.05

@@ -186,7 +186,7 @@ def test_a_resumed_search_has_the_same_bits(room: tuple[Any, Any], tmp_path: Pat
     for name, value in whole.params.items():
         np.testing.assert_array_equal(resumed.params[name], value)
         np.testing.assert_array_equal(resumed.curves[name], whole.curves[name])
-    with pytest.raises(RangeError, match="a folder without a recovery"):
+    with pytest.raises(RangeError, match=r"a folder without recovery\.npz"):
         recover(scene, picture, WALLS, options=OPTIONS, folder=tmp_path)
     with pytest.raises(RangeError, match="targets: expected"):
         Recovery(scene, picture + 1, WALLS, OPTIONS).load(tmp_path)

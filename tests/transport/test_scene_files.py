@@ -111,7 +111,7 @@ def test_a_file_says_what_the_scene_is(tmp_path: Path) -> None:
         ('kind = "box"', 'kind = "cube"', 21, "shapes.0.kind: expected one of"),
         ("turn = 20", "turns = 20", 24, "did you mean 'turn'"),
         ("turn = 20", 'inward = "yes"', 24, "true or false"),
-        ("size = [2, 0.2, 2]", "size = [2, 0, 2]", 20, "three lengths above 0 m"),
+        ("size = [2, 0.2, 2]", "size = [2, 0, 2]", 20, "size: expected finite numbers above 0"),
         ('material = "gold"', 'material = "silver"', 32, "shapes.1.material: expected one of"),
         ("radius = 0.5", "radius = 0", 27, "above 0 m"),
         ("radius = 0.5", "radius = 1e400", 31, "a finite number"),
@@ -249,5 +249,5 @@ def test_wrong_spheres_materials_and_scenes_are_refused() -> None:
         Scene("x", (), {"grey": GREY}, view())
     with pytest.raises(SceneError, match="one of the scene's materials, got grey"):
         Scene("x", (ball,), {"white": GREY}, view())
-    with pytest.raises(RangeError, match="three lengths"):
+    with pytest.raises(RangeError, match="size: expected finite numbers above 0"):
         box("b", [0, 0, 0], [1, -1, 1], "grey")

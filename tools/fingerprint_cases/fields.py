@@ -251,8 +251,12 @@ def march_cases() -> Iterator[Case]:
             run = partial(marched_sparse, dtype, policy, degree, fused, skip)
             yield Case(f"march/sparse_sh/{policy}/degree-{degree}/{form}/{key}", run)
     yield Case("march/sparse_sh/greatest-weights", greatest_weights)
-    for name, (key, dtype) in product(photograd.representations(), PRECISIONS.items()):
+    for (name, made), (key, dtype) in product(
+        photograd.representations().items(), PRECISIONS.items()
+    ):
         for way, options in ways.items():
+            if options.camera_adjoint and made.no_camera_adjoint:
+                continue
             run = partial(represented, name, dtype, options)
             yield Case(f"representation/{name}/{way}/{key}", run)
 

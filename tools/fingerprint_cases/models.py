@@ -78,8 +78,9 @@ def phase_function(name: str, dtype: Any, seed: int) -> Arrays:
     model, g = phase.registry()[name], np.random.default_rng(seed)
     row = np.full(len(model.parameters), 0.3, dtype)
     cosine = g.uniform(-1, 1, COUNT).astype(dtype)
-    d_row, d_cosine = model.p_backward(row, cosine, g.uniform(-1, 1, COUNT).astype(dtype))
-    found = {"p": model.p(row, cosine), "d_row": d_row, "d_cosine": d_cosine}
+    d_values, d_cosine = model.p_backward(row, cosine, g.uniform(-1, 1, COUNT).astype(dtype))
+    d_row = np.array([d_values[parameter.name] for parameter in model.parameters])
+    found: Arrays = {"p": model.p(row, cosine), "d_row": d_row, "d_cosine": d_cosine}
     if dtype == np.float64:
         found["tangent"] = model.core.jvp(row, cosine, np.ones_like(row), cosine)
     return found

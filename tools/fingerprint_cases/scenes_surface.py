@@ -15,7 +15,14 @@ from fingerprint_cases.scenes import GLASS, GLOSS, GRAY, Scenes, ball, dome, sta
 
 SHARES = np.array([0.75, 0.55, 0.3])  # of a color's range, apart so that tints matter
 FRACTIONS = {"eta": 0.3, "dispersion": 0.3}  # of a number's range; others 0.5
-VALUES = {"exponent": 20.0, "iridescence_thickness": 400.0, "rotation": 0.6}
+VALUES = {
+    "exponent": 20.0,
+    "iridescence_thickness": 400.0,
+    "rotation": 0.6,
+    # The middle, (0, 0), is no tangent: it counts as (1, 0) and has no derivative.
+    "anisotropy_x": 0.8,
+    "anisotropy_y": -0.5,
+}
 CARD = ([-1.0, 0.8, -1.0], [2.0, 0, 0], [0, 0, 2.0])  # between light and floor, faces down
 
 

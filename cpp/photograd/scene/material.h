@@ -29,6 +29,8 @@ struct Material {
     [[nodiscard]] int parameter_count() const {
         return info().parameter_count + (has_opacity ? 1 : 0);
     }
+    /// One of all parameters.
+    [[nodiscard]] R& number(int i) { return i < info().parameter_count ? parameter[i] : alpha; }
     /// Adds all parameters to out, in their order.
     void add_to(double* out) const;
     /// All parameters, in the same order, to or from a row of at most max_parameters.

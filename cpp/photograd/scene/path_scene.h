@@ -14,7 +14,7 @@
 #include "photograd/core/frame.h"
 #include "photograd/medium/medium.h"
 #include "photograd/scene/material.h"
-#include "photograd/scene/media.h"
+#include "photograd/scene/medium_stack.h"
 #include "photograd/scene/normal_map.h"
 #include "photograd/scene/scene_lights.h"
 #include "photograd/scene/textured.h"

@@ -174,19 +174,17 @@ template <Real R>
 Material<R> textured(const Material<R>& base, std::span<const TextureUse> uses,
                      const SurfaceTextures& textures, std::span<const R* const> texels,
                      const Vec2<R>& uv, const Footprint<R>& footprint = {}) {
-    R row[max_parameters];
-    base.get(row);
+    Material<R> own = base;
     for (const TextureUse& use : uses) {
         const auto t = static_cast<std::size_t>(use.texture);
         const TextureLayout& layout = textures.layouts[t];
         R color[max_channels];
         layout.look_up(texels[t], layout.inside(uv), layout.level_of(footprint), color);
-        for (int i = 0; i < use.count; ++i)
-            row[use.first + i] =
-                std::clamp(row[use.first + i] * color[use.channel + i], R(use.lo), R(use.hi));
+        for (int i = 0; i < use.count; ++i) {
+            R& p = own.number(use.first + i);
+            p = std::clamp(p * color[use.channel + i], R(use.lo), R(use.hi));
+        }
     }
-    Material<R> own = base;
-    own.set(row);
     return own;
 }
 

@@ -17,6 +17,11 @@ struct ImageView {
     int channels;
 };
 
+template <class T>
+ImageView<const T> read_only(const ImageView<T>& view) {
+    return {view.texels, view.shape, view.channels};
+}
+
 inline constexpr int max_channels = 4;
 
 /// Calls use(std::integral_constant<int, channels>) so that loops over channels have a fixed

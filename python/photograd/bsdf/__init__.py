@@ -6,24 +6,7 @@
 
 from __future__ import annotations
 
-from photograd.bsdf.models import (
-    METALS,
-    SMOOTH,
-    BsdfModel,
-    Parameter,
-    checked_directions,
-    pack_rows,
-    registry,
-    unpack_rows,
-)
+from photograd._registry import Parameter
+from photograd.bsdf.models import METALS, BsdfModel, registry
 
-__all__ = [
-    "METALS",
-    "SMOOTH",
-    "BsdfModel",
-    "Parameter",
-    "checked_directions",
-    "pack_rows",
-    "registry",
-    "unpack_rows",
-]
+__all__ = ["METALS", "BsdfModel", "Parameter", "registry"]

@@ -16,7 +16,6 @@ is `metalness`, as in all models here.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from types import ModuleType
 from typing import Any
@@ -24,8 +23,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from photograd._arrays import Arguments
 from photograd._compiled import _core
-from photograd.errors import DtypeError, RangeError, ShapeError, message
+from photograd._registry import Parameters, Registry, Values
 from photograd.types import Array
 
 METALS = {
@@ -43,22 +43,6 @@ saturated. Values go into a model as they are: `model.f({"roughness": 0.3, **MET
 # Reflectance models: what part of light from wi a surface sends towards wo, and the derivatives.
 
 
-Parameters = Mapping[str, Any]
-"""{name: value}; a value is a number or (3,), or one for each of N rows: (N,) or (N, 3)."""
-SMOOTH = "surfaces without roughness are models of their own: mirror, glass, thin_glass"
-
-
-@dataclass(frozen=True)
-class Parameter:
-    """A continuous parameter: `size` numbers that make sense in [lo, hi], in `unit`."""
-
-    name: str
-    size: int
-    lo: float
-    hi: float
-    unit: str
-
-
 @dataclass(frozen=True)
 class BsdfModel:
     """One registered reflectance model.
@@ -74,65 +58,75 @@ class BsdfModel:
     """
 
     name: str
-    parameters: tuple[Parameter, ...]
+    parameters: Parameters
     energy: tuple[str, float]
     reciprocal: bool
     transmits: bool
     core: Any
 
-    def pack(self, parameters: Parameters, dtype: npt.DTypeLike = np.float64) -> Array:
-        """Parameters as rows (1, P) or (N, P) of scalars in the core's order.
+    def pack(self, values: Values, dtype: npt.DTypeLike = np.float64) -> Array:
+        """Values of the parameters as rows (1, P) or (N, P) in the core's order.
 
         Raises:
+            DtypeError: values that are not numbers.
             RangeError: a name that is missing or unknown, values that are not finite, or one of 0
                 or less where the model has none: a roughness of 0 is that of `specular`.
             ShapeError: a value of another shape, or different numbers of rows.
         """
-        return pack_rows(self.name, self.parameters, parameters, dtype)
+        return self.parameters.pack(Arguments("BsdfModel.pack", dtype), self.name, values, dtype)
 
     def unpack(self, rows: Array) -> dict[str, Array]:
         """Rows (N, P) as {name: (N,) or (N, size)}."""
-        return unpack_rows(self.parameters, rows)
+        return self.parameters.unpack(rows)
 
-    def f(self, parameters: Parameters, wo: Array, wi: Array) -> Array:
+    def f(self, values: Values, wo: Array, wi: Array) -> Array:
         """Value (N, 3) without the cosine, in the dtype of `wo`.
 
+        Args:
+            values: of the parameters: {name: value}, or packed rows.
+            wo, wi: (N, 3), float32 or float64.
+
         Raises:
-            DtypeError, ShapeError: directions not float32 or float64, or not (N, 3).
+            DtypeError, RangeError, ShapeError: other directions, or what `pack` refuses.
         """
-        wo, wi = checked_directions(wo, wi)
-        value: Array = self.core.f(self.pack(parameters, wo.dtype), wo, wi)
+        rows, wo, wi = self._arguments("f", values, wo=wo, wi=wi)
+        value: Array = self.core.f(rows, wo, wi)
         return value
 
-    def f_backward(
-        self, parameters: Parameters, wo: Array, wi: Array, d_f: Array
-    ) -> dict[str, Array]:
+    def f_backward(self, values: Values, wo: Array, wi: Array, d_f: Array) -> dict[str, Array]:
         """dL/dparameters of d_f (N, 3) as {name: (N,) or (N, size)}; (1, ...) for shared values."""
-        wo, wi = checked_directions(wo, wi)
-        rows = self.pack(parameters, wo.dtype)
-        d_f = np.ascontiguousarray(d_f, wo.dtype)
+        rows, wo, wi, d_f = self._arguments("f_backward", values, wo=wo, wi=wi, d_f=d_f)
         return self.unpack(self.core.f_backward(rows, wo, wi, d_f, np.zeros_like(rows)))
 
-    def sample(self, parameters: Parameters, wo: Array, u2: Array) -> Array:
-        """Directions wi (N, 3), drawn from uniform u2 (N, 2) with the density `pdf`."""
-        (wo,) = checked_directions(wo)
-        u2 = np.ascontiguousarray(u2, wo.dtype)
-        wi: Array = self.core.sample(self.pack(parameters, wo.dtype), wo, u2)
+    def sample(self, values: Values, wo: Array, u2: Array) -> Array:
+        """Directions wi (N, 3), sampled by uniform u2 (N, 2) with the density `pdf`."""
+        rows, wo, u2 = self._arguments("sample", values, wo=wo, u2=u2)
+        wi: Array = self.core.sample(rows, wo, u2)
         return wi
 
-    def pdf(self, parameters: Parameters, wo: Array, wi: Array) -> Array:
+    def pdf(self, values: Values, wo: Array, wi: Array) -> Array:
         """Density (N,) of `sample` over solid angle."""
-        wo, wi = checked_directions(wo, wi)
-        density: Array = self.core.pdf(self.pack(parameters, wo.dtype), wo, wi)
+        rows, wo, wi = self._arguments("pdf", values, wo=wo, wi=wi)
+        density: Array = self.core.pdf(rows, wo, wi)
         return density
 
-    def index_inside(self, parameters: Parameters) -> Array:
+    def index_inside(self, values: Values) -> Array:
         """Refractive index below the surface over that above, per channel, (1, 3) or (N, 3).
 
         It is 1 in models that do not transmit, and in sheets.
         """
-        index: Array = self.core.index_inside(self.pack(parameters))
+        call = Arguments("BsdfModel.index_inside", np.float64)
+        index: Array = self.core.index_inside(self.parameters.pack(call, self.name, values))
         return index
+
+    def _arguments(self, function: str, values: Values, **arrays: Array) -> tuple[Array, ...]:
+        """Packed rows, and the arrays (N, 3), or (N, 2) for `u2`, as the core takes them."""
+        call = Arguments(f"BsdfModel.{function}")
+        rows = [
+            call.array(name, array, ("N", 2 if name == "u2" else 3))
+            for name, array in arrays.items()
+        ]
+        return (self.parameters.pack(call, self.name, values), *rows)
 
     def at(self, fraction: float) -> dict[str, Array]:
         """All parameters at a fraction of their range; channels of colours differ a little."""
@@ -145,58 +139,12 @@ class BsdfModel:
         return values
 
 
-def pack_rows(
-    model: str, described: tuple[Parameter, ...], values: Parameters, dtype: npt.DTypeLike
-) -> Array:
-    """Named values as rows (1, P) or (N, P) of scalars in the order of the description."""
-    names = [parameter.name for parameter in described]
-    if set(values) != set(names):
-        raise RangeError(message(model, "parameters", f"exactly {names}", sorted(values)))
-    columns = [_column(model, parameter, values[parameter.name]) for parameter in described]
-    rows = max(len(column) for column in columns)
-    if any(len(column) not in (1, rows) for column in columns):
-        counts = [len(column) for column in columns]
-        raise ShapeError(message(model, "parameters", "one number of rows", counts))
-    wide = [np.broadcast_to(column, (rows, column.shape[1])) for column in columns]
-    return np.ascontiguousarray(np.concatenate(wide, axis=1), dtype)
-
-
-def unpack_rows(described: tuple[Parameter, ...], rows: Array) -> dict[str, Array]:
-    """Rows (N, P) as {name: (N,) or (N, size)}."""
-    ends = np.cumsum([parameter.size for parameter in described])[:-1]
-    return {
-        parameter.name: part[:, 0] if parameter.size == 1 else part
-        for parameter, part in zip(described, np.split(rows, ends, axis=1), strict=True)
-    }
-
-
-def _column(model: str, parameter: Parameter, value: Any) -> Array:
-    try:
-        column = np.asarray(value, np.float64)
-    except (TypeError, ValueError) as failure:
-        text = repr(value)
-        got = text if len(text) <= 60 else f"{text[:57]}..."
-        raise DtypeError(message(model, parameter.name, "numbers", got)) from failure
-    one = (parameter.size,) if parameter.size > 1 else ()
-    if column.shape != one and (column.ndim != len(one) + 1 or column.shape[1:] != one):
-        expected = f"shape {one} or {('N', *one)}"
-        raise ShapeError(message(model, parameter.name, expected, column.shape))
-    if not np.isfinite(column).all():
-        raise RangeError(message(model, parameter.name, "finite numbers", "NaN or infinity"))
-    if parameter.lo > 0 and not (column > 0).all():
-        # A lobe without width has no value, and an index of 0 none, either.
-        got, remedy = column.min(), SMOOTH if "roughness" in parameter.name else None
-        raise RangeError(message(model, parameter.name, "above 0", got, remedy))
-    rows: Array = column.reshape(-1, parameter.size)
-    return rows
-
-
-def registry(core: ModuleType | Any = _core) -> dict[str, BsdfModel]:
+def registry(core: ModuleType | Any = _core) -> Registry[BsdfModel]:
     """All reflectance models of a compiled module, by name."""
-    return {
+    models = {
         name: BsdfModel(
             name,
-            tuple(Parameter(*row) for row in model.parameters()),
+            Parameters.of(model.parameters()),
             model.energy(),
             model.reciprocal(),
             model.transmits(),
@@ -204,16 +152,4 @@ def registry(core: ModuleType | Any = _core) -> dict[str, BsdfModel]:
         )
         for name, model in core.bsdfs.items()
     }
-
-
-def checked_directions(*arrays: Array) -> tuple[Array, ...]:
-    """The arrays, contiguous, if they are directions (N, 3) of one shape and floating dtype."""
-    for array in arrays:
-        if not isinstance(array, np.ndarray) or array.dtype not in (np.float32, np.float64):
-            got = getattr(array, "dtype", type(array).__name__)
-            raise DtypeError(message("bsdf", "wo, wi", "float32 or float64 arrays", got))
-        if array.ndim != 2 or array.shape[1] != 3 or array.shape != arrays[0].shape:
-            raise ShapeError(message("bsdf", "wo, wi", "shape (N, 3), both", array.shape))
-        if array.dtype != arrays[0].dtype:
-            raise DtypeError(message("bsdf", "wo, wi", "one dtype", array.dtype))
-    return tuple(np.ascontiguousarray(array) for array in arrays)
+    return Registry("reflectance model", models)

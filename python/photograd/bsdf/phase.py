@@ -7,15 +7,14 @@ towards the sun.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from photograd._arrays import Arguments
 from photograd._compiled import _core
-from photograd.bsdf.models import Parameter
-from photograd.errors import RangeError, message
+from photograd._registry import Parameters, Registry, Values
 from photograd.types import Array
 
 
@@ -25,48 +24,52 @@ class PhaseModel:
 
     Attributes:
         name: in the registry.
-        parameters: in the order in which arrays (P,) hold them.
+        parameters: in the order in which the core packs them.
         core: its functions on arrays, in the core.
     """
 
     name: str
-    parameters: tuple[Parameter, ...]
+    parameters: Parameters
     core: Any
 
-    def p(self, parameters: Array, cos_theta: Array) -> Array:
-        """Density over solid angle, (N,) in 1/sr, of parameters (P,) and cos_theta (N,).
+    def p(self, values: Values, cos_theta: Array) -> Array:
+        """Density over solid angle, (N,) in 1/sr.
 
-        Both are of one dtype, float32 or float64.
+        Args:
+            values: of the parameters: {name: number}, or packed (P,).
+            cos_theta: (N,), float32 or float64.
+
+        Raises:
+            DtypeError, RangeError, ShapeError: arrays other than these.
         """
-        density: Array = self.core.p(parameters, np.ascontiguousarray(cos_theta))
+        row, cos_theta = self._arguments(Arguments("PhaseModel.p"), values, cos_theta)
+        density: Array = self.core.p(row, cos_theta)
         return density
 
-    def p_backward(self, parameters: Array, cos_theta: Array, d_p: Array) -> tuple[Array, Array]:
-        """dL/dparameters (P,) and dL/dcos_theta (N,) of dL/dp (N,)."""
-        d_parameters, d_cos_theta = np.zeros_like(parameters), np.zeros_like(cos_theta)
-        self.core.p_backward(
-            parameters,
-            np.ascontiguousarray(cos_theta),
-            np.ascontiguousarray(d_p),
-            d_parameters,
-            d_cos_theta,
-        )
-        return d_parameters, d_cos_theta
+    def p_backward(
+        self, values: Values, cos_theta: Array, d_p: Array
+    ) -> tuple[dict[str, Array], Array]:
+        """dL/dparameters as {name: ()}, and dL/dcos_theta (N,), of dL/dp (N,).
+
+        Raises:
+            DtypeError, RangeError, ShapeError: as `p`, or another shape or dtype of d_p.
+        """
+        call = Arguments("PhaseModel.p_backward")
+        row, cos_theta = self._arguments(call, values, cos_theta)
+        d_p = call.array("d_p", d_p, ("N",))
+        d_row, d_cos_theta = np.zeros_like(row), np.zeros_like(cos_theta)
+        self.core.p_backward(row, cos_theta, d_p, d_row, d_cos_theta)
+        return self.parameters.unpack(d_row), d_cos_theta
+
+    def _arguments(self, call: Arguments, values: Values, cos_theta: Array) -> tuple[Array, Array]:
+        cos_theta = call.array("cos_theta", cos_theta, ("N",))
+        return self.parameters.pack_one(call, self.name, values), cos_theta
 
 
-def registry() -> dict[str, PhaseModel]:
+def registry() -> Registry[PhaseModel]:
     """All phase functions of the core, by name."""
-    models: Mapping[str, Any] = _core.phases
-    return {
-        name: PhaseModel(name, tuple(Parameter(*row) for row in core.parameters()), core)
-        for name, core in models.items()
+    models = {
+        name: PhaseModel(name, Parameters.of(core.parameters()), core)
+        for name, core in _core.phases.items()
     }
-
-
-def phase_function(name: str) -> PhaseModel:
-    """The phase function of that name. Raises RangeError, which lists all, for another one."""
-    known = registry()
-    if name not in known:
-        expected = f"one of {sorted(known)}"
-        raise RangeError(message("phase_function", "name", expected, repr(name)))
-    return known[name]
+    return Registry("phase function", models)

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from photograd._arrays import Arguments
 from photograd._compiled import _core
 from photograd.types import Array
 
@@ -24,13 +25,16 @@ def rows(base_color: Any, metalness: Any, roughness: Any) -> Array:
             size 1 in its place is allowed.
 
     Raises:
-        ValueError: shapes that do not fit together.
+        DtypeError, RangeError: not numbers, or not finite.
+        ShapeError: shapes that do not fit together.
     """
-    color = np.asarray(base_color, np.float32).reshape(-1, 3)
+    call = Arguments("principled.rows", np.float32)
+    color = call.array("base_color", base_color, (..., 3)).reshape(-1, 3)
     found = np.empty((len(color), 5), np.float32)
     found[:, :3] = color
-    found[:, 3] = np.asarray(metalness, np.float32).reshape(-1)
-    found[:, 4] = np.asarray(roughness, np.float32).reshape(-1)
+    for column, (name, value) in enumerate((("metalness", metalness), ("roughness", roughness))):
+        numbers = call.array(name, value).reshape(-1)
+        found[:, 3 + column] = call.array(name, numbers, (1,), (len(color),))
     return found
 
 
@@ -40,7 +44,7 @@ def evaluate(
     """f(wo, wi), with or without the cosine.
 
     Args:
-        parameters: (T, 5) float32, see `rows`.
+        parameters: (T, 5) float32, T at least 1, see `rows`.
         wo, wi: (N, 3) float32 unit vectors in the shading frame.
         cosine: whether values are times the cosine of wi.
         out: (N, 3), overwritten; by default a new array.
@@ -49,8 +53,9 @@ def evaluate(
         (N, 3), `out` where it is given; 0 unless both directions are above the surface.
 
     Raises:
-        DtypeError, RangeError, ShapeError: arrays other than these.
+        DtypeError, ShapeError: arrays other than these.
     """
+    parameters, wo, wi = _float32("principled.evaluate", parameters, wo=wo, wi=wi)
     values = np.empty(wo.shape, np.float32) if out is None else out
     _core.principled_values(parameters, wo, wi, cosine, values)
     return values
@@ -76,8 +81,19 @@ def evaluate_backward(
         out: (T, 5), added to; by default a new array.
 
     Raises:
-        DtypeError, RangeError, ShapeError: arrays other than these.
+        DtypeError, ShapeError: arrays other than these.
     """
+    parameters, wo, wi, d_values = _float32(
+        "principled.evaluate_backward", parameters, wo=wo, wi=wi, d_values=d_values
+    )
     d_parameters = np.zeros(np.shape(parameters), np.float32) if out is None else out
     _core.principled_values_backward(parameters, wo, wi, cosine, d_values, d_parameters)
     return d_parameters
+
+
+def _float32(function: str, parameters: Array, **rows: Array) -> tuple[Array, ...]:
+    """Parameters (T, 5) and rows (N, 3), all float32: so many are not converted."""
+    call = Arguments(function, np.float32, convert=False)
+    parameters = call.array("parameters", parameters, ("T", 5), finite=False, min_length=1)
+    arrays = (call.array(name, array, ("N", 3), finite=False) for name, array in rows.items())
+    return (parameters, *arrays)

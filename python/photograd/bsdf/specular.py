@@ -14,9 +14,9 @@ from typing import Any
 
 import numpy as np
 
+from photograd._arrays import Arguments
 from photograd._compiled import _core
-from photograd.bsdf.models import Parameter, Parameters, checked_directions, pack_rows, unpack_rows
-from photograd.errors import ShapeError, message
+from photograd._registry import Parameters, Registry, Values
 from photograd.types import Array
 
 
@@ -32,48 +32,51 @@ class DeltaModel:
     """
 
     name: str
-    parameters: tuple[Parameter, ...]
+    parameters: Parameters
     lobe_count: int
     core: Any
 
-    def lobes(self, parameters: Parameters, wo: Array) -> tuple[Array, Array]:
+    def lobes(self, values: Values, wo: Array) -> tuple[Array, Array]:
         """Directions wi and weights, (N, L, 3) each: L(wo) = sum_k weight_k L(wi_k).
 
         The cosine and the change of radiance from one medium to another are in the weight. A
         lobe that does not exist (total reflection) has weight 0 and wi = 0.
 
+        Args:
+            values: of the parameters: {name: value}, or packed rows.
+            wo: (N, 3), float32 or float64.
+
         Raises:
-            DtypeError, ShapeError: wo not float32 or float64, or not (N, 3).
+            DtypeError, RangeError, ShapeError: other directions or values.
         """
-        (wo,) = checked_directions(wo)
-        rows = pack_rows(self.name, self.parameters, parameters, wo.dtype)
-        wi, weight = self.core.lobes(rows, wo)
+        call = Arguments("DeltaModel.lobes")
+        wo = call.array("wo", wo, ("N", 3))
+        wi, weight = self.core.lobes(self.parameters.pack(call, self.name, values), wo)
         return wi, weight
 
     def lobes_backward(
-        self, parameters: Parameters, wo: Array, d_wi: Array, d_weight: Array
+        self, values: Values, wo: Array, d_wi: Array, d_weight: Array
     ) -> dict[str, Array]:
         """dL/dparameters of dL/dwi and dL/dweight (N, L, 3), as {name: (N,) or (N, size)}.
 
         Raises:
-            ShapeError: a cotangent that is not (N, L, 3).
+            DtypeError, RangeError, ShapeError: as `lobes`, or a cotangent that is not (N, L, 3).
         """
-        (wo,) = checked_directions(wo)
-        shape = (len(wo), self.lobe_count, 3)
-        for name, array in (("d_wi", d_wi), ("d_weight", d_weight)):
-            if np.shape(array) != shape:
-                raise ShapeError(message(self.name, name, f"shape {shape}", np.shape(array)))
-        rows = pack_rows(self.name, self.parameters, parameters, wo.dtype)
-        cotangents = (np.ascontiguousarray(d, wo.dtype) for d in (d_wi, d_weight))
-        d_rows = self.core.lobes_backward(rows, wo, *cotangents, np.zeros_like(rows))
-        return unpack_rows(self.parameters, d_rows)
-
-
-def registry(core: ModuleType | Any = _core) -> dict[str, DeltaModel]:
-    """All specular surfaces of a compiled module, by name."""
-    return {
-        name: DeltaModel(
-            name, tuple(Parameter(*row) for row in model.parameters()), model.lobe_count(), model
+        call = Arguments("DeltaModel.lobes_backward")
+        wo = call.array("wo", wo, ("N", 3))
+        shape = ("N", self.lobe_count, 3)
+        d_wi, d_weight = (
+            call.array(name, d, shape) for name, d in (("d_wi", d_wi), ("d_weight", d_weight))
         )
+        rows = self.parameters.pack(call, self.name, values)
+        d_rows = self.core.lobes_backward(rows, wo, d_wi, d_weight, np.zeros_like(rows))
+        return self.parameters.unpack(d_rows)
+
+
+def registry(core: ModuleType | Any = _core) -> Registry[DeltaModel]:
+    """All specular surfaces of a compiled module, by name."""
+    models = {
+        name: DeltaModel(name, Parameters.of(model.parameters()), model.lobe_count(), model)
         for name, model in core.delta_bsdfs.items()
     }
+    return Registry("specular surface", models)

@@ -17,7 +17,13 @@ from photograd.capture.bounds import (
 from photograd.capture.camera import Camera
 from photograd.capture.capture import Capture
 from photograd.capture.load import load_capture
-from photograd.capture.undistort import Distortion, distort, undistort, undistort_image
+from photograd.capture.undistort import (
+    ColmapLens,
+    Distortion,
+    FisheyeDistortion,
+    Lens,
+    undistort_image,
+)
 from photograd.capture.view import View
 from photograd.capture.write import write_blender_capture
 
@@ -25,15 +31,16 @@ __all__ = [
     "Bounds",
     "Camera",
     "Capture",
+    "ColmapLens",
     "Distortion",
+    "FisheyeDistortion",
+    "Lens",
     "View",
     "blind_cameras",
-    "distort",
     "estimate_bounds",
     "load_capture",
     "require_views_of",
     "sees_box",
-    "undistort",
     "undistort_image",
     "write_blender_capture",
 ]

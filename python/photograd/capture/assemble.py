@@ -11,6 +11,8 @@ from photograd_course.portable_math import matmul
 
 from photograd._files import TRUST, inside
 from photograd.capture.camera import Camera
+from photograd.capture.capture import Capture, Split
+from photograd.capture.view import View
 from photograd.errors import Error, IoError, SceneError, message
 from photograd.images.kind import LINEAR_SUFFIXES
 from photograd.images.read import IMAGE_SUFFIXES, ColorSpace, ImageHeader, read_header
@@ -113,7 +115,7 @@ def make_camera(
         raise type(error)(f"{function}: {frame}: {error}") from error
 
 
-def unused_images(photographs: Sequence[Photograph]) -> list[str]:
+def _unused_images(photographs: Sequence[Photograph]) -> list[str]:
     """A sentence for the log if images lie beside the used ones that no pose belongs to.
 
     Another form of a used image, such as its radiance beside its PNG, does not count.
@@ -127,16 +129,53 @@ def unused_images(photographs: Sequence[Photograph]) -> list[str]:
     return [f"{len(left)} images without a pose, not used: {names}"]
 
 
+def undistortion_lines(views: Sequence[View]) -> list[str]:
+    """A sentence for the log if lenses are undone: of how many, and how much the views hold.
+
+    That is measured along the axes of the photograph in which the pinhole view cuts off most.
+    """
+    bent = [view for view in views if view.distortion is not None]
+    if not bent:
+        return []
+    shares = np.array([_share_of_photograph(view) for view in bent]).min(axis=0)
+    line = f"lens distortion removed on reading from {len(bent)} of {len(views)} images"
+    if shares.min() < 0.95:
+        width, height = (100 * shares).round().astype(int)
+        line += f"; a pinhole view holds the middle {width} x {height} % of its photograph"
+    return [line]
+
+
+def _share_of_photograph(view: View) -> FloatArray:
+    """(2,) of width and height of the photograph, what lies between the pinhole view's borders."""
+    assert view.distortion is not None
+    camera = view.camera
+    size, focal = np.array([camera.width, camera.height]), np.array([camera.fx, camera.fy])
+    left, top = -camera.cx / camera.fx, -camera.cy / camera.fy
+    right, bottom = left + camera.width / camera.fx, top + camera.height / camera.fy
+    borders = np.array([[left, 0.0], [0.0, top], [right, 0.0], [0.0, bottom]])
+    with np.errstate(all="ignore"):
+        shown = view.distortion.distort(borders) * focal
+        shares = np.array([shown[2, 0] - shown[0, 0], shown[3, 1] - shown[1, 1]]) / size
+    return np.where(np.isfinite(shares), shares, 1.0).clip(0.0, 1.0)
+
+
 def list_images(folder: Path) -> list[Path]:
     """Image files of a folder in the order of their names."""
     entries = (entry for entry in folder.iterdir() if entry.is_file())
     return sorted(entry for entry in entries if entry.suffix.lower() in IMAGE_SUFFIXES)
 
 
-def common_color(
-    function: str, photographs: Sequence[Photograph]
-) -> tuple[ColorSpace, bool, list[str]]:
-    """Colour space and alpha of all images together, and sentences for the log.
+@dataclass(frozen=True)
+class ImageKind:
+    """What all images of a capture are together, and sentences about it for the log."""
+
+    color_space: ColorSpace
+    has_alpha: bool
+    lines: tuple[str, ...]
+
+
+def kind_of_images(function: str, photographs: Sequence[Photograph]) -> ImageKind:
+    """Color space and alpha of all images, and those that lie beside them unused.
 
     Raises:
         IoError: no images at all.
@@ -147,7 +186,7 @@ def common_color(
     spaces = {photograph.header.color_space for photograph in photographs}
     if len(spaces) > 1:
         got = "EXR beside PNG or JPEG"
-        raise SceneError(message(function, "images", "one colour space for all", got))
+        raise SceneError(message(function, "images", "one color space for all", got))
     color_space = spaces.pop()
     with_alpha = sum(photograph.header.has_alpha for photograph in photographs)
     has_alpha = with_alpha == len(photographs)
@@ -157,7 +196,39 @@ def common_color(
         lines.append(f"{with_alpha} of {len(photographs)} images carry alpha: counted as without")
     if has_alpha:
         lines.append("background: white assumed, as the images carry alpha")
-    return color_space, has_alpha, lines
+    return ImageKind(color_space, has_alpha, (*lines, *_unused_images(photographs)))
+
+
+def make_capture(
+    form: str,
+    source: Path,
+    split: Split,
+    images: ImageKind,
+    world_from_source: FloatArray,
+    lines: Sequence[str],
+) -> Capture:
+    """A capture without points and bounds.
+
+    Args:
+        form: name of the file format.
+        source: the folder or file.
+        split: as `hold_out` returns it.
+        images: of all views. With alpha the background is white, by the custom of evaluation.
+        world_from_source: (4, 4), already contained in the poses of the views.
+        lines: what else was converted, for the log.
+    """
+    train, test, split_line = split
+    return Capture(
+        train=train,
+        test=test,
+        format=form,
+        source=source,
+        color_space=images.color_space,
+        has_alpha=images.has_alpha,
+        background=(1.0, 1.0, 1.0) if images.has_alpha else None,
+        world_from_source=world_from_source,
+        conversions=(*lines, *images.lines, split_line),
+    )
 
 
 def box_from_source(world_from_source: FloatArray, box: FloatArray) -> FloatArray:
@@ -177,8 +248,3 @@ def box_corners(box: FloatArray) -> FloatArray:
 def transform_points(world_from_source: FloatArray, points: FloatArray) -> FloatArray:
     """Points (N, 3) of the file's world in ours."""
     return matmul(points, world_from_source[:3, :3].T) + world_from_source[:3, 3]
-
-
-def background_of(has_alpha: bool) -> tuple[float, float, float] | None:
-    """White, by the custom of evaluation, for captures with alpha; None for photographs."""
-    return (1.0, 1.0, 1.0) if has_alpha else None

@@ -5,19 +5,20 @@ Poses are camera to world with OpenGL axes in a world with +Z up. Images are nam
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 from photograd._json_node import JsonNode, read_json
 from photograd.capture.assemble import (
     Photograph,
-    background_of,
     box_from_source,
     check_same_size,
     check_size,
-    common_color,
     find_photograph,
+    kind_of_images,
     make_camera,
-    unused_images,
+    make_capture,
+    undistortion_lines,
 )
 from photograd.capture.capture import Capture, check_box, hold_out
 from photograd.capture.convention import check_convention
@@ -59,34 +60,22 @@ def load_blender(
     for split, root in roots.items():
         views[split] = _read_split(root, folder, color_space, found, allow_outside=allow_outside)
     check_same_size(_NAME, found)
-    space, has_alpha, lines = common_color(_NAME, [photograph for _, photograph in found])
-    lines = ["OpenGL camera -> OpenCV", "+Z up -> +Y up", *lines]
-    lines.extend(unused_images([photograph for _, photograph in found]))
-    if not views.get("test"):
-        views["train"], views["test"], line = hold_out(views["train"])
-        lines.append(line)
+    images = kind_of_images(_NAME, [photograph for _, photograph in found])
     everything = [view for split in views.values() for view in split]
+    lines = ["OpenGL camera -> OpenCV", "+Z up -> +Y up", *undistortion_lines(everything)]
     if not trust_poses:
         lines.extend(check_convention(_NAME, everything, Y_UP_FROM_Z_UP, up_is_known=True))
     bounds = None
     if "aabb" in roots["train"]:
         node = roots["train"]["aabb"]
-        box = check_box(_NAME, node.place, node.numbers((2, 3)))
+        box = check_box(_NAME, node.where, node.numbers((2, 3)))
         bounds = box_from_source(Y_UP_FROM_Z_UP, box)
         lines.append("aabb: declared in the +Z up frame, turned like the poses")
-    return Capture(
-        train=views["train"],
-        test=views["test"],
-        val=views.get("val", ()),
-        format="blender",
-        source=folder,
-        color_space=space,
-        has_alpha=has_alpha,
-        background=background_of(has_alpha),
-        bounds=bounds,
-        world_from_source=Y_UP_FROM_Z_UP,
-        conversions=tuple(lines),
-    )
+    parts = (views["train"], views.get("test", ()), "split as the files have it")
+    if not parts[1]:
+        parts = hold_out(views["train"])
+    capture = make_capture("blender", folder, parts, images, Y_UP_FROM_Z_UP, lines)
+    return replace(capture, val=views.get("val", ()), bounds=bounds)
 
 
 def _read_split(
@@ -100,13 +89,13 @@ def _read_split(
     views: list[View] = []
     for node in root["frames"].items():
         reference = node["file_path"].text()
-        frame = f"{node.place} '{reference}'"
+        frame = f"{node.where} '{reference}'"
         photograph = find_photograph(
             _NAME, frame, folder, reference, color_space, allow_outside=allow_outside
         )
         size = (photograph.header.width, photograph.header.height)
         lens = read_intrinsics(root, node, size)
-        check_size(_NAME, frame, photograph, (lens.width, lens.height))
+        check_size(_NAME, frame, photograph, lens.size)
         matrix = node["transform_matrix"].numbers((4, 4), (3, 4))
         pose = check_pose(_NAME, f"{frame}: transform_matrix", matrix)
         camera = make_camera(
@@ -117,5 +106,5 @@ def _read_split(
         views.append(View(name, camera, photograph.file, space, lens.distortion, source_size=size))
         found.append((frame, photograph))
     if not views:
-        raise IoError(message(_NAME, f"{root.place}: frames", "at least one frame", "none"))
+        raise IoError(message(_NAME, f"{root.where}: frames", "at least one frame", "none"))
     return tuple(views)

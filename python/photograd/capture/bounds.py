@@ -13,7 +13,7 @@ from photograd_course.portable_math import matmul, norm
 from photograd.capture.assemble import box_corners
 from photograd.capture.camera import Camera
 from photograd.capture.capture import Capture, check_box
-from photograd.capture.convention import meeting_of_axes
+from photograd.capture.convention import focus_point_of_axes
 from photograd.capture.view import View
 from photograd.errors import SceneError, message
 from photograd.types import FloatArray
@@ -67,12 +67,12 @@ def _carve(
     size = (box[1] - box[0]) / resolution
     radius = 0.5 * norm(size)
     steps = [box[0, a] + (np.arange(resolution) + 0.5) * size[a] for a in range(3)]
-    centres = np.stack(np.meshgrid(*steps, indexing="ij"), axis=-1).reshape(-1, 3)
-    alive = np.ones(len(centres), dtype=np.bool_)
-    seen = np.zeros(len(centres), dtype=np.int64)
+    centers = np.stack(np.meshgrid(*steps, indexing="ij"), axis=-1).reshape(-1, 3)
+    alive = np.ones(len(centers), dtype=np.bool_)
+    view_count = np.zeros(len(centers), dtype=np.int64)
     for camera, table in silhouettes:
         ids = np.flatnonzero(alive)
-        pixels, depth = camera.project(centres[ids])
+        pixels, depth = camera.project(centers[ids])
         shown = depth > radius
         shown &= (pixels > 0.0).all(axis=1)
         shown &= (pixels < [camera.width, camera.height]).all(axis=1)
@@ -84,9 +84,9 @@ def _carve(
         bottom = high[:, 1].clip(max=camera.height)
         left, top = low[:, 0], low[:, 1]
         covered = table[bottom, right] - table[top, right] - table[bottom, left] + table[top, left]
-        seen[ids] += 1
+        view_count[ids] += 1
         alive[ids[covered == 0]] = False
-    return alive & (2 * seen >= len(silhouettes))
+    return alive & (2 * view_count >= len(silhouettes))
 
 
 # Does a camera see a box? Two convex bodies are apart exactly if some axis separates them.
@@ -148,7 +148,7 @@ def no_view(blind: Sequence[str], count: int, box: FloatArray) -> str:
 PADDING = 0.05
 """Share of the extent added on each side of an estimated box."""
 
-LARGEST_VIEWS = 60
+MAX_VIEWS = 60
 """Enough silhouettes for a box; more only take time."""
 
 
@@ -201,37 +201,37 @@ def _find(capture: Capture) -> tuple[FloatArray, str]:
         corners = np.concatenate([_frustum(capture, depth) for depth in (near, far)])
         box = np.stack([corners.min(axis=0), corners.max(axis=0)])
         return box, f"all that the training cameras see at the declared depths {near:g} to {far:g}"
-    centre, distance = _focus(capture)
+    center, distance = _focus(capture)
     half = 0.5 * distance
-    return np.stack([centre - half, centre + half]), "cube half way from the focus to the cameras"
+    return np.stack([center - half, center + half]), "cube half way from the focus to the cameras"
 
 
 def _focus(capture: Capture) -> tuple[FloatArray, float]:
     """Point nearest to all training axes, and the mean distance of the cameras from it."""
     poses = [view.camera.world_from_camera for view in capture.train]
-    meeting = meeting_of_axes(poses)
-    centres = np.array([pose[:3, 3] for pose in poses])
-    distance = float(np.linalg.norm(meeting.point - centres, axis=1).mean())
-    if len(poses) < 2 or meeting.spread < 1e-6 or not distance > 0.0:
+    focus = focus_point_of_axes(poses)
+    centers = np.array([pose[:3, 3] for pose in poses])
+    distance = float(np.linalg.norm(focus.point - centers, axis=1).mean())
+    if len(poses) < 2 or focus.spread < 1e-6 or not distance > 0.0:
         expected = "optical axes that meet, points, alpha or declared bounds"
         raise SceneError(message("estimate_bounds", "capture", expected, "parallel axes"))
-    return meeting.point, distance
+    return focus.point, distance
 
 
 def _hull(capture: Capture) -> FloatArray | None:
-    step = -(-len(capture.train) // LARGEST_VIEWS)
+    step = -(-len(capture.train) // MAX_VIEWS)
     views = capture.train[::step]
     silhouettes = silhouettes_of(views)
     if len(views) < 2 or mean_coverage(silhouettes) > 0.99:
         return None
-    centre, _ = _focus(capture)
+    center, _ = _focus(capture)
     half = 0.0
     for view in views:
         camera = view.camera
-        distance = norm(camera.position - centre)
+        distance = norm(camera.position - center)
         half = max(half, 0.5 * distance * camera.width / camera.fx)
         half = max(half, 0.5 * distance * camera.height / camera.fy)
-    box = visual_hull_box(silhouettes, np.stack([centre - half, centre + half]))
+    box = visual_hull_box(silhouettes, np.stack([center - half, center + half]))
     return None if box is None else _padded(box)
 
 

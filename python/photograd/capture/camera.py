@@ -8,8 +8,9 @@ import numpy as np
 import numpy.typing as npt
 from photograd_course.portable_math import matmul
 
+from photograd._arrays import Arguments
 from photograd.capture.frames import check_pose, invert_rigid
-from photograd.errors import DtypeError, RangeError, ShapeError, message
+from photograd.errors import DtypeError, RangeError, message
 from photograd.types import FloatArray
 
 
@@ -20,7 +21,7 @@ class Camera:
     Attributes:
         width, height: image size in pixels.
         fx, fy: focal lengths in pixels.
-        cx, cy: principal point in pixels; the centre of the top left pixel is (0.5, 0.5).
+        cx, cy: principal point in pixels; the center of the top left pixel is (0.5, 0.5).
         world_from_camera: (4, 4) float64 rigid pose; camera axes +X right, +Y down, +Z forward.
 
     Raises:
@@ -48,16 +49,16 @@ class Camera:
             if not 1e-6 < focal < 1e9:
                 raise RangeError(message("Camera", name, "a positive focal length", focal))
         for name in ("cx", "cy"):
-            centre = getattr(self, name)
-            if not abs(centre) < 1e9:
-                raise RangeError(message("Camera", name, "a finite pixel position", centre))
+            center = getattr(self, name)
+            if not abs(center) < 1e9:
+                raise RangeError(message("Camera", name, "a finite pixel position", center))
         pose = check_pose("Camera", "world_from_camera", self.world_from_camera).copy()
         pose.setflags(write=False)
         object.__setattr__(self, "world_from_camera", pose)
 
     @property
     def position(self) -> FloatArray:
-        """Centre of projection, (3,), in the world."""
+        """Center of projection, (3,), in the world."""
         return self.world_from_camera[:3, 3]
 
     @property
@@ -68,7 +69,7 @@ class Camera:
     def rays(
         self, pixel_ids: npt.NDArray[np.integer] | None = None
     ) -> tuple[FloatArray, FloatArray]:
-        """Rays through pixel centres: pixel (column u, row v) looks along
+        """Rays through pixel centers: pixel (column u, row v) looks along
         ((u + 0.5 - cx) / fx, (v + 0.5 - cy) / fy, 1) in the camera frame.
 
         Args:
@@ -81,14 +82,9 @@ class Camera:
             ShapeError, DtypeError, RangeError: pixel_ids not (R,), not integers, outside the image.
         """
         count = self.width * self.height
-        ids = np.arange(count) if pixel_ids is None else np.asarray(pixel_ids)
-        if ids.ndim != 1:
-            raise ShapeError(message("rays", "pixel_ids", "shape (R,)", ids.shape))
-        if not np.issubdtype(ids.dtype, np.integer):
-            raise DtypeError(message("rays", "pixel_ids", "integers", ids.dtype))
-        if ids.size and not (int(ids.min()) >= 0 and int(ids.max()) < count):
-            got = f"{int(ids.min())} to {int(ids.max())}"
-            raise RangeError(message("rays", "pixel_ids", f"0 to {count - 1}", got))
+        ids = np.arange(count) if pixel_ids is None else pixel_ids
+        call = Arguments("Camera.rays", np.int64)
+        ids = call.array("pixel_ids", ids, ("R",), low=0, high=count - 1)
         x = (ids % self.width + 0.5 - self.cx) / self.fx
         y = (ids // self.width + 0.5 - self.cy) / self.fy
         local = np.stack([x, y, np.ones_like(x)], axis=-1)
@@ -105,9 +101,8 @@ class Camera:
         Raises:
             ShapeError: points not (N, 3).
         """
-        points = np.asarray(points, dtype=np.float64)
-        if points.ndim != 2 or points.shape[1] != 3:
-            raise ShapeError(message("project", "points", "shape (N, 3)", points.shape))
+        call = Arguments("Camera.project", np.float64)
+        points = call.array("points", points, ("N", 3), finite=False)
         camera_from_world = invert_rigid(self.world_from_camera)
         local = matmul(points, camera_from_world[:3, :3].T) + camera_from_world[:3, 3]
         depth = local[:, 2]
@@ -121,7 +116,7 @@ class Camera:
     def downscaled(self, factor: int) -> Camera:
         """The camera of the image reduced by an integer box filter.
 
-        Intrinsics divide exactly, as pixel centres sit at +0.5; a remainder of columns or rows that
+        Intrinsics divide exactly, as pixel centers sit at +0.5; a remainder of columns or rows that
         does not fill a box is cut off at the right and bottom, which moves nothing else.
 
         Raises:

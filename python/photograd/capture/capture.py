@@ -7,12 +7,14 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
+from photograd._arrays import Arguments
 from photograd.capture.view import View
-from photograd.errors import IoError, RangeError, ShapeError, message
+from photograd.errors import IoError, RangeError, message
 from photograd.images.read import ColorSpace
 from photograd.types import FloatArray
 
@@ -20,12 +22,12 @@ HOLD_OUT_EVERY = 8
 """Every eighth photograph, starting with the first: the custom since [Mildenhall2019]."""
 
 
-def hold_out(views: Sequence[View]) -> tuple[tuple[View, ...], tuple[View, ...], str]:
-    """Split views into training and test by their rank in the order of names.
+Split: TypeAlias = tuple[tuple[View, ...], tuple[View, ...], str]
+"""Training views, test views, and a sentence for the log."""
 
-    Returns:
-        Training views, test views, and a sentence for the log. A single view is not held out.
-    """
+
+def hold_out(views: Sequence[View]) -> Split:
+    """Training and test views by their rank in the order of names; a single one is not held out."""
     ordered = sorted(views, key=lambda view: view.name)
     if len(ordered) < 2:
         return tuple(ordered), (), "no view held out: there is only one"
@@ -51,11 +53,11 @@ class Capture:
         source: folder or file that it was loaded from.
         color_space: of all views.
         has_alpha: every view carries alpha.
-        background: linear or display (3,) colour to composite over, as `color_space` says; None if
+        background: linear or display (3,) color to composite over, as `color_space` says; None if
             there is no alpha.
         points, point_colors: sparse points (N, 3) in the world of the cameras, and their 8-bit
-            display colours (N, 3), from formats that have them: COLMAP, OpenSfM, and nerfstudio
-            with a ply_file_path. There may be points without colours.
+            display colors (N, 3), from formats that have them: COLMAP, OpenSfM, and nerfstudio
+            with a ply_file_path. There may be points without colors.
         bounds: (2, 3) lower and upper corner that the file declares, else None.
         depth_range: nearest and farthest depth that the file declares, else None.
         world_from_source: (4, 4) turn from the file's world into ours.
@@ -90,14 +92,12 @@ class Capture:
             check_box("Capture", "bounds", self.bounds)
 
     def _check_points(self) -> None:
-        if self.points is not None and (self.points.ndim != 2 or self.points.shape[1] != 3):
-            raise ShapeError(message("Capture", "points", "shape (N, 3)", self.points.shape))
-        colors = self.point_colors
-        shape = None if self.points is None else self.points.shape
-        if colors is not None and (colors.shape != shape or colors.dtype != np.uint8):
-            got = f"{colors.dtype} of shape {colors.shape}"
-            expected = f"uint8 of shape {shape} as points"
-            raise ShapeError(message("Capture", "point_colors", expected, got))
+        call = Arguments("Capture")
+        points = np.zeros((0, 3)) if self.points is None else self.points
+        call.array("points", points, ("N", 3), finite=False)
+        if self.point_colors is not None:
+            colors = call.array("point_colors", self.point_colors, ("N", 3), dtype=np.uint8)
+            object.__setattr__(self, "point_colors", colors)
 
     @property
     def views(self) -> tuple[View, ...]:
@@ -117,7 +117,7 @@ class Capture:
         """The same capture with one more sentence in its log."""
         return replace(self, conversions=(*self.conversions, line))
 
-    def validating(self) -> Capture:
+    def with_validation_split(self) -> Capture:
         """The training views alone, every eighth of them held out; the test views are put away.
 
         For choosing a resolution or another option: a choice that looked at the test views would
@@ -128,7 +128,9 @@ class Capture:
         """
         train, test, _ = hold_out(self.train)
         if not test:
-            raise RangeError(message("validating", "capture", "two training views or more", "one"))
+            raise RangeError(
+                message("with_validation_split", "capture", "two training views or more", "one")
+            )
         line = (
             f"{len(test)} training views held out to choose by, {len(self.test)} test views unseen"
         )
@@ -154,14 +156,14 @@ class Capture:
         line = f"images reduced by a {factor} x {factor} box average in premultiplied alpha{rest}"
         return smaller.with_line(line)
 
-    def limited(self, count: int) -> Capture:
+    def subsample(self, count: int) -> Capture:
         """The same capture with at most `count` views in each split, evenly spaced in their order.
 
         Raises:
             RangeError: count below 1.
         """
         if count < 1:
-            raise RangeError(message("limited", "count", "at least 1", count))
+            raise RangeError(message("subsample", "count", "at least 1", count))
         line = f"at most {count} views of each split kept, evenly spaced"
         return replace(
             self,
@@ -185,10 +187,8 @@ def check_box(function: str, argument: str, box: FloatArray) -> FloatArray:
     Raises:
         ShapeError, RangeError: anything else.
     """
-    box = np.asarray(box, dtype=np.float64)
-    if box.shape != (2, 3):
-        raise ShapeError(message(function, argument, "shape (2, 3)", box.shape))
-    if not bool(np.isfinite(box).all()) or not bool((box[0] < box[1]).all()):
-        expected = "finite corners, lower below upper"
+    box = Arguments(function, np.float64).array(argument, box, (2, 3))
+    if not bool((box[0] < box[1]).all()):
+        expected = "corners, lower below upper"
         raise RangeError(message(function, argument, expected, box.tolist()))
     return box

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from photograd.capture.assemble import (
     Photograph,
-    background_of,
     check_size,
-    common_color,
     find_photograph,
+    kind_of_images,
     make_camera,
+    make_capture,
     transform_points,
-    unused_images,
+    undistortion_lines,
 )
 from photograd.capture.camera import Camera
 from photograd.capture.capture import Capture, hold_out
@@ -31,14 +32,23 @@ from photograd.capture.frames import (
     rotation_from_quaternion,
     world_from_estimated_up,
 )
-from photograd.capture.undistort import Distortion, distort
+from photograd.capture.undistort import ColmapLens, Distortion, FisheyeDistortion, Lens
 from photograd.capture.view import View
 from photograd.errors import IoError, RangeError, SceneError, message
 from photograd.types import FloatArray
 
 _NAME = "load_colmap"
 _MODEL_FOLDERS = ("sparse/0", "sparse", "colmap/sparse/0", "0", "")
-_SUPPORTED = ("SIMPLE_PINHOLE", "PINHOLE", "SIMPLE_RADIAL", "RADIAL", "OPENCV")
+_RADIAL = ("SIMPLE_PINHOLE", "PINHOLE", "SIMPLE_RADIAL", "RADIAL", "OPENCV")
+_FISHEYE = (
+    "SIMPLE_FISHEYE",
+    "FISHEYE",
+    "SIMPLE_RADIAL_FISHEYE",
+    "RADIAL_FISHEYE",
+    "OPENCV_FISHEYE",
+)
+_ONE_FOCAL_LENGTH = ("RADIAL", "RADIAL_FISHEYE")
+"""Models with one focal length, beside those that are called SIMPLE."""
 
 
 def find_model(folder: Path) -> Path | None:
@@ -74,40 +84,23 @@ def load_colmap(folder: Path, *, trust_poses: bool = False, allow_outside: bool 
         _read_view(model, image, image_folder, allow_outside=allow_outside)
         for image in model.images
     ]
-    photographs = [photograph for _, photograph in pairs]
-    color_space, has_alpha, lines = common_color(_NAME, photographs)
+    images = kind_of_images(_NAME, [photograph for _, photograph in pairs])
     if not trust_poses:
         _check_observations(model, [view for view, _ in pairs])
     poses = [view.camera.world_from_camera for view, _ in pairs]
     world_from_source, up_line = world_from_estimated_up(poses, declared_z_up=False)
-    views = [view.turned(world_from_source) for view, _ in pairs]
-    bent = sum(view.distortion is not None for view in views)
-    if bent:
-        lines.append(f"lens distortion removed on reading from {bent} of {len(views)} images")
-    lines.extend(unused_images(photographs))
-    train, test, split_line = hold_out(views)
-    points = None
-    if model.points is not None and len(model.points.ids):
-        points = _finite_points(model.points.positions, world_from_source)
-    return Capture(
-        train=train,
-        test=test,
-        format="colmap",
-        source=folder,
-        color_space=color_space,
-        has_alpha=has_alpha,
-        background=background_of(has_alpha),
-        points=points,
-        point_colors=None if points is None or model.points is None else model.points.colors,
-        world_from_source=world_from_source,
-        conversions=(
-            f"{'binary' if binary else 'text'} model in {model_folder.name}: camera_from_world "
-            "-> world_from_camera, OpenCV camera kept, scale arbitrary",
-            up_line,
-            *lines,
-            split_line,
-        ),
+    views = [view.transformed(world_from_source) for view, _ in pairs]
+    lines = (
+        f"{'binary' if binary else 'text'} model in {model_folder.name}: camera_from_world "
+        "-> world_from_camera, OpenCV camera kept, scale arbitrary",
+        up_line,
+        *undistortion_lines(views),
     )
+    capture = make_capture("colmap", folder, hold_out(views), images, world_from_source, lines)
+    if model.points is None or not len(model.points.ids):
+        return capture
+    points = _finite_points(model.points.positions, world_from_source)
+    return replace(capture, points=points, point_colors=model.points.colors)
 
 
 def _find_images(folder: Path, model_folder: Path) -> Path:
@@ -147,28 +140,38 @@ def _read_view(
 
 def pinhole_and_lens(
     camera: ColmapCamera, camera_id: int, pose: FloatArray
-) -> tuple[Camera, Distortion | None]:
+) -> tuple[Camera, Lens | None]:
     """Split COLMAP's parameters into a pinhole at `pose` (world_from_camera) and a lens.
 
-    Parameters: SIMPLE_* have one focal length f, cx, cy; the others fx, fy, cx, cy (RADIAL has f).
-    SIMPLE_RADIAL adds k1; RADIAL k1, k2; OPENCV k1, k2, p1, p2.
+    Parameters are one focal length f or two, fx and fy, then cx, cy and the lens. The pinhole has
+    the same focal lengths and principal point: the middle of the photograph keeps its scale, and
+    what a fisheye lens shows beyond the pinhole's borders is cut off.
 
     Raises:
-        IoError: any other model.
+        IoError: a camera of no focal length, or a model that pycolmap has to compute, which is not
+            installed (extra `sfm`).
         RangeError: sizes or focal lengths that make no camera.
     """
-    if camera.model not in _SUPPORTED:
-        remedy = "run COLMAP's image_undistorter first"
-        expected = "one of " + ", ".join(_SUPPORTED)
-        raise IoError(message(_NAME, f"camera {camera_id}: model", expected, camera.model, remedy))
+    if camera.model == "EQUIRECTANGULAR":
+        remedy = "render perspective views of the panoramas with COLMAP first"
+        where = f"camera {camera_id}: model"
+        raise IoError(
+            message(_NAME, where, "a perspective or fisheye camera", camera.model, remedy)
+        )
     values = list(camera.parameters)
-    focals = 2 if camera.model in ("PINHOLE", "OPENCV") else 1
+    single = camera.model.startswith("SIMPLE_") or camera.model in _ONE_FOCAL_LENGTH
+    focals = 1 if single else 2
     fx, fy = values[0], values[focals - 1]
     cx, cy = values[focals : focals + 2]
     size, pixels = (camera.width, camera.height), (fx, fy, cx, cy)
     pinhole = make_camera(_NAME, f"camera {camera_id}", size, pixels, pose)
-    distortion = Distortion(*values[focals + 2 :])
-    return pinhole, None if distortion.is_identity else distortion
+    rest = values[focals + 2 :]
+    if camera.model in _RADIAL:
+        lens = Distortion(*rest)
+        return pinhole, None if lens.is_identity else lens
+    if camera.model in _FISHEYE:
+        return pinhole, FisheyeDistortion(*rest)
+    return pinhole, ColmapLens(camera.model, camera.parameters)
 
 
 def _check_observations(model: ColmapModel, views: list[View]) -> None:
@@ -182,8 +185,8 @@ def _check_observations(model: ColmapModel, views: list[View]) -> None:
         known = ids[rows] == image.point_ids
         if known.sum() < 8:
             continue
-        seen = reproject(view, model.points.positions[order[rows[known]]])
-        error = np.linalg.norm(seen - image.pixels[known], axis=1)
+        projected = reproject(view, model.points.positions[order[rows[known]]])
+        error = np.linalg.norm(projected - image.pixels[known], axis=1)
         error = np.where(np.isfinite(error), error, np.inf)
         if float(np.median(error)) > 0.05 * max(view.camera.width, view.camera.height):
             got = (
@@ -200,8 +203,8 @@ def reproject(view: View, points: FloatArray) -> FloatArray:
     pixels, _ = camera.project(points)
     if view.distortion is None:
         return pixels
-    focal, centre = np.array([camera.fx, camera.fy]), np.array([camera.cx, camera.cy])
-    shown: FloatArray = distort(view.distortion, (pixels - centre) / focal) * focal + centre
+    focal, center = np.array([camera.fx, camera.fy]), np.array([camera.cx, camera.cy])
+    shown: FloatArray = view.distortion.distort((pixels - center) / focal) * focal + center
     return shown
 
 

@@ -1,12 +1,12 @@
 """COLMAP sparse models: what they hold, and the text and binary forms of their files.
 
-COLMAP stores camera_from_world with OpenCV axes, quaternions as (w, x, y, z), and pixel centres at
+COLMAP stores camera_from_world with OpenCV axes, quaternions as (w, x, y, z), and pixel centers at
 +0.5, all of which is ours too [Schoenberger2016].
 
     cameras.bin   u64 count; each: i32 id, i32 model, u64 width, u64 height, f64 parameters...
     images.bin    u64 count; each: i32 id, f64 quaternion[4], f64 translation[3], i32 camera,
                   name ending in a zero byte, u64 count, each: f64 x, f64 y, i64 point
-    points3D.bin  u64 count; each: u64 id, f64 position[3], u8 colour[3], f64 error,
+    points3D.bin  u64 count; each: u64 id, f64 position[3], u8 color[3], f64 error,
                   u64 count, each: i32 image, i32 index
 
 Counts are believed only as far as the file is long, so that a damaged count cannot ask for memory.
@@ -39,6 +39,13 @@ MODELS = (
     ("SIMPLE_RADIAL_FISHEYE", 4),
     ("RADIAL_FISHEYE", 5),
     ("THIN_PRISM_FISHEYE", 12),
+    ("RAD_TAN_THIN_PRISM_FISHEYE", 16),
+    ("SIMPLE_DIVISION", 4),
+    ("DIVISION", 5),
+    ("SIMPLE_FISHEYE", 3),
+    ("FISHEYE", 4),
+    ("EUCM", 6),
+    ("EQUIRECTANGULAR", 2),
 )
 """Name and number of parameters; the index is the model's number in the binary form."""
 
@@ -75,7 +82,7 @@ class ColmapImage:
 
 @dataclass(frozen=True, eq=False)
 class ColmapPoints:
-    """Sparse points: ids (N,), positions (N, 3), 8-bit colours (N, 3)."""
+    """Sparse points: ids (N,), positions (N, 3), 8-bit colors (N, 3)."""
 
     ids: npt.NDArray[np.int64]
     positions: FloatArray
@@ -109,13 +116,13 @@ def read_text_model(folder: Path) -> ColmapModel:
 class _Line:
     """Words of one line, read one after another."""
 
-    place: str
+    where: str
     words: list[str]
 
     def take(self, index: int, kind: type[Number]) -> Number:
         if index >= len(self.words):
             got = f"{len(self.words)}"
-            raise IoError(message("read_text_model", self.place, f"more than {index} words", got))
+            raise IoError(message("read_text_model", self.where, f"more than {index} words", got))
         return self.convert(self.words[index], kind)
 
     def convert(self, word: str, kind: type[Number]) -> Number:
@@ -124,9 +131,9 @@ class _Line:
         except ValueError as error:
             got = repr(word[:40])
             expected = f"a word that reads as {kind.__name__}"
-            raise IoError(message("read_text_model", self.place, expected, got)) from error
+            raise IoError(message("read_text_model", self.where, expected, got)) from error
         if not abs(value) <= 1e18:  # refuses NaN too
-            raise RangeError(message("read_text_model", self.place, "a finite number", word[:40]))
+            raise RangeError(message("read_text_model", self.where, "a finite number", word[:40]))
         return value
 
     def floats(self, start: int, stop: int | None = None) -> list[float]:
@@ -148,15 +155,15 @@ def _read_cameras(path: Path) -> dict[int, ColmapCamera]:
             continue
         camera_id = line.take(0, int)
         if camera_id in cameras:
-            raise IoError(message("read_text_model", line.place, "a new camera id", camera_id))
+            raise IoError(message("read_text_model", line.where, "a new camera id", camera_id))
         model = line.words[1] if len(line.words) > 1 else ""
         parameters = tuple(line.floats(4))
         known = dict(MODELS)
         if model not in known:
-            raise IoError(message("read_text_model", line.place, "a camera model", repr(model)))
+            raise IoError(message("read_text_model", line.where, "a camera model", repr(model)))
         if len(parameters) != known[model]:
             expected = f"{known[model]} parameters of {model}"
-            raise IoError(message("read_text_model", line.place, expected, len(parameters)))
+            raise IoError(message("read_text_model", line.where, expected, len(parameters)))
         cameras[camera_id] = ColmapCamera(model, line.take(2, int), line.take(3, int), parameters)
     return cameras
 
@@ -170,12 +177,12 @@ def _read_images(path: Path) -> list[ColmapImage]:
             continue
         if len(line.words) < 10:
             expected = "ten words: id, quaternion, translation, camera, name"
-            raise IoError(message("read_text_model", line.place, expected, len(line.words)))
+            raise IoError(message("read_text_model", line.where, expected, len(line.words)))
         values = line.floats(1, 8)
-        observed = next(lines, _Line(f"{line.place} (missing second line)", []))
+        observed = next(lines, _Line(f"{line.where} (missing second line)", []))
         if len(observed.words) % 3:
             got = f"{len(observed.words)} words"
-            raise IoError(message("read_text_model", observed.place, "triples X Y POINT3D_ID", got))
+            raise IoError(message("read_text_model", observed.where, "triples X Y POINT3D_ID", got))
         triples = np.array(observed.floats(0), dtype=np.float64).reshape(-1, 3)
         images.append(
             ColmapImage(
@@ -200,7 +207,7 @@ def _read_points(path: Path) -> ColmapPoints:
         ids.append(line.take(0, int))
         rows.append(line.floats(1, 7))
         if not all(0.0 <= level <= 255.0 for level in rows[-1][3:]):
-            raise RangeError(message("read_text_model", line.place, "0 to 255", rows[-1][3:]))
+            raise RangeError(message("read_text_model", line.where, "0 to 255", rows[-1][3:]))
     table = np.array(rows, dtype=np.float64).reshape(-1, 6)
     return ColmapPoints(
         np.array(ids, dtype=np.int64), table[:, :3].copy(), table[:, 3:].astype(np.uint8)
@@ -244,14 +251,14 @@ class _Reader:
     def text(self) -> str:
         end = self.data.find(b"\0", self.offset)
         if end < 0:
-            place = f"{self.name} byte {self.offset}"
-            raise IoError(message("read_binary_model", place, "a name that ends", "end of file"))
+            where = f"{self.name} byte {self.offset}"
+            raise IoError(message("read_binary_model", where, "a name that ends", "end of file"))
         raw, self.offset = self.data[self.offset : end], end + 1
         try:
             return raw.decode("utf-8")
         except UnicodeDecodeError as error:
-            place = f"{self.name} byte {self.offset}"
-            raise IoError(message("read_binary_model", place, "UTF-8", error)) from error
+            where = f"{self.name} byte {self.offset}"
+            raise IoError(message("read_binary_model", where, "UTF-8", error)) from error
 
     def finish(self) -> None:
         if self.offset != len(self.data):
@@ -281,12 +288,12 @@ def _binary_cameras(reader: _Reader) -> dict[int, ColmapCamera]:
     cameras: dict[int, ColmapCamera] = {}
     for _ in range(reader.count(24)):
         camera_id, model, width, height = reader.take("<iiQQ")
-        place = f"{reader.name} byte {reader.offset}"
+        where = f"{reader.name} byte {reader.offset}"
         if not 0 <= model < len(MODELS):
             expected = f"a camera model of 0 to {len(MODELS) - 1}"
-            raise IoError(message("read_binary_model", place, expected, model))
+            raise IoError(message("read_binary_model", where, expected, model))
         if camera_id in cameras:
-            raise IoError(message("read_binary_model", place, "a new camera id", camera_id))
+            raise IoError(message("read_binary_model", where, "a new camera id", camera_id))
         name, parameters = MODELS[model]
         values = reader.take(f"<{parameters}d")
         cameras[camera_id] = ColmapCamera(name, width, height, values)

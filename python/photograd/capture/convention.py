@@ -20,16 +20,16 @@ from photograd.capture.view import View
 from photograd.errors import SceneError, message
 from photograd.types import FloatArray
 
-FEWEST_CAMERAS = 4
+MIN_CAMERAS = 4
 """Fewer axes can meet by accident."""
 
-SMALLEST_SPREAD = 0.02
+MIN_SPREAD = 0.02
 """Mean sin^2 to the common direction below which axes are too parallel to meet anywhere."""
 
 
 @dataclass(frozen=True)
-class Meeting:
-    """Where optical axes meet.
+class FocusPoint:
+    """The point nearest to all optical axes.
 
     Attributes:
         point: (3,) with the least squared distance to all axes.
@@ -44,34 +44,34 @@ class Meeting:
     spread: float
 
     @property
-    def inward(self) -> bool:
+    def is_inward(self) -> bool:
         """All cameras look at (nearly) one point."""
-        return self.spread > SMALLEST_SPREAD and self.miss < 0.25 and self.in_front >= 0.9
+        return self.spread > MIN_SPREAD and self.miss < 0.25 and self.in_front >= 0.9
 
 
-def meeting_of_axes(poses: Sequence[FloatArray]) -> Meeting:
-    """Least-squares meeting point of the optical axes of world_from_camera poses (OpenCV axes).
+def focus_point_of_axes(poses: Sequence[FloatArray]) -> FocusPoint:
+    """Least-squares focus point of the optical axes of world_from_camera poses (OpenCV axes).
 
     The squared distance of a point x to the axis through c along unit d is |(1 - d d^T)(x - c)|^2;
     the normal equations sum (1 - d d^T) x = sum (1 - d d^T) c are solved with the pseudo-inverse,
     so parallel axes give the point nearest to the origin of the mean camera.
     """
-    centres = np.array([pose[:3, 3] for pose in poses])
+    centers = np.array([pose[:3, 3] for pose in poses])
     axes = np.array([pose[:3, 2] for pose in poses])
     normals = np.eye(3) - axes[:, :, None] * axes[:, None, :]
-    mean_centre = centres.mean(axis=0)
-    offsets = np.einsum("nij,nj->ni", normals, centres - mean_centre)
+    mean_center = centers.mean(axis=0)
+    offsets = np.einsum("nij,nj->ni", normals, centers - mean_center)
     values, vectors = _eigen(normals.mean(axis=0))
     spread = float(values.min())
     inverse = np.where(values > 1e-9 * values.max(), 1.0 / np.maximum(values, 1e-300), 0.0)
     along = inverse * matmul(vectors.T, offsets.mean(axis=0))
-    point = matmul(vectors, along) + mean_centre
-    towards = point - centres
+    point = matmul(vectors, along) + mean_center
+    towards = point - centers
     missed = np.linalg.norm(np.einsum("nij,nj->ni", normals, towards), axis=1)
     distance = float(np.linalg.norm(towards, axis=1).mean())
     miss = float(np.sqrt(np.square(missed).mean())) / distance if distance > 0.0 else np.inf
     in_front = float((np.einsum("ni,ni->n", towards, axes) > 0.0).mean())
-    return Meeting(point, miss, in_front, spread)
+    return FocusPoint(point, miss, in_front, spread)
 
 
 def _eigen(matrix: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -111,11 +111,11 @@ def check_convention(
     Raises:
         SceneError: the poses look like those of the other camera axes, or like camera_from_world.
     """
-    if len(views) < FEWEST_CAMERAS:
+    if len(views) < MIN_CAMERAS:
         return []
     declared = [view.camera.world_from_camera for view in views]
-    meeting = meeting_of_axes(declared)
-    if meeting.inward:
+    focus = focus_point_of_axes(declared)
+    if focus.is_inward:
         return _warn_about_up(declared) if up_is_known else []
     remedy = "convert the poses, or pass trust_poses=True if the cameras really stood like this"
     names = ", ".join(view.name for view in views[:3]) + (", ..." if len(views) > 3 else "")
@@ -145,9 +145,9 @@ def _better_convention(declared: Sequence[FloatArray], world_from_source: FloatA
         ("inverse", inverses),
         ("inverse", [matmul(pose, OPENGL_FROM_OPENCV) for pose in inverses]),
     ):
-        meeting = meeting_of_axes(poses)
-        if meeting.inward and meeting.miss < smallest:
-            best, smallest = label, meeting.miss
+        focus = focus_point_of_axes(poses)
+        if focus.is_inward and focus.miss < smallest:
+            best, smallest = label, focus.miss
     return best
 
 

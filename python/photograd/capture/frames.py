@@ -11,7 +11,8 @@ from collections.abc import Sequence
 import numpy as np
 from photograd_course.portable_math import cos, matmul, norm, sin
 
-from photograd.errors import RangeError, SceneError, ShapeError, message
+from photograd._arrays import Arguments
+from photograd.errors import SceneError, message
 from photograd.types import FloatArray
 
 OPENGL_FROM_OPENCV: FloatArray = np.diag([1.0, -1.0, -1.0, 1.0])
@@ -25,8 +26,8 @@ Y_UP_FROM_Z_UP: FloatArray = np.array(
 RIGID_TOLERANCE = 1e-4
 """Largest entry of R^T R - 1 that still counts as a rotation; files store about 7 digits."""
 
-LARGEST_COORDINATE = 1e9
-"""Positions beyond this (in metres, past the moon) are damage; their squares lose all digits."""
+MAX_COORDINATE = 1e9
+"""Positions beyond this (in meters, past the moon) are damage; their squares lose all digits."""
 
 
 def check_pose(function: str, argument: str, matrix: FloatArray) -> FloatArray:
@@ -42,16 +43,11 @@ def check_pose(function: str, argument: str, matrix: FloatArray) -> FloatArray:
         RangeError: non-finite or absurdly large entries.
         SceneError: not a rotation (orthonormal to 1e-4, determinant +1) and a translation.
     """
-    matrix = np.asarray(matrix, dtype=np.float64)
-    if matrix.shape == (3, 4):
+    call = Arguments(function, np.float64)
+    low, high = -MAX_COORDINATE, MAX_COORDINATE
+    matrix = call.array(argument, matrix, (4, 4), (3, 4), low=low, high=high)
+    if len(matrix) == 3:
         matrix = np.concatenate([matrix, [[0.0, 0.0, 0.0, 1.0]]])
-    if matrix.shape != (4, 4):
-        raise ShapeError(message(function, argument, "shape (4, 4) or (3, 4)", matrix.shape))
-    if not bool(np.all(np.isfinite(matrix))):
-        raise RangeError(message(function, argument, "finite entries", "NaN or infinity"))
-    if float(np.abs(matrix).max()) > LARGEST_COORDINATE:
-        largest = float(np.abs(matrix).max())
-        raise RangeError(message(function, argument, "entries below 1e9", f"{largest:.3g}"))
     rotation = matrix[:3, :3]
     deviation = float(np.abs(matmul(rotation.T, rotation) - np.eye(3)).max())
     remedy = "a pose holds a rotation and a translation, no scale or shear"
@@ -115,7 +111,7 @@ def mean_camera_up(poses: Sequence[FloatArray]) -> FloatArray:
     """Mean (3,) of the cameras' up directions in the frame of `poses` (OpenCV: up is -Y).
 
     Its length says how well the cameras agree: 1 if all stand alike, near 0 if they have no common
-    up. It is not normalised.
+    up. It is not normalized.
     """
     result: FloatArray = np.mean([-pose[:3, 1] for pose in poses], axis=0)
     return result

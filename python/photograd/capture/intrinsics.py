@@ -6,29 +6,28 @@ import math
 from dataclasses import dataclass
 
 from photograd._json_node import JsonNode
-from photograd.capture.undistort import Distortion
+from photograd.capture.undistort import Distortion, FisheyeDistortion, Lens
 from photograd.errors import IoError, RangeError, SceneError, message
 
-MODELS = {"PINHOLE", "SIMPLE_PINHOLE", "SIMPLE_RADIAL", "RADIAL", "OPENCV"}
-_REFUSED_TERMS = ("k3", "k4", "k5", "k6")
+_RADIAL = ("k1", "k2", "p1", "p2")
+_FISHEYE = ("k1", "k2", "k3", "k4")
+_TERMS = {*_RADIAL, *_FISHEYE, "k5", "k6"}
+MODELS = {"PINHOLE", "SIMPLE_PINHOLE", "SIMPLE_RADIAL", "RADIAL", "OPENCV", "OPENCV_FISHEYE"}
 
 
 @dataclass(frozen=True)
 class Intrinsics:
-    """Image size, focal lengths and principal point in pixels (centres at +0.5), and the lens."""
+    """Of a frame.
 
-    width: int
-    height: int
-    fx: float
-    fy: float
-    cx: float
-    cy: float
-    distortion: Distortion | None
+    Attributes:
+        size: width and height of the image in pixels.
+        pixels: (fx, fy, cx, cy), pixel centers at +0.5.
+        distortion: the lens; None of a pinhole.
+    """
 
-    @property
-    def pixels(self) -> tuple[float, float, float, float]:
-        """(fx, fy, cx, cy)."""
-        return self.fx, self.fy, self.cx, self.cy
+    size: tuple[int, int]
+    pixels: tuple[float, float, float, float]
+    distortion: Lens | None
 
 
 def read_intrinsics(shared: JsonNode, frame: JsonNode, image_size: tuple[int, int]) -> Intrinsics:
@@ -41,7 +40,7 @@ def read_intrinsics(shared: JsonNode, frame: JsonNode, image_size: tuple[int, in
     Raises:
         IoError: members missing or of the wrong type, or a camera model that is not supported.
         RangeError: not finite, not positive, or an angle outside (0, pi).
-        SceneError: distortion beyond k1, k2, p1, p2.
+        SceneError: coefficients beyond k1, k2, p1, p2, or k1 to k4 of OPENCV_FISHEYE.
     """
 
     def lookup(key: str) -> JsonNode | None:
@@ -54,29 +53,24 @@ def read_intrinsics(shared: JsonNode, frame: JsonNode, image_size: tuple[int, in
         node = lookup(key)
         return default if node is None else node.number()
 
-    _check_model(lookup("camera_model"))
+    model = _model(lookup("camera_model"))
     width = node.count() if (node := lookup("w")) else image_size[0]
     height = node.count() if (node := lookup("h")) else image_size[1]
     fx = _focal(lookup("fl_x"), lookup("camera_angle_x"), width)
     fy = _focal(lookup("fl_y"), lookup("camera_angle_y"), height)
     if fx is None:
-        known = "a member 'fl_x' or 'camera_angle_x'"
-        raise IoError(message(frame.function, frame.place, known, "neither"))
-    for key in _REFUSED_TERMS:
+        expected = "a member 'fl_x' or 'camera_angle_x'"
+        raise IoError(message(frame.function, frame.where, expected, "neither"))
+    known = _FISHEYE if model == "OPENCV_FISHEYE" else _RADIAL
+    for key in sorted(_TERMS - set(known)):
         if number(key, 0.0) != 0.0:
             remedy = "undistort the images first"
             got = number(key, 0.0)
-            raise SceneError(message(frame.function, f"{frame.place}: {key}", 0, got, remedy))
-    terms = Distortion(*(number(key, 0.0) for key in ("k1", "k2", "p1", "p2")))
-    return Intrinsics(
-        width=width,
-        height=height,
-        fx=fx,
-        fy=fx if fy is None else fy,
-        cx=number("cx", 0.5 * width),
-        cy=number("cy", 0.5 * height),
-        distortion=None if terms.is_identity else terms,
-    )
+            raise SceneError(message(frame.function, f"{frame.where}: {key}", 0, got, remedy))
+    terms = [number(key, 0.0) for key in known]
+    lens = FisheyeDistortion(*terms) if known == _FISHEYE else Distortion(*terms)
+    pixels = (fx, fx if fy is None else fy, number("cx", 0.5 * width), number("cy", 0.5 * height))
+    return Intrinsics((width, height), pixels, None if lens == Distortion() else lens)
 
 
 def _focal(pixels: JsonNode | None, angle: JsonNode | None, size: int) -> float | None:
@@ -84,23 +78,22 @@ def _focal(pixels: JsonNode | None, angle: JsonNode | None, size: int) -> float 
         focal = pixels.number()
         if not 0.0 < focal < 1e9:
             expected = "a positive focal length in pixels"
-            raise RangeError(message(pixels.function, pixels.place, expected, focal))
+            raise RangeError(message(pixels.function, pixels.where, expected, focal))
         return focal
     if angle is None:
         return None
     radians = angle.number()
     if not 1e-6 < radians < math.pi - 1e-6:
         raise RangeError(
-            message(angle.function, angle.place, "an angle in (0, pi) radians", radians)
+            message(angle.function, angle.where, "an angle in (0, pi) radians", radians)
         )
     return 0.5 * size / math.tan(0.5 * radians)
 
 
-def _check_model(node: JsonNode | None) -> None:
-    if node is None:
-        return
-    model = node.text()
-    if model not in MODELS:
+def _model(node: JsonNode | None) -> str:
+    model = "OPENCV" if node is None else node.text()
+    if node is not None and model not in MODELS:
         expected = "one of " + ", ".join(sorted(MODELS))
         remedy = "undistort the images to a pinhole first"
-        raise IoError(message(node.function, node.place, expected, model, remedy))
+        raise IoError(message(node.function, node.where, expected, model, remedy))
+    return model

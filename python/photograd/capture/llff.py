@@ -8,24 +8,26 @@ their names.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
+from photograd._arrays import Arguments
 from photograd._files import read_npy
 from photograd.capture.assemble import (
     Photograph,
-    background_of,
     check_same_size,
-    common_color,
+    kind_of_images,
     list_images,
     make_camera,
+    make_capture,
 )
 from photograd.capture.capture import Capture, hold_out
 from photograd.capture.convention import check_convention
 from photograd.capture.frames import check_pose, world_from_estimated_up
 from photograd.capture.view import View
-from photograd.errors import IoError, RangeError, ShapeError, message
+from photograd.errors import IoError, RangeError, message
 from photograd.images.read import read_header
 from photograd.types import FloatArray
 
@@ -46,8 +48,8 @@ def load_llff(folder: Path, *, trust_poses: bool = False) -> Capture:
         IoError, RangeError, ShapeError, SceneError: names the row or image at fault.
     """
     table = read_npy(_NAME, folder / "poses_bounds.npy")
-    if table.ndim != 2 or table.shape[1] != 17:
-        raise ShapeError(message(_NAME, "poses_bounds.npy", "shape (N, 17)", table.shape))
+    call = Arguments(_NAME, np.float64)
+    table = call.array("poses_bounds.npy", table, ("N", 17), finite=False)
     image_folder = folder / "images"
     if not image_folder.is_dir():
         raise IoError(message(_NAME, str(folder), "a folder 'images'", "none"))
@@ -58,35 +60,20 @@ def load_llff(folder: Path, *, trust_poses: bool = False) -> Capture:
         raise IoError(message(_NAME, "images", "as many images as poses", got, remedy))
     photographs = [Photograph(file, read_header(file)) for file in files]
     check_same_size(_NAME, [(f"image '{p.file.name}'", p) for p in photographs])
-    color_space, has_alpha, lines = common_color(_NAME, photographs)
+    images = kind_of_images(_NAME, photographs)
     views = [_read_row(row, photograph) for row, photograph in zip(table, photographs, strict=True)]
+    poses = [view.camera.world_from_camera for view in views]
+    world_from_source, up_line = world_from_estimated_up(poses, declared_z_up=False)
+    views = [view.transformed(world_from_source) for view in views]
+    lines = ["camera axes (down, right, backwards) -> OpenCV, scale arbitrary", up_line]
     header = photographs[0].header
     if (table[0, 9], table[0, 4]) != (header.width, header.height):
         declared = f"{table[0, 9]:g} x {table[0, 4]:g}"
         lines.append(f"focal length scaled from {declared} to {header.width} x {header.height}")
-    poses = [view.camera.world_from_camera for view in views]
-    world_from_source, up_line = world_from_estimated_up(poses, declared_z_up=False)
-    views = [view.turned(world_from_source) for view in views]
     if not trust_poses:
         lines.extend(check_convention(_NAME, views, world_from_source, up_is_known=False))
-    train, test, split_line = hold_out(views)
-    return Capture(
-        train=train,
-        test=test,
-        format="llff",
-        source=folder,
-        color_space=color_space,
-        has_alpha=has_alpha,
-        background=background_of(has_alpha),
-        depth_range=_depth_range(table),
-        world_from_source=world_from_source,
-        conversions=(
-            "camera axes (down, right, backwards) -> OpenCV, scale arbitrary",
-            up_line,
-            *lines,
-            split_line,
-        ),
-    )
+    capture = make_capture("llff", folder, hold_out(views), images, world_from_source, lines)
+    return replace(capture, depth_range=_depth_range(table))
 
 
 def _read_row(row: FloatArray, photograph: Photograph) -> View:

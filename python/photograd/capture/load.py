@@ -57,22 +57,22 @@ def load_capture(
         )
         got = "no such folder" if not _exists(path) else "none of them"
         raise IoError(message(_NAME, repr(str(path)), expected, got))
-    kind, place = found[0]
+    kind, source = found[0]
     if kind == "blender":
         capture = load_blender(
-            place, color_space=color_space, trust_poses=trust_poses, allow_outside=allow_outside
+            source, color_space=color_space, trust_poses=trust_poses, allow_outside=allow_outside
         )
     elif kind == "llff":  # names no files
-        capture = load_llff(place, trust_poses=trust_poses)
+        capture = load_llff(source, trust_poses=trust_poses)
     else:
         readers = {"nerfstudio": load_nerfstudio, "colmap": load_colmap, "opensfm": load_opensfm}
-        capture = readers[kind](place, trust_poses=trust_poses, allow_outside=allow_outside)
+        capture = readers[kind](source, trust_poses=trust_poses, allow_outside=allow_outside)
     if len(found) > 1:
         others = ", ".join(other for other, _ in found[1:])
         line = f"read as {kind}; also there: {others} (name the file itself to choose it)"
         capture = capture.with_line(line)
     if limit is not None:
-        capture = capture.limited(limit)
+        capture = capture.subsample(limit)
     return capture if downscale is None else capture.downscaled(downscale)
 
 

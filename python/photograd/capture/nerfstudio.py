@@ -6,6 +6,7 @@ distortion.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -16,19 +17,19 @@ from photograd._json_node import JsonNode, read_json
 from photograd._ply import read_ply
 from photograd.capture.assemble import (
     Photograph,
-    background_of,
     check_size,
-    common_color,
     find_photograph,
     is_file,
+    kind_of_images,
     make_camera,
+    make_capture,
     transform_points,
-    unused_images,
+    undistortion_lines,
 )
-from photograd.capture.capture import Capture, hold_out
+from photograd.capture.capture import Capture, Split, hold_out
 from photograd.capture.convention import check_convention
 from photograd.capture.frames import (
-    LARGEST_COORDINATE,
+    MAX_COORDINATE,
     OPENGL_FROM_OPENCV,
     check_pose,
     world_from_estimated_up,
@@ -67,32 +68,20 @@ def load_nerfstudio(
         view, photograph = _read_frame(root, node, path.parent, allow_outside=allow_outside)
         views.append(view)
         photographs.append(photograph)
-    color_space, has_alpha, lines = common_color(_NAME, photographs)
+    images = kind_of_images(_NAME, photographs)
     poses = [view.camera.world_from_camera for view in views]
     world_from_source, up_line = world_from_estimated_up(poses, declared_z_up=True)
-    views = [view.turned(world_from_source) for view in views]
-    lines = ["OpenGL camera -> OpenCV", up_line, *_remarks(root, views), *lines]
-    lines.extend(unused_images(photographs))
+    views = [view.transformed(world_from_source) for view in views]
+    lines = ["OpenGL camera -> OpenCV", up_line, *_remarks(root), *undistortion_lines(views)]
     if not trust_poses:
         lines.extend(check_convention(_NAME, views, world_from_source, up_is_known=False))
-    splits, split_line = _split(root, views)
+    split, val = _split(root, views)
     points, colors, point_lines = _read_points(
         root, path.parent, world_from_source, allow_outside=allow_outside
     )
-    return Capture(
-        train=splits["train"],
-        test=splits["test"],
-        val=splits["val"],
-        format="nerfstudio",
-        source=path,
-        color_space=color_space,
-        has_alpha=has_alpha,
-        background=background_of(has_alpha),
-        points=points,
-        point_colors=colors,
-        world_from_source=world_from_source,
-        conversions=(*lines, *point_lines, split_line),
-    )
+    lines.extend(point_lines)
+    capture = make_capture("nerfstudio", path, split, images, world_from_source, lines)
+    return replace(capture, val=val, points=points, point_colors=colors)
 
 
 def _read_frame(
@@ -100,20 +89,20 @@ def _read_frame(
 ) -> tuple[View, Photograph]:
     """One view, still in the file's world."""
     reference = node["file_path"].text()
-    frame = f"{node.place} '{reference}'"
+    frame = f"{node.where} '{reference}'"
     photograph = find_photograph(_NAME, frame, folder, reference, allow_outside=allow_outside)
     size = (photograph.header.width, photograph.header.height)
     lens = read_intrinsics(root, node, size)
-    check_size(_NAME, frame, photograph, (lens.width, lens.height))
+    check_size(_NAME, frame, photograph, lens.size)
     matrix = node["transform_matrix"].numbers((4, 4), (3, 4))
     pose = check_pose(_NAME, f"{frame}: transform_matrix", matrix) @ OPENGL_FROM_OPENCV
     camera = make_camera(_NAME, frame, size, lens.pixels, pose)
     mask_file = None
     if "mask_path" in node:
         mask_reference = node["mask_path"].text()
-        place = f"{frame}: mask_path"
-        mask = find_photograph(_NAME, place, folder, mask_reference, allow_outside=allow_outside)
-        check_size(_NAME, place, mask, size)
+        where = f"{frame}: mask_path"
+        mask = find_photograph(_NAME, where, folder, mask_reference, allow_outside=allow_outside)
+        check_size(_NAME, where, mask, size)
         mask_file = mask.file
     view = View(
         name=reference.removeprefix("./"),
@@ -134,8 +123,8 @@ def _read_points(
     if "ply_file_path" not in root:
         return None, None, []
     reference = root["ply_file_path"].text()
-    place = root["ply_file_path"].place
-    file = inside(_NAME, place, folder, reference, allow_outside=allow_outside, remedy=TRUST)
+    where = root["ply_file_path"].where
+    file = inside(_NAME, where, folder, reference, allow_outside=allow_outside, remedy=TRUST)
     if not is_file(file):
         return None, None, [f"ply_file_path: no file {reference}, so no sparse points"]
     positions, colors = read_point_ply(file)
@@ -144,25 +133,22 @@ def _read_points(
     return transform_points(world_from_source, positions), colors, []
 
 
-def _remarks(root: JsonNode, views: list[View]) -> list[str]:
+def _remarks(root: JsonNode) -> list[str]:
     lines = []
     if "applied_transform" in root:
         matrix = root["applied_transform"].numbers((3, 4), (4, 4))
-        check_pose(_NAME, root["applied_transform"].place, matrix)
+        check_pose(_NAME, root["applied_transform"].where, matrix)
         lines.append("applied_transform: already contained in the poses, not taken back")
     ignored = [key for key in _IGNORED if key in root]
     if ignored:
         lines.append(f"ignored members: {', '.join(ignored)}")
-    bent = sum(view.distortion is not None for view in views)
-    if bent:
-        lines.append(f"lens distortion removed on reading from {bent} of {len(views)} images")
     return lines
 
 
-def _split(root: JsonNode, views: list[View]) -> tuple[dict[str, tuple[View, ...]], str]:
+def _split(root: JsonNode, views: list[View]) -> tuple[Split, tuple[View, ...]]:
+    """The split, and the validation views."""
     if "train_filenames" not in root:
-        train, test, line = hold_out(views)
-        return {"train": train, "val": (), "test": test}, line
+        return hold_out(views), ()
     by_name = {view.name: view for view in views}
     splits: dict[str, tuple[View, ...]] = {}
     for split in _SPLITS:
@@ -171,14 +157,15 @@ def _split(root: JsonNode, views: list[View]) -> tuple[dict[str, tuple[View, ...
         for node in root[key].items() if key in root else []:
             name = node.text().removeprefix("./")
             if name not in by_name:
-                raise IoError(message(_NAME, node.place, "the file_path of a frame", repr(name)))
+                raise IoError(message(_NAME, node.where, "the file_path of a frame", repr(name)))
             chosen.append(by_name[name])
         splits[split] = tuple(chosen)
     counts = ", ".join(f"{len(splits[split])} {split}" for split in _SPLITS)
-    return splits, f"split as the file has it ({counts})"
+    line = f"split as the file has it ({counts})"
+    return (splits["train"], splits["test"], line), splits["val"]
 
 
-# Coloured points in .ply files: what structure from motion hands to what starts from it.
+# Colored points in .ply files: what structure from motion hands to what starts from it.
 
 
 _READER = "read_point_ply"
@@ -186,10 +173,10 @@ _POSITION, _COLOR = ("x", "y", "z"), ("red", "green", "blue")
 
 
 def read_point_ply(path: Path) -> tuple[FloatArray, npt.NDArray[np.uint8] | None]:
-    """Positions (N, 3) in the frame of the file and 8-bit display colours (N, 3), or None.
+    """Positions (N, 3) in the frame of the file and 8-bit display colors (N, 3), or None.
 
     Raises:
-        IoError: no file, a damaged one, or positions or colours that are none.
+        IoError: no file, a damaged one, or positions or colors that are none.
     """
     elements = read_ply(_READER, path)
     if "vertex" not in elements:
@@ -202,7 +189,7 @@ def read_point_ply(path: Path) -> tuple[FloatArray, npt.NDArray[np.uint8] | None
         got = f"none in {', '.join(bad)}"
         raise IoError(message(_READER, f"{path}", "numbers x, y and z for each point", got))
     positions = np.stack([vertex[name].astype(np.float64) for name in _POSITION], axis=1)
-    outside = ~(np.abs(positions) <= LARGEST_COORDINATE).all(axis=1)
+    outside = ~(np.abs(positions) <= MAX_COORDINATE).all(axis=1)
     if outside.any():
         row = int(np.flatnonzero(outside)[0])
         got = f"{positions[row].tolist()} in row {row}"
@@ -211,5 +198,5 @@ def read_point_ply(path: Path) -> tuple[FloatArray, npt.NDArray[np.uint8] | None
         return positions, None
     if any(vertex.dtype[name] != np.uint8 for name in _COLOR):
         got = ", ".join(str(vertex.dtype[name]) for name in _COLOR)
-        raise IoError(message(_READER, f"{path}", "colours as 8-bit numbers (uchar)", got))
+        raise IoError(message(_READER, f"{path}", "colors as 8-bit numbers (uchar)", got))
     return positions, np.stack([vertex[name] for name in _COLOR], axis=1)

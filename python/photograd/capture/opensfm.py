@@ -7,6 +7,7 @@ coordinates start in its middle, so that one file serves any resolution.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,12 +16,12 @@ import numpy.typing as npt
 from photograd._json_node import JsonNode, read_json
 from photograd.capture.assemble import (
     Photograph,
-    background_of,
-    common_color,
     find_photograph,
+    kind_of_images,
     make_camera,
+    make_capture,
     transform_points,
-    unused_images,
+    undistortion_lines,
 )
 from photograd.capture.capture import Capture, hold_out
 from photograd.capture.convention import check_convention
@@ -61,37 +62,20 @@ def load_opensfm(path: Path, *, trust_poses: bool = False, allow_outside: bool =
         _read_shot(root, name, shot, image_folder, allow_outside=allow_outside)
         for name, shot in shots
     ]
-    photographs = [photograph for _, photograph in pairs]
-    color_space, has_alpha, lines = common_color(_NAME, photographs)
-    views = [view.turned(Y_UP_FROM_Z_UP) for view, _ in pairs]
+    images = kind_of_images(_NAME, [photograph for _, photograph in pairs])
+    views = [view.transformed(Y_UP_FROM_Z_UP) for view, _ in pairs]
+    lines = [
+        "camera_from_world -> world_from_camera, OpenCV camera kept",
+        "+Z up (east, north, up) -> +Y up",
+        *undistortion_lines(views),
+    ]
     if len(parts) > 1:
         lines.append(f"largest of {len(parts)} reconstructions taken")
-    bent = sum(view.distortion is not None for view in views)
-    if bent:
-        lines.append(f"lens distortion removed on reading from {bent} of {len(views)} images")
-    lines.extend(unused_images(photographs))
     if not trust_poses:
         lines.extend(check_convention(_NAME, views, Y_UP_FROM_Z_UP, up_is_known=True))
-    train, test, split_line = hold_out(views)
+    capture = make_capture("opensfm", path, hold_out(views), images, Y_UP_FROM_Z_UP, lines)
     points, colors = _read_points(root)
-    return Capture(
-        train=train,
-        test=test,
-        format="opensfm",
-        source=path,
-        color_space=color_space,
-        has_alpha=has_alpha,
-        background=background_of(has_alpha),
-        points=points,
-        point_colors=colors,
-        world_from_source=Y_UP_FROM_Z_UP,
-        conversions=(
-            "camera_from_world -> world_from_camera, OpenCV camera kept",
-            "+Z up (east, north, up) -> +Y up",
-            *lines,
-            split_line,
-        ),
-    )
+    return replace(capture, points=points, point_colors=colors)
 
 
 def _read_shot(
@@ -132,16 +116,16 @@ def _lens(
         focal_x, focal_y = node["focal_x"].number(), node["focal_y"].number()
         if number("k3") != 0.0:
             remedy = "undistort the images first"
-            raise SceneError(message(_NAME, f"{node.place}: k3", 0, number("k3"), remedy))
+            raise SceneError(message(_NAME, f"{node.where}: k3", 0, number("k3"), remedy))
     else:
-        raise IoError(message(_NAME, node["projection_type"].place, "perspective or brown", kind))
+        raise IoError(message(_NAME, node["projection_type"].where, "perspective or brown", kind))
     distortion = Distortion(number("k1"), number("k2"), number("p1"), number("p2"))
-    centre_x, centre_y = number("c_x") * longer, number("c_y") * longer
+    center_x, center_y = number("c_x") * longer, number("c_y") * longer
     pixels = (
         focal_x * longer,
         focal_y * longer,
-        0.5 * size[0] + centre_x,
-        0.5 * size[1] + centre_y,
+        0.5 * size[0] + center_x,
+        0.5 * size[1] + center_y,
     )
     return pixels, None if distortion.is_identity else distortion
 

@@ -20,7 +20,7 @@ def orbit_cameras(
     Raises:
         RangeError: a box without extent; what `Camera` raises.
     """
-    centre = np.asarray(box, np.float64).mean(axis=0)
+    center = np.asarray(box, np.float64).mean(axis=0)
     radius = 0.5 * float(np.linalg.norm(box[1] - box[0]))
     if not 0 < radius < np.inf:
         got = f"{np.asarray(box).tolist()}"
@@ -41,7 +41,7 @@ def orbit_cameras(
                 focal,
                 size / 2,
                 size / 2,
-                look_at(centre + distance * outward, centre),
+                look_at(center + distance * outward, center),
             )
         )
     return cameras

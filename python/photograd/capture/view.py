@@ -12,14 +12,14 @@ from photograd_course.color import srgb_encode
 from photograd_course.portable_math import matmul
 
 from photograd.capture.camera import Camera
-from photograd.capture.undistort import Distortion, undistort_image
+from photograd.capture.undistort import Lens, undistort_image
 from photograd.errors import IoError, message
 from photograd.images.read import ColorSpace, ImageArray, downscale_image, read_image
 from photograd.types import FloatArray
 
 
 def display_color(color: npt.NDArray[Any], color_space: ColorSpace) -> npt.NDArray[Any]:
-    """Colours of a view in display values: encoded if they are linear. Same shape and dtype."""
+    """Colors of a view in display values: encoded if they are linear. Same shape and dtype."""
     return srgb_encode(color) if color_space == "linear" else color
 
 
@@ -42,7 +42,7 @@ class View:
     camera: Camera
     image: Path | ImageArray
     color_space: ColorSpace = "display"
-    distortion: Distortion | None = None
+    distortion: Lens | None = None
     downscale: int = 1
     source_size: tuple[int, int] | None = None
     mask_file: Path | None = None
@@ -94,7 +94,7 @@ class View:
             self, camera=camera, downscale=self.downscale * factor, source_size=self._source_size()
         )
 
-    def turned(self, world_from_source: FloatArray) -> View:
+    def transformed(self, world_from_source: FloatArray) -> View:
         """The same view after the world was moved by a (4, 4) rigid transform."""
         pose = matmul(world_from_source, self.camera.world_from_camera)
         return replace(self, camera=replace(self.camera, world_from_camera=pose))

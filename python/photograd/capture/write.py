@@ -16,12 +16,13 @@ from typing import TypeAlias
 
 import numpy as np
 
+from photograd._arrays import Arguments
 from photograd._files import leads_outside
 from photograd.capture.assemble import box_from_source
 from photograd.capture.camera import Camera
 from photograd.capture.capture import check_box
 from photograd.capture.frames import OPENGL_FROM_OPENCV, Y_UP_FROM_Z_UP, invert_rigid
-from photograd.errors import IoError, RangeError, SceneError, ShapeError, message
+from photograd.errors import IoError, RangeError, SceneError, message
 from photograd.images.read import ImageArray
 from photograd.images.write import write_exr, write_png
 from photograd.types import FloatArray
@@ -271,17 +272,17 @@ def _check_frame(
     if not name or name != Path(name).name or name.startswith("."):
         raise SceneError(message(_NAME, where, "a plain file name", repr(name)))
     same = (camera.width, camera.height, camera.fx) == (first.width, first.height, first.fx)
-    centred = np.allclose(
+    centerd = np.allclose(
         [camera.cx, camera.cy, camera.fy],
         [0.5 * camera.width, 0.5 * camera.height, camera.fx],
         rtol=1e-12,
         atol=0.0,
     )
-    if not (same and centred):
+    if not (same and centerd):
         expected = "one size, one focal length fx = fy, principal point in the middle"
         listed = (camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy)
         raise RangeError(message(_NAME, f"{where}: camera", expected, listed))
     shape = (camera.height, camera.width, 4)
     for image in images:
-        if image is not None and image.shape != shape:
-            raise ShapeError(message(_NAME, f"{where}: image", f"shape {shape}", image.shape))
+        if image is not None:
+            Arguments(_NAME).array(f"{where}: image", image, shape, finite=False)

@@ -13,6 +13,7 @@ from photograd_course.cli import DebugOption, JsonOption, Progress, SeedOption, 
 from photograd_course.cli import note as say
 
 from photograd.commands.shared import (
+    RadiusOption,
     StopRequest,
     check_output_name,
     out_option,
@@ -38,9 +39,6 @@ TexelsOption = Annotated[
     int, typer.Option("--texels", min=1, max=1 << 14, help="Along each edge of the texture.")
 ]
 SppOption = Annotated[int, typer.Option("--spp", min=1, help="Rays a texel.")]
-RadiusOption = Annotated[
-    float, typer.Option("--radius", help="Metres within which a surface occludes.")
-]
 
 
 def register(app: typer.Typer) -> None:

@@ -21,7 +21,7 @@ from photograd_course.cli import (
 from photograd._run_lock import one_run_in
 from photograd.capture.sfm.engine import Settings
 from photograd.capture.write import require_free_folder, write_blender_capture
-from photograd.commands.shared import out_option, use_threads
+from photograd.commands.shared import SizeOption, SppOption, ViewsOption, out_option, use_threads
 from photograd.scenes.capture import capture_scene
 from photograd.scenes.direct_light import DirectLight
 from photograd.scenes.registry import scene as build_scene
@@ -143,10 +143,10 @@ def capture(
     scene: Annotated[
         str, typer.Option("--scene", help=f"One of: {', '.join(scenes())}.")
     ] = DEFAULT_SCENE,
-    views: Annotated[int, typer.Option("--views", min=2, help="Training views.")] = 60,
+    views: ViewsOption = 60,
     test_views: Annotated[int, typer.Option("--test-views", min=0, help="Held-out views.")] = 8,
-    size: Annotated[int, typer.Option("--size", min=8, help="Pixels along an edge.")] = 128,
-    spp: Annotated[int, typer.Option("--spp", min=1, help="Samples a pixel.")] = 64,
+    size: SizeOption = 128,
+    spp: SppOption = 64,
     max_size: MaxSizeOption = Settings.max_size,
     pairs: PairsOption = "auto",
     overwrite: Annotated[

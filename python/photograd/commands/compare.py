@@ -11,36 +11,49 @@ from photograd_course.atomic_io import atomic_write
 from photograd_course.cli import DebugOption, JsonOption, SeedOption, ThreadsOption, emit, note
 from photograd_course.suggest import choose_from
 
+from photograd._fit_options import FitOptions
 from photograd._run_lock import one_run_in
 from photograd.capture.capture import Capture
 from photograd.capture.load import load_capture
 from photograd.commands.capture import make_capture
 from photograd.commands.evaluate import draw_strips
-from photograd.commands.fit import run_with_bar
+from photograd.commands.fit import first_model, run_with_bar
 from photograd.commands.shared import (
     AllowOutsideOption,
     DownscaleOption,
+    SizeOption,
+    SppOption,
+    StepsOption,
     StopRequest,
+    ViewsOption,
     out_option,
     stop_on_signals,
     use_threads,
 )
 from photograd.errors import RangeError, SceneError, message
 from photograd.fitting.compare import (
-    Contender,
+    Candidate,
     Score,
     compare_one,
     markdown,
-    parse_contenders,
+    parse_candidates,
     source_of,
     worst_view,
 )
 from photograd.fitting.evaluate import Evaluation
-from photograd.fitting.options import FitOptions
+from photograd.fitting.model import Model
 from photograd.scenes.registry import scenes
 
 DEFAULTS = FitOptions()
 CONTRASTS = ("foliage", "smooth_curves", "fur", "flat_walls")
+StartFromOption = Annotated[
+    Path | None,
+    typer.Option(
+        "--start-from",
+        help="What a textured_mesh:N starts from, as for 'photograd fit'.",
+        metavar="MODEL",
+    ),
+]
 ValidateOption = Annotated[
     bool,
     typer.Option(
@@ -68,14 +81,15 @@ def compare(
     out: Annotated[Path, out_option("Folder for models, table and pictures.")] = (
         Path("out/compare")
     ),
-    contenders: Annotated[
-        str, typer.Option("--contenders", help="Representations with their resolution, or number.")
+    candidates: Annotated[
+        str, typer.Option("--candidates", help="Representations with their resolution, or number.")
     ] = "dense_grid:64,dense_grid:128,sparse_sh:128,gaussians:20000",
-    steps: Annotated[int, typer.Option("--steps", min=1, help="Steps of each fit.")] = 1000,
+    start_from: StartFromOption = None,
+    steps: StepsOption = 1000,
     rays: Annotated[int, typer.Option("--rays", min=1, help="Rays a step.")] = DEFAULTS.rays,
-    views: Annotated[int, typer.Option("--views", min=2, help="Of a built-in scene.")] = 60,
-    size: Annotated[int, typer.Option("--size", min=8, help="Its pixels along an edge.")] = 128,
-    spp: Annotated[int, typer.Option("--spp", min=1, help="Its samples a pixel.")] = 64,
+    views: ViewsOption = 60,
+    size: SizeOption = 128,
+    spp: SppOption = 64,
     downscale: DownscaleOption = 1,
     allow_outside: AllowOutsideOption = False,
     validate: ValidateOption = False,
@@ -86,16 +100,18 @@ def compare(
 ) -> None:
     """Fit several representations to the same photographs and put the results side by side.
 
-    Writes OUT/table.md, OUT/ranking.png (quality against bytes), one picture a capture (its worst
+    Writes OUT/table.md, OUT/quality.png (quality against bytes), one picture a capture (its worst
     held-out view), and each model in OUT/CAPTURE/. Stopped by Ctrl-C, the same command line goes
     on where it was.
 
-    An octree_sh:N is cut from the grid of N that stands before it, and refined.
+    An octree_sh:N is cut from the grid of N that stands before it, or from --start-from, and
+    refined.
 
-    Example: photograd compare foliage fur --contenders dense_grid:128,sparse_sh:128
+    Example: photograd compare foliage fur --candidates dense_grid:128,sparse_sh:128
     """
     use_threads(threads)
-    candidates = parse_contenders(contenders)
+    first = first_model(start_from) if start_from else None
+    parsed = parse_candidates(candidates, first)
     context.with_resource(one_run_in("compare", out))
     shared = FitOptions(steps=steps, rays=rays, seed=seed)
     scores: list[Score] = []
@@ -106,12 +122,12 @@ def compare(
             name = Path(given).name
             capture = load_capture(folder, downscale=downscale, allow_outside=allow_outside)
             if validate:
-                name, capture = f"{name}_validation", capture.validating()
-            found = contest(name, capture, candidates, shared, out / name, stopping)
+                name, capture = f"{name}_validation", capture.with_validation_split()
+            found = fit_all(name, capture, parsed, shared, out / name, stopping, first)
             scores += [score for score, _ in found]
             pictures.append(out / f"{name}.png")
-            draw([evaluation for _, evaluation in found], candidates, name, pictures[-1])
-    pictures.append(draw_ranking(scores, out / "ranking.png"))
+            draw([evaluation for _, evaluation in found], parsed, name, pictures[-1])
+    pictures.append(draw_plot(scores, out / "quality.png"))
     table = out / "table.md"
     atomic_write(table, markdown(scores).encode())
     rows = [asdict(score) for score in scores]
@@ -123,22 +139,23 @@ def compare(
     )
 
 
-def draw_ranking(scores: list[Score], path: Path) -> Path:
+def draw_plot(scores: list[Score], path: Path) -> Path:
     """All scores beside each other."""
     from photograd_course.viz import save_figure
 
-    from photograd.fitting.ranking import ranking
+    from photograd.fitting.quality_plot import quality_plot
 
-    return save_figure(ranking(scores), path)
+    return save_figure(quality_plot(scores), path)
 
 
-def contest(
+def fit_all(
     name: str,
     capture: Capture,
-    candidates: list[Contender],
+    candidates: list[Candidate],
     shared: FitOptions,
     out: Path,
     stopping: StopRequest,
+    first: Model | None,
 ) -> list[tuple[Score, Evaluation]]:
     """Fit and score all candidates on one capture, under progress bars.
 
@@ -152,7 +169,7 @@ def contest(
     folder = {candidate: out / candidate.label.replace(":", "_") for candidate in candidates}
     for candidate in candidates:
         note(f"{name}: {candidate.label}")
-        source = source_of(candidate, candidates)
+        source = source_of(candidate, candidates, first)
         with one_run_in("compare", folder[candidate]):
             result = compare_one(
                 name,
@@ -161,7 +178,7 @@ def contest(
                 folder[candidate],
                 candidate.options(shared),
                 lambda job, folder: run_with_bar(job, folder, stopping),
-                source=None if source is None else folder[source],
+                source=folder[source] if isinstance(source, Candidate) else source,
             )
         if result is None:
             note("stopped; the same command goes on from here")
@@ -191,8 +208,8 @@ def photographs_of(given: str, out: Path, *, views: int, size: int, spp: int, se
     return folder
 
 
-def draw(evaluations: list[Evaluation], candidates: list[Contender], name: str, path: Path) -> None:
-    """Truth, rendering and error of every contender at the view that all find hardest."""
+def draw(evaluations: list[Evaluation], candidates: list[Candidate], name: str, path: Path) -> None:
+    """Truth, rendering and error of every candidate at the view that all find hardest."""
     caption = f"The held-out view with the lowest mean PSNR of all. {evaluations[0].protocol}."
     labels = [candidate.label for candidate in candidates]
     draw_strips(worst_view(evaluations), labels, path, title=name, caption=caption)

@@ -17,11 +17,19 @@ from photograd.commands.capture import DEFAULT_SCENE, make_capture
 from photograd.commands.evaluate import draw_picked
 from photograd.commands.fit import run_with_bar
 from photograd.commands.gradients import draw_gradients
-from photograd.commands.shared import out_option, stop_on_signals, use_threads
+from photograd.commands.shared import (
+    SizeOption,
+    SppOption,
+    StepsOption,
+    ViewsOption,
+    out_option,
+    stop_on_signals,
+    use_threads,
+)
+from photograd.fitting import FitOptions
 from photograd.fitting.evaluate import display_image, evaluate
 from photograd.fitting.loop import Fit
 from photograd.fitting.model import load_model
-from photograd.fitting.options import FitOptions
 
 
 def register(app: typer.Typer) -> None:
@@ -33,13 +41,13 @@ def demo(
     context: typer.Context,
     out: Annotated[Path, out_option("Folder for capture, model and figures.")] = Path("out/demo"),
     scene: Annotated[str, typer.Option("--scene", help="A built-in scene.")] = DEFAULT_SCENE,
-    steps: Annotated[int, typer.Option("--steps", min=1, help="Steps of the fit.")] = 700,
+    steps: StepsOption = 700,
     resolution: Annotated[
         int, typer.Option("--resolution", min=8, help="Voxels along the longest edge.")
     ] = 96,
-    views: Annotated[int, typer.Option("--views", min=2, help="Training views.")] = 60,
-    size: Annotated[int, typer.Option("--size", min=8, help="Pixels along an edge.")] = 128,
-    spp: Annotated[int, typer.Option("--spp", min=1, help="Samples a pixel.")] = 64,
+    views: ViewsOption = 60,
+    size: SizeOption = 128,
+    spp: SppOption = 64,
     seed: SeedOption = 0,
     threads: ThreadsOption = 0,
     as_json: JsonOption = False,

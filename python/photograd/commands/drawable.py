@@ -6,8 +6,8 @@ from pathlib import Path
 
 from photograd_course.input_files import read_file
 
+from photograd._checkpoint import FILE_NAME
 from photograd.errors import IoError, message
-from photograd.fitting.checkpoint import FILE_NAME
 from photograd.grids.volumes import SUFFIXES as DENSITIES
 from photograd.splats.files import SUFFIXES as GAUSSIANS
 from photograd.transport.builtin import BUILTIN

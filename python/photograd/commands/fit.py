@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable
 from dataclasses import fields
 from pathlib import Path
@@ -17,9 +18,10 @@ from photograd_course.cli import (
     emit,
     note,
 )
-from photograd_course.cli import Progress as Bar
 
-from photograd._run_lock import one_run_in
+from photograd._checkpoint import FILE_NAME
+from photograd._descend import LOSS_COLUMN, progress_bar, run_folder
+from photograd._fit_options import BACKGROUNDS, DENSITY_CONTROLS, MAX_DEGREE, FitOptions
 from photograd.capture.capture import Capture
 from photograd.capture.load import load_capture
 from photograd.commands.shared import (
@@ -31,43 +33,38 @@ from photograd.commands.shared import (
     use_threads,
 )
 from photograd.errors import RangeError, message
-from photograd.fitting.checkpoint import FILE_NAME
+from photograd.fields import fittable
 from photograd.fitting.checks import require_startable
 from photograd.fitting.data import learned_background
 from photograd.fitting.loop import Fit
-from photograd.fitting.model import load_model
+from photograd.fitting.model import Model, load_model
 from photograd.fitting.options import (
-    BACKGROUNDS,
-    DEFAULTS_OF,
-    DENSITY_CONTROLS,
-    MOST_DEGREE,
-    USERS_OF,
-    FitOptions,
     FitResult,
-    Progress,
     options_for,
+    refuse_without_effect,
     summary,
+    users_of,
 )
-from photograd.fitting.start import FITTED
-from photograd.splats.files import write_gaussians
-from photograd.splats.frames import USUAL_UP, WORLD_UP, Presentation, half_turn
-from photograd.splats.model import GaussianScene
+from photograd.transport.mesh_files import SUFFIXES as MESH_SUFFIXES
+from photograd.transport.mesh_files import read_textured_mesh
 
 
 def _defaults(option: str) -> str:
     """The default of an option, and of what has one of its own."""
     others = ", ".join(
-        f"{name}: {given[option]}" for name, given in DEFAULTS_OF.items() if option in given
+        f"{name}: {kind.fit_defaults[option]}"
+        for name, kind in fittable().items()
+        if option in kind.fit_defaults
     )
     return f"{getattr(FitOptions(), option)}; {others}"
 
 
 def _users(option: str) -> str:
-    return ", ".join(USERS_OF[option])
+    return ", ".join(users_of(option))
 
 
 RepresentationOption: TypeAlias = Annotated[
-    str, typer.Option("--representation", help=f"How the scene is stored: {', '.join(FITTED)}.")
+    str, typer.Option("--representation", help=f"How the scene is stored: {', '.join(fittable())}.")
 ]
 StepsOption: TypeAlias = Annotated[
     int | None,
@@ -80,7 +77,7 @@ ResolutionOption: TypeAlias = Annotated[
     typer.Option(
         "--resolution",
         min=8,
-        help="Voxels along the longest edge.",
+        help="Voxels along the longest edge, or texels along that of a texture.",
         show_default=_defaults("resolution"),
     ),
 ]
@@ -99,7 +96,7 @@ DegreeOption: TypeAlias = Annotated[
     typer.Option(
         "--degree",
         min=0,
-        max=MOST_DEGREE,
+        max=MAX_DEGREE,
         show_default=_defaults("degree"),
         help=f"Degree of the harmonics of {_users('degree')}.",
     ),
@@ -122,7 +119,9 @@ StartFromOption: TypeAlias = Annotated[
     Path | None,
     typer.Option(
         "--start-from",
-        help="Model on whose surfaces Gaussians begin, or from whose voxels an octree is cut.",
+        help="Model on whose surfaces Gaussians begin, or from whose voxels an octree is cut; or, "
+        "for a textured_mesh, a mesh file with texture coordinates: "
+        f"{', '.join(MESH_SUFFIXES)}.",
         metavar="MODEL",
     ),
 ]
@@ -143,18 +142,7 @@ ResumeOption: TypeAlias = Annotated[
 # `photograd fit`: recover a scene from a capture.
 
 
-PLY_NAME = "gaussians.ply"
 DEFAULTS = FitOptions()
-COLUMNS = (
-    Column("loss", "{:.2e}".format),
-    Column("psnr", "{:.2f} dB".format, label="PSNR"),
-    Column("grid", "{:.0f}".format),
-    Column("rate", "{:.2e}".format, label="rays/s"),
-)
-SPLAT_COLUMNS = tuple(
-    Column("grid", "{:.0f}".format, label="Gaussians") if column.name == "grid" else column
-    for column in COLUMNS
-)
 
 
 def register(app: typer.Typer) -> None:
@@ -193,29 +181,29 @@ def fit(
     Writes OUT/model.npz: every 30 seconds, on Ctrl-C or SIGTERM, and at the end. --resume continues
     and ends with the same bits as a fit that was never interrupted. A fit of Gaussians also leaves
     OUT/gaussians.ply for other programs: with -y up, as they expect, and a learned background in a
-    comment.
+    comment. A fit of a textured_mesh, whose vertices are held, leaves OUT/mesh.glb.
 
     Example: photograd fit photos --out model --steps 1500 --resolution 128
     """
     use_threads(threads)
-    context.with_resource(one_run_in("fit", out))
     if not resume:
         require_startable(representation)
-        refuse_to_overwrite(out)
+    context.with_resource(run_folder("fit", out, FILE_NAME, resume=resume, argument="--out"))
     loaded = load_and_describe(capture, downscale, allow_outside=allow_outside)
     if resume:
         job = Fit.resume(loaded, out)
         refuse_other_options(context, job.options)
         note(f"resumed at step {job.step_number} of {job.options.steps}")
     else:
-        refuse_without_effect(context, representation)
+        given = [field.name for field in fields(FitOptions) if is_given(context, field.name)]
+        refuse_without_effect(representation, given, prefix="--")
         chosen: dict[str, Any] = {"steps": steps, "resolution": resolution}
         chosen |= {"rays": rays, "seed": seed}
         chosen |= {"learning_rate": learning_rate, "total_variation": total_variation}
         chosen |= {"background": background, "degree": degree, "prune": prune}
         chosen |= {"gaussians": gaussians, "density_control": density_control}
         options = options_for(representation, **chosen)
-        first = load_model(start_from) if start_from else None
+        first = first_model(start_from) if start_from else None
         job = Fit.start(loaded, options, allow_blind=allow_blind, start_from=first)
         note(job.start_rule)
     with stop_on_signals() as stopping:
@@ -226,33 +214,31 @@ def fit(
         raise typer.Exit(stopping.exit_code or 1)
 
 
-def exported(job: Fit, out: Path) -> dict[str, str]:
-    """Write finished Gaussians for other programs, and say how; {"gaussians": path} if there are
-    any. Half a turn about x takes the world, +y up, to the frame of such files.
+def first_model(path: Path) -> Model:
+    """What a fit starts from: a model, or a mesh without a texture yet.
+
+    What a mesh file holds that is not supported is said on stderr. Raises what `load_model` or
+    `read_textured_mesh` raises.
     """
-    scene = job.model
-    if job.step_number < job.options.steps or not isinstance(scene, GaussianScene):
+    if path.suffix.lower() not in MESH_SUFFIXES:
+        return load_model(path)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        field = read_textured_mesh(path)
+    for warning in caught:
+        note(f"{warning.message}")
+    return Model.of(field)
+
+
+def exported(job: Fit, out: Path) -> dict[str, str]:
+    """Write a finished field for other programs, where it has a form for them, and say how."""
+    name = job.model.exported_as
+    if job.step_number < job.options.steps or not name:
         return {}
     behind = None if job.background is None else learned_background(job.background)
-    presentation = Presentation.of_fit(USUAL_UP, behind, antialiased=scene.policy.antialiased)
-    write_gaussians(out / PLY_NAME, half_turn(scene.gaussians), presentation=presentation)
-    kept = "" if behind is None else "; the learned background is in its header"
-    note(f"{PLY_NAME}: {USUAL_UP} is up, as other programs expect, {WORLD_UP} in the model{kept}")
-    return {"gaussians": str(out / PLY_NAME)}
-
-
-def refuse_to_overwrite(out: Path) -> None:
-    """Raise RangeError if `out` holds a model already."""
-    if (out / FILE_NAME).exists():
-        raise RangeError(
-            message(
-                "fit",
-                "--out",
-                "a folder without a model",
-                f"{out}, which holds one",
-                "add --resume to continue it, or choose another folder",
-            )
-        )
+    for line in job.model.export(out / name, behind):
+        note(f"{name}: {line}")
+    return {job.model.name: str(out / name)}
 
 
 def load_and_describe(folder: Path, downscale: int, *, allow_outside: bool = False) -> Capture:
@@ -267,27 +253,16 @@ def load_and_describe(folder: Path, downscale: int, *, allow_outside: bool = Fal
     return loaded
 
 
-def refuse_without_effect(context: typer.Context, representation: str) -> None:
-    """Raise RangeError for an option that is given and means nothing to the representation."""
-    for name, users in USERS_OF.items():
-        source = context.get_parameter_source(name)
-        if source is not None and source.name == "COMMANDLINE" and representation not in users:
-            raise RangeError(
-                message(
-                    "fit",
-                    f"--{name}",
-                    f"a fit of {' or '.join(users)}",
-                    repr(representation),
-                    "leave it out, it has no effect here",
-                )
-            )
+def is_given(context: typer.Context, name: str) -> bool:
+    """Whether the command line names an option."""
+    source = context.get_parameter_source(name)
+    return source is not None and source.name == "COMMANDLINE"
 
 
 def refuse_other_options(context: typer.Context, stored: FitOptions) -> None:
     """A resumed fit keeps its options: raise RangeError for one that says something else."""
     for field in fields(FitOptions):
-        source = context.get_parameter_source(field.name)
-        if source is None or source.name != "COMMANDLINE":
+        if not is_given(context, field.name):
             continue
         given, kept = context.params[field.name], getattr(stored, field.name)
         if given != kept:
@@ -302,18 +277,13 @@ def run_with_bar(
     job: Fit, out: Path, stopping: Callable[[], bool], checkpoint_seconds: float = 30.0
 ) -> FitResult:
     """Run a fit under a live progress bar on stderr."""
-    columns = SPLAT_COLUMNS if isinstance(job.model, GaussianScene) else COLUMNS
-    with Bar("fit", job.options.steps, columns) as bar:
-
-        def on_step(now: Progress) -> None:
-            bar.update(
-                now.step,
-                loss=now.loss,
-                psnr=now.psnr,
-                grid=now.resolution,
-                rate=now.rays_per_second,
-            )
-
+    columns = (
+        LOSS_COLUMN,
+        Column("psnr", "{:.2f} dB".format, label="PSNR"),
+        Column("resolution", "{:.0f}".format, label=job.model.counts),
+        Column("rays_per_second", "{:.2e}".format, label="rays/s"),
+    )
+    with progress_bar("fit", job, columns) as on_step:
         return job.run(
             out, on_step=on_step, should_stop=stopping, checkpoint_seconds=checkpoint_seconds
         )

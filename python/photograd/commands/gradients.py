@@ -20,6 +20,7 @@ from photograd_course.cli import (
     note,
 )
 
+from photograd._checkpoint import make_folder
 from photograd._run_lock import one_run_in
 from photograd.capture.capture import Capture
 from photograd.capture.load import load_capture
@@ -31,11 +32,9 @@ from photograd.commands.shared import (
     out_option,
     use_threads,
 )
-from photograd.fields.octree_sh import OctreeSh
-from photograd.fitting.checkpoint import make_folder
+from photograd.fields.voxel_field import VoxelField
 from photograd.fitting.data import TrainingPixels, TrainingViews
 from photograd.fitting.model import Model, load_model, load_snapshots
-from photograd.fitting.start import VoxelField
 from photograd.fitting.view_gradients import grad2d_picture, view_gradients
 from photograd.fitting.voxel_gradients import DensityGradient, density_gradient
 from photograd.splats.clone_split_prune import CloneSplitPrune
@@ -85,14 +84,30 @@ def draw_gradients(
     model: Model, folder: Path, capture: Capture, out: Path, rays: int, seed: int
 ) -> dict[str, Any]:
     """All pictures of one fit; returns the files and, where alpha tells, the sign shares."""
+    make_folder(out)
+    found = DRAWERS[model.field.gradient_picture](model, folder, capture, out, rays, seed)
+    return {"out": out, **found}
+
+
+def save_pictures(model: Model, pictures: dict[str, Any], out: Path) -> dict[str, Path]:
+    """The files of some figures, and of the curves of the fit."""
     from photograd_course import viz
 
-    make_folder(out)
-    if isinstance(model.field, GaussianScene):
-        return draw_gaussians(model, folder, capture, out)
+    if len(model.history) > 1:
+        curves = viz.fit_curves(curves_of(model), title="How the fit went")
+        pictures = {**pictures, "curves": curves}
+    return {name: viz.save_figure(figure, out / f"{name}.png") for name, figure in pictures.items()}
+
+
+def draw_voxels(
+    model: Model, folder: Path, capture: Capture, out: Path, rays: int, seed: int
+) -> dict[str, Any]:
+    """The gradient in every voxel or leaf."""
+    from photograd_course import viz
+
     steps = gradients_of_steps(model, folder, capture, rays, seed)
     explain = explanation(steps)
-    result: dict[str, Any] = {"out": out, "steps": list(steps.strongest)}
+    result: dict[str, Any] = {"steps": list(steps.strongest)}
     claim = claim_of(steps.start, capture, rays, seed)
     gradient, outline, caption = steps.gradient.d_sigma_t, None, explain
     if claim is not None:
@@ -127,19 +142,14 @@ def draw_gradients(
             title="The gradient as the fit goes on",
         ),
     }
-    if len(model.history) > 1:
-        pictures["curves"] = viz.fit_curves(curves_of(model), title="How the fit went")
-    for name, figure in pictures.items():
-        viz.save_figure(figure, out / f"{name}.png")
-        result[name] = out / f"{name}.png"
-    return result
+    return result | save_pictures(model, pictures, out)
 
 
 def explanation(steps: StepGradients) -> str:
     """What the colors of these pictures mean."""
     sentences = [EXPLAIN]
-    if isinstance(steps.start, OctreeSh):
-        sentences.append("Each cell of a leaf shows the gradient of the whole leaf.")
+    if steps.start.gradient_note:
+        sentences.append(steps.start.gradient_note)
     if not all(mask.all() for mask in (steps.gradient.active, *steps.active.values())):
         sentences.append("Gray: nothing there to differentiate.")
     return " ".join(sentences)
@@ -149,8 +159,8 @@ def claim_of(start: VoxelField, capture: Capture, rays: int, seed: int) -> SignC
     """The signs of the first gradient, weighed; None, with a note, where nothing can be claimed."""
     from photograd.fitting.sign_claim import sign_claim
 
-    if isinstance(start, OctreeSh):
-        note("leaves begin with the matter of another model: signs are shown, not weighed")
+    if not start.starts_empty:
+        note("the fit began with the matter of another model: signs are shown, not weighed")
         return None
     claim = sign_claim(start, capture, rays=rays, seed=seed) if capture.has_alpha else None
     if claim is None:
@@ -158,20 +168,41 @@ def claim_of(start: VoxelField, capture: Capture, rays: int, seed: int) -> SignC
     return claim
 
 
-def draw_gaussians(model: Model, folder: Path, capture: Capture, out: Path) -> dict[str, Any]:
-    """The picture of a fit of Gaussians at three of its steps, and its curves."""
-    from photograd_course import viz
-
-    from photograd.fitting.gradient_drawings import draw_gaussian_gradients
-
-    views = TrainingViews(capture.train)
+def few_snapshots(model: Model, folder: Path) -> dict[int, Any]:
+    """{step: field} of the first, the middle and the last snapshot of a fit."""
     found: dict[int, Any] = load_snapshots(folder) or {int(model.meta["step"]): model.field}
     steps = sorted(found)
-    chosen = sorted({steps[0], steps[len(steps) // 2], steps[-1]})
+    return {step: found[step] for step in sorted({steps[0], steps[len(steps) // 2], steps[-1]})}
+
+
+def draw_groups(
+    model: Model, folder: Path, capture: Capture, out: Path, rays: int, seed: int
+) -> dict[str, Any]:
+    """The gradient of any field, in pixels and groups, at three steps of its fit."""
+    from photograd.fitting.group_gradients import draw_group_gradients, group_gradients
+
+    chosen, rows = few_snapshots(model, folder), {}
+    with Progress("gradients", len(chosen), [Column("loss", "{:.2e}".format)]) as bar:
+        for number, (step, field) in enumerate(chosen.items()):
+            rows[step] = group_gradients(model, field, capture, seed=seed, max_rays=rays)
+            bar.update(number + 1, loss=rows[step].loss)
+    pictures = {"group_gradients": draw_group_gradients(rows)}
+    return {"steps": list(chosen), **save_pictures(model, pictures, out)}
+
+
+def draw_gaussians(
+    model: Model, folder: Path, capture: Capture, out: Path, rays: int, seed: int
+) -> dict[str, Any]:
+    """The picture of a fit of Gaussians at three of its steps, and its curves."""
+    from photograd.fitting.gradient_drawings import draw_gaussian_gradients
+
+    del rays, seed  # whole views, and nothing random
+    views = TrainingViews(capture.train)
+    chosen = few_snapshots(model, folder)
     rows = {}
     with Progress("gradients", len(chosen), [Column("loss", "{:.2e}".format)]) as bar:
         for number, step in enumerate(chosen):
-            scene: GaussianScene = found[step]
+            scene: GaussianScene = chosen[step]
             here = view_gradients(scene, views, 0, ssim_weight=model.options.ssim_weight)
             camera = views.views[0].camera
             rows[step] = here, grad2d_picture(scene.gaussians, here.grad2d, camera)
@@ -181,12 +212,11 @@ def draw_gaussians(model: Model, folder: Path, capture: Capture, out: Path) -> d
             rows, threshold=CloneSplitPrune.threshold, title="What the loss asks of each Gaussian"
         )
     }
-    if len(model.history) > 1:
-        pictures["curves"] = viz.fit_curves(curves_of(model), title="How the fit went")
-    files = {
-        name: viz.save_figure(figure, out / f"{name}.png") for name, figure in pictures.items()
-    }
-    return {"out": out, "steps": chosen, **files}
+    return {"steps": list(chosen), **save_pictures(model, pictures, out)}
+
+
+DRAWERS = {"voxels": draw_voxels, "gaussians": draw_gaussians, "groups": draw_groups}
+"""What draws the gradient of a field, by its `gradient_picture`."""
 
 
 @dataclass(frozen=True)
@@ -231,7 +261,6 @@ def curves_of(model: Model) -> viz.FitCurves:
     from photograd_course import viz
 
     steps, loss, psnr = np.asarray(model.history).T
-    still = isinstance(model.field, GaussianScene | OctreeSh)
-    levels = {} if still else model.options.levels()
-    events = {s: f"{r}³" for s, r in levels.items() if 0 < s <= steps[-1]}
+    marked = model.field.events(model.options)
+    events = {step: label for step, label in marked.items() if 0 < step <= steps[-1]}
     return viz.FitCurves(steps=steps.astype(int), loss=loss, psnr=psnr, events=events)

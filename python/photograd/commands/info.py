@@ -12,7 +12,6 @@ from photograd_course.cli import DebugOption, JsonOption, emit
 from photograd.capture.bounds import estimate_bounds
 from photograd.capture.load import load_capture
 from photograd.commands.shared import AllowOutsideOption
-from photograd.fields.march import MarchPolicy
 from photograd.fitting.model import Model, load_model
 
 
@@ -58,13 +57,13 @@ def describe_model(path: Path) -> dict[str, Any]:
 
 
 def step_of(model: Model) -> dict[str, float]:
-    """Distance of samples along a ray, in metres, of what is marched."""
-    policy = model.field.policy
-    return {"dt": policy.dt} if isinstance(policy, MarchPolicy) else {}
+    """Distance of samples along a ray, in meters, of what is marched."""
+    dt = model.field.dt
+    return {} if dt is None else {"dt": dt}
 
 
 def describe_capture(path: Path, allow_outside: bool = False) -> dict[str, Any]:
-    """Views, sizes, colour space, bounds and conversions of a capture."""
+    """Views, sizes, color space, bounds and conversions of a capture."""
     capture = load_capture(path, allow_outside=allow_outside)
     bounds = estimate_bounds(capture)
     sizes = sorted({f"{v.camera.width}x{v.camera.height}" for v in capture.views})

@@ -9,19 +9,17 @@ from typing import Annotated, Any
 import numpy as np
 import typer
 from photograd_course.atomic_io import atomic_write
-from photograd_course.cli import (
-    Column,
-    DebugOption,
-    JsonOption,
-    SeedOption,
-    ThreadsOption,
-    emit,
-    note,
-)
-from photograd_course.cli import Progress as Bar
+from photograd_course.cli import DebugOption, JsonOption, SeedOption, ThreadsOption, emit, note
 
-from photograd._run_lock import one_run_in
-from photograd.commands.shared import StopRequest, out_option, stop_on_signals, use_threads
+from photograd._descend import progress_bar, run_folder
+from photograd.commands.shared import (
+    DepthOption,
+    StepsOption,
+    StopRequest,
+    out_option,
+    stop_on_signals,
+    use_threads,
+)
 from photograd.commands.trace import SceneArgument, load_scene
 from photograd.errors import IoError, RangeError, message
 from photograd.images.kind import LINEAR_SUFFIXES
@@ -29,7 +27,7 @@ from photograd.images.read import read_radiance
 from photograd.images.write import write_exr
 from photograd.transport.inverse import Recovery, RecoveryOptions, RecoveryResult, Target, Unknown
 from photograd.transport.inverse.job import FILE_NAME
-from photograd.transport.inverse.options import LOSSES, Progress
+from photograd.transport.inverse.options import LOSSES
 from photograd.transport.path_options import PathOptions
 from photograd.transport.scene_file import read_scene
 from photograd.transport.tracer import PathTracer
@@ -44,7 +42,7 @@ TargetOption = Annotated[
 ]
 CameraOption = Annotated[
     list[Path] | None,
-    typer.Option("--camera", help="A scene file whose camera took a target; one for each."),
+    typer.Option("--camera-from", help="A scene file whose camera took a target; one for each."),
 ]
 UnknownOption = Annotated[
     list[str],
@@ -56,16 +54,12 @@ UnknownOption = Annotated[
     ),
 ]
 OutOption = Annotated[Path, out_option("Folder for the result and checkpoints.")]
-StepsOption = Annotated[int, typer.Option("--steps", min=1, help="Steps of gradient descent.")]
 SppOption = Annotated[
     int, typer.Option("--spp", min=1, help="Samples a pixel of each of a step's two halves.")
 ]
 RateOption = Annotated[float, typer.Option("--learning-rate", help="Of Adam, at the first step.")]
 LossOption = Annotated[
     str, typer.Option("--loss", help=f"What is made small: {', '.join(LOSSES)}.")
-]
-DepthOption = Annotated[
-    int, typer.Option("--max-depth", min=1, help="Segments of the longest path.")
 ]
 ViewsOption = Annotated[
     int, typer.Option("--views", min=0, help="Targets a step looks at; 0 looks at all.")
@@ -117,7 +111,7 @@ def recover(
     --out found
     """
     use_threads(threads)
-    context.with_resource(one_run_in("recover", out))
+    context.with_resource(run_folder("recover", out, FILE_NAME, resume=resume, argument="--out"))
     images = [read_target(path) for path in target]
     described, _ = load_scene(scene, size or max(images[0].shape[:2]))
     if camera and len(camera) != len(target):
@@ -138,9 +132,6 @@ def recover(
     if resume:
         job.load(out)
         note(f"resumed at step {job.step_number} of {steps}")
-    elif (out / FILE_NAME).exists():
-        got, remedy = f"{out}, which holds one", "add --resume, or choose another folder"
-        raise RangeError(message("recover", "--out", "a folder without a recovery", got, remedy))
     with stop_on_signals() as stopping:
         result = run_with_bar(job, out, stopping)
     emit(write_result(job, result, out), as_json=as_json, title="recover")
@@ -181,12 +172,7 @@ def parsed(text: str) -> Unknown:
 
 def run_with_bar(job: Recovery, out: Path, stopping: StopRequest) -> RecoveryResult:
     """Run under a live progress bar on stderr."""
-    columns = [Column("loss", "{:.2e}".format)]
-    with Bar("recover", job.options.steps, columns, start=job.step_number) as bar:
-
-        def on_step(now: Progress) -> None:
-            bar.update(now.step, loss=now.loss)
-
+    with progress_bar("recover", job) as on_step:
         return job.run(out, on_step=on_step, should_stop=stopping)
 
 

@@ -21,15 +21,14 @@ from photograd_course.cli import (
 
 from photograd.capture.orbit import orbit_cameras
 from photograd.commands.drawable import check_rendered, is_volume
-from photograd.commands.shared import check_output_name, use_threads
+from photograd.commands.shared import SizeOption, check_output_name, out_option, use_threads
 from photograd.errors import RangeError, message
 from photograd.fitting.evaluate import display_image
 from photograd.fitting.fog import RAMPS, load_fog
 from photograd.fitting.model import Model, load_model
 from photograd.images.write import write_png
 from photograd.splats.files import holds_gaussians, read_gaussians
-from photograd.splats.frames import UP_AXES, USUAL_UP, WORLD_UP, Presentation
-from photograd.splats.model import GaussianScene
+from photograd.splats.frames import UP_AXES, USUAL_UP
 from photograd.splats.orbit import orbit_splats
 from photograd.types import Array
 
@@ -37,10 +36,9 @@ AUTO = "auto"
 STILL = ".png"
 OutOption = Annotated[
     Path,
-    typer.Option(
-        "--out",
-        help="A .gif file; a name without a suffix: a folder for PNG frames; or, with --orbit 1, a "
-        ".png file.",
+    out_option(
+        "A .gif file; a name without a suffix: a folder for PNG frames; or, with --orbit 1, a "
+        ".png file."
     ),
 ]
 UpOption = Annotated[
@@ -69,7 +67,7 @@ def render(
     ],
     orbit: Annotated[int, typer.Option("--orbit", min=1, help="Frames on the circle.")] = 60,
     out: OutOption = Path("turntable.gif"),
-    size: Annotated[int, typer.Option("--size", min=8, help="Pixels along an edge.")] = 256,
+    size: SizeOption = 256,
     elevation: Annotated[
         float, typer.Option("--elevation", min=-89.0, max=89.0, help="Degrees above the horizon.")
     ] = 25.0,
@@ -131,12 +129,11 @@ def _splat_views(path: Path, up: str, circle: Mapping[str, Any]) -> Iterable[Arr
 
 
 def _model_views(model: Model, circle: Mapping[str, Any]) -> Iterable[Array]:
-    """The pictures of a model; of Gaussians, the same that its gaussians.ply gives."""
-    scene = model.field
-    if isinstance(scene, GaussianScene):
-        told = Presentation.of_fit(WORLD_UP, model.background, antialiased=scene.policy.antialiased)
-        return orbit_splats(scene.gaussians, presentation=told, **circle)
-    cameras = orbit_cameras(scene.box, **circle)
+    """The pictures of a model: its own turntable, or cameras around its box."""
+    own = model.field.turntable(background=model.background, **circle)
+    if own is not None:
+        return own
+    cameras = orbit_cameras(model.field.box, **circle)
     return (display_image(model, camera) for camera in cameras)
 
 

@@ -33,6 +33,17 @@ ModelArgument = Annotated[
 DownscaleOption = Annotated[
     int, typer.Option("--downscale", min=1, metavar="N", help="Reduce images N times first.")
 ]
+SizeOption = Annotated[int, typer.Option("--size", min=8, help="Pixels along an edge.")]
+SppOption = Annotated[int, typer.Option("--spp", min=1, help="Samples a pixel.")]
+StepsOption = Annotated[int, typer.Option("--steps", min=1, help="Steps of gradient descent.")]
+ViewsOption = Annotated[int, typer.Option("--views", min=2, help="Training views of a scene.")]
+DepthOption = Annotated[
+    int, typer.Option("--max-depth", min=1, help="Segments of the longest path.")
+]
+RadiusOption = Annotated[
+    float,
+    typer.Option("--radius", help="Meters within which a surface occludes, or photons count."),
+]
 AllowOutsideOption = Annotated[
     bool,
     typer.Option(

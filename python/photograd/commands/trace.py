@@ -28,6 +28,9 @@ from photograd.commands.drawable import check_traced
 from photograd.commands.shared import (
     PICTURES,
     SIGNED_PICTURES,
+    DepthOption,
+    RadiusOption,
+    SppOption,
     StopRequest,
     check_output_name,
     out_option,
@@ -41,17 +44,17 @@ from photograd.commands.trace_estimates import (
     PhotonsOption,
     write_derivative,
 )
+from photograd.commands.trace_settings import SetOption, traced
 from photograd.errors import SceneError, message
-from photograd.images.kind import LARGEST_SIDE, LINEAR_SUFFIXES
+from photograd.images.kind import LINEAR_SUFFIXES, MAX_SIDE
 from photograd.images.write import write_png, write_radiance
 from photograd.transport.accumulation import Accumulation, load_accumulation
 from photograd.transport.builtin import BUILTIN, builtin_scene
-from photograd.transport.mesh_files import STUDIO, SUFFIXES, model_scene, read_model
+from photograd.transport.mesh_files import STUDIO, SUFFIXES, default_scene, read_model
 from photograd.transport.path_options import HEURISTICS, STRATEGIES, PathOptions
 from photograd.transport.scene import Scene
 from photograd.transport.scene_digest import scene_digest
 from photograd.transport.scene_file import read_scene
-from photograd.transport.tracer import PathTracer
 
 CameraOption = Annotated[
     str | None,
@@ -90,13 +93,12 @@ SceneArgument = Annotated[
     ),
 ]
 OutOption = Annotated[Path, out_option("The picture: .exr, .hdr or .pfm, or .png alone.")]
-SppOption = Annotated[int, typer.Option("--spp", min=1, help="Samples a pixel.")]
 SizeOption = Annotated[
     int,
     typer.Option(
         "--size",
         min=1,
-        max=LARGEST_SIDE,
+        max=MAX_SIDE,
         help="Pixels along an edge of a built-in scene, along the longer one for a mesh file.",
     ),
 ]
@@ -108,13 +110,6 @@ StrategyOption = Annotated[
 ]
 HeuristicOption = Annotated[
     str, typer.Option("--heuristic", help=f"How mis weighs: {', '.join(HEURISTICS)}.")
-]
-DepthOption = Annotated[
-    int, typer.Option("--max-depth", min=1, help="Segments of the longest path.")
-]
-RadiusOption = Annotated[
-    float,
-    typer.Option("--radius", help="Metres within which a surface occludes, or photons count."),
 ]
 ResumeOption = Annotated[
     bool, typer.Option("--resume", help="Add samples to those of an earlier run.")
@@ -133,6 +128,7 @@ def trace(
     spp: SppOption = 64,
     size: SizeOption = 256,
     camera: CameraOption = None,
+    settings: SetOption = None,
     integrator: IntegratorOption = "path",
     strategy: StrategyOption = "mis",
     heuristic: HeuristicOption = "power",
@@ -149,7 +145,7 @@ def trace(
     """Path trace a scene.
 
     A mesh file is seen by its own camera and lit by its own lights; without them, or with --camera
-    studio, from in front and above, under a pale sky and one lamp. What it has and cannot be drawn
+    studio, from in front and above, under a pale sky and one light. What it has and cannot be drawn
     is named.
 
     Writes the linear picture and a PNG preview beside it every ten seconds, and OUT.sums.npz,
@@ -167,7 +163,7 @@ def trace(
     estimate = Estimate(integrator, options, seed, radius, photons, derivative)
     described, fingerprint = load_scene(scene, size, camera)
     key = {
-        "scene": fingerprint,
+        "scene": " ".join([fingerprint, *(settings or [])]),
         "seed": seed,
         "integrator": integrator,
         "radius": repr(radius),
@@ -180,7 +176,7 @@ def trace(
         note(f"resumed at {sums.count} of {spp} samples")
     else:
         sums = Accumulation.empty(described.camera.height, described.camera.width)
-    add = estimate.adder(PathTracer(described), sums)
+    add = estimate.adder(traced(described, settings or []), sums)
 
     def save() -> None:
         sums.save(sums_path, key)
@@ -249,7 +245,7 @@ def load_scene(name: str, size: int, camera: str | None = None) -> tuple[Scene, 
             path = Path(name)
             meshes = path.suffix.lower() in SUFFIXES
             scene = (
-                model_scene(read_model(path), path.stem, size, camera=camera)
+                default_scene(read_model(path), path.stem, size, camera=camera)
                 if meshes
                 else read_scene(path)
             )

@@ -13,14 +13,16 @@ from photograd.fields.points import Points
 from photograd.fields.sparse_sh import SparseSh
 from photograd.fields.sunlit_medium import SunlitMedium
 from photograd.fields.texture_2d import Texture2D
+from photograd.fields.textured_mesh import TexturedMesh
 from photograd.fields.tiny_network import TinyNetwork
 from photograd.fields.toy_blobs import ToyBlobs
-from photograd.representation import REGISTERED, Representation
+from photograd.representation import REGISTERED, Fittable, Representation, fittable
 from photograd.splats.model import GaussianScene
 
 __all__ = [
     "DenseGrid",
     "DenseSh",
+    "Fittable",
     "GaussianScene",
     "Gaussians2D",
     "OctreeSh",
@@ -28,8 +30,10 @@ __all__ = [
     "SparseSh",
     "SunlitMedium",
     "Texture2D",
+    "TexturedMesh",
     "TinyNetwork",
     "ToyBlobs",
+    "fittable",
     "representation",
     "representations",
 ]

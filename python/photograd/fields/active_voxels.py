@@ -60,6 +60,9 @@ class ActiveVoxels:
             expected = "entries 'mask' and 'shape'"
             raise RangeError(message(where, "state", expected, f"{sorted(state)}"))
         x, y, z = (int(n) for n in state["shape"])
+        if min(x, y, z) < 1 or -(-x * y * z // 8) != len(state["mask"]):
+            expected = f"voxels of which {len(state['mask'])} bytes are the mask, a bit each"
+            raise RangeError(message(where, "state.shape", expected, (x, y, z)))
         bits = np.unpackbits(state["mask"], count=x * y * z)
         return cls(bits.reshape(x, y, z).astype(bool))
 
@@ -83,6 +86,19 @@ class ActiveVoxels:
         i, j, k = self.voxels.T
         table[i, j, k] = np.arange(len(self))
         return table
+
+    def resampled(self, rows: Array, to: ActiveVoxels, fill: float) -> Array:
+        """Rows (N, ...) of these voxels at those of another grid over the same box, trilinear.
+
+        `fill` stands for voxels that are not active.
+        """
+        scale = np.array(self.shape) / np.array(to.shape)
+        at = np.ascontiguousarray((to.voxels + 0.5) * scale - 0.5, rows.dtype)
+        flat = np.ascontiguousarray(rows).reshape(len(rows), -1)
+        out = np.empty((len(to), flat.shape[1]), rows.dtype)
+        empty = np.full(flat.shape[1], fill, rows.dtype)
+        _core.sample_bricks(self.topology, flat, empty, at, out)
+        return out.reshape(len(to), *rows.shape[1:])
 
     @property
     def memory(self) -> int:

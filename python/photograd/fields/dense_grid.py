@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Self
 
 import numpy as np
 from photograd_course import priors
@@ -13,16 +13,20 @@ from photograd_course.portable_math import expm1, log
 from photograd_course.random import uniform
 from photograd_course.resample import upsample_trilinear
 
+from photograd._checkpoint import FLOAT, Row
+from photograd._checks import from_plain
+from photograd._fit_options import FitOptions
 from photograd._memory import require_room
 from photograd.errors import DtypeError, Error, RangeError, ShapeError, message
 from photograd.fields.march import MarchContext, MarchPolicy, march, march_backward
+from photograd.fields.voxel_field import GridField
 from photograd.representation import (
     Outputs,
     ParamSpec,
     Prior,
     RayBatch,
     RenderOptions,
-    Representation,
+    Start,
     register,
 )
 from photograd.types import Array
@@ -68,7 +72,7 @@ def _require_room(function: str, voxels: list[int], itemsize: int) -> None:
 
 
 @register
-class DenseGrid(Representation):
+class DenseGrid(GridField):
     """A radiance field on X x Y x Z voxels (values at voxel centres, trilinear in between).
 
     params["values"] (X, Y, Z, 4) holds raw r, g, b and density side by side: a lookup reads all
@@ -77,7 +81,7 @@ class DenseGrid(Representation):
     """
 
     name: ClassVar[str] = "dense_grid"
-    capabilities: ClassVar[frozenset[str]] = frozenset({"rays"})
+    row_updates: ClassVar[bool] = False  # most rows have a gradient
 
     def __init__(self, values: Array, policy: MarchPolicy, *, fused: bool = True) -> None:
         """Raises ShapeError unless values is (X, Y, Z, 4), X Y Z >= 2; Error if not finite."""
@@ -106,7 +110,7 @@ class DenseGrid(Representation):
         sigma_t: float = 0.1,
         steps_per_voxel: float = 2.0,
         dtype: type[np.floating[Any]] = np.float32,
-    ) -> DenseGrid:
+    ) -> Self:
         """A nearly transparent middle-grey grid of cubic voxels over `box` (2, 3), world metres.
 
         `resolution` counts voxels along the longest edge; the box grows a little so that voxels are
@@ -149,22 +153,58 @@ class DenseGrid(Representation):
         return self.params["values"][..., 3]
 
     @property
-    def box(self) -> Array:
-        """(2, 3) corners of the box in world metres."""
-        return np.array(self.policy.box)
-
-    @property
     def shape(self) -> tuple[int, int, int, int]:
         """Voxels along X, Y and Z, and the numbers of each."""
         x, y, z, c = self.params["values"].shape
         return x, y, z, c
 
-    @property
-    def resolution(self) -> int:
-        """Voxels along the longest edge."""
-        return int(max(self.params["values"].shape[:3]))
+    def density_rows(self, groups: Mapping[str, Array]) -> Array:
+        """(X Y Z,) in C order."""
+        rows: Array = groups["values"][..., 3].ravel()
+        return rows
 
-    def resampled(self, rows: Array, to: DenseGrid) -> Array:
+    def to_voxels(self, rows: Array) -> Array:
+        """Rows (X Y Z,) as (X, Y, Z)."""
+        return rows.reshape(self.voxel_shape)
+
+    @classmethod
+    def start(cls, start: Start) -> tuple[Self, str]:
+        """Nearly empty space in the box, at the coarsest level of the options."""
+        options = start.options
+        field = cls.empty(
+            start.bounds.box,
+            options.levels()[0],
+            finest=options.resolution,
+            sigma_t=options.sigma_t,
+            steps_per_voxel=options.steps_per_voxel,
+        )
+        return field, f"box: {start.bounds.rule}"
+
+    @classmethod
+    def checkpoint_rows(cls, options: FitOptions) -> tuple[dict[str, Row], dict[str, Row]]:
+        """The values."""
+        del options
+        return {"values": (FLOAT, ("X", "Y", "Z", 4))}, {}
+
+    @classmethod
+    def restored(
+        cls,
+        params: Mapping[str, Array],
+        state: Mapping[str, Array],
+        policy: object,
+        options: FitOptions,
+    ) -> Self:
+        """The grid of a checkpoint."""
+        del state, options
+        return cls(params["values"], from_plain("checkpoint", MarchPolicy, policy))
+
+    @classmethod
+    def channels(cls, options: FitOptions) -> int:
+        """Color and density."""
+        del options
+        return 4
+
+    def resampled(self, rows: Array, to: Self) -> Array:
         """Values on this grid, such as an optimiser's, on the grid of another."""
         x, y, z = to.params["values"].shape[:3]
         return upsample_trilinear(rows, (x, y, z))
@@ -181,7 +221,7 @@ class DenseGrid(Representation):
             values[start : start + planes], weight, gradients["values"][start : start + planes]
         )
 
-    def refined(self, resolution: int, *, steps_per_voxel: float = 2.0) -> DenseGrid:
+    def refined(self, resolution: int, *, steps_per_voxel: float = 2.0) -> Self:
         """The same field on a finer grid over the same box, by trilinear interpolation.
 
         Raises RangeError for fewer than 2 voxels, or more than memory holds.
@@ -190,7 +230,9 @@ class DenseGrid(Representation):
         _require_room("DenseGrid.refined", [x, y, z], self.params["values"].itemsize)
         voxel = (self.box[1] - self.box[0]).max() / resolution
         values = upsample_trilinear(self.params["values"], (x, y, z))
-        return DenseGrid(values, replace(self.policy, dt=voxel / steps_per_voxel), fused=self.fused)
+        return type(self)(
+            values, replace(self.policy, dt=voxel / steps_per_voxel), fused=self.fused
+        )
 
     @classmethod
     def example(cls, *, seed: int, dtype: type[np.floating[Any]] = np.float64) -> DenseGrid:

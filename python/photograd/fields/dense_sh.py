@@ -13,11 +13,13 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from photograd_course.random import uniform
 
+from photograd._fit_options import FitOptions
 from photograd.errors import RangeError, message
 from photograd.fields.active_voxels import ActiveVoxels
 from photograd.fields.march import MarchPolicy
 from photograd.fields.sparse_sh import SparseSh
-from photograd.representation import register
+from photograd.fields.voxel_field import voxels_in
+from photograd.representation import COPIES, FitInProgress, register
 from photograd.types import Array
 
 
@@ -31,6 +33,8 @@ class DenseSh(SparseSh):
     """
 
     name: ClassVar[str] = "dense_sh"
+    fit_defaults: ClassVar[Mapping[str, Any]] = {}
+    fit_options: ClassVar[frozenset[str]] = frozenset({"degree"})
 
     @classmethod
     def example(cls, *, seed: int, dtype: type[np.floating[Any]] = np.float64) -> Self:
@@ -45,6 +49,15 @@ class DenseSh(SparseSh):
     def refine(self, step: int, statistics: Mapping[str, Array]) -> None:
         """Nothing is ever dropped."""
         del step, statistics
+
+    @classmethod
+    def _bytes(cls, box: Array, options: FitOptions) -> int:
+        """At the end of a fit."""
+        return COPIES * 4 * cls.channels(options) * voxels_in(box, options.resolution)
+
+    def prune(self, fit: FitInProgress) -> None:
+        """Nothing is ever dropped."""
+        del fit
 
     def _check_active(self, active: ActiveVoxels) -> None:
         missing = active.mask.size - len(active)

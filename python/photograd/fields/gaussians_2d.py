@@ -91,6 +91,7 @@ class Gaussians2D(Representation):
 
     name: ClassVar[str] = "gaussians_2d"
     capabilities: ClassVar[frozenset[str]] = frozenset({"canvas2d"})
+    teaching_example: ClassVar[str] = "it lives on a 2D canvas"
 
     def __init__(
         self, mean: Array, log_scale: Array, angle: Array, opacity_logit: Array, color: Array

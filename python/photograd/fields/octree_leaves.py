@@ -1,7 +1,7 @@
 """The leaves of an octree of harmonics: where they come from, and the rays that pass through them.
 
 Where a voxel is too transparent to be seen, the tree stays empty; everywhere else the field's
-values at the voxel's centre are those of a leaf. A step function then stands for a trilinear one,
+values at the voxel's center are those of a leaf. A step function then stands for a trilinear one,
 and what that loses is what fine-tuning the leaves brings back.
 """
 
@@ -10,16 +10,18 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from photograd_course.portable_math import expm1, log, log1p, sigmoid, softplus
+from photograd_course.portable_math import exp, expm1, log, log1p, sigmoid, softplus
 
 from photograd import sh
 from photograd.errors import RangeError, message
 from photograd.fields.dense_grid import DenseGrid
 from photograd.fields.sparse_sh import SparseSh
 from photograd.grids.octree import Octree
+from photograd.representation import Outputs
 from photograd.types import Array
 
 Corner = tuple[float, float, float]
@@ -29,7 +31,7 @@ Corner = tuple[float, float, float]
 class TreePolicy:
     """Where a tree stands, and what its densities mean."""
 
-    box: tuple[Corner, Corner]  # world, metres
+    box: tuple[Corner, Corner]  # world, meters
     cells: tuple[int, int, int]  # along each edge of the box
     density_scale: float = 1.0  # 1/m
 
@@ -184,3 +186,57 @@ def border_gradients(
         moved = pull * times[m, axis]
         d_directions += np.bincount(place, moved, size).reshape(d_origins.shape)
     return d_origins, d_directions
+
+
+# Compositing the segments of all rays, front to back.
+
+
+@dataclass(frozen=True)
+class Walk:
+    """What compositing leaves for each segment (M,), and for each ray (R,)."""
+
+    weight: Array  # w_k
+    behind: Array  # transmittance behind the segment
+    seen: NDArray[np.bool_]  # in front of where the ray was stopped
+    transmittance: Array  # (R,) behind the last segment
+
+
+def composite(segments: Segments, s: Array, rays: int, stop: float) -> Walk:
+    """Front to back, the k-th segments of all rays at a time.
+
+    A ray of which less than `stop` is left meets nothing any more.
+    """
+    tau, transmittance = np.zeros(rays, s.dtype), np.ones(rays, s.dtype)
+    weight, behind, seen = np.zeros_like(s), np.zeros_like(s), np.zeros(len(s), np.bool_)
+    for ray, m in segments.waves():
+        front = transmittance[ray]
+        seen[m] = front > stop
+        thick = s[m] * seen[m]
+        weight[m] = front * -expm1(-thick)
+        tau[ray] += thick
+        behind[m] = transmittance[ray] = exp(-tau[ray])
+    return Walk(weight, behind, seen, transmittance)
+
+
+def optical_depth_backward(
+    segments: Segments, walk: Walk, v: Array, outputs: Outputs, d_outputs: Outputs
+) -> Array:
+    """d_s (M,), front to back again; `v` is <d_color, rgb> + d_depth (t0 + t1) / 2."""
+    kind = v.dtype
+    left = (np.asarray(d_outputs.color, kind) * outputs.color).sum(axis=1)
+    if d_outputs.depth is not None:
+        left += np.asarray(d_outputs.depth, kind) * outputs.depth
+    end = np.zeros_like(left)
+    if d_outputs.opacity is not None:
+        end += np.asarray(d_outputs.opacity, kind) * walk.transmittance
+    passed = walk.weight * v
+    d_s = np.zeros_like(v)
+    for ray, m in segments.waves():
+        left[ray] -= passed[m]
+        d_s[m] = (walk.behind[m] * v[m] - left[ray] + end[ray]) * walk.seen[m]
+    return d_s
+
+
+def sums(owner: NDArray[np.integer[Any]], values: Array, count: int) -> Array:
+    """Sums of `values` by owner, in their order."""
+    return np.bincount(owner, values, minlength=count)

@@ -24,14 +24,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from photograd_course.portable_math import exp, expm1, sigmoid, softplus
+from photograd_course.portable_math import sigmoid, softplus
 from photograd_course.random import uniform
 
 from photograd import sh
+from photograd._checkpoint import Row
+from photograd._checks import from_plain
+from photograd._fit_options import FitOptions
 from photograd.errors import RangeError, ShapeError, message
 from photograd.fields.dense_grid import DenseGrid
 from photograd.fields.octree_leaves import (
@@ -39,32 +42,20 @@ from photograd.fields.octree_leaves import (
     Leaves,
     Segments,
     TreePolicy,
+    Walk,
     border_gradients,
+    composite,
     leaves_of_grid,
     leaves_of_voxels,
+    optical_depth_backward,
     segments_of,
+    sums,
 )
 from photograd.fields.sparse_sh import SparseSh
+from photograd.fields.voxel_field import VoxelField, harmonic_rows
 from photograd.grids.octree import Octree, tree_of_leaves
-from photograd.representation import (
-    Outputs,
-    ParamSpec,
-    RayBatch,
-    RenderOptions,
-    Representation,
-    register,
-)
+from photograd.representation import Outputs, ParamSpec, RayBatch, RenderOptions, Start, register
 from photograd.types import Array
-
-
-@dataclass(frozen=True)
-class Walk:
-    """What compositing leaves for each segment (M,), and for each ray (R,)."""
-
-    weight: Array  # w_k
-    behind: Array  # transmittance behind the segment
-    seen: NDArray[np.bool_]  # in front of where the ray was stopped
-    transmittance: Array  # (R,) behind the last segment
 
 
 @dataclass(frozen=True)
@@ -82,7 +73,7 @@ class OctreeContext:
 
 
 @register
-class OctreeSh(Representation):
+class OctreeSh(VoxelField):
     """params["density"] (N,) raw and params["sh"] (N, K, 3), a row for each leaf that is not empty.
 
     sigma_t = density_scale * softplus(density) in 1/m, rgb = sigmoid(sum_k Y_k(direction) sh_k),
@@ -91,7 +82,16 @@ class OctreeSh(Representation):
     """
 
     name: ClassVar[str] = "octree_sh"
-    capabilities: ClassVar[frozenset[str]] = frozenset({"rays"})
+    fit_options: ClassVar[frozenset[str]] = frozenset({"degree"})
+    first_model: ClassVar[Literal["refused", "optional", "required"]] = "required"
+    first_model_kinds: ClassVar[tuple[str, ...]] = ("dense_grid", "sparse_sh", "dense_sh")
+    first_model_help: ClassVar[str] = (
+        "fit a dense_grid or a sparse_sh first, and start from that (--start-from)"
+    )
+    keeps_background: ClassVar[bool] = True
+    rays_at_once: ClassVar[int] = 1 << 13  # each keeps numbers of every leaf that it crosses
+    starts_empty: ClassVar[bool] = False
+    gradient_note: ClassVar[str] = "Each cell of a leaf shows the gradient of the whole leaf."
 
     def __init__(
         self,
@@ -125,10 +125,10 @@ class OctreeSh(Representation):
         """Tabulate a dense grid: its voxels become leaves, and equal ones share a larger leaf.
 
         Args:
-            field: its sigma_t and colour are read at the voxels' centres.
+            field: its sigma_t and color are read at the voxels' centers.
             degree: of the harmonics; those above the constant start as 0.
             opacity: voxels that are less opaque than this, along their edge, become empty.
-            tolerance: in linear colour, and in opacity, that voxels of one leaf may differ by.
+            tolerance: in linear color, and in opacity, that voxels of one leaf may differ by.
         """
         leaves = leaves_of_grid(field, degree=degree, opacity=opacity, tolerance=tolerance)
         return cls._of_leaves(leaves, field.params["values"].dtype, field.policy.density_scale)
@@ -140,7 +140,7 @@ class OctreeSh(Representation):
         """Tabulate a sparse grid: a leaf for each voxel that is seen, large ones between them.
 
         Args:
-            field: read at the centres of its voxels.
+            field: read at the centers of its voxels.
             degree: of the harmonics, by default the field's; higher ones start as 0.
             opacity: voxels that are less opaque than this, along their edge, become empty.
 
@@ -161,18 +161,49 @@ class OctreeSh(Representation):
         )
 
     @classmethod
-    def of_state(
-        cls, params: Mapping[str, Array], state: Mapping[str, Array], policy: TreePolicy
-    ) -> OctreeSh:
-        """What a checkpoint holds: `params`, `state()` and `policy`.
+    def start(cls, start: Start) -> tuple[OctreeSh, str]:
+        """The leaves of a grid that was fitted before.
 
-        Raises KeyError for what is lacking, ShapeError or RangeError for leaves that fill no cube.
+        Raises RangeError for a field that is no grid.
         """
-        tree = tree_of_leaves(state["lower"], state["side"], policy.box, policy.cells)
+        degree, field = start.options.degree, start.field
+        if isinstance(field, DenseGrid):
+            tree = cls.from_dense_grid(field, degree=degree)
+        elif isinstance(field, SparseSh):
+            tree = cls.from_sparse_sh(field, degree=degree)
+        else:
+            expected = f"a model of {' or '.join(cls.first_model_kinds)}"
+            got = "none" if field is None else repr(field.name)
+            raise RangeError(message("Fit.start", "start_from", expected, got))
+        leaves, side = len(tree.tree.values), tree.resolution
+        rule = f"{tree.shape[0]:,} of {leaves:,} leaves hold matter, in a tree of {side}³ cells"
+        return tree, rule
+
+    @classmethod
+    def checkpoint_rows(cls, options: FitOptions) -> tuple[dict[str, Row], dict[str, Row]]:
+        """A row of parameters for each leaf with matter; which cube of cells has which."""
+        return harmonic_rows(options), {
+            "lower": (("int32",), ("L", 3)),
+            "side": (("int32",), ("L",)),
+            "row": (("int32",), ("L",)),
+        }
+
+    @classmethod
+    def restored(
+        cls,
+        params: Mapping[str, Array],
+        state: Mapping[str, Array],
+        policy: object,
+        options: FitOptions,
+    ) -> Self:
+        """The tree of a checkpoint. Raises ShapeError, RangeError for leaves that fill no cube."""
+        del options
+        told = from_plain("checkpoint", TreePolicy, policy)
+        tree = tree_of_leaves(state["lower"], state["side"], told.box, told.cells)
         row = state["row"]
         if row.shape == (len(tree.values),):  # else refused below
             row = row[tree.values[:, 0].astype(np.int64)]
-        return cls(tree, row, params["density"], params["sh"], density_scale=policy.density_scale)
+        return cls(tree, row, params["density"], params["sh"], density_scale=told.density_scale)
 
     @classmethod
     def example(cls, *, seed: int, dtype: type[np.floating[Any]] = np.float64) -> OctreeSh:
@@ -209,7 +240,7 @@ class OctreeSh(Representation):
 
     @property
     def box(self) -> Array:
-        """(2, 3) corners of the box in world metres."""
+        """(2, 3) corners of the box in world meters."""
         return self.tree.bounds
 
     @property
@@ -221,6 +252,21 @@ class OctreeSh(Representation):
     def resolution(self) -> int:
         """Cells along the longest edge."""
         return max(self.tree.shape)
+
+    @property
+    def voxel_shape(self) -> tuple[int, int, int]:
+        """The smallest cells along X, Y and Z."""
+        x, y, z = self.tree.shape
+        return x, y, z
+
+    def density_rows(self, groups: Mapping[str, Array]) -> Array:
+        """(N,) density."""
+        return groups["density"]
+
+    def to_voxels(self, rows: Array) -> Array:
+        """Rows (N,) as (X, Y, Z): all cells of a leaf have its number, 0 where it has none."""
+        of_leaf = np.append(rows, np.zeros(1, rows.dtype))[self.row]  # row -1 is the last
+        return self.tree.expand(of_leaf[:, None])[..., 0]
 
     def param_groups(self) -> Mapping[str, ParamSpec]:
         """Two groups with a row a leaf."""
@@ -245,11 +291,11 @@ class OctreeSh(Representation):
         raw = sh.evaluate(coefficients[segments.row], way)
         rgb = sigmoid(raw)
         rays = len(origins)
-        walk = _walk(segments, sigma_t * (segments.t1 - segments.t0), rays, options.stop)
+        walk = composite(segments, sigma_t * (segments.t1 - segments.t0), rays, options.stop)
         color = np.stack(
-            [_sums(segments.ray, walk.weight * channel, rays) for channel in rgb.T], axis=-1
+            [sums(segments.ray, walk.weight * channel, rays) for channel in rgb.T], axis=-1
         )
-        depth = _sums(segments.ray, walk.weight * segments.middle, rays)
+        depth = sums(segments.ray, walk.weight * segments.middle, rays)
         outputs = Outputs(
             color.astype(density.dtype), 1 - walk.transmittance, depth.astype(density.dtype)
         ).checked("OctreeSh.render", batch)
@@ -278,16 +324,16 @@ class OctreeSh(Representation):
         if d_outputs.depth is not None:
             d_depth = np.asarray(d_outputs.depth, density.dtype)[segments.ray]
         v = (d_color * c.rgb).sum(axis=1) + d_depth * segments.middle
-        d_s = _optical_depth_backward(segments, c.walk, v, c.outputs, d_outputs)
+        d_s = optical_depth_backward(segments, c.walk, v, c.outputs, d_outputs)
         d_raw = weight[:, None] * d_color * c.rgb * (1 - c.rgb)
         met = coefficients[segments.row]
         d_met, d_way = sh.evaluate_backward(met, way, d_raw)
         d_sigma_t = d_s * (segments.t1 - segments.t0)
-        d_density = _sums(segments.row, d_sigma_t, len(density))
+        d_density = sums(segments.row, d_sigma_t, len(density))
         slope = self.density_scale * sigmoid(density)
         flat = d_met.reshape(len(d_met), -1)
         d_sh = np.stack(
-            [_sums(segments.row, column, len(density)) for column in flat.T], axis=-1
+            [sums(segments.row, column, len(density)) for column in flat.T], axis=-1
         ).reshape(coefficients.shape)
         gradients = {
             "density": (d_density * slope).astype(density.dtype),
@@ -298,7 +344,7 @@ class OctreeSh(Representation):
             d_t0, d_t1 = pull - c.sigma_t * d_s, pull + c.sigma_t * d_s
             d_origins, d_directions = border_gradients(c.borders, segments, d_t0, d_t1)
             for axis in range(3):
-                d_directions[:, axis] += _sums(segments.ray, d_way[:, axis], len(d_directions))
+                d_directions[:, axis] += sums(segments.ray, d_way[:, axis], len(d_directions))
             gradients["origins"] = d_origins.astype(density.dtype)
             gradients["directions"] = d_directions.astype(density.dtype)
         return gradients
@@ -321,44 +367,3 @@ class OctreeSh(Representation):
                     "the topology of an octree_sh cannot change",
                 )
             )
-
-
-def _walk(segments: Segments, s: Array, rays: int, stop: float) -> Walk:
-    """Front to back, the k-th segments of all rays at a time.
-
-    A ray of which less than `stop` is left meets nothing any more.
-    """
-    tau, transmittance = np.zeros(rays, s.dtype), np.ones(rays, s.dtype)
-    weight, behind, seen = np.zeros_like(s), np.zeros_like(s), np.zeros(len(s), np.bool_)
-    for ray, m in segments.waves():
-        front = transmittance[ray]
-        seen[m] = front > stop
-        thick = s[m] * seen[m]
-        weight[m] = front * -expm1(-thick)
-        tau[ray] += thick
-        behind[m] = transmittance[ray] = exp(-tau[ray])
-    return Walk(weight, behind, seen, transmittance)
-
-
-def _optical_depth_backward(
-    segments: Segments, walk: Walk, v: Array, outputs: Outputs, d_outputs: Outputs
-) -> Array:
-    """d_s (M,), front to back again; `v` is <d_color, rgb> + d_depth (t0 + t1) / 2."""
-    kind = v.dtype
-    left = (np.asarray(d_outputs.color, kind) * outputs.color).sum(axis=1)
-    if d_outputs.depth is not None:
-        left += np.asarray(d_outputs.depth, kind) * outputs.depth
-    end = np.zeros_like(left)
-    if d_outputs.opacity is not None:
-        end += np.asarray(d_outputs.opacity, kind) * walk.transmittance
-    passed = walk.weight * v
-    d_s = np.zeros_like(v)
-    for ray, m in segments.waves():
-        left[ray] -= passed[m]
-        d_s[m] = (walk.behind[m] * v[m] - left[ray] + end[ray]) * walk.seen[m]
-    return d_s
-
-
-def _sums(owner: NDArray[np.integer[Any]], values: Array, count: int) -> Array:
-    """Sums of `values` by owner, in their order."""
-    return np.bincount(owner, values, minlength=count)

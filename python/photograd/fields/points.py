@@ -56,6 +56,7 @@ class Points(Representation):
 
     name: ClassVar[str] = "points"
     capabilities: ClassVar[frozenset[str]] = frozenset({"rays"})
+    teaching_example: ClassVar[str] = "start it from Python, with parameters of your own"
 
     def __init__(
         self,

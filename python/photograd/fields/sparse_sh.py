@@ -1,4 +1,4 @@
-"""Plenoxels: density and spherical-harmonic colour at the active voxels of a sparse grid.
+"""Plenoxels: density and spherical-harmonic color at the active voxels of a sparse grid.
 
 No network and no dense memory: [FridovichKeil2022]. The mathematics is in
 cpp/photograd/field/sparse_sh.h.
@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, ClassVar, Self
 
 import numpy as np
@@ -17,53 +17,42 @@ from photograd_course.random import uniform
 from photograd_course.row_map import RowMap
 
 from photograd import sh
+from photograd._checkpoint import FLOAT, Row
+from photograd._checks import from_plain
 from photograd._compiled import _core
+from photograd._fit_options import MAX_DEGREE, FitOptions
 from photograd._memory import require_room
 from photograd.errors import DtypeError, RangeError, ShapeError, message
 from photograd.fields.active_voxels import ActiveVoxels, dilated, resampled_mask
 from photograd.fields.dense_grid import START_COLOR, DenseGrid, cubic_voxels, finer_voxels
-from photograd.fields.march import (
-    MarchPolicy,
-    check_camera_adjoint,
-    checked_rays,
-    checked_values,
-    require_finite_image,
+from photograd.fields.march import MarchPolicy, checked_values
+from photograd.fields.march_sparse import (
+    SparseContext,
+    greatest_weights,
+    march_sparse,
+    march_sparse_backward,
 )
+from photograd.fields.voxel_field import GridField, harmonic_rows, voxels_in
 from photograd.representation import (
+    COPIES,
+    FitInProgress,
     Outputs,
     ParamSpec,
     Prior,
     RayBatch,
     RenderOptions,
-    Representation,
+    Start,
     register,
 )
 from photograd.types import Array
 
-MOST_DEGREE = 3
-
-
-@dataclass(frozen=True)
-class SparseContext:
-    """What the backward pass needs, topology included: it cannot change under a rendering."""
-
-    active: ActiveVoxels
-    density: Array
-    sh: Array
-    settings: Any
-    origins: Array
-    directions: Array
-    t0: Array
-    samples: Array
-    color: Array
-    transmittance: Array
-    depth: Array
-    camera_adjoint: bool
-    looked_up: int  # samples whose voxels were read, all in float64; the others were skipped
+WEIGHT_RAYS, GRADIENT_RAYS = 1 << 20, 1 << 17
+"""From all views; a ray of the gradient costs as much as two of the weights."""
+WANTED = 0.05  # of the greatest |dL/d density|; what is below is noise of the photographs
 
 
 @register
-class SparseSh(Representation):
+class SparseSh(GridField):
     """A radiance field on the active voxels of an X x Y x Z grid (trilinear in between).
 
     params["density"] (N,) raw density and params["sh"] (N, K, 3) coefficients, one row for each
@@ -75,7 +64,9 @@ class SparseSh(Representation):
     """
 
     name: ClassVar[str] = "sparse_sh"
-    capabilities: ClassVar[frozenset[str]] = frozenset({"rays"})
+    # What held-out training views prefer: docs/results.md.
+    fit_defaults: ClassVar[Mapping[str, Any]] = {"resolution": 256}
+    fit_options: ClassVar[frozenset[str]] = frozenset({"degree", "prune"})
 
     def __init__(
         self,
@@ -98,7 +89,7 @@ class SparseSh(Representation):
         if coefficients.dtype != density.dtype:
             raise DtypeError(message("SparseSh", "sh", density.dtype, coefficients.dtype))
         if coefficients.shape[1] not in (1, 4, 9, 16):
-            expected = f"1, 4, 9 or 16 coefficients (degree 0 to {MOST_DEGREE})"
+            expected = f"1, 4, 9 or 16 coefficients (degree 0 to {MAX_DEGREE})"
             raise RangeError(message("SparseSh", "sh", expected, coefficients.shape[1]))
         if policy.border != "zero":
             raise RangeError(message("SparseSh", "policy.border", "'zero'", repr(policy.border)))
@@ -129,8 +120,8 @@ class SparseSh(Representation):
 
         Arguments as for `DenseGrid.empty`; `degree` 0 to 3. Raises RangeError.
         """
-        if degree not in range(MOST_DEGREE + 1):
-            raise RangeError(message("SparseSh.full", "degree", f"0 to {MOST_DEGREE}", degree))
+        if degree not in range(MAX_DEGREE + 1):
+            raise RangeError(message("SparseSh.full", "degree", f"0 to {MAX_DEGREE}", degree))
         corners = np.asarray(box, np.float64)
         if resolution >= 2 and np.ptp(corners, axis=0).max() > 0:  # else refused below
             shape = cubic_voxels(corners[1] - corners[0], resolution)
@@ -174,19 +165,71 @@ class SparseSh(Representation):
         return DenseGrid.example(seed=seed).example_batch(seed=seed)
 
     @property
-    def box(self) -> Array:
-        """(2, 3) corners of the box in world metres."""
-        return np.array(self.policy.box)
-
-    @property
     def shape(self) -> tuple[int, int, int, int]:
         """Voxels along X, Y and Z, active or not, and the numbers of each active one."""
         return (*self.active.shape, 1 + self.params["sh"][0].size)
 
-    @property
-    def resolution(self) -> int:
-        """Voxels along the longest edge."""
-        return max(self.active.shape)
+    def density_rows(self, groups: Mapping[str, Array]) -> Array:
+        """(N,) density."""
+        return groups["density"]
+
+    def to_voxels(self, rows: Array) -> Array:
+        """Rows (N,) as (X, Y, Z), 0 where no voxel is active."""
+        voxels = np.zeros(self.active.shape, rows.dtype)
+        i, j, k = self.active.voxels.T
+        voxels[i, j, k] = rows
+        return voxels
+
+    @classmethod
+    def start(cls, start: Start) -> tuple[Self, str]:
+        """Nearly empty space in the box, at the coarsest level of the options."""
+        options = start.options
+        field = cls.full(
+            start.bounds.box,
+            options.levels()[0],
+            degree=options.degree,
+            finest=options.resolution,
+            sigma_t=options.sigma_t,
+            steps_per_voxel=options.steps_per_voxel,
+        )
+        return field, f"box: {start.bounds.rule}"
+
+    @classmethod
+    def checkpoint_rows(cls, options: FitOptions) -> tuple[dict[str, Row], dict[str, Row]]:
+        """Density and harmonics; which voxels are active."""
+        return harmonic_rows(options), {
+            "shape": (("int64",), (3,)),
+            "mask": (("uint8",), ("bytes of the mask",)),
+            "background_density": (FLOAT, ()),
+        }
+
+    @classmethod
+    def restored(
+        cls,
+        params: Mapping[str, Array],
+        state: Mapping[str, Array],
+        policy: object,
+        options: FitOptions,
+    ) -> Self:
+        """The grid of a checkpoint."""
+        del options
+        march = from_plain("checkpoint", MarchPolicy, policy)
+        rest = {key: value for key, value in state.items() if key != "background_density"}
+        active = ActiveVoxels.of_state(rest, "load_model")
+        outside = float(state["background_density"])
+        return cls(active, params["density"], params["sh"], march, background_density=outside)
+
+    @classmethod
+    def channels(cls, options: FitOptions) -> int:
+        """Density and harmonics."""
+        return 1 + 3 * sh.count(options.degree)
+
+    @classmethod
+    def _bytes(cls, box: Array, options: FitOptions) -> int:
+        """All voxels at the beginning, the mask alone at the end: who knows what will be pruned."""
+        first = COPIES * 4 * cls.channels(options) * voxels_in(box, options.levels()[0])
+        mask_and_bricks = 2 * voxels_in(box, options.resolution)
+        return max(first, mask_and_bricks)
 
     def param_groups(self) -> Mapping[str, ParamSpec]:
         """Density and coefficients; Adam moves an entry by about its rate."""
@@ -199,64 +242,25 @@ class SparseSh(Representation):
     def render(
         self, batch: RayBatch, *, seed: int, step: int, options: RenderOptions
     ) -> tuple[Outputs, SparseContext]:
-        """Colour (R, 3) linear, premultiplied, without background; opacity (R,); depth (R,) m."""
-        check_camera_adjoint("SparseSh.render", self.policy, options)
-        density, coefficients = self.params["density"], self.params["sh"]
-        checked_values("SparseSh.render", "density", density)
-        checked_values("SparseSh.render", "sh", coefficients)
-        settings = self.policy.settings(options.stop)
-        rays = checked_rays(batch, settings, options, density.dtype, seed=seed, step=step)
-        parameters = density, coefficients, self._background()
-        color, transmittance, depth, looked_up = _core.march_sparse_sh(
-            self.active.table, parameters, settings, 0.0, rays, fused=self.fused
-        )
-        require_finite_image(color, transmittance, batch)
-        context = SparseContext(
+        """Color (R, 3) linear, premultiplied, without background; opacity (R,); depth (R,) m."""
+        return march_sparse(
             self.active,
-            density,
-            coefficients,
-            settings,
-            *rays,
-            color,
-            transmittance,
-            depth,
-            options.camera_adjoint,
-            looked_up,
+            (self.params["density"], self.params["sh"], self._background()),
+            self.policy,
+            batch,
+            options,
+            seed=seed,
+            step=step,
+            fused=self.fused,
         )
-        return Outputs(color, 1 - transmittance, depth), context
 
     def render_backward(self, context: SparseContext, d_outputs: Outputs) -> dict[str, Array]:
         """{"density", "sh"}, and "origins", "directions" (R, 3) if the options asked."""
-        c = context
-        dtype = c.density.dtype
-        none = np.zeros(len(c.t0), dtype)
-        d_opacity = none if d_outputs.opacity is None else d_outputs.opacity
-        d_depth = none if d_outputs.depth is None else d_outputs.depth
-        cotangents = [
-            np.ascontiguousarray(d, dtype) for d in (d_outputs.color, -d_opacity, d_depth)
-        ]
-        background = self._background()
-        self.background_gradient = np.zeros_like(background)
-        gradients = {"density": np.zeros_like(c.density), "sh": np.zeros_like(c.sh)}
-        if c.camera_adjoint:
-            gradients["origins"] = np.zeros_like(c.origins)
-            gradients["directions"] = np.zeros_like(c.directions)
-        _core.march_sparse_sh_backward(
-            c.active.table,
-            (c.density, c.sh, background),
-            c.settings,
-            0.0,
-            (c.origins, c.directions, c.t0, c.samples),
-            (c.color, c.transmittance, c.depth),
-            cotangents,
-            (gradients["density"], gradients["sh"], self.background_gradient),
-            (gradients["origins"], gradients["directions"]) if c.camera_adjoint else None,
-            self.fused,
-        )
+        gradients, self.background_gradient = march_sparse_backward(context, d_outputs)
         return gradients
 
     def priors(self) -> Sequence[Prior]:
-        """Total variation of each group: active neighbours should agree."""
+        """Total variation of each group: active neighbors should agree."""
         return tuple(
             Prior(f"total_variation_{group}", group, self._variation, self._variation_backward)
             for group in ("density", "sh")
@@ -297,17 +301,26 @@ class SparseSh(Representation):
         A sample's weight in its pixel times the voxel's trilinear weight in the sample. Give it all
         views: a voxel that this batch does not see may matter to the next.
         """
-        density = np.ascontiguousarray(self.params["density"], np.float32)
-        coefficients = np.ascontiguousarray(self.params["sh"], np.float32)
-        settings = self.policy.settings(0.0)
-        max_weight = np.zeros(len(self.active), np.float32)
-        parameters = density, coefficients, self._background().astype(np.float32)
-        for batch in batches:
-            rays = checked_rays(
-                batch, settings, RenderOptions(), np.dtype(np.float32), seed=0, step=0
-            )
-            _core.sparse_sh_weights(self.active.table, parameters, settings, rays, max_weight)
-        return max_weight
+        parameters = (self.params["density"], self.params["sh"], self._background())
+        return greatest_weights(self.active, parameters, self.policy, batches)
+
+    def prune(self, fit: FitInProgress) -> None:
+        """Drop voxels that weigh less than `fit.options.prune` in every pixel of every view.
+
+        Those stay for which the loss would fall with more density: dL/d density is below -WANTED
+        times the greatest |dL/d density|. The weight alone would drop voxels that matter is about
+        to grow into.
+        """
+        if fit.options.prune == 0:
+            return
+        weight = self.greatest_weights(fit.batches(WEIGHT_RAYS))
+        d_density = fit.mean_gradient("density", GRADIENT_RAYS)
+        wanted = d_density < -WANTED * np.abs(d_density).max(initial=0.0)
+        threshold = np.array(fit.options.prune)
+        statistics = {"weight": weight, "threshold": threshold, "wanted": wanted}
+        rows = self.refine(fit.step_number, statistics)
+        if rows is not None:
+            fit.optimizer.apply_row_map(rows, self.params)
 
     def refine(self, step: int, statistics: Mapping[str, Array]) -> RowMap | None:
         """Drop voxels with statistics["weight"] (N,) below statistics["threshold"], then dilate.
@@ -350,24 +363,15 @@ class SparseSh(Representation):
         require_room(where, what, size, argument="resolution", remedy=remedy)
         voxel = (self.box[1] - self.box[0]).max() / resolution
         active = ActiveVoxels(resampled_mask(self.active.mask, shape))
-        density = self._resampled(self.params["density"], active, self.background_density)
-        coefficients = self._resampled(self.params["sh"], active, 0.0)
+        density = self.active.resampled(self.params["density"], active, self.background_density)
+        coefficients = self.active.resampled(self.params["sh"], active, 0.0)
         policy = replace(self.policy, dt=voxel / steps_per_voxel)
         grid = active, density, coefficients, policy
         return type(self)(*grid, background_density=self.background_density, fused=self.fused)
 
-    def resampled(self, rows: Array, to: SparseSh) -> Array:
-        """Rows of this grid, such as an optimiser's, at the voxels of another; 0 where none is."""
-        return self._resampled(rows, to.active, 0.0)
-
-    def _resampled(self, rows: Array, active: ActiveVoxels, fill: float) -> Array:
-        scale = np.array(self.active.shape) / np.array(active.shape)
-        at = np.ascontiguousarray((active.voxels + 0.5) * scale - 0.5, rows.dtype)
-        flat = np.ascontiguousarray(rows).reshape(len(rows), -1)
-        out = np.empty((len(active), flat.shape[1]), rows.dtype)
-        empty = np.full(flat.shape[1], fill, rows.dtype)
-        _core.sample_bricks(self.active.topology, flat, empty, at, out)
-        return out.reshape(len(active), *rows.shape[1:])
+    def resampled(self, rows: Array, to: Self) -> Array:
+        """Rows of this grid, such as an optimizer's, at the voxels of another; 0 where none is."""
+        return self.active.resampled(rows, to.active, 0.0)
 
     def state(self) -> dict[str, Array]:
         """The topology, and what lies outside of it."""

@@ -32,7 +32,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from photograd_course.portable_math import norm
 
-from photograd.bsdf.phase import phase_function
+from photograd.bsdf.phase import registry as phase_functions
 from photograd.errors import DtypeError, RangeError, ShapeError, message
 from photograd.fields.march import MarchContext, MarchPolicy, march, march_backward
 from photograd.geometry.mesh import Bvh
@@ -112,6 +112,7 @@ class SunlitMedium(Representation):
 
     name: ClassVar[str] = "sunlit_medium"
     capabilities: ClassVar[frozenset[str]] = frozenset({"rays"})
+    teaching_example: ClassVar[str] = "start it from Python, with parameters of your own"
 
     def __init__(
         self,
@@ -148,7 +149,7 @@ class SunlitMedium(Representation):
         if towards.shape != (3,) or not 0 < length < np.inf:
             raise RangeError(message("SunlitMedium", "sun", "a direction (3,)", towards.tolist()))
         self.sun = towards / length
-        self.phase = phase_function(phase)
+        self.phase = phase_functions()[phase]
         self.solids = solids
         self.policy = MarchPolicy(
             (tuple(corners[0].tolist()), tuple(corners[1].tolist())),
@@ -260,7 +261,7 @@ class SunlitMedium(Representation):
         """A gradient for each group, and "origins", "directions" (R, 3) if the options asked."""
         c, params = context, context.params
         along = np.einsum("rc,c->r", d_outputs.color, params["albedo"] * params["irradiance"])
-        d_g, d_cos = self.phase.p_backward(params["g"], c.cos_theta, along * c.s)
+        d_phase, d_cos = self.phase.p_backward(params["g"], c.cos_theta, along * c.s)
         d_color = np.zeros((len(along), 3), along.dtype)
         d_color[:, 0] = along * c.p
         view = march_backward(c.view, Outputs(d_color, d_outputs.opacity, d_outputs.depth))
@@ -270,7 +271,7 @@ class SunlitMedium(Representation):
         gradients = {
             "sigma_t": d_values[..., 3] + self._shadow_backward(c.shadow, d_through),
             "albedo": d_product * params["irradiance"],
-            "g": d_g,
+            "g": np.atleast_1d(d_phase["g"]),
             "irradiance": d_product * params["albedo"],
             **view,
         }

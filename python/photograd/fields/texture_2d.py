@@ -42,6 +42,7 @@ class Texture2D(Representation):
 
     name: ClassVar[str] = "texture_2d"
     capabilities: ClassVar[frozenset[str]] = frozenset({"canvas2d"})
+    teaching_example: ClassVar[str] = "it lives on a 2D canvas"
 
     def __init__(self, texels: Array) -> None:
         """Raises ShapeError unless texels is (H, W, 3), DtypeError unless it is a float array."""

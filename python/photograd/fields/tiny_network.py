@@ -33,6 +33,7 @@ class TinyNetwork(Representation):
 
     name: ClassVar[str] = "tiny_network"
     capabilities: ClassVar[frozenset[str]] = frozenset({"rays"})
+    teaching_example: ClassVar[str] = "start it from Python, with parameters of your own"
 
     def __init__(self, weights: Array, policy: MarchPolicy) -> None:
         """Raises ShapeError unless weights is a flat array of the network's size."""

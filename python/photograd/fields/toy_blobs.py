@@ -60,6 +60,7 @@ class ToyBlobs(Representation):
 
     name: ClassVar[str] = "toy_blobs"
     capabilities: ClassVar[frozenset[str]] = frozenset({"canvas2d"})
+    teaching_example: ClassVar[str] = "it lives on a 2D canvas"
 
     def __init__(
         self,

@@ -10,9 +10,10 @@ print(evaluate(model, capture.test).psnr)  # of photograd.fitting.evaluate
 
 from __future__ import annotations
 
+from photograd._fit_options import FitOptions
 from photograd.fitting.loop import Fit
 from photograd.fitting.model import Model, load_model
-from photograd.fitting.options import FitOptions, FitResult, Progress, options_for
+from photograd.fitting.options import FitResult, Progress, options_for
 from photograd.fitting.whole import fit
 
 __all__ = [

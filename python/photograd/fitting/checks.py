@@ -8,23 +8,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 from photograd_course.suggest import nearest
 
+from photograd._checkpoint import Checkpoint
+from photograd._fit_options import FitOptions
 from photograd._memory import available_memory, require_room
 from photograd.capture.capture import Capture
 from photograd.errors import Error, IoError, RangeError, message
-from photograd.fields import representation, representations
-from photograd.fields.dense_grid import DenseGrid
-from photograd.fields.octree_sh import OctreeSh
-from photograd.fields.sparse_sh import SparseSh
-from photograd.fitting.checkpoint import Checkpoint
-from photograd.fitting.options import FitOptions
-from photograd.fitting.start import FITTED, HARMONIC_GRIDS
-from photograd.sh import count as sh_count
-from photograd.splats.model import GaussianScene
+from photograd.fields import fittable, representation, representations
+from photograd.representation import Memory
 from photograd.types import Array
 
 _SAME = "resume with the capture, and the --downscale, that the fit was started on"
@@ -32,21 +26,16 @@ _SAME = "resume with the capture, and the --downscale, that the fit was started 
 
 def require_startable(name: str) -> None:
     """Raise RangeError unless a capture can start the representation called `name`."""
-    if name in FITTED:
+    known = fittable()
+    if name in known:
         return
-    if name not in representations():
-        near = nearest(name, FITTED)
-        remedy = f"did you mean {near!r}?" if near else None
-    elif representation(name).capabilities & {"rays", "image"}:
-        remedy = "start it from Python, with parameters of your own"
+    if name in representations():
+        remedy = representation(name).teaching_example
     else:
-        remedy = "it lives on a 2D canvas"
-    expected = f"one that a capture can start: {_known()}"
-    raise RangeError(message("Fit", "representation", expected, repr(name), remedy))
-
-
-def _known() -> str:
-    return " or ".join(map(repr, FITTED))
+        near = nearest(name, known)
+        remedy = f"did you mean {near!r}?" if near else ""
+    expected = f"one that a capture can start: {' or '.join(map(repr, known))}"
+    raise RangeError(message("Fit", "representation", expected, repr(name), remedy or None))
 
 
 def require_background_of(capture: Capture, options: FitOptions) -> None:
@@ -65,20 +54,17 @@ def require_background_of(capture: Capture, options: FitOptions) -> None:
 
 def require_first_model(name: str, *, given: bool) -> None:
     """Raise RangeError for a model to start from where none is wanted, or none where one is."""
-    if given and name not in (GaussianScene.name, OctreeSh.name):
-        expected = f"none, or {GaussianScene.name!r} or {OctreeSh.name!r} to fit"
+    kind = fittable()[name]
+    if given and kind.first_model == "refused":
+        others = [n for n, other in fittable().items() if other.first_model != "refused"]
+        expected = f"none, or {' or '.join(map(repr, others))} to fit"
         raise RangeError(
-            message("Fit.start", "start_from", expected, repr(name), "grids start empty")
+            message("Fit.start", "start_from", expected, repr(name), kind.first_model_help)
         )
-    if name == OctreeSh.name and not given:
+    if kind.first_model == "required" and not given:
+        expected = f"the model that {name!r} starts from"
         raise RangeError(
-            message(
-                "Fit.start",
-                "start_from",
-                f"the model that {name!r} is cut from",
-                "none",
-                "fit a dense_grid or a sparse_sh first, and start from that (--start-from)",
-            )
+            message("Fit.start", "start_from", expected, "none", kind.first_model_help)
         )
 
 
@@ -129,8 +115,6 @@ def require_finite(params: Mapping[str, Array], step: int) -> None:
 # What a fit takes of the memory, asked before it is taken.
 
 
-COPIES = 4
-"""A parameter, its gradient and two moments; also the 1.1 GB measured for 256³ voxels."""
 BYTES_A_RAY = 480
 """Measured: 478 to 696, of dense_grid and sparse_sh, 200,000 and 800,000 rays."""
 BYTES_A_PIXEL = 48
@@ -149,70 +133,20 @@ def require_room_to_start(capture: Capture, box: Array, options: FitOptions) -> 
         RangeError: names the option, what it takes and what would do.
     """
     room = available_memory()
-    parts = sorted(_parts(capture, box, options, room), key=lambda part: -part[2])
-    for argument, what, size, remedy in parts:
-        require_room("Fit.start", what, size, room, argument=argument, remedy=remedy)
-        room -= size
-
-
-def require_room_to_refine(grid: Any, resolution: int) -> None:
-    """Raise RangeError if a grid, refined, takes more memory than there is.
-
-    It is interpolated from the coarse grid while that still exists. A sparse grid that pruned
-    little, of a capture without alpha, can grow eightfold.
-    """
-    now = sum(values.nbytes for values in grid.params.values())
-    needed = COPIES * int(now * (1 + (resolution / grid.resolution) ** 3))
-    remedy = f"fit with --resolution {grid.resolution}, or crop the capture's bounds"
-    what = f"a grid of {resolution} voxels along an edge"
-    require_room("Fit.step", what, needed, argument="resolution", remedy=remedy)
-
-
-def _parts(
-    capture: Capture, box: Array, options: FitOptions, room: int
-) -> list[tuple[str, str, int, str]]:
-    """Option, what it is, bytes, remedy."""
-    pixels = sum(view.camera.width * view.camera.height for view in capture.train)
-    parts = [
-        (
-            "capture",
-            f"{pixels:,} pixels to learn from",
-            BYTES_A_PIXEL * pixels,
-            "take smaller photographs with --downscale",
+    for part in sorted(_parts(capture, box, options, room), key=lambda part: -part.size):
+        require_room(
+            "Fit.start", part.what, part.size, room, argument=part.option, remedy=part.remedy
         )
-    ]
-    name = options.representation
-    if name == GaussianScene.name:
-        # Position, scales, rotation and opacity; harmonics of three colors.
-        each = COPIES * 4 * (3 + 3 + 4 + 1 + 3 * sh_count(options.degree))
-        what = f"{options.gaussians:,} Gaussians"
-        remedy = f"--gaussians {max(1, room // (2 * each)):,} takes half of it".replace(",", "")
-        return [*parts, ("gaussians", what, each * options.gaussians, remedy)]
-    remedy = "take fewer with --rays"
-    parts.append(("rays", f"{options.rays:,} rays a step", BYTES_A_RAY * options.rays, remedy))
-    if name == DenseGrid.name or name in HARMONIC_GRIDS:
-        size = _grid_bytes(box, options)
-        fits = int(options.resolution * min(1.0, room / (2 * size)) ** (1 / 3))
-        what = f"a grid of {options.resolution} voxels along an edge"
-        remedy = f"--resolution {fits} takes half of it; or crop the capture's bounds"
-        parts.append(("resolution", what, size, remedy))
-    return parts
+        room -= part.size
 
 
-def _grid_bytes(box: Array, options: FitOptions) -> int:
-    """At the end of a fit; of a sparse grid, of which nobody knows what will be pruned, its mask
-    at the end, and all of its voxels at the beginning.
-    """
-    name = options.representation
-    channels = 4 if name == DenseGrid.name else 1 + 3 * sh_count(options.degree)
-    if name != SparseSh.name:
-        return COPIES * 4 * channels * _voxels(box, options.resolution)
-    first = COPIES * 4 * channels * _voxels(box, options.levels()[0])
-    mask_and_bricks = 2 * _voxels(box, options.resolution)
-    return max(first, mask_and_bricks)
-
-
-def _voxels(box: Array, resolution: int) -> int:
-    extent = np.asarray(box[1] - box[0], np.float64)
-    x, y, z = (int(n) for n in np.ceil(extent * (resolution / extent.max()) - 1e-6))
-    return max(x, 2) * max(y, 2) * max(z, 2)
+def _parts(capture: Capture, box: Array, options: FitOptions, room: int) -> list[Memory]:
+    kind = fittable()[options.representation]
+    pixels = sum(view.camera.width * view.camera.height for view in capture.train)
+    what = f"{pixels:,} pixels to learn from"
+    smaller = "take smaller photographs with --downscale"
+    parts = [Memory("capture", what, BYTES_A_PIXEL * pixels, smaller)]
+    if "rays" in kind.capabilities:
+        what, size = f"{options.rays:,} rays a step", BYTES_A_RAY * options.rays
+        parts.append(Memory("rays", what, size, "take fewer with --rays"))
+    return [*parts, *kind.memory(box, options, room)]

@@ -1,7 +1,7 @@
 """Different representations of the same scene, side by side: quality, bytes and seconds.
 
 No representation is best for every scene: leaves, smooth curves, fur and flat walls ask for
-different ones. Here that is measured: each contender is fitted to the same photographs with the
+different ones. Here that is measured: each candidate is fitted to the same photographs with the
 same number of steps, scored on the same held-out views, and drawn at the same camera. (A step of a
 grid draws rays at random, a step of Gaussians a whole view; the seconds of both are in the table.)
 """
@@ -13,24 +13,21 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from photograd_course.atomic_io import atomic_write
 
+from photograd._checkpoint import FILE_NAME
 from photograd._compiled import _core
+from photograd._fit_options import FitOptions
 from photograd.capture.capture import Capture
 from photograd.errors import RangeError, message
-from photograd.fields.dense_grid import DenseGrid
-from photograd.fields.octree_sh import OctreeSh
-from photograd.fitting.checkpoint import FILE_NAME
+from photograd.fields import fittable
 from photograd.fitting.checks import require_startable
 from photograd.fitting.evaluate import Evaluation, ViewScore, display_image, evaluate
 from photograd.fitting.loop import Fit
 from photograd.fitting.model import Model, load_model
-from photograd.fitting.options import DEFAULTS_OF, FitOptions, FitResult
-from photograd.fitting.start import HARMONIC_GRIDS
-from photograd.splats.model import GaussianScene
+from photograd.fitting.options import FitResult
 
 FRAMES = 5
 """Frames that are timed; the median counts."""
@@ -42,7 +39,7 @@ Run = Callable[[Fit, Path], FitResult]
 
 
 @dataclass(frozen=True)
-class Contender:
+class Candidate:
     """A representation at a resolution, written `sparse_sh:128`, or so many `gaussians:20000`."""
 
     representation: str
@@ -50,12 +47,10 @@ class Contender:
 
     def options(self, shared: FitOptions) -> FitOptions:
         """Its own options, with what `shared` says on the rest."""
-        size = "gaussians" if self.representation == GaussianScene.name else "resolution"
-        own = DEFAULTS_OF.get(self.representation, {})
-        rest = {name: value for name, value in own.items() if name != "steps"}
-        return replace(
-            shared, representation=self.representation, **{**rest, size: self.resolution}
-        )
+        kind = fittable()[self.representation]
+        own = {name: value for name, value in kind.fit_defaults.items() if name != "steps"}
+        own[kind.size_option] = self.resolution
+        return replace(shared, representation=self.representation, **own)
 
     @property
     def label(self) -> str:
@@ -68,7 +63,7 @@ class Score:
     """One line of the table."""
 
     capture: str
-    contender: str
+    candidate: str
     psnr: float  # dB, mean over held-out views
     ssim: float
     parameter_bytes: int  # of all parameter arrays and what state they need beside them
@@ -78,53 +73,63 @@ class Score:
     protocol: str
 
 
-def parse_contenders(text: str) -> list[Contender]:
-    """The contenders of "dense_grid:64,sparse_sh:128".
+def parse_candidates(text: str, start_from: Model | None = None) -> list[Candidate]:
+    """The candidates of "dense_grid:64,sparse_sh:128".
 
     Raises RangeError for another form, a resolution below 8, one that is given twice, a
-    representation that a capture cannot start, or an octree without a grid to be cut from.
+    representation that a capture cannot start, or one without the model that it starts from: an
+    octree without a grid before it, a textured mesh without `start_from`. Or a `start_from` that
+    none of them starts from.
     """
-    contenders = []
+    candidates = []
     for word in text.split(","):
         name, colon, size = word.strip().partition(":")
         if not (colon and size.isdecimal() and int(size) >= 8):
             raise RangeError(
                 message(
                     "compare",
-                    "contenders",
+                    "candidates",
                     "NAME:RESOLUTION with a resolution of 8 or more",
                     repr(word.strip()),
                     "for example dense_grid:128,sparse_sh:128",
                 )
             )
         require_startable(name)
-        contenders.append(Contender(name, int(size)))
-    if len(set(contenders)) < len(contenders):
-        raise RangeError(message("compare", "contenders", "each only once", text))
-    for contender in contenders:
-        source_of(contender, contenders)
-    return contenders
+        candidates.append(Candidate(name, int(size)))
+    if len(set(candidates)) < len(candidates):
+        raise RangeError(message("compare", "candidates", "each only once", text))
+    sources = [source_of(candidate, candidates, start_from) for candidate in candidates]
+    if start_from is not None and start_from not in sources:
+        expected = f"a candidate that starts from a {start_from.field.name}"
+        raise RangeError(message("compare", "candidates", expected, text))
+    return candidates
 
 
-def source_of(contender: Contender, contenders: Sequence[Contender]) -> Contender | None:
-    """The contender whose model an octree is cut from; None for what starts by itself.
+def source_of(
+    candidate: Candidate, candidates: Sequence[Candidate], start_from: Model | None = None
+) -> Candidate | Model | None:
+    """The model that a candidate starts from; None for what starts by itself.
 
-    It is the nearest before it of the same resolution. Raises RangeError if there is none.
+    It is `start_from` where that is of a kind to start from, or the model of the nearest candidate
+    before it of the same resolution. Raises RangeError if there is none.
     """
-    if contender.representation != OctreeSh.name:
+    kind = fittable()[candidate.representation]
+    if kind.first_model != "required":
         return None
-    before = contenders[: contenders.index(contender)]
-    grids = (DenseGrid.name, *HARMONIC_GRIDS)
+    if start_from is not None and start_from.field.name in kind.first_model_kinds:
+        return start_from
+    before = candidates[: candidates.index(candidate)]
     for other in reversed(before):
-        if other.representation in grids and other.resolution == contender.resolution:
+        fits = other.representation in kind.first_model_kinds
+        if fits and other.resolution == candidate.resolution:
             return other
     raise RangeError(
         message(
             "compare",
-            "contenders",
-            f"a grid of {contender.resolution} before the octree that is cut from it",
-            contender.label,
-            f"put sparse_sh:{contender.resolution} first",
+            "candidates",
+            f"the model that {candidate.label} starts from before it",
+            f"none of {' or '.join(kind.first_model_kinds)} with {candidate.resolution}",
+            kind.first_model_help,
         )
     )
 
@@ -132,18 +137,18 @@ def source_of(contender: Contender, contenders: Sequence[Contender]) -> Contende
 def compare_one(
     name: str,
     capture: Capture,
-    contender: Contender,
+    candidate: Candidate,
     folder: Path,
     options: FitOptions,
     run: Run,
     *,
-    source: Path | None = None,
+    source: Path | Model | None = None,
 ) -> tuple[Score, Evaluation] | None:
-    """Fit `contender` to `capture` in `folder`, or continue there, and score it.
+    """Fit `candidate` to `capture` in `folder`, or continue there, and score it.
 
-    `name` is what the table calls the capture; `options` holds what all contenders share; `source`
-    is the folder of the model that the fit starts from, whose seconds count, too. Returns None if
-    `run` ended before the fit did: the same call continues it, and its seconds add up.
+    `name` is what the table calls the capture; `options` holds what all candidates share; `source`
+    is the model that the fit starts from, or its folder, and then its seconds count, too. Returns
+    None if `run` ended before the fit did: the same call continues it, and its seconds add up.
     """
     if (folder / FILE_NAME).exists():
         job = Fit.resume(capture, folder)
@@ -159,7 +164,7 @@ def compare_one(
                 )
             )
     else:
-        first = None if source is None else load_model(source)
+        first = load_model(source) if isinstance(source, Path) else source
         job = Fit.start(capture, options, start_from=first)
     spent = _spent(folder)
     if job.step_number < options.steps:
@@ -170,11 +175,11 @@ def compare_one(
             return None
     model = load_model(folder)
     evaluation = evaluate(model, capture.test)
-    if source is not None:
+    if isinstance(source, Path):
         spent += _spent(source)
     score = Score(
         name,
-        contender.label,
+        candidate.label,
         evaluation.psnr,
         evaluation.ssim,
         stored_bytes(model),
@@ -188,10 +193,7 @@ def compare_one(
 
 def stored_bytes(model: Model) -> int:
     """Bytes of a model's parameters and of the arrays that say where they belong."""
-    arrays: list[Any] = list(model.field.params.values())
-    if not isinstance(model.field, GaussianScene):  # whose state serves the fit alone
-        arrays += model.field.state().values()
-    return sum(a.nbytes for a in arrays if isinstance(a, np.ndarray))
+    return sum(array.nbytes for array in model.field.stored().values())
 
 
 def frame_seconds(model: Model, capture: Capture) -> float:
@@ -222,7 +224,7 @@ def markdown(scores: Sequence[Score]) -> str:
     for s in scores:
         psnr = f"{s.psnr:.2f}" if s.psnr < best[s.capture] else f"**{s.psnr:.2f}**"
         lines.append(
-            f"| {s.capture} | {s.contender} | {psnr} | {s.ssim:.3f} "
+            f"| {s.capture} | {s.candidate} | {psnr} | {s.ssim:.3f} "
             f"| {s.parameter_bytes / 2**20:.1f} | {s.train_seconds:.0f} | {s.frame_ms:.0f} |"
         )
     threads = ", ".join(str(n) for n in sorted({s.threads for s in scores}))

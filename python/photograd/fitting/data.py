@@ -2,7 +2,7 @@
 
 Random backgrounds keep a fit from painting the background into the scene instead of leaving space
 empty: only opacity can then explain a pixel. Photographs without alpha have no such freedom; there
-one colour for all directions is learned, as sigmoid(raw) so that it stays in (0, 1).
+one color for all directions is learned, as sigmoid(raw) so that it stays in (0, 1).
 """
 
 from __future__ import annotations
@@ -35,18 +35,18 @@ def background_kind(option: str, *, has_alpha: bool) -> str:
 def first_background(mean: Array) -> Array:
     """Raw parameter (3,) float32 to start a learned background from.
 
-    `mean` (4,) is the mean pixel: linear premultiplied colour, and alpha.
+    `mean` (4,) is the mean pixel: linear premultiplied color, and alpha.
     """
     return raw_background(np.clip(mean[:3] / max(mean[3], 1e-6), 0.02, 0.98))
 
 
 def raw_background(color: Array) -> Array:
-    """Raw parameter (3,) float32 whose `learned_background` is this linear colour in (0, 1)."""
+    """Raw parameter (3,) float32 whose `learned_background` is this linear color in (0, 1)."""
     return log(color / (1 - color)).astype(np.float32)
 
 
 def learned_background(raw: Array) -> Array:
-    """Linear colour (3,) of the raw parameter (3,): sigmoid(raw)."""
+    """Linear color (3,) of the raw parameter (3,): sigmoid(raw)."""
     return sigmoid(raw)
 
 
@@ -58,7 +58,7 @@ def learned_background_backward(raw: Array, d_color: Array) -> Array:
 
 
 def random_background(count: int, *, seed: int, step: int, first: int = 0) -> Array:
-    """Linear colours (R, 3) float32, uniform in display values, for rays first .. first + R - 1."""
+    """Linear colors (R, 3) float32, uniform in display values, for rays first .. first + R - 1."""
     index = 3 * first + np.arange(3 * count)
     u = uniform(seed, step=step, pixel=index, sample=1, dimension=0)
     return srgb_decode(u.reshape(count, 3)).astype(np.float32)
@@ -76,7 +76,7 @@ _RAYS_AT_ONCE = 1 << 16
 
 
 class TrainingPixels:
-    """Premultiplied linear colour and alpha of every valid pixel, and the cameras they belong to.
+    """Premultiplied linear color and alpha of every valid pixel, and the cameras they belong to.
 
     Attributes:
         premultiplied: (P, 4) float32, linear Rec. 709 times alpha, alpha. color_space: "display" if
@@ -117,18 +117,32 @@ class TrainingPixels:
         return uniform_int(seed, len(self), step=step, pixel=draw, sample=0, dimension=0)
 
     def mean_color(self) -> Array:
-        """(4,) mean of premultiplied linear colour and alpha."""
+        """(4,) mean of premultiplied linear color and alpha."""
         mean: Array = self.premultiplied.mean(axis=0, dtype=np.float64)
         return mean
 
-    def batches(self, most: int) -> Iterator[RayBatch]:
-        """Rays of all views, at most about `most`: every pixel, or every second, third, ..."""
-        chosen = np.arange(0, len(self), max(1, -(-len(self) // most)))
-        for start in range(0, len(chosen), _RAYS_AT_ONCE):
-            yield self.rays(chosen[start : start + _RAYS_AT_ONCE])
+    def size_of(self, rays: int) -> int:
+        """Pixels of a step with so many rays."""
+        return rays
+
+    def spread(self, max_rays: int) -> list[tuple[NDArray[np.int64], float]]:
+        """Evenly spaced pixels of all views in several parts, each with its share of the whole.
+
+        They are at most about `max_rays`: every pixel, or every second, third, ...
+        """
+        chosen = np.arange(0, len(self), max(1, -(-len(self) // max_rays)))
+        starts = range(0, len(chosen), _RAYS_AT_ONCE)
+        parts = (chosen[start : start + _RAYS_AT_ONCE] for start in starts)
+        share = 1 / len(chosen)
+        return [(part, len(part) * share) for part in parts]
+
+    def batches(self, max_rays: int) -> Iterator[RayBatch]:
+        """Rays of the pixels of `spread`."""
+        for chosen, _ in self.spread(max_rays):
+            yield self.rays(chosen)
 
     def rays(self, chosen: NDArray[np.int64]) -> RayBatch:
-        """The rays through the centres of the chosen pixels."""
+        """The rays through the centers of the chosen pixels."""
         view = self._view[chosen]
         pixel = self._pixel[chosen]
         width = self._width[view]
@@ -163,7 +177,7 @@ def digest_of(views: Sequence[View]) -> str:
         camera = view.camera
         lens = [camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy]
         numbers = np.concatenate([lens, camera.world_from_camera.ravel()])
-        # Micrometres and millionths of a pixel: loading may round differently in the last bit.
+        # Micrometers and millionths of a pixel: loading may round differently in the last bit.
         total.update(np.rint(numbers * 1e6).astype(np.int64).tobytes())
         for content in (view.image, view.mask_file):
             if isinstance(content, Path):
@@ -197,7 +211,7 @@ class TrainingView:
     """A photograph as splats see it: display values."""
 
     camera: Camera
-    premultiplied: NDArray[np.float32]  # (H, W, 4) display colour times alpha, alpha
+    premultiplied: NDArray[np.float32]  # (H, W, 4) display color times alpha, alpha
     valid: NDArray[np.bool_] | None  # (H, W); None: all of it
 
 
@@ -226,17 +240,33 @@ class TrainingViews:
     def __len__(self) -> int:
         return len(self.views)
 
-    def draw(self, *, seed: int, step: int) -> int:
-        """The view of a step: every view comes once before any comes again."""
+    def draw(self, count: int = 1, *, seed: int, step: int) -> int:
+        """The view of a step, however many rays it may have: each comes once before any again."""
+        del count
         turn, place = divmod(step, len(self.views))
         return int(permutation(seed, len(self.views), step=turn, dimension=8)[place])
 
-    def mean_size(self) -> int:
-        """Pixels of a view, on average."""
+    def size_of(self, rays: int) -> int:
+        """Pixels of a step, which draws a view whatever number of `rays` others have: the mean."""
+        del rays
         return sum(view.premultiplied[..., 0].size for view in self.views) // len(self.views)
 
+    def spread(self, max_rays: int) -> list[tuple[int, float]]:
+        """Evenly spaced views, as many as have `max_rays` pixels, and the share of each."""
+        chosen = range(0, len(self), max(1, -(-len(self) * self.size_of(0) // max_rays)))
+        return [(view, 1 / len(chosen)) for view in chosen]
+
+    def batches(self, max_rays: int) -> Iterator[RayBatch]:
+        """Rays of all views, at most about `max_rays`: every pixel, or every second, third, ..."""
+        first = 0
+        for view in self.views:
+            size = view.camera.width * view.camera.height
+            pixels = np.arange(0, size, max(1, -(-len(self) * size // max_rays)))
+            yield RayBatch(*view.camera.rays(pixels), (first + pixels).astype(np.uint32))
+            first += size
+
     def mean_color(self) -> Array:
-        """(4,) mean of premultiplied linear colour and alpha over all valid pixels."""
+        """(4,) mean of premultiplied linear color and alpha over all valid pixels."""
         total, count = np.zeros(4), 0
         for view in self.views:
             pixels = view.premultiplied.reshape(-1, 4)

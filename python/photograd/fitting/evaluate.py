@@ -12,7 +12,6 @@ others. A view without such a window has no score; it is named and left out of b
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from copy import copy
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
@@ -24,7 +23,6 @@ from photograd_course.metrics import psnr, round_to_8_bits, ssim, whole_windows
 from photograd.capture.camera import Camera
 from photograd.capture.view import View, display_color
 from photograd.errors import RangeError, message
-from photograd.fields.march import MarchPolicy
 from photograd.fitting.model import Model
 from photograd.representation import ImageBatch, RayBatch, RenderOptions
 from photograd.types import Array
@@ -77,9 +75,9 @@ class Evaluation:
 def render_camera(
     model: Model, camera: Camera, *, stop: float = 1e-4
 ) -> tuple[Array, Array, Array]:
-    """Premultiplied colour (H, W, 3), opacity (H, W) and depth (H, W) seen by a camera.
+    """Premultiplied color (H, W, 3), opacity (H, W) and depth (H, W) seen by a camera.
 
-    Colours are linear or display values, as the field's `color_space` says.
+    Colors are linear or display values, as the field's `color_space` says.
     """
     options = RenderOptions(stop=stop)
     size = (camera.height, camera.width)
@@ -205,7 +203,7 @@ def as_result(evaluation: Evaluation) -> dict[str, Any]:
 
 VISIBLE = 1e-3
 """Of white, linear: a quarter of one of 256 levels near white."""
-MOST_VIEWS = 3
+MAX_VIEWS = 3
 
 
 @dataclass(frozen=True)
@@ -219,20 +217,18 @@ class StepChange:
 
 
 def step_change(
-    model: Model, views: Sequence[View], *, most: int = MOST_VIEWS
+    model: Model, views: Sequence[View], *, max_views: int = MAX_VIEWS
 ) -> StepChange | None:
-    """Compare at most `most` of the views, evenly spaced; None for a field without steps.
+    """Compare at most `max_views` of the views, evenly spaced; None for a field without steps.
 
     Colors are premultiplied and as the field has them, so that no background takes part; rays are
     not stopped early.
     """
-    policy = model.field.policy
-    if not isinstance(policy, MarchPolicy) or not views:
+    dt = model.field.dt
+    if dt is None or not views:
         return None
-    finer: Any = copy(model.field)  # whose parameters are shared
-    finer.policy = replace(policy, dt=0.5 * policy.dt)
-    chosen = views[:: -(-len(views) // most)]
-    models = model, replace(model, field=finer)
+    chosen = views[:: -(-len(views) // max_views)]
+    models = model, replace(model, field=model.field.with_dt(0.5 * dt))
     changes = []
     for view in chosen:
         coarse, fine = (render_camera(each, view.camera, stop=0.0)[0] for each in models)

@@ -7,12 +7,12 @@ from pathlib import Path
 import numpy as np
 from photograd_course.color import srgb_decode
 
+from photograd._fit_options import FitOptions
 from photograd._memory import require_room
 from photograd.errors import RangeError, message
 from photograd.fields.dense_grid import DenseGrid
 from photograd.fields.march import MarchPolicy
 from photograd.fitting.model import Model
-from photograd.fitting.options import FitOptions
 from photograd.grids.sparse import SparseGrid
 from photograd.grids.vdb import read_vdb
 from photograd.grids.volumes import SUFFIXES, read_volume
@@ -55,11 +55,11 @@ def fog_model(
     resolution: int = 128,
     window: tuple[float, float] | None = None,
 ) -> Model:
-    """A density grid as glowing fog: sigma_t proportional to the value, its colour from a ramp.
+    """A density grid as glowing fog: sigma_t proportional to the value, its color from a ramp.
 
     Args:
         grid: one channel; values below zero count as none.
-        ramp: one of RAMPS, which map 0 to the highest value to colours.
+        ramp: one of RAMPS, which map 0 to the highest value to colors.
         sigma_t: 1/m at value 1; by default such that the highest value fills the box opaquely.
         resolution: voxels along the longest edge of the box, at most; the values are resampled
             trilinearly where the grid is finer or not aligned with the world.
@@ -109,13 +109,13 @@ def _box_and_shape(grid: SparseGrid, resolution: int) -> tuple[Array, tuple[int,
     finest = float(np.linalg.norm(grid.world_from_index[:3, :3], axis=0).min())
     voxel = max(finest, float(extent.max()) / resolution)
     x, y, z = np.maximum(np.ceil(extent / voxel - 1e-6).astype(int), 2).tolist()
-    centre = box.mean(axis=0)
+    center = box.mean(axis=0)
     half = np.array([x, y, z]) * voxel / 2
-    return np.stack([centre - half, centre + half]), (x, y, z)
+    return np.stack([center - half, center + half]), (x, y, z)
 
 
 def _colors(share: Array, ramp: str) -> Array:
-    """Linear colours (X, Y, Z, 3) of values in 0..1."""
+    """Linear colors (X, Y, Z, 3) of values in 0..1."""
     if ramp == "white":
         return np.full((*share.shape, 3), GREY)
     from matplotlib import colormaps

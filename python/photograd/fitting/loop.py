@@ -14,7 +14,7 @@ the checkpoint: a resumed run ends with the same bits as an uninterrupted one.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import asdict
 from functools import partial
 from pathlib import Path
@@ -25,68 +25,50 @@ from photograd_course.optim import Adam
 from photograd_course.random import uniform
 from photograd_course.schedules import exponential
 
+from photograd._checkpoint import FILE_NAME, Checkpoint, load_checkpoint, save_checkpoint
 from photograd._compiled import _core
+from photograd._descend import descend
+from photograd._fit_options import FitOptions
 from photograd.capture.bounds import estimate_bounds, require_views_of
 from photograd.capture.capture import Capture
-from photograd.fields.dense_grid import DenseGrid
-from photograd.fields.dense_sh import DenseSh
-from photograd.fields.octree_sh import OctreeSh
-from photograd.fields.sparse_sh import SparseSh
-from photograd.fitting.checkpoint import (
-    FILE_NAME,
-    Checkpoint,
-    load_checkpoint,
-    make_folder,
-    save_checkpoint,
-)
+from photograd.fields import fittable
 from photograd.fitting.checks import (
     require_background_of,
     require_finite,
     require_finite_loss,
     require_first_model,
     require_pixels_of,
-    require_room_to_refine,
     require_room_to_start,
     require_split_of,
     require_startable,
 )
-from photograd.fitting.data import (
-    TrainingPixels,
-    TrainingViews,
-    background_kind,
-    first_background,
-    raw_background,
-)
-from photograd.fitting.loss import decibels
+from photograd.fitting.data import background_kind, first_background, raw_background
 from photograd.fitting.model import Model, model_of, save_snapshot, snapshot_steps
-from photograd.fitting.options import FitOptions, FitResult, Pace, Progress
-from photograd.fitting.start import FittedField, frozen_field, start_field
-from photograd.fitting.steps import RowAdam, background_color, prune_voxels, ray_slope, view_slope
+from photograd.fitting.options import FitResult, Pace, Progress
+from photograd.fitting.steps import Background, RowAdam, training_data
 from photograd.fitting.surface_points import surface_points
-from photograd.splats.model import GaussianScene
+from photograd.representation import Fittable, RayBatch, Start
 from photograd.types import Array
-
-PRUNE_AT = 0.5  # fraction of the steps; before that, pruning goes along with refining
 
 
 class Fit:
-    """A fit in progress: parameters, optimiser, step number.
+    """A fit in progress: parameters, optimizer, step number.
 
     `Fit.start` begins one, `Fit.resume` continues from a folder; `run` goes on until the end,
     saving a checkpoint every `checkpoint_seconds` and whenever `should_stop()` says so.
     """
 
     def __init__(
-        self, capture: Capture, options: FitOptions, model: FittedField, background: Array | None
+        self, capture: Capture, options: FitOptions, model: Fittable, background: Array | None
     ) -> None:
         """Use `start` or `resume`."""
         self.capture = capture
         self.options = options
         self.model = model
         self.background = background  # raw (3,) if learned, see photograd.fitting.data
-        self.pixels = training_set(capture, model)
-        method = Adam if isinstance(model, DenseGrid) else RowAdam
-        self.optimiser = method(threads=max(1, _core.thread_count()))
+        self.data = training_data(capture, model)
+        method = RowAdam if model.row_updates else Adam
+        self.optimizer = method(threads=max(1, _core.thread_count()))
         self.start_rule = "that of the checkpoint"
         self.background_kind = background_kind(options.background, has_alpha=capture.has_alpha)
         self.step_number = 0
@@ -105,7 +87,7 @@ class Fit:
         """Begin from nearly empty space, or with what `start_from` shows.
 
         Gaussians may begin on the surfaces of another model; the leaves of an octree have to be cut
-        from one.
+        from one, and a textured mesh needs one with its mesh.
 
         Raises RangeError for an unknown or unfit representation, or options that take more memory
         than there is; SceneError naming the training cameras that do not see the scene's box (with
@@ -118,18 +100,16 @@ class Fit:
         require_background_of(capture, options)
         require_first_model(options.representation, given=start_from is not None)
         require_room_to_start(capture, bounds.box, options)
-        model: FittedField
-        if start_from is not None and options.representation == OctreeSh.name:
-            model, rule = frozen_field(start_from.field, options)
-        else:
-            points = None
-            if start_from is not None:
-                points = partial(surface_points, start_from, capture, seed=options.seed)
-            model, rule = start_field(capture, bounds, options, points)
+        points = None
+        if start_from is not None:
+            points = partial(surface_points, start_from, capture, seed=options.seed)
+        kind = fittable()[options.representation]
+        first = None if start_from is None else start_from.field
+        model, rule = kind.start(Start(capture, bounds, options, first, points))
         fit = cls(capture, options, model, None)
         if fit.background_kind == "learned":
-            fit.background = first_background(fit.pixels.mean_color())
-            if isinstance(model, OctreeSh) and start_from and start_from.background is not None:
+            fit.background = first_background(fit.data.mean_color())
+            if kind.keeps_background and start_from and start_from.background is not None:
                 fit.background = raw_background(start_from.background)
         fit.start_rule = rule
         return fit
@@ -145,15 +125,20 @@ class Fit:
         model = model_of(saved, folder)
         require_split_of(saved, capture)
         fit = cls(capture, model.options, model.field, saved.params.get("background"))
-        require_pixels_of(saved, fit.pixels.digest)
-        fit.optimiser.load_state(saved.optimiser)
+        require_pixels_of(saved, fit.data.digest)
+        fit.optimizer.load_state(saved.optimizer)
         fit.step_number = int(saved.meta["step"])
         fit.history = [tuple(row) for row in saved.history.tolist()]
         return fit
 
+    @property
+    def steps(self) -> int:
+        """Of the whole fit."""
+        return self.options.steps
+
     def step(self) -> float:
         """One step of gradient descent; returns the loss before it."""
-        self._refine()
+        self.model = self.model.adapted(self)
         loss, gradients = self.loss_and_gradients(self.draw())
         require_finite_loss(loss, self.step_number)
         self._add_prior(gradients)
@@ -162,43 +147,32 @@ class Fit:
         if self.background is not None:
             params["background"] = self.background
         with np.errstate(over="ignore", invalid="ignore"):  # looked for where it is saved and used
-            self.optimiser.step(params, gradients, rates)
-        if isinstance(self.model, GaussianScene):
-            self.model.explore(rates["means"], self.step_number)
+            self.optimizer.step(params, gradients, rates)
+        self.model.after_step(rates, self.step_number)
         self.history.append((self.step_number, loss, self.batch_psnr))
         self.step_number += 1
         return loss
 
     def draw(self) -> Any:
         """What this step looks at: numbers of pixels, or of a view."""
-        seed, step = self.options.seed, self.step_number
-        if isinstance(self.pixels, TrainingViews):
-            return self.pixels.draw(seed=seed, step=step)
-        return self.pixels.draw(self.options.rays, seed=seed, step=step)
+        options = self.options
+        return self.data.draw(options.rays, seed=options.seed, step=self.step_number)
 
     def loss_and_gradients(self, chosen: Any) -> tuple[float, dict[str, Array]]:
         """Loss of the chosen pixels, or view, and its gradient by group, without the prior."""
-        rest = (self.background, self.background_kind, self.options, self.step_number)
-        model = self.model
-        if isinstance(self.pixels, TrainingViews):
-            assert isinstance(model, GaussianScene)
-            slope = view_slope(model, self.pixels.views[chosen], *rest)
-            self.batch_psnr = slope.psnr
-            return slope.loss, slope.gradients
-        assert not isinstance(model, GaussianScene)
-        loss, gradients = ray_slope(model, self.pixels, chosen, *rest)
-        self.batch_psnr = decibels(loss)
-        return loss, gradients
+        behind = Background(self.background, self.background_kind)
+        found = self.data.loss_and_grad(self.model, chosen, behind, self.options, self.step_number)
+        self.batch_psnr = found.psnr
+        return found.loss, found.gradients
 
-    def background_color(self, count: int) -> Array:
-        """Linear background of each ray of a batch, (R, 3) or (3,)."""
-        return background_color(
-            self.background,
-            self.background_kind,
-            count,
-            seed=self.options.seed,
-            step=self.step_number,
-        )
+    def batches(self, max_rays: int) -> Iterator[RayBatch]:
+        """Rays of all training views, evenly spaced, at most about `max_rays`."""
+        return self.data.batches(max_rays)
+
+    def mean_gradient(self, group: str, max_rays: int) -> Array:
+        """dL/d params[group] of the loss over all training views, from about `max_rays` rays."""
+        parts = self.data.spread(max_rays)
+        return np.asarray(sum(w * self.loss_and_gradients(rows)[1][group] for rows, w in parts))
 
     def run(
         self,
@@ -213,37 +187,29 @@ class Fit:
         Raises IoError if it cannot be written, Error if the loss or a gradient is not finite; the
         last checkpoint then stays as it was.
         """
-        make_folder(folder)
-        began = saved = time.perf_counter()
-        keep, pace = snapshot_steps(self.options), Pace(began)
+        keep, pace = snapshot_steps(self.options), Pace(time.perf_counter())
         if self.step_number == 0:
             save_snapshot(folder, self.model, self.options, 0)
-        while self.step_number < self.options.steps and not should_stop():
-            self.step()
+
+        def after_step(now: float) -> None:
+            rate = pace.after(self.data.size_of(self.options.rays), now)
             if self.step_number in keep:
                 require_finite(self.model.params, self.step_number)
                 save_snapshot(folder, self.model, self.options, self.step_number)
-            now = time.perf_counter()
-            rate = pace.after(self._rays(), now)
             if on_step:
-                on_step(
-                    Progress(
-                        self.step_number,
-                        self.options.steps,
-                        *self.history[-1][1:],
-                        self.model.resolution,
-                        rate,
-                    )
-                )
-            if now - saved > checkpoint_seconds:
-                self.save(folder)
-                saved = time.perf_counter()
-        self.save(folder)
-        finished = self.step_number >= self.options.steps
-        loss = self.history[-1][1] if self.history else float("nan")
-        return FitResult(
-            folder / FILE_NAME, self.step_number, finished, time.perf_counter() - began, loss
+                last = self.history[-1][1:]
+                size = self.model.resolution
+                on_step(Progress(self.step_number, self.options.steps, *last, size, rate))
+
+        run = descend(
+            self,
+            folder,
+            after_step=after_step,
+            should_stop=should_stop,
+            checkpoint_seconds=checkpoint_seconds,
         )
+        loss = self.history[-1][1] if self.history else float("nan")
+        return FitResult(folder / FILE_NAME, self.step_number, run.finished, run.seconds, loss)
 
     def save(self, folder: Path) -> None:
         """Write the checkpoint DIR/model.npz atomically.
@@ -261,93 +227,27 @@ class Fit:
             "policy": asdict(self.model.policy),
             "capture": str(self.capture.source),
             "split": self.capture.split_hash(),
-            "pixels": self.pixels.digest,
+            "pixels": self.data.digest,
             "color_space": self.capture.color_space,
         }
         history = np.array(self.history, np.float64).reshape(-1, 3)
         save_checkpoint(
             folder / FILE_NAME,
-            Checkpoint(meta, params, self.optimiser.state(), self.model.state(), history),
+            Checkpoint(meta, params, self.optimizer.state(), self.model.state(), history),
         )
 
     def _rates(self) -> dict[str, float]:
         """Learning rate of every group at this step."""
-        options, scene = self.options, isinstance(self.model, GaussianScene)
-        fall, fall_of_means = (
-            options.learning_rate * exponential(final, options.steps)(self.step_number)
-            for final in (options.final_rate, options.final_mean_rate)
+        options = self.options
+        fall = options.learning_rate * exponential(options.final_rate, options.steps)(
+            self.step_number
         )
-        rates = {
-            name: spec.learning_rate * (fall_of_means if scene and name == "means" else fall)
-            for name, spec in self.model.param_groups().items()
-        }
-        return rates | {"background": 0.02 * fall}
-
-    def _rays(self) -> int:
-        """Pixels a step, on average."""
-        if isinstance(self.pixels, TrainingViews):
-            return self.pixels.mean_size()
-        return self.options.rays
-
-    def _refine(self) -> None:
-        """Change the resolution, or the Gaussians, where the schedule says so.
-
-        The optimiser's moments go along.
-        """
-        if isinstance(self.model, OctreeSh):
-            return
-        if isinstance(self.model, GaussianScene):
-            self._refine_gaussians(self.model)
-            return
-        if self.step_number == int(PRUNE_AT * self.options.steps):
-            self._prune()
-        size = self.options.levels().get(self.step_number)
-        if size is None or size == self.model.resolution:
-            return
-        self._prune()
-        before: Any = self.model
-        require_room_to_refine(before, size)
-        after = before.refined(size, steps_per_voxel=self.options.steps_per_voxel)
-        for group in before.params:
-            self.optimiser.resample(group, lambda moment: before.resampled(moment, after))
-        self.model = after
-
-    def _refine_gaussians(self, scene: GaussianScene) -> None:
-        """Draw higher harmonics, and whatever the density control decides."""
-        scene.active_degree = self.options.active_degree(self.step_number)
-        rows = scene.refine(self.step_number, {})
-        if rows is None:
-            return
-        self.optimiser.apply_row_map(rows, scene.params)
-
-    def _prune(self) -> None:
-        """Drop voxels of a sparse grid that no view needs, and that do not want density."""
-        if not isinstance(self.model, SparseSh) or isinstance(self.model, DenseSh):
-            return
-        if self.options.prune == 0:
-            return
-        assert isinstance(self.pixels, TrainingPixels)
-        rows = prune_voxels(
-            self.model,
-            self.pixels,
-            self.loss_and_gradients,
-            threshold=self.options.prune,
-            step=self.step_number,
-        )
-        if rows is not None:
-            self.optimiser.apply_row_map(rows, self.model.params)
+        return self.model.learning_rates(options, self.step_number) | {"background": 0.02 * fall}
 
     def _add_prior(self, gradients: dict[str, Array]) -> None:
         """Total variation on a random part of the grid, which stands for the whole."""
         weight = self.options.total_variation
-        if weight == 0 or isinstance(self.model, GaussianScene | OctreeSh):
+        if weight == 0:
             return
         u = uniform(self.options.seed, step=self.step_number, pixel=0, sample=2, dimension=0)
         self.model.add_prior(gradients, weight, float(u))
-
-
-def training_set(capture: Capture, model: FittedField) -> TrainingPixels | TrainingViews:
-    """The photographs in the form that the model learns from."""
-    if isinstance(model, GaussianScene):
-        return TrainingViews(capture.train)
-    return TrainingPixels(capture.train, capture.color_space)

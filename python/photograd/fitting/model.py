@@ -8,30 +8,44 @@ from typing import Any
 
 import numpy as np
 
-from photograd._checks import from_plain
-from photograd.errors import Error, IoError, message
-from photograd.fitting.checkpoint import (
+from photograd._checkpoint import (
     Checkpoint,
-    check_checkpoint,
+    Row,
+    check_arrays,
+    check_history,
+    check_optimizer,
+    checked_step,
     load_checkpoint,
     make_folder,
     save_checkpoint,
 )
+from photograd._checks import from_plain, typed
+from photograd._fit_options import FitOptions
+from photograd.errors import DtypeError, Error, IoError, RangeError, message
+from photograd.fields import fittable
 from photograd.fitting.data import learned_background
-from photograd.fitting.options import FitOptions
-from photograd.fitting.start import FittedField, saved_field
+from photograd.representation import Fittable
 from photograd.types import Array
+
+BACKGROUND: Row = (("float32",), (3,))
+TEXTS = ("capture", "split", "pixels", "color_space")
+"""Of the meta data; they may be missing: snapshots belong to a fit, and know of no capture."""
 
 
 @dataclass(frozen=True)
 class Model:
     """A field with the linear background (3,) that was learned with it, or None."""
 
-    field: FittedField
+    field: Fittable
     background: Array | None
     options: FitOptions
     meta: dict[str, Any]
     history: Array  # (n, 3): step, loss, PSNR of the batch
+
+    @classmethod
+    def of(cls, field: Fittable) -> Model:
+        """A field that no fit has made, to be drawn or for a fit to start from."""
+        return cls(field, None, FitOptions(field.name), {}, np.zeros((0, 3)))
 
 
 def load_model(path: str | Path) -> Model:
@@ -47,7 +61,8 @@ def model_of(saved: Checkpoint, path: Path) -> Model:
     try:
         options = from_plain("checkpoint", FitOptions, saved.meta.get("options"))
         check_checkpoint(saved, options)
-        field = saved_field(saved.params, saved.state, saved.meta.get("policy"), options)
+        kind = fittable()[options.representation]
+        field = kind.restored(saved.params, saved.state, saved.meta.get("policy"), options)
     except Error as failure:
         remedy = "the file is from another version or damaged"
         expected = "a checkpoint of a fit"
@@ -55,6 +70,32 @@ def model_of(saved: Checkpoint, path: Path) -> Model:
     raw = saved.params.get("background")
     background = None if raw is None else learned_background(raw.astype(np.float64))
     return Model(field, background, options, saved.meta, saved.history)
+
+
+def check_checkpoint(saved: Checkpoint, options: FitOptions) -> None:
+    """Raise DtypeError, ShapeError or RangeError that names what a fit could not go on with.
+
+    The state of the optimizer may be empty, as in snapshots; a group of it is complete or absent.
+    """
+    step = checked_step(saved)
+    for name in sorted(saved.meta.keys() & set(TEXTS)):
+        typed("checkpoint", f"meta.{name}", str, saved.meta[name])
+    kind = fittable().get(options.representation)
+    if kind is None:
+        expected, got = f"one of {list(fittable())}", repr(options.representation)
+        raise RangeError(message("checkpoint", "options.representation", expected, got))
+    params, state = kind.checkpoint_rows(options)
+    if "background" in saved.params:
+        params = {**params, "background": BACKGROUND}
+    sizes: dict[str, int] = {}
+    check_arrays("params", saved.params, params, sizes)
+    kinds = {array.dtype for name, array in saved.params.items() if name != "background"}
+    if len(kinds) > 1:
+        got = ", ".join(sorted(map(str, kinds)))
+        raise DtypeError(message("checkpoint", "params", "one type of all groups", got))
+    check_arrays("state", saved.state, state, sizes)
+    check_optimizer(saved.optimizer, saved.params)
+    check_history(saved.history, step)
 
 
 # The model at a few chosen steps of a fit, for pictures of how it came about.
@@ -73,7 +114,7 @@ def snapshot_file(folder: Path, step: int) -> Path:
     return folder / "snapshots" / f"step_{step:06d}.npz"
 
 
-def save_snapshot(folder: Path, field: FittedField, options: FitOptions, step: int) -> None:
+def save_snapshot(folder: Path, field: Fittable, options: FitOptions, step: int) -> None:
     """Write the field as it is now."""
     meta = {"policy": asdict(field.policy), "options": asdict(options), "step": step}
     make_folder(folder / "snapshots")
@@ -83,7 +124,7 @@ def save_snapshot(folder: Path, field: FittedField, options: FitOptions, step: i
     )
 
 
-def load_snapshots(folder: Path) -> dict[int, FittedField]:
+def load_snapshots(folder: Path) -> dict[int, Fittable]:
     """{step: field} of all snapshots of a fit, in order; empty if it kept none."""
     place = folder if folder.is_dir() else folder.parent
     found = {}

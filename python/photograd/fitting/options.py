@@ -1,135 +1,17 @@
-"""What a fit is asked to do, and what it reports.
-
-Options are stored in every checkpoint, so that a run can be resumed and explained.
-"""
+"""The options of each representation, and what a fit reports."""
 
 from __future__ import annotations
 
-import math
 from collections import deque
+from collections.abc import Collection
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from photograd._checks import require_types
+from photograd import _descend as descent
+from photograd._fit_options import FitOptions
 from photograd.errors import RangeError, message
-
-BACKGROUNDS = ("random", "white", "black", "learned")
-DENSITY_CONTROLS = ("mcmc", "clone_split_prune", "none")
-"""Of Gaussians: a fixed number that wanders, a growing one, or none."""
-
-MOST_DEGREE = 3
-USERS_OF = {"degree": ("sparse_sh", "dense_sh", "octree_sh", "gaussians"), "prune": ("sparse_sh",)}
-"""Options that mean nothing to other representations than these."""
-
-
-@dataclass(frozen=True)
-class FitOptions:
-    """Options of a `Fit`; the defaults suit 128^3 voxels and a hundred 200 x 200 views.
-
-    `options_for` has the defaults of each representation.
-
-    Grids go from coarse to fine: the fit starts at `resolution` / 4, and is refined to / 2 and to
-    the whole at the fractions `refine_at` of its steps.
-    """
-
-    representation: str = "dense_grid"
-    resolution: int = 128  # voxels along the longest edge of the box
-    steps: int = 1500
-    rays: int = 8192  # a step
-    seed: int = 0
-    learning_rate: float = 1.0  # factor on the representation's own rates
-    final_rate: float = 0.1  # fraction of the rate that is left at the end (exponential decay)
-    total_variation: float = 3e-5  # weight of the prior, 0 switches it off
-    background: str = "auto"  # random where the capture has alpha, else learned
-    stop: float = 1e-4  # early stop of rays; the discarded light is below this fraction
-    steps_per_voxel: float = 1.5  # of the march; docs/results.md says what more would change
-    refine_at: tuple[float, float] = (0.15, 0.4)
-    sigma_t: float = 0.1  # 1/m, density of the start
-    degree: int = 2  # of the harmonics, 0 to MOST_DEGREE
-    prune: float = 0.02  # a sparse grid drops voxels that weigh less in every pixel; 0: none
-    gaussians: int = 30_000  # at most so many
-    density_control: str = "mcmc"  # see DENSITY_CONTROLS
-    final_mean_rate: float = 0.01  # final_rate of the Gaussians' means, which must come to rest
-    ssim_weight: float = 0.2  # share of 1 - SSIM in the loss of whole pictures
-
-    def __post_init__(self) -> None:
-        """Raises DtypeError or RangeError, naming the option."""
-        require_types(self)
-        positive = (
-            "resolution",
-            "steps",
-            "rays",
-            "learning_rate",
-            "final_rate",
-            "steps_per_voxel",
-            "sigma_t",
-            "gaussians",
-            "final_mean_rate",
-        )
-        for name in positive:
-            if not 0 < getattr(self, name) < math.inf:
-                raise RangeError(
-                    message("FitOptions", name, "a positive number", f"{getattr(self, name)}")
-                )
-        for name in ("resolution", "steps", "rays", "gaussians"):
-            if getattr(self, name) >= 1 << 31:
-                got = getattr(self, name)
-                raise RangeError(message("FitOptions", name, "a number below 2^31", got))
-        if not 0 <= self.seed < 1 << 64:
-            raise RangeError(message("FitOptions", "seed", "0 to 2^64 - 1", self.seed))
-        if not self.stop < 1:
-            raise RangeError(message("FitOptions", "stop", "a transmittance below 1", self.stop))
-        for name in ("total_variation", "stop", "prune"):
-            if not 0 <= getattr(self, name) < math.inf:
-                raise RangeError(
-                    message("FitOptions", name, "zero or more", f"{getattr(self, name)}")
-                )
-        if self.degree not in range(MOST_DEGREE + 1):
-            raise RangeError(
-                message("FitOptions", "degree", f"0 to {MOST_DEGREE}", f"{self.degree}")
-            )
-        if not 0 <= self.ssim_weight <= 1:
-            raise RangeError(message("FitOptions", "ssim_weight", "0 to 1", f"{self.ssim_weight}"))
-        if self.density_control not in DENSITY_CONTROLS:
-            raise RangeError(
-                message(
-                    "FitOptions",
-                    "density_control",
-                    f"one of {DENSITY_CONTROLS}",
-                    repr(self.density_control),
-                )
-            )
-        if self.background not in (*BACKGROUNDS, "auto"):
-            raise RangeError(
-                message("FitOptions", "background", f"one of {BACKGROUNDS}", repr(self.background))
-            )
-        if not 0 <= self.refine_at[0] <= self.refine_at[1] < 1:
-            raise RangeError(
-                message(
-                    "FitOptions", "refine_at", "two rising fractions below 1", f"{self.refine_at}"
-                )
-            )
-
-    def active_degree(self, step: int) -> int:
-        """Degree of a Gaussian's harmonics at a step: one more every tenth of the steps."""
-        return min(self.degree, 10 * step // self.steps)
-
-    def levels(self) -> dict[int, int]:
-        """{first step: resolution} of the coarse-to-fine schedule; never below 8 voxels."""
-        starts = (0, int(self.refine_at[0] * self.steps), int(self.refine_at[1] * self.steps))
-        sizes = (self.resolution // 4, self.resolution // 2, self.resolution)
-        levels: dict[int, int] = {}
-        for start, size in zip(starts, sizes, strict=True):
-            levels[start] = min(max(size, 8), self.resolution)
-        return levels
-
-
-DEFAULTS_OF: dict[str, dict[str, Any]] = {
-    "gaussians": {"steps": 4000, "degree": 3},
-    "sparse_sh": {"resolution": 256},  # what held-out training views prefer: docs/results.md
-}
-"""What representations do otherwise than `FitOptions` itself."""
+from photograd.fields import fittable
 
 
 def options_for(representation: str, **given: Any) -> FitOptions:
@@ -138,21 +20,46 @@ def options_for(representation: str, **given: Any) -> FitOptions:
     Raises RangeError for a value without meaning, TypeError for a name that is no option.
     """
     chosen = {name: value for name, value in given.items() if value is not None}
-    defaults = DEFAULTS_OF.get(representation, {})
+    known = fittable().get(representation)
+    defaults = {} if known is None else known.fit_defaults
     return FitOptions(**{"representation": representation, **defaults, **chosen})
+
+
+def users_of(option: str) -> tuple[str, ...]:
+    """The representations on which an option has an effect."""
+    special = any(option in kind.fit_options for kind in fittable().values())
+    return tuple(
+        name for name, kind in fittable().items() if not special or option in kind.fit_options
+    )
+
+
+def refuse_without_effect(
+    representation: str, options: Collection[str], *, prefix: str = ""
+) -> None:
+    """Raise RangeError for an option that has no effect on a representation.
+
+    Args:
+        representation: its name.
+        options: names of those that are given.
+        prefix: "--" on a command line.
+    """
+    for name in options:
+        users = users_of(name)
+        if representation not in users:
+            expected = f"a fit of {' or '.join(users)}"
+            remedy = "leave it out, it has no effect here"
+            argument = prefix + name.replace("_", "-") if prefix else name
+            raise RangeError(message("fit", argument, expected, repr(representation), remedy))
 
 
 # What a fit reports: after each step, and when it ends.
 
 
 @dataclass(frozen=True)
-class Progress:
-    """What a progress display gets after a step."""
+class Progress(descent.Progress):
+    """What a progress display gets after a step of a fit."""
 
-    step: int
-    steps: int
-    loss: float
-    psnr: float  # of the batch, on the values the loss is taken on
+    psnr: float  # of the batch, on the values the loss is taken on, in dB
     resolution: int
     rays_per_second: float  # over the last steps, see Pace
 

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from photograd_course.viz import SignReport, sign_report
 
 from photograd.capture.capture import Capture
+from photograd.fields.voxel_field import VoxelField
 from photograd.fitting.data import TrainingPixels
-from photograd.fitting.start import VoxelField
 from photograd.fitting.voxel_gradients import density_gradient, voxel_masks
 from photograd.types import Array
 
@@ -52,7 +52,7 @@ def sign_claim(
     """
     total, most, best = len(capture.train), 0, None
     for count in (total, *(n for n in VIEW_COUNTS if n < total)):
-        masks = voxel_masks(field, capture.limited(count))
+        masks = voxel_masks(field, capture.subsample(count))
         voxels = int(min(masks.occupied.sum(), masks.background_only.sum()))
         if voxels > most:
             most, best = voxels, (count, masks)
@@ -61,7 +61,7 @@ def sign_claim(
     if best is None:
         return None
     count, masks = best
-    part = capture.limited(count)
+    part = capture.subsample(count)
     pixels = TrainingPixels(part.train, part.color_space)
     found = density_gradient(field, pixels, seed=seed, background=background, rays=rays)
     report = sign_report(

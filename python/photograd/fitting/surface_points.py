@@ -1,7 +1,7 @@
 """Points on what a fitted scene shows: where Gaussians begin if there is a model already.
 
 Whatever the representation, its renderings have opacity and depth. A pixel that is mostly covered
-says that there is something at that depth along its ray; its colour is the photograph's.
+says that there is something at that depth along its ray; its color is the photograph's.
 """
 
 from __future__ import annotations
@@ -20,18 +20,18 @@ from photograd.types import Array
 COVERED = 0.5
 """Opacity of a pixel that is believed to show something."""
 
-MOST_VIEWS = 60
+MAX_VIEWS = 60
 
 
 def surface_points(model: Model, capture: Capture, count: int, *, seed: int) -> tuple[Array, Array]:
-    """At most `count` points (N, 3) in metres that training views see, display colours (N, 3).
+    """At most `count` points (N, 3) in meters that training views see, display colors (N, 3).
 
     Evenly over the covered pixels of at most 60 views.
 
     Raises:
         SceneError: the model covers no pixel of any of them.
     """
-    views = capture.train[:: max(1, -(-len(capture.train) // MOST_VIEWS))]
+    views = capture.train[:: max(1, -(-len(capture.train) // MAX_VIEWS))]
     share = -(-count // len(views))
     found = [
         _points_of(model, view, 2 * share, seed=seed, number=number)
@@ -50,7 +50,7 @@ def surface_points(model: Model, capture: Capture, count: int, *, seed: int) -> 
 def _points_of(
     model: Model, view: View, count: int, *, seed: int, number: int
 ) -> tuple[Array, Array]:
-    """At most `count` points that one view sees, and their colours in the photograph."""
+    """At most `count` points that one view sees, and their colors in the photograph."""
     _, opacity, depth = render_camera(model, view.camera)
     covered = np.flatnonzero((opacity.ravel() > COVERED) & view.valid_mask().ravel())
     rows = covered[choice(seed, len(covered), min(count, len(covered)), step=number)]

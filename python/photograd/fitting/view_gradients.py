@@ -18,7 +18,7 @@ from photograd.splats.model import GaussianScene
 from photograd.splats.splatting import Gaussians, SplatOptions, render
 from photograd.types import Array
 
-MOST_VIEWS = 24
+MAX_VIEWS = 24
 WHITE = np.ones(3)
 
 
@@ -59,13 +59,13 @@ def view_gradients(
     """
     shown = views.views[number]
     grad2d, total, loss = Grad2dStatistics.zero(scene.resolution), np.zeros(scene.resolution), 0.0
-    chosen = views.views[:: max(1, -(-len(views) // MOST_VIEWS))]
+    chosen = views.views[:: max(1, -(-len(views) // MAX_VIEWS))]
     for view in chosen:
-        value, gradients, screen, visible, _ = _slope(scene, view, ssim_weight)
+        value, gradients, screen, visible, _ = _loss_and_grad(scene, view, ssim_weight)
         total += gradients["opacity_logits"]
         grad2d.add(screen, visible, view.camera)
         loss += value
-    _, _, screen, visible, picture = _slope(scene, shown, ssim_weight)
+    _, _, screen, visible, picture = _loss_and_grad(scene, shown, ssim_weight)
     pixels, _ = shown.camera.project(scene.params["means"].astype(np.float64))
     spread = screen_covariances(scene.gaussians, shown.camera)
     return ViewGradients(
@@ -80,7 +80,7 @@ def view_gradients(
     )
 
 
-def _slope(
+def _loss_and_grad(
     scene: GaussianScene, view: TrainingView, ssim_weight: float
 ) -> tuple[float, dict[str, Array], Array, NDArray[np.bool_], Array]:
     """Loss, gradients, dL/d projected means, visibility and picture of one view over white."""

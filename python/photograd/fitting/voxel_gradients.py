@@ -7,7 +7,6 @@ by it, either sign may occur.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,58 +16,12 @@ from numpy.typing import NDArray
 from photograd.capture.capture import Capture
 from photograd.capture.view import View
 from photograd.errors import RangeError, message
-from photograd.fields.dense_grid import DenseGrid
-from photograd.fields.octree_sh import OctreeSh
+from photograd.fields.voxel_field import VoxelField
 from photograd.fitting.data import TrainingPixels, random_background
 from photograd.fitting.loss import image_loss, image_loss_backward
-from photograd.fitting.start import VoxelField
 from photograd.representation import RenderOptions
 from photograd.types import Array
 
-
-def density_rows(field: VoxelField, groups: Mapping[str, Array]) -> Array:
-    """(N,) what `groups` says of raw density, one row a voxel or leaf.
-
-    `groups` are the field's parameters or their gradients. Voxels of a dense grid are in C order.
-    """
-    return groups["values"][..., 3].ravel() if isinstance(field, DenseGrid) else groups["density"]
-
-
-def voxel_shape(field: VoxelField) -> tuple[int, int, int]:
-    """Voxels (X, Y, Z) of the field's box; those of an octree are its smallest cells."""
-    if isinstance(field, DenseGrid):
-        return field.shape[:3]
-    x, y, z = field.tree.shape if isinstance(field, OctreeSh) else field.active.shape
-    return x, y, z
-
-
-def to_voxels(field: VoxelField, rows: Array) -> Array:
-    """Rows (N,) as an array (X, Y, Z), with 0 where nothing has a row.
-
-    The number of a leaf, which stands for all of its cells, is that of each of them.
-    """
-    if isinstance(field, DenseGrid):
-        return rows.reshape(voxel_shape(field))
-    if isinstance(field, OctreeSh):
-        of_leaf = np.append(rows, np.zeros(1, rows.dtype))[field.row]  # row -1 is the last
-        return field.tree.expand(of_leaf[:, None])[..., 0]
-    voxels = np.zeros(voxel_shape(field), rows.dtype)
-    i, j, k = field.active.voxels.T
-    voxels[i, j, k] = rows
-    return voxels
-
-
-def active_voxels(field: VoxelField) -> NDArray[np.bool_]:
-    """(X, Y, Z) which voxels have a row: all of a dense grid, the leaves with matter of a tree."""
-    rows = len(density_rows(field, field.params))
-    return to_voxels(field, np.ones(rows, np.bool_))
-
-
-# dL/dsigma_t in every voxel: what the photographs ask of the space they see.
-
-
-RAYS_AT_ONCE = 1 << 16
-LEAF_RAYS_AT_ONCE = 1 << 13  # an octree keeps numbers of every leaf on the way of every ray
 OPAQUE, EMPTY = 0.99, 0.01  # alpha of pixels that count as matter, as background
 
 
@@ -96,32 +49,29 @@ def density_gradient(
     """The loss over `rays` random training pixels and its gradient with respect to sigma_t.
 
     Each ray gets a random background unless one (3,) is given: over one fixed background, matter of
-    the background's colour would be invisible and its gradient zero. All cells of an octree's leaf
+    the background's color would be invisible and its gradient zero. All cells of an octree's leaf
     show the gradient with respect to the leaf's sigma_t, the sum over what the leaf stands for.
     """
     chosen = pixels.draw(rays, seed=seed, step=0)
     display = pixels.color_space == "display"
-    raw = density_rows(field, field.params)
-    total, loss = np.zeros(len(raw)), 0.0
-    model: Any = field  # which takes back the context that it gave
-    at_once = LEAF_RAYS_AT_ONCE if isinstance(field, OctreeSh) else RAYS_AT_ONCE
-    for start in range(0, rays, at_once):
-        part = chosen[start : start + at_once]
+    total, loss = np.zeros(len(field.density_rows(field.params))), 0.0
+    for start in range(0, rays, field.rays_at_once):
+        part = chosen[start : start + field.rays_at_once]
         behind = background
         if behind is None:
             behind = random_background(len(part), seed=seed, step=0, first=start)
-        outputs, context = model.render(
+        outputs, context = field.render(
             pixels.rays(part), seed=seed, step=0, options=RenderOptions(jitter=True)
         )
         result = image_loss(outputs, pixels.premultiplied[part], behind, display=display)
         d_outputs, _ = image_loss_backward(result)
         share = len(part) / rays
-        total += share * density_rows(field, model.render_backward(context, d_outputs))
+        gradients: dict[str, Any] = dict(field.render_backward(context, d_outputs))
+        total += share * field.density_rows(gradients)
         loss += share * result.value
     # The chain rule backwards through sigma_t = scale * softplus(raw), of each row.
-    slope = field.policy.density_scale / (1 + np.exp(-raw.astype(np.float64)))
-    d_sigma_t = (total / np.maximum(slope, 1e-12)).astype(np.float32)
-    return DensityGradient(to_voxels(field, d_sigma_t), active_voxels(field), loss)
+    d_sigma_t = (total / np.maximum(field.density_slope, 1e-12)).astype(np.float32)
+    return DensityGradient(field.to_voxels(d_sigma_t), field.active_voxels, loss)
 
 
 @dataclass(frozen=True)
@@ -135,7 +85,7 @@ class VoxelMasks:
 def voxel_masks(field: VoxelField, capture: Capture) -> VoxelMasks:
     """Classify voxels by the alpha of the training views they project to.
 
-    A voxel's basis function reaches one voxel around its centre: it is occupied only if all pixels
+    A voxel's basis function reaches one voxel around its center: it is occupied only if all pixels
     it covers, in every view, are opaque, and background-only if all of them are empty. Voxels that
     fewer than two views see are neither, nor are those that a sparse grid lacks. Raises RangeError
     if the capture has no alpha.
@@ -150,35 +100,35 @@ def voxel_masks(field: VoxelField, capture: Capture) -> VoxelMasks:
                 "there is no truth to compare signs with",
             )
         )
-    shape = voxel_shape(field)
+    shape = field.voxel_shape
     lo, hi = field.box
     voxel = (hi - lo) / shape
     axes = [lo[k] + (np.arange(shape[k]) + 0.5) * voxel[k] for k in range(3)]
-    centres = np.stack(np.meshgrid(*axes, indexing="ij"), -1).reshape(-1, 3)
-    occupied = np.ones(len(centres), np.bool_)
-    empty = np.ones(len(centres), np.bool_)
-    seen = np.zeros(len(centres), np.int64)
+    centers = np.stack(np.meshgrid(*axes, indexing="ij"), -1).reshape(-1, 3)
+    occupied = np.ones(len(centers), np.bool_)
+    empty = np.ones(len(centers), np.bool_)
+    seen = np.zeros(len(centers), np.int64)
     for view in capture.train:
         open_ids = np.flatnonzero(occupied | empty)
-        found, rectangle = _footprints(view, centres[open_ids], voxel)
+        found, rectangle = _footprints(view, centers[open_ids], voxel)
         shown = open_ids[found]
         # A pixel that does not exist, neither opaque nor empty, decides for neither.
         alpha = np.where(view.valid_mask(), view.rgba()[..., 3], 0.5)
         occupied[shown] &= _count(alpha < OPAQUE, rectangle) == 0
         empty[shown] &= _count(alpha > EMPTY, rectangle) == 0
         seen[shown] += 1
-    known = (seen >= 2).reshape(shape) & active_voxels(field)
+    known = (seen >= 2).reshape(shape) & field.active_voxels
     return VoxelMasks(known & occupied.reshape(shape), known & empty.reshape(shape))
 
 
-def _footprints(view: View, centres: Array, voxel: Array) -> tuple[NDArray[np.int64], Array]:
-    """Voxels whose centre a view shows, and the pixels that each may touch.
+def _footprints(view: View, centers: Array, voxel: Array) -> tuple[NDArray[np.int64], Array]:
+    """Voxels whose center a view shows, and the pixels that each may touch.
 
     Returns voxel numbers (M,), and (4, M): left, right, top, bottom of a rectangle that contains
-    the image of the cube of one voxel around the centre; right and bottom are exclusive.
+    the image of the cube of one voxel around the center; right and bottom are exclusive.
     """
     camera = view.camera
-    position, depth = camera.project(centres)
+    position, depth = camera.project(centers)
     # Extent of the cube along the camera's axes: |x - x0| <= reach[0] and so on.
     reach = np.abs(camera.world_from_camera[:3, :3].T) @ voxel
     inside = (position >= 0).all(axis=1) & (position < [camera.width, camera.height]).all(axis=1)

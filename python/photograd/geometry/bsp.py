@@ -15,9 +15,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from photograd._arrays import Arguments
 from photograd._compiled import _core
-from photograd.errors import ShapeError, message
-from photograd.geometry.checks import finite_rows
 from photograd.geometry.mesh import Mesh
 from photograd.types import Array
 
@@ -63,9 +62,8 @@ class BspTree:
         Raises:
             ShapeError, RangeError: eyes that are not (E, 3), or not finite.
         """
-        order: npt.NDArray[np.uint32] = self._core.back_to_front(
-            finite_rows("back_to_front", "eyes", eyes)
-        )
+        call = Arguments("BspTree.back_to_front", np.float64)
+        order: npt.NDArray[np.uint32] = self._core.back_to_front(call.array("eyes", eyes, ("E", 3)))
         return order
 
 
@@ -81,10 +79,8 @@ def order_by_distance(points: Any, eye: Any, *, far_first: bool = False) -> npt.
         ShapeError: points that are not (N, 3), an eye that is not (3,).
         RangeError: numbers that are not finite.
     """
-    rows = finite_rows("order_by_distance", "points", points)
-    if np.shape(eye) != (3,):
-        raise ShapeError(message("order_by_distance", "eye", "shape (3,)", np.shape(eye)))
-    (place,) = finite_rows("order_by_distance", "eye", [eye])
-    squared = ((rows - place) ** 2).sum(axis=1)
+    call = Arguments("order_by_distance", np.float64)
+    rows = call.array("points", points, ("N", 3))
+    squared = ((rows - call.array("eye", eye, (3,))) ** 2).sum(axis=1)
     order: npt.NDArray[np.uint32] = _core.order_by_depth(squared, far_first)
     return order

@@ -15,9 +15,10 @@ import numpy as np
 import numpy.typing as npt
 from photograd_course.checks import require_integer, require_number
 
+from photograd._arrays import Arguments
 from photograd.capture.camera import Camera
 from photograd.capture.frames import invert_rigid
-from photograd.errors import RangeError, ShapeError, message
+from photograd.errors import RangeError, message
 from photograd.types import Array
 
 
@@ -162,9 +163,8 @@ def _places(boxes: Array, depth: int) -> tuple[Array, Array]:
 
 
 def _checked_boxes(boxes: Any) -> Array:
-    rows = np.ascontiguousarray(boxes, np.float64)
-    if rows.ndim != 3 or rows.shape[1:] != (2, 3):
-        raise ShapeError(message("CullingTree", "boxes", "shape (N, 2, 3)", rows.shape))
+    call = Arguments("CullingTree", np.float64)
+    rows = call.array("boxes", boxes, ("N", 2, 3), finite=False)
     if not len(rows):
         raise RangeError(message("CullingTree", "boxes", "at least one object", "none"))
     good = np.isfinite(rows).all(axis=(1, 2)) & (rows[:, 0] <= rows[:, 1]).all(axis=1)

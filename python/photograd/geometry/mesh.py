@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from photograd._arrays import Arguments
 from photograd._compiled import _core
-from photograd.errors import DtypeError, RangeError, SceneError, ShapeError, message
-from photograd.geometry.checks import finite_rows
+from photograd.errors import SceneError, message
 from photograd.types import Array
 
 
@@ -38,14 +38,14 @@ class Mesh:
     uv: Array | None = None
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "vertices", _floats("vertices", self.vertices, 3))
-        object.__setattr__(self, "faces", _vertex_numbers(self.faces))
-        if self.uv is not None:
-            uv = _floats("uv", self.uv, 2)
-            if len(uv) != len(self.vertices):
-                expected = f"shape ({len(self.vertices)}, 2), a row a vertex"
-                raise ShapeError(message("Mesh", "uv", expected, uv.shape))
-            object.__setattr__(self, "uv", uv)
+        call = Arguments("Mesh", np.float32)
+        for name, columns in (("vertices", 3), ("uv", 2)):
+            value = getattr(self, name)
+            if value is not None:
+                array = call.array(name, value, ("V", columns), floating=True, finite=False)
+                object.__setattr__(self, name, array)
+        faces = call.array("faces", self.faces, ("F", 3), dtype=np.uint32)
+        object.__setattr__(self, "faces", faces)
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,7 +136,13 @@ class Bvh:
         if instances is None:
             instances = [Instance(number) for number in range(len(parts))]
         numbers = np.array([int(instance.mesh) for instance in instances], np.int32)
-        matrices = [_rows(place.world_from_object) for place in instances]
+        call = Arguments("Instance", np.float64)
+        matrices = [
+            call.array("world_from_object", each.world_from_object, (3, 4), (4, 4), finite=False)[
+                :3
+            ]
+            for each in instances
+        ]
         self._core = _core.Bvh(
             [(mesh.vertices, mesh.faces, mesh.uv) for mesh in parts],
             numbers,
@@ -181,11 +187,12 @@ class Bvh:
             DtypeError, ShapeError: arrays of other or different types or shapes.
             RangeError: rays that are not finite or have no direction, counted.
         """
-        origins, directions = _rays("trace", origins, directions)
-        low, high = _interval("trace", origins, t_min, t_max)
+        call = Arguments("Bvh.trace")
+        origins, directions = _rays(call, origins, directions)
+        low, high = _interval(call, t_min, t_max)
         hits = Hits.empty(len(origins), origins.dtype) if out is None else out
         results = (hits.t, hits.primitive, hits.instance, hits.barycentrics)
-        self._core.trace(origins, directions, low, high, *results)
+        call.run(self._core.trace, origins, directions, low, high, *results)
         return hits
 
     def occluded(
@@ -199,9 +206,12 @@ class Bvh:
 
         Arguments and errors as for `trace`, which it is faster than.
         """
-        origins, directions = _rays("occluded", origins, directions)
-        low, high = _interval("occluded", origins, t_min, t_max)
-        blocked: npt.NDArray[np.bool_] = self._core.occluded(origins, directions, low, high)
+        call = Arguments("Bvh.occluded")
+        origins, directions = _rays(call, origins, directions)
+        low, high = _interval(call, t_min, t_max)
+        blocked: npt.NDArray[np.bool_] = call.run(
+            self._core.occluded, origins, directions, low, high
+        )
         return blocked
 
     def surface_points(self, origins: Array, directions: Array, hits: Hits) -> SurfacePoints:
@@ -215,10 +225,10 @@ class Bvh:
             DtypeError, ShapeError: as for `trace`.
             RangeError: numbers that name no triangle of these meshes.
         """
-        origins, directions = _rays("surface_points", origins, directions)
-        return SurfacePoints(
-            *self._core.surface_points(origins, directions, hits.primitive, hits.instance)
-        )
+        call = Arguments("Bvh.surface_points")
+        origins, directions = _rays(call, origins, directions)
+        arguments = (origins, directions, hits.primitive, hits.instance)
+        return SurfacePoints(*call.run(self._core.surface_points, *arguments))
 
 
 def drop_degenerate(vertices: Array, faces: Array) -> Array:
@@ -236,65 +246,17 @@ def drop_degenerate(vertices: Array, faces: Array) -> Array:
     return kept
 
 
-def _floats(argument: str, value: Array, columns: int) -> Array:
-    array = np.asarray(value)
-    if array.dtype.kind != "f":
-        raise DtypeError(message("Mesh", argument, "floating point numbers", array.dtype))
-    if array.ndim != 2 or array.shape[1] != columns:
-        raise ShapeError(message("Mesh", argument, f"shape (V, {columns})", array.shape))
-    return np.ascontiguousarray(array, np.float32)
+def _rays(call: Arguments, origins: Array, directions: Array) -> tuple[Array, Array]:
+    starts = call.array("origins", origins, ("R", 3), finite=False)
+    return starts, call.array("directions", directions, ("R", 3), finite=False)
 
 
-def _vertex_numbers(value: Array) -> Array:
-    faces = np.asarray(value)
-    if faces.dtype.kind not in "iu":
-        raise DtypeError(message("Mesh", "faces", "integer vertex numbers", faces.dtype))
-    if faces.ndim != 2 or faces.shape[1] != 3:
-        raise ShapeError(message("Mesh", "faces", "shape (F, 3)", faces.shape))
-    if faces.size and (int(faces.min()) < 0 or int(faces.max()) >= 2**32):
-        row = int(np.argmax((faces < 0).any(axis=1) | (faces >= 2**32).any(axis=1)))
-        got = f"{faces[row].tolist()} in triangle {row}"
-        raise RangeError(message("Mesh", "faces", "vertex numbers from 0", got))
-    return np.ascontiguousarray(faces, np.uint32)
-
-
-def _rows(matrix: Array) -> Array:
-    rows = np.asarray(matrix, np.float64)
-    if rows.shape not in ((3, 4), (4, 4)):
-        raise ShapeError(message("Instance", "world_from_object", "shape (3, 4)", rows.shape))
-    return rows[:3]
-
-
-def _rays(function: str, origins: Array, directions: Array) -> tuple[Array, Array]:
-    for name, array in (("origins", origins), ("directions", directions)):
-        if not isinstance(array, np.ndarray) or array.dtype not in (np.float32, np.float64):
-            got = getattr(array, "dtype", type(array).__name__)
-            remedy = "use numpy.asarray(..., numpy.float32)"
-            raise DtypeError(message(function, name, "a float32 or float64 array", got, remedy))
-        if array.ndim != 2 or array.shape[1] != 3 or array.shape != np.shape(origins):
-            expected = "shape (R, 3), the same for origins and directions"
-            raise ShapeError(message(function, name, expected, array.shape))
-    if origins.dtype != directions.dtype:
-        got = f"{origins.dtype} and {directions.dtype}"
-        raise DtypeError(message(function, "origins, directions", "one dtype", got))
-    return np.ascontiguousarray(origins), np.ascontiguousarray(directions)
-
-
-def _interval(
-    function: str, origins: Array, t_min: float | Array, t_max: float | Array
-) -> tuple[Array, Array]:
-    ends = []
-    for name, value in (("t_min", t_min), ("t_max", t_max)):
-        end = np.asarray(value, origins.dtype if np.ndim(value) == 0 else None)
-        if end.ndim > 0 and end.shape != (len(origins),):
-            expected = f"a number or shape ({len(origins)},)"
-            raise ShapeError(message(function, name, expected, end.shape))
-        if end.dtype != origins.dtype:
-            raise DtypeError(message(function, name, f"{origins.dtype} like origins", end.dtype))
-        if np.isnan(end).any():
-            raise RangeError(message(function, name, "numbers", "NaN"))
-        ends.append(np.ascontiguousarray(end.reshape(-1)))
-    return ends[0], ends[1]
+def _interval(call: Arguments, t_min: float | Array, t_max: float | Array) -> tuple[Array, Array]:
+    low, high = (
+        call.array(name, value, (), ("R",), finite=False, low=-np.inf).reshape(-1)
+        for name, value in (("t_min", t_min), ("t_max", t_max))
+    )
+    return low, high
 
 
 # The point of a mesh that is nearest to a point.
@@ -309,7 +271,7 @@ def nearest_on_mesh(points: Any, mesh: Mesh) -> tuple[Array, Array]:
     Raises:
         ShapeError, RangeError: points that are not (N, 3) or not finite.
     """
-    rows = finite_rows("nearest_on_mesh", "points", points)
+    rows = Arguments("nearest_on_mesh", np.float64).array("points", points, ("N", 3))
     if not len(rows):
         return np.zeros(0), np.zeros((0, 3))
     corners = mesh.vertices.astype(np.float64)[mesh.faces]

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from photograd._arrays import Arguments
 from photograd._compiled import _core
 from photograd.geometry.checks import checked_interval, checked_rays
 from photograd.geometry.mesh import Mesh
@@ -99,8 +100,9 @@ class ReferenceBvh:
         self, origins: Any, directions: Any, t_min: float = 0.0, t_max: float = np.inf
     ) -> BvhHits:
         """As `trace`, without the hierarchy: every ray is tested against every triangle."""
-        rays = checked_rays("trace_all", origins, directions)
-        low, high = checked_interval("trace_all", t_min, t_max)
+        call = Arguments("ReferenceBvh.trace_all")
+        rays = checked_rays(call, origins, directions)
+        low, high = checked_interval(call, t_min, t_max)
         arrays = _room(len(rays[0]))
         self._core.trace_all(*rays, low, high, *arrays)
         return BvhHits(*arrays[:3], *arrays[3])
@@ -118,8 +120,9 @@ class ReferenceBvh:
     def _traced(
         self, function: str, origins: Any, directions: Any, t_min: float, t_max: float, any_: bool
     ) -> BvhHits:
-        rays = checked_rays(function, origins, directions)
-        low, high = checked_interval(function, t_min, t_max)
+        call = Arguments(f"ReferenceBvh.{function}")
+        rays = checked_rays(call, origins, directions)
+        low, high = checked_interval(call, t_min, t_max)
         arrays = _room(len(rays[0]))
         self._core.trace(*rays, low, high, any_, *arrays)
         return BvhHits(*arrays[:3], *arrays[3])

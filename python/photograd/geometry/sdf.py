@@ -15,9 +15,10 @@ import numpy as np
 import numpy.typing as npt
 from photograd_course.checks import require_integer, require_number
 
+from photograd._arrays import Arguments
 from photograd._compiled import _core
-from photograd.errors import RangeError, ShapeError, message
-from photograd.geometry.checks import checked_interval, checked_rays, finite_rows
+from photograd.errors import RangeError, message
+from photograd.geometry.checks import checked_interval, checked_rays
 from photograd.types import Array
 
 QUATERNION, SHIFT = ("w", "x", "y", "z"), ("shift x", "shift y", "shift z")
@@ -151,9 +152,7 @@ def _three(function: str, argument: str, value: Any) -> tuple[float, ...]:
 
 
 def _numbers(function: str, argument: str, value: Sequence[float], count: int) -> tuple[float, ...]:
-    if np.shape(value) != (count,):
-        raise ShapeError(message(function, argument, f"shape ({count},)", np.shape(value)))
-    return tuple(require_number(function, argument, float(x)) for x in value)
+    return tuple(Arguments(function, np.float64).array(argument, value, (count,)).tolist())
 
 
 # Bodies of signed distances: shapes, how they combine, and where rays meet them [Hart1996].
@@ -240,21 +239,23 @@ class Body:
             ShapeError, RangeError: points that are not (N, 3) or not finite; numbers that have
                 become useless, such as a radius of 0.
         """
-        rows = finite_rows("distance", "points", points)
-        found: Array = self._core.distance(self._numbers(), rows)
+        call = Arguments("Body.distance", np.float64)
+        rows = call.array("points", points, ("N", 3))
+        found: Array = call.run(self._core.distance, self._numbers(), rows)
         return found
 
     def distance_backward(self, points: Any, d_f: Any) -> tuple[Array, Array]:
         """dL/dpoints (N, 3) and dL/dnumbers (P,) of d_f (N,)."""
-        rows = finite_rows("distance_backward", "points", points)
+        call = Arguments("Body.distance_backward", np.float64)
+        rows = call.array("points", points, ("N", 3))
         d_points, d_numbers = np.zeros_like(rows), np.zeros_like(self.numbers)
-        weights = _same_rows("distance_backward", "d_f", d_f, rows)
-        self._core.distance_backward(self._numbers(), rows, weights, d_points, d_numbers)
+        weights = call.array("d_f", d_f, ("N",), finite=False, low=-np.inf)
+        call.run(self._core.distance_backward, self._numbers(), rows, weights, d_points, d_numbers)
         return d_points, d_numbers
 
     def normals(self, points: Any) -> Array:
         """Unit gradients of the distance (N, 3), which point out of the surface; 0 in a centre."""
-        rows = finite_rows("normals", "points", points)
+        rows = Arguments("Body.normals", np.float64).array("points", points, ("N", 3))
         gradient, _ = self.distance_backward(rows, np.ones(len(rows)))
         size = np.linalg.norm(gradient, axis=1, keepdims=True)
         return np.asarray(gradient / np.where(size > 0.0, size, 1.0))
@@ -281,8 +282,9 @@ class Body:
         Raises:
             ShapeError, RangeError: rays that are none, or options out of range.
         """
-        rays = checked_rays("trace", origins, directions)
-        low, high = checked_interval("trace", t_min, t_max)
+        call = Arguments("Body.trace", np.float64)
+        rays = checked_rays(call, origins, directions)
+        low, high = checked_interval(call, t_min, t_max)
         require_number("trace", "t_max", high)
         require_number("trace", "tolerance", tolerance, least=0.0, open_ends=True)
         require_integer("trace", "max_steps", max_steps, least=1, most=1 << 20)
@@ -301,9 +303,10 @@ class Body:
         Raises:
             As `trace`; ShapeError: hits or d_t of other rays.
         """
-        rays = checked_rays("trace_backward", origins, directions)
-        weights = _same_rows("trace_backward", "d_t", d_t, rays[0])
-        t = _same_rows("trace_backward", "hits", hits.t, rays[0])
+        call = Arguments("Body.trace_backward", np.float64)
+        rays = checked_rays(call, origins, directions)
+        weights = call.array("d_t", d_t, ("R",), finite=False, low=-np.inf)
+        t = call.array("hits.t", hits.t, ("R",), finite=False, low=-np.inf)
         d_numbers = np.zeros_like(self.numbers)
         d_origins, d_directions = np.zeros_like(rays[0]), np.zeros_like(rays[1])
         self._core.trace_backward(
@@ -340,13 +343,3 @@ def _postorder(shape: Shape) -> list[tuple[Shape, tuple[int, ...]]]:
         done.append(len(found))
         found.append((node, children))
     return found
-
-
-def _same_rows(function: str, argument: str, value: Any, rows: Array) -> Array:
-    numbers = np.ascontiguousarray(value, np.float64)
-    if numbers.shape != (len(rows),):
-        raise ShapeError(message(function, argument, f"shape ({len(rows)},)", numbers.shape))
-    if np.isnan(numbers).any():
-        row = int(np.flatnonzero(np.isnan(numbers))[0])
-        raise RangeError(message(function, argument, "numbers", f"NaN in row {row}"))
-    return numbers

@@ -13,8 +13,9 @@ import numpy as np
 import numpy.typing as npt
 from photograd_course.checks import require_number
 
+from photograd._arrays import Arguments
 from photograd.capture.camera import Camera
-from photograd.errors import RangeError, ShapeError, message
+from photograd.errors import RangeError, message
 from photograd.geometry.sdf import GAVE_UP, Body
 from photograd.types import Array
 
@@ -68,11 +69,11 @@ def draw_body(
         ShapeError, RangeError: arguments that are none of these.
         RangeError: a ray that needs more than 1000 steps; names the pixel.
     """
-    sun, color = _three("towards_sun", towards_sun), _three("albedo", albedo)
+    call = Arguments("draw_body", np.float64)
+    sun = call.array("towards_sun", towards_sun, (3,))
+    color = call.array("albedo", albedo, (3,), low=0.0, high=1.0)
     if not sun.any():
         raise RangeError(message("draw_body", "towards_sun", "some length", sun))
-    if color.min() < 0.0 or color.max() > 1.0:
-        raise RangeError(message("draw_body", "albedo", "numbers in [0, 1]", color))
     require_number("draw_body", "irradiance", irradiance, least=0.0)
     require_number("draw_body", "sky", sky, least=0.0)
     sun = sun / np.linalg.norm(sun)
@@ -103,10 +104,3 @@ def _on_picture(seen: Array, rows: Array, shape: tuple[int, ...]) -> Array:
     picture = np.zeros((shape[0] * shape[1], *shape[2:]), rows.dtype)
     picture[seen] = rows
     return picture.reshape(shape)
-
-
-def _three(argument: str, value: Any) -> Array:
-    numbers = np.asarray(value, np.float64)
-    if numbers.shape != (3,) or not np.isfinite(numbers).all():
-        raise ShapeError(message("draw_body", argument, "three finite numbers", value))
-    return numbers

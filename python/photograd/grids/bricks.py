@@ -10,9 +10,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from photograd._arrays import Arguments
 from photograd._compiled import _core
 from photograd._memory import available_memory, require_room
-from photograd.errors import RangeError, ShapeError, message
 from photograd.grids.sparse import SparseGrid
 from photograd.types import Array
 
@@ -100,8 +100,5 @@ class BrickField:
         return np.ascontiguousarray(self.background, self.values.dtype)
 
     def _points(self, points: Array) -> Array:
-        if points.ndim != 2 or points.shape[1] != 3:
-            raise ShapeError(message("BrickField", "points", "shape (P, 3)", points.shape))
-        if not (np.abs(points) < 2**30).all():  # also catches NaN
-            raise RangeError(message("BrickField", "points", "finite, within 2^30", "others"))
-        return np.ascontiguousarray(points, self.values.dtype)
+        call = Arguments("BrickField", self.values.dtype)
+        return call.array("points", points, ("P", 3), above=-(2.0**30), below=2.0**30)

@@ -14,6 +14,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 import numpy.typing as npt
 
+from photograd._arrays import Arguments
 from photograd._compiled import _core
 from photograd.errors import DtypeError, RangeError, ShapeError, message
 from photograd.types import Array
@@ -84,7 +85,7 @@ class _SpatialTree:
         Args:
             values: (X, Y, Z, C), for a quadtree (X, Y, C); C is 1 to 4. bool for occupancy,
                 float32 or float64 for coefficients (sigma_a, sigma_s), radiance and the like.
-            bounds: (2, D) outer faces of the array in metres; by default cells of one metre.
+            bounds: (2, D) outer faces of the array in meters; by default cells of one meter.
             background: value of the cells with which the root's cube exceeds the array.
             tolerance: a block becomes one leaf, with the mean as its value, if no channel varies
                 by more than this in it. 0 keeps every cell as it is.
@@ -129,7 +130,7 @@ class _SpatialTree:
             classify: (lower, side) in cells -> the channels of a uniform cube, or None to have it
                 cut into halves. Single cells must be given a value.
             depth: 0 to 20; the root has 2^depth cells a side.
-            bounds: (2, D) outer faces of the root in metres; by default cells of one metre.
+            bounds: (2, D) outer faces of the root in meters; by default cells of one meter.
             channels: 1 to 4.
 
         Returns:
@@ -150,12 +151,12 @@ class _SpatialTree:
 
     @property
     def cell_size(self) -> npt.NDArray[np.float64]:
-        """(D,) sides of the smallest cell in metres."""
+        """(D,) sides of the smallest cell in meters."""
         size: npt.NDArray[np.float64] = (self.bounds[1] - self.bounds[0]) / self.shape
         return size
 
     def leaf_at(self, points: Array) -> npt.NDArray[np.int32]:
-        """Leaf (N,) of points (N, D) in metres; -1 outside of the root's cube.
+        """Leaf (N,) of points (N, D) in meters; -1 outside of the root's cube.
 
         Raises:
             DtypeError, ShapeError, RangeError: not floating point, of another shape, not finite.
@@ -179,7 +180,7 @@ class _SpatialTree:
         A ray along a face belongs to the leaf above it, as a point on the face does.
 
         Args:
-            origins: (R, D) in metres, inside or outside.
+            origins: (R, D) in meters, inside or outside.
             directions: (R, D) of any length but zero, same dtype.
             t_min, t_max: limits in lengths of the direction, one for all rays or (R,).
 
@@ -247,13 +248,7 @@ class _SpatialTree:
 
     def _cells(self, name: str, argument: str, array: Array, *, shift: bool) -> Array:
         """World coordinates in cells of the root, contiguous and in the same dtype."""
-        array = np.asarray(array)
-        if array.dtype not in (np.float32, np.float64):
-            raise DtypeError(message(name, argument, "float32 or float64", array.dtype))
-        if array.ndim != 2 or array.shape[1] != self.dimensions:
-            expected = f"shape (N, {self.dimensions})"
-            raise ShapeError(message(name, argument, expected, f"shape {array.shape}"))
-        _require_finite(name, argument, array)
+        array = Arguments(name).array(argument, array, ("N", self.dimensions))
         origin = self.bounds[0] if shift else np.zeros(self.dimensions)
         cells = (array - origin.astype(array.dtype)) / self.cell_size.astype(array.dtype)
         return np.ascontiguousarray(cells)
@@ -277,7 +272,7 @@ def tree_of_leaves(
     Args:
         lower: (L, 3) lower corners in cells, as of `Octree.leaf_boxes`.
         side: (L,) sides in cells.
-        bounds: (2, 3) outer faces of the array of cells in metres.
+        bounds: (2, 3) outer faces of the array of cells in meters.
         shape: cells along each axis; the root's cube may exceed them.
 
     Raises:
@@ -336,11 +331,9 @@ def _box(name: str, bounds: npt.ArrayLike | None, shape: tuple[int, ...]) -> Arr
     """(2, D) float64 with a positive size along each axis."""
     if bounds is None:
         return np.array([np.zeros(len(shape)), shape], np.float64)
-    box = np.array(bounds, np.float64)
-    if box.shape != (2, len(shape)):
-        raise ShapeError(message(name, "bounds", f"shape (2, {len(shape)})", f"shape {box.shape}"))
-    if not (np.isfinite(box).all() and (box[1] > box[0]).all()):
-        raise RangeError(message(name, "bounds", "finite, lower before upper", box.tolist()))
+    box = Arguments(name, np.float64).array("bounds", bounds, (2, len(shape))).copy()
+    if not (box[1] > box[0]).all():
+        raise RangeError(message(name, "bounds", "lower before upper", box.tolist()))
     return box
 
 

@@ -2,7 +2,7 @@
 
 OpenVDB holds the topology and the files (cpp/photograd/grid/sparse_grid.h). Voxel (i, j, k) has its
 value at the index-space point (i, j, k), the middle of the voxel; `world_from_index` (4, 4) takes
-such points to world metres. What is not active has the background's value. [Museth2013]
+such points to world meters. What is not active has the background's value. [Museth2013]
 """
 
 from __future__ import annotations
@@ -14,12 +14,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from photograd._arrays import Arguments
 from photograd._compiled import _core
 from photograd._memory import require_room
-from photograd.errors import DtypeError, Error, RangeError, ShapeError, message
+from photograd.errors import RangeError, message
 from photograd.types import Array
 
-MOST_STEPS = 200
+MAX_STEPS = 200
 """Of one dilation: a single voxel becomes a cube of 401^3, 64 million in a few seconds. Time and
 memory grow with the cube of the steps."""
 OWN_KEYS = ("name", "file_")
@@ -60,7 +61,8 @@ class SparseGrid:
         """Activate what differs from the background by more than `tolerance` in any channel.
 
         Args:
-            values: (X, Y, Z) or (X, Y, Z, 3), float32; entry [0, 0, 0] becomes voxel `origin`.
+            values: (X, Y, Z) or (X, Y, Z, 3), kept as float32; entry [0, 0, 0] becomes voxel
+                `origin`.
             origin: index of the first voxel.
             background: the value of everything else, one number or one for each channel.
             tolerance: largest difference that is dropped.
@@ -68,22 +70,19 @@ class SparseGrid:
             name: name of the grid.
 
         Raises:
-            ShapeError: another shape.
-            DtypeError: another dtype than float32.
-            Error: values that are not finite.
-            RangeError: a tolerance below zero, an index beyond 32 bits, a singular transform.
+            ShapeError, DtypeError: another shape, or no numbers.
+            RangeError: values that are not finite, a tolerance below zero, an index beyond 32 bits,
+                a singular transform.
         """
         where = "SparseGrid.from_dense"
-        if values.dtype != np.float32:
-            raise DtypeError(message(where, "values", "float32", values.dtype, "convert it first"))
-        if values.ndim not in (3, 4) or values.shape[3:] not in ((), (1,), (3,)):
-            raise ShapeError(message(where, "values", "(X, Y, Z) or (X, Y, Z, 3)", values.shape))
+        call = Arguments(where, np.float32)
+        axes = ("X", "Y", "Z")
+        values = call.array("values", values, axes, (*axes, 1), (*axes, 3))
         if not tolerance >= 0:
             raise RangeError(message(where, "tolerance", "0 or more", tolerance))
-        full = np.ascontiguousarray(values.reshape((*values.shape[:3], -1)))
-        _require_finite(where, "values", full)
-        empty = np.broadcast_to(np.asarray(background, np.float32), full.shape[3:])
-        _require_finite(where, "background", empty)
+        full = values.reshape((*values.shape[:3], -1))
+        empty = call.array("background", background, (), (full.shape[3],))
+        empty = np.broadcast_to(empty, full.shape[3:])
         ends = np.stack([np.asarray(origin), np.add(origin, values.shape[:3])])
         corner = _indices(where, "origin", ends)[0]
         core = _core.SparseGrid.from_dense(
@@ -155,9 +154,8 @@ class SparseGrid:
 
     @world_from_index.setter
     def world_from_index(self, matrix: ArrayLike) -> None:
-        m = np.asarray(matrix, np.float64)
-        if m.shape != (4, 4):
-            raise ShapeError(message("SparseGrid", "world_from_index", "shape (4, 4)", m.shape))
+        call = Arguments("SparseGrid", np.float64)
+        m = call.array("world_from_index", matrix, (4, 4), finite=False)
         if not np.array_equal(m[3], [0, 0, 0, 1]):
             got = f"a last row of {m[3]}"
             raise RangeError(message("SparseGrid", "world_from_index", "an affine matrix", got))
@@ -194,9 +192,8 @@ class SparseGrid:
             ShapeError: points are not (N, 3).
             RangeError: a point that is not finite or lies beyond 32-bit indices.
         """
-        if points.ndim != 2 or points.shape[1] != 3:
-            raise ShapeError(message("SparseGrid.sample", "points", "shape (N, 3)", points.shape))
-        at = np.ascontiguousarray(self.to_index(points.astype(np.float64)))
+        points = Arguments("SparseGrid.sample", np.float64).array("points", points, ("N", 3))
+        at = np.ascontiguousarray(self.to_index(points))
         if not (np.abs(at) < 2**31 - 2).all():  # also catches NaN
             raise RangeError(message("SparseGrid.sample", "points", "finite, near", "others"))
         return self.core.sample(at)
@@ -207,10 +204,15 @@ class SparseGrid:
         return values, active.astype(bool)
 
     def activate(self, voxels: ArrayLike, values: Array) -> None:
-        """Write values (N, C), float32, to voxels (N, 3) and activate them; Error if not finite."""
-        _require_finite("SparseGrid.activate", "values", values)
+        """Write values (N, C), kept as float32, to voxels (N, 3) and activate them.
+
+        Raises:
+            DtypeError, ShapeError, RangeError: wrong types or shapes, indices beyond 2^30, values
+                that are not finite.
+        """
+        call = Arguments("SparseGrid.activate", np.float32)
         at = _indices("SparseGrid.activate", "voxels", voxels)
-        self.core.activate(at, np.ascontiguousarray(values))
+        self.core.activate(at, call.array("values", values, (len(at), self.channels)))
 
     def prune(self, tolerance: float = 0.0) -> None:
         """Deactivate what differs from the background by at most `tolerance`; drop empty nodes."""
@@ -224,10 +226,10 @@ class SparseGrid:
         One step covers whatever a trilinear lookup reads around a point in an active voxel.
 
         Raises:
-            RangeError: steps outside of 1 to `MOST_STEPS`, or more voxels than memory may hold.
+            RangeError: steps outside of 1 to `MAX_STEPS`, or more voxels than memory may hold.
         """
-        if not 0 < steps <= MOST_STEPS:
-            raise RangeError(message("SparseGrid.dilate", "steps", f"1 to {MOST_STEPS}", steps))
+        if not 0 < steps <= MAX_STEPS:
+            raise RangeError(message("SparseGrid.dilate", "steps", f"1 to {MAX_STEPS}", steps))
         found = self.statistics
         around = [
             found.active_voxels * (2 * steps + 1) ** 3,
@@ -250,19 +252,8 @@ class SparseGrid:
         return SparseGrid(self.core.copy())
 
 
-def _require_finite(function: str, argument: str, values: Array) -> None:
-    bad = values.size - int(np.isfinite(values).sum())
-    if bad:
-        raise Error(message(function, argument, "finite values", f"{bad} that are not"))
-
-
 def _indices(function: str, argument: str, voxels: ArrayLike) -> Array:
     """(N, 3) int32, refused when they are no integers or too large."""
-    wide = np.asarray(voxels)
-    if not np.issubdtype(wide.dtype, np.integer):
-        raise DtypeError(message(function, argument, "integers", wide.dtype))
-    if wide.ndim != 2 or wide.shape[1] != 3:
-        raise ShapeError(message(function, argument, "shape (N, 3)", wide.shape))
-    if wide.size and not -(2**30) <= int(wide.min()) <= int(wide.max()) <= 2**30:
-        raise RangeError(message(function, argument, "indices within 2^30 of zero", "others"))
-    return np.ascontiguousarray(wide, np.int32)
+    call = Arguments(function, np.int64)
+    wide = call.array(argument, voxels, ("N", 3), low=-(2**30), high=2**30)
+    return wide.astype(np.int32)

@@ -83,7 +83,7 @@ def write_vdb(
     """
 
     def write(file: BinaryIO) -> None:
-        # The core opens the neighbour that atomic_write has made, by its name.
+        # The core opens the neighbor that atomic_write has made, by its name.
         _core.write_vdb(file.name, [grid.core for grid in grids], dict(metadata or {}), half)
 
     atomic_write(Path(path), write)

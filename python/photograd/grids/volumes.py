@@ -5,8 +5,8 @@ X, Y, Z, C, six float32, the lowest and the highest corner of the box that the v
 
 NIfTI-1, the format of brain scans: .nii, or .nii.gz for the same compressed. A header of 348 bytes
 in either byte order, then from `vox_offset` on numbers, x fastest. Its world is +x to the patient's
-right, +y to the front, +z up, usually in millimetres; ours is +Y up, so that (x, y, z) there is (x,
-z, -y) here, in metres.
+right, +y to the front, +z up, usually in millimeters; ours is +Y up, so that (x, y, z) there is (x,
+z, -y) here, in meters.
 
 Legacy VTK files of structured points are a header of words, then numbers, x fastest:
 
@@ -38,7 +38,7 @@ from photograd._memory import available_memory
 from photograd.errors import IoError, message
 from photograd.types import Array
 
-MOST_CELLS = 1 << 40
+MAX_CELLS = 1 << 40
 """Voxels beyond which a header is taken for damaged, whatever memory there is."""
 
 
@@ -48,7 +48,7 @@ class Volume:
 
     Attributes:
         values: (X, Y, Z, C) float32, finite.
-        world_from_index: (4, 4); the index (i, j, k) is the middle of a voxel. Lengths are metres
+        world_from_index: (4, 4); the index (i, j, k) is the middle of a voxel. Lengths are meters
             where the file says what they are, else its own.
     """
 
@@ -79,7 +79,7 @@ def check_size(
     # As float32 in our order, beside what was read.
     needed = cells * (bytes_of_value + 8)
     room = available_memory() if limit is None else limit
-    if cells > MOST_CELLS or needed > room:
+    if cells > MAX_CELLS or needed > room:
         got = f"{needed / 2**20:.0f} MiB"
         raise refuse(path, f"a volume that fits into {room / 2**20:.0f} MiB", got)
     return cells * bytes_of_value
@@ -97,7 +97,7 @@ def make(path: Path, raw: Array, world_from_index: Array) -> Volume:
     return Volume(values, world_from_index)
 
 
-def placed(spacing: Array, origin: Array) -> Array:
+def affine_matrix(spacing: Array, origin: Array) -> Array:
     """world_from_index (4, 4) of voxels `spacing` (3,) apart, the first at `origin` (3,)."""
     matrix = np.diag([*np.asarray(spacing, np.float64), 1.0])
     matrix[:3, 3] = origin
@@ -133,7 +133,7 @@ def read_mitsuba(path: Path, *, memory_limit: int | None = None) -> Volume:
         values = values / np.float32(255)
     spacing = (hi - lo) / (x, y, z)
     volume = values.reshape(z, y, x, channels).transpose(2, 1, 0, 3)
-    return make(path, volume, placed(spacing, lo + spacing / 2))
+    return make(path, volume, affine_matrix(spacing, lo + spacing / 2))
 
 
 # NIfTI-1, the format of brain scans: .nii, or .nii.gz for the same compressed.
@@ -141,12 +141,12 @@ def read_mitsuba(path: Path, *, memory_limit: int | None = None) -> Volume:
 
 HEADER_BYTES = 348
 _NIFTI_TYPES = {2: "u1", 4: "i2", 8: "i4", 16: "f4", 64: "f8", 256: "i1", 512: "u2", 768: "u4"}
-METRES = {1: 1.0, 2: 1e-3, 3: 1e-6}  # of the unit codes: metres, millimetres, micrometres
+METERS = {1: 1.0, 2: 1e-3, 3: 1e-6}  # of the unit codes: meters, millimeters, micrometers
 OURS_FROM_THEIRS = np.array([[1.0, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
 
 
 def read_nifti(path: Path, *, memory_limit: int | None = None) -> Volume:
-    """Read a file of one volume, with its intensity scaling and its place. Raises IoError."""
+    """Read a file of one volume, with its intensity scaling and its position. Raises IoError."""
     compressed = path.name.lower().endswith(".gz")
     try:
         with gzip.open(path) if compressed else path.open("rb") as stream:
@@ -166,7 +166,7 @@ def read_nifti(path: Path, *, memory_limit: int | None = None) -> Volume:
     if slope != 0:
         with np.errstate(over="ignore", invalid="ignore"):
             values = values * slope + shift
-    return make(path, values[..., None], OURS_FROM_THEIRS @ _place(header, order))
+    return make(path, values[..., None], OURS_FROM_THEIRS @ _world_from_index(header, order))
 
 
 def _byte_order(path: Path, header: bytes) -> str:
@@ -196,8 +196,8 @@ def _offset(path: Path, header: bytes, order: str) -> int:
     return int(offset)
 
 
-def _place(header: bytes, order: str) -> Array:
-    """Metres of their world from the index, by the first of three ways that the header offers."""
+def _world_from_index(header: bytes, order: str) -> Array:
+    """Meters of their world from the index, by the first of three ways that the header offers."""
     qform, sform = struct.unpack_from(f"{order}2h", header, 252)
     pixdim = np.array(struct.unpack_from(f"{order}8f", header, 76), np.float64)
     matrix = np.eye(4)
@@ -210,7 +210,7 @@ def _place(header: bytes, order: str) -> Array:
         matrix[:3, 3] = origin
     else:
         matrix[:3, :3] = np.diag(pixdim[1:4])
-    matrix[:3] *= METRES.get(header[123] & 7, 1.0)
+    matrix[:3] *= METERS.get(header[123] & 7, 1.0)
     return matrix
 
 
@@ -239,7 +239,7 @@ _VTK_TYPES = {
     "float": ">f4",
     "double": ">f8",
 }
-LONGEST_HEADER = 4096
+MAX_HEADER_BYTES = 4096
 
 
 def read_vtk(path: Path, *, memory_limit: int | None = None) -> Volume:
@@ -262,7 +262,7 @@ def read_vtk(path: Path, *, memory_limit: int | None = None) -> Volume:
             raise refuse(path, f"{stated} bytes of values", f"{len(data) - start}", "damaged?")
         values = np.frombuffer(data, kind, count=stated // np.dtype(kind).itemsize, offset=start)
     volume = values.reshape(z, y, x, channels).transpose(2, 1, 0, 3)
-    return make(path, volume, placed(np.array(spacing), np.array(origin)))
+    return make(path, volume, affine_matrix(np.array(spacing), np.array(origin)))
 
 
 def _header(path: Path, data: bytes) -> tuple[dict[str, list[str]], int]:
@@ -270,7 +270,7 @@ def _header(path: Path, data: bytes) -> tuple[dict[str, list[str]], int]:
     fields: dict[str, list[str]] = {}
     at = 0
     for number in range(64):
-        end = data.find(b"\n", at, at + LONGEST_HEADER)
+        end = data.find(b"\n", at, at + MAX_HEADER_BYTES)
         if end < 0:
             break
         line = data[at:end].decode("latin-1").strip()

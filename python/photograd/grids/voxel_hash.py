@@ -12,11 +12,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from photograd._arrays import Arguments
 from photograd._compiled import _core
-from photograd.errors import DtypeError, RangeError, ShapeError, message
 
 Rows = npt.NDArray[np.int32]
-LEAST, MOST = -(1 << 20), (1 << 20) - 1
+MIN_COORDINATE, MAX_COORDINATE = -(1 << 20), (1 << 20) - 1
 """Coordinates of a voxel: three times 21 bits make a key."""
 
 
@@ -27,7 +27,7 @@ class VoxelHashStatistics:
     Attributes:
         count: voxels.
         row_limit: one more than the largest row in use.
-        slots: places for voxels; at most half of them are in use.
+        slots: of the table; at most half of them are in use.
         bytes: of the slots.
         longest_probe: slots that the longest search for a voxel looks at.
         mean_probe: the same on average over all voxels.
@@ -108,18 +108,6 @@ class VoxelHash:
 
 def _checked(name: str, voxels: npt.NDArray[np.integer[Any]]) -> tuple[Rows, Rows]:
     """Voxels as contiguous int32, none of them wrapped around, and rows to fill."""
-    array = np.asarray(voxels)
-    if not np.issubdtype(array.dtype, np.integer):
-        raise DtypeError(
-            message(name, "voxels", "integers", array.dtype, "use numpy.floor(...).astype('i4')")
-        )
-    if array.ndim != 2 or array.shape[1] != 3:
-        raise ShapeError(message(name, "voxels", "shape (N, 3)", f"shape {array.shape}"))
-    bad = ((array < LEAST) | (array > MOST)).any(axis=1)
-    if bad.any():
-        first = int(np.argmax(bad))
-        got = f"{int(bad.sum())} beyond, the first in row {first}: {array[first].tolist()}"
-        remedy = "shift the origin or use larger voxels"
-        expected = "coordinates from -2^20 to 2^20 - 1"
-        raise RangeError(message(name, "voxels", expected, got, remedy))
-    return np.ascontiguousarray(array, np.int32), np.empty(len(array), np.int32)
+    call = Arguments(name, np.int64)
+    wide = call.array("voxels", voxels, ("N", 3), low=MIN_COORDINATE, high=MAX_COORDINATE)
+    return wide.astype(np.int32), np.empty(len(wide), np.int32)

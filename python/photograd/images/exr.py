@@ -16,7 +16,7 @@ from photograd.images.kind import require_size
 
 _CHANNELS = ("R", "G", "B", "A")
 
-LARGEST_HALF = 65504.0
+MAX_HALF = 65504.0
 
 
 def read_exr_header(path: Path) -> tuple[int, int, bool]:
@@ -78,7 +78,7 @@ def encode_exr(image: npt.NDArray[np.float32], *, half: bool) -> bytes:
     Raises:
         RangeError: values that a half cannot hold.
     """
-    if half and float(np.abs(image).max()) > LARGEST_HALF:
+    if half and float(np.abs(image).max()) > MAX_HALF:
         got = f"{float(np.abs(image).max()):.6g}"
         raise RangeError(message("write_exr", "image", "at most 65504 in half", got, "use float"))
     name = "RGB" if image.shape[2] == 3 else "RGBA"

@@ -13,11 +13,12 @@ import numpy as np
 import numpy.typing as npt
 from photograd_course.input_files import read_file
 
-from photograd.errors import IoError, ShapeError, message
+from photograd._arrays import Arguments
+from photograd.errors import IoError, message
 from photograd.images.kind import require_size
 
 _HEADER = re.compile(rb"P([Ff])\s+(\d{1,9})\s+(\d{1,9})\s+(\S{1,40})\s")
-_LONGEST_HEADER = 128
+_MAX_HEADER_BYTES = 128
 
 
 def read_pfm_header(path: Path) -> tuple[int, int]:
@@ -55,17 +56,16 @@ def encode_pfm(image: npt.NDArray[np.float32]) -> bytes:
     """(H, W, 3) as the bytes of a little-endian file, to the bit.
 
     Raises:
-        ShapeError: alpha, for which there is no place.
+        ShapeError: alpha, which the format lacks.
     """
-    if image.shape[2] != 3:
-        raise ShapeError(message("write_pfm", "image", "shape (H, W, 3)", image.shape))
-    height, width, _ = image.shape
+    image = Arguments("write_pfm").array("image", image, ("H", "W", 3))
+    height, width = image.shape[:2]
     return b"PF\n%d %d\n-1.0\n" % (width, height) + image[::-1].astype("<f4").tobytes()
 
 
 def _header(path: Path) -> tuple[int, int, int, int, float]:
     """Where the samples start, width, height, channels and scale."""
-    found = _HEADER.match(read_file("read_pfm", path, _LONGEST_HEADER))
+    found = _HEADER.match(read_file("read_pfm", path, _MAX_HEADER_BYTES))
     try:
         scale = float(found[4]) if found else 0.0
     except ValueError:

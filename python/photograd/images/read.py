@@ -17,9 +17,10 @@ from typing import Any, Literal, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
-from photograd_course.input_files import require_file
+from photograd_course.input_files import read_file, require_file
 from PIL import Image
 
+from photograd._extras import import_extra
 from photograd.errors import IoError, RangeError, message
 from photograd.images import exr
 from photograd.images.kind import (
@@ -39,7 +40,7 @@ ImageArray: TypeAlias = npt.NDArray[np.float32]
 ALPHA_SLACK = 0.01
 """How far a lossy compression may push alpha out of 0..1."""
 
-LARGEST_RADIANCE = 1e12
+MAX_RADIANCE = 1e12
 """A thousand times the sun's disc; beyond it, squares of radiance leave the range of float."""
 
 IMAGE_SUFFIXES = (".png", ".jpg", ".jpeg", *LINEAR_SUFFIXES)
@@ -65,7 +66,7 @@ _MODES = {"1", "L", "LA", "P", "RGB", "RGBA", "I;16", "I;16B", "I;16L"}
 
 @dataclass(frozen=True)
 class ImageHeader:
-    """Width and height in pixels, whether the file carries alpha, and its colour space."""
+    """Width and height in pixels, whether the file carries alpha, and its color space."""
 
     width: int
     height: int
@@ -106,7 +107,8 @@ def read_image(path: str | Path) -> ImageArray:
     looked up. The orientation tag of JPEG is not applied, since poses refer to pixels as stored.
 
     Raises:
-        IoError: missing, truncated, damaged, zero-size, non-finite, or of an unsupported mode.
+        IoError: missing, truncated, damaged, zero-size, non-finite, of an unsupported mode, or a
+            color PNG of 16 bits without OpenCV (extra `png16`).
     """
     path = Path(path)
     _require_file("read_image", path)
@@ -154,7 +156,7 @@ def _checked(path: Path, stored: ImageArray) -> ImageArray:
         got = f"{float(alpha.min()):.6g} to {float(alpha.max()):.6g}"
         raise IoError(message("read_image", str(path), "alpha in 0..1", got))
     largest = float(np.abs(stored[..., :3]).max())
-    if largest > LARGEST_RADIANCE:
+    if largest > MAX_RADIANCE:
         raise IoError(message("read_image", str(path), "radiance below 1e12", f"{largest:.6g}"))
     stored[..., 3] = alpha.clip(0.0, 1.0)
     return stored
@@ -163,29 +165,25 @@ def _checked(path: Path, stored: ImageArray) -> ImageArray:
 def _pixels(path: Path, opened: Image.Image) -> ImageArray:
     if opened.mode.startswith("I;16"):
         return _with_channels(np.asarray(opened)[..., None], 65535.0)
-    tiles = getattr(opened, "tile", [])
-    layout = tiles[0].args if tiles else None
-    if isinstance(layout, str) and layout.endswith(";16B"):
-        return _with_channels(_sixteen_bits(path, opened), 65535.0)
+    if opened.format == "PNG" and read_file("read_image", path, 25)[24:] == b"\x10":
+        return _with_channels(_sixteen_bits(path), 65535.0)
     if opened.mode in ("P", "1") or "transparency" in opened.info:
         opened = opened.convert("RGBA" if "transparency" in opened.info else "RGB")
     array = np.asarray(opened)
     return _with_channels(array if array.ndim == 3 else array[..., None], 255.0)
 
 
-def _sixteen_bits(path: Path, opened: Image.Image) -> npt.NDArray[np.uint16]:
-    """Pillow keeps the high byte of 16-bit colour. Asked to unpack the same bytes in the other
-    order, it keeps the low byte; both together are the sample.
-    """
-    layout = opened.tile[0].args  # type: ignore[attr-defined]
-    if layout not in ("RGB;16B", "RGBA;16B") or "transparency" in opened.info:
-        raise _unreadable("read_image", path, f"unsupported 16-bit layout {layout}")
-    samples = np.asarray(opened).astype(np.uint16) * np.uint16(256)
-    with Image.open(path, formats=("PNG",)) as again:
-        swapped = layout.replace("16B", "16L")
-        again.tile = [again.tile[0]._replace(args=swapped)]
-        samples += np.asarray(again)
-    return samples
+def _sixteen_bits(path: Path) -> npt.NDArray[np.uint16]:
+    """Samples (H, W, 3 or 4) of a PNG with 16 bits a channel; Pillow drops half of the bits."""
+    cv2 = import_extra("read_image", "cv2", "png16")
+    encoded = np.frombuffer(read_file("read_image", path), np.uint8)
+    try:
+        samples = cv2.imdecode(encoded, cv2.IMREAD_UNCHANGED)
+    except cv2.error as error:
+        raise _unreadable("read_image", path, error) from error
+    if samples is None or samples.dtype != np.uint16 or samples.ndim != 3:
+        raise _unreadable("read_image", path, "no samples of 16 bits")
+    return np.asarray(samples[..., [2, 1, 0, 3][: samples.shape[2]]])
 
 
 def _with_channels(samples: npt.NDArray[Any], most: float) -> ImageArray:
@@ -200,16 +198,16 @@ def _with_channels(samples: npt.NDArray[Any], most: float) -> ImageArray:
     return rgba
 
 
-SMALLEST_ALPHA = 1e-6
-"""Below it a pixel counts as transparent: its colour is left as it is, since division would only
+MIN_ALPHA = 1e-6
+"""Below it a pixel counts as transparent: its color is left as it is, since division would only
 magnify rounding errors, up to infinity."""
 
 
 def _straight(premultiplied: ImageArray) -> ImageArray:
-    """Divide colour by alpha where alpha is not negligible."""
+    """Divide color by alpha where alpha is not negligible."""
     result = premultiplied.copy()
     alpha = premultiplied[..., 3:]
-    np.divide(result[..., :3], alpha, out=result[..., :3], where=alpha > SMALLEST_ALPHA)
+    np.divide(result[..., :3], alpha, out=result[..., :3], where=alpha > MIN_ALPHA)
     return result
 
 
@@ -254,7 +252,7 @@ def _require_file(function: str, path: Path) -> None:
 def _require_mode(function: str, path: Path, opened: Image.Image) -> None:
     if opened.mode not in _MODES:
         got = f"mode {opened.mode}"
-        raise IoError(message(function, str(path), "grey, RGB or RGBA", got, "convert it first"))
+        raise IoError(message(function, str(path), "gray, RGB or RGBA", got, "convert it first"))
     if opened.width < 1 or opened.height < 1:
         raise IoError(message(function, str(path), "at least one pixel", opened.size))
     require_pixels(function, str(path), opened.width, opened.height)

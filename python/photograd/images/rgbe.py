@@ -18,8 +18,9 @@ import numpy as np
 import numpy.typing as npt
 from photograd_course.input_files import read_file
 
+from photograd._arrays import Arguments
 from photograd._memory import available_memory
-from photograd.errors import IoError, RangeError, ShapeError, message
+from photograd.errors import IoError, RangeError, message
 from photograd.images.kind import require_size
 
 Bytes = npt.NDArray[np.uint8]
@@ -82,11 +83,11 @@ def _flat(content: bytes, pixels: int) -> Bytes:
     repeats = (groups[:, :3] == 1).all(axis=1)
     source = np.maximum.accumulate(np.where(repeats, 0, np.arange(len(groups))))
     # Of several repetitions in a row, each counts 256 times what the one before does.
-    place = np.arange(len(groups)) - source - 1
-    if not len(groups) or repeats[0] or (place[repeats] > 3).any():
+    digit = np.arange(len(groups)) - source - 1
+    if not len(groups) or repeats[0] or (digit[repeats] > 3).any():
         raise ValueError("repetitions of no pixel")
     counts = np.ones(len(groups), np.int64)
-    counts[repeats] = groups[repeats, 3].astype(np.int64) << 8 * place[repeats]
+    counts[repeats] = groups[repeats, 3].astype(np.int64) << 8 * digit[repeats]
     if int(counts.sum()) != pixels:
         raise ValueError(f"{int(counts.sum()):,} pixels")
     return np.repeat(groups[source], counts, axis=0)
@@ -115,7 +116,7 @@ def _literal(data: bytes) -> bytes:
 
 
 BIAS = 136
-_LONGEST_HEADER = 1 << 14
+_MAX_HEADER_BYTES = 1 << 14
 _SIZE = re.compile(rb"([-+])([XY]) (\d{1,9}) ([-+])([XY]) (\d{1,9})")
 
 
@@ -139,7 +140,7 @@ def read_rgbe_header(path: Path) -> tuple[int, int]:
     Raises:
         IoError: no Radiance picture of RGB, or a side beyond reason.
     """
-    return _header(path, read_file("read_rgbe", path, _LONGEST_HEADER)).size
+    return _header(path, read_file("read_rgbe", path, _MAX_HEADER_BYTES)).size
 
 
 def read_rgbe(path: Path) -> npt.NDArray[np.float32]:
@@ -175,11 +176,10 @@ def encode_rgbe(image: npt.NDArray[np.float32]) -> bytes:
     """(H, W, 3) as the bytes of a file, mantissas rounded to the nearest.
 
     Raises:
-        ShapeError: alpha, for which there is no place.
+        ShapeError: alpha, which the format lacks.
         RangeError: values below 0, or beyond the largest exponent (1.7e38).
     """
-    if image.shape[2] != 3:
-        raise ShapeError(message("write_rgbe", "image", "shape (H, W, 3)", image.shape))
+    image = Arguments("write_rgbe").array("image", image, ("H", "W", 3))
     largest = image.max(axis=2).astype(np.float64)
     mantissa, exponent = np.frexp(largest)
     exponent += np.rint(256.0 * mantissa) > 255  # rounded up to the next power of two
@@ -198,7 +198,7 @@ def encode_rgbe(image: npt.NDArray[np.float32]) -> bytes:
 
 def _header(path: Path, content: bytes) -> _Header:
     """Lines of text to an empty one, then the line with the size."""
-    text, blank, rest = content[:_LONGEST_HEADER].partition(b"\n\n")
+    text, blank, rest = content[:_MAX_HEADER_BYTES].partition(b"\n\n")
     line, end, _ = rest.partition(b"\n")
     found = _SIZE.fullmatch(line)
     if not blank or not end or not found or {found[2], found[5]} != {b"X", b"Y"}:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import struct
-import zlib
 from collections.abc import Callable
 from pathlib import Path
 from typing import Literal
@@ -13,7 +11,9 @@ import numpy.typing as npt
 from photograd_course.atomic_io import atomic_write
 from PIL import Image
 
-from photograd.errors import IoError, RangeError, ShapeError, message
+from photograd._arrays import Arguments
+from photograd._extras import import_extra
+from photograd.errors import IoError, RangeError, message
 from photograd.images import exr
 from photograd.images.pfm import encode_pfm
 from photograd.images.read import ImageArray
@@ -25,9 +25,9 @@ def write_png(path: Path, image: ImageArray, *, bits: Literal[8, 16] = 8) -> Non
 
     Raises:
         ShapeError, RangeError: wrong channels, empty, non-finite or outside 0..1 (clip first).
-        IoError: the file cannot be written.
+        IoError: the file cannot be written, or 16 bits without OpenCV (extra `png16`).
     """
-    samples = _quantised("write_png", image, bits)
+    samples = _quantized("write_png", image, bits)
     if bits == 16:
         atomic_write(path, _encode_png16(samples))
         return
@@ -42,9 +42,7 @@ def write_jpeg(path: Path, image: ImageArray, *, quality: int = 95) -> None:
         ShapeError, RangeError: not three channels, empty, non-finite or outside 0..1.
         IoError: the file cannot be written.
     """
-    samples = _quantised("write_jpeg", image, 8)
-    if samples.shape[2] != 3:
-        raise ShapeError(message("write_jpeg", "image", "shape (H, W, 3)", image.shape))
+    samples = _quantized("write_jpeg", image, 8, channels=(3,))
     picture = Image.fromarray(samples.astype(np.uint8))
     atomic_write(
         path, lambda stream: picture.save(stream, format="JPEG", quality=quality, subsampling=0)
@@ -58,8 +56,7 @@ def write_exr(path: Path, image: ImageArray, *, half: bool = False) -> None:
         ShapeError, RangeError: wrong channels, empty, non-finite, beyond 65504 in half.
         IoError: the file cannot be written.
     """
-    _check_pixels("write_exr", image)
-    atomic_write(path, exr.encode_exr(image, half=half))
+    atomic_write(path, exr.encode_exr(_pixels("write_exr", image), half=half))
 
 
 def write_radiance(path: Path, image: ImageArray) -> None:
@@ -80,20 +77,18 @@ def write_radiance(path: Path, image: ImageArray) -> None:
     if suffix not in encoders:
         expected = f"a name that ends in {' or '.join(encoders)}"
         raise IoError(message("write_radiance", "path", expected, path.name))
-    _check_pixels("write_radiance", image)
-    atomic_write(path, encoders[suffix](image))
+    atomic_write(path, encoders[suffix](_pixels("write_radiance", image)))
 
 
-def _check_pixels(function: str, image: ImageArray) -> None:
-    if image.ndim != 3 or image.shape[2] not in (3, 4) or image.size == 0:
-        raise ShapeError(message(function, "image", "shape (H, W, 3) or (H, W, 4)", image.shape))
-    if not bool(np.isfinite(image).all()):
-        count = int((~np.isfinite(image)).any(axis=2).sum())
-        raise RangeError(message(function, "image", "finite values", f"{count} bad pixels"))
+def _pixels(function: str, image: ImageArray, channels: tuple[int, ...] = (3, 4)) -> ImageArray:
+    shapes = [("H", "W", count) for count in channels]
+    return Arguments(function).array("image", image, *shapes, min_length=1)
 
 
-def _quantised(function: str, image: ImageArray, bits: int) -> npt.NDArray[np.uint16]:
-    _check_pixels(function, image)
+def _quantized(
+    function: str, image: ImageArray, bits: int, channels: tuple[int, ...] = (3, 4)
+) -> npt.NDArray[np.uint16]:
+    image = _pixels(function, image, channels)
     low, high = float(image.min()), float(image.max())
     if low < 0.0 or high > 1.0:
         got = f"{low:.6g} to {high:.6g}"
@@ -105,22 +100,5 @@ def _quantised(function: str, image: ImageArray, bits: int) -> npt.NDArray[np.ui
 
 
 def _encode_png16(samples: npt.NDArray[np.uint16]) -> bytes:
-    """PNG with 16 bits a sample, which Pillow cannot write for colour: header, rows, end.
-
-    Every row is stored as the difference to the row above (filter 2), which compresses well.
-    """
-    height, width, channels = samples.shape
-    rows = samples.astype(">u2").view(np.uint8).reshape(height, -1)
-    filtered = np.diff(rows, axis=0, prepend=np.zeros_like(rows[:1]))
-    stream = np.concatenate([np.full((height, 1), 2, dtype=np.uint8), filtered], axis=1).tobytes()
-    color_type = 2 if channels == 3 else 6
-    header = struct.pack(">IIBBBBB", width, height, 16, color_type, 0, 0, 0)
-
-    def chunk(kind: bytes, body: bytes) -> bytes:
-        return (
-            struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
-        )
-
-    signature = b"\x89PNG\r\n\x1a\n"
-    data = chunk(b"IDAT", zlib.compress(stream, 6))
-    return signature + chunk(b"IHDR", header) + data + chunk(b"IEND", b"")
+    cv2 = import_extra("write_png", "cv2", "png16")
+    return bytes(cv2.imencode(".png", samples[..., [2, 1, 0, 3][: samples.shape[2]]])[1])

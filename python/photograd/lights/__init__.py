@@ -1,12 +1,12 @@
 """Lights as a path tracer sees them: samples, radiance, density, and derivatives.
 
-All are objects of numbers and arrays; `sample(points, u2)` draws one direction for each point,
-`L(points, w)` (radiance) and `pdf(points, w)` ask about given ones. What stands between a point
-and a light is the tracer's business. Derivatives are by emission and texels, and for a spot by
-the shape of its cone; places are constants, since moving them moves the edges of shadows.
+All are objects of numbers and arrays; `sample(points, u2)` samples one direction for each point,
+`L(points, w)` (radiance) and `pdf(points, w)` are those of given directions. What stands between a
+point and a light is the tracer's business. Derivatives are with respect to emission and texels, and
+for a spot to the shape of its cone; positions are constants, since moving them moves the edges of
+shadows. `registry()` has the classes of all lights of a few numbers.
 
-`photograd.lights.distant` has the lights at infinity as functions of direction alone;
-`photograd.lights.prefilter` averages them beforehand, for shading by lookups.
+`photograd.lights.prefilter` averages lights at infinity beforehand, for shading by lookups.
 """
 
 from __future__ import annotations
@@ -24,6 +24,8 @@ from photograd.lights.registered import (
     SpotLight,
     SunLight,
     TriangleLight,
+    cap_height,
+    registry,
 )
 
 __all__ = [
@@ -41,4 +43,6 @@ __all__ = [
     "SunLight",
     "TriangleLight",
     "about_y",
+    "cap_height",
+    "registry",
 ]

@@ -9,7 +9,8 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from photograd.errors import DtypeError, RangeError, ShapeError, message
+from photograd._arrays import Arguments
+from photograd.errors import RangeError, message
 from photograd.types import Array
 
 
@@ -56,99 +57,62 @@ class Light(ABC):
 
     def sample(self, points: Array, u2: Array) -> LightSamples:
         """One direction towards the light for each point, from uniform u2 (N, 2)."""
-        points, u2 = checked_points(points), checked_rows("u2", u2, points, 2)
-        if len(u2) and not (u2.min() >= 0.0 and u2.max() < 1.0):
-            got = f"[{u2.min()}, {u2.max()}]"
-            raise RangeError(message("sample", "u2", "numbers in [0, 1)", got))
+        call, points = self._called("sample", points)
+        u2 = call.array("u2", u2, ("N", 2), low=0.0, below=1.0)
         core, leading = self.core_call(points.dtype)
-        direction, distance, radiance, pdf = core.sample(*leading, points, u2)
+        direction, distance, radiance, pdf = call.run(core.sample, *leading, points, u2)
         return LightSamples(direction, distance, radiance, pdf, self.is_delta)
 
     def L(self, points: Array, w: Array) -> Array:
         """What arrives at the points from w (N, 3), W/(m^2 sr); 0 of delta lights."""
-        points, w = checked_points(points), checked_directions(w, points)
+        call, points = self._called("L", points)
         core, leading = self.core_call(points.dtype)
-        found: Array = core.radiance(*leading, points, w)
+        found: Array = call.run(core.radiance, *leading, points, _directions(call, w))
         return found
 
     def pdf(self, points: Array, w: Array) -> Array:
-        """Density (N,) over solid angle with which `sample` draws w; 0 of delta lights."""
-        points, w = checked_points(points), checked_directions(w, points)
+        """Density (N,) over solid angle with which `sample` chooses w; 0 of delta lights."""
+        call, points = self._called("pdf", points)
         core, leading = self.core_call(points.dtype)
-        density: Array = core.pdf(*leading, points, w)
+        density: Array = call.run(core.pdf, *leading, points, _directions(call, w))
         return density
 
     def L_backward(self, points: Array, w: Array, d_L: Array) -> dict[str, Array]:
         """dL/dparameters of dL/d(L(points, w)) (N, 3), by name."""
-        return self._backward("radiance_backward", points, w, d_L)
+        call, points = self._called("L_backward", points)
+        return self._backward("radiance_backward", call, points, w=w, d_L=d_L)
 
     def sample_backward(
         self, points: Array, samples: LightSamples, d_radiance: Array
     ) -> dict[str, Array]:
         """dL/dparameters of dL/d(samples.radiance) (N, 3), by name.
 
-        Which directions were drawn, and how densely, is held constant. Rows with pdf = 0 must have
-        a d_radiance of 0: nothing arrived there.
+        Which directions were sampled, and how densely, is held constant. Rows with pdf = 0 must
+        have a d_radiance of 0: nothing arrived there.
         """
-        return self._backward("sample_backward", points, samples.direction, d_radiance)
+        call, points = self._called("sample_backward", points)
+        rows = {"samples.direction": samples.direction, "d_radiance": d_radiance}
+        return self._backward("sample_backward", call, points, **rows)
+
+    def _called(self, function: str, points: Array) -> tuple[Arguments, Array]:
+        call = Arguments(f"{type(self).__name__}.{function}")
+        return call, call.array("points", points, ("N", 3))
 
     def _backward(
-        self, function: str, points: Array, w: Array, d_radiance: Array
+        self, function: str, call: Arguments, points: Array, **rows: Array
     ) -> dict[str, Array]:
-        points = checked_points(points)
-        w, d_radiance = (
-            checked_rows(name, array, points, 3)
-            for name, array in (("w", w), ("d_radiance", d_radiance))
-        )
+        w, d_radiance = (call.array(name, array, ("N", 3)) for name, array in rows.items())
         core, leading = self.core_call(points.dtype)
         d = np.zeros_like(leading[0])
-        return self.named(getattr(core, function)(*leading, points, w, d_radiance, d))
+        return self.named(call.run(getattr(core, function), *leading, points, w, d_radiance, d))
 
 
-def checked_points(points: Array) -> Array:
-    """Points (N, 3), contiguous, of a floating dtype and finite."""
-    if not isinstance(points, np.ndarray) or points.dtype not in (np.float32, np.float64):
-        got = getattr(points, "dtype", type(points).__name__)
-        raise DtypeError(message("light", "points", "a float32 or float64 array", got))
-    return checked_rows("points", points, points, 3)
-
-
-def checked_rows(name: str, array: Array, points: Array, columns: int) -> Array:
-    """An array (N, columns) of finite numbers, as many rows as points, in their dtype."""
-    array = np.asarray(array)
-    if array.ndim != 2 or array.shape != (len(points), columns):
-        expected = f"shape (N, {columns}) with N = {len(points)} as in points"
-        raise ShapeError(message("light", name, expected, array.shape))
-    if array.dtype != points.dtype:
-        raise DtypeError(message("light", name, f"{points.dtype} as points", array.dtype))
-    if not np.isfinite(array).all():
-        row = int(np.flatnonzero(~np.isfinite(array).all(axis=1))[0])
-        raise RangeError(message("light", name, "finite numbers", f"{array[row]} in row {row}"))
-    return np.ascontiguousarray(array)
-
-
-def checked_directions(w: Array, points: Array) -> Array:
+def _directions(call: Arguments, w: Array) -> Array:
     """Directions (N, 3) of unit length, to a thousandth."""
-    w = checked_rows("w", w, points, 3)
+    w = call.array("w", w, ("N", 3))
     gap = np.abs((w * w).sum(axis=1) - 1.0)
     if len(w) and gap.max() > 2e-3:
         row = int(gap.argmax())
-        raise RangeError(
-            message("light", "w", "unit length", f"{w[row]} in row {row}", "divide by the norm")
-        )
+        got = f"{w[row]} in row {row}"
+        raise RangeError(message(call.function, "w", "unit length", got, "divide by the norm"))
     return w
-
-
-def unit_vector(light: str, name: str, value: Any) -> Array:
-    """`value` (3,), divided by its length.
-
-    Raises:
-        ShapeError, RangeError: not three numbers, or of no finite length.
-    """
-    vector = np.asarray(value, np.float64)
-    if vector.shape != (3,):
-        raise ShapeError(message(light, name, "shape (3,)", vector.shape))
-    norm = float(np.linalg.norm(vector))
-    if not 0.0 < norm < np.inf:
-        raise RangeError(message(light, name, "a direction", vector))
-    return np.asarray(vector / norm)

@@ -20,7 +20,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from photograd.errors import RangeError, ShapeError, message
+from photograd._arrays import Arguments
+from photograd.errors import RangeError, message
 from photograd.types import Array
 
 HEIGHTS, TURNS = 64, 48
@@ -89,9 +90,8 @@ class DfgTable:
     values: Array
 
     def __post_init__(self) -> None:
-        values = np.asarray(self.values, np.float64)
-        if values.ndim != 3 or values.shape[0] != values.shape[1] or values.shape[2] != 2:
-            raise ShapeError(message("DfgTable", "values", "shape (S, S, 2)", values.shape))
+        call = Arguments("DfgTable", np.float64)
+        values = call.array("values", self.values, ("S", "S", 2), finite=False)
         object.__setattr__(self, "values", values)
 
     def at(self, roughness: ArrayLike, cosine: ArrayLike) -> Array:

@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from photograd._arrays import Arguments
 from photograd._compiled import _core
-from photograd.errors import DtypeError, RangeError, ShapeError, message
+from photograd.errors import RangeError, message
 from photograd.lights.base import Light
 from photograd.types import Array
 
@@ -35,7 +36,7 @@ class EnvironmentMap(Light):
         texels: (H, 2 H, 3), float32 or float64, W/(m^2 sr), row 0 on top.
         world_from_map: rotation (3, 3), for example `about_y(angle)`.
         uniform_share: part of the samples that go everywhere alike, in [0, 1]. With 0, directions
-            that are black are never drawn, and a fit would learn nothing about them.
+            that are black are never sampled, and a fit would learn nothing about them.
 
     Raises:
         DtypeError: texels that are not float32 or float64.
@@ -49,17 +50,11 @@ class EnvironmentMap(Light):
     uniform_share: float = 0.0
 
     def __post_init__(self) -> None:
-        texels = np.asarray(self.texels)
-        if texels.dtype not in (np.float32, np.float64):
-            raise DtypeError(
-                message("EnvironmentMap", "texels", "float32 or float64", texels.dtype)
-            )
-        if texels.ndim != 3 or texels.shape[2] != 3:
-            raise ShapeError(message("EnvironmentMap", "texels", "shape (H, 2 H, 3)", texels.shape))
-        texels = np.ascontiguousarray(texels)
+        call = Arguments("EnvironmentMap")
+        texels = call.array("texels", self.texels, ("H", "2 H", 3), finite=False)
         object.__setattr__(self, "texels", texels)
-        object.__setattr__(self, "world_from_map", checked_rotation(self.world_from_map))
-        sampler = _core.EnvironmentSampler(texels, float(self.uniform_share))
+        object.__setattr__(self, "world_from_map", _rotation(call, self.world_from_map))
+        sampler = call.run(_core.EnvironmentSampler, texels, float(self.uniform_share))
         object.__setattr__(self, "_sampler", sampler)
 
     def with_texels(self, texels: Array) -> EnvironmentMap:
@@ -73,16 +68,8 @@ class EnvironmentMap(Light):
             ShapeError, DtypeError: texels of another shape or dtype.
             RangeError: texels that are negative, above 1e30 or not finite.
         """
-        texels = np.ascontiguousarray(texels)
-        if texels.shape != self.texels.shape:
-            expected = f"shape {self.texels.shape}"
-            raise ShapeError(message("with_texels", "texels", expected, texels.shape))
-        if texels.dtype != self.texels.dtype:
-            raise DtypeError(message("with_texels", "texels", f"{self.texels.dtype}", texels.dtype))
-        if not ((texels >= 0.0) & (texels <= 1e30)).all():
-            raise RangeError(
-                message("with_texels", "texels", "numbers from 0 to 1e30", "others among them")
-            )
+        call = Arguments("EnvironmentMap.with_texels", self.texels.dtype, convert=False)
+        texels = call.array("texels", texels, self.texels.shape, low=0.0, high=1e30)
         other = object.__new__(EnvironmentMap)
         for name, value in {**vars(self), "texels": texels}.items():
             object.__setattr__(other, name, value)
@@ -100,17 +87,12 @@ class EnvironmentMap(Light):
         return {"texels": derivative}
 
 
-def checked_rotation(matrix: Any) -> Array:
-    """`matrix` in float64 if it is a rotation."""
-    rotation = np.ascontiguousarray(matrix, np.float64)
-    if rotation.shape != (3, 3):
-        raise ShapeError(
-            message("EnvironmentMap", "world_from_map", "shape (3, 3)", rotation.shape)
-        )
-    # The last comparison is False for NaN.
+def _rotation(call: Arguments, matrix: Any) -> Array:
+    """`world_from_map` in float64 if it is a rotation."""
+    rotation = call.array("world_from_map", matrix, (3, 3), dtype=np.float64)
     fits = np.abs(rotation @ rotation.T - np.eye(3)).max() <= 1e-5
     if not fits or np.linalg.det(rotation) < 0.0:
-        raise RangeError(message("EnvironmentMap", "world_from_map", "a rotation", rotation))
+        raise RangeError(message(call.function, "world_from_map", "a rotation", rotation))
     return rotation
 
 
@@ -119,7 +101,7 @@ def checked_rotation(matrix: Any) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class DirectionMap:
-    """Laid out as `EnvironmentMap`; what the numbers mean says whoever makes one.
+    """Laid out as `EnvironmentMap`; what the numbers mean is for its maker to say.
 
     Unlike there, rows go on beyond a pole on its other side, so that smooth quantities stay smooth.
 
@@ -136,11 +118,10 @@ class DirectionMap:
     world_from_map: Array = field(default_factory=lambda: np.eye(3))
 
     def __post_init__(self) -> None:
-        values = np.asarray(self.values, np.float64)
-        if values.ndim != 3 or values.shape[1] != 2 * values.shape[0] or not values.size:
-            raise ShapeError(message("DirectionMap", "values", "shape (H, 2 H, C)", values.shape))
+        call = Arguments("DirectionMap", np.float64)
+        values = call.array("values", self.values, ("H", "2 H", "C"), finite=False, min_length=1)
         object.__setattr__(self, "values", values)
-        object.__setattr__(self, "world_from_map", checked_rotation(self.world_from_map))
+        object.__setattr__(self, "world_from_map", _rotation(call, self.world_from_map))
 
     def at(self, w: Array) -> Array:
         """Values (..., C) in directions w (..., 3) of the world, of any length; bilinear."""

@@ -29,7 +29,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import ArrayLike
 
-from photograd.errors import RangeError, ShapeError, message
+from photograd._arrays import Arguments
+from photograd.errors import RangeError, message
 from photograd.lights.base import Light
 from photograd.lights.dfg import DfgTable, dfg_table
 from photograd.lights.environment import DirectionMap, EnvironmentMap, cell_directions
@@ -264,11 +265,9 @@ def shade(
     Raises:
         ShapeError: normals and wo of different shapes.
     """
-    n, v = np.asarray(normals, np.float64), np.asarray(wo, np.float64)
-    if n.shape != v.shape or n.shape[-1:] != (3,):
-        raise ShapeError(
-            message("shade", "normals, wo", "shape (..., 3), both", (n.shape, v.shape))
-        )
+    call = Arguments("shade", np.float64)
+    n = call.array("normals", normals, (..., 3))
+    v = call.array("wo", wo, n.shape)
     color = np.asarray(base_color, np.float64)
     metal, gloss = np.asarray(metalness)[..., None], np.asarray(reflectance)[..., None]
     cosine = (n * v).sum(axis=-1)

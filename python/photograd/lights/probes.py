@@ -19,13 +19,13 @@ Plain NumPy: a scene has some thousands of probes, and the work is one gather an
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from photograd import sh
-from photograd.errors import DtypeError, RangeError, ShapeError, message
+from photograd._arrays import Arguments
+from photograd.errors import RangeError, message
 from photograd.types import Array
 
 
@@ -35,7 +35,7 @@ class ProbeGrid:
     Attributes:
         coefficients: (X, Y, Z, K, C) float32 or float64; a parameter, change it freely. The
             radiance that arrives from direction d is sum_k Y_k(d) coefficients[..., k, :].
-        box: (2, 3) lowest and highest corner in the world, metres. Beyond the outermost probes
+        box: (2, 3) lowest and highest corner in the world, meters. Beyond the outermost probes
             their values continue.
     """
 
@@ -46,15 +46,12 @@ class ProbeGrid:
             ShapeError, DtypeError: other shapes or types.
             RangeError: K is no count of coefficients, C is neither 1 nor 3, an empty box.
         """
-        corners = np.asarray(box, np.float64)
-        if coefficients.ndim != 5 or 0 in coefficients.shape:
-            got = f"shape {coefficients.shape}"
-            raise ShapeError(message("ProbeGrid", "coefficients", "shape (X, Y, Z, K, C)", got))
-        if coefficients.dtype not in (np.float32, np.float64):
-            got = str(coefficients.dtype)
-            raise DtypeError(message("ProbeGrid", "coefficients", "float32 or float64", got))
-        if corners.shape != (2, 3) or not (corners[1] > corners[0]).all():
-            expected = "(2, 3), the lowest corner below the highest"
+        call = Arguments("ProbeGrid")
+        shape = ("X", "Y", "Z", "K", "C")
+        coefficients = call.array("coefficients", coefficients, shape, finite=False, min_length=1)
+        corners = call.array("box", box, (2, 3), dtype=np.float64)
+        if not (corners[1] > corners[0]).all():
+            expected = "the lowest corner below the highest"
             raise RangeError(message("ProbeGrid", "box", expected, corners.tolist()))
         self.degree = sh.degree_of(coefficients.shape[3])
         if coefficients.shape[4] not in (1, 3):
@@ -73,36 +70,60 @@ class ProbeGrid:
 
     def interpolate(self, points: Array) -> Array:
         """Coefficients (N, K, C) at points (N, 3) in the world."""
-        rows, weights = self._corners(points)
-        flat = self.coefficients.reshape(-1, *self.coefficients.shape[3:])
-        return np.asarray(np.einsum("ni,nikc->nkc", weights, flat[rows]))
+        return self._interpolated(self._call("interpolate", points=points))
 
     def interpolate_backward(self, points: Array, d_values: Array) -> Array:
         """dL/dcoefficients (X, Y, Z, K, C) of dL/dvalues (N, K, C)."""
-        rows, weights = self._corners(points)
-        d_coefficients = np.zeros_like(self.coefficients)
-        flat = d_coefficients.reshape(-1, *self.coefficients.shape[3:])
-        np.add.at(flat, rows, weights[..., None, None] * d_values[:, None])
-        return d_coefficients
+        given = self._call("interpolate_backward", points=points, d_values=d_values)
+        return self._interpolated_backward(given)
 
     def irradiance(self, points: Array, normals: Array) -> Array:
         """Irradiance (N, C) in W/m^2 on surfaces at points (N, 3) with unit normals (N, 3)."""
-        blended = self._lobe() * self.interpolate(points)
-        return sh.evaluate(blended, _rows("normals", normals, self.coefficients.dtype))
+        given = self._call("irradiance", points=points, normals=normals)
+        return sh.evaluate(self._lobe() * self._interpolated(given), given["normals"])
 
     def irradiance_backward(
         self, points: Array, normals: Array, d_irradiance: Array
     ) -> tuple[Array, Array]:
         """dL/dcoefficients (X, Y, Z, K, C) and dL/dnormals (N, 3) of dL/dirradiance (N, C).
 
-        The derivative by a normal is that of the polynomials, before any normalisation.
+        The derivative with respect to a normal is that of the polynomials, before normalization.
         """
-        dtype = self.coefficients.dtype
-        blended = self._lobe() * self.interpolate(points)
-        d_blended, d_normals = sh.evaluate_backward(
-            blended, _rows("normals", normals, dtype), np.asarray(d_irradiance, dtype)
+        given = self._call(
+            "irradiance_backward", points=points, normals=normals, d_irradiance=d_irradiance
         )
-        return self.interpolate_backward(points, self._lobe() * d_blended), d_normals
+        d_blended, d_normals = sh.evaluate_backward(
+            self._lobe() * self._interpolated(given), given["normals"], given["d_irradiance"]
+        )
+        given["d_values"] = self._lobe() * d_blended
+        return self._interpolated_backward(given), d_normals
+
+    def _call(self, function: str, **arrays: Array) -> dict[str, Array]:
+        """The arrays of a call, converted: points to float64, others to the dtype of the grid."""
+        *_, k, c = self.coefficients.shape
+        shapes = {"d_values": ("N", k, c), "d_irradiance": ("N", c)}
+        call = Arguments(f"ProbeGrid.{function}", self.coefficients.dtype)
+        return {
+            name: call.array(
+                name,
+                array,
+                shapes.get(name, ("N", 3)),
+                dtype=np.float64 if name == "points" else None,
+            )
+            for name, array in arrays.items()
+        }
+
+    def _interpolated(self, given: dict[str, Array]) -> Array:
+        rows, weights = self._corners(given["points"])
+        flat = self.coefficients.reshape(-1, *self.coefficients.shape[3:])
+        return np.asarray(np.einsum("ni,nikc->nkc", weights, flat[rows]))
+
+    def _interpolated_backward(self, given: dict[str, Array]) -> Array:
+        rows, weights = self._corners(given["points"])
+        d_coefficients = np.zeros_like(self.coefficients)
+        flat = d_coefficients.reshape(-1, *self.coefficients.shape[3:])
+        np.add.at(flat, rows, weights[..., None, None] * given["d_values"][:, None])
+        return d_coefficients
 
     def _lobe(self) -> Array:
         """(K, 1) the cosine lobe, degree by degree."""
@@ -110,9 +131,8 @@ class ProbeGrid:
         lobe = np.repeat(sh.COSINE_LOBE[: self.degree + 1], orders)
         return lobe.astype(self.coefficients.dtype)[:, None]
 
-    def _corners(self, points: Array) -> tuple[NDArray[np.intp], Array]:
+    def _corners(self, p: Array) -> tuple[NDArray[np.intp], Array]:
         """Rows (N, 8) of the probes around each point, and their weights (N, 8)."""
-        p = _rows("points", points, np.dtype(np.float64))
         shape = np.array(self.coefficients.shape[:3])
         q = (p - self.box[0]) / (self.box[1] - self.box[0]) * shape - 0.5
         q = np.clip(q, 0, shape - 1)
@@ -153,11 +173,9 @@ def bake(
     grid = ProbeGrid(np.zeros((*shape, sh.count(degree), 3)), box)
     Y = weights[:, None] * sh.basis(directions, degree)
     found = []
+    call = Arguments("bake", np.float64)
     for position in grid.positions.reshape(-1, 3):
-        values = np.asarray(radiance(position, directions), np.float64)
-        if values.ndim != 2 or len(values) != len(directions):
-            expected = f"shape ({len(directions)}, C)"
-            raise ShapeError(message("bake", "radiance", expected, f"shape {values.shape}"))
+        values = call.array("radiance", radiance(position, directions), (len(directions), "C"))
         found.append(Y.T @ values)
     return ProbeGrid(np.stack(found).reshape(*shape, *found[0].shape), box)
 
@@ -173,19 +191,6 @@ def sphere_quadrature(order: int) -> tuple[NDArray[np.float64], NDArray[np.float
     x, y = r * np.cos(phi), r * np.sin(phi)
     directions = np.stack([x, y, np.broadcast_to(z[:, None], x.shape)], axis=-1).reshape(-1, 3)
     return directions, np.repeat(of_ring * np.pi / order, 2 * order)
-
-
-def _rows(argument: str, array: Array, dtype: np.dtype[Any]) -> Array:
-    """(N, 3), finite, of a dtype."""
-    rows = np.ascontiguousarray(array, dtype)
-    if rows.ndim != 2 or rows.shape[1] != 3:
-        raise ShapeError(message("ProbeGrid", argument, "shape (N, 3)", f"shape {rows.shape}"))
-    if not np.isfinite(rows).all():
-        bad = int((~np.isfinite(rows).all(axis=1)).sum())
-        raise RangeError(
-            message("ProbeGrid", argument, "finite numbers", f"{bad} rows that are not")
-        )
-    return rows
 
 
 # A table over directions: the plain alternative to spherical harmonics, and what each costs.
@@ -218,8 +223,7 @@ def grid_bytes(
         RangeError: anything below 1.
         ShapeError: not three axes.
     """
-    if len(shape) != 3:
-        raise ShapeError(message("grid_bytes", "shape", "(X, Y, Z)", tuple(shape)))
+    Arguments("grid_bytes").array("shape", shape, (3,), dtype=np.int64)
     if min(*shape, numbers, channels, bytes_per_number) < 1:
         got = (*shape, numbers, channels, bytes_per_number)
         raise RangeError(message("grid_bytes", "sizes", "all at least 1", got))
@@ -255,14 +259,16 @@ def blend(directions: Array, rows: int) -> tuple[NDArray[np.intp], NDArray[np.fl
 
 def evaluate(table: Array, directions: Array) -> Array:
     """Values (N, C) of a table (T, 2 T, C) in directions (N, 3)."""
-    entries, weights = blend(directions, _rows_of("evaluate", table))
+    table = Arguments("evaluate").array("table", table, ("T", "2 T", "C"), finite=False)
+    entries, weights = blend(directions, len(table))
     flat = table.reshape(-1, table.shape[2])
     return np.asarray(np.einsum("nj,njc->nc", weights.astype(table.dtype), flat[entries]))
 
 
 def evaluate_backward(table: Array, directions: Array, d_values: Array) -> Array:
     """dL/dtable (T, 2 T, C) of dL/dvalues (N, C). Directions are held fixed."""
-    entries, weights = blend(directions, _rows_of("evaluate_backward", table))
+    table = Arguments("evaluate_backward").array("table", table, ("T", "2 T", "C"), finite=False)
+    entries, weights = blend(directions, len(table))
     d_table = np.zeros_like(table)
     flat = d_table.reshape(-1, table.shape[2])
     np.add.at(flat, entries, weights.astype(table.dtype)[..., None] * d_values[:, None])
@@ -315,9 +321,3 @@ def _relative(weights: Array, found: Array, values: Array) -> float:
     """Root of the weighted mean square of the difference, in shares of that of `values`."""
     square = (weights @ (found - values) ** 2).sum() / (weights @ values**2).sum()
     return float(np.sqrt(square))
-
-
-def _rows_of(name: str, table: Array) -> int:
-    if table.ndim != 3 or table.shape[1] != 2 * table.shape[0]:
-        raise ShapeError(message(name, "table", "shape (T, 2 T, C)", f"shape {table.shape}"))
-    return int(table.shape[0])

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
+from photograd._arrays import Arguments
 from photograd._compiled import _core
-from photograd.bsdf import Parameter
-from photograd.errors import RangeError, ShapeError, message
-from photograd.lights.base import Light, unit_vector
+from photograd._registry import Parameters, Registry
+from photograd.errors import RangeError, message
+from photograd.lights.base import Light
 from photograd.types import Array
 
 _DIRECTIONS = {"direction", "axis"}  # made unit vectors here, so that any length may be given
@@ -32,20 +33,26 @@ class RegisteredLight(Light):
     core_name: ClassVar[str]
 
     def __post_init__(self) -> None:
+        call = Arguments(type(self).__name__, np.float64)
         for name in _DIRECTIONS & set(vars(self)):
-            object.__setattr__(self, name, unit_vector(self.core_name, name, getattr(self, name)))
-        core, leading = self.core_call(np.float64)
-        core.pdf(*leading, np.zeros((0, 3)), np.zeros((0, 3)))  # the core looks at the numbers
+            object.__setattr__(self, name, _unit_vector(call, name, getattr(self, name)))
+        leading = tuple(self._pack(call, described) for described in self._described())
+        nowhere = np.zeros((0, 3))
+        call.run(self._functions().pdf, *leading, nowhere, nowhere)  # the core looks at the numbers
 
     @classmethod
-    def parameters(cls) -> tuple[Parameter, ...]:
+    def parameters(cls) -> Parameters:
         """What is differentiated, in the core's order."""
-        return tuple(Parameter(*row) for row in cls._functions().parameters())
+        return Parameters.of(cls._functions().parameters())
 
     @classmethod
-    def constants(cls) -> tuple[Parameter, ...]:
+    def constants(cls) -> Parameters:
         """What is not: it moves edges, where no derivative exists."""
-        return tuple(Parameter(*row) for row in cls._functions().constants())
+        return Parameters.of(cls._functions().constants())
+
+    @classmethod
+    def _described(cls) -> tuple[Parameters, Parameters]:
+        return cls.parameters(), cls.constants()
 
     @classmethod
     def _functions(cls) -> Any:
@@ -53,28 +60,24 @@ class RegisteredLight(Light):
 
     def core_call(self, dtype: npt.DTypeLike) -> tuple[Any, tuple[Array, ...]]:
         """The core's class for this light; parameters (P,) and constants (C,)."""
-        packed = (self._pack(described) for described in (self.parameters(), self.constants()))
-        return self._functions(), tuple(part.astype(dtype) for part in packed)
+        call = Arguments(type(self).__name__, dtype)
+        return self._functions(), tuple(self._pack(call, each) for each in self._described())
 
-    def _pack(self, described: tuple[Parameter, ...]) -> Array:
-        parts = [np.zeros(0)]
-        for parameter in described:
-            value = np.asarray(getattr(self, parameter.name), np.float64)
-            expected = (parameter.size,) if parameter.size > 1 else ()
-            if value.shape != expected:
-                raise ShapeError(
-                    message(self.core_name, parameter.name, f"shape {expected}", value.shape)
-                )
-            parts.append(value.reshape(-1))
-        return np.concatenate(parts)
+    def _pack(self, call: Arguments, described: Parameters) -> Array:
+        values = {parameter.name: getattr(self, parameter.name) for parameter in described}
+        return described.pack_one(call, "", values, positive=False)
 
     def named(self, derivative: Array) -> dict[str, Array]:
         """{name: () or (3,)} of a derivative (P,)."""
-        ends = np.cumsum([parameter.size for parameter in self.parameters()])[:-1]
-        return {
-            parameter.name: part if parameter.size > 1 else part[0]
-            for parameter, part in zip(self.parameters(), np.split(derivative, ends), strict=True)
-        }
+        return self.parameters().unpack(derivative)
+
+
+def _unit_vector(call: Arguments, name: str, value: Any) -> Array:
+    vector = call.array(name, value, (3,))
+    norm = float(np.linalg.norm(vector))
+    if not 0.0 < norm < np.inf:
+        raise RangeError(message(call.function, name, "a direction", vector))
+    return np.asarray(vector / norm)
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,7 +133,7 @@ class ConstantLight(RegisteredLight):
 
 @dataclass(frozen=True, eq=False)
 class SkyLight(RegisteredLight):
-    """A dome whose radiance (3,) each, W/(m^2 sr), blends by height (photograd.lights.distant)."""
+    """A dome whose radiance (3,) each, W/(m^2 sr), blends by height."""
 
     zenith: Any
     horizon: Any
@@ -143,7 +146,7 @@ class SunLight(RegisteredLight):
     """A disc at infinity around `direction` (3,) of equal `radiance` (3,), W/(m^2 sr).
 
     Attributes:
-        height: 1 - cos(angular radius), as `photograd.lights.distant.cap_height` makes it.
+        height: 1 - cos(angular radius), as `cap_height` makes it.
     """
 
     direction: Any
@@ -154,7 +157,7 @@ class SunLight(RegisteredLight):
 
 @dataclass(frozen=True, eq=False)
 class QuadLight(RegisteredLight):
-    """A rectangle that glows on the side of edge_x x edge_y, sampled by solid angle.
+    """A rectangle that emits on the side of edge_x x edge_y, sampled by solid angle.
 
     Attributes:
         corner: (3,), m.
@@ -171,7 +174,7 @@ class QuadLight(RegisteredLight):
 
 @dataclass(frozen=True, eq=False)
 class SphereLight(RegisteredLight):
-    """A ball around `center` (3,) of `radius`, m, that glows outwards, `radiance` (3,)."""
+    """A ball around `center` (3,) of `radius`, m, that emits outwards, `radiance` (3,)."""
 
     center: Any
     radius: float
@@ -181,7 +184,7 @@ class SphereLight(RegisteredLight):
 
 @dataclass(frozen=True, eq=False)
 class TriangleLight(RegisteredLight):
-    """Corners a, b, c (3,), m, counterclockwise seen from where it glows; `radiance` (3,)."""
+    """Corners a, b, c (3,), m, counterclockwise seen from where it emits; `radiance` (3,)."""
 
     a: Any
     b: Any
@@ -190,9 +193,14 @@ class TriangleLight(RegisteredLight):
     core_name: ClassVar[str] = "triangle"
 
 
-CLASSES: Mapping[str, type[RegisteredLight]] = {
-    light.core_name: light
-    for light in (
+def cap_height(angular_radius: float) -> float:
+    """1 - cos(angular_radius), without cancellation: the sun's constant `height`."""
+    return 2.0 * math.sin(0.5 * angular_radius) ** 2
+
+
+def registry() -> Registry[type[RegisteredLight]]:
+    """The classes of all lights of a few numbers, by their names in the core."""
+    classes = (
         PointLight,
         SpotLight,
         DirectionalLight,
@@ -203,18 +211,4 @@ CLASSES: Mapping[str, type[RegisteredLight]] = {
         SphereLight,
         TriangleLight,
     )
-}
-
-
-def from_values(name: str, values: Mapping[str, Any]) -> RegisteredLight:
-    """The light of this name in the registry, from {attribute: value}.
-
-    Raises:
-        RangeError: an unknown name, attributes that are missing or unknown, or bad values.
-    """
-    if name not in CLASSES:
-        raise RangeError(message("from_values", "name", f"one of {sorted(CLASSES)}", name))
-    known = {p.name for p in (*CLASSES[name].parameters(), *CLASSES[name].constants())}
-    if set(values) != known:
-        raise RangeError(message(name, "values", f"exactly {sorted(known)}", sorted(values)))
-    return CLASSES[name](**values)
+    return Registry("light", {light.core_name: light for light in classes})

@@ -15,10 +15,11 @@ from photograd_course import random
 from photograd_course.checks import require_integer, require_number
 from photograd_course.color import srgb_encode, unpremultiply
 
+from photograd._arrays import Arguments
 from photograd.capture.camera import Camera
 from photograd.capture.orbit import look_at
 from photograd.capture.write import Frame
-from photograd.errors import RangeError, ShapeError, message
+from photograd.errors import RangeError, message
 from photograd.scenes.description import Points, SceneDescription
 
 LOWEST, HIGHEST = -0.3, 0.92
@@ -65,11 +66,9 @@ def capture_cameras(
         ShapeError, RangeError, DtypeError: a bad box, number of views, size, seed or radius.
     """
     name = "capture_cameras"
-    box = np.asarray(bounds, dtype=np.float64)
-    if box.shape != (2, 3):
-        raise ShapeError(message(name, "bounds", "shape (2, 3)", box.shape))
-    if not bool(np.isfinite(box).all() and (box[0] < box[1]).all()):
-        expected = "a finite box, low < high on every axis"
+    box = Arguments(name, np.float64).array("bounds", bounds, (2, 3))
+    if not bool((box[0] < box[1]).all()):
+        expected = "a box, low < high on every axis"
         raise RangeError(message(name, "bounds", expected, box.tolist()))
     require_integer(name, "views", views, least=1, most=1 << 16)
     require_integer(name, "test_views", test_views, least=0, most=1 << 16)
@@ -212,11 +211,11 @@ def _checked(
     where: str, radiance: Picture, alpha: Picture, shape: tuple[int, int]
 ) -> npt.NDArray[np.float32]:
     """What the renderer returned as (H, W, 4) float32, or why it cannot be that."""
-    for name, array, expected in (("radiance", radiance, (*shape, 3)), ("alpha", alpha, shape)):
-        if array.shape != expected:
-            argument = f"render_view: {where}: {name}"
-            raise ShapeError(message("capture_scene", argument, f"shape {expected}", array.shape))
-    linear = np.concatenate([radiance, alpha[..., None]], axis=-1).astype(np.float32)
+    call = Arguments("capture_scene", np.float32)
+    name = f"render_view: {where}"
+    radiance = call.array(f"{name}: radiance", radiance, (*shape, 3), finite=False)
+    alpha = call.array(f"{name}: alpha", alpha, shape, finite=False)
+    linear = np.concatenate([radiance, alpha[..., None]], axis=-1)
     good = np.isfinite(linear).all(axis=-1) & (linear >= 0.0).all(axis=-1) & (linear[..., 3] <= 1.0)
     if not bool(good.all()):
         row, column = np.argwhere(~good)[0]

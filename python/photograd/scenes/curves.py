@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from photograd_course.checks import require_integer
 
-from photograd.errors import RangeError, ShapeError, message
+from photograd._arrays import Arguments
+from photograd.errors import RangeError, message
 from photograd.types import FloatArray
 
 
@@ -30,7 +31,7 @@ def smooth_curve(points: FloatArray, count: int, *, closed: bool = False) -> Flo
     Raises:
         ShapeError, RangeError, DtypeError: too few points, or points that are not finite.
     """
-    points = _check_points("smooth_curve", points)
+    points = _checked("smooth_curve", points, ("P", "D"))
     require_integer("smooth_curve", "count", count, least=2)
     if closed:
         dense = _spline(np.concatenate([points[-1:], points, points[:2]]))
@@ -62,7 +63,7 @@ def evenly_spaced(points: FloatArray, count: int) -> FloatArray:
     Raises:
         ShapeError, RangeError, DtypeError: too few points, not finite, or all the same.
     """
-    points = _check_points("evenly_spaced", points)
+    points = _checked("evenly_spaced", points, ("P", "D"))
     require_integer("evenly_spaced", "count", count, least=2)
     lengths = np.linalg.norm(np.diff(points, axis=0), axis=1)
     along = np.concatenate([[0.0], np.cumsum(lengths)])
@@ -86,9 +87,7 @@ def untwisted_frames(points: FloatArray, *, closed: bool = False) -> tuple[Float
     Raises:
         ShapeError, RangeError: not (N, 3), too few, or neighbours that coincide.
     """
-    points = _check_points("untwisted_frames", points)
-    if points.shape[1] != 3:
-        raise ShapeError(message("untwisted_frames", "points", "shape (N, 3)", points.shape))
+    points = _checked("untwisted_frames", points, ("N", 3))
     tangents = _tangents(points, closed)
     count = len(points)
     normals = np.empty_like(points)
@@ -138,10 +137,5 @@ def _carried(points: FloatArray, tangents: FloatArray, normal: FloatArray) -> Fl
     return np.asarray(reflected)
 
 
-def _check_points(function: str, points: FloatArray) -> FloatArray:
-    points = np.asarray(points, dtype=np.float64)
-    if points.ndim != 2 or len(points) < 2:
-        raise ShapeError(message(function, "points", "shape (P, D) with P >= 2", points.shape))
-    if not bool(np.isfinite(points).all()):
-        raise RangeError(message(function, "points", "finite numbers", "NaN or infinity"))
-    return points
+def _checked(function: str, points: FloatArray, shape: tuple[str | int, ...]) -> FloatArray:
+    return Arguments(function, np.float64).array("points", points, shape, min_length=2)

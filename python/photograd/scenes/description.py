@@ -1,7 +1,7 @@
 """What a scene is: meshes with an albedo, a sun, a sky, a box, and perhaps a cloud of density.
 
-A description holds arrays and numbers only; whoever renders it builds what it needs from them.
-World as everywhere: right-handed, +Y up, metres. Radiance and albedo are linear Rec. 709.
+A description holds arrays and numbers only; a renderer builds what it needs from them.
+World as everywhere: right-handed, +Y up, meters. Radiance and albedo are linear Rec. 709.
 """
 
 from __future__ import annotations
@@ -14,7 +14,9 @@ import numpy as np
 import numpy.typing as npt
 from photograd_course.checks import require_number
 
-from photograd.errors import DtypeError, RangeError, SceneError, ShapeError, message
+from photograd._arrays import Arguments
+from photograd.errors import RangeError, SceneError, message
+from photograd.types import Array
 
 Points: TypeAlias = npt.NDArray[np.float64]
 """(N, 3) positions in the world, or a (3,) vector."""
@@ -31,14 +33,14 @@ class SceneMesh:
     """Triangles, counter-clockwise seen from outside, with a diffuse albedo in 0..1.
 
     Attributes:
-        vertices: (V, 3) float32, metres.
+        vertices: (V, 3) float32, meters.
         faces: (F, 3) uint32 indices of vertices.
-        albedo: float32; (3,) one colour, (V, 3) colours of vertices, or (H, W, 3) a texture.
+        albedo: float32; (3,) one color, (V, 3) colors of vertices, or (H, W, 3) a texture.
         uv: (V, 2) float32 texture coordinates, u right and v down, (0, 0) the texture's top left
             corner; needed by a texture, otherwise optional.
 
     Raises:
-        ShapeError, DtypeError: arrays of other shapes or types; nothing is converted.
+        ShapeError, DtypeError: arrays of other shapes, or not float32; only lists are converted.
         RangeError: non-finite numbers, indices of no vertex, albedo outside 0..1.
         SceneError: triangles without area, or a texture without uv.
     """
@@ -49,15 +51,16 @@ class SceneMesh:
     uv: npt.NDArray[np.float32] | None = None
 
     def __post_init__(self) -> None:
-        vertices = _array("vertices", self.vertices, np.float32, (-1, 3))
-        faces = _array("faces", self.faces, np.uint32, (-1, 3))
-        count = len(vertices)
-        if int(faces.max()) >= count:
-            expected = f"indices below V = {count}"
+        call = Arguments("SceneMesh", np.float32, convert=False)
+        vertices = call.array("vertices", self.vertices, ("V", 3), min_length=1)
+        faces = call.array("faces", self.faces, ("F", 3), dtype=np.uint32, min_length=1)
+        if int(faces.max()) >= len(vertices):
+            expected = f"indices below V = {len(vertices)}"
             raise RangeError(message("SceneMesh", "faces", expected, int(faces.max())))
         _check_areas(vertices, faces)
-        albedo = _check_albedo(self.albedo, count)
-        uv = None if self.uv is None else _array("uv", self.uv, np.float32, (count, 2))
+        shapes = ((3,), ("V", 3), ("H", "W", 3))
+        albedo = call.array("albedo", self.albedo, *shapes, min_length=1, low=0.0, high=1.0)
+        uv = None if self.uv is None else call.array("uv", self.uv, ("V", 2))
         if albedo.ndim == 3 and uv is None:
             remedy = "a texture needs coordinates"
             raise SceneError(message("SceneMesh", "uv", "shape (V, 2)", "None", remedy))
@@ -67,7 +70,7 @@ class SceneMesh:
             ("albedo", albedo),
             ("uv", uv),
         ):
-            object.__setattr__(self, name, array)
+            object.__setattr__(self, name, None if array is None else _read_only(array))
 
     @property
     def albedo_kind(self) -> Literal["constant", "vertices", "texture"]:
@@ -192,7 +195,8 @@ class SceneDescription:
     def __post_init__(self) -> None:
         if not self.meshes:
             raise SceneError(message("SceneDescription", "meshes", "at least one", "none"))
-        bounds = _finite("SceneDescription", "bounds", self.bounds, (2, 3))
+        call = Arguments("SceneDescription", np.float64)
+        bounds = _read_only(call.array("bounds", self.bounds, (2, 3)))
         if not bool((bounds[0] < bounds[1]).all()):
             expected = "a box, low < high on every axis"
             raise RangeError(message("SceneDescription", "bounds", expected, bounds.tolist()))
@@ -207,52 +211,15 @@ class SceneDescription:
 
 
 def bounds_of(meshes: tuple[SceneMesh, ...], *, margin: float = 0.02) -> Points:
-    """Box (2, 3) of all vertices, with `margin` metres left free on every side."""
+    """Box (2, 3) of all vertices, with `margin` meters left free on every side."""
     boxes = np.stack([mesh.box for mesh in meshes])
     return np.stack([boxes[:, 0].min(axis=0) - margin, boxes[:, 1].max(axis=0) + margin])
 
 
-def _array(
-    name: str, value: npt.NDArray[np.generic], dtype: type[np.generic], shape: tuple[int, int]
-) -> npt.NDArray[np.generic]:
-    """A read-only copy of a finite array with this dtype and shape; -1 stands for one or more."""
-    if not isinstance(value, np.ndarray) or value.dtype != dtype:
-        got = getattr(value, "dtype", type(value).__name__)
-        remedy = "convert it yourself, with .astype"
-        raise DtypeError(message("SceneMesh", name, f"{dtype.__name__} array", got, remedy))
-    rows, columns = shape
-    fits = value.ndim == 2 and value.shape[1] == columns and value.size > 0
-    if not fits or (rows >= 0 and len(value) != rows):
-        expected = f"shape ({'at least 1' if rows < 0 else rows}, {columns})"
-        raise ShapeError(message("SceneMesh", name, expected, value.shape))
-    return _frozen(name, value)
-
-
-def _frozen(name: str, value: npt.NDArray[np.generic]) -> npt.NDArray[np.generic]:
-    finite = np.isfinite(value.astype(np.float64)).reshape(len(value), -1).all(axis=1)
-    if not bool(finite.all()):
-        got = f"NaN or infinity, first in row {int(np.argmin(finite))}"
-        raise RangeError(message("SceneMesh", name, "finite numbers", got))
-    copy = np.array(value, order="C")
+def _read_only(array: Array) -> Array:
+    copy = np.array(array, order="C")
     copy.setflags(write=False)
     return copy
-
-
-def _check_albedo(value: npt.NDArray[np.float32], count: int) -> npt.NDArray[np.generic]:
-    if not isinstance(value, np.ndarray) or value.dtype != np.float32:
-        got = getattr(value, "dtype", type(value).__name__)
-        raise DtypeError(message("SceneMesh", "albedo", "float32 array", got, "use .astype"))
-    shape = value.shape
-    known = shape in ((3,), (count, 3)) or (value.ndim == 3 and shape[2] == 3)
-    if not known or value.size == 0:
-        expected = f"shape (3,), (V, 3) with V = {count}, or (H, W, 3)"
-        raise ShapeError(message("SceneMesh", "albedo", expected, shape))
-    albedo = _frozen("albedo", value)
-    low, high = float(value.min()), float(value.max())
-    if low < 0.0 or high > 1.0:
-        remedy = "a surface reflects no more than it receives"
-        raise RangeError(message("SceneMesh", "albedo", "0..1", f"{low:g} to {high:g}", remedy))
-    return albedo
 
 
 def _check_areas(vertices: npt.NDArray[np.generic], faces: npt.NDArray[np.generic]) -> None:
@@ -265,22 +232,9 @@ def _check_areas(vertices: npt.NDArray[np.generic], faces: npt.NDArray[np.generi
         raise SceneError(message("SceneMesh", "faces", "triangles with an area", got))
 
 
-def _finite(function: str, name: str, value: Points, shape: tuple[int, ...]) -> Points:
-    array = np.array(value, dtype=np.float64)
-    if array.shape != shape:
-        raise ShapeError(message(function, name, f"shape {shape}", array.shape))
-    if not bool(np.isfinite(array).all()):
-        raise RangeError(message(function, name, "finite numbers", array.tolist()))
-    array.setflags(write=False)
-    return array
-
-
 def _vector(function: str, name: str, value: Points) -> Points:
-    return _finite(function, name, value, (3,))
+    return _read_only(Arguments(function, np.float64).array(name, value, (3,)))
 
 
 def _color(function: str, name: str, value: Points) -> Points:
-    color = _finite(function, name, value, (3,))
-    if bool((color < 0.0).any()):
-        raise RangeError(message(function, name, "radiance of at least 0", color.tolist()))
-    return color
+    return _read_only(Arguments(function, np.float64).array(name, value, (3,), low=0.0))

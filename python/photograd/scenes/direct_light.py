@@ -7,10 +7,9 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
+from photograd._arrays import Arguments
 from photograd.capture.camera import Camera
-from photograd.errors import ShapeError, message
-from photograd.lights import SunLight
-from photograd.lights.distant import cap_height
+from photograd.lights import SunLight, cap_height
 from photograd.scenes.description import SceneDescription, SceneMesh
 from photograd.transport.accumulation import Accumulation
 from photograd.transport.material import Material
@@ -38,8 +37,8 @@ def vertex_color_texture(faces: npt.NDArray[np.uint32], colors: Floats) -> tuple
     Raises:
         ShapeError: colors that are not (V, 3).
     """
-    if colors.ndim != 2 or colors.shape[1] != 3:
-        raise ShapeError(message("vertex_color_texture", "colors", "shape (V, 3)", colors.shape))
+    call = Arguments("vertex_color_texture")
+    colors = call.array("colors", colors, ("V", 3), finite=False)
     number = np.arange(len(faces))
     columns = int(np.ceil(np.sqrt(len(faces))))
     rows = -(-len(faces) // columns)

@@ -12,9 +12,10 @@ from typing import Final
 
 import numpy as np
 from photograd_course import random
-from photograd_course.checks import require_float_array, require_integer, require_number
+from photograd_course.checks import require_integer, require_number
 
-from photograd.errors import RangeError, ShapeError, message
+from photograd._arrays import Arguments
+from photograd.errors import RangeError, message
 from photograd.types import FloatArray
 
 _TABLE: Final = 256
@@ -58,6 +59,7 @@ _COMPASS: Final = np.array(
 )
 
 _GRADIENTS: Final = {2: _COMPASS, 3: _EDGES}
+POINTS: Final = ((..., 2), (..., 3))
 
 
 def gradient_noise(
@@ -78,7 +80,7 @@ def gradient_noise(
         DtypeError, ShapeError: points are no float array, or neither 2D nor 3D.
         RangeError: non-finite points, a period outside 1..256.
     """
-    points = _check_points("gradient_noise", points)
+    points = Arguments("gradient_noise", np.float64).array("points", points, *POINTS, floating=True)
     if period is not None:
         require_integer("gradient_noise", "period", period, least=1, most=_TABLE)
     table = random.permutation(seed, _TABLE, step=octave)
@@ -133,7 +135,7 @@ def fractal_noise(
     Raises:
         DtypeError, ShapeError, RangeError: as `gradient_noise`, or numbers outside their range.
     """
-    points = _check_points("fractal_noise", points)
+    points = Arguments("fractal_noise", np.float64).array("points", points, *POINTS, floating=True)
     require_integer("fractal_noise", "octaves", octaves, least=1, most=12)
     require_number("fractal_noise", "gain", gain, least=0.0, most=1.0)
     if period is not None and (period << (octaves - 1)) > _TABLE:
@@ -146,12 +148,3 @@ def fractal_noise(
         noise = gradient_noise(points * 2.0**k, seed=seed, octave=k, period=finer)
         total += weights[k] * (1.0 - 2.0 * np.abs(noise) if ridged else noise)
     return np.asarray(total / weights.sum())
-
-
-def _check_points(function: str, points: FloatArray) -> FloatArray:
-    points = require_float_array(function, "points", points).astype(np.float64, copy=False)
-    if points.ndim == 0 or points.shape[-1] not in _GRADIENTS:
-        raise ShapeError(message(function, "points", "shape (..., 2) or (..., 3)", points.shape))
-    if not bool(np.isfinite(points).all()):
-        raise RangeError(message(function, "points", "finite numbers", "NaN or infinity"))
-    return points

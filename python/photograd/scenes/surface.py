@@ -8,7 +8,8 @@ import numpy as np
 import numpy.typing as npt
 from photograd_course.checks import require_integer, require_number
 
-from photograd.errors import RangeError, ShapeError, message
+from photograd._arrays import Arguments
+from photograd.errors import RangeError, message
 from photograd.scenes.curves import smooth_curve, untwisted_frames
 from photograd.scenes.description import SceneMesh
 from photograd.types import FloatArray
@@ -77,10 +78,8 @@ def from_grid(
     Raises:
         ShapeError: points not (M, N, 3) with M, N >= 2.
     """
-    points = np.asarray(points, dtype=np.float64)
-    if points.ndim != 3 or points.shape[2] != 3 or min(points.shape[:2]) < 2:
-        expected = "shape (M, N, 3) with M, N >= 2"
-        raise ShapeError(message("from_grid", "points", expected, points.shape))
+    call = Arguments("from_grid", np.float64)
+    points = call.array("points", points, ("M", "N", 3), finite=False, min_length=2)
     if closed_rows:
         points = np.concatenate([points, points[:1]])
     if closed_columns:
@@ -140,13 +139,11 @@ def land_block(
     Raises:
         ShapeError, RangeError, DtypeError: heights not square, not finite or not above the floor.
     """
-    heights = np.asarray(heights, dtype=np.float64)
-    if heights.ndim != 2 or heights.shape[0] != heights.shape[1] or len(heights) < 2:
-        expected = "shape (M, M) with M >= 2"
-        raise ShapeError(message("land_block", "heights", expected, heights.shape))
+    call = Arguments("land_block", np.float64)
+    heights = call.array("heights", heights, ("M", "M"), min_length=2)
     require_number("land_block", "half_size", half_size, least=0.0, open_ends=True)
-    if not bool((np.isfinite(heights) & (heights > floor)).all()):
-        expected = f"finite heights above the floor at {floor:g}"
+    if not bool((heights > floor).all()):
+        expected = f"heights above the floor at {floor:g}"
         raise RangeError(message("land_block", "heights", expected, float(heights.min())))
     plan = net_points(len(heights), half_size)
     top = np.stack([plan[..., 0], heights, plan[..., 1]], axis=-1)
@@ -184,13 +181,12 @@ def lathe(profile: FloatArray, *, columns: int = 96) -> Surface:
         ShapeError, RangeError, DtypeError: not (M, 2), negative radii, ends off the axis, fewer
             than 3 columns.
     """
-    profile = np.asarray(profile, dtype=np.float64)
     require_integer("lathe", "columns", columns, least=3)
-    if profile.ndim != 2 or profile.shape[1] != 2 or len(profile) < 3:
-        raise ShapeError(message("lathe", "profile", "shape (M, 2), M >= 3", profile.shape))
+    call = Arguments("lathe", np.float64)
+    profile = call.array("profile", profile, ("M", 2), min_length=3)
     radius, height = profile.T
-    if not bool(np.isfinite(profile).all()) or float(radius.min()) < 0.0:
-        raise RangeError(message("lathe", "profile", "finite, radii of at least 0", "others"))
+    if float(radius.min()) < 0.0:
+        raise RangeError(message("lathe", "profile", "radii of at least 0", radius.min()))
     if radius[0] != 0.0 or radius[-1] != 0.0:
         got = f"radii {radius[0]:g} and {radius[-1]:g}"
         raise RangeError(message("lathe", "profile", "both ends on the axis", got))
@@ -238,13 +234,9 @@ def tube(
     require_integer("tube", "sides", sides, least=3)
     tangents, normals = untwisted_frames(curve, closed=closed)
     centres = np.asarray(curve, dtype=np.float64)
-    radii = np.asarray(radius, dtype=np.float64)
-    if radii.shape not in ((), (len(centres),)):
-        expected = f"one number or shape ({len(centres)},)"
-        raise ShapeError(message("tube", "radius", expected, radii.shape))
+    call = Arguments("tube", np.float64)
+    radii = call.array("radius", radius, (), (len(centres),), above=0.0)
     radii = np.broadcast_to(radii, len(centres)).copy()
-    if not bool((np.isfinite(radii) & (radii > 0.0)).all()):
-        raise RangeError(message("tube", "radius", "positive numbers", radii.min()))
     if not closed:
         centres, radii, tangents, normals = _with_caps(centres, radii, tangents, normals)
     angle = 2.0 * np.pi * np.arange(sides) / sides

@@ -12,9 +12,8 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 from photograd_course import random
-from photograd_course.checks import require_integer
 
-from photograd.errors import ShapeError, message
+from photograd._arrays import Arguments
 from photograd.scenes.noise import fractal_noise, gradient_noise
 from photograd.scenes.parts import Color, within_range
 from photograd.types import FloatArray
@@ -123,10 +122,7 @@ def _petals(x: FloatArray, y: FloatArray) -> npt.NDArray[np.bool_]:
 
 def _coordinates(function: str, size: Size) -> tuple[FloatArray, FloatArray]:
     """Texels' centres: v (H, 1) and u (1, W)."""
-    if len(size) != 2:
-        raise ShapeError(message(function, "size", "(height, width)", size))
-    for count in size:
-        require_integer(function, "size", count, least=1, most=8192)
+    Arguments(function).array("size", size, (2,), dtype=np.int64, low=1, high=8192)
     v = (np.arange(size[0]) + 0.5) / size[0]
     u = (np.arange(size[1]) + 0.5) / size[1]
     return v[:, None], u[None, :]
@@ -148,5 +144,4 @@ def _blended(colors: Color, position: FloatArray) -> Color:
 
 
 def _require_colors(function: str, colors: Color) -> None:
-    if colors.ndim != 2 or colors.shape[1] != 3 or len(colors) < 1:
-        raise ShapeError(message(function, "colors", "shape (P, 3)", colors.shape))
+    Arguments(function).array("colors", colors, ("P", 3), finite=False, min_length=1)

@@ -26,6 +26,7 @@ a fit that costs up to two decibels.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,16 +51,19 @@ SPLIT = 1.6
 
 @dataclass(frozen=True)
 class CloneSplitPrune(DensityControl):
-    """Attributes:
-    budget: there are never more Gaussians; those with the largest grad2d go first.
-    schedule: of cloning, splitting and pruning.
-    threshold: grad2d above which a Gaussian is cloned or split.
-    small: in extents; Gaussians whose longest scale is below are cloned, others split.
-    faint: opacity below which a Gaussian is dropped.
-    large: in extents; Gaussians with a longer scale are dropped.
-    fading: opacity that every Gaussian loses each time; what is needed recovers.
+    """Density control by cloning, splitting and pruning [Kerbl2023].
+
+    Attributes:
+        budget: there are never more Gaussians; those with the largest grad2d go first.
+        schedule: of cloning, splitting and pruning.
+        threshold: grad2d above which a Gaussian is cloned or split.
+        small: in extents; Gaussians whose longest scale is below are cloned, others split.
+        faint: opacity below which a Gaussian is dropped.
+        large: in extents; Gaussians with a longer scale are dropped.
+        fading: opacity that every Gaussian loses each time; what is needed recovers.
     """
 
+    first_share: ClassVar[float] = 1 / 3
     budget: int
     schedule: Schedule = field(default_factory=Schedule)
     threshold: float = 2e-4

@@ -1,7 +1,7 @@
 """What a file format can hold of Gaussians, and what a conversion has changed.
 
 Each attribute is compared in units that mean something in a picture: opacities and not logits,
-angles and not quaternions, display colours and not coefficients.
+angles and not quaternions, display colors and not coefficients.
 """
 
 from __future__ import annotations
@@ -117,7 +117,7 @@ def require_room(function: str, path: Path, count: int, bands: int, limit: int |
     Args:
         function, path: for the error.
         count: number of Gaussians.
-        bands: coefficients of each colour channel.
+        bands: coefficients of each color channel.
         limit: bytes; what is available by default.
 
     Raises:

@@ -11,7 +11,7 @@ while moving by a pixel means half as much at twice the size. With the factor, a
 same at every resolution: `threshold` divided by max(W, H) / 2 is the one per pixel [Kerbl2023].
 
 Gradients move what is there; they cannot add a Gaussian where one is missing, or remove one that
-nobody needs. A `DensityControl` does, at some steps of a fit, and says what the optimiser must
+nobody needs. A `DensityControl` does, at some steps of a fit, and says what the optimizer must
 know: which rows came from where, and which groups begin anew.
 """
 
@@ -20,7 +20,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -68,12 +68,14 @@ class Grad2dStatistics:
         return cls(np.zeros(count), np.zeros(count, np.int64))
 
     def checked(self, count: int) -> Grad2dStatistics:
-        """Itself. Raises ShapeError unless it belongs to `count` Gaussians."""
+        """Itself. Raises ShapeError or RangeError unless it belongs to `count` Gaussians."""
         for name, array in (("total", self.total), ("count", self.count)):
             if array.shape != (count,):
                 raise ShapeError(
                     message("Grad2dStatistics", name, f"shape ({count},)", f"{array.shape}")
                 )
+            if array.size and array.min() < 0:
+                raise RangeError(message("Grad2dStatistics", name, "0 or more", array.min()))
         return self
 
     def add(self, screen: Array, visible: NDArray[np.bool_], camera: Camera) -> None:
@@ -123,6 +125,9 @@ class Schedule:
 
 class DensityControl(ABC):
     """A strategy; its random numbers are a function of its seed and the step."""
+
+    first_share: ClassVar[float] = 1.0
+    """Of the budget, with which a fit begins."""
 
     @abstractmethod
     def change(

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 from photograd_course.input_files import read_file
 
-from photograd._ply import LONGEST_HEADER
+from photograd._ply import MAX_HEADER_BYTES
 from photograd.errors import IoError, RangeError, message
 from photograd.splats.coding import Coding, Codings
 from photograd.splats.frames import UNSTATED, Presentation, read_presentation
@@ -62,7 +62,7 @@ def read_gaussians(path: Path, *, memory_limit: int | None = None) -> GaussianFi
 
     Args:
         path: .ply (of 3D Gaussian splatting, or compressed by PlayCanvas), .splat, .spz (versions 2
-            to 4), or .npz (coloured points of gsplat).
+            to 4), or .npz (colored points of gsplat).
         memory_limit: bytes that reading may take; what is available by default. It is compared with
             what the file states before its values are read.
 
@@ -70,7 +70,7 @@ def read_gaussians(path: Path, *, memory_limit: int | None = None) -> GaussianFi
         IoError: no file, one of no such format, a damaged one, one that needs more memory, values
             that are no numbers.
     """
-    head = read_file(_READ, path, LONGEST_HEADER)
+    head = read_file(_READ, path, MAX_HEADER_BYTES)
     start = head[:4]
     if start[:3] == b"ply":
         return _read_ply(path, head, memory_limit)

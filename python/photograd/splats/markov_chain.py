@@ -50,15 +50,17 @@ FAINT_ENOUGH = 0.06
 
 @dataclass(frozen=True)
 class MarkovChain(DensityControl):
-    """Attributes:
-    budget: there are never more Gaussians.
-    seed: of what is drawn and of the random motion.
-    schedule: of moving and adding.
-    growth: the number grows by this factor at most, each time.
-    faint: opacity at or below which a Gaussian is moved.
-    opacity_weight, scale_weight: of the means of opacity and of scale (in extents), added to the
-        loss: what is not needed fades and shrinks.
-    noise: size of the random motion, in units of the means' rate.
+    """Density control by moving faint Gaussians and by random motion [Kheradmand2024].
+
+    Attributes:
+        budget: there are never more Gaussians.
+        seed: of what is drawn and of the random motion.
+        schedule: of moving and adding.
+        growth: the number grows by this factor at most, each time.
+        faint: opacity at or below which a Gaussian is moved.
+        opacity_weight, scale_weight: of the means of opacity and of scale (in extents), added to
+            the loss: what is not needed fades and shrinks.
+        noise: size of the random motion, in units of the means' rate.
     """
 
     budget: int

@@ -1,18 +1,19 @@
 """3D Gaussians as a scene: splatted, differentiated, and changed in number while they are fitted.
 
 What is drawn, and its adjoint, is `splatting`; this file makes a representation of it.
-Colours are display values and blend as such, as in the scenes that others exchange [Kerbl2023].
+Colors are display values and blend as such, as in the scenes that others exchange [Kerbl2023].
 
 The harmonics are two groups, since the constant one learns twenty times as fast as the others, and
-only those up to `active_degree` are drawn: a fit begins with plain colours and adds what depends on
+only those up to `active_degree` are drawn: a fit begins with plain colors and adds what depends on
 the view later.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, ClassVar
+from pathlib import Path
+from typing import Any, ClassVar, Literal, Self
 
 import numpy as np
 from photograd_course.portable_math import log
@@ -20,20 +21,29 @@ from photograd_course.random import normal_vectors
 from photograd_course.row_map import RowMap
 
 from photograd import sh
+from photograd._checkpoint import FLOAT, Row
+from photograd._checks import from_plain
+from photograd._fit_options import FitOptions
 from photograd.capture.camera import Camera
 from photograd.capture.frames import invert_rigid
 from photograd.capture.orbit import orbit_cameras
 from photograd.errors import RangeError, message
 from photograd.representation import (
+    COPIES,
+    FitInProgress,
+    Fittable,
     ImageBatch,
+    Memory,
     Outputs,
     ParamSpec,
     RenderOptions,
-    Representation,
+    Start,
     register,
 )
 from photograd.splats.density import DensityControl, Grad2dStatistics, NoControl
-from photograd.splats.orbit import scene_box
+from photograd.splats.files import WRITABLE, write_gaussians
+from photograd.splats.frames import USUAL_UP, WORLD_UP, Presentation, half_turn
+from photograd.splats.orbit import orbit_splats, scene_box
 from photograd.splats.splatting import (
     Gaussians,
     SplatContext,
@@ -41,6 +51,7 @@ from photograd.splats.splatting import (
     render,
     render_backward,
 )
+from photograd.splats.start import control_of, scene_extent, start_gaussians
 from photograd.types import Array
 
 MEAN_RATE = 1.6e-4
@@ -58,14 +69,14 @@ class GaussianContext:
 
 
 @register
-class GaussianScene(Representation):
-    """params: "means" (N, 3) metres, "log_scales" (N, 3), "quats" (N, 4), "opacity_logits" (N,),
+class GaussianScene(Fittable):
+    """params: "means" (N, 3) meters, "log_scales" (N, 3), "quats" (N, 4), "opacity_logits" (N,),
     "sh_constant" (N, 1, 3) and "sh_rest" (N, K - 1, 3); see `photograd.splats.splatting.Gaussians`.
 
     Attributes:
         policy: how splats are drawn.
         control: decides when Gaussians are cloned, split, moved and dropped.
-        extent: size of the scene in metres; rates and thresholds are in units of it.
+        extent: size of the scene in meters; rates and thresholds are in units of it.
         active_degree: harmonics up to here are drawn.
         grad2d: positional gradient statistics of the pictures since the last refinement.
     """
@@ -73,6 +84,14 @@ class GaussianScene(Representation):
     name: ClassVar[str] = "gaussians"
     capabilities: ClassVar[frozenset[str]] = frozenset({"image"})
     color_space: ClassVar[str] = "display"
+    fit_defaults: ClassVar[Mapping[str, Any]] = {"steps": 4000, "degree": 3}
+    fit_options: ClassVar[frozenset[str]] = frozenset({"degree", "gaussians", "density_control"})
+    first_model: ClassVar[Literal["refused", "optional", "required"]] = "optional"
+    size_option: ClassVar[str] = "gaussians"
+    counts: ClassVar[str] = "Gaussians"
+    gradient_picture: ClassVar[str] = "gaussians"
+    export_suffixes: ClassVar[tuple[str, ...]] = WRITABLE
+    exported_as: ClassVar[str] = "gaussians.ply"
 
     def __init__(
         self,
@@ -119,7 +138,7 @@ class GaussianScene(Representation):
         return cls(gaussians.astype(dtype), extent=1.0, policy=policy)
 
     def example_batch(self, *, seed: int) -> ImageBatch:
-        """A picture of 12 x 10 pixels from two metres away."""
+        """A picture of 12 x 10 pixels from two meters away."""
         box = np.array([[-0.6, -0.6, -0.6], [0.6, 0.6, 0.6]])
         camera = list(orbit_cameras(box, 5, size=12, elevation=20.0))[seed % 5]
         low = replace(camera, height=10, cy=camera.cy - 1.0)
@@ -167,7 +186,7 @@ class GaussianScene(Representation):
     def render(
         self, batch: ImageBatch, *, seed: int, step: int, options: RenderOptions
     ) -> tuple[Outputs, GaussianContext]:
-        """Colour (P, 3), opacity (P,) and depth (P,) of all pixels, row by row."""
+        """Color (P, 3), opacity (P,) and depth (P,) of all pixels, row by row."""
         del seed, step  # nothing random here
         policy = replace(self.policy, stop=options.stop)
         picture, context = render(
@@ -199,14 +218,77 @@ class GaussianScene(Representation):
             gradients["camera_from_world"] = found.camera_from_world
         return gradients
 
-    def observe(self, context: GaussianContext) -> None:
-        """Note what the picture behind `context` asked of each Gaussian; after its backward."""
+    @classmethod
+    def start(cls, start: Start) -> tuple[Self, str]:
+        """Round Gaussians of constant colors: at `start.points`, the capture's points or random."""
+        options, box = start.options, start.bounds.box
+        control = control_of(options)
+        count = max(1, int(control.first_share * options.gaussians))
+        gaussians, rule = start_gaussians(
+            start.capture,
+            box,
+            count,
+            degree=options.degree,
+            seed=options.seed,
+            given=start.points(count) if start.points else None,
+        )
+        extent = scene_extent(start.capture, box)
+        scene = cls(gaussians, extent=extent, control=control, active_degree=0)
+        return scene, f"Gaussians: {rule}"
+
+    @classmethod
+    def memory(cls, box: Array, options: FitOptions, available: int) -> Sequence[Memory]:
+        """Of position, scales, rotation, opacity and the harmonics of three colors."""
+        del box
+        each = COPIES * 4 * (3 + 3 + 4 + 1 + 3 * sh.count(options.degree))
+        what = f"{options.gaussians:,} Gaussians"
+        remedy = f"--gaussians {max(1, available // (2 * each))} takes half of it"
+        return (Memory("gaussians", what, each * options.gaussians, remedy),)
+
+    def learning_rates(self, options: FitOptions, step: int) -> dict[str, float]:
+        """Those of the means fall to another fraction: they must come to rest."""
+        resting = replace(options, final_rate=options.final_mean_rate)
+        means = super().learning_rates(resting, step)["means"]
+        return super().learning_rates(options, step) | {"means": means}
+
+    def adapted(self, fit: FitInProgress) -> Self:
+        """Higher harmonics are drawn, and the density control decides, before a step."""
+        self.active_degree = fit.options.active_degree(fit.step_number)
+        rows = self.refine(fit.step_number, {})
+        if rows is not None:
+            fit.optimizer.apply_row_map(rows, self.params)
+        return self
+
+    def observe(self, context: GaussianContext, gradients: dict[str, Array]) -> None:
+        """Add the picture behind `context` to grad2d, and the density control's priors."""
         if context.screen is not None:
             self.grad2d.add(context.screen, context.splats.visible, context.camera)
+        self.control.add_priors(self.params, gradients, extent=self.extent)
 
-    def explore(self, rate: float, step: int) -> None:
-        """The density control's random motion after a step; `rate` is that of the means in m."""
-        self.control.explore(self.params, extent=self.extent, rate=rate, step=step)
+    def after_step(self, rates: Mapping[str, float], step: int) -> None:
+        """The density control's random motion."""
+        self.control.explore(self.params, extent=self.extent, rate=rates["means"], step=step)
+
+    def stored(self) -> dict[str, Array]:
+        """The parameters; the state serves the fit alone."""
+        return dict(self.params)
+
+    def turntable(
+        self, count: int, *, size: int, elevation: float, background: Array | None
+    ) -> Iterator[Array]:
+        """The same pictures as of an exported file."""
+        told = Presentation.of_fit(WORLD_UP, background, antialiased=self.policy.antialiased)
+        return orbit_splats(
+            self.gaussians, count, size=size, elevation=elevation, presentation=told
+        )
+
+    def export(self, path: Path, background: Array | None) -> tuple[str, ...]:
+        """Write a file of Gaussians, half a turn about x away from the world: -y is up there."""
+        told = Presentation.of_fit(USUAL_UP, background, antialiased=self.policy.antialiased)
+        write_gaussians(path, half_turn(self.gaussians), presentation=told)
+        kept = "" if background is None else "; the learned background is in its header"
+        kept = kept if path.suffix.lower() == ".ply" else ""
+        return (f"{USUAL_UP} is up, as other programs expect, {WORLD_UP} in the model{kept}",)
 
     def refine(self, step: int, statistics: Mapping[str, Array]) -> RowMap | None:
         """What the density control decides before this step.
@@ -226,27 +308,44 @@ class GaussianScene(Representation):
         return {
             "active_degree": np.array(self.active_degree, np.int64),
             "extent": np.array(self.extent, np.float64),
-            "pressure_sum": self.grad2d.total,
-            "pressure_count": self.grad2d.count,
+            "grad2d_sum": self.grad2d.total,
+            "grad2d_count": self.grad2d.count,
         }
 
     @classmethod
-    def of_state(
+    def checkpoint_rows(cls, options: FitOptions) -> tuple[dict[str, Row], dict[str, Row]]:
+        """A row a Gaussian, in the parameters and in the statistics."""
+        rows: dict[str, Row] = {
+            "means": (FLOAT, ("N", 3)),
+            "log_scales": (FLOAT, ("N", 3)),
+            "quats": (FLOAT, ("N", 4)),
+            "opacity_logits": (FLOAT, ("N",)),
+            "sh_constant": (FLOAT, ("N", 1, 3)),
+            "sh_rest": (FLOAT, ("N", sh.count(options.degree) - 1, 3)),
+        }
+        return rows, {
+            "active_degree": (("int64",), ()),
+            "extent": (("float64",), ()),
+            "grad2d_sum": (("float64",), ("N",)),
+            "grad2d_count": (("int64",), ("N",)),
+        }
+
+    @classmethod
+    def restored(
         cls,
         params: Mapping[str, Array],
         state: Mapping[str, Array],
-        *,
-        policy: SplatOptions,
-        control: DensityControl,
-    ) -> GaussianScene:
-        """The scene of a checkpoint. Raises KeyError where something is lacking."""
+        policy: object,
+        options: FitOptions,
+    ) -> Self:
+        """The scene of a checkpoint."""
         plain = {name: params[name] for name in ("means", "log_scales", "quats", "opacity_logits")}
         harmonics = np.concatenate([params["sh_constant"], params["sh_rest"]], axis=1)
         scene = cls(
             Gaussians(**plain, sh=harmonics),
             extent=float(state["extent"]),
-            policy=policy,
-            control=control,
+            policy=from_plain("checkpoint", SplatOptions, policy),
+            control=control_of(options),
             active_degree=int(state["active_degree"]),
         )
         scene.load_state(state)
@@ -260,7 +359,7 @@ class GaussianScene(Representation):
                 message("GaussianScene.load_state", "state", expected, f"{sorted(state)}")
             )
         self.grad2d = Grad2dStatistics(
-            state["pressure_sum"].copy(), state["pressure_count"].copy()
+            state["grad2d_sum"].copy(), state["grad2d_count"].copy()
         ).checked(self.resolution)
         self.active_degree = int(state["active_degree"])
         self.extent = float(state["extent"])

@@ -7,7 +7,7 @@ frame of the file, which is usually that of a structure-from-motion program, y d
 files that `photograd fit` writes say so (`frames`).
 
 Compressed files are those of PlayCanvas, four 32-bit words a Gaussian. Chunks of 256 hold the
-limits between which their positions, scales (logarithms) and, in newer files, colours lie.
+limits between which their positions, scales (logarithms) and, in newer files, colors lie.
 
     packed_position, packed_scale   11, 10 and 11 bits from the limits' lower to upper
     packed_color                    8 bits each of red, green, blue, opacity; without limits 0 to 1

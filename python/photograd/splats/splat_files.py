@@ -1,15 +1,15 @@
-"""Gaussians in .splat files of 32 bytes each, and coloured points with cameras in .npz files.
+"""Gaussians in .splat files of 32 bytes each, and colored points with cameras in .npz files.
 
 The viewer antimatter15/splat has them without a header:
 
     f32 position[3], f32 scale[3] (standard deviations), u8 red, green, blue, opacity (of 255),
     u8 quaternion[4], w x y z, each 128 + 128 q
 
-One colour from all directions. The frame is that of the .ply file that it was made from.
+One color from all directions. The frame is that of the .ply file that it was made from.
 
 An .npz file, as of gsplat's sample scene, holds means3d (N, 3), colors (N, 3) in 8 bits, and
 cameras viewmats, Ks, width and height, which are left aside. Points have no size: each becomes a
-round Gaussian as wide as the distance to its neighbours, nine tenths opaque. The frame is that of
+round Gaussian as wide as the distance to its neighbors, nine tenths opaque. The frame is that of
 the file.
 """
 
@@ -23,7 +23,7 @@ from photograd_course.atomic_io import atomic_write
 from photograd_course.input_files import read_file, require_file
 
 from photograd._files import read_npz
-from photograd.capture.frames import LARGEST_COORDINATE
+from photograd.capture.frames import MAX_COORDINATE
 from photograd.errors import IoError, message
 from photograd.sh import Y_0
 from photograd.splats.coding import (
@@ -113,14 +113,14 @@ def _finite(gaussians: Gaussians) -> Array:
     return np.isfinite(gaussians.log_scales)
 
 
-# Coloured points with cameras in .npz files, as gsplat's sample scene has them, as Gaussians.
+# Colored points with cameras in .npz files, as gsplat's sample scene has them, as Gaussians.
 
 
 _NPZ_READER = "read_point_npz"
 NEEDED = ("means3d", "colors")
 OPACITY = 0.9
 WINDOW = 8
-LARGEST_SPACING = 4.0
+MAX_SPACING = 4.0
 """In medians; strays far from all others would cover the scene."""
 _LEVELS = 1 << 10
 
@@ -142,11 +142,11 @@ def read_point_npz(path: Path, *, memory_limit: int | None = None) -> tuple[Gaus
         got = f"{colors.dtype} of shape {colors.shape}"
         raise _refusal(path, f"colors: uint8 of shape ({n}, 3)", got)
     require_room(_NPZ_READER, path, n, 1, memory_limit)
-    bad = ~(np.abs(means) <= LARGEST_COORDINATE).all(axis=1)
+    bad = ~(np.abs(means) <= MAX_COORDINATE).all(axis=1)
     if bad.any():
         row = int(np.flatnonzero(bad)[0])
         raise _refusal(path, "finite means3d up to 1e9", f"{means[row].tolist()} in row {row}")
-    size = neighbour_spacing(means.astype(np.float64))
+    size = neighbor_spacing(means.astype(np.float64))
     gaussians = Gaussians(
         means=means.astype(np.float32),
         log_scales=np.repeat(np.log(size)[:, None], 3, axis=1).astype(np.float32),
@@ -155,7 +155,7 @@ def read_point_npz(path: Path, *, memory_limit: int | None = None) -> tuple[Gaus
         sh=((colors[:, None] / 255.0 - 0.5) / Y_0).astype(np.float32),
     )
     line = (
-        "points without sizes: round Gaussians as wide as half the distance to neighbours, "
+        "points without sizes: round Gaussians as wide as half the distance to neighbors, "
         f"opacity {OPACITY}; the file's cameras are left aside"
     )
     return gaussians, [line]
@@ -171,8 +171,8 @@ def is_point_npz(path: Path) -> bool:
         return False
 
 
-def neighbour_spacing(points: Array) -> Array:
-    """(N,) half of the mean distance to the nearest three of 16 neighbours along a Morton curve.
+def neighbor_spacing(points: Array) -> Array:
+    """(N,) half of the mean distance to the nearest three of 16 neighbors along a Morton curve.
 
     The curve visits the cells of a 1024^3 grid so that what is near on it is near in space. What is
     near in space may lie far apart on it, so that some of the sizes are too large; none is taken
@@ -198,9 +198,7 @@ def neighbour_spacing(points: Array) -> Array:
     nearest = np.sort(distances, axis=1)[:, : min(3, n - 1)]
     mean = np.where(np.isfinite(nearest), nearest, nearest[:, :1]).mean(axis=1)
     size = np.empty(n)
-    size[order] = 0.5 * mean.clip(
-        1e-6 * extent, LARGEST_SPACING * max(np.median(mean), 1e-6 * extent)
-    )
+    size[order] = 0.5 * mean.clip(1e-6 * extent, MAX_SPACING * max(np.median(mean), 1e-6 * extent))
     return size
 
 

@@ -49,7 +49,7 @@ from photograd.types import Array
 LOG_SCALES = (-10.0, 255.0 / 16.0 - 10.0)
 HARMONICS = (-1.0, 127.0 / 128.0)
 COLOR_GAIN = 0.15
-MOST_BITS = 12
+MAX_BITS = 12
 """Fractional bits of positions, as the format's own writer has them; fewer for larger scenes."""
 _LARGEST = (1 << 23) - 1
 _MAGNITUDES = 511.0 * np.sqrt(2.0)  # of a component that is sqrt(1/2) at most
@@ -79,8 +79,8 @@ def read_gaussian_spz(
     harmonics = np.empty((n, coefficients, 3))
     harmonics[:, 0] = (streams["colors"].reshape(n, 3) / 255.0 - 0.5) / COLOR_GAIN
     harmonics[:, 1:] = streams["harmonics"].reshape(n, coefficients - 1, 3) / 128.0 - 1.0
-    places = streams["positions"].reshape(n, 3, 3).astype(np.int32)
-    fixed = places @ np.array([1, 1 << 8, 1 << 16], np.int32)
+    coordinates = streams["positions"].reshape(n, 3, 3).astype(np.int32)
+    fixed = coordinates @ np.array([1, 1 << 8, 1 << 16], np.int32)
     fixed -= (fixed >> 23) << 24  # the sign of 24 bits
     unpack = _unpack_three if header.version == 2 else _unpack_smallest_three
     gaussians = Gaussians(
@@ -159,8 +159,8 @@ def spz_codings(gaussians: Gaussians, version: int = 3) -> Codings:
 def fractional_bits(gaussians: Gaussians) -> int:
     """Most bits, 12 at most, with which all positions stay inside of 24 bits with a sign."""
     largest = float(np.abs(gaussians.means).max(initial=0.0))
-    room = np.floor(np.log2(_LARGEST / largest)) if largest > 0 else MOST_BITS
-    return int(np.clip(room, 0, MOST_BITS))
+    room = np.floor(np.log2(_LARGEST / largest)) if largest > 0 else MAX_BITS
+    return int(np.clip(room, 0, MAX_BITS))
 
 
 def _bytes(values: Array) -> bytes:

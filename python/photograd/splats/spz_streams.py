@@ -4,8 +4,8 @@
         u32 "NGSP", u32 version, u32 count, u8 degree, u8 fractional bits, u8 flags, u8 0
         positions, alphas, colors, scales, rotations, harmonics
     version 4: the header in the open, each stream compressed by Zstandard
-        the 16 bytes above, the last of them the number of streams; u32 place of the table, 12 bytes
-        extensions, which end where the table begins
+        the 16 bytes above, the last of them the number of streams; u32 offset of the table, 12
+        bytes; extensions, which end where the table begins
         for each stream: u64 bytes compressed, u64 bytes; then the streams, in the same order
 
 Flag 1: fitted with antialiasing. Flag 2: there are extensions; versions 2 and 3 have them at the
@@ -27,8 +27,8 @@ MAGIC, GZIP = b"NGSP", b"\x1f\x8b\x08"
 VERSIONS = (2, 3, 4)
 STREAMS = ("positions", "alphas", "colors", "scales", "rotations", "harmonics")
 FLAG_ANTIALIASED, FLAG_EXTENSIONS = 1, 2
-MOST_DEGREE = 4
-MOST_FRACTIONAL_BITS = 23
+MAX_DEGREE = 4
+MAX_FRACTIONAL_BITS = 23
 _HEADER = struct.Struct("<4sIIBBBB")
 _ENTRY = struct.Struct("<QQ")
 _TABLE_AT = 32
@@ -74,10 +74,10 @@ def read_header(path: Path, content: bytes) -> SpzHeader:
     known = VERSIONS if content[:4] == MAGIC else VERSIONS[:2]  # 2 and 3 are also found bare
     if version not in known:
         raise refuse(path, f"version {' or '.join(map(str, known))} in this envelope", version)
-    if degree > MOST_DEGREE:
-        raise refuse(path, f"harmonics of degree 0 to {MOST_DEGREE}", degree)
-    if bits > MOST_FRACTIONAL_BITS:
-        raise refuse(path, f"0 to {MOST_FRACTIONAL_BITS} fractional bits", bits)
+    if degree > MAX_DEGREE:
+        raise refuse(path, f"harmonics of degree 0 to {MAX_DEGREE}", degree)
+    if bits > MAX_FRACTIONAL_BITS:
+        raise refuse(path, f"0 to {MAX_FRACTIONAL_BITS} fractional bits", bits)
     return SpzHeader(version, count, degree, bits, flags)
 
 
@@ -175,16 +175,16 @@ def _read_zstd(path: Path, content: bytes, header: SpzHeader) -> dict[str, bytes
         raise refuse(path, f"{len(names)} streams", count)
     if at + count * _ENTRY.size > len(content):
         raise refuse(path, f"a table of {count} streams", "the end of the file")
-    place, streams = at + count * _ENTRY.size, {"harmonics": b""}
+    offset, streams = at + count * _ENTRY.size, {"harmonics": b""}
     for i, name in enumerate(names):
         short, size = _ENTRY.unpack_from(content, at + i * _ENTRY.size)
-        if size != sizes[name] or place + short > len(content):
-            got = f"{size:,}, compressed to {short:,} of {len(content) - place:,} left"
+        if size != sizes[name] or offset + short > len(content):
+            got = f"{size:,}, compressed to {short:,} of {len(content) - offset:,} left"
             raise refuse(path, f"{sizes[name]:,} bytes of {name} within the file", got)
-        streams[name] = _unzstd(path, name, content[place : place + short], size)
-        place += short
-    if place != len(content):
-        raise refuse(path, "the end of the file", f"{len(content) - place:,} more bytes")
+        streams[name] = _unzstd(path, name, content[offset : offset + short], size)
+        offset += short
+    if offset != len(content):
+        raise refuse(path, "the end of the file", f"{len(content) - offset:,} more bytes")
     return streams
 
 

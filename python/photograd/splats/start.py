@@ -9,16 +9,19 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from photograd_course.portable_math import log, root
+from photograd_course.portable_math import log, norm, root
 from photograd_course.random import uniform
 
 from photograd import sh
+from photograd._fit_options import FitOptions
 from photograd.capture.bounds import mean_coverage, silhouettes_of
 from photograd.capture.camera import Camera
 from photograd.capture.capture import Capture
 from photograd.capture.view import View, display_color
 from photograd.errors import RangeError, message
-from photograd.splats.density import logits
+from photograd.splats.clone_split_prune import CloneSplitPrune
+from photograd.splats.density import DensityControl, NoControl, Schedule, logits
+from photograd.splats.markov_chain import MarkovChain
 from photograd.splats.splatting import Gaussians
 from photograd.types import Array
 
@@ -200,3 +203,33 @@ def _some_points(capture: Capture, count: int, seed: int) -> tuple[Array, Array]
     key = uniform(seed, step=0, pixel=np.arange(len(points)), sample=7)
     rows = np.sort(np.argsort(key, kind="stable")[:count])
     return points[rows], colors[rows]
+
+
+# What the options of a fit mean for a scene of Gaussians.
+
+
+def control_of(options: FitOptions) -> DensityControl:
+    """The density control that the options name, from a tenth to three quarters of the steps.
+
+    It acts some thirty times, and in long fits every 100 steps, as the authors' do.
+    """
+    steps = options.steps
+    schedule = Schedule(
+        first=min(500, steps // 10), last=3 * steps // 4, every=min(100, max(1, steps // 40))
+    )
+    if options.density_control == "mcmc":
+        return MarkovChain(options.gaussians, seed=options.seed, schedule=schedule)
+    if options.density_control == "clone_split_prune":
+        return CloneSplitPrune(options.gaussians, schedule=schedule)
+    return NoControl()
+
+
+def scene_extent(capture: Capture, box: Array) -> float:
+    """1.1 times the greatest distance of a camera from their mean, in meters [Kerbl2023].
+
+    Cameras that all stand in one place say nothing: then half the diagonal of the box.
+    """
+    places = np.array([view.camera.position for view in capture.train])
+    spread = float(np.linalg.norm(places - places.mean(axis=0), axis=1).max())
+    diagonal = norm(box[1] - box[0])
+    return 1.1 * spread if spread > 0.05 * diagonal else 0.5 * diagonal

@@ -13,11 +13,11 @@ from photograd.textures.mips import (
     sample_mips,
     sample_mips_backward,
 )
-from photograd.textures.recovery import Recovery, recover, stable_learning_rate
+from photograd.textures.recovery import RecoveredTexture, recover, stable_learning_rate
 from photograd.textures.sample import TexturePlan, loss_and_gradient, sample, sample_backward
 
 __all__ = [
-    "Recovery",
+    "RecoveredTexture",
     "TexturePlan",
     "build_mips",
     "build_mips_backward",

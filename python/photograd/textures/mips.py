@@ -11,9 +11,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from photograd._arrays import Arguments
 from photograd._compiled import _core
-from photograd.errors import ShapeError, message
-from photograd.textures.sample import float_array
+from photograd.textures.sample import TEXTURE
 from photograd.types import Array
 
 
@@ -23,7 +23,7 @@ def build_mips(texture: Array) -> list[Array]:
     Raises:
         DtypeError, ShapeError, RangeError: no such texture.
     """
-    mips = [_texture("build_mips", "texture", texture)]
+    mips = [Arguments("build_mips").array("texture", texture, TEXTURE, finite=False)]
     height, width, channels = mips[0].shape
     for shape in _core.mip_shapes(height, width)[1:]:
         mips.append(np.empty((*shape, channels), mips[0].dtype))
@@ -37,8 +37,8 @@ def build_mips_backward(d_mips: Sequence[Array]) -> Array:
     Raises:
         DtypeError, ShapeError, RangeError: arrays that are no mip map.
     """
-    name = "build_mips_backward"
-    copies = [_texture(name, f"d_mips[{k}]", level).copy() for k, level in enumerate(d_mips)]
+    levels = _levels(Arguments("build_mips_backward"), "d_mips", d_mips)
+    copies = [level.copy() for level in levels]
     _core.build_mips_backward(copies)
     return copies[0]
 
@@ -58,7 +58,8 @@ def mip_level(shape: Sequence[int], footprint: Array) -> Array:
     Raises:
         DtypeError, ShapeError, RangeError: other arrays, or numbers that are not finite.
     """
-    footprint = float_array("mip_level", "footprint", footprint)
+    call = Arguments("mip_level")
+    footprint = call.array("footprint", footprint, ("N", 2, 2), finite=False)
     level: Array = _core.mip_level(int(shape[0]), int(shape[1]), footprint)
     return level
 
@@ -72,9 +73,11 @@ def sample_mips(mips: Sequence[Array], uv: Array, level: Array) -> Array:
         DtypeError, ShapeError, RangeError: no mip map, arrays that do not fit it, or points or
             levels that are not finite.
     """
-    levels = [_texture("sample_mips", f"mips[{k}]", part) for k, part in enumerate(mips)]
-    uv, level = (float_array("sample_mips", n, a) for n, a in (("uv", uv), ("level", level)))
-    out = np.empty((len(uv) if uv.ndim else 0, levels[0].shape[2] if levels else 0), uv.dtype)
+    call = Arguments("sample_mips")
+    levels = _levels(call, "mips", mips)
+    uv = call.array("uv", uv, ("N", 2), finite=False)
+    level = call.array("level", level, ("N",), finite=False)
+    out = np.empty((len(uv), levels[0].shape[2] if levels else 0), uv.dtype)
     _core.sample_mips(levels, uv, level, out)
     return out
 
@@ -91,18 +94,22 @@ def sample_mips_backward(
     Raises:
         DtypeError, ShapeError, RangeError: as for `sample_mips`.
     """
-    name = "sample_mips_backward"
-    levels = [_texture(name, f"mips[{k}]", part) for k, part in enumerate(mips)]
-    uv, level = float_array(name, "uv", uv), float_array(name, "level", level)
+    call = Arguments("sample_mips_backward")
+    levels = _levels(call, "mips", mips)
+    uv = call.array("uv", uv, ("N", 2), finite=False)
+    level = call.array("level", level, ("N",), finite=False)
     d_mips = [np.zeros_like(part) for part in levels]
     d_uv, d_level = np.zeros_like(uv), np.zeros_like(level)
-    d_color = float_array(name, "d_color", d_color)
+    d_color = call.array("d_color", d_color, ("N", "C"), finite=False)
     _core.sample_mips_backward(levels, uv, level, d_color, d_mips, d_uv, d_level)
     return d_mips, d_uv, d_level
 
 
-def _texture(function: str, argument: str, value: Array) -> Array:
-    array = float_array(function, argument, value)
-    if array.ndim != 3:
-        raise ShapeError(message(function, argument, "shape (H, W, C)", array.shape))
-    return array
+def _levels(call: Arguments, name: str, levels: Sequence[Array]) -> list[Array]:
+    """Levels (H, W, C), each of its own size, in the dtype of the call."""
+    found = []
+    for k, level in enumerate(levels):
+        alone = Arguments(call.function, call.dtype, convert=False)
+        found.append(alone.array(f"{name}[{k}]", level, TEXTURE, finite=False))
+        call.dtype = alone.dtype
+    return found

@@ -1,4 +1,4 @@
-"""Recovering a texture from its colours at points, by gradient descent.
+"""Recovering a texture from its colors at points, by gradient descent.
 
     L(T) = 1 / (N C) sum over points i, channels c of (T(uv_i)_c - color_ic)^2
 
@@ -10,24 +10,37 @@ all. Directions with small h take long: texels that few points see, and only fro
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import hashlib
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from photograd_course.portable_math import norm
 
-from photograd.errors import Error, RangeError, message
-from photograd.textures.sample import TexturePlan, float_array, sample_backward
+from photograd._arrays import Arguments
+from photograd._checkpoint import (
+    Checkpoint,
+    check_arrays,
+    check_history,
+    checked_step,
+    load_checkpoint,
+    save_checkpoint,
+)
+from photograd._descend import Progress, descend, progress_bar, run_folder
+from photograd.errors import Error, IoError, RangeError, message
+from photograd.textures.sample import TexturePlan, sample_backward
 from photograd.types import Array
 
+FILE_NAME = "texture.npz"
 SAFETY = 0.95  # of the bound that keeps descent from diverging
 
 
 @dataclass(frozen=True, eq=False)
-class Recovery:
-    """What came out of a recovery.
+class RecoveredTexture:
+    """A texture recovered from samples.
 
     Attributes:
         texture: (H, W, C). Unseen texels hold the value that they started with.
@@ -60,7 +73,7 @@ def stable_learning_rate(
     Raises:
         DtypeError, ShapeError, RangeError: points or shape that make no plan.
     """
-    uv = float_array("stable_learning_rate", "uv", uv)
+    uv = Arguments("stable_learning_rate").array("uv", uv, ("N", 2), finite=False)
     # With black targets the gradient is H T itself, here of a texture with one channel.
     plan = TexturePlan(uv, np.zeros((len(uv), 1), uv.dtype), shape)
     vector = np.ones(plan.shape, uv.dtype)
@@ -81,8 +94,12 @@ def recover(
     steps: int,
     learning_rate: float | None = None,
     start: float = 0.5,
-) -> Recovery:
-    """Recover a texture (H, W, C) from colours (N, C) at points uv (N, 2).
+    folder: Path | None = None,
+    resume: bool = False,
+    bar: bool = False,
+    should_stop: Callable[[], bool] = lambda: False,
+) -> RecoveredTexture:
+    """Recover a texture (H, W, C) from colors (N, C) at points uv (N, 2).
 
     Args:
         uv, colors: of one dtype, which is the texture's.
@@ -90,13 +107,19 @@ def recover(
         steps: of plain gradient descent.
         learning_rate: its step; None takes `stable_learning_rate`.
         start: value of all texels before the first step, and of unseen ones after the last.
+        folder: for the checkpoint, DIR/texture.npz, written every 30 s and at the end.
+        resume: go on from that checkpoint, to the same bits as without interruption.
+        bar: show progress on stderr.
+        should_stop: asked before each step; the losses then end with that of the last step.
 
     Raises:
         DtypeError, ShapeError, RangeError: arrays that do not fit each other, steps below 1, a
-            learning rate that is not positive.
+            learning rate that is not positive, a checkpoint of another recovery, or a folder that
+            holds one without `resume`.
+        IoError: a checkpoint that cannot be written, or is not there to resume from.
         Error: the loss is no longer finite; the learning rate is too large.
     """
-    uv = float_array("recover", "uv", uv)
+    uv = Arguments("recover").array("uv", uv, ("N", 2), finite=False)
     plan = TexturePlan(uv, colors, shape)
     if steps < 1:
         raise RangeError(message("recover", "steps", "at least 1", steps))
@@ -104,19 +127,95 @@ def recover(
         learning_rate = stable_learning_rate(uv, shape, plan.shape[2])
     if not learning_rate > 0:
         raise RangeError(message("recover", "learning_rate", "a positive number", learning_rate))
-    texture = np.full(plan.shape, start, uv.dtype)
-    gradient = np.empty_like(texture)
-    losses = np.empty(steps + 1)
-    for step in range(steps + 1):
-        losses[step], _ = plan.loss_and_gradient(texture, out=gradient)
-        if not np.isfinite(losses[step]):
-            got = f"{losses[step]} before step {step}"
-            remedy = f"lower learning_rate, {learning_rate:.6g}"
+    with run_folder("recover", folder, FILE_NAME, resume=resume):
+        texture = np.full(plan.shape, start, uv.dtype)
+        told = {"steps": steps, "learning_rate": learning_rate, "start": start}
+        job = _Descent(plan, texture, told, _digest(uv, colors))
+        if resume and folder is not None:
+            job.load(folder)
+        with progress_bar("recover", job, shown=bar) as on_step:
+
+            def after_step(now: float) -> None:
+                del now
+                if on_step:
+                    on_step(Progress(job.step_number, steps, job.losses[-1]))
+
+            run = descend(job, folder, after_step=after_step, should_stop=should_stop)
+        if run.finished:
+            job.loss()
+        losses = np.array(job.losses)
+    return RecoveredTexture(job.texture, losses, _unseen(uv, shape), learning_rate)
+
+
+class _Descent:
+    """Plain gradient descent of a texture, as `descend` drives it."""
+
+    def __init__(
+        self, plan: TexturePlan, texture: Array, options: dict[str, float], digest: str
+    ) -> None:
+        self.plan, self.texture, self.options, self.digest = plan, texture, options, digest
+        self.gradient = np.empty_like(texture)
+        self.losses: list[float] = []
+        self.step_number = 0
+
+    @property
+    def steps(self) -> int:
+        return int(self.options["steps"])
+
+    def loss(self) -> float:
+        """Of the texture as it is, noted; its gradient lies in `gradient`."""
+        loss, _ = self.plan.loss_and_gradient(self.texture, out=self.gradient)
+        if not np.isfinite(loss):
+            got = f"{loss} before step {self.step_number}"
+            remedy = f"lower learning_rate, {self.options['learning_rate']:.6g}"
             raise Error(message("recover", "loss", "a finite number", got, remedy))
-        if step < steps:
-            gradient *= uv.dtype.type(learning_rate)
-            texture -= gradient
-    return Recovery(texture, losses, _unseen(uv, shape), learning_rate)
+        self.losses.append(loss)
+        return loss
+
+    def step(self) -> float:
+        loss = self.loss()
+        self.gradient *= self.texture.dtype.type(self.options["learning_rate"])
+        self.texture -= self.gradient
+        self.step_number += 1
+        return loss
+
+    def save(self, folder: Path) -> None:
+        meta = {"step": self.step_number, "points": self.digest, "options": self.options}
+        rate = self.options["learning_rate"]
+        history = np.array([(k, loss, rate) for k, loss in enumerate(self.losses)])
+        save_checkpoint(
+            folder / FILE_NAME,
+            Checkpoint(meta, {"texture": self.texture}, {}, {}, history.reshape(-1, 3)),
+        )
+
+    def load(self, folder: Path) -> None:
+        """Raises IoError for a damaged checkpoint, RangeError for one of another recovery."""
+        saved = load_checkpoint(folder / FILE_NAME)
+        try:
+            row = ((self.texture.dtype.name,), self.texture.shape)
+            check_arrays("params", saved.params, {"texture": row}, {})
+            step = checked_step(saved)
+            check_history(saved.history, step)
+            if step > self.steps or len(saved.history) != step:
+                got = f"{step}, {len(saved.history)}"
+                raise RangeError(message("checkpoint", "meta.step", "a loss for each step", got))
+        except Error as failure:
+            expected = "a checkpoint of this recovery"
+            path = folder / FILE_NAME
+            raise IoError(message("recover", f"{path}", expected, failure)) from failure
+        if (saved.meta.get("points"), saved.meta.get("options")) != (self.digest, self.options):
+            expected = "the points, colors and options of the checkpoint"
+            remedy = "resume with what it was started with, or choose another folder"
+            raise RangeError(message("recover", "resume", expected, "others", remedy))
+        self.texture = saved.params["texture"]
+        self.losses = saved.history[:, 1].tolist()
+        self.step_number = step
+
+
+def _digest(uv: Array, colors: Array) -> str:
+    total = hashlib.blake2b(uv.tobytes(), digest_size=8)
+    total.update(np.ascontiguousarray(colors).tobytes())
+    return total.hexdigest()
 
 
 def _unseen(uv: Array, shape: Sequence[int]) -> NDArray[np.bool_]:

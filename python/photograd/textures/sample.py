@@ -1,4 +1,4 @@
-"""Bilinear lookups in a texture, and the loss of a texture against colours at points."""
+"""Bilinear lookups in a texture, and the loss of a texture against colors at points."""
 
 from __future__ import annotations
 
@@ -6,22 +6,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from photograd._arrays import Arguments
 from photograd._compiled import _core
-from photograd.errors import DtypeError, ShapeError, message
 from photograd.types import Array
 
-
-def float_array(function: str, argument: str, value: Array) -> Array:
-    """`value` itself, or a contiguous copy; refuses what is no array of float32 or float64.
-
-    Raises:
-        DtypeError: no NumPy array, or of another dtype.
-    """
-    if not isinstance(value, np.ndarray) or value.dtype not in (np.float32, np.float64):
-        got = getattr(value, "dtype", type(value).__name__)
-        remedy = "use numpy.asarray(..., numpy.float32)"
-        raise DtypeError(message(function, argument, "a float32 or float64 array", got, remedy))
-    return np.ascontiguousarray(value)
+TEXTURE = ("H", "W", "C")
 
 
 def sample(texture: Array, uv: Array, *, out: Array | None = None) -> Array:
@@ -41,11 +30,11 @@ def sample(texture: Array, uv: Array, *, out: Array | None = None) -> Array:
         RangeError: texture coordinates that are not finite, counted; no texel, or more than four
             channels.
     """
-    texture = float_array("sample", "texture", texture)
-    uv = float_array("sample", "uv", uv)
+    call = Arguments("sample")
+    texture = call.array("texture", texture, TEXTURE, finite=False)
+    uv = call.array("uv", uv, ("N", 2), finite=False)
     if out is None:
-        rows = len(uv) if uv.ndim else 0
-        out = np.empty((rows, texture.shape[-1] if texture.ndim else 0), texture.dtype)
+        out = np.empty((len(uv), texture.shape[-1]), texture.dtype)
     _core.sample(texture, uv, out)
     return out
 
@@ -60,45 +49,45 @@ def sample_backward(texture: Array, uv: Array, d_color: Array) -> tuple[Array, A
     Returns:
         dL/dtexture (H, W, C), every texel's contributions added in one order whatever the number
         of threads, and dL/duv (N, 2), zero along an axis where the point is clamped to the border.
-        At a texel centre, where the colour has a kink, it is the derivative towards growing uv.
+        At a texel centre, where the color has a kink, it is the derivative towards growing uv.
 
     Raises:
         DtypeError, ShapeError, RangeError: as for `sample`.
     """
-    name = "sample_backward"
-    texture = float_array(name, "texture", texture)
-    uv, d_color = float_array(name, "uv", uv), float_array(name, "d_color", d_color)
+    call = Arguments("sample_backward")
+    texture = call.array("texture", texture, TEXTURE, finite=False)
+    uv = call.array("uv", uv, ("N", 2), finite=False)
+    d_color = call.array("d_color", d_color, ("N", "C"), finite=False)
     d_texture, d_uv = np.zeros_like(texture), np.zeros_like(uv)
     _core.sample_backward(texture, uv, d_color, d_texture, d_uv)
     return d_texture, d_uv
 
 
-# The loss of a texture against colours at points, and its gradient, as often as wanted.
+# The loss of a texture against colors at points, and its gradient, as often as wanted.
 
 
 class TexturePlan:
-    """Points of a texture sorted by tile, with the colours that they should have.
+    """Points of a texture sorted by tile, with the colors that they should have.
 
     Sorting costs as much as several gradients; after that every lookup finds its texels in the
-    first-level cache. The points and colours are copied: changing the arrays later has no effect.
+    first-level cache. The points and colors are copied: changing the arrays later has no effect.
 
     Attributes:
         shape: (H, W, C) of the textures that the plan is for.
     """
 
     def __init__(self, uv: Array, colors: Array, shape: Sequence[int]) -> None:
-        """Sort points uv (N, 2) with colours (N, C) for textures of shape (H, W).
+        """Sort points uv (N, 2) with colors (N, C) for textures of shape (H, W).
 
         Raises:
             DtypeError, ShapeError: arrays of other or different types or shapes.
             RangeError: no point, or texture coordinates that are not finite.
         """
-        uv = float_array("TexturePlan", "uv", uv)
-        colors = float_array("TexturePlan", "colors", colors)
-        if len(shape) != 2:
-            raise ShapeError(message("TexturePlan", "shape", "(H, W)", tuple(shape)))
-        height, width = (int(size) for size in shape)
-        self._core = _core.TexturePlan(height, width, uv, colors)
+        call = Arguments("TexturePlan")
+        uv = call.array("uv", uv, ("N", 2), finite=False)
+        colors = call.array("colors", colors, ("N", "C"), finite=False)
+        height, width = call.array("shape", shape, (2,), dtype=np.int64).tolist()
+        self._core = call.run(_core.TexturePlan, height, width, uv, colors)
         self.shape = (height, width, colors.shape[1])
 
     def loss_and_gradient(self, texture: Array, *, out: Array | None = None) -> tuple[float, Array]:
@@ -113,24 +102,23 @@ class TexturePlan:
         Raises:
             DtypeError, ShapeError, RangeError: not the texture that the plan was made for.
         """
-        texture = float_array("loss_and_gradient", "texture", texture)
+        call = Arguments("TexturePlan.loss_and_gradient")
+        texture = call.array("texture", texture, TEXTURE, finite=False)
         gradient = np.zeros_like(texture) if out is None else out
         if out is not None:
             gradient.fill(0)
-        return self._core.loss_and_gradient(texture, gradient), gradient
+        return call.run(self._core.loss_and_gradient, texture, gradient), gradient
 
 
 def loss_and_gradient(texture: Array, uv: Array, colors: Array) -> tuple[float, Array]:
     """L = mean over points and channels of (T(uv) - color)^2, and dL/dT (H, W, C), once.
 
-    For many steps with the same points and colours, make a `TexturePlan` of them: sorting them is
+    For many steps with the same points and colors, make a `TexturePlan` of them: sorting them is
     most of the work of this function.
 
     Raises:
         DtypeError, ShapeError, RangeError: arrays of other or different types or shapes, or texture
             coordinates that are not finite.
     """
-    texture = float_array("loss_and_gradient", "texture", texture)
-    if texture.ndim != 3:
-        raise ShapeError(message("loss_and_gradient", "texture", "shape (H, W, C)", texture.shape))
+    texture = Arguments("loss_and_gradient").array("texture", texture, TEXTURE, finite=False)
     return TexturePlan(uv, colors, texture.shape[:2]).loss_and_gradient(texture)

@@ -26,7 +26,7 @@ from photograd.transport.medium import BOUNDARY, VACUUM, DensityGrid, Medium
 from photograd.transport.mesh_files import (
     ModelCamera,
     ModelFile,
-    model_scene,
+    default_scene,
     read_model,
     save_gltf,
 )
@@ -81,10 +81,10 @@ __all__ = [
     "add_derivative_samples",
     "bake_ambient_occlusion",
     "builtin_scene",
+    "default_scene",
     "derivative_image",
     "direction_of",
     "emit_particles",
-    "model_scene",
     "read_density",
     "read_model",
     "read_scene",

@@ -13,9 +13,10 @@ from collections.abc import Mapping
 import numpy as np
 from photograd_course.suggest import choose_from
 
+from photograd._arrays import Arguments
 from photograd._compiled import _core
 from photograd.capture.camera import Camera
-from photograd.errors import RangeError, ShapeError, message
+from photograd.errors import RangeError, message
 from photograd.transport.accumulation import Accumulation
 from photograd.transport.incomplete import changed_names, require_whole
 from photograd.transport.path_options import DEFAULTS, PathOptions
@@ -144,16 +145,11 @@ def add_derivative_samples(
 
 def _whole_direction(params: Mapping[str, Array], step: Mapping[str, Array]) -> dict[str, Array]:
     """A change of every parameter, 0 where `step` says nothing."""
+    call = Arguments("derivative_image", np.float64)
     whole = {name: np.zeros(np.shape(value)) for name, value in params.items()}
     for name, value in step.items():
         if name not in params:
             known = choose_from(name, params)
             raise RangeError(message("derivative_image", "along", "parameters", name, known))
-        change = np.asarray(value, np.float64)
-        if change.shape != np.shape(params[name]):
-            expected = f"shape {np.shape(params[name])}"
-            raise ShapeError(message("derivative_image", name, expected, change.shape))
-        if not np.isfinite(change).all():
-            raise RangeError(message("derivative_image", name, "finite numbers", change))
-        whole[name] = change
+        whole[name] = call.array(name, value, np.shape(params[name]))
     return whole

@@ -10,6 +10,8 @@ import numpy as np
 from photograd_course.suggest import choose_from
 
 from photograd import bsdf
+from photograd._arrays import Arguments
+from photograd._registry import Parameter, Parameters
 from photograd.bsdf import specular
 from photograd.errors import SceneError, message
 from photograd.transport.shape_checks import check_range
@@ -18,7 +20,7 @@ from photograd.types import Array
 
 MODELS: dict[str, bsdf.BsdfModel | specular.DeltaModel] = {**bsdf.registry(), **specular.registry()}
 """All reflectance models, rough and smooth, by name."""
-ALPHA = bsdf.Parameter("alpha", 1, 0.0, 1.0, "")
+ALPHA = Parameter("alpha", 1, 0.0, 1.0, "")
 """What any material may have besides the parameters of its model."""
 
 
@@ -74,11 +76,11 @@ class Material:
         return ALPHA.name in self.values
 
     @property
-    def parameters(self) -> tuple[bsdf.Parameter, ...]:
+    def parameters(self) -> Parameters:
         """Descriptions of the parameters, in the order in which the core packs them."""
-        return MODELS[self.model].parameters + ((ALPHA,) if self.sheer else ())
+        return Parameters((*MODELS[self.model].parameters, *([ALPHA] if self.sheer else [])))
 
     def row(self) -> Array:
         """All parameters as one row of numbers (P,), float64."""
-        packed: Array = bsdf.pack_rows(self.model, self.parameters, self.values, np.float64)[0]
-        return packed
+        call = Arguments("Material", np.float64)
+        return self.parameters.pack_one(call, self.model, self.values)

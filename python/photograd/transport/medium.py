@@ -12,8 +12,9 @@ from typing import Any
 
 import numpy as np
 
-from photograd.bsdf.phase import phase_function
-from photograd.errors import RangeError, ShapeError, message
+from photograd._arrays import Arguments
+from photograd.bsdf.phase import registry as phase_functions
+from photograd.errors import RangeError, message
 from photograd.types import Array
 
 BOUNDARY = "boundary"
@@ -45,22 +46,17 @@ class DensityGrid:
     majorant: float | None = None
 
     def __post_init__(self) -> None:
-        values = np.asarray(self.values)
-        if values.dtype.kind not in "fiu" or values.ndim != 3 or min(values.shape) < 2:
-            expected = "numbers (X, Y, Z), at least two along each axis"
-            raise ShapeError(message("DensityGrid", "values", expected, values.shape))
-        matrix = np.array(self.world_from_box, np.float64)
-        if matrix.shape != (4, 4):
-            expected = "shape (4, 4)"
-            raise ShapeError(message("DensityGrid", "world_from_box", expected, matrix.shape))
-        if not np.isfinite(matrix).all() or abs(np.linalg.det(matrix[:3, :3])) < 1e-30:
+        call = Arguments("DensityGrid", np.float64)
+        values = np.array(call.array("values", self.values, ("X", "Y", "Z"), min_length=2, low=0.0))
+        matrix = np.array(call.array("world_from_box", self.world_from_box, (4, 4)))
+        if abs(np.linalg.det(matrix[:3, :3])) < 1e-30:
             raise RangeError(
                 message("DensityGrid", "world_from_box", "a box with a volume", "none")
             )
         if self.majorant is not None and not 0 <= self.majorant < np.inf:
             expected = "a finite number of at least 0"
             raise RangeError(message("DensityGrid", "majorant", expected, self.majorant))
-        object.__setattr__(self, "values", values.astype(np.float64))
+        object.__setattr__(self, "values", values)
         object.__setattr__(self, "world_from_box", matrix)
         self.largest("DensityGrid", "values", values)
 
@@ -114,7 +110,7 @@ class Medium:
         object.__setattr__(self, "sigma_t", _color("sigma_t", self.sigma_t))
         if self.albedo is not None:
             object.__setattr__(self, "albedo", _color("albedo", self.albedo))
-            known = [parameter.name for parameter in phase_function(self.phase).parameters]
+            known = [parameter.name for parameter in phase_functions()[self.phase].parameters]
             if sorted(self.values) != sorted(known):
                 got = ", ".join(self.values) or "none"
                 raise RangeError(message("Medium", "values", f"{', '.join(known)}", got))
@@ -140,7 +136,7 @@ class Medium:
         values = {"sigma_t": self.sigma_t}
         if self.albedo is not None:
             values["albedo"] = self.albedo
-            for parameter in phase_function(self.phase).parameters:
+            for parameter in phase_functions()[self.phase].parameters:
                 values[parameter.name] = np.asarray(self.values[parameter.name], np.float64)
         if self.density is not None:
             values["density"] = self.density.values
@@ -162,9 +158,7 @@ class Medium:
 
 
 def _color(name: str, value: Any) -> Array:
-    color = np.asarray(value, np.float64)
-    if color.shape not in ((), (3,)):
-        raise ShapeError(message("Medium", name, "a number or three", color.shape))
+    color = Arguments("Medium", np.float64).array(name, value, (), (3,), finite=False)
     return np.array(np.broadcast_to(color, (3,)))
 
 

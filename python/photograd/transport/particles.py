@@ -12,8 +12,9 @@ from typing import Any
 
 import numpy as np
 
+from photograd._arrays import Arguments
 from photograd._compiled import _core
-from photograd.errors import RangeError, ShapeError, message
+from photograd.errors import RangeError, message
 from photograd.transport.accumulation import Accumulation
 from photograd.transport.motion import refuse_motion
 from photograd.transport.path_options import DEFAULTS, NEVER, PathOptions
@@ -76,11 +77,9 @@ class Receiver:
     width: int
 
     def __post_init__(self) -> None:
+        call = Arguments("Receiver", np.float64)
         for name in ("corner", "edge_x", "edge_y"):
-            value = np.array(getattr(self, name), np.float64)
-            if value.shape != (3,) or not np.isfinite(value).all():
-                raise ShapeError(message("Receiver", name, "three finite numbers", value))
-            object.__setattr__(self, name, value)
+            object.__setattr__(self, name, np.array(call.array(name, getattr(self, name), (3,))))
         x, y = np.linalg.norm(self.edge_x), np.linalg.norm(self.edge_y)
         if not (x > 0 and y > 0) or abs(float(self.edge_x @ self.edge_y)) > 1e-6 * x * y:
             expected = "perpendicular edges of some length"
@@ -260,12 +259,10 @@ class PhotonMap:
         Raises:
             ShapeError: arrays of other shapes.
         """
-        places, sides = (np.ascontiguousarray(rows, np.float64) for rows in (points, normals))
-        for name, rows in (("points", places), ("normals", sides)):
-            if rows.ndim != 2 or rows.shape[1] != 3 or len(rows) != len(places):
-                expected = "shape (N, 3)"
-                raise ShapeError(message("PhotonMap.irradiance", name, expected, rows.shape))
-        found: Array = self._map.irradiance(places, sides)
+        call = Arguments("PhotonMap.irradiance", np.float64)
+        points = call.array("points", points, ("N", 3), finite=False)
+        normals = call.array("normals", normals, ("N", 3), finite=False)
+        found: Array = call.run(self._map.irradiance, points, normals)
         return found
 
     def add_samples(

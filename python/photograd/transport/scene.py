@@ -44,7 +44,7 @@ class Environment:
 
     def __post_init__(self) -> None:
         for name in ("zenith", "horizon", "ground"):
-            object.__setattr__(self, name, checked_color("environment", name, getattr(self, name)))
+            object.__setattr__(self, name, checked_color("Environment", name, getattr(self, name)))
 
     @classmethod
     def constant(cls, radiance: Any) -> Environment:

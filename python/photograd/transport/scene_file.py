@@ -1,45 +1,4 @@
-"""Scenes in TOML files: what may stand in one is what `_shape`, `_camera` and `_environment` read.
-
-[camera]
-position = [0, 1, 6.8]
-look_at = [0, 1, 0]
-field_of_view = 19.5          # degrees, vertical
-size = [256, 256]             # width, height in pixels
-aperture = 0.05               # optional: radius of the lens, metres
-focus = 6.8                   # of what is sharp; the point looked at, if absent
-closing = { position = [0.1, 1, 6.8], look_at = [0, 1, 0] }   # optional: where it has moved to
-
-[camera]                      # or one of a mesh file, in that file's world
-file = "room.glb"
-name = "above"                # optional: the first, if absent
-size = [256, 256]
-
-[environment]                 # optional; or zenith, horizon and ground
-radiance = 0.2
-
-[materials.white]
-model = "lambert"             # and the parameters of that model
-albedo = [0.7, 0.7, 0.7]
-
-[[shapes]]
-kind = "rectangle"            # or box, sphere, triangles, mesh, sdf
-corner = [-1, 0, 1]
-edge_u = [2, 0, 0]
-edge_v = [0, 0, -2]
-material = "white"
-emission = [0, 0, 0]          # optional, of the front
-closing = { translate = [0.1, 0, 0] }   # optional: how it moves while the shutter is open; keys as
-                              # of `places` in `scene_meshes`, each point goes straight on
-glow = "sign"                 # optional: the texture that scales it, where there are coordinates
-
-[[lights]]                    # optional; kinds and keys: scene_tables.py
-kind = "directional"
-direction = [0.3, 1, 0.2]     # towards the light
-irradiance = 2
-
-Textures, and meshes from files, are described in `scene_meshes`; fog, milk and coloured glass in
-`scene_tables`; bodies of signed distances in `sdf_nodes`.
-"""
+"""Scenes in TOML files: camera, environment, materials and shapes (docs/scene_file.md)."""
 
 from __future__ import annotations
 
@@ -53,7 +12,8 @@ import numpy as np
 from photograd_course.input_files import read_text
 from photograd_course.toml_limits import parse_toml
 
-from photograd.bsdf import Parameter, pack_rows
+from photograd._arrays import Arguments
+from photograd._registry import Parameter, Parameters
 from photograd.capture.camera import Camera
 from photograd.geometry.sdf import Shape as SdfNode
 from photograd.transport.builtin import camera_at
@@ -63,7 +23,7 @@ from photograd.transport.medium import BOUNDARY
 from photograd.transport.motion import moved_on
 from photograd.transport.scene import Environment, Scene
 from photograd.transport.scene_meshes import (
-    Brought,
+    ImportedMeshes,
     camera_of_file,
     matrix_of,
     mesh_shapes,
@@ -102,27 +62,27 @@ def _scene(root: Node, name: str) -> Scene:
         materials = {key: _material(tables.table(key)) for key in tables.data}
     media, world = media_in(root)
     bodies = bodies_in(root)
-    brought = Brought(dict(materials), textures_in(root), dict(media))
+    imported = ImportedMeshes(dict(materials), textures_in(root), dict(media))
     shapes = [
         shape
         for i, node in enumerate(root.tables("shapes"))
         for shape in filled(
-            node, media, _moving(node, _shapes(node, i, materials, brought, bodies))
+            node, media, _moving(node, _shapes(node, i, materials, imported, bodies))
         )
     ]
     lights = tuple(map(light_of, root.tables("lights"))) if root.has("lights") else ()
-    lights += tuple(brought.lights)
+    lights += tuple(imported.lights)
     return Scene(
         name,
         tuple(shapes),
-        brought.materials,
+        imported.materials,
         camera,
         environment,
         lights,
-        textures=brought.textures,
+        textures=imported.textures,
         lens=lens,
         shutter=shutter,
-        media=brought.media,
+        media=imported.media,
         world=world,
     )
 
@@ -170,7 +130,7 @@ def _environment(node: Node) -> Environment:
 
 def _check_value(model: str, parameter: Parameter, values: Mapping[str, Any]) -> None:
     named = {parameter.name: values[parameter.name]}
-    pack_rows(model, (parameter,), named, np.float64)
+    Parameters((parameter,)).pack_one(Arguments("Material", np.float64), model, named)
     check_range(model, parameter, named[parameter.name])
 
 
@@ -190,10 +150,10 @@ def _shapes(
     node: Node,
     index: int,
     materials: dict[str, Material],
-    brought: Brought,
+    imported: ImportedMeshes,
     bodies: dict[str, SdfNode],
 ) -> list[Shape]:
-    """What a table describes; materials, textures and media of its file are added to `brought`."""
+    """What a table describes; materials, textures and media of its file are added to `imported`."""
     node.has("interior")  # read by `filled`
     node.has("closing")  # read by `_moving`
     kind = node.choice("kind", (*KINDS, "mesh", "sdf"))
@@ -206,7 +166,7 @@ def _shapes(
     emission = node.color("emission") if node.has("emission") else None
     shapes, own = mesh_shapes(node, name, material, emission)
     node.refuse_other_keys()
-    brought.update(own)
+    imported.update(own)
     return [*shapes]
 
 

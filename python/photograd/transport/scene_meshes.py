@@ -1,32 +1,4 @@
-"""Mesh files and textures in scene files, and the cameras and lights that mesh files bring.
-
-[textures.wood]
-file = "wood.png"             # beside the scene file
-encoding = "srgb"             # or "linear": numbers that are not colours; "alpha": the opacity
-wrap = "repeat"               # or mirror, clamp
-filter = "bilinear"           # or "mip": the mean over what a pixel sees (texture.py)
-
-[materials.floor]
-model = "gltf"
-base_color = [1, 1, 1]        # times the texture
-metalness = 0
-roughness = 1
-textures = { base_color = "wood", roughness = ["rough", 1] }   # channel 1 of another one
-alpha = 1                     # optional: covers that part; textures may scale it
-alpha_cutoff = 0.5            # optional: a mask, which covers all or nothing
-normal_map = "bumps.png"
-
-[[shapes]]
-kind = "mesh"
-file = "chair.glb"            # or .gltf, .obj, .ply, .stl
-material = "floor"            # optional; without it the file's own materials
-lights = true                 # optional: the lights of a .glb or .gltf shine, too
-filter = "bilinear"           # optional: of all textures of the file, instead of its own
-scale = 2                     # then rotate (degrees about x, then y, then z), then translate
-rotate = [0, 90, 0]
-translate = [0, 1, 0]
-places = [{ translate = [1, 0, 0] }, { scale = 2 }]   # optional: an instance at each
-"""
+"""Mesh files and textures in scene files, and the cameras and lights that mesh files bring."""
 
 from __future__ import annotations
 
@@ -159,7 +131,7 @@ def texture_use(node: Node, key: str) -> TextureUse:
 
 
 @dataclass
-class Brought:
+class ImportedMeshes:
     """What mesh files bring along: lights; materials, textures and media by names of their own."""
 
     materials: dict[str, Material] = field(default_factory=dict)
@@ -167,7 +139,7 @@ class Brought:
     media: dict[str, Medium] = field(default_factory=dict)
     lights: list[Light] = field(default_factory=list)
 
-    def update(self, other: Brought) -> None:
+    def update(self, other: ImportedMeshes) -> None:
         """Add what another file brings."""
         self.materials.update(other.materials)
         self.textures.update(other.textures)
@@ -177,7 +149,7 @@ class Brought:
 
 def mesh_shapes(
     node: Node, name: str, material: str | None, emission: Any
-) -> tuple[list[MeshShape], Brought]:
+) -> tuple[list[MeshShape], ImportedMeshes]:
     """The shapes of a table of kind "mesh", and what they bring along.
 
     Names of the file get the shape's name and a slash in front. Emission is the file's where the
@@ -192,13 +164,13 @@ def mesh_shapes(
         lambda: [_placed(mesh, name, material, emission, inner, places) for mesh in meshes]
     )
     lights = lights_of(node, model, [far @ inner for far in places or [np.eye(4)]])
-    brought = _renamed(model, name, node.choice("filter", FILTERS) if node.has("filter") else None)
-    brought.lights.extend(lights)
+    imported = _renamed(model, name, node.choice("filter", FILTERS) if node.has("filter") else None)
+    imported.lights.extend(lights)
     if material is None:
-        return shapes, brought
+        return shapes, imported
     lit = {shape.glow.texture for shape in shapes if shape.glow is not None}
-    textures = {key: texture for key, texture in brought.textures.items() if key in lit}
-    return shapes, Brought(textures=textures, lights=lights)
+    textures = {key: texture for key, texture in imported.textures.items() if key in lit}
+    return shapes, ImportedMeshes(textures=textures, lights=lights)
 
 
 def _placed(
@@ -235,7 +207,7 @@ def _placed(
     )
 
 
-def _renamed(model: ModelFile, name: str, looked_up: str | None) -> Brought:
+def _renamed(model: ModelFile, name: str, looked_up: str | None) -> ImportedMeshes:
     materials = {
         f"{name}/{own}": replace(
             material,
@@ -251,7 +223,7 @@ def _renamed(model: ModelFile, name: str, looked_up: str | None) -> Brought:
         for own, texture in model.textures.items()
     }
     media = {f"{name}/{own}": medium for own, medium in model.media.items()}
-    return Brought(materials, textures, media)
+    return ImportedMeshes(materials, textures, media)
 
 
 def matrix_of(node: Node) -> Array:

@@ -13,7 +13,7 @@ from photograd_course.suggest import choose_from
 from photograd_course.toml_limits import without_strings
 
 from photograd.errors import Error, SceneError, message
-from photograd.images.kind import LARGEST_SIDE
+from photograd.images.kind import MAX_SIDE
 
 KeyPath = tuple[str | int, ...]
 
@@ -184,8 +184,8 @@ class Node:
         """Width and height of `size`."""
         width, height = self.numbers("size", 2)
         whole = width == int(width) and height == int(height)
-        if not whole or not 1 <= min(width, height) <= max(width, height) <= LARGEST_SIDE:
-            expected = f"width and height in pixels, 1 to {LARGEST_SIDE}"
+        if not whole or not 1 <= min(width, height) <= max(width, height) <= MAX_SIDE:
+            expected = f"width and height in pixels, 1 to {MAX_SIDE}"
             raise self.wrong("size", expected, [width, height])
         return int(width), int(height)
 

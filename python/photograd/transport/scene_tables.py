@@ -1,51 +1,4 @@
-"""Lights and media of a scene file: tables [[lights]] and [media.NAME].
-
-[[lights]]
-kind = "point"                # position, intensity (W/sr)
-position = [0, 2, 0]
-intensity = 10                # a colour: one number, or three
-
-spot          position, axis, intensity, angle (degrees from the axis to the rim), softness (0 to 1)
-directional   direction (towards the light), irradiance (W/m^2)
-ambient       radiance: the same from everywhere
-sky           zenith, horizon, ground: radiances by height
-sun           direction, radiance, angle (degrees from the middle to the rim of the disc)
-rectangle     corner, edge_x, edge_y (perpendicular), radiance; its front is that of edge_x x edge_y
-sphere        center, radius, radiance
-triangle      a, b, c (counter-clockwise seen from where it shines), radiance
-environment   image (.exr, .hdr or .pfm beside the file, twice as wide as high), and optionally
-              turn (degrees around +Y), scale (what radiances are multiplied by), uniform_share
-              (0 to 1)
-
-world_medium = "haze"         # optional, at the top: around everything; it has no end
-
-[media.milk]
-sigma_t = [900, 900, 950]     # 1/m; or sigma_a and sigma_s
-albedo = [0.999, 0.998, 0.99] # absent: it only absorbs
-phase = "henyey_greenstein"   # optional; its parameters as keys of their own
-g = 0.7
-
-[media.smoke]
-sigma_t = 20
-albedo = 0.8
-density = "smoke.npy"         # beside the scene file: numbers (X, Y, Z), which scale sigma_t
-corner = [-1, 0, -1]          # of the box that they fill, metres
-size = [2, 2, 2]
-
-[media.cloud]
-sigma_t = 40
-albedo = 0.999
-density = "cloud.vdb"         # or .vol, .vtk, .nii: on its own lattice, where the file says
-grid = "density"              # optional, of a .vdb: the first grid of scalars, if absent
-corner = [-1, 0, -1]          # optional, with size: where to move and stretch it to
-size = [2, 2, 2]
-majorant = 3                  # optional: no density is ever larger, also when they are fitted
-
-[[shapes]]
-kind = "sphere"               # or any closed shape
-material = "glass"            # or "boundary", which is not seen
-interior = "milk"             # or "vacuum"
-"""
+"""Lights and media of a scene file: tables [[lights]] and [media.NAME] (docs/scene_file.md)."""
 
 from __future__ import annotations
 
@@ -57,12 +10,12 @@ from typing import Any
 
 import numpy as np
 
-from photograd.bsdf.phase import registry
+from photograd.bsdf.phase import registry as phase_functions
 from photograd.images.kind import LINEAR_SUFFIXES
 from photograd.images.read import read_radiance
 from photograd.lights import EnvironmentMap, Light, about_y
-from photograd.lights.distant import cap_height
-from photograd.lights.registered import CLASSES, RegisteredLight
+from photograd.lights.registered import RegisteredLight, cap_height
+from photograd.lights.registered import registry as lights
 from photograd.transport.density_files import is_placed, read_density
 from photograd.transport.medium import VACUUM, DensityGrid, Medium
 from photograd.transport.scene_node import Node
@@ -83,7 +36,7 @@ def light_of(node: Node) -> Light:
 
 def _registered(name: str) -> Callable[[Node], RegisteredLight]:
     """Reads the attributes of a light of the registry: colours, places and numbers."""
-    light = CLASSES[name]
+    light = lights()[name]
 
     def read(node: Node) -> RegisteredLight:
         values: dict[str, object] = {}
@@ -129,7 +82,7 @@ ANGLES: dict[str, Callable[[float], float]] = {"cos_outer": math.cos, "height": 
 """Attributes that a file gives as `angle`."""
 
 KINDS: dict[str, Callable[[Node], Light]] = {
-    **{name: _registered(name) for name in CLASSES if name not in ("constant", "quad")},
+    **{name: _registered(name) for name in lights() if name not in ("constant", "quad")},
     "ambient": _registered("constant"),
     "rectangle": _registered("quad"),
     "environment": _environment,
@@ -168,7 +121,7 @@ def _medium(node: Node) -> Medium:
         apart, coefficients[1] = False, None  # what does not scatter has no phase function
     more: dict[str, Any] = {"density": density}
     if coefficients[1] is not None:
-        known = registry()
+        known = phase_functions()
         name = node.choice("phase", known) if node.has("phase") else "henyey_greenstein"
         values = {p.name: node.number(p.name, 0.0) for p in known[name].parameters}
         more |= {"phase": name, "values": values}

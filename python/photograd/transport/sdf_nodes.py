@@ -1,25 +1,4 @@
-"""Bodies of signed distances in scene files.
-
-[sdfs.dish]                   # by name; kinds, and their numbers in metres:
-kind = "difference"           #   sphere(radius)  box(half_sizes)  rounded_box(half_sizes, radius)
-of = ["ball", "hollow"]       #   torus(ring, tube)  capsule(half_length, radius)
-                              #   plane(normal, height)
-[sdfs.ball]                   # and made of others, by their names:
-kind = "sphere"               #   union  intersection  difference, the first without the rest
-radius = 0.5                  #   smooth_union, with width   rounded, of one, with radius
-
-[sdfs.hollow]
-kind = "sphere"
-radius = 0.4
-scale = 1.1                   # any of them: then rotate (degrees about x, then y, then z), then
-rotate = [0, 90, 0]           # translate
-translate = [0, 0.2, 0]
-
-[[shapes]]
-kind = "sdf"
-body = "dish"
-material = "clay"
-"""
+"""Signed distance functions in scene files: tables [sdfs.NAME] (docs/scene_file.md)."""
 
 from __future__ import annotations
 

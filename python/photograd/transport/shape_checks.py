@@ -8,8 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from photograd.bsdf import SMOOTH, Parameter
-from photograd.errors import DtypeError, RangeError, ShapeError, message
+from photograd._arrays import Arguments
+from photograd._registry import SPECULAR, Parameter
+from photograd.errors import RangeError, ShapeError, message
 from photograd.geometry.mesh import drop_degenerate
 from photograd.types import Array
 
@@ -21,13 +22,10 @@ def checked_place(name: str, matrix: Any) -> Array:
     """World_from_object (4, 4) float64 of an instance of the shape `name`.
 
     Raises:
-        ShapeError: another shape, or numbers that are not finite.
-        RangeError: a determinant that is not positive.
+        ShapeError: another shape.
+        RangeError: numbers that are not finite, a determinant that is not positive.
     """
-    place = np.array(matrix, np.float64)
-    if place.shape != (4, 4) or not np.isfinite(place).all():
-        expected = "finite matrices (4, 4)"
-        raise ShapeError(message("MeshShape", f"{name}.places", expected, np.shape(matrix)))
+    place = np.array(Arguments("MeshShape", np.float64).array(f"{name}.places", matrix, (4, 4)))
     volume = float(np.linalg.det(place[:3, :3]))
     if not volume > 0:
         expected = "a positive determinant"
@@ -88,35 +86,14 @@ def usable_triangles(name: str, vertices: Array, faces: Array) -> tuple[Array, A
     return np.ascontiguousarray(vertices), kept
 
 
-def float_rows(name: str, argument: str, value: Array) -> Array:
-    """(V, 3) float32 of the shape `name`.
+def checked_color(function: str, argument: str, value: Any) -> Array:
+    """(3,) float64, a copy.
 
     Raises:
-        DtypeError: no floating point numbers.
-        ShapeError: another shape.
+        ShapeError: not three numbers.
+        RangeError: numbers that are negative or not finite.
     """
-    array = np.asarray(value)
-    if array.dtype.kind != "f":
-        raise DtypeError(
-            message("MeshShape", f"{name}.{argument}", "floating point numbers", array.dtype)
-        )
-    if array.ndim != 2 or array.shape[1] != 3:
-        raise ShapeError(message("MeshShape", f"{name}.{argument}", "shape (V, 3)", array.shape))
-    with np.errstate(over="ignore"):
-        return np.array(array, np.float32)
-
-
-def checked_color(name: str, argument: str, value: Any) -> Array:
-    """(3,) float64.
-
-    Raises:
-        RangeError: others than three finite numbers of at least 0.
-    """
-    color = np.array(value, np.float64)
-    if color.shape != (3,) or not np.isfinite(color).all() or bool((color < 0).any()):
-        expected = "three finite numbers of at least 0"
-        raise RangeError(message("Scene", f"{name}.{argument}", expected, np.asarray(value)))
-    return color
+    return np.array(Arguments(function, np.float64).array(argument, value, (3,), low=0.0))
 
 
 def check_range(model: str, parameter: Parameter, value: Any) -> None:
@@ -134,5 +111,5 @@ def check_range(model: str, parameter: Parameter, value: Any) -> None:
         return
     expected = f"{least:g} to {most:g}" if most < np.inf else f"at least {least:g}"
     smooth = "roughness" in parameter.name and float(np.min(value)) < least
-    remedy = SMOOTH if smooth else None
+    remedy = SPECULAR if smooth else None
     raise RangeError(message("Material", f"{model}.{parameter.name}", expected, value, remedy))

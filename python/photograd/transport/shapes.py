@@ -11,14 +11,14 @@ from typing import Any
 
 import numpy as np
 
-from photograd.errors import DtypeError, RangeError, SceneError, ShapeError, message
+from photograd._arrays import Arguments
+from photograd.errors import RangeError, SceneError, message
 from photograd.geometry.sdf import Body
 from photograd.geometry.sdf import Shape as SdfNode
 from photograd.transport.shape_checks import (
     checked_closing_places,
     checked_color,
     checked_place,
-    float_rows,
     usable_triangles,
 )
 from photograd.transport.texture import TextureUse
@@ -69,18 +69,17 @@ class MeshShape:
     closing_places: tuple[Array, ...] = ()
 
     def __post_init__(self) -> None:
-        vertices = float_rows(self.name, "vertices", self.vertices)
-        faces = np.asarray(self.faces)
-        if faces.dtype.kind not in "iu":
-            raise DtypeError(message("MeshShape", f"{self.name}.faces", "integers", faces.dtype))
-        if faces.ndim != 2 or faces.shape[1] != 3:
-            expected = "shape (F, 3)"
-            raise ShapeError(message("MeshShape", f"{self.name}.faces", expected, faces.shape))
+        call = Arguments("MeshShape", np.float32)
+        name = self.name
+        vertices = call.array(
+            f"{name}.vertices", self.vertices, ("V", 3), floating=True, finite=False
+        )
+        faces = call.array(f"{name}.faces", self.faces, ("F", 3), dtype=np.int64)
         if faces.size and not (int(faces.min()) >= 0 and int(faces.max()) < len(vertices)):
             expected = f"vertex numbers 0 to {len(vertices) - 1}"
             got = f"{int(faces.min())} to {int(faces.max())}"
-            raise RangeError(message("MeshShape", f"{self.name}.faces", expected, got))
-        emission = checked_color(self.name, "emission", self.emission)
+            raise RangeError(message("MeshShape", f"{name}.faces", expected, got))
+        emission = checked_color("MeshShape", f"{name}.emission", self.emission)
         vertices, faces = usable_triangles(self.name, vertices, faces)
         if not len(faces):
             shines = bool(emission.any())
@@ -89,20 +88,12 @@ class MeshShape:
         object.__setattr__(self, "vertices", vertices)
         object.__setattr__(self, "faces", np.ascontiguousarray(faces, np.uint32))
         object.__setattr__(self, "emission", emission)
-        if self.normals is not None:
-            normals = float_rows(self.name, "normals", self.normals)
-            if normals.shape != vertices.shape or not np.isfinite(normals).all():
-                expected = f"finite numbers, shape {vertices.shape}"
-                wrong = f"shape {normals.shape}"
-                raise ShapeError(message("MeshShape", f"{self.name}.normals", expected, wrong))
-            object.__setattr__(self, "normals", normals)
-        if self.uv is not None:
-            uv = np.asarray(self.uv)
-            if uv.dtype.kind != "f" or uv.shape != (len(vertices), 2) or not np.isfinite(uv).all():
-                expected = f"finite floating point numbers, shape ({len(vertices)}, 2)"
-                got = f"{uv.dtype}, shape {uv.shape}"
-                raise ShapeError(message("MeshShape", f"{self.name}.uv", expected, got))
-            object.__setattr__(self, "uv", np.ascontiguousarray(uv, np.float32))
+        for key, columns in (("normals", 3), ("uv", 2)):
+            if getattr(self, key) is not None:
+                rows = call.array(
+                    f"{name}.{key}", getattr(self, key), ("V", columns), floating=True
+                )
+                object.__setattr__(self, key, np.array(rows))
         object.__setattr__(self, "places", tuple(checked_place(self.name, m) for m in self.places))
         closing = checked_closing_places(self.name, self.places, self.closing_places)
         object.__setattr__(self, "closing_places", closing)
@@ -146,16 +137,14 @@ class SphereShape:
     closing: Array | None = None
 
     def __post_init__(self) -> None:
+        call = Arguments("SphereShape", np.float64)
         for key in ("center", "closing"):
             given = getattr(self, key)
             if key == "closing" and given is None:
                 continue
-            point = np.asarray(given, np.float64)
-            if point.shape != (3,) or not np.isfinite(point).all():
-                expected = "three finite numbers"
-                raise ShapeError(message("SphereShape", f"{self.name}.{key}", expected, given))
+            point = call.array(f"{self.name}.{key}", given, (3,))
             object.__setattr__(self, key, point)
-        emission = checked_color(self.name, "emission", self.emission)
+        emission = checked_color("SphereShape", f"{self.name}.emission", self.emission)
         if not (np.isfinite(self.radius) and np.float32(self.radius) > 0):
             expected = "above 0 m (a light needs an area)" if emission.any() else "above 0 m"
             raise RangeError(message("SphereShape", f"{self.name}.radius", expected, self.radius))
@@ -200,7 +189,7 @@ class SdfShape:
             expected = "a shape of photograd.geometry.sdf"
             got = type(self.body).__name__
             raise SceneError(message("SdfShape", f"{self.name}.body", expected, got))
-        emission = checked_color(self.name, "emission", self.emission)
+        emission = checked_color("SdfShape", f"{self.name}.emission", self.emission)
         if emission.any():
             expected, remedy = "0", "let a mesh or a sphere shine"
             raise SceneError(
@@ -254,9 +243,7 @@ def box(
     Raises:
         RangeError: a size that is not positive.
     """
-    extent = np.asarray(size, np.float64)
-    if extent.shape != (3,) or not bool((extent > 0).all()):
-        raise RangeError(message("box", f"{name}.size", "three lengths above 0 m", size))
+    extent = Arguments("box", np.float64).array(f"{name}.size", size, (3,), above=0.0)
     corners = np.array([[i, j, k] for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)])
     angle = np.radians(turn)
     c, s = np.cos(angle), np.sin(angle)

@@ -24,22 +24,23 @@ from typing import Any, Literal, get_args
 import numpy as np
 from numpy.typing import ArrayLike
 
+from photograd._arrays import Arguments
 from photograd._compiled import _core
 from photograd.errors import RangeError, ShapeError, message
 from photograd.types import FloatArray
 
 DiffusionFit = Literal["searchlight", "diffuse", "diffuse_free_path"]
 
-# Argument: what is allowed, and which numbers of an array are.
-_RANGES: dict[str, tuple[str, Any]] = {
-    "radius": ("finite numbers above 0", lambda x: x > 0),
-    "sigma_s": ("finite numbers above 0", lambda x: x > 0),
-    "sigma_a": ("finite numbers, at least 0", lambda x: x >= 0),
-    "eta": ("1 to 5", lambda x: (x >= 1) & (x <= 5)),
-    "albedo": ("0 to 1", lambda x: (x >= 0) & (x <= 1)),
-    "mean_free_path": ("finite numbers above 0", lambda x: x > 0),
-    "u": ("0 to below 1", lambda x: (x >= 0) & (x < 1)),
-    "cos_theta": ("0 to 1", lambda x: (x >= 0) & (x <= 1)),
+# The bounds of each argument.
+_RANGES: dict[str, dict[str, float]] = {
+    "radius": {"above": 0.0},
+    "sigma_s": {"above": 0.0},
+    "sigma_a": {"low": 0.0},
+    "eta": {"low": 1.0, "high": 5.0},
+    "albedo": {"low": 0.0, "high": 1.0},
+    "mean_free_path": {"above": 0.0},
+    "u": {"low": 0.0, "below": 1.0},
+    "cos_theta": {"low": 0.0, "high": 1.0},
 }
 
 
@@ -254,12 +255,12 @@ def half_space_albedo(albedo: ArrayLike, cos_theta: ArrayLike = 1.0) -> FloatArr
 
 def _rows(name: str, **arguments: ArrayLike) -> tuple[FloatArray, tuple[int, ...], Any]:
     """Rows (N, K) of the arguments, their common shape, and the shape of each."""
-    given = {key: np.asarray(value, np.float64) for key, value in arguments.items()}
-    for key, value in given.items():
-        expected, allowed = _RANGES[key]
-        outside = ~(allowed(value) & np.isfinite(value))
-        if outside.any():
-            raise RangeError(message(name, key, expected, value[outside][0]))
+    call = Arguments(name, np.float64)
+    given = {}
+    for key, value in arguments.items():
+        bounds = _RANGES[key]
+        low, high, above, below = (bounds.get(k) for k in ("low", "high", "above", "below"))
+        given[key] = call.array(key, value, low=low, high=high, above=above, below=below)
     shapes = [value.shape for value in given.values()]
     try:
         shape = np.broadcast_shapes(*shapes)
@@ -278,10 +279,7 @@ def _known(name: str, fit: DiffusionFit) -> DiffusionFit:
 
 
 def _cotangent(name: str, argument: str, value: ArrayLike, shape: tuple[int, ...]) -> FloatArray:
-    d = np.asarray(value, np.float64)
-    if d.shape != shape:
-        raise ShapeError(message(name, argument, f"shape {shape}", d.shape))
-    return np.ascontiguousarray(d.ravel())
+    return Arguments(name, np.float64).array(argument, value, shape, finite=False).ravel()
 
 
 def _columns(d_rows: FloatArray, shape: tuple[int, ...], shapes: Any) -> list[FloatArray]:

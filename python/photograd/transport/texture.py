@@ -23,7 +23,8 @@ from typing import Any
 import numpy as np
 from photograd_course.color import srgb_decode
 
-from photograd.errors import DtypeError, RangeError, ShapeError, message
+from photograd._arrays import Arguments
+from photograd.errors import RangeError, message
 from photograd.images.read import read_header, read_image
 from photograd.textures import sample
 from photograd.types import Array
@@ -206,12 +207,6 @@ def checked_uses(
 
 
 def _picture(function: str, value: Any, channels: tuple[int, ...]) -> Array:
-    values = np.asarray(value)
-    if values.dtype.kind != "f":
-        raise DtypeError(message(function, "values", "floating point numbers", values.dtype))
-    if values.ndim != 3 or values.shape[2] not in channels or not values.size:
-        expected = f"shape (H, W, C) with C of {channels}"
-        raise ShapeError(message(function, "values", expected, values.shape))
-    if not np.isfinite(values).all():
-        raise RangeError(message(function, "values", "finite numbers", "NaN or infinity"))
-    return np.ascontiguousarray(values, np.float32)
+    shapes = [("H", "W", count) for count in channels]
+    call = Arguments(function, np.float32)
+    return call.array("values", value, *shapes, floating=True, min_length=1)

@@ -11,9 +11,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from photograd._arrays import Arguments
 from photograd._compiled import _core
 from photograd.capture.camera import Camera
-from photograd.errors import DtypeError, RangeError, ShapeError, message
+from photograd.errors import DtypeError, RangeError, message
 from photograd.transport.accumulation import Accumulation, sample_counts
 from photograd.transport.core_arrays import (
     blocks_of,
@@ -222,12 +223,10 @@ class PathTracer:
             RangeError: spp below 1, or another spread.
         """
         view = self.scene.camera if camera is None else camera
-        wanted = (view.height, view.width, 3)
-        if np.shape(d_image) != wanted:
-            got = np.shape(d_image)
-            raise ShapeError(message("render_backward", "d_image", f"shape {wanted}", got))
+        call = Arguments("PathTracer.render_backward", np.float64)
+        d_image = call.array("d_image", d_image, (view.height, view.width, 3), finite=False)
         if spp < 1:
-            raise RangeError(message("PathTracer", "spp", "at least 1", spp))
+            raise RangeError(message("PathTracer.render_backward", "spp", "at least 1", spp))
         return self.add_up(
             "render_backward",
             _core.trace_paths_backward,
@@ -235,7 +234,7 @@ class PathTracer:
             options=options.numbers(seed),
             spp=spp,
             counts=sample_counts(d_image, spp, spread),
-            d_image=np.ascontiguousarray(d_image, np.float64),
+            d_image=d_image,
         )
 
     def add_up(self, function: str, backward: Any, view: Camera, **given: Any) -> WholeGradients:

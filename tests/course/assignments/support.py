@@ -27,8 +27,10 @@ import numpy as np
 import pytest
 from photograd_course.assignment.bundle import Bundle, read_folder
 from photograd_course.assignment.checks_file import load_beside, load_module
+from photograd_course.build.course_files import dossier_of
 from photograd_course.build.named import NamedMutant, read_alternatives, read_mutants
 from photograd_course.build.regions import strip_solution
+from photograd_course.build.rules import reading_findings
 from photograd_course.grading.local import LocalStudent
 from photograd_course.grading.outcome import Outcome, Status
 from photograd_course.grading.runner import run_checks
@@ -177,6 +179,9 @@ class AssignmentTests:
     def bundle(self) -> Bundle:
         return bundle_of(self.folder)
 
+    def test_the_rules_that_read_find_nothing(self) -> None:
+        assert [str(each) for each in reading_findings(dossier_of(self.folder))] == []
+
     def test_points_and_tasks_add_up(self) -> None:
         bundle = self.bundle
         assert sum(check.points for check in bundle.checks) == bundle.manifest.points["code"]
@@ -189,11 +194,7 @@ class AssignmentTests:
 
     @pytest.mark.parametrize("secret", [SECRET, b"another", b"a third"])
     def test_the_solution_earns_everything(self, secret: bytes) -> None:
-        outcomes = judge(self.folder, secret=secret)
-        assert {each.id: each.text for each in outcomes if each.points < each.max} == {}
-        # Tolerances stand ten times above the worst correct answer.
-        margins = {each.id: each.details.get("margin", 0.0) for each in outcomes}
-        assert {id: value for id, value in margins.items() if value > 0.1} == {}
+        assert_everything(judge(self.folder, secret=secret))
 
     def test_the_starter_earns_nothing(self) -> None:
         outcomes = judge(self.folder, strip_solution(source(self.folder)))
@@ -227,10 +228,7 @@ class AssignmentTests:
     @pytest.mark.parametrize("secret", [SECRET, b"another"])
     def test_an_alternative_earns_everything(self, alternative: str, secret: bytes) -> None:
         text = read_alternatives(self.folder)[alternative]
-        outcomes = judge(self.folder, text, secret=secret)
-        assert {each.id: each.text for each in outcomes if each.points < each.max} == {}
-        margins = {each.id: each.details.get("margin", 0.0) for each in outcomes}
-        assert {id: value for id, value in margins.items() if value > 0.1} == {}
+        assert_everything(judge(self.folder, text, secret=secret))
 
     def test_there_are_enough_mutants_and_alternatives(self) -> None:
         assert len(names(self.folder, "mutants")) >= 10
@@ -278,9 +276,17 @@ class AssignmentTests:
     def test_papers_are_cited_by_a_key_of_the_bibliography(self) -> None:
         text = (self.folder / "handout.md").read_text("utf-8")
         keys = set(re.findall(r"\[([A-Z][A-Za-z]*\d{4}[a-z]?)[^\]]*\]", text))
-        known = set(re.findall(r"^@\w+\{([^,\s]+),", _bibliography(), re.MULTILINE))
+        bibliography = (ROOT / "cpp" / "references.bib").read_text("utf-8")
+        known = set(re.findall(r"^@\w+\{([^,\s]+),", bibliography, re.MULTILINE))
         assert keys
         assert keys <= known
+
+
+def assert_everything(outcomes: list[Outcome]) -> None:
+    """All points; and tolerances stand ten times above the worst correct answer."""
+    assert {each.id: each.text for each in outcomes if each.points < each.max} == {}
+    margins = {each.id: each.details.get("margin", 0.0) for each in outcomes}
+    assert {id: value for id, value in margins.items() if value > 0.1} == {}
 
 
 def write_picture(folder: Path, figure: Any, path: Path) -> Path:
@@ -290,7 +296,3 @@ def write_picture(folder: Path, figure: Any, path: Path) -> Path:
 
 def _pixels(data: bytes) -> np.ndarray:
     return np.asarray(Image.open(io.BytesIO(data)).convert("RGB"), dtype=np.float64)
-
-
-def _bibliography() -> str:
-    return (ROOT / "cpp" / "references.bib").read_text("utf-8")

@@ -1,4 +1,4 @@
-// How a path's medium stack (scene/media.h) changes at a surface.
+// How a path's medium stack (scene/medium_stack.h) changes at a surface.
 #pragma once
 
 #include <cmath>

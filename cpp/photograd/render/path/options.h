@@ -20,6 +20,7 @@ struct PathOptions {
     int roulette_from = 4;  // first vertex with Russian roulette; max_depth: none
     std::uint64_t seed = 0;
     Sampler sampler = Sampler::independent;
+    bool background = true;  // otherwise camera rays that escape leave no vertex
 };
 
 }  // namespace photograd

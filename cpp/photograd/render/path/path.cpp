@@ -13,7 +13,8 @@ bool escapes(const Path<R>& path) {
     const auto first =
         std::find_if(path.vertices.begin(), path.vertices.end(),
                      [](const PathVertex<R>& v) { return v.kind != VertexKind::null_surface; });
-    return first != path.vertices.end() && first->kind == VertexKind::escaped;
+    return path.vertices.empty() ||
+           (first != path.vertices.end() && first->kind == VertexKind::escaped);
 }
 
 }  // namespace
@@ -21,9 +22,11 @@ bool escapes(const Path<R>& path) {
 template <Real R>
 void trace_paths(const PathScene<R>& scene, const ThinLens& camera, const PathOptions& options,
                  const SampleRange& samples, const PathSums& sums, double* hits) {
+    PathOptions used = options;
+    used.background = !hits;
     for_each_chunk(camera, [&](std::int64_t begin, std::int64_t end) {
-        for_each_path<R>(scene, camera, options, samples, {}, scene.sampling_is_attached(), begin,
-                         end, [&](std::int64_t pixel, const Path<R>& path) {
+        for_each_path<R>(scene, camera, used, samples, {}, scene.sampling_is_attached(), begin, end,
+                         [&](std::int64_t pixel, const Path<R>& path) {
                              if (hits && escapes(path)) return;
                              if (hits) hits[pixel] += 1;
                              sums.add(pixel, radiance<R>(path, nullptr));

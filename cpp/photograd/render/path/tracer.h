@@ -133,7 +133,7 @@ private:
             return lane.alive;
         };
     }
-    /// Follows all rays; false if there are none.
+    /// Follows all rays; false if no path continues.
     bool next_vertices(int segment) {
         PacketHits found;
         const bool coherent = radiance && !Media && segment == 1;
@@ -147,7 +147,7 @@ private:
                                        found.t[k], lane.time);
             follow(k, lane, hits);
         }
-        return true;
+        return std::any_of(lanes_, lanes_ + width, [](const Lane<R>& lane) { return lane.alive; });
     }
 
     /// The last segment of a picture in which no shape emits: only rays that escape find light.
@@ -227,7 +227,8 @@ private:
     // Vertices -----------------------------------------------------------------------------------
 
     PathVertex<R>& add_vertex(Lane<R>& lane, VertexKind kind, std::int32_t shape) {
-        PathVertex<R>& v = lane.path.vertices.emplace_back();
+        static constexpr PathVertex<R> blank{};  // copied: faster than number by number
+        PathVertex<R>& v = lane.path.vertices.emplace_back(blank);
         v.kind = kind;
         v.shape = shape;
         v.direction = lane.ray.direction;
@@ -243,6 +244,8 @@ private:
         return v;
     }
     void add_escaped_vertex(Lane<R>& lane) {
+        lane.alive = options_.background || !lane.path.vertices.empty();
+        if (!lane.alive) return;
         PathVertex<R>& v = add_vertex(lane, VertexKind::escaped, SceneLights::background);
         lane.alive = false;
         if constexpr (radiance) {
@@ -260,7 +263,9 @@ private:
     }
     void add_surface_vertex(int k, Lane<R>& lane) {
         PathVertex<R>& v = add_vertex(lane, VertexKind::surface, lane.hit.shape);
-        if (mips_ && !geometry().textures.of(material_of(lane.hit)).empty())
+        const auto shape = static_cast<std::size_t>(lane.hit.shape);
+        const auto material_number = static_cast<std::size_t>(geometry().material[shape]);
+        if (mips_ && !geometry().textures.of(material_number).empty())
             v.footprint = lane.cone.footprint(geometry().bvh, lane.hit, lane.ray.direction,
                                               length(lane.hit.position - lane.previous), lane.time);
         lane.material.look_up(scene_, lane.hit, v.footprint);
@@ -293,6 +298,7 @@ private:
         if (geometry().textures.emission_texture(static_cast<std::size_t>(v.shape)))
             v.uv = lane.hit.uv;
         v.Le = scene_.emitted(v.shape, v.uv);
+        if (stop_when_black_ && is_black(v.Le)) return;
         v.emitter_pdf =
             geometry().lights.hit_pdf(geometry().bvh, v.shape, lane.hit.primitive, lane.previous,
                                       length(lane.hit.position - lane.previous), cosine);
@@ -377,10 +383,6 @@ private:
         }
         v.weight = weight / v.survival;
         return true;
-    }
-
-    std::size_t material_of(const SurfaceHit<R>& hit) const {
-        return static_cast<std::size_t>(geometry().material[static_cast<std::size_t>(hit.shape)]);
     }
 
     const PathScene<R>& scene_;

@@ -16,9 +16,10 @@ from pathlib import Path
 from types import FrameType
 from typing import Any, Protocol
 
+from photograd._extras import import_extra
 from photograd.errors import IoError, SceneError, message
 
-INSTALL, UPGRADE = "pip install 'photograd[sfm]'", "pip install --upgrade pycolmap"
+UPGRADE = "pip install --upgrade pycolmap"
 _POLL_S = 0.1
 
 
@@ -92,11 +93,7 @@ def open_engine(folder: Path, photographs: Path, settings: Settings, threads: in
 
 
 def _import() -> Any:
-    try:
-        import pycolmap
-    except ImportError as failure:
-        expected = "the package pycolmap, which recovers cameras"
-        raise IoError(message("capture", "--photos", expected, "none", INSTALL)) from failure
+    pycolmap = import_extra("capture", "pycolmap", "sfm")
     if not hasattr(pycolmap, "CancellationToken"):
         got = getattr(pycolmap, "__version__", "another")
         raise IoError(message("capture", "--photos", "pycolmap from 4.2 on", got, UPGRADE))

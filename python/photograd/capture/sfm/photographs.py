@@ -24,7 +24,7 @@ from photograd.images.kind import (
 )
 
 SUFFIXES = (".jpg", ".jpeg", ".png")
-FEWEST = 3
+MIN_IMAGES = 3
 PARTIAL = ".partial_"  # begins the name of a copy that is being made
 _NAME = "capture"
 _ORIENTATION, _EXIF = 0x0112, 0x8769
@@ -71,9 +71,9 @@ def find_photographs(folder: Path) -> tuple[list[Photograph], list[str]]:
     files = sorted(x for x in folder.iterdir() if x.is_file() and not x.name.startswith("."))
     chosen = [file for file in files if file.suffix.lower() in SUFFIXES]
     others = [file.name for file in files if file.suffix.lower() not in SUFFIXES]
-    if len(chosen) < FEWEST:
+    if len(chosen) < MIN_IMAGES:
         got = f"{len(chosen)}" + (f", and {_some(others)}" if others else "")
-        expected = f"at least {FEWEST} photographs ({', '.join(SUFFIXES)})"
+        expected = f"at least {MIN_IMAGES} photographs ({', '.join(SUFFIXES)})"
         remedy = "twenty to a hundred from around the scene; convert others, such as .heic, first"
         raise SceneError(message(_NAME, f"--photos {folder}", expected, got, remedy))
     found = [_look_at(file) for file in chosen]

@@ -17,7 +17,7 @@ _FRUSTUM = 0.06  # length of a drawn camera, of the width of the picture
 
 
 def draw_cameras(capture: Capture, path: Path, title: str) -> None:
-    """Write a PNG of the points in their colours and the cameras as wedges that open forwards."""
+    """Write a PNG of the points in their colors and the cameras as wedges that open forwards."""
     with style.house_style():
         figure = style.new_figure(2 * WIDTH + 1.6, HEIGHT + 1.3)
         panels = [(0, 2, "from above", "x", "z"), (0, 1, "from the side", "x", "y")]
@@ -32,12 +32,12 @@ def draw_cameras(capture: Capture, path: Path, title: str) -> None:
 
 
 def _draw(axes: Axes, capture: Capture, right: int, up: int) -> None:
-    centres = np.array([view.camera.position for view in capture.views])[:, [right, up]]
-    shown = centres
+    centers = np.array([view.camera.position for view in capture.views])[:, [right, up]]
+    shown = centers
     if capture.points is not None and len(capture.points):
         points = capture.points[:, [right, up]]
         low, high = np.percentile(points, [2, 98], axis=0)
-        shown = np.concatenate([centres, [low, high]])
+        shown = np.concatenate([centers, [low, high]])
         colors = capture.point_colors
         axes.scatter(
             points[:, 0],

@@ -24,7 +24,7 @@ from photograd_course.cli import Column, Progress
 from photograd.capture import Capture, load_capture
 from photograd.capture.sfm.engine import Engine, Reconstructed, Settings, open_engine
 from photograd.capture.sfm.photographs import (
-    FEWEST,
+    MIN_IMAGES,
     PARTIAL,
     Photograph,
     copy_photographs,
@@ -34,10 +34,10 @@ from photograd.capture.sfm.picture import draw_cameras
 from photograd.capture.write import MANIFEST, left_alone, remove_written, require_free
 from photograd.errors import IoError, SceneError, message
 
-MOST_FOR_ALL = 60
+MAX_EXHAUSTIVE = 60
 """Photographs up to which every pair is compared; the work grows with the square of it."""
 
-NEIGHBOURS = 10
+NEIGHBORS = 10
 KEYS = 30
 
 
@@ -53,15 +53,15 @@ def choose_pairs(count: int, *, exhaustive: bool | None = None) -> list[tuple[in
         count: number of photographs.
         exhaustive: all pairs, or the walk, whatever the number.
     """
-    if count <= MOST_FOR_ALL if exhaustive is None else exhaustive:
+    if count <= MAX_EXHAUSTIVE if exhaustive is None else exhaustive:
         return [(i, j) for i in range(count) for j in range(i + 1, count)]
-    gaps = [*range(1, NEIGHBOURS + 1)]
+    gaps = [*range(1, NEIGHBORS + 1)]
     gap = 16
     while gap < count:
         gaps.append(gap)
         gap *= 2
     found = {(i, i + gap) for gap in gaps for i in range(count - gap)}
-    found |= {(i, count - gap + i) for gap in gaps[:NEIGHBOURS] for i in range(gap) if gap < count}
+    found |= {(i, count - gap + i) for gap in gaps[:NEIGHBORS] for i in range(gap) if gap < count}
     keys = sorted({k * count // KEYS for k in range(KEYS)})
     found |= {(i, j) for i in keys for j in keys if i < j}
     return sorted(pair for pair in found if pair[0] < pair[1])
@@ -262,7 +262,7 @@ def _map(worker: Engine, found: list[Photograph], out: Path, note: Note) -> list
         expected = "photographs that show the same things from different places"
         got = f"{len(found)} of which no three could be placed"
         remedy = (
-            "overlap neighbours by two thirds, walk instead of turning on the spot, "
+            "overlap neighbors by two thirds, walk instead of turning on the spot, "
             "avoid blur and bare or shiny surfaces"
         )
         raise SceneError(message(_NAME, "--photos", expected, got, remedy))
@@ -282,7 +282,7 @@ def _attempt(
 
         models = worker.map(folder, agreeing, count)
     # Two photographs are a pair, and no reconstruction.
-    return [model for model in models if len(model.names) >= FEWEST]
+    return [model for model in models if len(model.names) >= MIN_IMAGES]
 
 
 def _report(found: list[Photograph], models: list[Reconstructed]) -> Report:

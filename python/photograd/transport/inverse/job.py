@@ -12,7 +12,6 @@ the checkpoint: a resumed run ends with the same bits as an uninterrupted one.
 from __future__ import annotations
 
 import hashlib
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import asdict
 from pathlib import Path
@@ -23,19 +22,19 @@ from photograd_course.optim import Adam
 from photograd_course.random import choice, random_words
 from photograd_course.schedules import exponential
 
-from photograd.errors import Error, IoError, RangeError, message
-from photograd.fitting.checkpoint import (
+from photograd._checkpoint import (
     Checkpoint,
     check_arrays,
     check_history,
     check_optimizer,
     checked_step,
     load_checkpoint,
-    make_folder,
     save_checkpoint,
 )
+from photograd._descend import Progress, descend
+from photograd.errors import Error, IoError, RangeError, message
 from photograd.transport.inverse.loss import checked_targets, loss_and_gradients, loss_weights
-from photograd.transport.inverse.options import Progress, RecoveryOptions, RecoveryResult
+from photograd.transport.inverse.options import RecoveryOptions, RecoveryResult
 from photograd.transport.inverse.parameters import Unknown, is_light, scene_with
 from photograd.transport.scene import Scene
 from photograd.transport.scene_digest import scene_digest
@@ -93,7 +92,7 @@ class Recovery:
         starts = {name: each.start_in(tracer) for name, each in self.unknowns.items()}
         self._activations = {n: each.activation_in(scene) for n, each in self.unknowns.items()}
         self.x = {n: self._activations[n].inverse(value) for n, value in starts.items()}
-        self.optimiser = Adam(beta_2=MEMORY)
+        self.optimizer = Adam(beta_2=MEMORY)
         self._rate = exponential(self.options.final_rate, self.options.steps)
         self.step_number = 0
         self.history: list[tuple[float, float, float]] = []
@@ -132,6 +131,11 @@ class Recovery:
                 total[name] += gradient / len(chosen)
         return loss, total
 
+    @property
+    def steps(self) -> int:
+        """Of the whole descent."""
+        return self.options.steps
+
     def step(self) -> float:
         """One step of gradient descent; returns the loss before it.
 
@@ -154,7 +158,7 @@ class Recovery:
         }
         rate = self.options.learning_rate * self._rate(step)
         rates = {name: rate * each.rate for name, each in self.unknowns.items()}
-        self.optimiser.step(self.x, gradients, rates)
+        self.optimizer.step(self.x, gradients, rates)
         self.history.append((step, loss, rate))
         for name, value in self.values().items():
             self.curves[name].append(_summary(value))
@@ -175,20 +179,21 @@ class Recovery:
             IoError: the checkpoint cannot be written.
             Error: as `step`.
         """
-        if folder is not None:
-            make_folder(folder)
-        began = saved = time.perf_counter()
-        while self.step_number < self.options.steps and not should_stop():
-            self.step()
+
+        def after_step(now: float) -> None:
+            del now
             if on_step:
                 recent = [loss for _, loss, _ in self.history[-SMOOTH:]]
                 on_step(Progress(self.step_number, self.options.steps, float(np.mean(recent))))
-            if folder is not None and time.perf_counter() - saved > checkpoint_seconds:
-                self.save(folder)
-                saved = time.perf_counter()
-        if folder is not None:
-            self.save(folder)
-        return self.result(time.perf_counter() - began)
+
+        run = descend(
+            self,
+            folder,
+            after_step=after_step,
+            should_stop=should_stop,
+            checkpoint_seconds=checkpoint_seconds,
+        )
+        return self.result(run.seconds)
 
     def result(self, seconds: float = 0.0) -> RecoveryResult:
         """What has been found so far."""
@@ -253,7 +258,7 @@ def save_state(folder: Path, job: Recovery, sampled: dict[str, Array]) -> None:
     meta = {"step": job.step_number, **fingerprint(job)}
     history = np.array(job.history, np.float64).reshape(-1, 3)
     save_checkpoint(
-        folder / FILE_NAME, Checkpoint(meta, dict(job.x), job.optimiser.state(), state, history)
+        folder / FILE_NAME, Checkpoint(meta, dict(job.x), job.optimizer.state(), state, history)
     )
 
 
@@ -278,7 +283,7 @@ def load_state(folder: Path, job: Recovery) -> dict[str, Array]:
     job.x = {name: saved.params[name] for name in job.x}
     sampled = {name: saved.state[f"sampled.{name}"] for name in job.x}
     job.curves = {name: list(saved.state[f"curves.{name}"]) for name in job.x}
-    job.optimiser.load_state(saved.optimiser)
+    job.optimizer.load_state(saved.optimizer)
     job.history = [(float(a), float(b), float(c)) for a, b, c in saved.history]
     return sampled
 
@@ -292,7 +297,7 @@ def _checked_step(saved: Checkpoint, job: Recovery) -> int:
         state[f"curves.{name}"] = (kinds, (step + 1, *job.curves[name][0].shape))
     check_arrays("params", saved.params, {name: (kinds, x.shape) for name, x in job.x.items()}, {})
     check_arrays("state", saved.state, state, {})
-    check_optimizer(saved.optimiser, saved.params)
+    check_optimizer(saved.optimizer, saved.params)
     check_history(saved.history, step)
     return step
 

@@ -64,16 +64,7 @@ class RecoveryOptions:
             raise RangeError(message("RecoveryOptions", "seed", "0 to 2^64 - 1", self.seed))
 
 
-# What a recovery reports: after each step, and when it ends.
-
-
-@dataclass(frozen=True)
-class Progress:
-    """What a progress display gets after a step; `loss` is the running mean of the last ones."""
-
-    step: int
-    steps: int
-    loss: float
+# What is reported at the end.
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from photograd.errors import RangeError, message
+from photograd._descend import progress_bar, run_folder
 from photograd.transport.inverse.job import FILE_NAME, Recovery
-from photograd.transport.inverse.options import Progress, RecoveryOptions, RecoveryResult
+from photograd.transport.inverse.options import RecoveryOptions, RecoveryResult
 from photograd.transport.inverse.parameters import Unknown
 from photograd.transport.scene import Scene
 
@@ -60,24 +60,9 @@ def recover(
         IoError: a checkpoint that cannot be written, or is not there to resume from.
         Error: a loss or derivative that is not finite.
     """
-    job = Recovery(scene, targets, unknowns, options)
-    if folder is not None and not resume and (folder / FILE_NAME).exists():
-        remedy = "resume it, or choose another folder"
-        got = f"one with {FILE_NAME}"
-        raise RangeError(message("recover", "folder", "a folder without a recovery", got, remedy))
-    if resume:
-        if folder is None:
-            raise RangeError(message("recover", "resume", "a folder to resume from", "none"))
-        job.load(folder)
-    if not bar:
-        return job.run(folder)
-    from photograd_course.cli import Column
-    from photograd_course.cli import Progress as Bar
-
-    columns = [Column("loss", "{:.2e}".format)]
-    with Bar("recover", job.options.steps, columns, start=job.step_number) as shown:
-
-        def on_step(now: Progress) -> None:
-            shown.update(now.step, loss=now.loss)
-
-        return job.run(folder, on_step=on_step)
+    with run_folder("recover", folder, FILE_NAME, resume=resume):
+        job = Recovery(scene, targets, unknowns, options)
+        if resume and folder is not None:
+            job.load(folder)
+        with progress_bar("recover", job, shown=bar) as on_step:
+            return job.run(folder, on_step=on_step)

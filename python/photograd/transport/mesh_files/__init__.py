@@ -1,23 +1,26 @@
 """Scenes from mesh files: .glb and .gltf with their materials, .obj, .ply and .stl.
 
-`read_model` reads one; `model_scene` puts it under a light and before a camera, its own if the file
-has them; `save_gltf` writes a scene's shapes and materials, its camera and its lights.
+`read_model` reads one; `default_scene` puts it under a light and before a camera, its own if the
+file has them; `save_gltf` writes a scene's shapes and materials, its camera and its lights.
+`read_textured_mesh` makes one mesh of all shapes, whose texture is to be fitted.
 """
 
 from __future__ import annotations
 
+from photograd.transport.mesh_files.as_field import read_textured_mesh
 from photograd.transport.mesh_files.gltf_save import save_gltf
 from photograd.transport.mesh_files.model_camera import ModelCamera
 from photograd.transport.mesh_files.model_file import ModelFile
 from photograd.transport.mesh_files.read import SUFFIXES, read_model
-from photograd.transport.mesh_files.studio import STUDIO, model_scene
+from photograd.transport.mesh_files.studio import STUDIO, default_scene
 
 __all__ = [
     "STUDIO",
     "SUFFIXES",
     "ModelCamera",
     "ModelFile",
-    "model_scene",
+    "default_scene",
     "read_model",
+    "read_textured_mesh",
     "save_gltf",
 ]

@@ -27,7 +27,7 @@ def read_floats(container: Container, reference: JsonNode, width: int) -> Array:
     """
     accessor, values = _read(container, reference)
     if values.shape[1] != width:
-        raise IoError(message(NAME, accessor.place, f"{width} components", values.shape[1]))
+        raise IoError(message(NAME, accessor.where, f"{width} components", values.shape[1]))
     if values.dtype.kind == "f" or not _flag(accessor, "normalized"):
         with np.errstate(invalid="ignore"):
             return np.asarray(values, np.float32)
@@ -45,7 +45,7 @@ def read_indices(container: Container, reference: JsonNode) -> Array:
     accessor, values = _read(container, reference)
     if values.dtype.kind != "u" or values.shape[1] != 1:
         got = f"{values.shape[1]} x {values.dtype}"
-        raise IoError(message(NAME, accessor.place, "one unsigned integer a row", got))
+        raise IoError(message(NAME, accessor.where, "one unsigned integer a row", got))
     return values[:, 0].astype(np.int64)
 
 
@@ -53,7 +53,7 @@ def _read(container: Container, reference: JsonNode) -> tuple[JsonNode, Array]:
     accessor = container.entry("accessors", reference)
     kind = accessor["type"].text()
     if kind not in WIDTHS:
-        raise IoError(message(NAME, f"{accessor.place}: type", sorted(WIDTHS), kind[:20]))
+        raise IoError(message(NAME, f"{accessor.where}: type", sorted(WIDTHS), kind[:20]))
     dtype = _component(accessor["componentType"])
     count = whole(accessor, 1, 1 << 31, "count")
     container.spend(accessor, count)
@@ -63,7 +63,7 @@ def _read(container: Container, reference: JsonNode) -> tuple[JsonNode, Array]:
         container.expand(accessor, count * WIDTHS[kind] * dtype.itemsize)
         values = np.zeros((count, WIDTHS[kind]), dtype)
     else:
-        raise IoError(message(NAME, accessor.place, "a member 'bufferView'", "none"))
+        raise IoError(message(NAME, accessor.where, "a member 'bufferView'", "none"))
     if "sparse" in accessor:
         values = _replaced(container, accessor["sparse"], values)
     return accessor, values
@@ -79,7 +79,7 @@ def _rows(
     start = whole(node, 0, len(data), "byteOffset", 0)
     if step < size or start + (count - 1) * step + size > len(data):
         got = f"{count} rows of {size} bytes, {step} apart from {start} on, in {len(data)}"
-        raise IoError(message(NAME, node.place, "numbers inside of the buffer view", got))
+        raise IoError(message(NAME, node.where, "numbers inside of the buffer view", got))
     rows = np.ndarray((count, width), dtype, data, start, (step, dtype.itemsize))
     return np.array(rows)
 
@@ -87,10 +87,10 @@ def _rows(
 def _replaced(container: Container, sparse: JsonNode, values: Array) -> Array:
     """`values` with the rows that a sparse accessor lists."""
     count = whole(sparse, 1, len(values), "count")
-    places, rows = sparse["indices"], sparse["values"]
-    which = _rows(container, places, _component(places["componentType"]), 1, count)[:, 0]
+    indices, rows = sparse["indices"], sparse["values"]
+    which = _rows(container, indices, _component(indices["componentType"]), 1, count)[:, 0]
     if which.dtype.kind != "u" or int(which.max()) >= len(values):
-        raise IoError(message(NAME, places.place, f"rows below {len(values)}", which.max()))
+        raise IoError(message(NAME, indices.where, f"rows below {len(values)}", which.max()))
     values[which] = _rows(container, rows, values.dtype, values.shape[1], count)
     return values
 
@@ -98,7 +98,7 @@ def _replaced(container: Container, sparse: JsonNode, values: Array) -> Array:
 def _component(node: JsonNode) -> np.dtype[Any]:
     number = whole(node, 0, 1 << 16)
     if number not in COMPONENTS:
-        raise IoError(message(NAME, node.place, sorted(COMPONENTS), number))
+        raise IoError(message(NAME, node.where, sorted(COMPONENTS), number))
     return np.dtype(COMPONENTS[number])
 
 

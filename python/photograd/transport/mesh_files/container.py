@@ -62,7 +62,7 @@ class Container:
         total = self.asked[limit] = self.asked.get(limit, 0) + amount
         if total > limit.value():
             got = f"{total:,}"
-            raise IoError(message(NAME, node.place, limit.expected(), got, limit.remedy()))
+            raise IoError(message(NAME, node.where, limit.expected(), got, limit.remedy()))
 
     def entries(self, name: str) -> list[JsonNode]:
         """The elements of an array of the file.
@@ -105,7 +105,7 @@ class Container:
             elif number == 0 and self.embedded is not None:
                 data = self.embedded
             else:
-                raise IoError(message(NAME, buffer.place, "a member 'uri'", "none"))
+                raise IoError(message(NAME, buffer.where, "a member 'uri'", "none"))
             self._buffers[number] = data
         return self._buffers[number]
 
@@ -119,13 +119,13 @@ class Container:
         if text.startswith("data:"):
             head, comma, body = text.partition(",")
             if not comma or not head.endswith(";base64"):
-                raise IoError(message(NAME, uri.place, "data:...;base64,...", f"{head[:40]}..."))
+                raise IoError(message(NAME, uri.where, "data:...;base64,...", f"{head[:40]}..."))
             try:
                 return base64.b64decode(body, validate=True)
             except (binascii.Error, ValueError) as failure:
-                raise IoError(message(NAME, uri.place, "base64", failure)) from failure
-        file = inside(NAME, uri.place, self.path.parent, unquote(text), portable=True)
-        return read_file(f"{NAME}: {uri.place}", file)
+                raise IoError(message(NAME, uri.where, "base64", failure)) from failure
+        file = inside(NAME, uri.where, self.path.parent, unquote(text), portable=True)
+        return read_file(f"{NAME}: {uri.where}", file)
 
 
 def open_container(path: Path) -> Container:
@@ -187,7 +187,7 @@ def whole(
     number = node.number()
     if number != int(number) or not least <= number <= most:
         expected = f"a whole number from {least} to {most}" if most >= least else "nothing here"
-        raise IoError(message(NAME, node.place, expected, f"{number:.12g}"))
+        raise IoError(message(NAME, node.where, expected, f"{number:.12g}"))
     return int(number)
 
 

@@ -16,8 +16,8 @@ from photograd.transport.mesh_files.gltf_cameras import read_cameras
 from photograd.transport.mesh_files.gltf_interior import filled_shapes
 from photograd.transport.mesh_files.gltf_lights import LIGHTS, read_lights
 from photograd.transport.mesh_files.gltf_materials import FileMaterial, read_material
-from photograd.transport.mesh_files.model_file import ModelFile, Names, placed_shapes
-from photograd.transport.mesh_files.nodes import mesh_places, placed_nodes
+from photograd.transport.mesh_files.model_file import ModelFile, UniqueNames, placed_shapes
+from photograd.transport.mesh_files.nodes import placed_nodes, transforms_of_meshes
 from photograd.transport.mesh_files.pictures import TRANSFORM, Pictures
 from photograd.transport.shapes import MeshShape, Shape
 from photograd.types import Array
@@ -49,11 +49,11 @@ def read_gltf(path: Path, note: Callable[[str], None]) -> ModelFile:
     pictures = Pictures(container, note)
     materials: dict[str, FileMaterial] = {}
     numbered: dict[int, str] = {}
-    names, titles = Names(), Names()
+    names, titles = UniqueNames(), UniqueNames()
     shapes: list[Shape] = []
     nodes = placed_nodes(container)
     cameras, lights = read_cameras(container, nodes, note), read_lights(container, nodes, note)
-    for number, places in mesh_places(nodes).items():
+    for number, transforms in transforms_of_meshes(nodes).items():
         meshes = container.entries("meshes")
         if number >= len(meshes):
             raise IoError(message(NAME, "meshes", f"a mesh {number}", f"{len(meshes)} meshes"))
@@ -63,13 +63,13 @@ def read_gltf(path: Path, note: Callable[[str], None]) -> ModelFile:
             wanted = whole(part, 0, 1 << 31, "material") if "material" in part else -1
             if wanted not in numbered:
                 label, made = _material(container, wanted, pictures, note)
-                numbered[wanted] = names.free(label)
+                numbered[wanted] = names.unique_name(label)
                 materials[numbered[wanted]] = made
             name = numbered[wanted]
             arrays = _arrays(container, part, materials[name], note)
             if arrays is not None:
                 made = materials[name]
-                placed = placed_shapes(titles, title, arrays, name, made.emission, places, note)
+                placed = placed_shapes(titles, title, arrays, name, made.emission, transforms, note)
                 shapes += [_glowing(shape, made, note) for shape in placed]
     if not shapes:
         raise SceneError(message(NAME, f"{path}", "triangles in the scene", "none"))
@@ -99,10 +99,10 @@ def _check_required(container: Container) -> None:
         name = node.text()
         if name == DRACO:
             remedy = "save it without compression: there is no decoder for it here"
-            raise IoError(message(NAME, node.place, "plain geometry", name, remedy))
+            raise IoError(message(NAME, node.where, "plain geometry", name, remedy))
         if name not in READABLE and not name.startswith("KHR_materials_"):
             remedy = "save it without"
-            raise IoError(message(NAME, node.place, "extensions that are known", name[:60], remedy))
+            raise IoError(message(NAME, node.where, "extensions that are known", name[:60], remedy))
 
 
 def _material(
@@ -127,7 +127,7 @@ def _arrays(
     """Vertices, faces, normals and texture coordinates of a primitive; None without surface."""
     mode = whole(part, 0, 6, "mode", _TRIANGLES)
     if mode < _TRIANGLES:
-        note(f"{part.place}: points or lines, left out")
+        note(f"{part.where}: points or lines, left out")
         return None
     attributes = part["attributes"]
     vertices = read_floats(container, attributes["POSITION"], 3)
@@ -135,20 +135,20 @@ def _arrays(
     indices = read_indices(container, part["indices"]) if "indices" in part else np.arange(count)
     if len(indices) and int(indices.max()) >= count:
         expected = f"vertex numbers below {count}"
-        raise IoError(message(NAME, f"{part.place}: indices", expected, int(indices.max())))
+        raise IoError(message(NAME, f"{part.where}: indices", expected, int(indices.max())))
     faces = _faces(indices, mode)
     if not len(faces):
-        note(f"{part.place}: no triangle, left out")
+        note(f"{part.where}: no triangle, left out")
         return None
     for key in ("COLOR_0", "JOINTS_0"):
         if key in attributes:
-            note(f"{part.place}: {key}: not supported, left out")
+            note(f"{part.where}: {key}: not supported, left out")
     if "targets" in part:
-        note(f"{part.place}: targets: not supported, left out")
+        note(f"{part.where}: targets: not supported, left out")
     normals = _attribute(container, attributes, "NORMAL", 3, count, note)
-    place = material.coordinates
-    uv = _attribute(container, attributes, f"TEXCOORD_{place.set}", 2, count, note)
-    return vertices, faces, normals, None if uv is None else place.apply(uv)
+    coordinates = material.coordinates
+    uv = _attribute(container, attributes, f"TEXCOORD_{coordinates.set}", 2, count, note)
+    return vertices, faces, normals, None if uv is None else coordinates.apply(uv)
 
 
 def _attribute(
@@ -165,9 +165,9 @@ def _attribute(
     rows = read_floats(container, attributes[key], width)
     if len(rows) != count:
         expected = f"{count} rows, one a vertex"
-        raise IoError(message(NAME, f"{attributes.place}: {key}", expected, len(rows)))
+        raise IoError(message(NAME, f"{attributes.where}: {key}", expected, len(rows)))
     if not np.isfinite(rows).all():
-        note(f"{attributes.place}: {key}: NaN or infinity, left out")
+        note(f"{attributes.where}: {key}: NaN or infinity, left out")
         return None
     return rows
 

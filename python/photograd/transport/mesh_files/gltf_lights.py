@@ -1,10 +1,10 @@
-"""Lights of a glTF file, and ours in its words: KHR_lights_punctual [Khronos2022].
+"""Lights of a glTF file, and ours as glTF has them: KHR_lights_punctual [Khronos2022].
 
     point         intensity I, candela    irradiance I cos / r^2
     spot          intensity I, candela    the same times s: 1 within innerConeAngle, 0 beyond outer
     directional   intensity E, lux        irradiance E cos
 
-All are times a linear colour and shine along -Z of their node, whose scale changes no number.
+All are times a linear color and shine along -Z of their node, whose scale changes no number.
 Candela and lux are taken as W/sr and W/m^2, as nits of emissive surfaces are as W/(m^2 sr): lamps
 keep their ratios. `range` is no property of light and is left out, with a note.
 
@@ -23,11 +23,11 @@ from typing import Any
 import numpy as np
 
 from photograd._json_node import JsonNode
-from photograd.capture.frames import LARGEST_COORDINATE
+from photograd.capture.frames import MAX_COORDINATE
 from photograd.errors import IoError, message
 from photograd.lights import DirectionalLight, Light, PointLight, SpotLight
 from photograd.transport.mesh_files.container import NAME, Container, real, whole
-from photograd.transport.mesh_files.nodes import PlacedNode
+from photograd.transport.mesh_files.nodes import NodeTransform
 from photograd.types import Array
 
 LIGHTS = "KHR_lights_punctual"
@@ -41,7 +41,7 @@ _HARDEST = 1e-6  # the least softness: angles that differ by less have the same 
 
 
 def read_lights(
-    container: Container, nodes: Sequence[PlacedNode], note: Callable[[str], None]
+    container: Container, nodes: Sequence[NodeTransform], note: Callable[[str], None]
 ) -> tuple[Light, ...]:
     """One for each node that has a light; `note` takes ranges, and lights that are out of reach.
 
@@ -58,7 +58,7 @@ def read_lights(
         number = whole(node["extensions"][LIGHTS], 0, len(table) - 1, "light")
         light = _placed(table[number], world, note)
         if light is None:
-            note(f"{node.place}: a light without direction or out of reach, left out")
+            note(f"{node.where}: a light without direction or out of reach, left out")
         else:
             found.append(light)
     return tuple(found)
@@ -74,13 +74,13 @@ def _placed(light: JsonNode, world: Array, note: Callable[[str], None]) -> Light
     """A light at its node, or None if it cannot stand there."""
     kind = light["type"].text()
     if kind not in KINDS:
-        raise IoError(message(NAME, light["type"].place, f"one of {', '.join(KINDS)}", kind[:60]))
+        raise IoError(message(NAME, light["type"].where, f"one of {', '.join(KINDS)}", kind[:60]))
     strength = _strength(light)
     if "range" in light:
-        note(f"{light.place}: range: left out: light falls with the square of distance alone")
+        note(f"{light.where}: range: left out: light falls with the square of distance alone")
     back, position = world[:3, 2], world[:3, 3]
     shape = _cone(light) if kind == "spot" else None
-    if not np.isfinite(world).all() or np.abs(position).max() > LARGEST_COORDINATE:
+    if not np.isfinite(world).all() or np.abs(position).max() > MAX_COORDINATE:
         return None
     if kind == "point":
         return PointLight(position, strength)
@@ -93,30 +93,30 @@ def _placed(light: JsonNode, world: Array, note: Callable[[str], None]) -> Light
 
 
 def _strength(light: JsonNode) -> Array:
-    """(3,): intensity times colour."""
+    """(3,): intensity times color."""
     intensity = real(light, "intensity", 1.0)
     if not 0 <= intensity < BRIGHTEST:
-        place, expected = f"{light.place}: intensity", f"a number from 0 to {BRIGHTEST:g}"
-        raise IoError(message(NAME, place, expected, intensity))
+        where, expected = f"{light.where}: intensity", f"a number from 0 to {BRIGHTEST:g}"
+        raise IoError(message(NAME, where, expected, intensity))
     color = light["color"].numbers((3,)) if "color" in light else np.ones(3)
     if not (color.min() >= 0 and color.max() <= 1):
-        place, expected = f"{light.place}: color", "three numbers from 0 to 1"
-        raise IoError(message(NAME, place, expected, color.tolist()))
+        where, expected = f"{light.where}: color", "three numbers from 0 to 1"
+        raise IoError(message(NAME, where, expected, color.tolist()))
     return np.asarray(intensity * color)
 
 
 def _cone(light: JsonNode) -> tuple[float, float]:
     """cos_outer and softness."""
-    spot = light["spot"] if "spot" in light else JsonNode(NAME, f"{light.place}: spot", {})
+    spot = light["spot"] if "spot" in light else JsonNode(NAME, f"{light.where}: spot", {})
     if not isinstance(spot.value, dict):
         raise spot.wrong("an object")
     inner, outer = real(spot, "innerConeAngle", 0.0), real(spot, "outerConeAngle", _OUTER)
     if not NARROWEST <= outer <= np.pi / 2 + _ROUNDED:
-        place, expected = f"{spot.place}: outerConeAngle", f"radians from {NARROWEST} to pi / 2"
-        raise IoError(message(NAME, place, expected, outer))
+        where, expected = f"{spot.where}: outerConeAngle", f"radians from {NARROWEST} to pi / 2"
+        raise IoError(message(NAME, where, expected, outer))
     if not 0 <= inner < outer:
-        place, expected = f"{spot.place}: innerConeAngle", f"radians from 0 to below {outer:.6g}"
-        raise IoError(message(NAME, place, expected, inner))
+        where, expected = f"{spot.where}: innerConeAngle", f"radians from 0 to below {outer:.6g}"
+        raise IoError(message(NAME, where, expected, inner))
     within, whole_cone = _height(inner), _height(outer)
     return 1 - whole_cone, max(1 - within / whole_cone, _HARDEST)
 
@@ -126,8 +126,8 @@ def _height(angle: float) -> float:
     return 2 * float(np.sin(0.5 * angle)) ** 2
 
 
-def light_words(light: Light) -> tuple[dict[str, Any], list[float]] | None:
-    """An entry of the table of lights, and the matrix of its node; None without such words."""
+def gltf_light(light: Light) -> tuple[dict[str, Any], list[float]] | None:
+    """An entry of the table of lights, and the matrix of its node; None if glTF lacks its kind."""
     if not isinstance(light, DirectionalLight | PointLight | SpotLight):
         return None
     strength = light.irradiance if isinstance(light, DirectionalLight) else light.intensity
@@ -151,7 +151,7 @@ def _angle(height: float) -> float:
 
 
 def _entry(kind: str, strength: Any) -> dict[str, Any]:
-    """The intensity is a power of two, so that its product with the colour is exact."""
+    """The intensity is a power of two, so that its product with the color is exact."""
     color = np.asarray(strength, np.float64)
     largest = float(color.max())
     intensity = max(1.0, 2.0 ** float(np.ceil(np.log2(largest)))) if largest > 0 else 1.0

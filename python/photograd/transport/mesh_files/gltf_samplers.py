@@ -43,7 +43,7 @@ def read_sampler(sampler: JsonNode, note: Callable[[str], None]) -> tuple[Wrap, 
 def _wrap(sampler: JsonNode, key: str, note: Callable[[str], None]) -> str:
     number = whole(sampler, 0, 1 << 16, key, WRAPS["repeat"])
     if number not in _KNOWN_WRAPS:
-        note(f"{sampler.place}: {key}: {number}: unknown, read as REPEAT")
+        note(f"{sampler.where}: {key}: {number}: unknown, read as REPEAT")
     return _KNOWN_WRAPS.get(number, "repeat")
 
 
@@ -54,19 +54,19 @@ def _filter(sampler: JsonNode, key: str, default: int, note: Callable[[str], Non
     taken = TRILINEAR if number in known and number not in _MAGNIFYING else LINEAR
     if number != taken:
         name = FILTERS[number] if number in known else f"{number}: unknown"
-        note(f"{sampler.place}: {key}: {name}, read as {FILTERS[taken]}")
+        note(f"{sampler.where}: {key}: {name}, read as {FILTERS[taken]}")
     return taken
 
 
-def sampler_words(wrap: Wrap, looked_up: str) -> dict[str, int]:
+def gltf_sampler(wrap: Wrap, looked_up: str) -> dict[str, int]:
     """An entry of the table of samplers; nothing for what a file means without one.
 
     A bilinear texture asks for no filter: viewers that take one sample a pixel should not be kept
     from the mip maps they need.
     """
-    words: dict[str, int] = {}
+    entry: dict[str, int] = {}
     if wrap != ("repeat", "repeat"):
-        words |= {"wrapS": WRAPS[wrap[0]], "wrapT": WRAPS[wrap[1]]}
+        entry |= {"wrapS": WRAPS[wrap[0]], "wrapT": WRAPS[wrap[1]]}
     if looked_up == "mip":
-        words |= {"magFilter": LINEAR, "minFilter": TRILINEAR}
-    return words
+        entry |= {"magFilter": LINEAR, "minFilter": TRILINEAR}
+    return entry

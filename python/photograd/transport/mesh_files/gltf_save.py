@@ -12,13 +12,18 @@ from typing import Any
 import numpy as np
 from photograd_course.atomic_io import atomic_write
 
+from photograd._gltf_bytes import GltfBytes
 from photograd.errors import IoError, SceneError, message
 from photograd.transport.medium import BOUNDARY, VACUUM
-from photograd.transport.mesh_files.gltf_bytes import GltfBytes
-from photograd.transport.mesh_files.gltf_cameras import camera_words
-from photograd.transport.mesh_files.gltf_lights import LIGHTS, light_words
-from photograd.transport.mesh_files.gltf_painted import SLOTS, Painted
-from photograd.transport.mesh_files.gltf_words import BODIES, WRITTEN, attenuation, words_of
+from photograd.transport.mesh_files.gltf_cameras import gltf_camera
+from photograd.transport.mesh_files.gltf_lights import LIGHTS, gltf_light
+from photograd.transport.mesh_files.gltf_material_writer import (
+    BODIES,
+    WRITTEN,
+    attenuation,
+    gltf_material,
+)
+from photograd.transport.mesh_files.gltf_texture_writer import SLOTS, TextureWriter
 from photograd.transport.mesh_files.model_camera import ModelCamera, camera_changes
 from photograd.transport.mesh_files.model_changes import changes
 from photograd.transport.mesh_files.model_file import ModelFile
@@ -47,7 +52,7 @@ def save_gltf(model: Scene | ModelFile, path: Path) -> None:
 
     Raises:
         IoError: another ending, or a file that cannot be written.
-        SceneError: shapes, materials or interiors that glTF has no words for, or shapes that move;
+        SceneError: shapes, materials or interiors that glTF cannot express, or shapes that move;
             names them all.
     """
     suffix = path.suffix.lower()
@@ -55,11 +60,11 @@ def save_gltf(model: Scene | ModelFile, path: Path) -> None:
         expected = "a name that ends in .glb or .gltf"
         raise IoError(message("save_gltf", "path", expected, path.name))
     whole = _as_file(model)
-    reasons = list(_without_words(whole))
+    reasons = list(_unsupported(whole))
     if reasons:
         got = "; ".join(reasons[:_REASONS])
         got += f"; and {len(reasons) - _REASONS} more" if len(reasons) > _REASONS else ""
-        raise SceneError(message("save_gltf", "model", "what glTF has words for", got))
+        raise SceneError(message("save_gltf", "model", "what glTF can express", got))
     file = _file(whole)
     atomic_write(path, file.glb() if suffix == ".glb" else file.gltf())
     for text in (*_not_written(model), *_come_back(whole, path)):
@@ -69,11 +74,11 @@ def save_gltf(model: Scene | ModelFile, path: Path) -> None:
 def _as_file(model: Scene | ModelFile) -> ModelFile:
     """What is written, if all shapes and materials can be."""
     cameras = (ModelCamera.of(model.camera),) if isinstance(model, Scene) else model.cameras
-    lights = tuple(light for light in model.lights if light_words(light) is not None)
+    lights = tuple(light for light in model.lights if gltf_light(light) is not None)
     return ModelFile(model.shapes, model.materials, model.textures, model.media, cameras, lights)
 
 
-def _without_words(model: ModelFile) -> Iterator[str]:
+def _unsupported(model: ModelFile) -> Iterator[str]:
     """What glTF cannot say, with its name."""
     for shape in model.shapes:
         if not isinstance(shape, MeshShape):
@@ -101,14 +106,14 @@ def _without_words(model: ModelFile) -> Iterator[str]:
 
 def _file(model: ModelFile) -> GltfBytes:
     file = GltfBytes()
-    painted = Painted(file, model.textures)
+    textures = TextureWriter(file, model.textures)
     nodes: list[dict[str, Any]] = []
     numbers: dict[object, int] = {}
     for shape in model.shapes:
         assert isinstance(shape, MeshShape)
         key = shape.material, tuple(shape.emission), shape.glow, shape.interior
         if key not in numbers:
-            numbers[key] = file.entry("materials", _material(model, shape, painted))
+            numbers[key] = file.entry("materials", _material(model, shape, textures))
         attributes = {"POSITION": file.attribute(shape.vertices, bounds=True)}
         if shape.normals is not None:
             attributes["NORMAL"] = file.attribute(shape.normals)
@@ -122,7 +127,7 @@ def _file(model: ModelFile) -> GltfBytes:
         mesh = file.entry("meshes", {"name": shape.name, "primitives": [part]})
         nodes += [{"mesh": mesh, "matrix": place.T.ravel().tolist()} for place in shape.places]
         nodes += [] if shape.places else [{"mesh": mesh}]
-    nodes += _seen_and_lit(file, model)
+    nodes += _camera_and_light_nodes(file, model)
     file.root |= {"nodes": nodes, "scenes": [{"nodes": list(range(len(nodes)))}], "scene": 0}
     used = {name for entry in file.root["materials"] for name in entry.get("extensions", ())}
     used |= set(file.root.get("extensions", ()))
@@ -131,13 +136,13 @@ def _file(model: ModelFile) -> GltfBytes:
     return file
 
 
-def _seen_and_lit(file: GltfBytes, model: ModelFile) -> list[dict[str, Any]]:
+def _camera_and_light_nodes(file: GltfBytes, model: ModelFile) -> list[dict[str, Any]]:
     """Nodes of cameras and lights."""
     nodes: list[dict[str, Any]] = []
     for camera in model.cameras:
-        entry, matrix = camera_words(camera)
+        entry, matrix = gltf_camera(camera)
         nodes.append({"camera": file.entry("cameras", entry), "matrix": matrix})
-    lights = [words for light in model.lights if (words := light_words(light)) is not None]
+    lights = [made for light in model.lights if (made := gltf_light(light)) is not None]
     if lights:
         file.root["extensions"] = {LIGHTS: {"lights": [entry for entry, _ in lights]}}
     nodes += [
@@ -147,33 +152,33 @@ def _seen_and_lit(file: GltfBytes, model: ModelFile) -> list[dict[str, Any]]:
     return nodes
 
 
-def _material(model: ModelFile, shape: MeshShape, painted: Painted) -> dict[str, Any]:
+def _material(model: ModelFile, shape: MeshShape, textures: TextureWriter) -> dict[str, Any]:
     """An entry of the table of materials."""
     material = model.materials[shape.material]
-    words = words_of(material)
-    painted.material(words, material)
-    entry: dict[str, Any] = {"name": shape.material, "pbrMetallicRoughness": words.core}
+    written = gltf_material(material)
+    textures.material(written, material)
+    entry: dict[str, Any] = {"name": shape.material, "pbrMetallicRoughness": written.core}
     if material.sheer:
-        words.core["baseColorFactor"][3] = float(material.values["alpha"])
+        written.core["baseColorFactor"][3] = float(material.values["alpha"])
         entry["alphaMode"] = "BLEND" if material.alpha_cutoff is None else "MASK"
         if material.alpha_cutoff is not None:
             entry["alphaCutoff"] = float(material.alpha_cutoff)
     if material.normal_map is not None:
-        entry["normalTexture"] = painted.normal_map(material.normal_map)
+        entry["normalTexture"] = textures.normal_map(material.normal_map)
     if material.occlusion is not None:
-        entry["occlusionTexture"] = painted.occlusion(material.occlusion)
+        entry["occlusionTexture"] = textures.occlusion(material.occlusion)
     if shape.emission.any():
         # A power of two, so that the product is exact.
         strength = max(1.0, 2.0 ** np.ceil(np.log2(shape.emission.max())))
         entry["emissiveFactor"] = (shape.emission / strength).tolist()
         if strength > 1:
-            words.extensions["emissive_strength"] = {"emissiveStrength": strength}
+            written.extensions["emissive_strength"] = {"emissiveStrength": strength}
         if shape.glow is not None:
-            entry["emissiveTexture"] = {"index": painted.color(shape.glow)}
+            entry["emissiveTexture"] = {"index": textures.color(shape.glow)}
     if shape.interior not in (None, VACUUM):
-        words.extensions["volume"] |= attenuation(model.media[str(shape.interior)])
-    if words.extensions:
-        named = {f"KHR_materials_{name}": node for name, node in words.extensions.items()}
+        written.extensions["volume"] |= attenuation(model.media[str(shape.interior)])
+    if written.extensions:
+        named = {f"KHR_materials_{name}": node for name, node in written.extensions.items()}
         entry["extensions"] = named
     return entry
 
@@ -183,7 +188,7 @@ def _not_written(model: Scene | ModelFile) -> list[str]:
     found = [
         f"lights[{i}] ({type(light).__name__})"
         for i, light in enumerate(model.lights)
-        if light_words(light) is None
+        if gltf_light(light) is None
     ]
     if isinstance(model, Scene):
         found = [name for name in _SURROUNDINGS if getattr(model, name) is not None] + found

@@ -19,7 +19,7 @@ from photograd.types import Array
 
 Arrays = tuple[Array, Array, Array | None, Array | None]
 """Vertices (V, 3), faces (F, 3), shading normals (V, 3) or None, uv (V, 2) or None."""
-LARGEST_COORDINATE = 1e9
+MAX_COORDINATE = 1e9
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,7 +31,7 @@ class ModelFile:
         materials: those that the shapes name.
         textures: those that the materials name.
         media: those that fill shapes.
-        cameras: places from which the file would be seen, of names of their own.
+        cameras: of the file, each under a name of its own.
         lights: without surfaces; surfaces that shine are shapes.
     """
 
@@ -50,35 +50,39 @@ class ModelFile:
 
 
 def placed_shapes(
-    names: Names,
+    names: UniqueNames,
     name: str,
     arrays: Arrays,
     material: str,
     emission: Any,
-    places: Sequence[Array],
+    transforms: Sequence[Array],
     note: Callable[[str], None],
 ) -> list[Shape]:
-    """A mesh at each of its places (4, 4): moved there if there is one, else as instances.
+    """A mesh under each of its transforms (4, 4): moved if there is one, else as instances.
 
-    What has no triangle left, or a place without volume, is left out with a note.
+    What has no triangle left, or a transform without volume, is left out with a note.
     """
     usable = []
-    for place in places:
-        volume = float(np.linalg.det(place[:3, :3])) if np.isfinite(place).all() else 0.0
-        reach = np.abs(place).max() if np.isfinite(place).all() else np.inf
-        if not (abs(volume) > 1e-30 and np.isfinite(volume) and reach < LARGEST_COORDINATE):
+    for transform in transforms:
+        volume = float(np.linalg.det(transform[:3, :3])) if np.isfinite(transform).all() else 0.0
+        reach = np.abs(transform).max() if np.isfinite(transform).all() else np.inf
+        if not (abs(volume) > 1e-30 and np.isfinite(volume) and reach < MAX_COORDINATE):
             note(f"{name}: a transformation without volume, left out")
             continue
-        usable.append((place, volume))
+        usable.append((transform, volume))
     made: list[Shape] = []
-    together = [place for place, volume in usable if volume > 0]
-    alone = [place for place, volume in usable if volume < 0]  # mirrored: wound the other way
+    together = [transform for transform, volume in usable if volume > 0]
+    alone = [
+        transform for transform, volume in usable if volume < 0
+    ]  # mirrored: wound the other way
     if len(together) > 1:
-        made += _shape(names.free(name), arrays, material, emission, tuple(together), note)
+        made += _shape(names.unique_name(name), arrays, material, emission, tuple(together), note)
     else:
         alone = together + alone
-    for place in alone:
-        made += _shape(names.free(name), moved(arrays, place), material, emission, (), note)
+    for transform in alone:
+        made += _shape(
+            names.unique_name(name), moved(arrays, transform), material, emission, (), note
+        )
     return made
 
 
@@ -87,12 +91,12 @@ def _shape(
     arrays: Arrays,
     material: str,
     emission: Any,
-    places: tuple[Array, ...],
+    transforms: tuple[Array, ...],
     note: Callable[[str], None],
 ) -> list[Shape]:
     vertices, faces, normals, uv = arrays
     try:
-        return [MeshShape(name, vertices, faces, material, emission, normals, uv, places)]
+        return [MeshShape(name, vertices, faces, material, emission, normals, uv, transforms)]
     except SceneError as failure:
         note(f"{name}: left out: {failure}")
         return []
@@ -115,15 +119,15 @@ def moved(arrays: Arrays, world_from_object: Array) -> Arrays:
     return vertices, faces, normals, uv
 
 
-class Names:
-    """Names that are free: `name`, `name (2)`, `name (3)`, ..."""
+class UniqueNames:
+    """UniqueNames, each given once: `name`, `name (2)`, `name (3)`, ..."""
 
     def __init__(self) -> None:
         self._taken: set[str] = set()
         self._next: dict[str, int] = {}
 
-    def free(self, name: str) -> str:
-        """The first of them that nobody has got yet; it is taken now."""
+    def unique_name(self, name: str) -> str:
+        """The first of them that was not given before."""
         found = name
         while found in self._taken:
             number = self._next.get(name, 2)

@@ -1,4 +1,4 @@
-"""Materials of .obj files: of an .mtl file, the diffuse colour Kd and its picture map_Kd."""
+"""Materials of .obj files: of an .mtl file, the diffuse color Kd and its picture map_Kd."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from photograd._files import inside
 from photograd.errors import Error, RangeError, message
 from photograd.transport.material import Material
 from photograd.transport.mesh_files.container import NAME
-from photograd.transport.mesh_files.plain import Note
+from photograd.transport.mesh_files.simple_formats import Note
 from photograd.transport.texture import Texture, TextureUse, read_texture
 
 _BLACK_MEANS_NOTHING = ("Ks", "Ke", "Tf")

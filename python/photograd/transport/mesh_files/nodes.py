@@ -11,11 +11,11 @@ from photograd.errors import IoError, message
 from photograd.transport.mesh_files.container import NAME, Container, whole
 from photograd.types import Array
 
-PlacedNode = tuple[JsonNode, Array]
+NodeTransform = tuple[JsonNode, Array]
 """A node and world_from_node (4, 4)."""
 
 
-def placed_nodes(container: Container) -> list[PlacedNode]:
+def placed_nodes(container: Container) -> list[NodeTransform]:
     """All nodes of the scene that the file shows first, in the order of the tree.
 
     Raises:
@@ -25,7 +25,7 @@ def placed_nodes(container: Container) -> list[PlacedNode]:
     if "nodes" not in root:
         return []
     nodes = root["nodes"].items()
-    found: list[PlacedNode] = []
+    found: list[NodeTransform] = []
     seen: set[int] = set()
     waiting = [(number, np.eye(4)) for number in reversed(_roots(container, nodes))]
     while waiting:
@@ -33,7 +33,7 @@ def placed_nodes(container: Container) -> list[PlacedNode]:
         node = nodes[number]
         if number in seen:
             got = "a node with two parents, or its own"
-            raise IoError(message(NAME, node.place, "a tree of nodes", got))
+            raise IoError(message(NAME, node.where, "a tree of nodes", got))
         seen.add(number)
         world = parent @ _local(node)
         found.append((node, world))
@@ -42,7 +42,7 @@ def placed_nodes(container: Container) -> list[PlacedNode]:
     return found
 
 
-def mesh_places(nodes: Sequence[PlacedNode]) -> dict[int, list[Array]]:
+def transforms_of_meshes(nodes: Sequence[NodeTransform]) -> dict[int, list[Array]]:
     """{mesh number: world_from_object (4, 4) of each node that shows it}, in the order of nodes.
 
     Raises:
@@ -80,20 +80,20 @@ def _local(node: JsonNode) -> Array:
     if "matrix" in node:
         matrix: Array = node["matrix"].numbers((16,)).reshape(4, 4).T
         return matrix
-    place = np.eye(4)
+    matrix = np.eye(4)
     if "rotation" in node:
         quaternion = node["rotation"].numbers((4,))
         length = float(np.linalg.norm(quaternion))
         if not 0.5 < length < 2:
             raise node["rotation"].wrong("a quaternion of length 1")
         x, y, z, w = quaternion / length
-        place[:3, :3] = [
+        matrix[:3, :3] = [
             [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
             [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
             [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
         ]
     if "scale" in node:
-        place[:3, :3] *= node["scale"].numbers((3,))
+        matrix[:3, :3] *= node["scale"].numbers((3,))
     if "translation" in node:
-        place[:3, 3] = node["translation"].numbers((3,))
-    return place
+        matrix[:3, 3] = node["translation"].numbers((3,))
+    return matrix

@@ -16,7 +16,12 @@ from photograd.errors import IoError, message
 from photograd.transport.mesh_files.container import NAME
 from photograd.transport.mesh_files.model_file import Arrays, ModelFile
 from photograd.transport.mesh_files.mtl import read_libraries
-from photograd.transport.mesh_files.plain import GREY, Note, plain_model, sound
+from photograd.transport.mesh_files.simple_formats import (
+    GRAY,
+    Note,
+    finite_or_none,
+    model_of_meshes,
+)
 from photograd.types import Array
 
 _KINDS = {"v": 3, "vt": 2, "vn": 3}
@@ -54,8 +59,8 @@ def read_obj(path: Path, note: Note) -> ModelFile:
                 counts = (len(rows["v"]), len(rows["vt"]), len(rows["vn"]))
                 _add_face(parts.setdefault(material, _Part()), words[1:], counts)
         except ValueError as failure:
-            place = f"{path}: line {number}"
-            raise IoError(message(NAME, place, "numbers of an .obj file", failure)) from failure
+            where = f"{path}: line {number}"
+            raise IoError(message(NAME, where, "numbers of an .obj file", failure)) from failure
         if words[0] == "usemtl":
             material = " ".join(words[1:])
         elif words[0] == "mtllib":
@@ -64,14 +69,14 @@ def read_obj(path: Path, note: Note) -> ModelFile:
     meshes = []
     for name, part in parts.items():
         if name and name not in materials:
-            note(f"{path.name}: usemtl {name[:60]}: no such material in its .mtl files; grey")
-        known = name if name in materials else "grey"
+            note(f"{path.name}: usemtl {name[:60]}: no such material in its .mtl files; gray")
+        known = name if name in materials else "gray"
         meshes.append((name or path.stem, _arrays(part, rows), known))
     without = {name for _, arrays, name in meshes if arrays[3] is None}
     for name in without & {n for n, made in materials.items() if made.needs_uv}:
         note(f"{path.name}: material {name}: faces without texture coordinates; no texture")
-        materials[name] = GREY
-    return plain_model(path, meshes, {"grey": GREY, **materials}, textures, note)
+        materials[name] = GRAY
+    return model_of_meshes(path, meshes, {"gray": GRAY, **materials}, textures, note)
 
 
 def _numbers(words: list[str], width: int) -> list[float]:
@@ -121,7 +126,7 @@ def _arrays(part: _Part, rows: dict[str, list[list[float]]]) -> Arrays:
             uv = (uv * [1, -1] + [0, 1]).astype(np.float32)
         normals = None if normals is None else normals.astype(np.float32)
         faces = np.array(part.faces, np.int64).reshape(-1, 3)
-        return vertices.astype(np.float32), faces, sound(normals), sound(uv)
+        return vertices.astype(np.float32), faces, finite_or_none(normals), finite_or_none(uv)
 
 
 def _chosen(rows: Array, which: Array) -> Array | None:

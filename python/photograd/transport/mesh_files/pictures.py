@@ -124,11 +124,11 @@ class Pictures:
         image, (wrap, _), _ = found
         strength = real(info, "strength", 1.0)
         if not 0 <= strength <= 1:
-            self.note(f"{info.place}: strength: {strength} is taken as {min(max(strength, 0), 1)}")
+            self.note(f"{info.where}: strength: {strength} is taken as {min(max(strength, 0), 1)}")
         return OcclusionMap(_LEVELS[image[..., :1]], min(max(strength, 0.0), 1.0), wrap)
 
     def _sees_points(self, info: JsonNode) -> None:
-        self.note(f"{info.place}: mip maps of its sampler: not supported, seen point by point")
+        self.note(f"{info.where}: mip maps of its sampler: not supported, sampled without mip maps")
 
     def _pixels(self, info: JsonNode) -> tuple[Array, tuple[Wrap, str], str] | None:
         texture = self.container.entry("textures", info["index"])
@@ -137,7 +137,7 @@ class Pictures:
             sampler = self.container.entry("samplers", texture["sampler"])
             looks = read_sampler(sampler, self.note)
         if "source" not in texture:
-            self.note(f"{texture.place}: no image in a format that is read; left out")
+            self.note(f"{texture.where}: no image in a format that is read; left out")
             return None
         source = texture["source"]
         number = whole(source, 0, 1 << 31)
@@ -146,7 +146,7 @@ class Pictures:
             try:
                 self._images[number] = self._decoded(image)
             except Error as failure:
-                self.note(f"{image.place}: left out: {failure}")
+                self.note(f"{image.where}: left out: {failure}")
                 self._images[number] = None
         pixels = self._images[number]
         name = image["name"].text() if "name" in image else ""
@@ -161,13 +161,13 @@ class Pictures:
         allow_pixels()
         try:
             with Image.open(io.BytesIO(data), formats=PILLOW_KINDS) as opened:
-                require_pixels(NAME, image.place, opened.width, opened.height)
+                require_pixels(NAME, image.where, opened.width, opened.height)
                 self.container.spend(image, opened.width * opened.height)
                 return np.asarray(opened.convert("RGBA"))
         except IoError:
             raise
         except Image.DecompressionBombError as failure:
-            raise too_many_pixels(NAME, image.place, failure) from failure
+            raise too_many_pixels(NAME, image.where, failure) from failure
         except Exception as failure:  # Pillow's plugins do not share an exception
             text = " ".join(str(failure).split())[:120] or type(failure).__name__
-            raise IoError(message(NAME, image.place, "a PNG or JPEG image", text)) from failure
+            raise IoError(message(NAME, image.where, "a PNG or JPEG image", text)) from failure

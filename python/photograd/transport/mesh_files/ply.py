@@ -10,7 +10,12 @@ from photograd._ply import read_ply
 from photograd.errors import IoError, SceneError, message
 from photograd.transport.mesh_files.container import NAME
 from photograd.transport.mesh_files.model_file import ModelFile
-from photograd.transport.mesh_files.plain import GREY, Note, plain_model, sound
+from photograd.transport.mesh_files.simple_formats import (
+    GRAY,
+    Note,
+    finite_or_none,
+    model_of_meshes,
+)
 from photograd.types import Array
 
 
@@ -38,8 +43,8 @@ def read_ply_mesh(path: Path, note: Note) -> ModelFile:
     uv = next((pair for pair in found if pair is not None), None)
     if uv is not None:
         uv = uv * np.array([1, -1], np.float32) + np.array([0, 1], np.float32)  # v downwards
-    arrays = (vertices, _fans(path, elements["face"]), sound(normals), sound(uv))
-    return plain_model(path, [(path.stem, arrays, "grey")], {"grey": GREY}, {}, note)
+    arrays = (vertices, _fans(path, elements["face"]), finite_or_none(normals), finite_or_none(uv))
+    return model_of_meshes(path, [(path.stem, arrays, "gray")], {"gray": GRAY}, {}, note)
 
 
 def _columns(path: Path, table: Array, names: tuple[str, ...]) -> Array | None:

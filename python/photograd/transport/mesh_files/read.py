@@ -33,10 +33,10 @@ NOTES = 40
 def read_model(path: str | Path) -> ModelFile:
     """The shapes, materials and textures of a mesh file; of .glb and .gltf cameras and lights, too.
 
-    Positions are metres, +Y up, as glTF has it; files that say nothing of units or axes are taken
+    Positions are meters, +Y up, as glTF has it; files that say nothing of units or axes are taken
     as they are. Normals and texture coordinates are read where there are any. Triangles without
     area or with corners that are not finite are dropped. Warnings (UserWarning) count what was
-    dropped and name what is not supported, by its place in the file.
+    dropped and name what is not supported, with where it stands in the file.
 
     Raises:
         IoError: a missing or damaged file, another kind of file, or compressed geometry.

@@ -11,7 +11,7 @@ from photograd_course.input_files import read_file
 from photograd.errors import IoError, message
 from photograd.transport.mesh_files.container import NAME
 from photograd.transport.mesh_files.model_file import ModelFile
-from photograd.transport.mesh_files.plain import GREY, Note, plain_model
+from photograd.transport.mesh_files.simple_formats import GRAY, Note, model_of_meshes
 from photograd.types import Array
 
 _HEADER = 84
@@ -37,7 +37,7 @@ def read_stl(path: Path, note: Note) -> ModelFile:
         raise IoError(message(NAME, f"{path}", expected, f"{len(data)} bytes"))
     faces = np.arange(len(corners)).reshape(-1, 3)
     arrays = (np.array(corners, np.float32), faces, None, None)
-    return plain_model(path, [(path.stem, arrays, "grey")], {"grey": GREY}, {}, note)
+    return model_of_meshes(path, [(path.stem, arrays, "gray")], {"gray": GRAY}, {}, note)
 
 
 def _text(path: Path, data: bytes) -> Array:

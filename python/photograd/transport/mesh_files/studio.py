@@ -21,7 +21,7 @@ STUDIO = "studio"
 """In place of a camera's name."""
 
 
-def model_scene(
+def default_scene(
     model: ModelFile, name: str, size: int = 256, *, camera: str | None = None
 ) -> Scene:
     """A picture of the model, with `size` pixels along its longer edge.
@@ -57,10 +57,10 @@ def model_scene(
             media=model.media,
         )
     box = model.box
-    centre, radius = box.mean(axis=0), 0.5 * float(np.linalg.norm(box[1] - box[0]))
+    center, radius = box.mean(axis=0), 0.5 * float(np.linalg.norm(box[1] - box[0]))
     sky = Environment(np.full(3, 0.9), np.full(3, 0.6), np.full(3, 0.25))
     materials = {**model.materials, _LAMP: Material("lambert", {"albedo": [0.0, 0.0, 0.0]})}
-    shapes = (*model.shapes, _lamp(centre, radius))
+    shapes = (*model.shapes, _lamp(center, radius))
     return Scene(name, shapes, materials, view, sky, textures=model.textures, media=model.media)
 
 
@@ -73,7 +73,7 @@ def _chosen(model: ModelFile, name: str | None) -> ModelCamera | None:
         return model.cameras[0]
     if name not in by_name:
         known = choose_from(name, (*by_name, STUDIO))
-        raise SceneError(message("model_scene", "camera", "a camera of the file", name, known))
+        raise SceneError(message("default_scene", "camera", "a camera of the file", name, known))
     return by_name[name]
 
 
@@ -81,13 +81,13 @@ def _from_in_front(model: ModelFile, size: int) -> Camera:
     return orbit_cameras(model.box, _TURNS, size=size, elevation=20.0)[_SEEN_FROM]
 
 
-def _lamp(centre: Array, radius: float) -> MeshShape:
+def _lamp(center: Array, radius: float) -> MeshShape:
     """A square that faces the model."""
     towards = np.array([-0.45, 0.75, 0.5]) / np.linalg.norm([-0.45, 0.75, 0.5])
     right = np.cross([0.0, 1.0, 0.0], towards)
     right /= np.linalg.norm(right)
     up = np.cross(towards, right)
-    middle = centre + 3 * radius * towards
+    middle = center + 3 * radius * towards
     # Front: edge_u x edge_v = right x (-up) looks back along -towards.
     corner = middle - radius * right + radius * up
     return rectangle(_LAMP, corner, 2 * radius * right, -2 * radius * up, _LAMP, [6.0, 5.8, 5.4])

@@ -71,7 +71,6 @@ def build_app(plugins: Iterable[metadata.EntryPoint]) -> tuple[typer.Typer, list
     """The application with all commands, and the plugins that could not take part."""
     app = typer.Typer(
         name="photograd",
-        add_completion=False,
         rich_markup_mode="rich",
         pretty_exceptions_enable=False,
         # Commands inherit it.

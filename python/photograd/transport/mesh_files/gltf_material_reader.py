@@ -1,4 +1,4 @@
-"""A glTF material while it is being read: what has been asked for, and what nobody has."""
+"""A glTF material while it is read: which of its extensions and textures have been handled."""
 
 from __future__ import annotations
 
@@ -14,29 +14,29 @@ from photograd.transport.medium import Medium
 from photograd.transport.mesh_files.container import real
 
 FOLLOWED = ("KHR_materials_emissive_strength",)
-"""Extensions that no rule has to read."""
+"""Extensions that no rule has to handle."""
 PLAIN_IOR = 1.5
-LARGEST_IOR = 2.5  # of the models: diamond has 2.42
+MAX_IOR = 2.5  # of the models: diamond has 2.42
 
 
 @dataclass
-class Draft:
+class MaterialReader:
     """A material while it is being read.
 
     Attributes:
         node: of the file.
         core: its pbrMetallicRoughness.
         note: takes what could not be followed.
-        read: extensions that a rule has read.
-        wanted: {parameter: (textureInfo, encoding, channel)}.
-        interior: what the volume of a body swallows, or None.
+        handled: extensions that a rule has read.
+        texture_slots: {parameter: (textureInfo, encoding, channel)}.
+        interior: the absorption of a body, or None.
     """
 
     node: JsonNode
     core: JsonNode
     note: Callable[[str], None]
-    read: set[str] = field(default_factory=lambda: set(FOLLOWED))
-    wanted: dict[str, tuple[JsonNode, str, int]] = field(default_factory=dict)
+    handled: set[str] = field(default_factory=lambda: set(FOLLOWED))
+    texture_slots: dict[str, tuple[JsonNode, str, int]] = field(default_factory=dict)
     interior: Medium | None = None
 
     def extension(self, name: str) -> JsonNode | None:
@@ -46,22 +46,22 @@ class Draft:
             return None
         return self.node["extensions"][key]
 
-    def take(self, *names: str) -> None:
-        """Extensions that the model speaks for."""
-        self.read.update(f"KHR_materials_{name}" for name in names)
+    def handle(self, *names: str) -> None:
+        """Mark extensions as handled by the model."""
+        self.handled.update(f"KHR_materials_{name}" for name in names)
 
     def textured(
         self, parameter: str, node: JsonNode, key: str, encoding: str, channel: int = 0
     ) -> None:
         """A parameter is scaled by a texture, if the file has one there."""
         if key in node:
-            self.wanted[parameter] = (node[key], encoding, channel)
+            self.texture_slots[parameter] = (node[key], encoding, channel)
 
-    def unread(self, node: JsonNode, *keys: str) -> None:
+    def note_unsupported(self, node: JsonNode, *keys: str) -> None:
         """Textures that no parameter of the model can take."""
         for key in keys:
             if key in node:
-                self.note(f"{node.place}: {key}: not supported, left out")
+                self.note(f"{node.where}: {key}: not supported, left out")
 
     @property
     def base_color(self) -> Any:
@@ -72,7 +72,7 @@ class Draft:
 
     @property
     def alpha(self) -> float:
-        """0 to 1: the fourth number of the base colour."""
+        """0 to 1: the fourth number of the base color."""
         if "baseColorFactor" not in self.core:
             return 1.0
         return float(np.clip(self.core["baseColorFactor"].numbers((4,))[3], 0, 1))
@@ -94,27 +94,27 @@ class Draft:
         return PLAIN_IOR if node is None else real(node, "ior", PLAIN_IOR)
 
 
-def usable_ior(draft: Draft) -> float:
+def usable_ior(reader: MaterialReader) -> float:
     """Refractive index; an ior of 0, which mirrors everything, is the largest one, and noted."""
-    if draft.ior != 0:
-        return draft.ior
-    draft.note(f"{draft.node.place}: ior 0, which mirrors everything: taken as {LARGEST_IOR}")
-    return LARGEST_IOR
+    if reader.ior != 0:
+        return reader.ior
+    reader.note(f"{reader.node.where}: ior 0, which mirrors everything: taken as {MAX_IOR}")
+    return MAX_IOR
 
 
-def metallic_roughness(draft: Draft) -> dict[str, Any]:
+def metallic_roughness(reader: MaterialReader) -> dict[str, Any]:
     """The parameters of the core model, and their textures."""
-    draft.textured("base_color", draft.core, "baseColorTexture", "srgb")
-    draft.textured("metalness", draft.core, "metallicRoughnessTexture", "linear", 2)
-    draft.textured("roughness", draft.core, "metallicRoughnessTexture", "linear", 1)
+    reader.textured("base_color", reader.core, "baseColorTexture", "srgb")
+    reader.textured("metalness", reader.core, "metallicRoughnessTexture", "linear", 2)
+    reader.textured("roughness", reader.core, "metallicRoughnessTexture", "linear", 1)
     return {
-        "base_color": draft.base_color,
-        "metalness": draft.metalness,
-        "roughness": draft.roughness,
+        "base_color": reader.base_color,
+        "metalness": reader.metalness,
+        "roughness": reader.roughness,
     }
 
 
-def finished(model: str, values: dict[str, Any], draft: Draft) -> Material:
+def make_material(model: str, values: dict[str, Any], reader: MaterialReader) -> Material:
     """Values brought into the range of the model; what moves by more than rounding is noted."""
     inside = {}
     for parameter in MODELS[model].parameters:
@@ -124,5 +124,7 @@ def finished(model: str, values: dict[str, Any], draft: Draft) -> Material:
         # A perfectly smooth lobe is drawn as the smoothest there is; nobody can see the difference.
         if moved > (0.15 if "roughness" in parameter.name else 1e-6):
             taken = inside[parameter.name]
-            draft.note(f"{draft.node.place}: {model}.{parameter.name}: {value} is taken as {taken}")
+            reader.note(
+                f"{reader.node.where}: {model}.{parameter.name}: {value} is taken as {taken}"
+            )
     return Material(model, inside)

@@ -1,6 +1,6 @@
-"""Reflectance models in the words of glTF: what `gltf_materials` reads, written.
+"""Reflectance models as materials of glTF: what `gltf_materials` reads, written.
 
-Each function is the inverse of a rule there. A model that has no such words is refused by name.
+Each function is the inverse of a rule there. A model that glTF lacks is refused by name.
 """
 
 from __future__ import annotations
@@ -15,12 +15,12 @@ from photograd.transport.material import Material
 from photograd.transport.medium import Medium
 
 Values = dict[str, Any]
-_LARGEST_DEPTH = 4.0
-"""Optical depth, in the thickest channel, at the distance for which a colour is written."""
+_MAX_DEPTH = 4.0
+"""Optical depth, in the thickest channel, at the distance for which a color is written."""
 
 
 @dataclass
-class Words:
+class GltfMaterial:
     """A material of a file.
 
     Attributes:
@@ -32,7 +32,7 @@ class Words:
     extensions: dict[str, dict[str, Any]] = field(default_factory=dict)
 
 
-def words_of(material: Material) -> Words:
+def gltf_material(material: Material) -> GltfMaterial:
     """The numbers of a material of a model in `WRITTEN`; textures and alpha are added elsewhere."""
     return WRITTEN[material.model](
         {
@@ -50,106 +50,106 @@ def _core(color: Any, metalness: float, roughness: float) -> dict[str, Any]:
     }
 
 
-def _gltf(v: Values) -> Words:
-    return Words(_core(v["base_color"], v["metalness"], v["roughness"]))
+def _gltf(v: Values) -> GltfMaterial:
+    return GltfMaterial(_core(v["base_color"], v["metalness"], v["roughness"]))
 
 
-def _lambert(v: Values) -> Words:
+def _lambert(v: Values) -> GltfMaterial:
     """A dielectric that mirrors nothing."""
-    return Words(_core(v["albedo"], 0.0, 1.0), {"specular": {"specularFactor": 0.0}})
+    return GltfMaterial(_core(v["albedo"], 0.0, 1.0), {"specular": {"specularFactor": 0.0}})
 
 
-def _metal(v: Values) -> Words:
-    return Words(_core(v["f0"], 1.0, v["roughness"]))
+def _metal(v: Values) -> GltfMaterial:
+    return GltfMaterial(_core(v["f0"], 1.0, v["roughness"]))
 
 
-def _anisotropic(v: Values) -> Words:
+def _anisotropic(v: Values) -> GltfMaterial:
     turned = {"anisotropyStrength": v["anisotropy"], "anisotropyRotation": v["rotation"]}
-    return Words(_metal(v).core, {"anisotropy": turned})
+    return GltfMaterial(_metal(v).core, {"anisotropy": turned})
 
 
-def _clearcoat(v: Values) -> Words:
+def _clearcoat(v: Values) -> GltfMaterial:
     coat = {"clearcoatFactor": v["coat"], "clearcoatRoughnessFactor": v["coat_roughness"]}
-    return Words(_gltf(v).core, {"clearcoat": coat})
+    return GltfMaterial(_gltf(v).core, {"clearcoat": coat})
 
 
-def _sheen(v: Values) -> Words:
+def _sheen(v: Values) -> GltfMaterial:
     cloth = {
         "sheenColorFactor": v["sheen_color_factor"],
         "sheenRoughnessFactor": v["sheen_roughness_factor"],
     }
-    return Words(_gltf(v).core, {"sheen": cloth})
+    return GltfMaterial(_gltf(v).core, {"sheen": cloth})
 
 
-def _iridescence(v: Values) -> Words:
+def _iridescence(v: Values) -> GltfMaterial:
     film = {
         "iridescenceFactor": v["iridescence_factor"],
         "iridescenceIor": v["iridescence_ior"],
         "iridescenceThicknessMinimum": 0.0,
         "iridescenceThicknessMaximum": v["iridescence_thickness"],
     }
-    return Words(_gltf(v).core, {"iridescence": film})
+    return GltfMaterial(_gltf(v).core, {"iridescence": film})
 
 
-def _specular(v: Values) -> Words:
+def _specular(v: Values) -> GltfMaterial:
     varnish = {
         "specularFactor": v["specular_factor"],
         "specularColorFactor": v["specular_color_factor"],
     }
-    return Words(_gltf(v).core, {"specular": varnish, "ior": {"ior": v["eta"]}})
+    return GltfMaterial(_gltf(v).core, {"specular": varnish, "ior": {"ior": v["eta"]}})
 
 
-def _clear(v: Values) -> Words:
-    """Smooth if there is no roughness, white if there is no colour."""
+def _clear(v: Values) -> GltfMaterial:
+    """Smooth if there is no roughness, white if there is no color."""
     core = _core(v.get("tint", [1.0] * 3), 0.0, v.get("roughness", 0.0))
     passing = {"transmission": {"transmissionFactor": 1.0}, "ior": {"ior": v["eta"]}}
     if "dispersion" in v:
         passing["dispersion"] = {"dispersion": v["dispersion"]}
-    return Words(core, passing)
+    return GltfMaterial(core, passing)
 
 
-def _thick(v: Values) -> Words:
-    words = _clear(v)
-    words.extensions["volume"] = {"thicknessFactor": 1.0}  # any but 0 means: a body
-    return words
+def _thick(v: Values) -> GltfMaterial:
+    written = _clear(v)
+    written.extensions["volume"] = {"thicknessFactor": 1.0}  # any but 0 means: a body
+    return written
 
 
-def _transmission(v: Values) -> Words:
+def _transmission(v: Values) -> GltfMaterial:
     extensions = {
         "transmission": {"transmissionFactor": v["transmission"]},
         "ior": {"ior": v["eta"]},
     }
-    return Words(_gltf(v).core, extensions)
+    return GltfMaterial(_gltf(v).core, extensions)
 
 
-def _refraction(v: Values) -> Words:
-    words = _transmission(v)
-    words.extensions["volume"] = {"thicknessFactor": 1.0}
-    return words
+def _refraction(v: Values) -> GltfMaterial:
+    written = _transmission(v)
+    written.extensions["volume"] = {"thicknessFactor": 1.0}
+    return written
 
 
-def _layered(v: Values) -> Words:
+def _layered(v: Values) -> GltfMaterial:
     """All layers, those of factor 0 as well: their other numbers come back."""
-    words = _gltf(v)
+    written = _gltf(v)
     turn = v["rotation"] + float(np.arctan2(v["anisotropy_y"], v["anisotropy_x"]))
     directed = (v["anisotropy_x"], v["anisotropy_y"]) == (1.0, 1.0)  # of a texture
-    words.extensions |= _specular(v).extensions | _sheen(v).extensions | _clearcoat(v).extensions
-    words.extensions |= _iridescence(v).extensions | _transmission(v).extensions
-    words.extensions["anisotropy"] = {
+    written.extensions |= _specular(v).extensions | _sheen(v).extensions | _clearcoat(v).extensions
+    written.extensions |= _iridescence(v).extensions | _transmission(v).extensions
+    written.extensions["anisotropy"] = {
         "anisotropyStrength": v["anisotropy"],
         "anisotropyRotation": v["rotation"] if directed else turn,
     }
-    return words
+    return written
 
 
-def _layered_volume(v: Values) -> Words:
-    words = _layered(v)
-    words.extensions["volume"] = {"thicknessFactor": 1.0}
-    words.extensions["dispersion"] = {"dispersion": v["dispersion"]}
-    return words
+def _layered_volume(v: Values) -> GltfMaterial:
+    written = _layered(v)
+    written.extensions["volume"] = {"thicknessFactor": 1.0}
+    written.extensions["dispersion"] = {"dispersion": v["dispersion"]}
+    return written
 
 
-WRITTEN: dict[str, Callable[[Values], Words]] = {
+WRITTEN: dict[str, Callable[[Values], GltfMaterial]] = {
     "gltf": _gltf,
     "gltf_specular": _specular,
     "clearcoat": _clearcoat,
@@ -170,9 +170,9 @@ WRITTEN: dict[str, Callable[[Values], Words]] = {
     "lambert": _lambert,
     "ggx_metal": _metal,
 }
-"""Models that glTF has words for."""
+"""Models that glTF can express."""
 BODIES = {
-    name for name, words in WRITTEN.items() if words in (_thick, _refraction, _layered_volume)
+    name for name, write in WRITTEN.items() if write in (_thick, _refraction, _layered_volume)
 }
 """Those with a volume, which may swallow light."""
 
@@ -182,6 +182,6 @@ def attenuation(medium: Medium) -> dict[str, Any]:
     most = float(medium.sigma_t.max())
     if most == 0:
         return {}
-    distance = _LARGEST_DEPTH / most
+    distance = _MAX_DEPTH / most
     color = np.exp(-medium.sigma_t * distance)
     return {"attenuationDistance": distance, "attenuationColor": color.tolist()}

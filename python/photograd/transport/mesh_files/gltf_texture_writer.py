@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 from photograd_course.color import srgb_encode
 
+from photograd._gltf_bytes import GltfBytes
 from photograd.errors import SceneError, message
 from photograd.transport.material import Material
-from photograd.transport.mesh_files.gltf_bytes import GltfBytes
-from photograd.transport.mesh_files.gltf_samplers import Wrap, sampler_words
-from photograd.transport.mesh_files.gltf_words import Words
+from photograd.transport.mesh_files.gltf_material_writer import GltfMaterial
+from photograd.transport.mesh_files.gltf_samplers import Wrap, gltf_sampler
 from photograd.transport.texture import NormalMap, OcclusionMap, Texture, TextureUse
 from photograd.types import Array
 
@@ -46,7 +46,7 @@ SLOTS = {
 
 
 @dataclass
-class Painted:
+class TextureWriter:
     """The images of a file, each written once.
 
     Attributes:
@@ -58,8 +58,8 @@ class Painted:
     textures: Mapping[str, Texture]
     _numbers: dict[object, int] = field(default_factory=dict)
 
-    def material(self, words: Words, material: Material) -> None:
-        """Put the textures of a material into its words.
+    def material(self, written: GltfMaterial, material: Material) -> None:
+        """Add the textures of a material to what is written of it.
 
         Raises:
             SceneError: textures of one image that differ in size, wrap or filter.
@@ -70,21 +70,21 @@ class Painted:
             if key == "baseColorTexture" and channel == 3 and material.alpha_cutoff is not None:
                 encoding = "mask"
             if parameter == "iridescence_thickness":
-                encoding = self._span(words, material, use)
+                encoding = self._span(written, material, use)
             members.setdefault((extension, key), []).append((encoding, channel, use))
         for (extension, key), uses in members.items():
-            node = words.extensions[extension] if extension else words.core
+            node = written.extensions[extension] if extension else written.core
             node[key] = {"index": self._shared(key, uses)}
 
-    def _span(self, words: Words, material: Material, use: TextureUse) -> str:
-        """The encoding of a film's thickness, whose least is written into its words."""
-        low = least_of(self.textures[use.texture].values[..., use.channel])
+    def _span(self, written: GltfMaterial, material: Material, use: TextureUse) -> str:
+        """The encoding of a film's thickness, whose minimum is written."""
+        low = minimum_of(self.textures[use.texture].values[..., use.channel])
         most = float(material.values["iridescence_thickness"])
-        words.extensions["iridescence"]["iridescenceThicknessMinimum"] = low * most
+        written.extensions["iridescence"]["iridescenceThicknessMinimum"] = low * most
         return f"span {low!r} 1.0" if low > 0 else "linear"
 
     def color(self, use: TextureUse) -> int:
-        """The number of a texture of colours."""
+        """The number of a texture of colors."""
         return self._shared("emissiveTexture", [("srgb", 0, use)])
 
     def normal_map(self, bent: NormalMap) -> dict[str, Any]:
@@ -127,7 +127,7 @@ class Painted:
 
     def _texture(self, name: str, pixels: Array, wrap: Wrap, looked_up: str) -> int:
         entry = {"source": self.file.image(name, pixels)}
-        sampler = sampler_words(wrap, looked_up)
+        sampler = gltf_sampler(wrap, looked_up)
         if sampler:
             key = ("sampler", wrap, looked_up)
             if key not in self._numbers:
@@ -136,7 +136,7 @@ class Painted:
         return self.file.entry("textures", entry)
 
 
-def least_of(values: Array) -> float:
+def minimum_of(values: Array) -> float:
     """What byte 0 stands for, if 255 stands for 1 and equal steps lie between: as far above 0 as
     the values come back from bytes; 0 if they do not.
     """

@@ -88,6 +88,6 @@ class GltfBytes:
 
     def _view(self, data: bytes, more: dict[str, Any]) -> int:
         self._data += b"\0" * (-len(self._data) % 4)
-        place = {"buffer": 0, "byteOffset": len(self._data), "byteLength": len(data)}
+        view = {"buffer": 0, "byteOffset": len(self._data), "byteLength": len(data)}
         self._data += data
-        return self.entry("bufferViews", {**place, **more})
+        return self.entry("bufferViews", {**view, **more})

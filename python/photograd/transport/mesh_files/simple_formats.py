@@ -1,4 +1,4 @@
-"""What .obj, .ply and .stl files have in common: parts with arrays, and a grey of their own."""
+"""What .obj, .ply and .stl files have in common: parts with arrays, and a gray of their own."""
 
 from __future__ import annotations
 
@@ -10,17 +10,17 @@ import numpy as np
 from photograd.errors import IoError, SceneError, message
 from photograd.transport.material import Material
 from photograd.transport.mesh_files.container import NAME
-from photograd.transport.mesh_files.model_file import Arrays, ModelFile, Names, placed_shapes
+from photograd.transport.mesh_files.model_file import Arrays, ModelFile, UniqueNames, placed_shapes
 from photograd.transport.shapes import Shape
 from photograd.transport.texture import Texture
 from photograd.types import Array
 
 Note = Callable[[str], None]
-GREY = Material("lambert", {"albedo": [0.7, 0.7, 0.7]})
-"""Of surfaces whose file says nothing about their colour."""
+GRAY = Material("lambert", {"albedo": [0.7, 0.7, 0.7]})
+"""Of surfaces whose file says nothing about their color."""
 
 
-def plain_model(
+def model_of_meshes(
     path: Path,
     meshes: list[tuple[str, Arrays, str]],
     materials: dict[str, Material],
@@ -33,7 +33,7 @@ def plain_model(
         IoError: faces that name no vertex.
         SceneError: no triangle.
     """
-    names = Names()
+    names = UniqueNames()
     shapes: list[Shape] = []
     for name, arrays, material in meshes:
         vertices, faces, normals, uv = arrays
@@ -53,6 +53,6 @@ def plain_model(
     return ModelFile(tuple(shapes), used, {name: textures[name] for name in asked})
 
 
-def sound(rows: Array | None) -> Array | None:
+def finite_or_none(rows: Array | None) -> Array | None:
     """The rows, if they are there and finite."""
     return rows if rows is not None and bool(np.isfinite(rows).all()) else None

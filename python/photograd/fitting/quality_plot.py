@@ -18,14 +18,14 @@ _ROUND = [digit * 10.0**power for power in range(-3, 5) for digit in (1, 2, 5)]
 MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 
 
-def ranking(scores: Sequence[Score]) -> Figure:
-    """PSNR on held-out views over the bytes of the parameters, for every capture and contender.
+def quality_plot(scores: Sequence[Score]) -> Figure:
+    """PSNR on held-out views over the bytes of the parameters, for every capture and candidate.
 
-    Up is better, left is smaller; beside each mark stand its training seconds. Contenders of one
-    representation share a colour.
+    Up is better, left is smaller; beside each mark stand its training seconds. Candidates of one
+    representation share a color.
     """
     captures = list(dict.fromkeys(score.capture for score in scores))
-    labels = list(dict.fromkeys(score.contender for score in scores))
+    labels = list(dict.fromkeys(score.candidate for score in scores))
     kinds = list(dict.fromkeys(label.split(":")[0] for label in labels))
     looks = {
         label: (COLORS[kinds.index(label.split(":")[0]) % len(COLORS)], MARKERS[k % len(MARKERS)])
@@ -59,7 +59,7 @@ def _panel(axes: Axes, scores: Sequence[Score], looks: dict[str, tuple[str, str]
     """One capture's marks, each with its seconds."""
     axes.set_xscale("log")
     for score in scores:
-        color, mark = looks[score.contender]
+        color, mark = looks[score.candidate]
         x = score.parameter_bytes / 1e6
         axes.plot([x], [score.psnr], mark, color=color)
         left = _crowded(score, scores)

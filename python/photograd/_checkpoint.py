@@ -1,11 +1,10 @@
-"""Checkpoints: everything that a fit needs to go on, written atomically and checked when read.
+"""Checkpoints: everything that a descent needs to go on, written atomically, checked when read.
 
-A checkpoint is a NumPy archive: `params.NAME`, `optimiser.NAME`, `state.NAME`, `history`, and
-`meta`, a JSON text with the format's version, the step, the options, the policy of the march and
-where the capture lies. A crash or a full disk while saving leaves the previous checkpoint as it
-was.
+A checkpoint is a NumPy archive: `params.NAME`, `optimizer.NAME`, `state.NAME`, `history`, and
+`meta`, a JSON text with the format's version, the step, the options and what they were used on. A
+crash or a full disk while saving leaves the previous checkpoint as it was.
 
-Each array has a row here: its types, and its shape, where a letter is the same number throughout
+A `Row` describes an array: its types, and its shape, where a letter is the same number throughout
 the file. Values are checked for what arithmetic needs (finite, not negative); what they mean is
 checked by the representation that is made of them.
 """
@@ -22,14 +21,12 @@ from typing import Any, TypeAlias
 import numpy as np
 from photograd_course.atomic_io import atomic_write
 
-from photograd import sh
 from photograd._checks import typed
 from photograd._files import read_npz
 from photograd.errors import DtypeError, IoError, RangeError, ShapeError, message
-from photograd.fitting.options import FitOptions
 from photograd.types import Array
 
-VERSION = 1
+VERSION = 2
 FILE_NAME = "model.npz"
 _EXPECTED, _REMEDY = "a photograd checkpoint", "the file is damaged: restore it or fit again"
 
@@ -40,7 +37,7 @@ class Checkpoint:
 
     meta: dict[str, Any]
     params: dict[str, Array]
-    optimiser: dict[str, Array]
+    optimizer: dict[str, Array]
     state: dict[str, Array]
     history: Array  # (n, 3): step, loss, PSNR of the batch
 
@@ -49,9 +46,14 @@ def save_checkpoint(path: Path, checkpoint: Checkpoint) -> None:
     """Write the file atomically. Raises IoError if that fails; the old file then survives."""
     arrays: dict[str, Any] = {"history": checkpoint.history}
     arrays["meta"] = np.array(json.dumps({"version": VERSION, **checkpoint.meta}))
-    for prefix in ("params", "optimiser", "state"):
+    for prefix in ("params", "optimizer", "state"):
         for name, array in getattr(checkpoint, prefix).items():
             arrays[f"{prefix}.{name}"] = array
+    write_npz(path, arrays)
+
+
+def write_npz(path: Path, arrays: Mapping[str, Any]) -> None:
+    """Write a NumPy archive atomically. Raises IoError if that fails; an old file then survives."""
     buffer = io.BytesIO()
     np.savez(buffer, **arrays)
     atomic_write(path, buffer.getvalue())
@@ -98,7 +100,7 @@ def load_checkpoint(path: str | Path) -> Checkpoint:
     if history.ndim != 2 or history.shape[1] != 3:
         raise _damaged(file, f"a history of shape {history.shape} instead of (N, 3)")
     return Checkpoint(
-        meta, _part(arrays, "params"), _part(arrays, "optimiser"), _part(arrays, "state"), history
+        meta, _part(arrays, "params"), _part(arrays, "optimizer"), _part(arrays, "state"), history
     )
 
 
@@ -127,82 +129,15 @@ def _part(arrays: Mapping[str, Array], prefix: str) -> dict[str, Array]:
 Row: TypeAlias = tuple[tuple[str, ...], tuple[int | str, ...]]
 """Types, of which the array has one, and shape."""
 _NAME = "checkpoint"
-_FLOAT = ("float32", "float64")
-_HARMONICS: dict[str, Row] = {"density": (_FLOAT, ("N",)), "sh": (_FLOAT, ("N", "K", 3))}
-_ACTIVE: dict[str, Row] = {
-    "shape": (("int64",), (3,)),
-    "mask": (("uint8",), ("bytes of the mask",)),
-    "background_density": (_FLOAT, ()),
-}
-PARAMS: dict[str, dict[str, Row]] = {
-    "dense_grid": {"values": (_FLOAT, ("X", "Y", "Z", 4))},
-    "sparse_sh": _HARMONICS,
-    "dense_sh": _HARMONICS,
-    "octree_sh": _HARMONICS,
-    "gaussians": {
-        "means": (_FLOAT, ("N", 3)),
-        "log_scales": (_FLOAT, ("N", 3)),
-        "quats": (_FLOAT, ("N", 4)),
-        "opacity_logits": (_FLOAT, ("N",)),
-        "sh_constant": (_FLOAT, ("N", 1, 3)),
-        "sh_rest": (_FLOAT, ("N", "K - 1", 3)),
-    },
-}
-STATE: dict[str, dict[str, Row]] = {
-    "dense_grid": {},
-    "sparse_sh": _ACTIVE,
-    "dense_sh": _ACTIVE,
-    "octree_sh": {
-        "lower": (("int32",), ("L", 3)),
-        "side": (("int32",), ("L",)),
-        "row": (("int32",), ("L",)),
-    },
-    "gaussians": {
-        "active_degree": (("int64",), ()),
-        "extent": (("float64",), ()),
-        "pressure_sum": (("float64",), ("N",)),
-        "pressure_count": (("int64",), ("N",)),
-    },
-}
-BACKGROUND: Row = (("float32",), (3,))
-META = ("capture", "split", "pixels", "color_space")
-"""Texts that may be missing: snapshots belong to a fit, and know of no capture."""
-MOST_STEPS = 1 << 40
-
-
-def check_checkpoint(saved: Checkpoint, options: FitOptions) -> None:
-    """Raise DtypeError, ShapeError or RangeError that names what a fit could not go on with.
-
-    The state of the optimizer may be empty, as in snapshots; a group of it is complete or absent.
-    """
-    step = checked_step(saved)
-    for name in sorted(saved.meta.keys() & set(META)):
-        typed(_NAME, f"meta.{name}", str, saved.meta[name])
-    if options.representation not in PARAMS:
-        expected = f"one of {list(PARAMS)}"
-        got = repr(options.representation)
-        raise RangeError(message(_NAME, "options.representation", expected, got))
-    count = sh.count(options.degree)
-    sizes: dict[str, int] = {"K": count, "K - 1": count - 1}
-    params = dict(PARAMS[options.representation])
-    if "background" in saved.params:
-        params["background"] = BACKGROUND
-    check_arrays("params", saved.params, params, sizes)
-    kinds = {array.dtype for name, array in saved.params.items() if name != "background"}
-    if len(kinds) > 1:
-        got = ", ".join(sorted(map(str, kinds)))
-        raise DtypeError(message(_NAME, "params", "one type of all groups", got))
-    check_arrays("state", saved.state, STATE[options.representation], sizes)
-    _check_values(options.representation, saved.state)
-    check_optimizer(saved.optimiser, saved.params)
-    check_history(saved.history, step)
+FLOAT = ("float32", "float64")
+MAX_STEPS = 1 << 40
 
 
 def checked_step(saved: Checkpoint) -> int:
     """The number of steps that were done; raises DtypeError or RangeError for what is none."""
     step = int(typed(_NAME, "meta.step", int, saved.meta.get("step")))
-    if not 0 <= step <= MOST_STEPS:
-        raise RangeError(message(_NAME, "meta.step", f"0 to {MOST_STEPS}", step))
+    if not 0 <= step <= MAX_STEPS:
+        raise RangeError(message(_NAME, "meta.step", f"0 to {MAX_STEPS}", step))
     return step
 
 
@@ -225,12 +160,12 @@ def check_arrays(
             for size, found in zip(shape, array.shape, strict=True)
         )
         if not fits:
-            told = f"({', '.join(_size(size, sizes) for size in shape)})"
+            told = f"({', '.join(_size_text(size, sizes) for size in shape)})"
             raise ShapeError(message(_NAME, f"{part}.{name}", f"shape {told}", array.shape))
         _require_finite(f"{part}.{name}", array)
 
 
-def _size(size: int | str, sizes: Mapping[str, int]) -> str:
+def _size_text(size: int | str, sizes: Mapping[str, int]) -> str:
     known = isinstance(size, str) and size in sizes
     return f"{size} = {sizes[str(size)]}" if known else f"{size}"
 
@@ -239,20 +174,6 @@ def _require_finite(name: str, array: Array) -> None:
     if array.dtype.kind == "f" and not np.isfinite(array).all():
         count = array.size - int(np.isfinite(array).sum())
         raise RangeError(message(_NAME, name, "finite values", f"{count} that are not"))
-
-
-def _check_values(representation: str, state: Mapping[str, Array]) -> None:
-    """Numbers of the state that sizes and sums are made of."""
-    if "mask" in state:
-        x, y, z = state["shape"].tolist()
-        if min(x, y, z) < 1 or -(-x * y * z // 8) != len(state["mask"]):
-            expected = f"voxels of which {len(state['mask'])} bytes are the mask, a bit each"
-            raise RangeError(message(_NAME, "state.shape", expected, (x, y, z)))
-    if representation == "gaussians":
-        for name in ("pressure_sum", "pressure_count"):
-            if state[name].size and state[name].min() < 0:
-                got = state[name].min()
-                raise RangeError(message(_NAME, f"state.{name}", "0 or more", got))
 
 
 def check_optimizer(state: Mapping[str, Array], params: Mapping[str, Array]) -> None:
@@ -264,13 +185,13 @@ def check_optimizer(state: Mapping[str, Array], params: Mapping[str, Array]) -> 
         expected[f"step/{group}"] = (("int64",), ())
         for slot in ("mean", "mean_square"):
             expected[f"{slot}/{group}"] = ((array.dtype.name,), array.shape)
-    check_arrays("optimiser", state, expected, {})
+    check_arrays("optimizer", state, expected, {})
     for key, array in state.items():
         least = -np.inf if key.startswith("mean/") else 0
         if array.size and array.min() < least:
-            raise RangeError(message(_NAME, f"optimiser.{key}", "0 or more", array.min()))
-        if key.startswith("step/") and array > MOST_STEPS:
-            raise RangeError(message(_NAME, f"optimiser.{key}", f"0 to {MOST_STEPS}", array))
+            raise RangeError(message(_NAME, f"optimizer.{key}", "0 or more", array.min()))
+        if key.startswith("step/") and array > MAX_STEPS:
+            raise RangeError(message(_NAME, f"optimizer.{key}", f"0 to {MAX_STEPS}", array))
 
 
 def check_history(history: Array, step: int) -> None:

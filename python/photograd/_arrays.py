@@ -1,0 +1,235 @@
+"""The one validator of array arguments, for every public function of the package.
+
+    call = Arguments("BsdfModel.f")
+    wo = call.array("wo", wo, ("N", 3))
+    wi = call.array("wi", wi, ("N", 3))  # as many rows as wo, and of its dtype
+
+Conversion follows one rule. Numbers and lists are converted. NumPy arrays with axes are converted
+where the function has stated a dtype; without one they have to be float32 or float64, the same in
+all arguments of a call, and the function computes in that precision.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from types import EllipsisType
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from photograd.errors import DtypeError, Error, RangeError, ShapeError, message
+from photograd.types import Array
+
+Axis = int | str | EllipsisType
+"""A length, or a name such as "N" or "2 H" (twice H); `...` stands for any leading axes."""
+
+
+class Arguments:
+    """The array arguments of one call: axes of one name have one length.
+
+    Attributes:
+        function: the public function that was called, for errors.
+        dtype: in which it computes; None until the first array decides.
+    """
+
+    def __init__(
+        self, function: str, dtype: npt.DTypeLike | None = None, *, convert: bool = True
+    ) -> None:
+        """State `dtype` to convert every array of the call to it; `convert` False refuses others.
+
+        The latter is for functions of one precision that take more numbers than one would copy.
+        """
+        self.function = function
+        self.dtype = None if dtype is None else np.dtype(dtype)
+        self._converts = dtype is not None and convert
+        self._decided_by = ""
+        self._axes: dict[str, tuple[int, str]] = {}  # length, and the argument that has it
+
+    def array(
+        self,
+        name: str,
+        value: Any,
+        *shapes: tuple[Axis, ...],
+        dtype: npt.DTypeLike | None = None,
+        floating: bool = False,
+        finite: bool = True,
+        min_length: int = 0,
+        low: float | None = None,
+        high: float | None = None,
+        above: float | None = None,
+        below: float | None = None,
+    ) -> Array:
+        """`value` as a C-contiguous array, itself where it is one already.
+
+        Args:
+            name: of the argument, for errors.
+            value: an array, a nested list, or a number.
+            shapes: those that are accepted, such as ("N", 3); the first that fits names its axes.
+            dtype: of this argument alone; an integer type refuses fractions.
+            floating: refuses arrays of integers, such as images of bytes, in place of converting.
+            finite: whether NaN and infinity are refused; bounds refuse NaN in any case.
+            min_length: of the named axes.
+            low, high, above, below: bounds, the first two included, the last two excluded.
+
+        Raises:
+            DtypeError: not numbers, or of a dtype that is not converted.
+            ShapeError: another shape, or a named axis of another length than before.
+            RangeError: a number that is not finite or out of bounds; names the first.
+        """
+        array = self._converted(name, value, dtype, floating)
+        self._bind(name, array.shape, shapes, min_length)
+        bounds = (low, high, above, below)
+        self._check_range(name, array, finite and array.dtype.kind == "f", bounds)
+        return array
+
+    def run(self, core: Callable[..., Any], *arguments: Any, **named: Any) -> Any:
+        """What a function of the core returns; its errors name the function that was called."""
+        try:
+            return core(*arguments, **named)
+        except Error as failure:
+            _, _, rest = str(failure).partition(": ")
+            raise type(failure)(f"{self.function}: {rest}") from failure
+
+    def _converted(
+        self, name: str, value: Any, stated: npt.DTypeLike | None, floating: bool
+    ) -> Array:
+        array = _numbers(self.function, name, value)
+        if stated is not None or self._converts:
+            target = np.dtype(self.dtype if stated is None else stated)
+            if target.kind in "iu":
+                self._check_integers(name, array, target)
+            elif floating and isinstance(value, np.ndarray) and array.dtype.kind != "f":
+                remedy = "convert it, with .astype"
+                self._refuse(DtypeError, name, "floating point numbers", array.dtype, remedy)
+        else:
+            target = self._call_dtype(name, array, isinstance(value, np.ndarray) and value.ndim > 0)
+        with np.errstate(over="ignore"):  # what float32 cannot hold becomes infinite
+            return np.asarray(array, target, order="C")
+
+    def _call_dtype(self, name: str, array: Array, has_dtype: bool) -> np.dtype[Any]:
+        """The dtype of the call, which the first array decides."""
+        if self.dtype is None and has_dtype and array.dtype not in (np.float32, np.float64):
+            remedy = "convert it, with .astype(np.float64)"
+            self._refuse(DtypeError, name, "float32 or float64", array.dtype, remedy)
+        if self.dtype is None:
+            self.dtype = array.dtype if has_dtype else np.dtype(np.float64)
+            self._decided_by = name
+        if has_dtype and array.dtype != self.dtype:
+            expected = f"{self.dtype}" + (f" as {self._decided_by}" if self._decided_by else "")
+            self._refuse(DtypeError, name, expected, array.dtype, "use .astype")
+        return self.dtype
+
+    def _check_integers(self, name: str, array: Array, target: np.dtype[Any]) -> None:
+        if array.size and array.dtype.kind not in "iu":
+            self._refuse(DtypeError, name, "integers", array.dtype)
+        limits = np.iinfo(target)
+        self._check_range(name, array, False, (limits.min, limits.max, None, None))
+
+    def _bind(
+        self, name: str, found: tuple[int, ...], shapes: tuple[tuple[Axis, ...], ...], least: int
+    ) -> None:
+        for shape in shapes:
+            axes = self._axes_of(name, found, shape, least)
+            if axes is not None:
+                self._axes = axes
+                return
+        if shapes:
+            self._refuse(ShapeError, name, self._expected_shape(shapes, least), f"{found}")
+
+    def _axes_of(
+        self, name: str, found: tuple[int, ...], shape: tuple[Axis, ...], least: int
+    ) -> dict[str, tuple[int, str]] | None:
+        """The named axes when `found` has this shape, or None."""
+        if shape and shape[0] is ...:
+            shape = shape[1:]
+            found = found[len(found) - len(shape) :] if len(found) >= len(shape) else ()
+        if len(shape) != len(found):
+            return None
+        axes = dict(self._axes)
+        for axis, length in zip(shape, found, strict=True):
+            if isinstance(axis, int):
+                if length != axis:
+                    return None
+                continue
+            *factor, letter = str(axis).split()
+            count, rest = divmod(length, int(factor[0]) if factor else 1)
+            if rest or count < least or axes.setdefault(letter, (count, name))[0] != count:
+                return None
+        return axes
+
+    def _expected_shape(self, shapes: tuple[tuple[Axis, ...], ...], least: int) -> str:
+        texts = []
+        for shape in shapes:
+            parts = ["..." if axis is ... else f"{axis}" for axis in shape]
+            texts.append(f"({parts[0]},)" if len(parts) == 1 else f"({', '.join(parts)})")
+        arrays = " or ".join(text for text in texts if text != "()")
+        accepted = ["a number"] * (() in shapes) + [f"shape {arrays}"] * bool(arrays)
+        letters = {str(axis).split()[-1] for s in shapes for axis in s if isinstance(axis, str)}
+        known = sorted(letters & set(self._axes))
+        facts = [f"{k} = {self._axes[k][0]} as in {self._axes[k][1]}" for k in known]
+        if least and letters - set(known):
+            facts.append(f"{', '.join(sorted(letters - set(known)))} >= {least}")
+        return " or ".join(accepted) + (f" with {' and '.join(facts)}" if facts else "")
+
+    def _check_range(
+        self, name: str, array: Array, finite: bool, bounds: tuple[float | None, ...]
+    ) -> None:
+        low, high, above, below = bounds
+        tests = [np.isfinite(array)] if finite else []
+        tests += [array >= low] if low is not None else []
+        tests += [array <= high] if high is not None else []
+        tests += [array > above] if above is not None else []
+        tests += [array < below] if below is not None else []
+        if all(test.all() for test in tests):
+            return
+        first = np.argwhere(~np.logical_and.reduce(tests))[0].tolist()
+        expected = ("finite " if finite else "") + "numbers" + _interval(*bounds)
+        self._refuse(RangeError, name, expected, _told(array, first))
+
+    def _refuse(
+        self, kind: type[Exception], name: str, expected: str, got: Any, remedy: str | None = None
+    ) -> None:
+        raise kind(message(self.function, name, expected, got, remedy))
+
+
+def _numbers(function: str, name: str, value: Any) -> Array:
+    try:
+        array = np.asarray(value)
+    except (TypeError, ValueError) as failure:
+        raise DtypeError(message(function, name, "numbers", shortened(value))) from failure
+    if array.dtype.kind not in "iuf":
+        got = f"an array of {array.dtype}" if isinstance(value, np.ndarray) else shortened(value)
+        raise DtypeError(message(function, name, "numbers", got))
+    return array
+
+
+def _interval(
+    low: float | None, high: float | None, above: float | None, below: float | None
+) -> str:
+    if low == -np.inf and high is None:
+        return ""  # anything but NaN
+    left = f"[{low:g}" if low is not None else f"({above:g}" if above is not None else ""
+    right = f"{high:g}]" if high is not None else f"{below:g})" if below is not None else ""
+    if left and right:
+        return f" in {left}, {right}"
+    if left:
+        return f" of at least {low:g}" if low is not None else f" above {above:g}"
+    if right:
+        return f" of at most {high:g}" if high is not None else f" below {below:g}"
+    return ""
+
+
+def _told(array: Array, index: list[int]) -> str:
+    """The number at an index, with its row where that is short."""
+    if not index:
+        return f"{array}"
+    if array.ndim <= 2 and array[index[0]].size <= 4:
+        return f"{array[index[0]]} in row {index[0]}"
+    return f"{array[tuple(index)]} at {index}"
+
+
+def shortened(value: object) -> str:
+    """What an error says that it got, in at most 60 characters."""
+    text = repr(value)
+    return text if len(text) <= 60 else f"{text[:57]}..."

@@ -1,0 +1,53 @@
+"""The protocol that every scene representation speaks, and the registry of those that exist.
+
+One loop (`photograd.fitting.loop`), one command for pictures of gradients and one set of proofs
+serve everything that is registered here. What a capture can be fitted with is a `Fittable`; all
+others say in `teaching_example` why not. Parameters are NumPy arrays; what is expensive to rebuild
+lives in C++ objects.
+"""
+
+from photograd.representation.base import (
+    REGISTERED,
+    Gradients,
+    ParamSpec,
+    Prior,
+    Representation,
+    dense_gradient,
+    register,
+)
+from photograd.representation.batches import (
+    CanvasBatch,
+    ImageBatch,
+    Outputs,
+    RayBatch,
+    RenderOptions,
+)
+from photograd.representation.fittable import (
+    COPIES,
+    FitInProgress,
+    Fittable,
+    Memory,
+    Start,
+    fittable,
+)
+
+__all__ = [
+    "COPIES",
+    "REGISTERED",
+    "CanvasBatch",
+    "FitInProgress",
+    "Fittable",
+    "Gradients",
+    "ImageBatch",
+    "Memory",
+    "Outputs",
+    "ParamSpec",
+    "Prior",
+    "RayBatch",
+    "RenderOptions",
+    "Representation",
+    "Start",
+    "dense_gradient",
+    "fittable",
+    "register",
+]

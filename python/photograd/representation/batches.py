@@ -1,0 +1,104 @@
+"""What a representation renders, how, and what comes out: batches, options, outputs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from photograd._checks import require_finite
+from photograd.capture.camera import Camera
+from photograd.errors import RangeError, ShapeError, message
+from photograd.types import Array
+
+
+@dataclass(frozen=True)
+class RayBatch:
+    """Rays: world origins (R, 3) in meters, unit directions (R, 3), pixel numbers (R,).
+
+    `pixel` feeds the random numbers (jitter), so that a ray's numbers do not depend on its batch.
+    """
+
+    origins: Array
+    directions: Array
+    pixel: NDArray[np.uint32]
+
+    def __post_init__(self) -> None:
+        count = len(self.pixel)
+        for name, array in (("origins", self.origins), ("directions", self.directions)):
+            if array.shape != (count, 3):
+                raise ShapeError(message("RayBatch", name, f"shape ({count}, 3)", f"{array.shape}"))
+
+
+@dataclass(frozen=True)
+class CanvasBatch:
+    """Points (N, 2) on a 2D canvas, x to the right and y down, both in [0, 1]."""
+
+    points: Array
+
+    def __post_init__(self) -> None:
+        if self.points.ndim != 2 or self.points.shape[1] != 2:
+            raise ShapeError(
+                message("CanvasBatch", "points", "shape (N, 2)", f"{self.points.shape}")
+            )
+
+
+@dataclass(frozen=True, eq=False)
+class ImageBatch:
+    """All pixels of a camera, row by row: for what is drawn a picture at a time.
+
+    `camera_from_world` (3, 4) stands in for the camera's pose where a proof moves it.
+    """
+
+    camera: Camera
+    camera_from_world: Array | None = None
+
+    def __post_init__(self) -> None:
+        if self.camera_from_world is not None and self.camera_from_world.shape != (3, 4):
+            found = f"{self.camera_from_world.shape}"
+            raise ShapeError(message("ImageBatch", "camera_from_world", "shape (3, 4)", found))
+
+
+@dataclass(frozen=True)
+class RenderOptions:
+    """Policies of one rendering. The defaults are those of proofs: no early stop, no jitter."""
+
+    stop: float = 0.0  # transmittance below which a ray ends; 0 is off
+    jitter: bool = False  # move each ray's lattice by a random fraction of a step
+    camera_adjoint: bool = False  # also dL/d "origins" and "directions", "points" of a canvas, or
+    # "camera_from_world" of a picture
+
+    def __post_init__(self) -> None:
+        """Raises RangeError for a `stop` that is no transmittance below 1."""
+        if not 0 <= self.stop < 1:
+            expected = "a transmittance of at least 0 and below 1"
+            raise RangeError(message("RenderOptions", "stop", expected, self.stop))
+
+
+@dataclass(frozen=True)
+class Outputs:
+    """One rendering of R rays, pixels or points. `color` (R, 3) is premultiplied, without
+    background.
+
+    opacity (R,); depth (R,) is the sum of weight * distance in meters, along the ray or, of
+    pictures, along the viewing axis: divide by opacity for a mean distance. Both are None where the
+    representation has no such thing, as on a canvas.
+    """
+
+    color: Array
+    opacity: Array | None = None
+    depth: Array | None = None
+
+    def checked(self, function: str, batch: RayBatch | CanvasBatch) -> Outputs:
+        """These outputs, as `function` returns them for `batch`.
+
+        Raises Error, naming the first pixel or point, if one is not finite.
+        """
+        pixel = batch.pixel if isinstance(batch, RayBatch) else None
+        require_finite(
+            function,
+            vars(self),
+            lambda at: f"point {at[0]}" if pixel is None else f"pixel {int(pixel[at[0]])}",
+        )
+        return self

@@ -1,0 +1,58 @@
+"""Meshes of a file as one textured mesh, for a fit to start from."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+
+from photograd.errors import RangeError, SceneError, message
+from photograd.fields.textured_mesh import TexturedMesh
+from photograd.geometry.mesh import Mesh
+from photograd.transport.mesh_files.read import read_model
+from photograd.transport.shapes import MeshShape
+from photograd.types import Array
+
+MARGIN = 1 / 64
+"""Around the texture of each of several shapes, in sizes of its square."""
+
+
+def read_textured_mesh(path: str | Path) -> TexturedMesh:
+    """The shapes of a mesh file with one gray texture; `read_model` says which files.
+
+    Several shapes, and instances of one, share the texture: each has a square of it.
+
+    Raises:
+        IoError, RangeError, SceneError: what `read_model` raises.
+        SceneError: a shape without texture coordinates.
+        RangeError: texture coordinates outside of [0, 1].
+    """
+    parts: list[tuple[Array, Array, Array]] = []
+    for shape in read_model(path).shapes:
+        if not isinstance(shape, MeshShape):
+            continue
+        if shape.uv is None:
+            expected, got = "texture coordinates of every shape", f"none of '{shape.name}'"
+            remedy = "unwrap the mesh in a modeler"
+            raise SceneError(message("read_textured_mesh", f"{path}", expected, got, remedy))
+        if not bool(((shape.uv >= 0) & (shape.uv <= 1)).all()):
+            expected, got = "texture coordinates in [0, 1]", f"others of '{shape.name}'"
+            remedy = "unwrap the mesh, so that no texture repeats"
+            raise RangeError(message("read_textured_mesh", f"{path}", expected, got, remedy))
+        for place in shape.places or (np.eye(4),):
+            moved = shape.vertices @ place[:3, :3].T + place[:3, 3]
+            parts.append((moved.astype(np.float32), shape.faces, shape.uv))
+    side = math.ceil(math.sqrt(len(parts)))
+    margin = MARGIN if side > 1 else 0.0
+    vertices, faces, uv, count = [], [], [], 0
+    for number, (place, corners, flat) in enumerate(parts):
+        cell = np.array([number % side, number // side])
+        vertices.append(place)
+        faces.append(corners.astype(np.int64) + count)
+        uv.append((cell + margin + (1 - 2 * margin) * flat) / side)
+        count += len(place)
+    mesh = Mesh(
+        np.concatenate(vertices), np.concatenate(faces), np.concatenate(uv).astype(np.float32)
+    )
+    return TexturedMesh.of_mesh(mesh)
