@@ -32,7 +32,7 @@ def slowest(work: Mapping[str, float]) -> tuple[float, str]:
 def volume_bound(samples: int) -> dict[str, Any]:
     """W4: a sample does 90 flop and 4 loads of 32 bytes forward.
 
-    Forward and backward together: 250 flop, two exp, 8 loads and 4 additions in place. Neighbouring
+    Forward and backward together: 250 flop, two exp, 8 loads and 4 additions in place. Neighboring
     samples share voxels, so a quarter of the accesses counts.
     """
     forward = slowest({"flop": 90 * samples, "load_L2": samples, "exp": samples})
@@ -57,9 +57,9 @@ def texture_bound(lookups: int) -> dict[str, Any]:
 
 
 def sh_bound(points: int) -> dict[str, Any]:
-    """W6a: a point is 204 bytes of coefficients and direction, and 12 of colour.
+    """W6a: a point is 204 bytes of coefficients and direction, and 12 of color.
 
-    Backward reads the cotangent of the colour and writes as much as forward reads. Coefficients
+    Backward reads the cotangent of the color and writes as much as forward reads. Coefficients
     count once: a program that does both in one pass over pieces that fit into a cache can have it
     so.
     """

@@ -60,8 +60,8 @@ def unit(vectors: Array) -> Array:
     return vectors / lengths
 
 
-def pixel_centres(count: int) -> Array:
-    """(count,) centres of equal cells of [-1, 1]."""
+def pixel_centers(count: int) -> Array:
+    """(count,) centers of equal cells of [-1, 1]."""
     return (np.arange(count) + 0.5) / count * 2 - 1
 
 
@@ -69,12 +69,12 @@ def pixel_centres(count: int) -> Array:
 
 
 def volume_grid(n: int, phase: float) -> Array:
-    """(n, n, n, 4) float32 r, g, b, sigma_t, index [z, y, x], values at voxel centres of [-1, 1]^3.
+    """(n, n, n, 4) float32 r, g, b, sigma_t, index [z, y, x], values at voxel centers of [-1, 1]^3.
 
-    sigma_t is a ball of fog with ripples; each colour varies along one axis. Another phase is
+    sigma_t is a ball of fog with ripples; each color varies along one axis. Another phase is
     another scene.
     """
-    c = pixel_centres(n).astype(np.float32)
+    c = pixel_centers(n).astype(np.float32)
     x, y, z = c[None, None, :], c[None, :, None], c[:, None, None]
     ripples = 0.4 * np.sin(9 * x + phase) * np.sin(8 * y - phase) * np.sin(7 * z + 2 * phase)
     ball = np.exp(-3.0 * (x * x + y * y + z * z))
@@ -89,10 +89,10 @@ def volume_grid(n: int, phase: float) -> Array:
 def orbit_rays(res: int, views: int) -> tuple[Array, Array]:
     """Origins and unit directions (views res res, 3) float32 of cameras around the y axis.
 
-    Pinholes 3.2 m from the centre, 45 degrees wide, that bob up and down by 0.35 radians.
+    Pinholes 3.2 m from the center, 45 degrees wide, that bob up and down by 0.35 radians.
     """
     half = np.tan(np.radians(45.0) / 2)
-    across = pixel_centres(res) * half
+    across = pixel_centers(res) * half
     u, v = across[None, :, None], -across[:, None, None]
     origins, directions = [], []
     for view in range(views):
@@ -117,10 +117,10 @@ def orbit_rays(res: int, views: int) -> tuple[Array, Array]:
 def sparse_shell(n: int, phase: float) -> tuple[Array, Array]:
     """Which of n^3 voxels exist (index [z, y, x]), and their values (N, 49) float32 in C order.
 
-    A shell of radius 0.7 with bumps, 0.16 thick, values at voxel centres of [-1, 1]^3: density,
+    A shell of radius 0.7 with bumps, 0.16 thick, values at voxel centers of [-1, 1]^3: density,
     then 16 coefficients for each of three channels.
     """
-    c = pixel_centres(n)
+    c = pixel_centers(n)
     z, y, x = np.meshgrid(c, c, c, indexing="ij")
     radius = np.sqrt(x * x + y * y + z * z)
     surface = 0.7 + 0.06 * np.sin(6 * x) * np.sin(5 * y) * np.sin(7 * z)
@@ -200,14 +200,14 @@ def displaced_sphere(nu: int, nv: int) -> tuple[Array, Array]:
 
 
 def primary_directions(res: int) -> Array:
-    """(res res, 3) float64: a pinhole at the centre that looks along -z, 90 degrees wide."""
-    c = pixel_centres(res)
+    """(res res, 3) float64: a pinhole at the center that looks along -z, 90 degrees wide."""
+    c = pixel_centers(res)
     u, v = np.broadcast_arrays(c[None, :], -c[:, None])
     return unit(np.stack([u, v, -np.ones_like(u)], axis=-1).reshape(-1, 3))
 
 
 def face_towards(directions: Array, nu: int, nv: int) -> Array:
-    """(R,) the face of the displaced sphere that directions from the centre point at, roughly."""
+    """(R,) the face of the displaced sphere that directions from the center point at, roughly."""
     theta = np.arccos(np.clip(directions[:, 1], -1, 1))
     phi = np.mod(np.arctan2(directions[:, 2], directions[:, 0]), 2 * np.pi)
     row = np.clip((theta / np.pi * nv).astype(int) - 1, 0, nv - 3)
@@ -234,7 +234,7 @@ def ray_sets(vertices: Array, faces: Array, res: int) -> dict[str, tuple[Array, 
     """{"primary", "bounce"}: origins and directions (res res, 3) float32; nu = 2 nv is assumed.
 
     A bounce ray starts 0.1 mm inside of the middle of the face that its primary ray sees and leaves
-    in a cosine-distributed direction: neighbours start side by side and part at once.
+    in a cosine-distributed direction: neighbors start side by side and part at once.
     """
     nv = round((1 + (1 + len(faces)) ** 0.5) / 2)
     forward = primary_directions(res)
@@ -268,7 +268,7 @@ def bsdf_pairs(count: int) -> tuple[Array, Array, Array]:
 
 
 def bsdf_parameters(kind: str, texels: int) -> tuple[Array, Array, Array]:
-    """Base colour, metalness, roughness: "scalar" (3,), (), (); "texture" of texels^2 each."""
+    """Base color, metalness, roughness: "scalar" (3,), (), (); "texture" of texels^2 each."""
     if kind == "scalar":
         return np.array([0.7, 0.4, 0.2], np.float32), np.float32(0.3), np.float32(0.35)  # type: ignore[return-value]
     t = texture(texels)
@@ -300,7 +300,7 @@ def gaussians(count: int) -> dict[str, Array]:
 
 
 def splat_camera(res: int) -> tuple[Array, float]:
-    """camera_from_world (3, 4) float32 of a camera 2.6 m from the centre, and its focal length."""
+    """camera_from_world (3, 4) float32 of a camera 2.6 m from the center, and its focal length."""
     eye = 2.6 * unit(np.array([0.5, 0.35, 0.8]))
     forward = -unit(eye)
     right = unit(np.cross(forward, [0, 1, 0]))

@@ -1,10 +1,10 @@
 """W10: a principled reflectance model at millions of pairs of directions, and its gradient.
 
 The value is f times the cosine; the loss is the mean over evaluations of the sum over channels of
-w f cos. `--params scalar`: one base colour, metalness and roughness for all. `--params texture`:
+w f cos. `--params scalar`: one base color, metalness and roughness for all. `--params texture`:
 texels^2 of each, evaluation n takes texel n mod texels^2. Forward is the values, into an array that
-is used again; forward and backward is the values, the loss, and the gradient by all parameters,
-cleared first.
+is used again; forward and backward is the values, the loss, and the gradient with
+respect to all parameters, cleared first.
 """
 
 from __future__ import annotations

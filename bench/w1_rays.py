@@ -1,6 +1,6 @@
 """W1: rays through NumPy arrays into a mesh of a million triangles.
 
-All rays start inside of the mesh and hit. "primary" is a camera at the centre, row by row; "bounce"
+All rays start inside of the mesh and hit. "primary" is a camera at the center, row by row; "bounce"
 starts where those hit and leaves in random directions. The timing begins with the rays as (R, 3)
 float32 arrays in this order and ends with distances and triangle numbers in the same order:
 whatever reordering helps is inside. Building the hierarchy is timed apart ("build_seconds").

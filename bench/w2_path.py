@@ -1,7 +1,7 @@
 """W2: a room by path tracing, at most 8 segments a path: seconds times squared error.
 
 A picture on the back wall, a copper block, a ball with smooth normals that is principled or metal,
-a square lamp. Next-event estimation and BSDF sampling with the power heuristic; a box filter. Each
+a square light. Next event estimation and BSDF sampling with the power heuristic; a box filter. Each
 call takes another seed. `--reference` names a picture of many samples (H, W, 3), linear .npy.
 """
 

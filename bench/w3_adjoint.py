@@ -31,7 +31,7 @@ ROULETTE = 4
 def gradient(
     tracer: PathTracer, options: PathOptions, spp: int, seed: int, spread: str
 ) -> tuple[float, Array, float]:
-    """The loss, its derivative by the texels (64, 64, 3), and by the block's alpha."""
+    """The loss, its derivative with respect to the texels (64, 64, 3), and by the block's alpha."""
     shape = (tracer.scene.camera.height, tracer.scene.camera.width, 3)
     loss, found = loss_and_gradients(
         tracer,

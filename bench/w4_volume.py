@@ -1,6 +1,6 @@
 """W4: a dense volume, marched forward, and forward and backward.
 
-n^3 voxels of colour and sigma_t on [-1, 1]^3, clamped at the border; a step of 1 / n from the point
+n^3 voxels of color and sigma_t on [-1, 1]^3, clamped at the border; a step of 1 / n from the point
 where a ray enters; radiance L = sum of T sigma_t c dt with T = exp(-sum of earlier sigma_t dt). The
 loss is the mean of (L - target)^2 over rays and channels.
 
@@ -60,14 +60,14 @@ class Volume:
         return (*self.reversed_rays(), self.t0, self.samples)
 
     def march(self, grid: Array, rays: tuple[Array, ...]) -> tuple[Array, Array, Array]:
-        """Colour (R, 3), transmittance (R,), depth (R,)."""
+        """Color (R, 3), transmittance (R,), depth (R,)."""
         return _core.march("dense_grid", grid, self.settings, rays)
 
     def forward(self) -> Array:
         return self.march(self.grid, self.rays())[0]
 
     def loss(self, color: Array) -> tuple[float, Array]:
-        """The loss, summed in double, and its derivative by the colour (R, 3)."""
+        """The loss, summed in double, and its derivative with respect to the color (R, 3)."""
         difference = color - self.target
         loss = float(np.square(difference).mean(dtype=np.float64))
         return loss, difference * np.float32(2 / difference.size)

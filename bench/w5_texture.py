@@ -1,7 +1,7 @@
-"""W5: a texture recovered from colours at random points, by plain gradient descent.
+"""W5: a texture recovered from colors at random points, by plain gradient descent.
 
 n x n texels of three channels, points in random order, clamped bilinear lookup. The loss is the
-mean over points and channels of the squared difference to the true texture's colours. Forward is
+mean over points and channels of the squared difference to the true texture's colors. Forward is
 `iters` lookups of all points; forward and backward is `iters` steps of 40,000 times the gradient,
 from 0.5.
 
@@ -27,7 +27,7 @@ STEP = np.float32(40_000)
 
 
 class Recovery:
-    """The workload: points, their true colours, and arrays that are used again."""
+    """The workload: points, their true colors, and arrays that are used again."""
 
     def __init__(self, n: int, points: int, iters: int) -> None:
         self.truth = _inputs.texture(n)

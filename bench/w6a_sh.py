@@ -1,8 +1,8 @@
-"""W6a: colours of many points from spherical harmonics of degree 3, and both derivatives.
+"""W6a: colors of many points from spherical harmonics of degree 3, and both derivatives.
 
-Each point has a direction of its own and 16 coefficients of three channels. Forward is the colours;
-forward and backward is the colours, then the derivatives of sum(w colour) by the coefficients and
-by the directions, as the polynomials have it, before any normalisation. Gradients are overwritten
+Each point has a direction of its own and 16 coefficients of three channels. Forward is the colors;
+forward and backward is the colors, then the derivatives of sum(w color) by the coefficients and
+by the directions, as the polynomials have it, before any normalization. Gradients are overwritten
 in arrays that are used again, so none has to be cleared.
 """
 

@@ -66,7 +66,7 @@ class Plenoxel:
         return np.ascontiguousarray(rows[:, 0]), np.ascontiguousarray(sh)
 
     def march(self, values: tuple[Array, Array]) -> tuple[Any, ...]:
-        """Colour (R, 3), transmittance (R,), depth (R,), number of samples looked up."""
+        """Color (R, 3), transmittance (R,), depth (R,), number of samples looked up."""
         return _core.march_sparse_sh(
             self.active.table, (*values, self.background), self.settings, 0.5, self.rays
         )

@@ -28,7 +28,7 @@ PANEL = 2.6  # inches
 OPAQUE = 40.0  # 1/m: a voxel of 4 cm lets a fifth of the light through
 
 
-def step(field: DenseGrid, pixels: TrainingPixels, optimiser: Adam, number: int) -> None:
+def step(field: DenseGrid, pixels: TrainingPixels, optimizer: Adam, number: int) -> None:
     """One step of gradient descent on random rays over random backgrounds."""
     chosen = pixels.draw(RAYS, seed=0, step=number)
     outputs, context = field.render(
@@ -38,7 +38,7 @@ def step(field: DenseGrid, pixels: TrainingPixels, optimiser: Adam, number: int)
     loss = image_loss(outputs, pixels.premultiplied[chosen], behind, display=True)
     d_outputs, _ = image_loss_backward(loss)
     rates = {name: spec.learning_rate for name, spec in field.param_groups().items()}
-    optimiser.step(field.params, field.render_backward(context, d_outputs), rates)
+    optimizer.step(field.params, field.render_backward(context, d_outputs), rates)
 
 
 def slices(field: DenseGrid, pixels: TrainingPixels) -> tuple[Array, Array]:
@@ -58,7 +58,7 @@ def frame(number: int, sigma_t: Array, gradient: Array) -> Figure:
             (sigma_t, style.MAGNITUDE_MAP, Normalize(0.0, OPAQUE), r"$\sigma_t$  [1/m]", "max"),
             (
                 gradient,
-                style.signed_colour_map(),
+                style.signed_color_map(),
                 style.symmetric_scale(limit),
                 f"{style.GRADIENT} / {style.power_text(limit)}",
                 "both",
@@ -72,7 +72,7 @@ def frame(number: int, sigma_t: Array, gradient: Array) -> Figure:
             axes.set(xlim=BOX[:, 0], ylim=BOX[:, 1], xticks=[], yticks=[], aspect="equal")
             mappable = ScalarMappable(norm if k == 0 else Normalize(-1.0, 1.0), colors)
             place = (left + PANEL + 0.06, 0.45, 0.1, PANEL)
-            style.colour_bar(figure, place, mappable, label, extend=extend)
+            style.color_bar(figure, place, mappable, label, extend=extend)
         style.write_title(figure, f"step {number}", left=0.15)
     return figure
 
@@ -88,12 +88,12 @@ def as_image(figure: Figure) -> Array:
 def main(path: Path = IMAGES / "fit.gif") -> None:
     """Fit, and draw every few steps; the same bytes every time."""
     pixels = photographs(96)
-    field, optimiser = DenseGrid.empty(BOX, RESOLUTION, sigma_t=0.1), Adam()
+    field, optimizer = DenseGrid.empty(BOX, RESOLUTION, sigma_t=0.1), Adam()
     frames = []
     for number in range(STEPS + 1):
         if number % EVERY == 0:
             frames.append(as_image(frame(number, *slices(field, pixels))))
-        step(field, pixels, optimiser, number)
+        step(field, pixels, optimizer, number)
     path.parent.mkdir(exist_ok=True)
     write_gif(frames + [frames[-1]] * 5, path, frames_per_second=4)
 

@@ -82,7 +82,7 @@ def draw_cells(axes: Axes, cells: Array, gradient: Array, count: int, limit: flo
     axes.add_collection(
         PatchCollection(
             squares(cells[met, :2] * side - 1.0, np.full(int(met.sum()), side)),
-            facecolors=style.signed_colour_map()(style.symmetric_scale(limit)(gradient[met])),
+            facecolors=style.signed_color_map()(style.symmetric_scale(limit)(gradient[met])),
             edgecolors=style.FRAME,
             linewidths=0.35,
         )
@@ -104,13 +104,13 @@ def bricks_figure() -> Figure:
         figure = style.new_figure(4 * PANEL + 1.6, PANEL + 1.05)
         for k, (words, cells, gradient, count) in enumerate(panels):
             axes = style.place_axes(figure, 0.15 + k * (PANEL + 0.15), 0.35, PANEL, PANEL)
-            axes.set_facecolor("#f1f1f1")  # grey: what the structure does not hold
+            axes.set_facecolor("#f1f1f1")  # gray: what the structure does not hold
             draw_cells(axes, cells, gradient, count, limit)
             outline_balls(axes, (RESOLUTION // 2 + 0.5) * 2.0 / RESOLUTION - 1.0)
             axes.set(xlim=BOX[:, 0], ylim=BOX[:, 1], xticks=[], yticks=[], aspect="equal")
             axes.set_title(f"{words}: {len(cells):,} cells")
-        mappable = ScalarMappable(style.symmetric_scale(limit), style.signed_colour_map())
-        style.colour_bar(
+        mappable = ScalarMappable(style.symmetric_scale(limit), style.signed_color_map())
+        style.color_bar(
             figure,
             (4 * PANEL + 0.77, 0.35, 0.12, PANEL),
             mappable,
@@ -119,7 +119,7 @@ def bricks_figure() -> Figure:
         )
         style.write_caption(
             figure,
-            "The same slice of the same gradient: blue wants matter, red wants less of it, grey is "
+            "The same slice of the same gradient: blue wants matter, red wants less of it, gray is "
             "not stored. The bricks of a sparse grid surround what the model has (solid), so the "
             "wish for the ball that it lacks (dashed) reaches no parameter and is lost. A hash "
             "table with levels covers everything coarsely, and holds finer cells only where voxels "

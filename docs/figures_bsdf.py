@@ -168,10 +168,10 @@ def bsdf_figure() -> Figure:
         axes = style.place_axes(figure, 4.6, 2.3 + row, 1.7, 1.7)
         draw_ball(axes, srgb_encode(np.clip(image, 0.0, 1.0)), "plastic, roughness 0.35")
         axes = style.place_axes(figure, 6.45, 2.3 + row, 1.7, 1.7)
-        scale, colors = style.symmetric_scale(limit), style.signed_colour_map()
-        draw_ball(axes, slope, "its derivative by roughness", norm=scale, cmap=colors)
+        scale, colors = style.symmetric_scale(limit), style.signed_color_map()
+        draw_ball(axes, slope, "its derivative with respect to roughness", norm=scale, cmap=colors)
         mappable = ScalarMappable(scale, colors)
-        style.colour_bar(figure, (8.2, 2.3 + row, 0.1, 1.7), mappable, "", extend="both")
+        style.color_bar(figure, (8.2, 2.3 + row, 0.1, 1.7), mappable, "", extend="both")
         style.write_caption(
             figure,
             "Above: balls under one distant light. Left: the part of the light that comes back, "

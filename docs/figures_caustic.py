@@ -1,7 +1,7 @@
 """Light that a glass ball gathers: `python docs/figures_caustic.py` writes docs/images/caustic.png.
 
 The same scene by camera paths, by photons counted over two radii, and as the irradiance of the
-table, by particles from the lamp.
+table, by particles from the light.
 """
 
 from __future__ import annotations
@@ -89,10 +89,10 @@ def caustic_figure() -> Figure:
             axes.axis("off")
         style.write_caption(
             figure,
-            "A glass ball under a lamp without size. A path of the camera that leaves the table "
-            "can never meet the lamp, and what it asks the lamp for is blocked by the ball: in the "
+            "A glass ball under a point light. A path of the camera that leaves the table "
+            "can never hit the light, and next event estimation is blocked by the ball: in the "
             "shadow there is nothing but what the table sends through the ball. Particles come "
-            "from the lamp, and in the middle of the shadow they bring several times the light of "
+            "from the light, and in the middle of the shadow they bring several times the light of "
             "the open table. A wide radius blurs that patch, a small one shows how few photons are "
             "left.",
             left=left,

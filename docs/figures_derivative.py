@@ -51,7 +51,7 @@ def derivative_figure() -> Figure:
         for column, (title, slope) in enumerate(zip(titles, found.values(), strict=True)):
             axes = style.place_axes(figure, left + (column + 1) * (side + gap), 0.35, side, side)
             limit = float(np.quantile(np.abs(slope), 0.99))
-            axes.imshow(slope, norm=style.symmetric_scale(limit), cmap=style.signed_colour_map())
+            axes.imshow(slope, norm=style.symmetric_scale(limit), cmap=style.signed_color_map())
             axes.set_title(title)
             axes.axis("off")
         style.write_caption(

@@ -64,7 +64,7 @@ def draw(axes: Axes, functions: Functions) -> None:
         [table_numbers(rows) for rows in ROWS],
         tables,
         "s-",
-        color=style.GREY,
+        color=style.GRAY,
         markersize=3,
         label="table",
     )

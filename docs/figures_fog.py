@@ -19,7 +19,7 @@ Array = NDArray[Any]
 PICTURE = Path(__file__).resolve().parent / "images" / "god_rays.png"
 PANEL = 3.6  # inches
 
-HALL = np.array([[-4.0, 0.0, -3.0], [4.0, 4.0, 3.0]])  # metres; the front, z = 3, is open
+HALL = np.array([[-4.0, 0.0, -3.0], [4.0, 4.0, 3.0]])  # meters; the front, z = 3, is open
 VOXEL = 0.1
 SUN = np.array([-1.0, 0.55, -0.05]) / np.linalg.norm([-1.0, 0.55, -0.05])
 IRRADIANCE = np.array([11.0, 9.5, 7.5])  # W/m^2
@@ -140,7 +140,7 @@ def main() -> None:
             layer.T,
             origin="lower",
             extent=(-4, 4, 0, 4),
-            cmap=style.signed_colour_map(),
+            cmap=style.signed_color_map(),
             norm=style.symmetric_scale(float(np.quantile(np.abs(layer), 0.995))),
             interpolation="nearest",
         )

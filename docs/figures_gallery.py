@@ -22,7 +22,7 @@ All models of the registry (`cpp/photograd/bsdf/registry.h`), in its order;
 
 Above, balls under one distant light, with parameters from a tenth to the whole of their ranges, and
 below each what it reflects of light that arrives at 45 degrees (f cos). Then the part of the light
-that leaves, by the cosine of the view, in the colours of the lobes: above 1 a model makes light,
+that leaves, by the cosine of the view, in the colors of the lobes: above 1 a model makes light,
 and its *claim* says by how much at most. To the right, how the second ball changes with each
 parameter: red where more of it brightens, blue where it darkens; the number is the end of the
 scale.
@@ -43,7 +43,7 @@ def draw(model: BsdfModel, path: Path) -> None:
 def section(model: BsdfModel) -> str:
     """What the page says of a model."""
     kind, most = model.energy
-    energy = f"gains light, at most {most:g} times" if kind == "gains" else kind
+    energy = f"not energy-conserving, at most {most:g} times" if kind == "gains" else kind
     parts = [energy, "reciprocal" if model.reciprocal else "not reciprocal"]
     parts += ["transmits"] * model.transmits
     ranges = ", ".join(f"`{p.name}` {p.lo:.3g} to {p.hi:.3g}" for p in model.parameters)

@@ -46,8 +46,8 @@ def drawing(size: int = 32) -> Array:
 
 def canvas(size: int) -> CanvasBatch:
     """The middles of a picture's pixels, row by row."""
-    centre = (np.arange(size) + 0.5) / size
-    return CanvasBatch(np.stack(np.meshgrid(centre, centre), axis=-1).reshape(-1, 2))
+    center = (np.arange(size) + 0.5) / size
+    return CanvasBatch(np.stack(np.meshgrid(center, center), axis=-1).reshape(-1, 2))
 
 
 def draw(field: Gaussians2D, size: int) -> Array:
@@ -110,7 +110,7 @@ def computed(
 
 
 def outline(axes: Axes, field: Gaussians2D) -> None:
-    """An ellipse of one standard deviation for each Gaussian that can be seen, in its colour."""
+    """An ellipse of one standard deviation for each Gaussian that can be seen, in its color."""
     seen = opacity_of(field.params) > 0.1
     scale, angle = np.exp(field.params["log_scale"][seen]), field.params["angle"][seen]
     color = np.clip(field.params["color"][seen], 0, 1)
@@ -164,7 +164,7 @@ def main() -> None:
         style.write_caption(
             figure,
             "A photograph fitted by Gaussians that lie on a canvas and are blended from the top "
-            "one down, by gradient descent from a grey, round, random start. They stretch and lie "
+            "one down, by gradient descent from a gray, round, random start. They stretch and lie "
             f"down along edges; as many that must stay round reach {found['round']['psnr']:.1f} "
             "dB. In three dimensions the formula is the same; a camera makes the ellipses, and "
             "depth the order.",

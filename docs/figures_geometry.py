@@ -1,7 +1,7 @@
 """Geometry that is written to be read: `python docs/figures_geometry.py` writes the picture.
 
 Boxes of a hierarchy and what rays cost in it; triangles painted in a wrong and in the right order;
-what an octree drops; a mesh in three levels; a body of signed distances, and which way its hits
+what an octree drops; a mesh in three levels; a signed distance function, and which way its hits
 move when one of its numbers grows.
 """
 
@@ -62,7 +62,7 @@ def draw_boxes(axes: Axes, mesh: Mesh) -> None:
     bvh = ReferenceBvh(mesh)
     corners = mesh.vertices[mesh.faces][:, :, [0, 2]]
     axes.add_collection(PolyCollection(corners, facecolors="#dfe6ee", edgecolors="none"))
-    for depth, color, width in ((2, style.INK, 1.6), (4, style.BLUE, 1.0), (7, style.GREY, 0.4)):
+    for depth, color, width in ((2, style.INK, 1.6), (4, style.BLUE, 1.0), (7, style.GRAY, 0.4)):
         boxes = bvh.boxes[bvh.depth == depth][:, :, [0, 2]]
         patches = [Rectangle(tuple(lo), *(hi - lo)) for lo, hi in boxes]
         axes.add_collection(
@@ -95,7 +95,7 @@ def bars() -> Array:
 
 def paint(axes: Axes, polygons: list[Array], face: Array, title: str) -> None:
     """Polygons over each other, in the order of the list; seen from +Z."""
-    colors = np.array([style.BLUE, style.GREY, style.ORANGE])[face // 2]
+    colors = np.array([style.BLUE, style.GRAY, style.ORANGE])[face // 2]
     axes.add_collection(
         PolyCollection(
             [p[:, :2] for p in polygons], facecolors=colors, edgecolors=style.INK, linewidths=0.5
@@ -119,9 +119,9 @@ def draw_orders(wrong: Axes, right: Axes) -> None:
 def draw_culling(axes: Axes) -> None:
     """Objects from above, the cells that the camera's view reaches."""
     g = np.random.default_rng(3)
-    centre = g.uniform(-10, 10, (220, 3)) * [1, 0.1, 1]
+    center = g.uniform(-10, 10, (220, 3)) * [1, 0.1, 1]
     half = 0.08 + 0.7 * g.random((220, 1)) ** 4
-    boxes = np.stack([centre - half, centre + half], axis=1)
+    boxes = np.stack([center - half, center + half], axis=1)
     camera = camera_at([-8.0, 0.0, 8.0], [2.0, 0.0, -1.0], 40.0, 64, 64)
     frustum = Frustum.of_camera(camera, 0.1, 14.0)
     tree = CullingTree(boxes, max_depth=4)
@@ -201,7 +201,7 @@ def draw_bodies(picture: Axes, change: Axes, size: int = 200) -> None:
         slope[ray] = d_numbers[width]
     limit = float(np.quantile(np.abs(slope), 0.995))
     change.imshow(
-        slope.reshape(size, size), cmap=style.signed_colour_map(), norm=style.symmetric_scale(limit)
+        slope.reshape(size, size), cmap=style.signed_color_map(), norm=style.symmetric_scale(limit)
     )
     change.set_title("change with the seam's width")
 
@@ -229,7 +229,7 @@ def geometry_figure() -> Figure:
             figure,
             "A hierarchy of boxes spares a ray nearly all triangles. Bars that overlap in a circle "
             "have no order until they are cut. An octree drops whole cells (thin lines) that lie "
-            "beside the view. Far away, fewer triangles do. A body of signed distances has a "
+            "beside the view. Far away, fewer triangles do. A signed distance function has a "
             "derivative at every hit: where the seam is wider, the surface comes nearer (blue).",
             left=LEFT,
             right=LEFT,

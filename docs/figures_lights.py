@@ -1,6 +1,6 @@
 """The picture of lights: `python docs/figures_lights.py` writes it.
 
-What lamps do to a white floor, where an environment map's samples go, and what a spot's softness
+What lights do to a white floor, where an environment map's samples go, and what a spot's softness
 and one lit point say about the light: the derivatives that a fit follows.
 """
 
@@ -185,7 +185,7 @@ def lights_figure() -> Figure:
         draw_map(style.place_axes(figure, left, 2.35, 2 * low, low), light)
         axes = style.place_axes(figure, left + 2.5, 2.35, low, low)
         draw(axes, shown(ball(light), 0.6), "a matte ball in it")
-        colors = style.signed_colour_map()
+        colors = style.signed_color_map()
         for at, wide, title, image, extent in (
             (3.85, low, "spot by softness", by_softness(), None),
             (
@@ -202,15 +202,15 @@ def lights_figure() -> Figure:
             draw(axes, image, title, norm=scale, cmap=colors, extent=extent)
             mappable = ScalarMappable(scale, colors)
             box = (left + at + wide + 0.05, 2.35, 0.08, high)
-            style.colour_bar(figure, box, mappable, "", extend="both")
+            style.color_bar(figure, box, mappable, "", extend="both")
         style.write_caption(
             figure,
-            "Above: a white floor, 2 m x 2 m, under lamps. One sample a pixel of a rectangle close "
-            "to the floor: even over its area, distance and cosine make noise; even over its solid "
-            "angle, only the floor's own cosine does. Below: samples of an environment map crowd "
-            "where it is bright (a fifth goes everywhere), and a ball lit by them. Where a softer "
-            "spot would lose light (blue). What one point, facing up and towards the middle of the "
-            "map, asks of the texels: the cosine's lobe, found by samples.",
+            "Above: a white floor, 2 m x 2 m, under lights. One sample a pixel of a rectangle "
+            "close to the floor: uniform over its area, distance and cosine make noise; uniform "
+            "over its solid angle, only the floor's own cosine does. Below: samples of an "
+            "environment map crowd where it is bright (a fifth goes everywhere), and a ball lit "
+            "by them. Where a softer spot would lose light (blue). What one point, facing up and "
+            "towards the middle of the map, asks of the texels: the cosine's lobe, by samples.",
             left=left,
             right=left,
         )

@@ -1,6 +1,6 @@
 """What happens between surfaces: `python docs/figures_media.py` writes docs/images/media.png.
 
-Fog around posts, a cloud from a .vdb file in the sun, and wax with a lamp behind it; below, how
+Fog around posts, a cloud from a .vdb file in the sun, and wax with a light behind it; below, how
 each of their pixels changes with a number of the medium. `check` asserts what the caption says.
 """
 
@@ -141,7 +141,7 @@ def cloud(size: int) -> Scene:
 
 
 def pictures(size: int = SIZE, spp: int = SPP) -> dict[str, tuple[Array, Array]]:
-    """{scene: picture (H, W, 3) linear, its derivative by PARAMETERS, channels summed (H, W)}."""
+    """{scene: picture (H, W, 3) linear, d picture / d PARAMETERS, channels summed (H, W)}."""
     found = {}
     for scene in (fog(size), cloud(size), builtin_scene("wax", size)):
         sums, derivative = derivative_image(
@@ -176,7 +176,7 @@ def check(found: dict[str, tuple[Array, Array]], size: int) -> dict[str, float]:
         "change of the stone behind it": float(np.median(part(by_extinction, *stone))),
         "shadow, of the field beside": part(field, *shadow).mean() / part(field, *beside).mean(),
         "change of the cloud by more extinction": part(by_thickness, *body).mean(),
-        "red over blue in the wax, of those of its lamp": float(red / blue) / (7.0 / 5.6),
+        "red over blue in the wax, of those of its light": float(red / blue) / (7.0 / 5.6),
         "least change by the wax's albedo": by_albedo.min(),
         "largest change by the wax's albedo": by_albedo.max(),
     }
@@ -210,7 +210,7 @@ def media_figure() -> Figure:
             axes.axis("off")
             axes = style.place_axes(figure, x, 2 * top + side, side, side)
             limit = float(np.quantile(np.abs(slope), 0.98))
-            axes.imshow(slope, norm=style.symmetric_scale(limit), cmap=style.signed_colour_map())
+            axes.imshow(slope, norm=style.symmetric_scale(limit), cmap=style.signed_color_map())
             axes.set_title(titles[name][1])
             axes.axis("off")
         style.write_caption(
@@ -218,7 +218,7 @@ def media_figure() -> Figure:
             "Below each picture is how its pixels change with a number of the medium; red ones "
             "grow, blue ones fall. Fog shows light in the air: more of it brightens the air and "
             "dims the lit stone behind. A cloud takes light from the field; a denser one is "
-            "brighter. Light that has come through wax is redder than the lamp behind; if wax "
+            "brighter. Light that has come through wax is redder than the light behind; if wax "
             "scatters more, no pixel falls.",
             left=left,
             right=left,

@@ -35,7 +35,7 @@ TEXELS, SIZE, SPP, STEPS, STEP_SPP = 32, 160, 96, 100, 6
 
 
 def paint() -> Array:
-    """Coloured tiles with a ring on them, (TEXELS, TEXELS, 3), linear."""
+    """Colored tiles with a ring on them, (TEXELS, TEXELS, 3), linear."""
     row, column = np.mgrid[0:TEXELS, 0:TEXELS] / TEXELS
     tiles = (np.floor(4 * row) + np.floor(4 * column)) % 2
     color = np.where(tiles[..., None] > 0, [0.75, 0.65, 0.45], [0.12, 0.25, 0.35])
@@ -45,7 +45,7 @@ def paint() -> Array:
 
 
 def scene(size: int, texels: Array) -> Scene:
-    """The floor, the ball on it, a lamp and a dim sky."""
+    """The floor, the ball on it, a light and a dim sky."""
     floor = Material("lambert", {"albedo": [1.0] * 3}, {"albedo": TextureUse("floor")})
     metal = Material("ggx_metal", {"f0": [0.95, 0.9, 0.85], "roughness": 0.15})
     black = Material("lambert", {"albedo": [0.0] * 3})
@@ -61,7 +61,7 @@ def scene(size: int, texels: Array) -> Scene:
 
 
 def found_again(truth: Array) -> Array:
-    """The floor after STEPS steps of Adam, from grey, to match one picture."""
+    """The floor after STEPS steps of Adam, from gray, to match one picture."""
     photograph = PathTracer(scene(64, truth)).render(spp=SPP, seed=1).mean
     tracer = PathTracer(scene(64, np.full_like(truth, 0.4)))
     texels = tracer.params["textures.floor"]

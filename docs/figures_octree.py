@@ -30,7 +30,7 @@ PANEL = 2.55  # inches
 
 BOX = np.array([[-1.0, -1.0, -1.0], [1.0, 1.0, 1.0]])
 RESOLUTION = 64
-BALLS = (  # centre, radius, linear colour; the last one is in the photographs and not in the model
+BALLS = (  # center, radius, linear color; the last one is in the photographs and not in the model
     ((-0.42, 0.2, 0.0), 0.33, (0.8, 0.25, 0.1)),
     ((0.15, -0.42, 0.05), 0.28, (0.15, 0.5, 0.2)),
     ((0.45, 0.38, -0.05), 0.22, (0.15, 0.25, 0.8)),
@@ -88,7 +88,7 @@ def draw_growth(axes: Axes) -> None:
     depths = np.arange(3, 12)
     n = 2.0**depths
     leaves = np.array([len(cat_tree(int(depth)).values) for depth in depths])
-    axes.loglog(n, n**2, "o-", color=style.GREY, markersize=3, label="cells of the array")
+    axes.loglog(n, n**2, "o-", color=style.GRAY, markersize=3, label="cells of the array")
     axes.loglog(n, leaves, "o-", color=style.BLUE, markersize=3, label="leaves of the quadtree")
     slope = np.log2(leaves[-1] / leaves[-4]) / 3
     axes.text(n[-2], leaves[-2] / 4, f"slope {slope:.2f}", color=style.BLUE, ha="center")
@@ -121,12 +121,12 @@ def quadtree_figure() -> Figure:
 
 
 def photograph(camera: Camera) -> Array:
-    """(H, W, 4) of all balls, opaque and evenly coloured, exact for the ray of each pixel."""
+    """(H, W, 4) of all balls, opaque and evenly colored, exact for the ray of each pixel."""
     origins, directions = camera.rays()
     nearest = np.full(len(origins), np.inf)
     rgba = np.zeros((len(origins), 4), np.float32)
-    for centre, radius, color in BALLS:
-        offset = np.array(centre) - origins
+    for center, radius, color in BALLS:
+        offset = np.array(center) - origins
         along = (offset * directions).sum(axis=1)
         gap = radius**2 - ((offset**2).sum(axis=1) - along**2)
         t = np.where(gap > 0, along - np.sqrt(np.maximum(gap, 0.0)), np.inf)
@@ -142,8 +142,8 @@ def model_without_the_last_ball() -> tuple[DenseGrid, NDArray[np.bool_]]:
     at = -1.0 + (np.arange(RESOLUTION) + 0.5) * 2.0 / RESOLUTION
     position = np.stack(np.meshgrid(at, at, at, indexing="ij"), axis=-1)
     full = np.zeros(position.shape[:3], np.bool_)
-    for centre, radius, color in BALLS[:-1]:
-        inside = ((position - centre) ** 2).sum(axis=-1) < radius**2
+    for center, radius, color in BALLS[:-1]:
+        inside = ((position - center) ** 2).sum(axis=-1) < radius**2
         full |= inside
         field.color[inside] = np.log(color) - np.log1p(-np.array(color))
         # softplus(raw) is raw + log(1 + exp(-raw)); 60/m leaves one part in e^2 behind a voxel.
@@ -152,13 +152,13 @@ def model_without_the_last_ball() -> tuple[DenseGrid, NDArray[np.bool_]]:
 
 
 def draw_slice(axes: Axes, tree: Octree, gradient: Array, limit: float, layer: int) -> None:
-    """Leaves of `tree` that the layer of cells meets, coloured by `gradient` (L,)."""
+    """Leaves of `tree` that the layer of cells meets, colored by `gradient` (L,)."""
     lower, side = tree.leaf_boxes()
     met = (lower[:, 2] <= layer) & (layer < lower[:, 2] + side)
     cell = float(tree.cell_size[0])
     collection = PatchCollection(
         squares(lower[met, :2] * cell - 1.0, side[met] * cell),
-        facecolors=style.signed_colour_map()(style.symmetric_scale(limit)(gradient[met])),
+        facecolors=style.signed_color_map()(style.symmetric_scale(limit)(gradient[met])),
         edgecolors=style.FRAME,
         linewidths=0.35,
     )
@@ -167,12 +167,12 @@ def draw_slice(axes: Axes, tree: Octree, gradient: Array, limit: float, layer: i
 
 def outline_balls(axes: Axes, z: float, color: str = style.INK, *, all_known: bool = False) -> None:
     """Where the slice cuts the balls: solid what the model has, dashed what it lacks."""
-    for number, (centre, radius, _) in enumerate(BALLS):
-        cut = np.sqrt(max(radius**2 - (z - centre[2]) ** 2, 0.0))
+    for number, (center, radius, _) in enumerate(BALLS):
+        cut = np.sqrt(max(radius**2 - (z - center[2]) ** 2, 0.0))
         lacking = number == len(BALLS) - 1 and not all_known
         axes.add_patch(
             Circle(
-                centre[:2],
+                center[:2],
                 cut,
                 fill=False,
                 edgecolor=color,
@@ -213,7 +213,7 @@ def octree_figure() -> Figure:
             d_sigma_t[:, :, layer, 0].T,
             origin="lower",
             extent=(-1, 1, -1, 1),
-            cmap=style.signed_colour_map(),
+            cmap=style.signed_color_map(),
             norm=style.symmetric_scale(limit),
         )
         panels[0].set_title(f"by voxel: {RESOLUTION**3:,} numbers")
@@ -228,8 +228,8 @@ def octree_figure() -> Figure:
         for axes in panels:
             outline_balls(axes, (layer + 0.5) * 2.0 / RESOLUTION - 1.0)
             axes.set(xlim=(-1, 1), ylim=(-1, 1), xticks=[], yticks=[], aspect="equal")
-        mappable = ScalarMappable(style.symmetric_scale(limit), style.signed_colour_map())
-        style.colour_bar(
+        mappable = ScalarMappable(style.symmetric_scale(limit), style.signed_color_map())
+        style.color_bar(
             figure,
             (3 * PANEL + 0.62, 0.35, 0.12, PANEL),
             mappable,

@@ -52,7 +52,7 @@ def sky_gradient(size: int, spp: int) -> tuple[Array, Array, Array]:
 
 
 def texel_towards(direction: Array) -> tuple[int, int]:
-    """Row and column of the texel whose centre is closest."""
+    """Row and column of the texel whose center is closest."""
     cosines = map_directions(HEIGHT) @ (direction / np.linalg.norm(direction))
     row, column = np.unravel_index(int(cosines.argmax()), cosines.shape)
     return int(row), int(column)
@@ -78,7 +78,7 @@ def path_lights_figure() -> Figure:
         axes = style.place_axes(figure, x + 2 * side + gap, top, 2 * side, side)
         summed = gradient.sum(axis=2)
         limit = float(np.quantile(np.abs(summed), 0.98))
-        axes.imshow(summed, norm=style.symmetric_scale(limit), cmap=style.signed_colour_map())
+        axes.imshow(summed, norm=style.symmetric_scale(limit), cmap=style.signed_color_map())
         for direction, marker in ((SUN, "o"), (WRONG, "x")):
             row, column = texel_towards(direction)
             axes.plot(column, row, marker, color="black", fillstyle="none", markersize=9)

@@ -38,7 +38,7 @@ RESOLUTION = 32
 STEPS, EARLY, AGAIN = 300, 20, 20
 PANEL = 2.4  # inches
 THRESHOLD = 0.12  # six times that of a fit
-BALLS = (  # centre, radius, linear colour
+BALLS = (  # center, radius, linear color
     ((-0.4, 0.1, 0.0), 0.35, (0.8, 0.2, 0.1)),
     ((0.35, -0.25, 0.3), 0.28, (0.1, 0.5, 0.2)),
     ((0.3, 0.35, -0.35), 0.24, (0.15, 0.25, 0.8)),
@@ -61,8 +61,8 @@ def truth() -> DenseGrid:
     c = (np.arange(64) + 0.5) / 32 - 1
     position = np.stack(np.meshgrid(c, c, c, indexing="ij"), -1)
     values = np.zeros((64, 64, 64, 4), np.float32)
-    for centre, radius, color in BALLS:
-        inside = np.linalg.norm(position - centre, axis=-1) < radius
+    for center, radius, color in BALLS:
+        inside = np.linalg.norm(position - center, axis=-1) < radius
         values[inside] = (*color, 60.0)
     policy = MarchPolicy(
         ((-1, -1, -1), (1, 1, 1)), 0.02, density_activation="relu", color_activation="identity"

@@ -1,4 +1,4 @@
-"""What textures hold besides colours: `python docs/figures_texture_maps.py`.
+"""What textures hold besides colors: `python docs/figures_texture_maps.py`.
 
 Writes docs/images/texture_maps.png: ambient occlusion baked into the walls of a room beside the
 same traced to the camera, and a checkerboard looked up with and without mip maps.
@@ -33,7 +33,7 @@ from photograd_course.viz import save_figure, style
 Array = NDArray[Any]
 IMAGES = Path(__file__).with_name("images")
 SIZE, TEXELS, SPP, RADIUS = 112, 128, 256, 2.0
-"""Of the picture, of each map; rays a texel and a pixel; metres within which a surface occludes."""
+"""Of the picture, of each map; rays a texel and a pixel; meters within which a surface occludes."""
 
 
 def baked_room(scene: Scene, texels: int, spp: int) -> tuple[Scene, dict[str, Texture]]:
@@ -112,10 +112,10 @@ def texture_maps_figure() -> Figure:
                 axes.axis("off")
         style.write_caption(
             figure,
-            "Above: how much lies open within two metres of a room's walls, asked once of the "
+            "Above: how much lies open within two meters of a room's walls, asked once of the "
             "texels of their maps, or of every pixel by 256 rays; the boxes have no map. "
             "Below: a checkerboard out to the horizon. Between the levels of a mip map one sample "
-            "is grey where many would be; a little nearer it is blurred where they are not.",
+            "is gray where many would be; a little nearer it is blurred where they are not.",
             left=left,
             right=left,
         )

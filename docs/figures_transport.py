@@ -1,7 +1,7 @@
 """The picture of path tracing: `python docs/figures_transport.py` writes docs/images/cornell.png.
 
 A Cornell box, the light that a number of bounces adds, how far three ways of finding light have
-come after as many samples, and what the red wall's colour does to the picture.
+come after as many samples, and what the red wall's color does to the picture.
 """
 
 from __future__ import annotations
@@ -61,8 +61,8 @@ def transport_figure() -> Figure:
     below = tuple(
         (title, picture("cornell-spheres", FEW, strategy=strategy))
         for title, strategy in (
-            (f"{FEW} samples: lights asked", "light"),
-            (f"{FEW} samples: lights met", "bsdf"),
+            (f"{FEW} samples: light sampling", "light"),
+            (f"{FEW} samples: BSDF sampling", "bsdf"),
             (f"{FEW} samples: both", "mis"),
         )
     )
@@ -77,15 +77,15 @@ def transport_figure() -> Figure:
         slope = by_red_wall()
         limit = float(np.quantile(np.abs(slope), 0.99))
         axes = style.place_axes(figure, left + 3 * (side + gap), 0.35 + side + 0.4, side, side)
-        scale, colors = style.symmetric_scale(limit), style.signed_colour_map()
+        scale, colors = style.symmetric_scale(limit), style.signed_color_map()
         axes.imshow(slope, norm=scale, cmap=colors)
-        axes.set_title("derivative by the wall's red")
+        axes.set_title("derivative with respect to the wall's red")
         axes.axis("off")
         style.write_caption(
             figure,
-            "Above: a room with one lamp; what one bounce alone shows; what all others add (the "
-            "ceiling, and colour that walls lend to boxes); a room with balls of copper and glass. "
-            "Below: the same few samples spent in three ways. Waiting to meet a lamp does well "
+            "Above: a room with one light; what one bounce alone shows; what all others add (the "
+            "ceiling, and color that walls lend to boxes); a room with balls of copper and glass. "
+            "Below: the same few samples spent in three ways. BSDF sampling alone does well "
             "in the copper ball's highlight alone; what only a path through glass can find (the "
             "bright patch under the ball) is noisy for all. Right: a redder wall brightens itself "
             "most, and through its light all that faces it.",

@@ -1,6 +1,6 @@
 """Image-based light: three tables against all directions, by path tracing, on a ball.
 
-The light is DATA/envmaps/blender_studio.exr (soft lamps) and blender_city.exr (a sun). Nothing but
+The light is DATA/envmaps/blender_studio.exr (soft lights) and blender_city.exr (a sun). Nothing but
 the ball is there, so that shadows and light between surfaces play no part.
 """
 
@@ -37,7 +37,7 @@ SILVER: dict[str, Any] = {
     "metalness": 1.0,
     "reflectance": 0.5,
 }
-VARNISH: dict[str, Any] = {"base_color": np.zeros(3), "metalness": 0.0, "reflectance": 0.5}
+COATING: dict[str, Any] = {"base_color": np.zeros(3), "metalness": 0.0, "reflectance": 0.5}
 """A dielectric's lobe over black."""
 
 
@@ -191,7 +191,7 @@ def measure(data: Path) -> tuple[list[str], Figure]:
             f"RMS {matt.rms:.2%}, largest difference of a pixel from its own radiance "
             f"{matt.largest:.2%}, of the mean {matt.bias:+.3%}; noise {matt.noise:.2%}."
         )
-        for title, values in (("metal", SILVER), ("varnish over black", VARNISH)):
+        for title, values in (("metal", SILVER), ("coating over black", COATING)):
             found = {r: compare(light, tables, values, r) for r in ROUGHNESSES}
             cells = " | ".join(f"{c.plain:.1%}" for c in found.values())
             lines.append(f"| {name} | {title}, as published | {cells} |")
@@ -222,7 +222,7 @@ def figure_of(shown: list[tuple[str, Comparison]]) -> Figure:
                 (
                     "difference",
                     np.where(masks[column], gap_of, 0.0),
-                    {"norm": style.symmetric_scale(limit), "cmap": style.signed_colour_map()},
+                    {"norm": style.symmetric_scale(limit), "cmap": style.signed_color_map()},
                 ),
             )
             for row, (name, image, options) in enumerate(rows):

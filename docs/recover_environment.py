@@ -47,7 +47,7 @@ TEXELS = "lights.0.texels"
 
 
 def studio(data: Path, rows: int = ROWS) -> Array:
-    """The studio's radiance (rows, 2 rows, 3) float32: means of texels, a lamp behind the ball."""
+    """The studio's radiance (rows, 2 rows, 3) float32: means of texels, a light behind the ball."""
     image = read_exr(data / "envmaps" / "blender_studio.exr")[..., :3]
     height = image.shape[0] // rows
     split = image.reshape(rows, height, 2 * rows, height, 3)
@@ -95,17 +95,17 @@ def targets_of(scene: Scene, views: list[Camera], spp: int) -> list[Target]:
 
 
 def search(truth: Array, count: int, options: RecoveryOptions, size: int, spp: int) -> Recovery:
-    """From an even grey sky."""
+    """From an even gray sky."""
     scene = ball_under(truth, size)
     targets = targets_of(scene, cameras(count, size), spp)
-    grey = scene_with(scene, {TEXELS: np.full_like(truth, START)})
-    return Recovery(grey, targets, [Unknown(TEXELS)], options)
+    gray = scene_with(scene, {TEXELS: np.full_like(truth, START)})
+    return Recovery(gray, targets, [Unknown(TEXELS)], options)
 
 
 def first_gradient(job: Recovery) -> Array:
     """First dL/dtexel (H, W) of squared radiance, summed over channels, by solid angle.
 
-    The loss of the search counts lamps relatively, and their wishes would hardly be seen.
+    The loss of the search counts lights relatively, and their wishes would hardly be seen.
     """
     squares = replace(job.options, loss="squared")
     begin = Recovery(job.scene, job.targets, [Unknown(TEXELS)], squares)
@@ -192,7 +192,7 @@ def environment_figure(
     mask = np.asarray(job.targets[0].weight)
     balls = (("one picture", job.targets[0].image), ("found, drawn", found))
     limit = float(np.quantile(np.abs(first), 0.95))
-    signed = {"norm": style.symmetric_scale(limit), "cmap": style.signed_colour_map()}
+    signed = {"norm": style.symmetric_scale(limit), "cmap": style.signed_color_map()}
     maps: tuple[tuple[str, Array, dict[str, Any]], ...] = (
         ("truth", display(truth), {}),
         ("first dL/dtexel, by solid angle", first, signed),
@@ -216,8 +216,8 @@ def environment_figure(
             figure,
             "A studio, out of its reflections in a ball of rough metal. The middle of a map lies "
             "behind the camera, its left and right edges behind the ball. The derivative before "
-            "the first step asks for light (blue) where the lamps are and for less (red) where it "
-            "is dark. It is silent at the edges: one picture says nothing of the lamp straight "
+            "the first step asks for light (blue) where the lights are and for less (red) where it "
+            "is dark. It is silent at the edges: one picture says nothing of the light straight "
             "behind the ball, and the map found from it does not have it. Two more pictures do.",
             left=left,
             right=left,

@@ -123,7 +123,7 @@ def painted(shape: MeshShape, model: str, texels: Array, cameras: Any, **values:
 def tile(data: Path, size: int = SIZE) -> Case:
     """A varnished tile, seen from all sides."""
     shape = rectangle("tile", [-0.5, 0, 0.5], [1, 0, 0], [0, 0, -1], "paint")
-    # Three of them across from the sun, where the varnish shows it.
+    # Three of them across from the sun, where the coating shows it.
     eyes = (
         [0.9, 0.7, 0.9],
         [-1.1, 0.5, 0.4],
@@ -175,7 +175,7 @@ def targets_of(case: Case, spp: int) -> list[Target]:
 def search(
     case: Case, options: RecoveryOptions, targets: list[Target], roughness: float = SMOOTH
 ) -> Recovery:
-    """From grey, half metal."""
+    """From gray, half metal."""
     starts = {"textures.paint": 0.4, "materials.paint.roughness": roughness}
     rates = {"textures.paint": TEXTURE_RATE}  # or highlights would be painted on
     unknowns = [
@@ -254,7 +254,7 @@ def materials_figure(drawn: list[tuple[Case, Array, Array, RecoveryResult]]) -> 
         for k, (case, target, gradient, result) in enumerate(drawn):
             picture = PathTracer(result.scene).render(spp=64, seed=3, options=PATH).mean
             limit = float(np.quantile(np.abs(gradient), 0.97))
-            signed = {"norm": style.symmetric_scale(limit), "cmap": style.signed_colour_map()}
+            signed = {"norm": style.symmetric_scale(limit), "cmap": style.signed_color_map()}
             panels: tuple[tuple[str, Array, dict[str, Any]], ...] = (
                 ("a target", display(target), {}),
                 ("found", display(picture), {}),
@@ -273,7 +273,7 @@ def materials_figure(drawn: list[tuple[Case, Array, Array, RecoveryResult]]) -> 
             "A varnished tile, a globe of painted metal and a glazed cow, each from several views "
             "under a known sky. The derivative of the loss by each texel before the first step "
             "already draws the texture: blue asks for more, red for less. Texels that no "
-            "camera sees are white, and stay as they were (grey in the found textures).",
+            "camera sees are white, and stay as they were (gray in the found textures).",
             left=left,
             right=left,
         )

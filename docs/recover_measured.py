@@ -264,7 +264,7 @@ def measured_figure(data: Path, fits: dict[str, dict[str, Fit]]) -> Figure:
                 extent=(0, HALF_END, 0, DIFFERENCE_END),
                 interpolation="nearest",
                 norm=style.symmetric_scale(limit),
-                cmap=style.signed_colour_map(),
+                cmap=style.signed_color_map(),
             )
             axes.set_facecolor("#dfe3e6")
             axes.set_title(FITTED[model])

@@ -1,4 +1,4 @@
-"""Three wall colours from one picture of a room.
+"""Three wall colors from one picture of a room.
 
 Also what the known mistake does: the same search with the paths of the picture in its derivative.
 """
@@ -49,7 +49,7 @@ class EqualSeeds(Recovery):
 
 
 def room(size: int) -> Scene:
-    """The Cornell box with a floor of its own colour."""
+    """The Cornell box with a floor of its own color."""
     scene = builtin_scene("cornell-box", size)
     shapes = tuple(
         replace(shape, material="floor") if shape.name == "floor" else shape
@@ -60,7 +60,7 @@ def room(size: int) -> Scene:
 
 
 def unknowns() -> list[Unknown]:
-    """The three colours, from grey."""
+    """The three colors, from gray."""
     return [Unknown(f"materials.{name}.albedo", start=0.5) for name in WALLS.values()]
 
 
@@ -78,13 +78,13 @@ def truth_of(scene: Scene, name: str) -> Array:
 
 
 def pull_on_red(scene: Scene, target: Array, spp: int) -> tuple[Array, Array]:
-    """The grey room's picture, and what each pixel adds to dL/d(red of the left wall), (H, W).
+    """The gray room's picture, and what each pixel adds to dL/d(red of the left wall), (H, W).
 
     The difference to the target comes from one seed, the derivative of the pixel (a central
     difference with paths held; albedos enter a path as factors) from another.
     """
-    grey = {each.name: np.full(3, 0.5) for each in unknowns()}
-    tracer = PathTracer(scene_with(scene, grey))
+    gray = {each.name: np.full(3, 0.5) for each in unknowns()}
+    tracer = PathTracer(scene_with(scene, gray))
     picture = tracer.render(spp=spp, seed=11, options=PATH).mean
     held = {name: value.copy() for name, value in tracer.params.items()}
     slope = np.zeros_like(picture)
@@ -153,7 +153,7 @@ def walls_figure(scene: Scene, target: Array, result: RecoveryResult) -> Figure:
     side, gap, left = 2.0, 0.15, 0.15
     with style.house_style():
         figure = style.new_figure(4 * side + 3 * gap + 2 * left, 5.6)
-        panels = (("one picture", target), ("begin: grey walls", start), ("found", found))
+        panels = (("one picture", target), ("begin: gray walls", start), ("found", found))
         for k, (title, image) in enumerate(panels):
             axes = style.place_axes(figure, left + k * (side + gap), 0.35, side, side)
             axes.imshow(display(image))
@@ -161,7 +161,7 @@ def walls_figure(scene: Scene, target: Array, result: RecoveryResult) -> Figure:
             axes.axis("off")
         axes = style.place_axes(figure, left + 3 * (side + gap), 0.35, side, side)
         limit = float(np.quantile(np.abs(pull), 0.99))
-        scale, colors = style.symmetric_scale(limit), style.signed_colour_map()
+        scale, colors = style.symmetric_scale(limit), style.signed_color_map()
         axes.imshow(pull, norm=scale, cmap=colors)
         axes.set_title("the left wall's red: who asks")
         axes.axis("off")
@@ -177,11 +177,11 @@ def walls_figure(scene: Scene, target: Array, result: RecoveryResult) -> Figure:
             axes.set_xlabel("step")
         style.write_caption(
             figure,
-            "Three wall colours from one picture, from grey. Right: what each pixel adds to the "
+            "Three wall colors from one picture, from gray. Right: what each pixel adds to the "
             "derivative of the loss by the red of the left wall, before the first step. Pixels of "
             "the wall itself want more of it (blue). Those of the right wall want less (red): they "
             "are too bright in red, because that wall is not green yet, and blame all who send "
-            "red light there. What is said wrongly at first is taken back as other colours settle.",
+            "red light there. What is said wrongly at first is taken back as other colors settle.",
             left=left,
             right=left,
         )

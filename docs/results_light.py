@@ -29,7 +29,7 @@ IMAGES = ROOT / "docs" / "images"
 LARGEST = 150_000  # bytes of a picture
 
 SECTIONS: dict[str, tuple[str, ModuleType]] = {
-    "walls": ("Wall colours from one picture", recover_walls),
+    "walls": ("Wall colors from one picture", recover_walls),
     "materials": ("Textures, roughness and metalness", recover_materials),
     "environment": ("The light around a ball", recover_environment),
     "measured": ("Measured reflectance, by four models", recover_measured),
@@ -53,7 +53,7 @@ def rewritten(page: str, name: str, lines: list[str]) -> str:
 
 
 def save_small(figure: Figure, path: Path) -> None:
-    """Write a figure with 64 levels a channel, and if it is large still, with 256 colours.
+    """Write a figure with 64 levels a channel, and if it is large still, with 256 colors.
 
     Raises:
         SystemExit: it is larger than `LARGEST`.

@@ -11,7 +11,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 START = "Assignments ready: "
-# What makes an assignment ready: everything that a hand-in meets.
+# What makes an assignment ready: everything that a submission meets.
 FILES = ("assignment.toml", "checks.py", "handout.md", "explore.py", "figures.py", "hints.json")
 
 

@@ -25,9 +25,9 @@ panels = [
     ("photograph", photograph, {"cmap": "gray", "vmin": 0, "vmax": 1}),
     ("dL/dpicture", gradient, {"cmap": "RdBu_r", "vmin": -top, "vmax": top}),
 ]
-for k, (title, values, colours) in enumerate(panels):
+for k, (title, values, colors) in enumerate(panels):
     axes = figure.add_subplot(1, 3, k + 1)
-    image = axes.imshow(values, interpolation="nearest", **colours)
+    image = axes.imshow(values, interpolation="nearest", **colors)
     axes.set_title(title)
 figure.colorbar(image, ax=figure.axes, label="too dark < 0 < too bright")
 figure.savefig("gradient.png", dpi=110)

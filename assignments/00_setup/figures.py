@@ -6,7 +6,7 @@ from types import ModuleType
 
 import numpy as np
 from matplotlib.figure import Figure
-from photograd_course.viz.style import house_style, signed_colour_map
+from photograd_course.viz.style import house_style, signed_color_map
 
 DPI = 160
 
@@ -35,11 +35,11 @@ def _draw(picture: np.ndarray, photograph: np.ndarray, gradient: np.ndarray) -> 
         panels = [
             ("picture p", picture, "gray", 0.0, 1.0),
             ("photograph q", photograph, "gray", 0.0, 1.0),
-            (r"$\partial L\,/\,\partial p$", gradient, signed_colour_map(), -top, top),
+            (r"$\partial L\,/\,\partial p$", gradient, signed_color_map(), -top, top),
         ]
-        for k, (title, values, colours, low, high) in enumerate(panels):
+        for k, (title, values, colors, low, high) in enumerate(panels):
             axes = figure.add_subplot(1, 3, k + 1)
-            image = axes.imshow(values, cmap=colours, vmin=low, vmax=high, interpolation="nearest")
+            image = axes.imshow(values, cmap=colors, vmin=low, vmax=high, interpolation="nearest")
             axes.set_title(title)
             axes.set_xticks([])
             axes.set_yticks([])

@@ -44,9 +44,9 @@ keep("differences")
 
 # %% [markdown]
 # ## 2. Two valleys
-# Every start on the axis, one row for each tau, coloured by the valley in which it ends. With
+# Every start on the axis, one row for each tau, colored by the valley in which it ends. With
 # tau = 0.05 there is one border, at the top of the hump. How many are there with 0.15 and with 0.2?
-# Where a colour is missing, the walk flies off.
+# Where a color is missing, the walk flies off.
 
 
 # %%
@@ -64,8 +64,8 @@ taus = (0.05, 0.15, 0.2)
 for row, tau in enumerate(taus):
     with np.errstate(all="ignore"):
         ends = np.array([descent.gd_1d(f, df, float(x0), tau, 80)[0][-1] for x0 in starts])
-    for side, colour in ((ends < 0.0, "C0"), (ends > 0.0, "C1")):
-        plt.plot(starts[side], np.full(side.sum(), row), "|", ms=25, color=colour)
+    for side, color in ((ends < 0.0, "C0"), (ends > 0.0, "C1")):
+        plt.plot(starts[side], np.full(side.sum(), row), "|", ms=25, color=color)
     borders = np.count_nonzero(np.diff(ends[np.isfinite(ends)] > 0.0))
     print(f"tau = {tau}: {borders} borders, {np.count_nonzero(~np.isfinite(ends))} starts fly off")
 plt.ylim(-0.6, len(taus) - 0.4)

@@ -12,7 +12,7 @@ from matplotlib.ticker import MaxNLocator
 from photograd_course.viz import style
 
 PURPLE = "#542788"
-BLUE, RED_, ORANGE, GREY, INK = style.BLUE, style.RED, style.ORANGE, style.GREY, style.INK
+BLUE, RED_, ORANGE, GRAY, INK = style.BLUE, style.RED, style.ORANGE, style.GRAY, style.INK
 
 
 def _panels(widths, height, *, gap=0.75, left=0.66, top=0.34, bottom=0.48, right=0.16):
@@ -61,8 +61,8 @@ def fig1_two_errors(module):
         axes.loglog(eps, forward, "s-", color=ORANGE, ms=3.5, lw=1.0, label="forward, Eq. (1)")
         axes.loglog(eps, central, "o-", color=BLUE, ms=3.5, lw=1.0, label="central, Eq. (3)")
         guide = np.array([3e-4, 3e-1])
-        axes.loglog(guide, guide**2 / 6, "--", color=GREY, lw=1.0)
-        axes.loglog(guide, guide / 2, "--", color=GREY, lw=1.0)
+        axes.loglog(guide, guide**2 / 6, "--", color=GRAY, lw=1.0)
+        axes.loglog(guide, guide / 2, "--", color=GRAY, lw=1.0)
         axes.annotate("slope 2", (1.4e-2, 2.0e-6), color=style.GUIDE)
         axes.annotate("slope 1", (1.2e-4, 8e-3), color=style.GUIDE)
         axes.annotate("rounding: slope -1", (3e-11, 2e-4), color=style.GUIDE)
@@ -93,13 +93,13 @@ def fig2_step_lengths(module):
         figure, (left, right) = _panels([2.6, 2.4], 2.5, gap=0.65)
         steps = np.arange(n + 1)
         looks = {0.2: (BLUE, "o"), 1.8: (ORANGE, "s"), 2.0: (PURPLE, "^"), 2.1: (RED_, "D")}
-        for r, (colour, mark) in looks.items():
+        for r, (color, mark) in looks.items():
             size = 5.5 if r == 0.2 else 3.2  # seen behind 1.8
-            left.plot(steps[:13], x[r][:13], f"{mark}-", color=colour, ms=size, lw=1.0)
+            left.plot(steps[:13], x[r][:13], f"{mark}-", color=color, ms=size, lw=1.0)
             right.semilogy(
-                steps, np.abs(x[r]), f"{mark}-", color=colour, ms=size, lw=1.0, label=f"{r:g}"
+                steps, np.abs(x[r]), f"{mark}-", color=color, ms=size, lw=1.0, label=f"{r:g}"
             )
-        left.axhline(0.0, color=GREY, lw=0.8)
+        left.axhline(0.0, color=GRAY, lw=0.8)
         left.set(xlabel="step k", ylabel="x", ylim=(-3.4, 3.4))
         left.set_title("points")
         right.set(xlabel="step k", ylim=(2e-3, 60))
@@ -148,13 +148,13 @@ def fig3_two_valleys(module):
             ("start at 1.7", (near, ORANGE, "s", "tau = 0.05"), (long, BLUE, "o", "tau = 0.15")),
         )
         for axes, (title, *walks) in zip(panels, shown, strict=True):
-            axes.plot(grid, (grid**2 - 1.0) ** 2 + 0.2 * grid, color=GREY, lw=1.6)
-            for x, colour, mark, label in walks:
+            axes.plot(grid, (grid**2 - 1.0) ** 2 + 0.2 * grid, color=GRAY, lw=1.6)
+            for x, color, mark, label in walks:
                 axes.plot(
                     x,
                     [f(each) for each in x],
                     f"{mark}-",
-                    color=colour,
+                    color=color,
                     ms=4,
                     lw=0.8,
                     label=label,
@@ -215,14 +215,14 @@ def fig4_zigzag(module):
     level = 0.5 * (BOWL[0] * x**2 + BOWL[1] * y**2)
     with style.house_style():
         figure, (a, b, c) = _panels([2.0, 2.0, 1.3], 1.9, gap=0.42, left=0.6)
-        for axes, walk, colour, mark, title in (
+        for axes, walk, color, mark, title in (
             (a, fixed, ORANGE, "s", "fixed step 2 / (1 + 20)"),
             (b, ball, BLUE, "o", "momentum, beta = 0.403"),
         ):
             axes.contour(
                 x, y, level, levels=np.geomspace(0.05, 12.0, 8), colors="#c9ced3", linewidths=0.8
             )
-            axes.plot(*walk[:26].T, f"{mark}-", color=colour, ms=3.2, lw=1.0)
+            axes.plot(*walk[:26].T, f"{mark}-", color=color, ms=3.2, lw=1.0)
             axes.plot(0.0, 0.0, "+", color=INK, ms=9, mew=1.4)
             axes.set(xlim=(-2.25, 1.0), ylim=(-1.1, 1.1), xlabel="flat coordinate")
             axes.set_title(title)
@@ -351,7 +351,7 @@ def fig6_armijo(module):
     grid = np.linspace(0.0, 1.35, 300)
     with style.house_style():
         figure, (axes,) = _panels([5.2], 2.7)
-        axes.plot(grid, [along(t) for t in grid], color=GREY, lw=1.8, label="f(x + tau d)")
+        axes.plot(grid, [along(t) for t in grid], color=GRAY, lw=1.8, label="f(x + tau d)")
         axes.plot(grid, f(x) + c * grid * slope, color=INK, lw=1.1, label="bound, c = 0.3")
         axes.plot(
             grid, f(x) + 1e-4 * grid * slope, ":", color=INK, lw=1.1, label="bound, c = 0.0001"

@@ -483,7 +483,7 @@ def evaluate(program, inputs):
 
 
 def allowed(op, a, b):
-    """Whether a gate is smooth, and of moderate size, in a neighbourhood of these numbers."""
+    """Whether a gate is smooth, and of moderate size, in a neighborhood of these numbers."""
     if op == "max":
         return abs(a - b) > 0.2
     if op == "div":

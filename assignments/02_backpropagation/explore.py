@@ -49,7 +49,7 @@ wanted = np.where(heart, 0.85, 0.15)
 
 
 def seen_through_blur(texels):
-    """Each texel with its neighbours to the left and right; numbers or Values."""
+    """Each texel with its neighbors to the left and right; numbers or Values."""
     return [
         [
             0.25 * line[max(k - 1, 0)] + 0.5 * line[k] + 0.25 * line[min(k + 1, len(line) - 1)]

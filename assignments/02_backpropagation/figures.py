@@ -14,7 +14,7 @@ from matplotlib.patches import FancyArrowPatch
 from photograd_course.viz.style import (
     BLUE,
     FRAME,
-    GREY,
+    GRAY,
     HANDOUT_DPI,
     INK,
     ORANGE,
@@ -22,7 +22,7 @@ from photograd_course.viz.style import (
     new_figure,
     place_axes,
     save_figure,
-    signed_colour_map,
+    signed_color_map,
 )
 from photograd_course.viz.style import RED as DARK_RED
 
@@ -48,7 +48,7 @@ def circle(axes, at, label, value="", gradient=""):
     axes.text(at[0], at[1] + 0.27, gradient, va="top", color=ORANGE, **bold)
 
 
-def arrow(axes, start, end, label="", bend=0.0, colour=FRAME, where=0.5, lift=-0.1):
+def arrow(axes, start, end, label="", bend=0.0, color=FRAME, where=0.5, lift=-0.1):
     """An arrow from an input to its user, with a text beside it."""
     axes.add_patch(
         FancyArrowPatch(
@@ -60,7 +60,7 @@ def arrow(axes, start, end, label="", bend=0.0, colour=FRAME, where=0.5, lift=-0
             shrinkA=13,
             shrinkB=13,
             lw=1.1,
-            color=colour,
+            color=color,
             zorder=1,
         )
     )
@@ -75,7 +75,7 @@ def arrow(axes, start, end, label="", bend=0.0, colour=FRAME, where=0.5, lift=-0
             ha="center",
             va="center",
             fontsize=SMALL,
-            color=colour,
+            color=color,
             bbox={"fc": "white", "ec": "none", "pad": 0.6},
             zorder=2,
         )
@@ -149,7 +149,7 @@ def fig2_cost(module):
     with house_style():
         figure = new_figure(WIDTH, 2.9)
         left = place_axes(figure, 0.65, 0.4, 2.45, 1.95)
-        left.loglog(counts, 2.0 * np.array(counts), "s--", color=GREY, ms=5, label="differences")
+        left.loglog(counts, 2.0 * np.array(counts), "s--", color=GRAY, ms=5, label="differences")
         left.loglog(counts, share, "o-", color=ORANGE, ms=5, label="backward")
         left.set(
             title="work for a gradient",
@@ -158,7 +158,7 @@ def fig2_cost(module):
             ylim=(0.3, 2000),
         )
         right = place_axes(figure, 3.95, 0.4, 2.45, 1.95)
-        right.semilogy(rungs, paths, "s--", color=GREY, ms=5, label="paths")
+        right.semilogy(rungs, paths, "s--", color=GRAY, ms=5, label="paths")
         right.semilogy(rungs, ladder, "o-", color=ORANGE, ms=5, label="contributions added")
         right.set(title="diamonds in a row", xlabel="diamonds", ylim=(1, 3e4), xticks=rungs)
         for axes in (left, right):
@@ -194,13 +194,13 @@ def fig3_kink(module):
         left.plot(where, values, color=INK, lw=2)
         left.set(title="max(x, 2)", xlabel="x", xticks=[1, 2, 3], yticks=[2, 3], ylim=(1.8, 3.1))
         right = place_axes(figure, 3.85, 0.35, 2.5, 1.65)
-        right.plot(where, steps, "--", color=GREY, lw=1.8, label="differences, step 0.2")
+        right.plot(where, steps, "--", color=GRAY, lw=1.8, label="differences, step 0.2")
         below = where < 2
         right.plot(where[below], slopes[below], color=ORANGE, lw=2, label="engine")
         right.plot(where[where > 2], slopes[where > 2], color=ORANGE, lw=2)
         right.plot([2.0], [slopes[51]], "o", mfc="white", mec=ORANGE, ms=6)
         right.plot([2.0], [slopes[50]], "o", color=ORANGE, ms=6)
-        right.plot([2.0], [steps[50]], "s", color=GREY, ms=6)
+        right.plot([2.0], [steps[50]], "s", color=GRAY, ms=6)
         right.text(2.1, slopes[50] + 0.06, f"at the tie: {slopes[50]:g}", fontsize=SMALL)
         right.text(2.16, steps[50] - 0.04, f"at the tie: {steps[50]:g}", fontsize=SMALL)
         right.set(
@@ -284,7 +284,7 @@ def _draw_order(axes, name, uses, ranks, gradients):
     axes.text(1.65, 0.2, name, ha="center", fontsize=TEXT + 1)
     for start, end in uses:
         late = rank[end] > rank[start]
-        arrow(axes, at[start], at[end], colour=DARK_RED if late else FRAME)
+        arrow(axes, at[start], at[end], color=DARK_RED if late else FRAME)
         if late:
             axes.text(1.16, 1.12, "late", ha="right", fontsize=SMALL, color=DARK_RED)
     for key_, place in at.items():
@@ -313,22 +313,20 @@ def fig5_uses_add_up(module):
         arrow(axes, places["y"], places["+"])
         arrow(axes, places["+"], places["f"])
         arrow(axes, places["×"], places["f"])
-        arrow(axes, places["x"], places["+"], f"{by_sum:g}", colour=ORANGE, lift=0.0)
+        arrow(axes, places["x"], places["+"], f"{by_sum:g}", color=ORANGE, lift=0.0)
         for bend, amount in zip((-0.35, 0.35), by_square, strict=True):
-            arrow(
-                axes, places["x"], places["×"], f"{amount:g}", bend=-bend, colour=ORANGE, lift=0.0
-            )
+            arrow(axes, places["x"], places["×"], f"{amount:g}", bend=-bend, color=ORANGE, lift=0.0)
         for name, node in (("x", x), ("y", y), ("+", total), ("×", square), ("f", f)):
             label = "+" if name == "f" else name
             circle(axes, places[name], label, f"{node.data:g}", f"{node.grad:g}")
         plot = place_axes(figure, 4.15, 0.3, 2.3, 1.85)
         h = np.linspace(-2.0, 2.0, 41)
         plot.plot(5 + h, (5 + h + 4) + (5 + h) ** 2, color=INK, lw=2.2, label="f")
-        for slope, colour, style, name in (
+        for slope, color, style, name in (
             (x.grad, ORANGE, "--", f"slope {x.grad:g}, all uses"),
-            (by_sum, GREY, ":", f"slope {by_sum:g}, the sum alone"),
+            (by_sum, GRAY, ":", f"slope {by_sum:g}, the sum alone"),
         ):
-            plot.plot(5 + h, 34 + slope * h, style, color=colour, lw=1.8, label=name)
+            plot.plot(5 + h, 34 + slope * h, style, color=color, lw=1.8, label=name)
         plot.set(xlabel="x, with y = 4", ylabel="f", xticks=[3, 4, 5, 6, 7], ylim=(8, 72))
         plot.legend(loc="upper left", fontsize=8, handlelength=1.6, borderaxespad=0.1)
     bend = max(abs((9 + s) + (5 + s) ** 2 - 34 - x.grad * s) for s in (-0.01, 0.01))
@@ -396,7 +394,7 @@ def fig6_steps(module):
 
 
 def blurred(texels):
-    """Rows and columns of Values, each mixed with its neighbours to the left and right."""
+    """Rows and columns of Values, each mixed with its neighbors to the left and right."""
     rows = []
     for row in texels:
         padded = [row[0], *row, row[-1]]
@@ -445,7 +443,7 @@ def fig7_picture(module):
         ):
             axes = place_axes(figure, 2.7 + 1.25 * k, 0.4, 1.2, 0.9)
             image = axes.imshow(
-                picture, cmap=signed_colour_map(), vmin=-top, vmax=top, interpolation="nearest"
+                picture, cmap=signed_color_map(), vmin=-top, vmax=top, interpolation="nearest"
             )
             axes.set_title(name, fontsize=SMALL)
             axes.set(xticks=[], yticks=[])

@@ -12,12 +12,12 @@ def sample_of_a_plane(reference, a, b, u, v):
 
 
 def curvature_of_two_spots(reference, m, k):
-    """The estimate after two rounds for m samples at one centre and k at another."""
+    """The estimate after two rounds for m samples at one center and k at another."""
     spots = np.array([[0.125, 0.25], [0.625, 0.75]])  # of columns 0 and 2, rows 1 and 4
     return reference.largest_curvature((6, 4), np.repeat(spots, [int(m), int(k)], axis=0), 2)
 
 
 def texel_after_steps(reference, t, n):
-    """A texel measured as 0 at its centre, after n steps."""
+    """A texel measured as 0 at its center, after n steps."""
     texture, place = np.full((1, 1, 1), float(t)), np.array([[0.5, 0.5]])
     return float(reference.recover_texture(texture, place, np.zeros((1, 1)), int(n))[0][0, 0, 0])

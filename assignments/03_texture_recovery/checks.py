@@ -39,8 +39,8 @@ FIRST_STEP = Tolerance(
 )
 
 
-def centres(shape):
-    """Centre of every texel of a texture (H, W), row by row: (H W, 2)."""
+def centers(shape):
+    """Center of every texel of a texture (H, W), row by row: (H W, 2)."""
     v, u = np.meshgrid(*((np.arange(n) + 0.5) / n for n in shape), indexing="ij")
     return np.stack([u.ravel(), v.ravel()], axis=1)
 
@@ -56,7 +56,7 @@ def sampling_matrix(t, shape, uv):
 
 
 @check(
-    "03.1.centres",
+    "03.1.centers",
     task="03.1",
     points=2,
     calls=("bilinear_sample",),
@@ -64,10 +64,10 @@ def sampling_matrix(t, shape, uv):
     hint="handout, equation (3): which u belongs to column 0?",
     sole="says that the coordinates are right, whatever the weights",
 )
-def a_centre_gives_its_texel(t):
-    """At the centre of a texel, the sample is that texel."""
+def a_center_gives_its_texel(t):
+    """At the center of a texel, the sample is that texel."""
     T = t.rng.uniform(-1.0, 1.0, (3, 5, 2))
-    got = t.call("bilinear_sample", T, centres((3, 5)), returns=Array((15, 2)))
+    got = t.call("bilinear_sample", T, centers((3, 5)), returns=Array((15, 2)))
     t.close("samples", got, T.reshape(15, 2), reveal=True)
 
 
@@ -84,7 +84,7 @@ def a_ramp_stays_a_ramp(t):
     """A texture that rises evenly to the right and downwards is sampled without error."""
     shape = (4, 7)
     across, down = t.rng.uniform(1.0, 2.0, 2) * np.array([1.0, -2.0])
-    T = (centres(shape) @ [across, down]).reshape(*shape, 1)
+    T = (centers(shape) @ [across, down]).reshape(*shape, 1)
     uv = t.rng.uniform([0.5 / 7, 0.5 / 4], [1 - 0.5 / 7, 1 - 0.5 / 4], (60, 2))
     got = t.call("bilinear_sample", T, uv, returns=Array((60, 1)))
     t.close("samples", got[:, 0], uv @ [across, down], reveal=True)
@@ -102,7 +102,7 @@ def a_ramp_stays_a_ramp(t):
 def a_product_stays_a_product(t):
     """The texture u v is sampled without error: the surface between four texels is twisted."""
     shape = (5, 3)
-    T = np.prod(centres(shape), axis=1).reshape(*shape, 1)
+    T = np.prod(centers(shape), axis=1).reshape(*shape, 1)
     uv = t.rng.uniform([0.5 / 3, 0.5 / 5], [1 - 0.5 / 3, 1 - 0.5 / 5], (60, 2))
     got = t.call("bilinear_sample", T, uv, returns=Array((60, 1)))
     t.close("samples", got[:, 0], np.prod(uv, axis=1), reveal=True)
@@ -136,7 +136,7 @@ def a_constant_stays_constant(t):
     sole="says that only the border is wrong",
 )
 def the_border_holds(t):
-    """Beyond the outermost centres, and beyond the texture, the value at the border holds."""
+    """Beyond the outermost centers, and beyond the texture, the value at the border holds."""
     shape = (3, 4)
     T = t.rng.uniform(-1.0, 1.0, (*shape, 2))
     corners = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]])
@@ -169,7 +169,7 @@ def one_sample_is_spread_around_its_place(t):
         g = t.rng.uniform(0.5, 2.0, (1, 1))
         d_T = t.call("bilinear_sample_adjoint", shape, uv, g, returns=Array((4, 6, 1))).ravel()
         t.close("sum over all texels", d_T.sum(), g[0, 0], reveal=True)
-        t.close("balance (u, v)", d_T @ centres(shape) / g[0, 0], uv[0], reveal=True)
+        t.close("balance (u, v)", d_T @ centers(shape) / g[0, 0], uv[0], reveal=True)
         t.require(
             bool((d_T >= 0).all()) and np.count_nonzero(d_T) <= 4,
             "a positive g must reach at most four texels, none negatively",
@@ -265,7 +265,7 @@ def a_corner_gets_it_all(t):
     sole="asks about the loss alone",
 )
 def the_loss_of_a_constant(t):
-    """Constant texture, constant measurements: the loss is the squared distance of two colours."""
+    """Constant texture, constant measurements: the loss is the squared distance of two colors."""
     is_, should = t.rng.uniform(0.0, 1.0, (2, 3))
     uv = t.rng.uniform(0.0, 1.0, (17, 2))
     result = Items(Number(), Array((4, 2, 3)), names=("L", "d_T"))
@@ -311,10 +311,10 @@ def the_gradient_agrees_with_differences(t):
     sole="says which round or factor is wrong; the estimate alone would not",
 )
 def rounds_are_as_counted(t):
-    """Samples at texel centres only: the estimate after n rounds is known in closed form."""
+    """Samples at texel centers only: the estimate after n rounds is known in closed form."""
     shape = (3, 4)
     often = t.rng.integers(1, 6, 12)
-    uv = np.repeat(centres(shape), often, axis=0)
+    uv = np.repeat(centers(shape), often, axis=0)
     for n in (0, 1, 2, 6):
         got = t.call("largest_curvature", shape, uv, n, returns=Number())
         mean = np.sum(often ** (2.0 * n + 1)) / np.sum(often ** (2.0 * n))

@@ -8,36 +8,28 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from photograd_course.metrics import psnr
-from photograd_course.viz.style import (
-    BLUE,
-    FRAME,
-    GREY,
-    INK,
-    ORANGE,
-    house_style,
-    signed_colour_map,
-)
+from photograd_course.viz.style import BLUE, FRAME, GRAY, INK, ORANGE, house_style, signed_color_map
 from photograd_course.viz.style import RED as CRIMSON
 
 Facts = dict[str, bool | tuple[float, float, float]]
 
 
 def fig1_surface(module: ModuleType) -> tuple[Figure, Facts]:
-    """Six texels, and the surface that bilinear sampling spans between their centres."""
+    """Six texels, and the surface that bilinear sampling spans between their centers."""
     T = np.array([[0.2, 0.9, 0.5], [0.7, 0.1, 1.0]])[:, :, None]
     fine = (240, 360)
-    surface = module.bilinear_sample(T, _centres(fine)).reshape(fine)
-    u, v = _centres((1, 361))[:, 0], 0.36
+    surface = module.bilinear_sample(T, _centers(fine)).reshape(fine)
+    u, v = _centers((1, 361))[:, 0], 0.36
     line = module.bilinear_sample(T, np.stack([u, np.full(361, v)], axis=1))[:, 0]
-    at_centres = module.bilinear_sample(T, _centres((2, 3))).reshape(2, 3)
+    at_centers = module.bilinear_sample(T, _centers((2, 3))).reshape(2, 3)
     bend = np.abs(np.diff(line, 2))
     bent = u[1:-1][bend > 1e-6]
-    to_centre = np.abs(bent[:, None] - np.array([1 / 6, 1 / 2, 5 / 6])).min(axis=1)
+    to_center = np.abs(bent[:, None] - np.array([1 / 6, 1 / 2, 5 / 6])).min(axis=1)
     facts: Facts = {
-        "at a centre the surface is the texel": bool(np.allclose(at_centres, T[:, :, 0])),
-        "flat beyond the outermost centres": bool(np.ptp(surface[:, :60], axis=1).max() < 1e-12),
+        "at a center the surface is the texel": bool(np.allclose(at_centers, T[:, :, 0])),
+        "flat beyond the outermost centers": bool(np.ptp(surface[:, :60], axis=1).max() < 1e-12),
         "never outside the texels' range": (float(surface.min()), 0.1 - 1e-12, 1.0),
-        "bends only at columns of centres": bool(len(bent) >= 3 and to_centre.max() < 1 / 361),
+        "bends only at columns of centers": bool(len(bent) >= 3 and to_center.max() < 1 / 361),
     }
     with house_style():
         figure = Figure(figsize=(7.0, 2.1), layout="constrained")
@@ -46,7 +38,7 @@ def fig1_surface(module: ModuleType) -> tuple[Figure, Facts]:
         shown = ((left, T[:, :, 0], "texels T[i, j]"), (middle, surface, "sample at (u, v)"))
         for axes, values, title in shown:
             axes.imshow(values, cmap="gray", vmin=0, vmax=1, extent=extent, aspect=2 / 3)
-            axes.plot(*_centres((2, 3)).T, "o", color=ORANGE, markersize=5, markeredgecolor="white")
+            axes.plot(*_centers((2, 3)).T, "o", color=ORANGE, markersize=5, markeredgecolor="white")
             axes.set_title(title)
             axes.set_xlabel("u")
             axes.set_xticks([0, 0.5, 1])
@@ -99,10 +91,10 @@ def fig2_adjoint(module: ModuleType) -> tuple[Figure, Facts]:
         for axes, title in zip(panels, titles, strict=True):
             _grid(axes, shape)
             axes.set_title(title)
-        panels[0].plot(*_centres(shape).T, ".", color=GREY, markersize=4)
-        colours = {"cmap": signed_colour_map(), "vmin": -1, "vmax": 1}
+        panels[0].plot(*_centers(shape).T, ".", color=GRAY, markersize=4)
+        colors = {"cmap": signed_color_map(), "vmin": -1, "vmax": 1}
         panels[0].scatter(
-            *uv[:3].T, c=[1.0, -1.0, 0.8], s=70, edgecolors=INK, zorder=3, clip_on=False, **colours
+            *uv[:3].T, c=[1.0, -1.0, 0.8], s=70, edgecolors=INK, zorder=3, clip_on=False, **colors
         )
         for k, value in enumerate(("+1.0", "−0.7 and −0.3", "+0.8 ")):
             panels[0].annotate(
@@ -114,7 +106,7 @@ def fig2_adjoint(module: ModuleType) -> tuple[Figure, Facts]:
                 bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.8},
             )
         panels[0].set(xlim=(0, 1), ylim=(1, 0))
-        image = panels[1].imshow(back, extent=(0, 1, 1, 0), aspect=4 / 6, **colours)
+        image = panels[1].imshow(back, extent=(0, 1, 1, 0), aspect=4 / 6, **colors)
         for i, j in np.argwhere(back != 0):
             panels[1].text(
                 (j + 0.5) / 6,
@@ -163,9 +155,9 @@ def fig3_residual(module: ModuleType) -> tuple[Figure, Facts]:
             axes.imshow(_screen(values), interpolation="nearest")
             axes.set_title(title)
         signed = ((missing, "what is missing: truth − T"), (added, "what one step adds: −τ ∂L/∂T"))
-        colours = {"cmap": signed_colour_map(), "vmin": -top, "vmax": top}
+        colors = {"cmap": signed_color_map(), "vmin": -top, "vmax": top}
         for axes, (values, title) in zip(panels[1], signed, strict=True):
-            image = axes.imshow(values.mean(axis=2), interpolation="nearest", **colours)
+            image = axes.imshow(values.mean(axis=2), interpolation="nearest", **colors)
             axes.set_title(title)
         for axes in panels.flat:
             axes.set(xticks=[], yticks=[])
@@ -206,17 +198,17 @@ def fig4_step(module: ModuleType) -> tuple[Figure, Facts]:
     with house_style():
         figure = Figure(figsize=(7.0, 2.9), layout="constrained")
         axes = figure.subplots()
-        looks = {0.3: (GREY, ":"), 0.6: (ORANGE, "-."), 0.95: (BLUE, "-"), 1.05: (CRIMSON, "--")}
+        looks = {0.3: (GRAY, ":"), 0.6: (ORANGE, "-."), 0.95: (BLUE, "-"), 1.05: (CRIMSON, "--")}
         for share, values in errors.items():
-            colour, dashes = looks[share]
-            axes.plot(values, color=colour, linestyle=dashes, label=f"{share:g}")
+            color, dashes = looks[share]
+            axes.plot(values, color=color, linestyle=dashes, label=f"{share:g}")
             place = {0.3: -3, 0.6: -3, 0.95: 3, 1.05: -3}[share]
             axes.annotate(
                 f"{share:g} · 2/λ",
                 (steps, values[-1]),
                 (4, place),
                 textcoords="offset points",
-                color=colour if share != 0.3 else INK,
+                color=color if share != 0.3 else INK,
                 va="center",
             )
         axes.set(xlabel="step", ylabel="PSNR of the texture [dB]", xlim=(0, 74))
@@ -363,7 +355,7 @@ def _mean_of_samples(uv: np.ndarray, values: np.ndarray, shape: tuple[int, ...])
     return picture
 
 
-def _centres(shape: tuple[int, int]) -> np.ndarray:
+def _centers(shape: tuple[int, int]) -> np.ndarray:
     v, u = np.meshgrid(*((np.arange(n) + 0.5) / n for n in shape), indexing="ij")
     return np.stack([u.ravel(), v.ravel()], axis=1)
 

@@ -1,8 +1,8 @@
 """Recovering a texture: bilinear samples, their adjoint, and descent to the texels behind them.
 
 A texture T has H rows, W columns and C channels, T[row, column, channel], row 0 on top. A place on
-it is (u, v), u to the right, v downwards, both from 0 to 1; the centre of the texel in column j is
-at u = (j + 0.5) / W, of row i at v = (i + 0.5) / H. What lies beyond the outermost centres takes
+it is (u, v), u to the right, v downwards, both from 0 to 1; the center of the texel in column j is
+at u = (j + 0.5) / W, of row i at v = (i + 0.5) / H. What lies beyond the outermost centers takes
 the value at the border.
 
 Your tasks are the six functions below, one section of the handout each;

@@ -1,7 +1,7 @@
 """Checks of assignment 04.
 
 Seven sets of random draws are judged. Where a judgement is bad, at 3e-4, new draws get a second
-one: a right solution fails in less than one of a million hand-ins.
+one: a right solution fails in less than one of a million submissions.
 """
 
 from __future__ import annotations
@@ -74,12 +74,12 @@ def buried(rng, n):
 
 
 def lobes(t, wo, wi, r):
-    """`ggx_lobe` of the hand-in."""
+    """`ggx_lobe` of the submission."""
     return t.call("ggx_lobe", wo, wi, np.full(len(wo), float(r)), returns=Array((len(wo),)))
 
 
 def densities(t, wo, wi, r):
-    """`ggx_pdf` of the hand-in."""
+    """`ggx_pdf` of the submission."""
     return t.call("ggx_pdf", wo, wi, np.full(len(wo), float(r)), returns=Array((len(wo),)))
 
 
@@ -87,7 +87,7 @@ def densities(t, wo, wi, r):
 
 
 def room(t, value, channels, cosines):
-    """`furnace` of the hand-in for a model, which looks at the directions that it is asked for."""
+    """`furnace` of the submission for a model, which looks at the directions it is asked for."""
 
     def model(wo, wi):
         t.require(
@@ -375,7 +375,7 @@ def no_density_below(t):
 
 
 def drawn(t, wo, r, u2):
-    """`sample_ggx` of the hand-in."""
+    """`sample_ggx` of the submission."""
     return t.call("sample_ggx", wo, np.full(len(wo), float(r)), u2, returns=Array(wo.shape))
 
 
@@ -543,12 +543,12 @@ def weights_average_to_the_albedo(t):
 
 
 def material(rng, n, low=0.3):
-    """Base colours, metalness and roughness of n materials."""
+    """Base colors, metalness and roughness of n materials."""
     return rng.uniform(0.05, 0.95, (n, 3)), rng.uniform(0.1, 0.9, n), rng.uniform(low, 1.0, n)
 
 
 def shaded(t, wo, wi, color, m, r):
-    """`gltf` of the hand-in."""
+    """`gltf` of the submission."""
     return t.call("gltf", wo, wi, color, m, r, returns=Array((len(wo), 3)))
 
 
@@ -559,7 +559,7 @@ def shaded(t, wo, wi, color, m, r):
     calls=("gltf",),
     needs=("ggx_lobe",),
     tolerance=EXACT,
-    hint="straight on Schlick's ramp is 0: F is 0.04 for the varnish, the base colour for metal",
+    hint="straight on Schlick's ramp is 0: F is 0.04 for the varnish, the base color for metal",
     sole="ground, varnish and metal, each with a number of its own",
 )
 def straight_on(t):
@@ -678,7 +678,7 @@ NAMES = tuple(f"d_{name}" for name in PARAMETERS)
 
 
 def slopes(t, wo, wi, color, m, r, g):
-    """`gltf_backward` of the hand-in, by name."""
+    """`gltf_backward` of the submission, by name."""
     n = len(wo)
     parts = Items(Array((n, 3)), Array((n,)), Array((n,)), names=NAMES)
     got = t.call("gltf_backward", wo, wi, color, m, r, g, returns=parts)
@@ -701,7 +701,7 @@ def near_mirrors(rng, n):
     calls=("gltf_backward",),
     needs=("ggx_lobe", "gltf"),
     tolerance=SMOOTH,
-    hint="handout, section 6: first colour and metalness, then the logarithm of D V",
+    hint="handout, section 6: first color and metalness, then the logarithm of D V",
     sole="the derivative itself, without the reference",
 )
 def agrees_with_differences(t):
@@ -746,11 +746,11 @@ def the_peak_sinks(t):
     calls=("gltf_backward",),
     needs=("ggx_lobe", "gltf"),
     tolerance=EXACT,
-    hint="f is a constant plus something times the base colour; and linear in the metalness",
+    hint="f is a constant plus something times the base color; and linear in the metalness",
     sole="all digits, where differences have nine",
 )
 def color_and_metalness_are_linear(t):
-    """f is linear in colour and in metalness: any step, not only a small one, fits."""
+    """f is linear in color and in metalness: any step, not only a small one, fits."""
     wo, wi = near_mirrors(t.rng, 20)
     color, m, r = material(t.rng, 20)
     g = random_cotangent(t.rng, (20, 3))
@@ -876,7 +876,7 @@ def densities_anywhere(t):
     points=3,
     calls=("sample_ggx",),
     visibility="hidden",
-    sole="the right density, whatever that of the hand-in is",
+    sole="the right density, whatever that of the submission is",
     battery=[
         Subject(
             "sample_ggx",

@@ -1,7 +1,7 @@
 # %% [markdown]
 # # Your material
 # Draws the chart of your material, its lobe and the derivative by roughness; forgets roughness and
-# colour of a ball and finds them again from its picture. Where the C++ core is installed, its
+# color of a ball and finds them again from its picture. Where the C++ core is installed, its
 # values stand beside yours. Never graded. Run it as `python explore.py`; `--roughness`,
 # `--metalness` and `--start` (the roughness that the fit begins with) change the ball, `--pixels`
 # and `--steps` the amount of work.
@@ -56,7 +56,7 @@ def picture(scene, color, m, r, material):
 
 
 def pulled(scene, color, m, r, d_picture):
-    """Derivatives of a loss by colour (3,), metalness and roughness, and by roughness (N,)."""
+    """Derivatives of a loss by color (3,), metalness and roughness, and by roughness (N,)."""
     _, wo, lights = scene
     n = len(wo)
     of_color, of_metal, of_rough = np.zeros((n, 3)), np.zeros(n), np.zeros(n)
@@ -75,7 +75,7 @@ print(f"ball: {scene[0].sum()} pixels, roughness {rough:g}, metalness {metal_sha
 # %% [markdown]
 # ## Forget and find
 # Mean squared error against the picture; Adam's steps as in assignment 01. Roughness moves between
-# 0.045 and 1, colours between 0 and 1; the metalness is known.
+# 0.045 and 1, colors between 0 and 1; the metalness is known.
 
 # %%
 target = picture(scene, COLOR, metal_share, rough, mine.gltf)
@@ -91,8 +91,8 @@ for k in range(1, steps + 1):
     x = np.clip(x, [0, 0, 0, 0.045], 1)
     trail.append(x)
 trail = np.array(trail)
-print(f"fit: roughness {x[3]:.3f}, colour {np.round(x[:3], 3)}")
-print(f"truth: roughness {rough:.3f}, colour {COLOR}")
+print(f"fit: roughness {x[3]:.3f}, color {np.round(x[:3], 3)}")
+print(f"truth: roughness {rough:.3f}, color {COLOR}")
 
 # %% [markdown]
 # ## The furnace, and the C++ core

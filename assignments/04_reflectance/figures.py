@@ -9,15 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 from photograd_course.color import srgb_encode
-from photograd_course.viz.style import (
-    BLUE,
-    FRAME,
-    GREY,
-    INK,
-    ORANGE,
-    house_style,
-    signed_colour_map,
-)
+from photograd_course.viz.style import BLUE, FRAME, GRAY, INK, ORANGE, house_style, signed_color_map
 from photograd_course.viz.style import RED as CRIMSON
 
 LIGHTS = (((-0.5, 0.6, 0.62), 1.0), ((0.8, 0.1, 0.35), 0.35), ((0.1, -0.7, 0.5), 0.15))
@@ -64,8 +56,8 @@ def fig1_furnace(module):
         panels = figure.subplots(1, 2, width_ratios=(1.5, 1))
         axes = panels[0]
         looks = ((BLUE, "-"), (ORANGE, "--"), (CRIMSON, "-."))
-        for (r, values), (colour, look) in zip(mirrors.items(), looks, strict=True):
-            axes.plot(cosines, values, look, color=colour, label=f"mirrors, roughness {r:g}")
+        for (r, values), (color, look) in zip(mirrors.items(), looks, strict=True):
+            axes.plot(cosines, values, look, color=color, label=f"mirrors, roughness {r:g}")
         for (r, values), look in zip(burley.items(), (":", "-"), strict=True):
             axes.plot(cosines, values, look, color=INK, label=f"Burley, roughness {r:g}")
         axes.plot(1.0, 1 - np.log(2), "o", color=CRIMSON, markersize=5, clip_on=False)
@@ -120,12 +112,12 @@ def fig2_lobes(module):
         panels = figure.subplots(1, 2)
         looks = ((BLUE, "-"), (ORANGE, "--"), (CRIMSON, "-."), (INK, ":"))
         degrees = np.degrees(angle)
-        for (r, values), (colour, look) in zip(curves.items(), looks, strict=True):
+        for (r, values), (color, look) in zip(curves.items(), looks, strict=True):
             if r > 0.4:
-                panels[0].plot(degrees, values, look, color=colour, label=f"roughness {r:g}")
+                panels[0].plot(degrees, values, look, color=color, label=f"roughness {r:g}")
         panels[0].set(title="facets of GGX", ylabel="D V [1/sr]", ylim=(0, 1.5))
         panels[1].plot(degrees, curves[0.4], color=BLUE, label="GGX, roughness 0.4")
-        panels[1].plot(degrees, matched, "--", color=GREY, label="Phong, exponent 40")
+        panels[1].plot(degrees, matched, "--", color=GRAY, label="Phong, exponent 40")
         panels[1].set(title="tails, logarithmic", yscale="log", ylim=(1e-4, 100))
         for axes in panels:
             axes.axvline(45, color=FRAME, linewidth=0.7)
@@ -187,7 +179,7 @@ def fig3_samples(module):
             axes.set_ylabel("y")
         axes = panels[2]
         bins = np.linspace(0, 4, 41)
-        axes.hist(np.minimum(plain, 3.99), bins, color=GREY, label="drawn evenly")
+        axes.hist(np.minimum(plain, 3.99), bins, color=GRAY, label="drawn evenly")
         axes.hist(weights, bins, color=BLUE, alpha=0.8, label="visible facets")
         axes.axvline(right, color=CRIMSON, linewidth=1)
         axes.set(xlabel="weight f cos / pdf", title="4000 weights, 0.35", yscale="log")
@@ -254,7 +246,7 @@ def fig5_chart(module):
             0,
             1e-12,
         ),
-        "the metal's highlight has the base colour": (
+        "the metal's highlight has the base color": (
             float(np.abs(gold / gold[0] - color / color[0]).max()),
             0,
             0.05,
@@ -294,8 +286,8 @@ def fig6_by_roughness(module):
     )
     middle = int(np.argmax(before))
     change, told = after - before, slope * step
-    centre = np.linalg.norm(np.argwhere(inside) - np.argwhere(inside)[middle], axis=1)
-    ring = (centre > 14) & (centre < 26)
+    center = np.linalg.norm(np.argwhere(inside) - np.argwhere(inside)[middle], axis=1)
+    ring = (center > 14) & (center < 26)
     dark = wi[:, 2] <= 0
     facts = {
         "the middle of the highlight gets darker": (float(slope[middle]), -1e9, -1),
@@ -323,7 +315,7 @@ def fig6_by_roughness(module):
         ):
             field = np.full((size, size), np.nan)
             field[inside] = values
-            image = axes.imshow(field, cmap=signed_colour_map(), vmin=-top, vmax=top)
+            image = axes.imshow(field, cmap=signed_color_map(), vmin=-top, vmax=top)
             axes.set_title(title)
         for axes in panels:
             axes.set_axis_off()
@@ -431,7 +423,7 @@ RED_FACTS = {
     },
     "fig5_chart": {
         "each pixel of half metal is the mean of those above and below": "gltf_premixed",
-        "the metal's highlight has the base colour": "gltf_metalness_reversed",
+        "the metal's highlight has the base color": "gltf_metalness_reversed",
         "the varnish's highlight is nearly white": "gltf_tinted_varnish",
         "the metal's highlight gets darker to the right": "lobe_no_masking",
     },

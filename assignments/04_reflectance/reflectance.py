@@ -49,20 +49,20 @@ def hemisphere(heights=48, turns=96):
 # Models to measure --------------------------------------------------------------------------------
 
 
-def _coloured(value, colour, wo, wi):
-    """value (N,) times a colour, (3,) or one number, above the surface: (N, 3)."""
-    return np.where(above(wo, wi), value, 0.0)[:, None] * (colour * np.ones(3))
+def _colored(value, color, wo, wi):
+    """value (N,) times a color, (3,) or one number, above the surface: (N, 3)."""
+    return np.where(above(wo, wi), value, 0.0)[:, None] * (color * np.ones(3))
 
 
 def lambert(wo, wi, albedo):
     """A matte surface: as bright from everywhere (N, 3)."""
-    return _coloured(np.full(len(wo), 1 / np.pi), albedo, wo, wi)
+    return _colored(np.full(len(wo), 1 / np.pi), albedo, wo, wi)
 
 
 def phong(wo, wi, specular, exponent):
     """Phong's highlight, in the form of section 0 (N, 3)."""
     c = np.maximum(wo[:, 2] * wi[:, 2] - wo[:, 0] * wi[:, 0] - wo[:, 1] * wi[:, 1], 0)
-    return _coloured((exponent + 2) / (2 * np.pi) * c**exponent, specular, wo, wi)
+    return _colored((exponent + 2) / (2 * np.pi) * c**exponent, specular, wo, wi)
 
 
 def schlick(f0, cos_theta):
@@ -75,7 +75,7 @@ def burley_diffuse(wo, wi, albedo, roughness):
     wh = half_vector(wo, wi)
     f90 = 0.5 + 2 * roughness * np.sum(wi * wh, axis=1) ** 2
     towards, from_light = (1 + (f90 - 1) * (1 - w[:, 2]) ** 5 for w in (wo, wi))
-    return _coloured(towards * from_light / np.pi, albedo, wo, wi)
+    return _colored(towards * from_light / np.pi, albedo, wo, wi)
 
 
 def cook_torrance(wo, wi, f0, rms_slope, printed=False):
@@ -91,7 +91,7 @@ def cook_torrance(wo, wi, f0, rms_slope, printed=False):
     G = np.minimum(1, 2 * wh[:, 2] * np.minimum(o[:, 2], i[:, 2]) / seen)
     constants = np.pi if printed else 4 * np.pi
     f = schlick(f0, seen) * D * G / (constants * o[:, 2] * i[:, 2])
-    return _coloured(f, 1.0, wo, wi)
+    return _colored(f, 1.0, wo, wi)
 
 
 # Your tasks ---------------------------------------------------------------------------------------

@@ -209,7 +209,7 @@ def spheres_missed(t):
     hint="handout, end of section 1: subtract places before you square them",
 )
 def a_sphere_far_away(t):
-    """A sphere of radius 1 is met on its surface from ten million metres away as well."""
+    """A sphere of radius 1 is met on its surface from ten million meters away as well."""
     n = units(t, 30)
     d = units(t, 30)
     d = np.where(np.sum(n * d, axis=1, keepdims=True) > 0, -d, d) - 0.2 * n
@@ -218,7 +218,7 @@ def a_sphere_far_away(t):
     got = hit(t, origins, d, np.zeros(3), 1.0)
     t.require(bool(np.isfinite(got).all()), "rays aimed at the sphere from far away miss it")
     away = np.linalg.norm(origins + got[:, None] * d, axis=1)
-    t.close("distance from the centre", away, np.ones(30))
+    t.close("distance from the center", away, np.ones(30))
 
 
 # 05.2 ---------------------------------------------------------------------------------------------
@@ -488,7 +488,7 @@ class Surface:
 
 
 def ball(center, radius, by=None):
-    """Distance to a sphere; p is the radius, or moves the centre along `by`."""
+    """Distance to a sphere; p is the radius, or moves the center along `by`."""
 
     def shape(x):
         away = np.linalg.norm(x - center, axis=1)
@@ -584,7 +584,7 @@ def surfaces_are_met(t):
 
 
 def differences(t, make, origins, directions, eps=1e-2):
-    """The derivative of the hand-in's own t by p, by four differences."""
+    """The derivative of the submission's own t by p, by four differences."""
     at = {k: marched(t, make(k * eps), origins, directions)[0] for k in (-2, -1, 1, 2)}
     kept = np.isfinite(np.stack(list(at.values()))).all(axis=0)
     safe = {k: np.where(kept, value, 0.0) for k, value in at.items()}
@@ -598,7 +598,7 @@ def differences(t, make, origins, directions, eps=1e-2):
     calls=("march_sdf",),
     tolerance=SLOPES,
     hint="handout, equation (15): the place is held on the surface while p changes",
-    sole="the gate: differences of the hand-in's own march",
+    sole="the gate: differences of the submission's own march",
 )
 def the_derivative_of_a_hit(t):
     """d_t is what differences of t by p say: a radius, a place, a height."""
@@ -672,7 +672,7 @@ def some_boxes(t, count, stretch=(1.0, 1.0, 1.0)):
 
 
 def built(t, low, high):
-    """The hand-in's tree, looked at: (boxes, first, count, order), every rule of form kept."""
+    """The submission's tree, looked at: (boxes, first, count, order), every rule of form kept."""
     parts = Items(Boxes(), Whole(), Whole(), Whole(), names=("boxes", "first", "count", "order"))
     boxes, first, count, order = t.call("build_bvh", low, high, returns=parts)
     nodes = len(boxes)
@@ -835,14 +835,14 @@ def rectangles(t, count, size=1.0, stretch=(1.0, 1.0, 1.0)):
 
 
 def grow(t, scene):
-    """The hand-in's tree for a scene, and its boxes for the scene's service."""
+    """The submission's tree for a scene, and its boxes for the scene's service."""
     tree = built(t, scene.low, scene.high)
     scene.boxes = tree[0]
     return tree
 
 
 def first_met(t, scene, tree, origin, direction):
-    """(t, number) of the hand-in."""
+    """(t, number) of the submission."""
     scene.ray(origin, direction)
     parts = Items(Distance(), WholeNumber(), names=("t", "number"))
     _, first, count, order = tree

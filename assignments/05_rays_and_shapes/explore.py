@@ -92,7 +92,7 @@ seen = np.where(number >= 0, 0.15 + 0.85 * np.abs(towards), 1.0)
 
 # %%
 def world(origins, ways):
-    """Colours (R, 3) of a chequered floor and of the sky."""
+    """Colors (R, 3) of a chequered floor and of the sky."""
     down = ways[:, 1] < -1e-6
     t = np.where(down, (-1.2 - origins[:, 1]) / np.where(down, ways[:, 1], -1.0), 0.0)
     x, z = (np.floor(1.5 * (origins[:, k] + t * ways[:, k]) + 0.3) for k in (0, 2))
@@ -102,15 +102,15 @@ def world(origins, ways):
     return np.where(down[:, None], fade * floor + (1 - fade) * 0.8, sky)
 
 
-centre, radius = np.array([0.0, 0.3, 0.0]), 1.2
+center, radius = np.array([0.0, 0.3, 0.0]), 1.2
 level = np.array([[1, 0, 0, 0], [0, -1, 0, 0.3], [0, 0, -1, 3.6]])
 place, way = mine.camera_rays(width, height, focal, focal, width / 2, height / 2, level)
 inside = np.zeros(len(way), bool)
 for bounce in range(8):
-    t_ball = mine.hit_sphere(place, way, centre, radius)
+    t_ball = mine.hit_sphere(place, way, center, radius)
     on = np.isfinite(t_ball) & (inside | (bounce == 0))
     place[on] += t_ball[on, None] * way[on]
-    way[on], through = mine.refract(way[on], (place[on] - centre) / radius, eta)
+    way[on], through = mine.refract(way[on], (place[on] - center) / radius, eta)
     inside[on] ^= through
 glass = world(place, way)
 print(f"glass with eta {eta}: {inside.sum()} rays are still inside")

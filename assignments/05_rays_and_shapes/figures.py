@@ -8,7 +8,7 @@ from types import ModuleType
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
-from photograd_course.viz.style import BLUE, GREY, INK, ORANGE, house_style, plain_axes
+from photograd_course.viz.style import BLUE, GRAY, INK, ORANGE, house_style, plain_axes
 from photograd_course.viz.style import RED as CRIMSON
 
 Facts = dict[str, bool | tuple[float, float, float]]
@@ -33,7 +33,7 @@ def fig1_far(module: ModuleType) -> tuple[Figure, Facts]:
         missed.append(1 - kept.mean())
         quadratic.append(_off(origins[kept], d[kept], (-b - np.sqrt(np.abs(rest)))[kept]))
     facts: Facts = {
-        "the quadratic is off by more than a centimetre from 1e7": (quadratic[7], 1e-2, 10.0),
+        "the quadratic is off by more than a centimeter from 1e7": (quadratic[7], 1e-2, 10.0),
         "from 1e8 by more than the radius": (quadratic[8], 1.0, 1e3),
         "from 1e8 it misses a tenth or more": (float(missed[8]), 0.1, 1.0),
         "ours below 1e-7 at 1e8": (ours[8], 0.0, 1e-7),
@@ -101,7 +101,7 @@ def fig2_edges(module: ModuleType) -> tuple[Figure, Facts]:
                 left.annotate(letter, place, color="white", ha="center", va="center")
         left.set(xticks=[], yticks=[], title="weights of a, b, c")
         for one, two in ends:
-            right.plot(*np.array([one, two]).T[:2], color=GREY, linewidth=0.7)
+            right.plot(*np.array([one, two]).T[:2], color=GRAY, linewidth=0.7)
         right.plot(*places[lost_by_corner].T[:2], "o", color=CRIMSON, markersize=3)
         right.plot(*places[np.array(lost)].T[:2], "x", color=INK)
         title = f"lost from a corner: {sum(lost_by_corner)}, with (7): {sum(lost)}"
@@ -129,7 +129,7 @@ def fig3_glass(module: ModuleType) -> tuple[Figure, Facts]:
     (bent, _), (free, got_out) = module.refract(ins, up, eta), module.refract(outs, up, eta)
     critical = np.degrees(angle[got_out].max(initial=0.0))
     facts: Facts = {
-        "the middle crosses 1.5 radii behind the centre": (float(crossing[-1]), 1.48, 1.5),
+        "the middle crosses 1.5 radii behind the center": (float(crossing[-1]), 1.48, 1.5),
         "the outer ones nearer": bool(0.5 < crossing[0] < 1.2),
         "all get in and out": bool(entered.all() and left_it.all()),
         "nothing gets out beyond 41.8 degrees": (float(critical), 41.3, 41.9),
@@ -198,12 +198,12 @@ def fig4_march(module: ModuleType) -> tuple[Figure, Facts]:
         left, right = figure.subplots(1, 2, width_ratios=(1.4, 1))
         left.add_patch(Circle((0, 0), 1, facecolor="#f6dcc3", edgecolor=INK, linewidth=0.8))
         left.axvline(3, color=INK)
-        for (walk, _), colour in zip(walks, (BLUE, ORANGE), strict=True):
-            left.plot([-3, 3], walk[[0, 0], 1], color=colour, linewidth=0.6)
+        for (walk, _), color in zip(walks, (BLUE, ORANGE), strict=True):
+            left.plot([-3, 3], walk[[0, 0], 1], color=color, linewidth=0.6)
             for place in walk[:60]:
                 free = abs(float(scene(place[None])[0][0]))
-                left.add_patch(Circle(place[:2], free, fill=False, edgecolor=colour, linewidth=0.6))
-            left.plot(*walk[:, :2].T, ".", color=colour, markersize=3)
+                left.add_patch(Circle(place[:2], free, fill=False, edgecolor=color, linewidth=0.6))
+            left.plot(*walk[:, :2].T, ".", color=color, markersize=3)
         left.set(xlim=(-5.3, 3.4), ylim=(-3.9, 3.2), aspect="equal", xlabel="x  [m]")
         right.plot(y, slopes, color=BLUE)
         right.plot(y[::4], apart[::4], "o", color=INK, markersize=3)
@@ -244,7 +244,7 @@ def fig5_tree(module: ModuleType) -> tuple[Figure, Facts]:
         drawn = left.imshow(counts.reshape(height, width), cmap="viridis", vmin=0)
         figure.colorbar(drawn, ax=left, label="boxes asked for", shrink=0.8)
         left.set(xticks=[], yticks=[])
-        right.loglog(sizes, sizes, color=GREY, linewidth=1)
+        right.loglog(sizes, sizes, color=GRAY, linewidth=1)
         right.loglog(sizes, means, color=BLUE, marker="o", markersize=4)
         right.annotate(
             "every triangle", (sizes[1], sizes[1]), (-30, 22), color=INK, textcoords="offset points"

@@ -20,7 +20,7 @@ LEAF = 2  # things in a leaf of a tree, at most
 
 
 def camera_rays(width, height, fx, fy, cx, cy, world_from_camera):
-    """One ray through the centre of each pixel of a pinhole camera.
+    """One ray through the center of each pixel of a pinhole camera.
 
     Args:
         width, height: of the picture, in pixels.

@@ -15,6 +15,6 @@ def traced(scene, origins, directions, depth, seed):
 
 
 def recovered(scene, thing, origins, directions, picture, steps, seed):
-    """(base colour, roughness) that `recover` finds with your gradient."""
+    """(base color, roughness) that `recover` finds with your gradient."""
     rng = np.random.default_rng(seed)
     return yours.recover(scene, thing, origins, directions, picture, steps, rng)[:2]

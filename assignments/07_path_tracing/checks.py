@@ -2,7 +2,7 @@
 
 Most are exact: the numbers that a function would draw are arguments, and where they are nodes of a
 quadrature their mean is an integral. Eleven judgements are of random draws. Where one is bad, at
-2e-4, new draws get a second one: a right solution fails in less than one of a million hand-ins.
+2e-4, new draws get a second one: a right solution fails in less than one of a million submissions.
 """
 
 from __future__ import annotations
@@ -32,9 +32,9 @@ UP = np.array([0.0, 1.0, 0.0])
 
 
 def scene_of(flat, balls=()):
-    """A scene of rectangles (corner, edge_u, edge_v, material), balls (centre, radius, material).
+    """A scene of rectangles (corner, edge_u, edge_v, material), balls (center, radius, material).
 
-    Materials are dicts; what they leave out is grey and matte.
+    Materials are dicts; what they leave out is gray and matte.
     """
     given = [thing[-1] for thing in (*flat, *balls)]
     scene = {
@@ -90,15 +90,15 @@ def ways(rng, n, low=0.2):
 
 def panel(rng, point, low=0.8, high=1.6):
     """(corner, edge_u, edge_v) of a rectangle at random above a point, its front towards it."""
-    centre = point + rng.uniform(low, high) * ways(rng, 1, 0.5)[0]
-    towards = (point - centre) / np.linalg.norm(point - centre)
+    center = point + rng.uniform(low, high) * ways(rng, 1, 0.5)[0]
+    towards = (point - center) / np.linalg.norm(point - center)
     normal = towards + 0.5 * ways(rng, 1, 0.0)[0]
     u = np.cross(normal, rng.normal(size=3))
     v = np.cross(normal, u)
     u, v = (rng.uniform(0.4, 0.8) * e / np.linalg.norm(e) for e in (u, v))
     if np.cross(u, v) @ towards < 0:
         u, v = v, u
-    return centre - (u + v) / 2, u, v
+    return center - (u + v) / 2, u, v
 
 
 def corners_of(corner, u, v):
@@ -1188,10 +1188,10 @@ def glossy_table(color, metalness, roughness):
     calls=("direct_light_backward",),
     needs=(*TASK_3, "direct_light"),
     visibility="hidden",
-    sole="what it is for: a base colour and a roughness, found in a picture",
+    sole="what it is for: a base color and a roughness, found in a picture",
 )
 def a_material_is_recovered(t):
-    """The base colour within 0.01 and the roughness within 0.02, from an unseen picture."""
+    """The base color within 0.01 and the roughness within 0.02, from an unseen picture."""
     # A polished table, or one channel far from the others, takes more steps than these.
     color, roughness = t.rng.uniform(0.3, 0.8, 3), float(t.rng.uniform(0.35, 0.5))
     truth = glossy_table(color, 0.5, roughness)

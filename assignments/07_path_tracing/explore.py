@@ -132,7 +132,7 @@ if whose == "the core's":
 
 # %% [markdown]
 # ## What the picture says about the material
-# From grey and roughness 0.6, in the core's picture; in yours, where the core has none to offer.
+# From gray and roughness 0.6, in the core's picture; in yours, where the core has none to offer.
 
 # %%
 start = mine.demo_table((0.5, 0.5, 0.5), 0.6)
@@ -141,7 +141,7 @@ color, rough, track = mine.recover(start, 0, *rays, target, steps, rng)
 goal = np.array([0.8, 0.5, 0.2, roughness])
 told = f"; the core found {found[:3].round(3)}, {found[3]:.3f}" if like_shipped else ""
 print(
-    f"fit:   in {whose} picture, base colour {color.round(3)}, roughness {rough:.3f} in {steps} "
+    f"fit:   in {whose} picture, base color {color.round(3)}, roughness {rough:.3f} in {steps} "
     f"steps, {time.perf_counter() - before:.1f} s{told}; it is 0.8, 0.5, 0.2 and {roughness:g}"
 )
 near = np.abs(track - goal) < 0.02

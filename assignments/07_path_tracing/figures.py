@@ -6,7 +6,7 @@ from types import ModuleType
 
 import numpy as np
 from matplotlib.figure import Figure
-from photograd_course.viz.style import BLUE, GREY, INK, ORANGE, house_style, plain_axes
+from photograd_course.viz.style import BLUE, GRAY, INK, ORANGE, house_style, plain_axes
 from photograd_course.viz.style import RED as CRIMSON
 
 Facts = dict[str, bool | tuple[float, float, float]]
@@ -45,7 +45,7 @@ def fig1_measure(module: ModuleType) -> tuple[Figure, Facts]:
     with house_style():
         figure = Figure(figsize=(7.0, 2.9), layout="constrained")
         axes = figure.subplots()
-        axes.semilogy(aside, right, color=GREY)
+        axes.semilogy(aside, right, color=GRAY)
         axes.semilogy(aside[::2], np.maximum(ours, 1e-9)[::2], "o", color=BLUE, markersize=4)
         axes.semilogy(aside, by_area, color=CRIMSON)
         axes.semilogy(aside, no_cosine, color=ORANGE)
@@ -129,8 +129,8 @@ def fig2_strategies(module: ModuleType) -> tuple[Figure, Facts]:
             shown = np.zeros(width * height)
             shown[on] = p[:, :shown_ones].mean(axis=1)
             shown[hit["thing"] == 4] = 1.5
-            grey = np.clip(shown.reshape(height, width), 0, 1) ** GAMMA
-            axes[0, column].imshow(grey, cmap="gray", vmin=0, vmax=1)
+            gray = np.clip(shown.reshape(height, width), 0, 1) ** GAMMA
+            axes[0, column].imshow(gray, cmap="gray", vmin=0, vmax=1)
             axes[0, column].set(xticks=[], yticks=[], title=name)
             for k, each in enumerate(roughness):  # the strip's name, where its front edge is seen
                 low = np.flatnonzero(on)[strip == k].max() // width
@@ -139,7 +139,7 @@ def fig2_strategies(module: ModuleType) -> tuple[Figure, Facts]:
                 axes[0, column].text(
                     middle, low - 1, str(each), color="white", ha="center", fontsize=7
                 )
-            axes[1, column].bar(range(4), spread[column], color=(ORANGE, GREY, BLUE)[column])
+            axes[1, column].bar(range(4), spread[column], color=(ORANGE, GRAY, BLUE)[column])
             axes[1, column].set(yscale="log", ylim=(0.5, 20), xlabel="roughness")
             axes[1, column].set_xticks(range(4), [str(r) for r in roughness])
         axes[1, 0].set(ylabel="noise / brightness")
@@ -185,7 +185,7 @@ def fig3_depth(module: ModuleType) -> tuple[Figure, Facts]:
             shown = np.clip(picture.reshape(height, width, 3), 0, 1) ** GAMMA
             axes[k].imshow(shown)
             axes[k].set(xticks=[], yticks=[], title=f"depth {depth}")
-        axes[3].plot(depths, right, color=GREY)
+        axes[3].plot(depths, right, color=GRAY)
         axes[3].plot(depths, means, "o", color=BLUE, markersize=4)
         axes[3].plot(depths, double, "x", color=CRIMSON, markersize=5)
         axes[3].set(xlabel="depth", title="radiance of a furnace", ylim=(0.8, 4.2))
@@ -234,14 +234,14 @@ def fig4_roulette(module: ModuleType) -> tuple[Figure, Facts]:
     with house_style():
         figure = Figure(figsize=(7.0, 2.4), layout="constrained")
         axes = figure.subplots(1, 3)
-        for k, (name, colour) in enumerate((("roulette", BLUE), ("none", ORANGE))):
+        for k, (name, color) in enumerate((("roulette", BLUE), ("none", ORANGE))):
             shift = 0.12 * (2 * k - 1)
             axes[0].errorbar(
-                depths + shift, means[k][0], 3 * means[k][1], fmt="o", color=colour, markersize=4
+                depths + shift, means[k][0], 3 * means[k][1], fmt="o", color=color, markersize=4
             )
-            axes[1].plot(depths, visits[k], color=colour, marker="o", markersize=4, label=name)
-            axes[2].plot(depths, prices[k], color=colour, marker="o", markersize=4)
-        axes[0].plot(depths, right, color=GREY, zorder=0)
+            axes[1].plot(depths, visits[k], color=color, marker="o", markersize=4, label=name)
+            axes[2].plot(depths, prices[k], color=color, marker="o", markersize=4)
+        axes[0].plot(depths, right, color=GRAY, zorder=0)
         axes[1].legend(frameon=False)
         for each, title in zip(
             axes, ("mean", "surfaces visited", "variance × surfaces"), strict=True
@@ -290,11 +290,11 @@ def fig5_gradient(module: ModuleType) -> tuple[Figure, Facts]:
     with house_style():
         figure = Figure(figsize=(7.0, 2.8), layout="constrained")
         left, side = figure.subplots(1, 2)
-        left.plot(values, right, color=GREY)
+        left.plot(values, right, color=GRAY)
         left.errorbar(values, ours, 2 * errors, fmt="o", color=BLUE, markersize=4)
         left.plot(values, wrong, "x", color=CRIMSON)
         left.set(xlabel="roughness", title="derivative by roughness")
-        side.axhline(0.6, color=GREY)
+        side.axhline(0.6, color=GRAY)
         side.plot(tracks[0], color=BLUE, linewidth=1)
         side.plot(tracks[1], color=CRIMSON, linewidth=1)
         side.annotate(
@@ -305,14 +305,14 @@ def fig5_gradient(module: ModuleType) -> tuple[Figure, Facts]:
             textcoords="offset points",
         )
         side.annotate("own numbers", (70, 0.66), (0, 8), color=BLUE, textcoords="offset points")
-        side.set(xlabel="step", title="base colour", ylim=(0.25, 0.75))
+        side.set(xlabel="step", title="base color", ylim=(0.25, 0.75))
         for each in (left, side):
             plain_axes(each)
     return figure, facts
 
 
 def fig6_recover(module: ModuleType) -> tuple[Figure, Facts]:
-    """The table by the hand-in and by the core; a fit."""
+    """The table by the submission and by the core; a fit."""
     truth, rays = module.demo_table(), module.table_rays()
     picture, slope, core = module.core_answers()
     rng = np.random.default_rng(7)
@@ -332,7 +332,7 @@ def fig6_recover(module: ModuleType) -> tuple[Figure, Facts]:
     facts: Facts = {
         "your picture is the core's": (_apart(seen.reshape(7, 10, 3), picture), 0.0, 0.1),
         "your gradient is the core's": (_apart(mine, slope), 0.0, 0.35),
-        "base colour found within 0.02": (float(np.abs(found - exact)[:3].max()), 0.0, 0.02),
+        "base color found within 0.02": (float(np.abs(found - exact)[:3].max()), 0.0, 0.02),
         "roughness found within 0.02": (float(abs(found - exact)[3]), 0.0, 0.02),
         "the core as well": (float(np.abs(core - exact).max()), 0.0, 0.02),
     }
@@ -349,10 +349,10 @@ def fig6_recover(module: ModuleType) -> tuple[Figure, Facts]:
         ):
             each.set(xticks=[], yticks=[], title=name)
         axis = below.subplots()
-        for k, colour in enumerate((CRIMSON, "#4a8f3c", BLUE, INK)):
-            axis.axhline(exact[k], color=colour, linewidth=0.7, linestyle=":")
-            axis.plot(np.arange(1, 46), track[:, k], color=colour)
-            axis.plot([46], [core[k]], "x", color=colour)
+        for k, color in enumerate((CRIMSON, "#4a8f3c", BLUE, INK)):
+            axis.axhline(exact[k], color=color, linewidth=0.7, linestyle=":")
+            axis.plot(np.arange(1, 46), track[:, k], color=color)
+            axis.plot([46], [core[k]], "x", color=color)
         for k, name in enumerate(("red", "green", "blue", "roughness")):
             axis.annotate(name, (24, track[24, k]), (3, 4), textcoords="offset points")
         axis.set(xlabel="step", ylim=(0, 1))
@@ -435,7 +435,7 @@ def _through_density(module: ModuleType, scene: dict, hit: dict, u: Array, value
 
 
 def _descent(module: ModuleType, shared: bool) -> Array:
-    """A matte base colour by plain descent, one sample a pixel, 110 steps."""
+    """A matte base color by plain descent, one sample a pixel, 110 steps."""
     lamp = module.rectangle([-1.2, 0.5, -1.2], [2.4, 0, 0], [0, 0, 2.4], emission=1.0)
     floor = module.rectangle([-1, 0, -1], [0, 0, 2], [2, 0, 0], base_color=0.6)
     scene = module.assemble([floor, lamp])

@@ -2,14 +2,14 @@
 
 A *scene* is a dict of arrays. It has Q rectangles and B balls, T = Q + B things in all, rectangles
 first. `corners`, `edges_u`, `edges_v` (Q, 3): a corner of each rectangle and the two edges that
-leave it, at right angles; its front is where edge_u x edge_v points. `balls` (B, 4): centre and
+leave it, at right angles; its front is where edge_u x edge_v points. `balls` (B, 4): center and
 radius. `emission` (T, 3): the radiance of the front, 0 for what is no lamp, and for every ball.
 `base_color` (T, 3), `metalness` (T,), `roughness` (T,), 0.045 to 1: the material of glTF from
 assignment 04; `matte` (T,) of bool: no varnish, only base_color / pi.
 
 N places that are seen are a *hit*, a dict of arrays with N rows: `points` (N, 3), `normals` (N, 3),
 unit, on the side of the viewer, `wo` (N, 3), unit, to the viewer, `front` (N,) of bool, `t` (N,)
-the distance from the viewer, in metres, and `thing` (N,), its number, or -1 where nothing is seen.
+the distance from the viewer, in meters, and `thing` (N,), its number, or -1 where nothing is seen.
 
 Directions are unit vectors that leave the surface; wi leads to the light. Radiance is linear, in
 three channels. Random numbers come as arguments: `u` uniform in [0, 1), or a generator `rng`.
@@ -23,7 +23,7 @@ from __future__ import annotations
 import numpy as np
 from reflectance import ggx_pdf, gltf, gltf_backward, sample_ggx
 
-T_MIN = 1e-6  # metres; nothing nearer counts as met
+T_MIN = 1e-6  # meters; nothing nearer counts as met
 ALWAYS = 2  # at a path's first two places, from the one that is seen on, nobody plays roulette
 SIDE = 4  # SIDE x SIDE samples of each pixel, in a step of `recover`
 
@@ -214,7 +214,7 @@ def light_pdf(scene, thing, wi, distance):
         scene: with K lamps.
         thing: (N,), what lies in the direction wi; -1 for nothing.
         wi: (N, 3), from the point towards it.
-        distance: (N,), how far away it is, in metres.
+        distance: (N,), how far away it is, in meters.
 
     Returns:
         (N,), in 1/sr; exactly 0 where the thing is no lamp, or its front is not seen. Handout
@@ -478,7 +478,7 @@ def strata(rng, pixels, side=SIDE):
 
 
 def recover(scene, thing, origins, directions, picture, steps, rng):
-    """Find the base colour and the roughness of one thing in a picture, by your gradient.
+    """Find the base color and the roughness of one thing in a picture, by your gradient.
 
     Adam on the mean squared difference from the picture, relative to it (plus 0.1), so that the
     highlight does not have all the say. The residual and the derivative that it is multiplied with
@@ -494,7 +494,7 @@ def recover(scene, thing, origins, directions, picture, steps, rng):
 
     Returns:
         (base_color (3,), roughness, track (steps, 4)): the mean of the last third of the steps,
-        and base colour and roughness after each.
+        and base color and roughness after each.
     """
     own = {
         **scene,

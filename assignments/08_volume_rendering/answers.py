@@ -18,7 +18,7 @@ def slope_of_one_step(reference, s, dt, c, b):
     return float(reference.composite_adjoint(*given, np.ones((1, 1)), np.zeros(1))[0][0, 0])
 
 
-def metres_in_the_box(reference, y, dx, dy):
+def meters_in_the_box(reference, y, dx, dy):
     """The length of a ray's stretch within a box."""
     box = np.zeros(3), np.array([4.0, 2.0, 3.0])
     near, far = reference.ray_box(*box, np.array([[-1.0, y, 1.0]]), np.array([[dx, dy, 0.0]]))

@@ -121,7 +121,7 @@ def two_slabs_in_closed_form(t):
     calls=("composite",),
     tolerance=EXACT,
     hint="handout, equation (9): every bit of light is accounted for",
-    sole="no closed form of the colour is needed for this one",
+    sole="no closed form of the color is needed for this one",
 )
 def nothing_is_lost(t):
     """In white media before white the pixel is white; before black, it is 1 - T_end."""
@@ -218,7 +218,7 @@ def thin_air_and_walls(t):
     sole="what a wrong weight does to a medium that is not constant",
 )
 def halving_the_steps_quarters_the_error(t):
-    """A Gaussian blob whose colour changes with depth: the error falls with the square of dt."""
+    """A Gaussian blob whose color changes with depth: the error falls with the square of dt."""
     middle, width = t.rng.uniform(0.3, 0.5), t.rng.uniform(0.25, 0.35)
     peak = t.rng.uniform(2.0, 3.0)
 
@@ -227,7 +227,7 @@ def halving_the_steps_quarters_the_error(t):
         return peak * width * math.sqrt(math.pi) / 2 * (erf + math.erf(middle / width))
 
     end = float(tau(1.0)[0])
-    # Colours 1 and exp(-tau), for which the integral is known.
+    # Colors 1 and exp(-tau), for which the integral is known.
     right = np.array([1 - math.exp(-end), (1 - math.exp(-2 * end)) / 2])
     errors = []
     for n in (32, 64, 128):
@@ -346,10 +346,10 @@ def nearly_empty_rays(t):
     calls=("composite_adjoint",),
     needs=("composite",),
     tolerance=EXACT,
-    hint="the pixel is linear in colours and background: their derivatives are its weights",
+    hint="the pixel is linear in colors and background: their derivatives are its weights",
     sole="the definition of an adjoint, to the last digits",
 )
-def is_the_transpose_in_the_colours(t):
+def is_the_transpose_in_the_colors(t):
     """<pixel, g> = <color, d_color> + <background, d_background>, and rays add up."""
     sigma, color, dt, background = random_rays(t)
     g, none = t.rng.uniform(-1, 1, (3, 3)), np.zeros(3)
@@ -398,14 +398,14 @@ def is_the_transpose_in_the_colours(t):
     hint="sigma enters as sigma * dt only: what does the chain rule add on the way back?",
     sole="asks for the step length alone, which neither sign nor direction shows",
 )
-def centimetres_instead_of_metres(t):
-    """In centimetres dt is 100 times as large, sigma a 100th, and d_sigma 100 times as large."""
+def centimeters_instead_of_meters(t):
+    """In centimeters dt is 100 times as large, sigma a 100th, and d_sigma 100 times as large."""
     sigma, color, dt, background = random_rays(t)
     g, h = t.rng.uniform(-1, 1, (3, 3)), t.rng.uniform(-1, 1, 3)
-    metres = t.call(
+    meters = t.call(
         "composite_adjoint", sigma, color, dt, background, g, h, returns=slopes_of((3, 6), 3)
     )
-    centimetres = t.call(
+    centimeters = t.call(
         "composite_adjoint",
         sigma / 100,
         color,
@@ -415,8 +415,8 @@ def centimetres_instead_of_metres(t):
         h,
         returns=slopes_of((3, 6), 3),
     )
-    t.close("d_sigma by centimetres", centimetres[0], 100 * metres[0])
-    t.close("d_color by centimetres", centimetres[1], metres[1])
+    t.close("d_sigma by centimeters", centimeters[0], 100 * meters[0])
+    t.close("d_color by centimeters", centimeters[1], meters[1])
 
 
 @check(
@@ -585,7 +585,7 @@ def parallel_to_faces(t):
 # 08.4 ---------------------------------------------------------------------------------------------
 
 
-def centres(shape):
+def centers(shape):
     """Middle of every voxel of a grid (X, Y, Z), last axis fastest: (X Y Z, 3)."""
     parts = np.meshgrid(*((np.arange(n) + 0.5) / n for n in shape), indexing="ij")
     return np.stack([part.ravel() for part in parts], axis=1)
@@ -598,14 +598,14 @@ def sampling_matrix(t, shape, u):
     return t.call("trilinear", unit, u, returns=Array((len(u), voxels)))
 
 
-def between_centres(t, shape, n):
+def between_centers(t, shape, n):
     """Random places (n, 3) that no border touches."""
     rim = 0.5 / np.array(shape)
     return t.rng.uniform(rim, 1 - rim, (n, 3))
 
 
 @check(
-    "08.4.centres",
+    "08.4.centers",
     task="08.4",
     points=2,
     calls=("trilinear",),
@@ -613,10 +613,10 @@ def between_centres(t, shape, n):
     hint="handout, equation (16): which u belongs to the first voxel?",
     sole="says that coordinates and axes are right, whatever the weights",
 )
-def a_centre_gives_its_voxel(t):
+def a_center_gives_its_voxel(t):
     """In the middle of a voxel the sample is that voxel."""
     grid = t.rng.uniform(-1.0, 1.0, (2, 5, 3, 2))
-    got = t.call("trilinear", grid, centres((2, 5, 3)), returns=Array((30, 2)))
+    got = t.call("trilinear", grid, centers((2, 5, 3)), returns=Array((30, 2)))
     t.close("samples", got, grid.reshape(30, 2), reveal=True)
 
 
@@ -638,8 +638,8 @@ def products_stay_products(t):
         x, y, z = (u * factor).T
         return np.stack([x, y, z, x * y, y * z, z * x, x * y * z], axis=1)
 
-    u = between_centres(t, shape, 50)
-    grid = fields(centres(shape)).reshape(*shape, 7)
+    u = between_centers(t, shape, 50)
+    grid = fields(centers(shape)).reshape(*shape, 7)
     got = t.call("trilinear", grid, u, returns=Array((50, 7)))
     t.close("samples", got, fields(u), reveal=True)
 
@@ -654,7 +654,7 @@ def products_stay_products(t):
     sole="says that only the border is wrong",
 )
 def the_border_holds(t):
-    """Beyond the outermost centres, and beyond the box, the value at the border holds."""
+    """Beyond the outermost centers, and beyond the box, the value at the border holds."""
     shape = (3, 2, 4)
     grid = t.rng.uniform(-1.0, 1.0, (*shape, 2))
     corners = np.array(list(np.ndindex(2, 2, 2)), np.float64)
@@ -682,10 +682,10 @@ def one_sample_is_spread_around_its_place(t):
     """What one sample hands out sums to g, and is balanced around the sample's place."""
     shape = (4, 2, 5)
     for _ in range(5):
-        u, g = between_centres(t, shape, 1), t.rng.uniform(0.5, 2.0, (1, 1))
+        u, g = between_centers(t, shape, 1), t.rng.uniform(0.5, 2.0, (1, 1))
         got = t.call("trilinear_adjoint", shape, u, g, returns=Array((*shape, 1))).ravel()
         t.close("sum over all voxels", got.sum(), g[0, 0], reveal=True)
-        t.close("balance (x, y, z)", got @ centres(shape) / g[0, 0], u[0], reveal=True)
+        t.close("balance (x, y, z)", got @ centers(shape) / g[0, 0], u[0], reveal=True)
         t.require(
             bool((got >= 0).all()) and np.count_nonzero(got) <= 8,
             "a positive g must reach at most eight voxels, none negatively",

@@ -54,11 +54,11 @@ print(f"        your derivative is {off:.1e} from differences")
 if rounding > 1e-7:
     print(f"        (slopes are tiny here: rounding alone puts differences {rounding:.0e} off)")
 figure = Figure(figsize=(9, 7), layout="constrained")
-top, centre, bottom = figure.subplots(3, 1, sharex=True)
+top, center, bottom = figure.subplots(3, 1, sharex=True)
 top.stairs(fog[0], ends, color="0.4")
 top.set(title="extinction [1/m]: a dark cloud, then a bright one")
-centre.stairs(weights[0, :, 0], ends, color="tab:blue")
-centre.set(title="weight of each step")
+center.stairs(weights[0, :, 0], ends, color="tab:blue")
+center.set(title="weight of each step")
 bottom.axhline(0, color="0.7")
 bottom.plot(middle, slope[0], color="black", label="your derivative by extinction")
 bottom.plot(middle, differences, "o", color="tab:orange", markersize=3, label="differences")
@@ -69,7 +69,7 @@ figure.savefig("ray.png", dpi=100)
 
 # %% [markdown]
 # ## A volume
-# A camera looks along -z through a cube of two metres: with parallel rays, so that all of them have
+# A camera looks along -z through a cube of two meters: with parallel rays, so that all of them have
 # the same step, as the core wants it. The truth is a ball within a ring; the guess has no ring, and
 # a ball too many.
 
@@ -186,13 +186,13 @@ print("ray.png, volume.png: look at them")
 # %% [markdown]
 # ## Photographs of your own
 # `transforms.json` has the cameras (x to the right, y up, looking along -z: columns of a matrix)
-# and an angle of view or a focal length in pixels. In a box full of thin grey fog, where do the
+# and an angle of view or a focal length in pixels. In a box full of thin gray fog, where do the
 # photographs want it denser, where thinner? Their background counts as the mean of their border.
 
 
 # %%
 def views(folder):
-    """(origins, directions, colours) of all pixels of the pictures, made small."""
+    """(origins, directions, colors) of all pixels of the pictures, made small."""
     file = folder / "transforms.json"
     file = file if file.exists() else folder / "transforms_train.json"
     told = json.loads(file.read_text(encoding="utf-8"))
@@ -207,26 +207,26 @@ def views(folder):
         angle = frame.get("camera_angle_x", told.get("camera_angle_x"))
         focal = focal / told.get("w", wide) if focal else 0.5 / np.tan(angle / 2)
         small = (size, max(1, round(size * tall / wide)))
-        colours = np.asarray(image.convert("RGBA").resize(small), np.float64) / 255
-        colours = colours[..., :3] ** 2.2 * colours[..., 3:]
+        colors = np.asarray(image.convert("RGBA").resize(small), np.float64) / 255
+        colors = colors[..., :3] ** 2.2 * colors[..., 3:]
         v, u = np.meshgrid(np.arange(small[1]) + 0.5, np.arange(size) + 0.5, indexing="ij")
         flat = [(u / size - 0.5) / focal, -(v - small[1] / 2) / size / focal, -np.ones(u.shape)]
         pose = np.array(frame["transform_matrix"], np.float64)
         aim = np.stack(flat, axis=2).reshape(-1, 3) @ pose[:3, :3].T
-        yield np.tile(pose[:3, 3], (len(aim), 1)), aim, colours
+        yield np.tile(pose[:3, 3], (len(aim), 1)), aim, colors
 
 
 if capture:
     reach, n = float(option("box", 1.0)), int(option("voxels", 32))
     corner = np.full(3, reach)
-    grey = np.full((n, n, n, 4), 0.5)
-    grey[..., 3] = 0.1 * thick / reach
-    total, count = np.zeros(grey.shape), 0
-    for places, aims, colours in views(Path(capture)):
-        rim = np.concatenate([colours[0], colours[-1], colours[:, 0], colours[:, -1]])
+    gray = np.full((n, n, n, 4), 0.5)
+    gray[..., 3] = 0.1 * thick / reach
+    total, count = np.zeros(gray.shape), 0
+    for places, aims, colors in views(Path(capture)):
+        rim = np.concatenate([colors[0], colors[-1], colors[:, 0], colors[:, -1]])
         given = (-corner, corner, places, aims, steps, rim.mean(axis=0))
-        wrong = mine.render_rays(grey, *given) - colours.reshape(-1, 3)
-        total += mine.render_adjoint(grey, *given, 2 * wrong / len(wrong))[0]
+        wrong = mine.render_rays(gray, *given) - colors.reshape(-1, 3)
+        total += mine.render_adjoint(gray, *given, 2 * wrong / len(wrong))[0]
         count += 1
     titles = ("y to the right, z up", "x to the right, z up", "x to the right, y up")
     figure = Figure(figsize=(10, 4), layout="constrained")
@@ -234,4 +234,4 @@ if capture:
         flat = np.moveaxis(total[..., 3], axis, 2)
         signed(axes, flat, max(np.abs(flat.sum(axis=2)).max(), 1e-300), titles[axis])
     figure.savefig("capture.png", dpi=100)
-    print(f"capture.png: what {count} photographs want of grey fog; blue is more, red is less")
+    print(f"capture.png: what {count} photographs want of gray fog; blue is more, red is less")

@@ -9,12 +9,12 @@ from matplotlib.figure import Figure
 from photograd_course.viz.style import (
     BLUE,
     FRAME,
-    GREY,
+    GRAY,
     INK,
     ORANGE,
     house_style,
     plain_axes,
-    signed_colour_map,
+    signed_color_map,
 )
 from photograd_course.viz.style import RED as CRIMSON
 
@@ -59,7 +59,7 @@ def fig1_ray(module: ModuleType) -> tuple[Figure, Facts]:
     with house_style():
         figure = Figure(figsize=(7.0, 4.4), layout="constrained")
         panels = figure.subplots(3, 1, sharex=True)
-        panels[0].bar(x, sigma, width=dt, color=GREY)
+        panels[0].bar(x, sigma, width=dt, color=GRAY)
         panels[0].set(ylabel="σ  [1/m]")
         panels[1].step(np.append(0.0, np.cumsum(dt)), T, color=INK, where="post")
         panels[1].set(ylabel="T in front", ylim=(0, 1.05))
@@ -81,7 +81,7 @@ def fig2_order(module: ModuleType) -> tuple[Figure, Facts]:
         "T σ dt": (lambda s, c, dt: np.sum(_T(s * dt) * s * dt * c), ORANGE, "--", "s"),
         "T inclusive, times α": (
             lambda s, c, dt: np.sum(_T(s * dt) * np.exp(-s * dt) * -np.expm1(-s * dt) * c),
-            GREY,
+            GRAY,
             "-.",
             "^",
         ),
@@ -116,9 +116,9 @@ def fig2_order(module: ModuleType) -> tuple[Figure, Facts]:
     with house_style():
         figure = Figure(figsize=(7.0, 3.1), layout="constrained")
         axes = figure.subplots()
-        for name, (_, colour, dashes, mark) in ways.items():
+        for name, (_, color, dashes, mark) in ways.items():
             axes.loglog(
-                counts, errors[name], color=colour, linestyle=dashes, marker=mark, markersize=4
+                counts, errors[name], color=color, linestyle=dashes, marker=mark, markersize=4
             )
             lift = {"T σ dt": -6, "T inclusive, times α": 6}.get(name, 0)
             axes.annotate(
@@ -127,7 +127,7 @@ def fig2_order(module: ModuleType) -> tuple[Figure, Facts]:
                 (7, lift),
                 textcoords="offset points",
                 va="center",
-                color=INK if colour == GREY else colour,
+                color=INK if color == GRAY else color,
             )
         axes.set(xlabel="steps", ylabel="relative error of the pixel", xlim=(7, 2200))
         axes.set_xticks(counts, [str(n) for n in counts])
@@ -181,12 +181,12 @@ def fig3_adjoint(module: ModuleType) -> tuple[Figure, Facts]:
         axes.plot(x, hidden, color=ORANGE, linestyle="-.")
         axes.plot(x, d_sigma, color=INK)
         axes.plot(x[::3], differences[::3], "o", color=INK, markersize=3.5)
-        for text, place, colour in (
+        for text, place, color in (
             ("shows more of itself", (4.1, 0.035), BLUE),
             ("hides what is behind", (4.1, -0.038), ORANGE),
             ("sum; dots: differences", (1.6, -0.034), INK),
         ):
-            axes.annotate(text, place, color=colour, fontsize=8)
+            axes.annotate(text, place, color=color, fontsize=8)
         axes.set(ylim=(-0.07, 0.07))
         low, high = axes.get_ylim()
         for text, at in (("dark cloud", 1.5), ("bright cloud", 4.5)):
@@ -261,7 +261,7 @@ def fig5_box(module: ModuleType) -> tuple[Figure, Facts]:
         "those of the second do not overlap": bool(overlap[1][0] > overlap[1][1]),
         "it misses": bool(near[1] == 0 and far[1] == 0),
     }
-    colours = (BLUE, CRIMSON)
+    colors = (BLUE, CRIMSON)
     with house_style():
         figure = Figure(figsize=(7.0, 2.6), layout="constrained")
         left, right = figure.subplots(1, 2, width_ratios=(1.1, 1))
@@ -273,15 +273,15 @@ def fig5_box(module: ModuleType) -> tuple[Figure, Facts]:
         for r in (0, 1):
             o, d = origins[r, :2], directions[r, :2]
             line = o + np.array([0.0, 5.2])[:, None] * d
-            left.plot(*line.T, color=colours[r], linewidth=1.0)
+            left.plot(*line.T, color=colors[r], linewidth=1.0)
             if far[r] > near[r]:
                 inside = o + np.array([near[r], far[r]])[:, None] * d
-                left.plot(*inside.T, color=colours[r], linewidth=3.5, solid_capstyle="butt")
+                left.plot(*inside.T, color=colors[r], linewidth=3.5, solid_capstyle="butt")
             for a, mark in ((0, "o"), (1, "s")):
                 at = o + np.array(planes[r][a])[:, None] * d
-                left.plot(*at.T, mark, color=colours[r], ms=5, mfc="white")
+                left.plot(*at.T, mark, color=colors[r], ms=5, mfc="white")
             name, place = (("first", (4.25, 2.45)), ("second", (1.25, 3.6)))[r]
-            left.annotate(name, place, color=colours[r])
+            left.annotate(name, place, color=colors[r])
         left.set(xlim=(0, 5), ylim=(0, 4), xlabel="x", ylabel="y", aspect="equal")
         left.set(xticks=range(6), yticks=range(5))
         rows = 0
@@ -290,7 +290,7 @@ def fig5_box(module: ModuleType) -> tuple[Figure, Facts]:
                 right.plot(
                     planes[r][a],
                     [rows, rows],
-                    color=colours[r],
+                    color=colors[r],
                     marker=mark,
                     markerfacecolor="white",
                     markersize=5,
@@ -304,7 +304,7 @@ def fig5_box(module: ModuleType) -> tuple[Figure, Facts]:
                 right.plot(
                     [near[r], far[r]],
                     [rows, rows],
-                    color=colours[r],
+                    color=colors[r],
                     linewidth=4,
                     solid_capstyle="butt",
                 )
@@ -316,7 +316,7 @@ def fig5_box(module: ModuleType) -> tuple[Figure, Facts]:
                 (0, 6),
                 textcoords="offset points",
                 fontsize=7.5,
-                color=colours[r],
+                color=colors[r],
             )
             rows += 1
         right.set(xlim=(0, 5.3), ylim=(5.6, -0.9), xlabel="t", yticks=[])
@@ -372,7 +372,7 @@ def fig6_view(module: ModuleType) -> tuple[Figure, Facts]:
             axes.set_title(title)
         top = float(np.abs(columns).max())
         image = panels[2].imshow(
-            columns / top, cmap=signed_colour_map(), vmin=-1, vmax=1, interpolation="nearest"
+            columns / top, cmap=signed_color_map(), vmin=-1, vmax=1, interpolation="nearest"
         )
         panels[2].set_title("∂L/∂σ, summed along z")
         for axes in panels:
@@ -413,7 +413,7 @@ def _T(s: Array) -> Array:
 
 
 def _cloud_pixel(way: object, n: int) -> float:
-    """The pixel of a smooth cloud of changing colour by one way to weigh its steps."""
+    """The pixel of a smooth cloud of changing color by one way to weigh its steps."""
     x = (np.arange(n) + 0.5) / n
     sigma = 3 * np.exp(-(((x - 0.4) / 0.3) ** 2))
     return float(way(sigma, 0.6 + 0.4 * np.sin(4 * x), 1 / n))  # type: ignore[operator]

@@ -15,13 +15,13 @@ import numpy as np
 
 
 def composite(sigma, color, dt, background):
-    """What is seen along rays that are cut into steps of constant extinction and colour.
+    """What is seen along rays that are cut into steps of constant extinction and color.
 
     Args:
         sigma: (R, S), the extinction in each step, 0 or more, nearest step first; 1/m.
-        color: (R, S, C), the colour of each step; any C from 1 upwards.
+        color: (R, S, C), the color of each step; any C from 1 upwards.
         dt: (R, S), the length of each step, 0 or more; m. Steps may differ.
-        background: (C,), the colour behind everything, the same for all rays.
+        background: (C,), the color behind everything, the same for all rays.
 
     Returns:
         (pixel, T_end): (R, C), and (R,) the transmittance of the whole ray; handout equations (4)
@@ -156,8 +156,8 @@ def ray_samples(low, high, origins, directions, n):
     step = (t_far - t_near) / n
     t = t_near[:, None] + (np.arange(n) + 0.5) * step[:, None]
     points = origins[:, None, :] + t[:, :, None] * directions[:, None, :]
-    metres = step * np.linalg.norm(directions, axis=1)
-    return (points - low) / (high - low), np.repeat(metres[:, None], n, axis=1)
+    meters = step * np.linalg.norm(directions, axis=1)
+    return (points - low) / (high - low), np.repeat(meters[:, None], n, axis=1)
 
 
 def render_rays(grid, low, high, origins, directions, n, background):

@@ -73,16 +73,16 @@ def views_of(pictures, poses, background, focal=None):
 
 
 def random_views(t, count=2, rows=3, columns=4):
-    """Views of random colours by cameras all around."""
+    """Views of random colors by cameras all around."""
     pictures = t.rng.uniform(0.0, 1.0, (count, rows, columns, 3))
     poses = around(count, turn=t.rng.uniform(0, 6), roll=t.rng.uniform(-0.5, 0.5))
     return views_of(pictures, poses, t.rng.uniform(0.0, 0.5, 3))
 
 
 def ball_views(t, count=2, size=5):
-    """Photographs of an opaque ball of one colour before a dark background, by ray and sphere."""
+    """Photographs of an opaque ball of one color before a dark background, by ray and sphere."""
     views = random_views(t, count, size, size)
-    centre, radius = t.rng.uniform(-0.2, 0.2, 3), t.rng.uniform(0.4, 0.6)
+    center, radius = t.rng.uniform(-0.2, 0.2, 3), t.rng.uniform(0.4, 0.6)
     axis = ((np.arange(size) + 0.5) - size / 2) / views["focal"]
     down, side = np.meshgrid(axis, axis, indexing="ij")
     local = np.stack([side, down, np.ones_like(side)], axis=2)
@@ -90,7 +90,7 @@ def ball_views(t, count=2, size=5):
     for k, pose in enumerate(views["world_from_camera"]):
         d = local @ pose[:3, :3].T
         d /= np.linalg.norm(d, axis=2, keepdims=True)
-        away = centre - pose[:3, 3]
+        away = center - pose[:3, 3]
         along = d @ away
         hit = away @ away - along**2 < radius**2
         views["pictures"][k] = np.where(
@@ -221,10 +221,10 @@ def points_of_a_ray_are_seen_in_its_pixel(t):
     calls=("ray_batch",),
     tolerance=EXACT,
     hint="pixels are counted as they lie in memory: picture by picture, row by row",
-    sole="asks about the colours alone",
+    sole="asks about the colors alone",
 )
-def colours_belong_to_the_chosen_pixels(t):
-    """The colours are those of the chosen pixels, in that order, repeated ones too."""
+def colors_belong_to_the_chosen_pixels(t):
+    """The colors are those of the chosen pixels, in that order, repeated ones too."""
     views = random_views(t, 3, 2, 4)
     chosen = np.array([23, 0, 5, 8, 5, 16, 19])
     _, _, truth = t.call("ray_batch", views, chosen, returns=batch(7))
@@ -350,7 +350,7 @@ def from_photographs_to_voxels(t):
 
 
 def rough(t, grid, eps):
-    """`tv_loss_adjoint` of the hand-in."""
+    """`tv_loss_adjoint` of the submission."""
     return t.call("tv_loss_adjoint", grid, eps, returns=loss_and_slope(grid.shape))
 
 
@@ -445,7 +445,7 @@ EARLIER = ("ray_batch", "mse_and_cotangent", "render_rays", "render_adjoint")
 
 
 def sign_map(t, grid, views):
-    """`gradient_sign_map` of the hand-in."""
+    """`gradient_sign_map` of the submission."""
     shape = grid.shape[:3]
     signs = t.call("gradient_sign_map", grid, views, returns=Array(shape))
     t.require(bool(np.isin(signs, (-1.0, 0.0, 1.0)).all()), "only -1, 0 and 1 may occur")
@@ -587,7 +587,7 @@ def the_first_steps(t):
     t.require(bool((free[..., :3] > 1).any() or (free[..., :3] < 0).any()), "not telling")
     one, losses = fitted(t, views, grid, 1)
     t.close("losses", losses, np.array([loss]))
-    t.close("colours after one step", one[..., :3], kept(free)[..., :3])
+    t.close("colors after one step", one[..., :3], kept(free)[..., :3])
     t.close("sigma after one step", one[..., 3], kept(free)[..., 3])
     again, second = stepped(t, views, one)
     two, losses = fitted(t, views, grid, 2)
@@ -730,7 +730,7 @@ def decibels_of_random_pictures(t):
     ],
 )
 def rays_of_random_cameras(t):
-    """Rays and colours are right for random cameras and pixels."""
+    """Rays and colors are right for random cameras and pixels."""
     for count, rows, columns in ((4, 3, 6), (1, 7, 2), (2, 1, 1)):
         views = random_views(t, count, rows, columns)
         views["world_from_camera"][:, :3, :3] = [turned(t.rng) for _ in range(count)]
@@ -823,13 +823,13 @@ def signs_of_random_volumes(t):
 def two_balls(t, n, scale=1.0):
     """A volume (n, n, n, 4) of two balls, bright and striped, their insides opaque."""
     x = (np.stack(np.indices((n, n, n)), axis=-1) + 0.5) / n * 2 - 1
-    centre = t.rng.normal(size=3)
-    centre *= t.rng.uniform(0.25, 0.4) / np.linalg.norm(centre)
+    center = t.rng.normal(size=3)
+    center *= t.rng.uniform(0.25, 0.4) / np.linalg.norm(center)
     wave = t.rng.normal(size=3)
     wave *= 9.0 / np.linalg.norm(wave)
     grid = np.full((n, n, n, 4), 0.5)
     grid[..., 3] = 0.0
-    for middle, radius in ((centre, 0.45), (-1.3 * centre, 0.3)):
+    for middle, radius in ((center, 0.45), (-1.3 * center, 0.3)):
         away = np.linalg.norm(x - scale * middle, axis=-1)
         inside = np.clip((scale * radius - away) * n / 3 + 0.5, 0, 1)
         paint = t.rng.uniform(0.6, 1.0, 3)
@@ -891,7 +891,7 @@ def inside_more_and_outside_less(t):
 
 
 def telling_start(t, views, shape, seed):
-    """A start from which the first step leaves the limits of extinction and of colour."""
+    """A start from which the first step leaves the limits of extinction and of color."""
     for _ in range(50):
         grid = small_start(t, shape)
         one, _ = t.reference.fit_volume(views, grid, 1, np.random.default_rng(seed))

@@ -10,12 +10,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from photograd_course.viz.style import (
     BLUE,
-    GREY,
+    GRAY,
     INK,
     ORANGE,
     house_style,
     plain_axes,
-    signed_colour_map,
+    signed_color_map,
 )
 
 Facts = dict[str, bool | tuple[float, float, float]]
@@ -55,7 +55,7 @@ def fig1_cameras(module: ModuleType) -> tuple[Figure, Facts]:
     with house_style():
         figure = Figure(figsize=(7.0, 3.6), layout="constrained")
         axes = figure.subplots()
-        axes.fill([-1, 1, 1, -1], [-1, -1, 1, 1], color=GREY, alpha=0.25, linewidth=0)
+        axes.fill([-1, 1, 1, -1], [-1, -1, 1, 1], color=GRAY, alpha=0.25, linewidth=0)
         for ray in range(size):
             ends = origins[ray] + np.array([0, 6.0])[:, None] * directions[ray]
             axes.plot(ends[:, 0], ends[:, 2], color=BLUE, linewidth=0.8)
@@ -105,7 +105,7 @@ def fig2_signs(module: ModuleType) -> tuple[Figure, Facts]:
         ):
             axes.imshow(
                 values[:, :, where].T,
-                cmap=signed_colour_map(),
+                cmap=signed_color_map(),
                 vmin=-1,
                 vmax=1,
                 origin="lower",

@@ -1,14 +1,14 @@
 """Recovering a volume from photographs, by descent along the adjoint that you wrote in 08.
 
 A volume is an array (X, Y, Z, 4), as in assignment 08: r, g, b and sigma, the extinction in 1/m,
-which is never negative; colours lie between 0 and 1. *Views* are a dict of what the photographs are
+which is never negative; colors lie between 0 and 1. *Views* are a dict of what the photographs are
 and how they were taken, all numbers float64:
 
-    "pictures"            (V, H, W, 3), linear colours, row 0 on top
+    "pictures"            (V, H, W, 3), linear colors, row 0 on top
     "world_from_camera"   (V, 4, 4), the pose of each camera: x to the right, y down, z forward
     "focal"               the focal length of all cameras, in pixels
     "low", "high"         (3,) each, opposite corners of the box that holds the volume
-    "background"          (3,), the colour behind everything
+    "background"          (3,), the color behind everything
 
 Your tasks are six functions, one section of the handout each; `photograd course check 09` tells how
 far you are. `volume_rendering.py`, beside this file, must be yours of assignment 08.
@@ -31,7 +31,7 @@ def psnr(picture, truth):
     """How alike two pictures are, in decibels: more is better.
 
     Args:
-        picture, truth: of the same shape, any; colours with a peak of 1.
+        picture, truth: of the same shape, any; colors with a peak of 1.
 
     Returns:
         a float, infinite for equal pictures; handout equation (3).
@@ -49,7 +49,7 @@ def ray_batch(views, chosen):
         chosen: (R,), integers: pixels of all photographs, counted from 0 as they lie in memory.
 
     Returns:
-        (origins, directions, truth): (R, 3) each, rays in the world and colours; directions may
+        (origins, directions, truth): (R, 3) each, rays in the world and colors; directions may
         have any length above zero. Handout equations (4) to (6).
     """
     # >>> solution 09.2
@@ -107,7 +107,7 @@ def tv_loss_adjoint(grid, eps):
     pull = ahead / length / count
     d_grid = -pull.sum(axis=0)
     for axis in range(3):
-        # What voxel i pulls its neighbour by, arrives at i + 1.
+        # What voxel i pulls its neighbor by, arrives at i + 1.
         moved = np.roll(pull[axis], 1, axis=axis)
         d_grid += moved
     return float(np.sum(length - eps) / count), d_grid
@@ -130,7 +130,7 @@ class Adam:
 
 
 def fog(shape):
-    """Given: where a fit may begin, thin grey fog of a shape (X, Y, Z)."""
+    """Given: where a fit may begin, thin gray fog of a shape (X, Y, Z)."""
     grid = np.full((*shape, 4), 0.5)
     grid[..., 3] = 0.1
     return grid

@@ -16,7 +16,7 @@ def _table(voxels):
 
 
 def picture(n, voxels, values, rays):
-    """(colours, wanted, step) of rays through a sparse grid: `march`, then `render`."""
+    """(colors, wanted, step) of rays through a sparse grid: `march`, then `render`."""
     samples = grids.march(n, voxels, _table(voxels), rays)
     return grids.render(values, samples), samples[0], samples[1]
 

@@ -50,8 +50,8 @@ def same_counts(t, what, got, right, hint=""):
         raise
 
 
-def recognised(failure, more, hint):
-    """The verdict on a hand-in that raised an exception whose cause is known."""
+def recognized(failure, more, hint):
+    """The verdict on a submission that raised an exception whose cause is known."""
     details = {"advice": hint, "exception": failure.private}  # which public checks may show
     if failure.line is not None:
         details["line"] = list(failure.line)
@@ -85,7 +85,7 @@ def equal_cubes(full):
 
 
 def octree(t, full):
-    """What the hand-in makes of it, looked at."""
+    """What the submission makes of it, looked at."""
     return t.call("octree_from_dense", full, returns=Rows())
 
 
@@ -373,7 +373,7 @@ def insert(t, table, voxels, rows):
             raise
         # With a slot for each, even for those that come twice, only the way around is left.
         twice = kind == "ValueError" and (table[:, 3] >= 0).sum() + len(voxels) > len(table)
-        raise recognised(failure, ", though there is room", THERE if twice else AROUND) from None
+        raise recognized(failure, ", though there is room", THERE if twice else AROUND) from None
 
 
 def require_sound(t, table, voxels, rows):
@@ -750,13 +750,13 @@ def lump(t, n, radius=0.5):
 
 
 def photographed(t, n, voxels, values, rays):
-    """(colours, wanted, step) by `march` and `render`."""
+    """(colors, wanted, step) by `march` and `render`."""
     count = rays.shape[1]
     parts = Items(
         Array((count, 3)),
         Array((count, 2 * n), "bool"),
         Array((count,)),
-        names=("colours", "wanted", "step"),
+        names=("colors", "wanted", "step"),
     )
     return t.call("adapters.picture", n, voxels, values, rays, returns=parts)
 
@@ -782,7 +782,7 @@ def skipping_changes_nothing(t):
     dense[voxels @ np.array([n * n, n, 1])] = values
     whole, most, _ = photographed(t, n, every, dense, rays)
     t.require(bool(whole.any()), "the picture is black")
-    t.close("colours", some, whole)
+    t.close("colors", some, whole)
     t.require(bool(most[step > 0].all()), "with every voxel active no sample may be skipped")
     t.require(wanted.sum() < 0.8 * most.sum(), "hardly a sample was skipped")
 
@@ -846,7 +846,7 @@ def the_first_steps(t):
     """Adam's first step has the length RATES against the gradient; no sigma goes below 0."""
     n, voxels, values, rays, target = small_case(t)
     values[::2, 3] /= 20
-    values[1::2, 2], target[:, 2] = values[1::2, 2] / 20, 0.0  # some colour falls below 0
+    values[1::2, 2], target[:, 2] = values[1::2, 2] / 20, 0.0  # some color falls below 0
     parts = Items(Number(), Array(values.shape), names=("loss", "d_values"))
     loss, d = t.call("adapters.gradient", n, voxels, values, rays, target, returns=parts)
     got = fitted(t, n, voxels, values, rays, target, 1, 1, 0.5, 0)
@@ -894,7 +894,7 @@ def two_rounds(t, *given):
     except StudentFailure as failure:
         if failure.reason != "raised":
             raise
-        raise recognised(
+        raise recognized(
             failure,
             "; two rounds without steps passed",
             "begin each round with a new Adam, table and samples: the old ones are of other voxels",

@@ -74,7 +74,7 @@ def table_of(voxels):
 
 
 def seen(n, voxels, values, rays):
-    """Colours of rays through a sparse grid."""
+    """Colors of rays through a sparse grid."""
     return mine.render(values, mine.march(n, voxels, table_of(voxels), rays))
 
 
@@ -127,7 +127,7 @@ for name, plan in plans.items():
 # %% [markdown]
 # ## Your derivative
 # A guess that lacks the ring and the pole, and the derivative by extinction that its photographs
-# give: of the voxels that exist, and of all of them, had they the colour of START.
+# give: of the voxels that exist, and of all of them, had they the color of START.
 
 # %%
 across = (np.arange(32) + 0.5) / 16 - 1
@@ -189,10 +189,10 @@ def core_fit(n, voxels, numbers, rays, target, rounds, steps, threshold):
     """The recovery with the core's derivatives and shares, and its way to prune and grow."""
     existing = importlib.import_module("photograd.fields.active_voxels")
     for left in reversed(range(rounds)):
-        optimiser = mine.Adam()
+        optimizer = mine.Adam()
         for _ in range(steps):
             slope = core_loss_and_grad(n, voxels, numbers, rays, target)[1]
-            numbers = optimiser.step(numbers, slope)
+            numbers = optimizer.step(numbers, slope)
             numbers[:, 3] = np.clip(numbers[:, 3], 0, None)
         if left:
             most = core_loss_and_grad(n, voxels, numbers, rays, target)[2]
@@ -260,10 +260,10 @@ else:
 
 
 # %%
-def shown(axes, colours, title):
+def shown(axes, colors, title):
     """A square picture of linear light."""
-    side = round(len(colours) ** 0.5)
-    axes.imshow(np.clip(colours, 0, 1).reshape(side, side, 3) ** (1 / 2.2))
+    side = round(len(colors) ** 0.5)
+    axes.imshow(np.clip(colors, 0, 1).reshape(side, side, 3) ** (1 / 2.2))
     axes.set(title=title, xticks=[], yticks=[])
 
 
@@ -296,7 +296,7 @@ if core_slope is None:
 else:
     signed(panels[1, 3], guess[0], core_slope[:, 3], end, "the core's, on the same scale")
 end = max(np.abs(told[:, 3]).max() * 4, 1e-300)
-signed(panels[1, 4], every, told[:, 3], end, "if all existed, in grey")
+signed(panels[1, 4], every, told[:, 3], end, "if all existed, in gray")
 figure.savefig("sparse.png", dpi=90)
 print("sparse.png: look at it")
 
@@ -308,11 +308,11 @@ print("sparse.png: look at it")
 
 # %%
 def photographs(folder, reach):
-    """Rays (2, R, 3), scaled so that the scene fills the cube, colours (R, 3), picture sizes."""
+    """Rays (2, R, 3), scaled so that the scene fills the cube, colors (R, 3), picture sizes."""
     file = folder / "transforms.json"
     file = file if file.exists() else folder / "transforms_train.json"
     told = json.loads(file.read_text(encoding="utf-8"))
-    origins, directions, colours, sizes = [], [], [], []
+    origins, directions, colors, sizes = [], [], [], []
     for frame in told["frames"][:: max(1, len(told["frames"]) // max(1, views))]:
         file = folder / frame["file_path"]
         file = file if file.suffix else file.with_suffix(".png")
@@ -323,7 +323,7 @@ def photographs(folder, reach):
         focal = focal / told.get("w", wide) if focal else 0.5 / np.tan(angle / 2)
         a, b = 2 * size, max(1, round(2 * size * tall / wide))
         light = np.asarray(image.convert("RGBA").resize((a, b)), np.float64) / 255
-        colours.append((light[..., :3] ** 2.2 * light[..., 3:]).reshape(-1, 3))
+        colors.append((light[..., :3] ** 2.2 * light[..., 3:]).reshape(-1, 3))
         v, u = np.meshgrid(np.arange(b) + 0.5, np.arange(a) + 0.5, indexing="ij")
         flat = [(u / a - 0.5) / focal, -(v - b / 2) / a / focal, -np.ones(u.shape)]
         pose = np.array(frame["transform_matrix"], np.float64)
@@ -332,7 +332,7 @@ def photographs(folder, reach):
         origins.append(np.tile(pose[:3, 3] / reach, (len(aim), 1)))
         sizes.append((b, a))
     rays = np.stack([np.concatenate(origins), np.concatenate(directions)])
-    return rays, np.concatenate(colours), sizes
+    return rays, np.concatenate(colors), sizes
 
 
 if capture:
@@ -349,10 +349,10 @@ if capture:
     panels = figure.subplots(2, 3)
     ends = np.cumsum([0] + [a * b for a, b in sizes])
     for column, k in enumerate(np.linspace(0, len(sizes) - 1, 3).astype(int)):
-        for axes, colours, title in zip(
+        for axes, colors, title in zip(
             panels[:, column], (target, again), ("photograph", "recovered"), strict=True
         ):
-            picture = colours[ends[k] : ends[k + 1]].reshape(*sizes[k], 3)
+            picture = colors[ends[k] : ends[k + 1]].reshape(*sizes[k], 3)
             axes.imshow(np.clip(picture, 0, 1) ** (1 / 2.2))
             axes.set(xticks=[], yticks=[], title=title)
     figure.savefig("capture.png", dpi=90)

@@ -9,12 +9,12 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from photograd_course.viz.style import (
     BLUE,
-    GREY,
+    GRAY,
     INK,
     ORANGE,
     house_style,
     plain_axes,
-    signed_colour_map,
+    signed_color_map,
 )
 from photograd_course.viz.style import RED as CRIMSON
 
@@ -23,43 +23,43 @@ Array = np.ndarray
 
 
 def fig1_absent(module: ModuleType) -> tuple[Figure, Facts]:
-    """The derivative of a loss by the extinction of a step that is not there, by its colour."""
-    colours = np.linspace(0, 1, 21)
-    slopes = np.array([_gap(module, 0.0, c)[1][3] for c in colours])
-    by_colour = np.array([np.abs(_gap(module, 0.0, c)[1][:3]).max() for c in colours])
-    apart = [(_gap(module, 1e-6, c)[0] - _gap(module, 0.0, c)[0]) / 1e-6 for c in colours]
+    """The derivative of a loss by the extinction of a step that is not there, by its color."""
+    colors = np.linspace(0, 1, 21)
+    slopes = np.array([_gap(module, 0.0, c)[1][3] for c in colors])
+    by_color = np.array([np.abs(_gap(module, 0.0, c)[1][:3]).max() for c in colors])
+    apart = [(_gap(module, 1e-6, c)[0] - _gap(module, 0.0, c)[0]) / 1e-6 for c in colors]
     behind = 0.8 * -np.expm1(-1.0)
     sigma = np.linspace(0, 6, 61)
     curves = {c: np.array([_gap(module, s, c)[0] for s in sigma]) for c in (0.9, 0.3)}
-    crossing = float(np.interp(0, slopes[::-1], colours[::-1]))
+    crossing = float(np.interp(0, slopes[::-1], colors[::-1]))
     facts: Facts = {
-        "the derivative changes its sign at the colour seen behind": (
+        "the derivative changes its sign at the color seen behind": (
             crossing - behind,
             -0.01,
             0.01,
         ),
         "differences agree": (float(np.abs(slopes - apart).max()), 0, 1e-5),
-        "the derivative by colour is zero": (float(by_colour.max()), 0, 0),
+        "the derivative by color is zero": (float(by_color.max()), 0, 0),
         "bright: the loss falls at first": bool(curves[0.9][1] < curves[0.9][0]),
         "dim: it rises": bool((np.diff(curves[0.3]) > 0).all()),
     }
     with house_style():
         figure = Figure(figsize=(7.0, 2.8), layout="constrained")
         left, right = figure.subplots(1, 2)
-        left.axhline(0, color=GREY, linewidth=0.8)
-        left.axvline(behind, color=GREY, linewidth=0.8, linestyle="--")
-        left.plot(colours, slopes, color=BLUE)
-        left.plot(colours[::2], apart[::2], "o", color=INK, markersize=3)
+        left.axhline(0, color=GRAY, linewidth=0.8)
+        left.axvline(behind, color=GRAY, linewidth=0.8, linestyle="--")
+        left.plot(colors, slopes, color=BLUE)
+        left.plot(colors[::2], apart[::2], "o", color=INK, markersize=3)
         left.annotate("seen behind", (behind, slopes.min()), (4, 0), textcoords="offset points")
-        left.set(xlabel="colour that it is given", ylabel="∂L/∂σ at σ = 0")
-        for c, colour in ((0.9, BLUE), (0.3, ORANGE)):
-            right.plot(sigma, curves[c], color=colour)
+        left.set(xlabel="color that it is given", ylabel="∂L/∂σ at σ = 0")
+        for c, color in ((0.9, BLUE), (0.3, ORANGE)):
+            right.plot(sigma, curves[c], color=color)
             right.annotate(
-                f"colour {c}",
+                f"color {c}",
                 (sigma[40], curves[c][40]),
                 (0, 6 if c > 0.5 else -14),
                 textcoords="offset points",
-                color=colour,
+                color=color,
             )
         right.set(xlabel="σ of the new step  [1/m]", ylabel="loss")
         for axes in (left, right):
@@ -103,16 +103,16 @@ def fig2_octree(module: ModuleType) -> tuple[Figure, Facts]:
                 )
             )
         left.set(xlim=(0, n), ylim=(0, n), aspect="equal", xlabel="x  [cells]", ylabel="y  [cells]")
-        right.loglog(sizes, sizes**3.0, color=GREY, marker="^", markersize=4)
+        right.loglog(sizes, sizes**3.0, color=GRAY, marker="^", markersize=4)
         right.loglog(sizes, shells, color=ORANGE, marker="o", markersize=4)
         right.loglog(sizes, ones, color=BLUE, marker="s", markersize=4)
-        for y, text, colour in (
+        for y, text, color in (
             (n**3.0, "cells", INK),
             (shells[-1], "nodes, shell", ORANGE),
             (ones[-1], "nodes, one cell", BLUE),
         ):
             right.annotate(
-                text, (n, y), (5, 0), textcoords="offset points", va="center", color=colour
+                text, (n, y), (5, 0), textcoords="offset points", va="center", color=color
             )
         right.set(xlabel="cells along a side", xlim=(3.5, 170))
         right.set_xticks(sizes, [str(k) for k in sizes])
@@ -162,12 +162,12 @@ def fig3_skip(module: ModuleType) -> tuple[Figure, Facts]:
                     side,
                     side,
                     facecolor="#f6dcc3" if is_full else "white",
-                    edgecolor=GREY,
+                    edgecolor=GRAY,
                     linewidth=0.4,
                 )
             )
         for r in range(4):
-            axes.plot(*places[r, :, :2].T, ".", color=GREY, markersize=2.5)
+            axes.plot(*places[r, :, :2].T, ".", color=GRAY, markersize=2.5)
             axes.plot(*places[r, wanted[r], :2].T, "o", color=CRIMSON, markersize=3)
         axes.plot(
             *questions[:, :2].T,
@@ -247,15 +247,15 @@ def fig5_lost(module: ModuleType) -> tuple[Figure, Facts]:
     _, d_kept = module.loss_and_grad(kept, samples, target)
     every = np.argwhere(np.ones((n, n, n), bool))
     at = some @ np.array([n * n, n, 1])
-    # Next to what exists a new colour would mix into samples of today: those voxels stay black.
+    # Next to what exists a new color would mix into samples of today: those voxels stay black.
     beside = module.prune_and_dilate(n, some, np.arange(len(some)), np.ones(len(some)), 0.0, 1)
     far = np.ones(n**3, bool)
     far[beside @ np.array([n * n, n, 1])] = False
     maps, pictures = [], []
     whole = _samples(module, n, every, rays)
-    for grey in (0.9, 0.0):
+    for gray in (0.9, 0.0):
         dense = np.zeros((n**3, 4))
-        dense[far, :3] = grey
+        dense[far, :3] = gray
         dense[at] = kept
         pictures.append(module.render(dense, whole))
         maps.append(module.loss_and_grad(dense, whole, target)[1][:, 3])
@@ -291,7 +291,7 @@ def fig5_lost(module: ModuleType) -> tuple[Figure, Facts]:
         titles = ("voxels that exist", "all, the new ones bright", "all, the new ones black")
         for axes, flat, title in zip(panels, ends, titles, strict=True):
             slab = flat.reshape(n, n, n)[:, :, n // 2]
-            axes.imshow(slab.T, origin="lower", cmap=signed_colour_map(), vmin=-end, vmax=end)
+            axes.imshow(slab.T, origin="lower", cmap=signed_color_map(), vmin=-end, vmax=end)
             axes.set(xticks=[], yticks=[], title=title)
         absent = np.ones((n, n, n), bool)
         absent[tuple(some.T)] = False
@@ -339,22 +339,22 @@ def fig6_topology(module: ModuleType) -> tuple[Figure, Facts]:
             ("pruned every 3 steps", _picture(module, n, kept[0, 3], view)),
             ("pruned and grown", _picture(module, n, kept[1, 3], view)),
         )
-        for k, (title, colours) in enumerate(pictures):
+        for k, (title, colors) in enumerate(pictures):
             axes = figure.add_subplot(grid[0, k])
-            axes.imshow(np.clip(colours, 0, 1).reshape(40, 40, 3) ** (1 / 2.2))
+            axes.imshow(np.clip(colors, 0, 1).reshape(40, 40, 3) ** (1 / 2.2))
             axes.set(xticks=[], yticks=[], title=title)
         axes = figure.add_subplot(grid[1, :])
-        axes.axhline(dense, color=GREY, linestyle="--", linewidth=1)
+        axes.axhline(dense, color=GRAY, linestyle="--", linewidth=1)
         axes.annotate(
             "all voxels, never pruned", (after[0], dense), (30, -12), textcoords="offset points"
         )
-        for grow, colour, name in ((0, CRIMSON, "pruned"), (1, BLUE, "pruned and grown")):
-            axes.plot(after, scores[grow], color=colour, marker="o", markersize=4)
+        for grow, color, name in ((0, CRIMSON, "pruned"), (1, BLUE, "pruned and grown")):
+            axes.plot(after, scores[grow], color=color, marker="o", markersize=4)
             axes.annotate(
                 name,
                 (after[-1], scores[grow][-1]),
                 (8, -3),
-                color=colour,
+                color=color,
                 textcoords="offset points",
             )
         axes.set(
@@ -369,9 +369,9 @@ def fig6_topology(module: ModuleType) -> tuple[Figure, Facts]:
     return figure, facts
 
 
-def _gap(module: ModuleType, sigma: float, colour: float) -> tuple[float, Array]:
+def _gap(module: ModuleType, sigma: float, color: float) -> tuple[float, Array]:
     """(loss, derivative by the middle step's four numbers) on the ray of the warm-up."""
-    values = np.array([[0.2] * 3 + [1.0], [colour] * 3 + [sigma], [0.8] * 3 + [2.0]])
+    values = np.array([[0.2] * 3 + [1.0], [color] * 3 + [sigma], [0.8] * 3 + [2.0]])
     row = np.full((8, 3), -1)
     row[0] = 0, 1, 2
     weight = np.zeros((8, 3))
@@ -498,9 +498,9 @@ RED = {
 }
 RED_FACTS = {
     "fig1_absent": {
-        "the derivative changes its sign at the colour seen behind": "back_first_channel",
+        "the derivative changes its sign at the color seen behind": "back_first_channel",
         "differences agree": "back_without_g",
-        "the derivative by colour is zero": "back_without_g",
+        "the derivative by color is zero": "back_without_g",
     },
     "fig2_octree": {
         "one odd cell costs 8 nodes a level": "octree_empty_cut",

@@ -17,7 +17,7 @@ from __future__ import annotations
 import numpy as np
 
 EMPTY, FULL = 0, -1  # leaves of an octree
-START = np.array([0.5, 0.5, 0.5, 0.1])  # a new voxel: grey, and hardly there
+START = np.array([0.5, 0.5, 0.5, 0.1])  # a new voxel: gray, and hardly there
 RATES = np.array([0.05, 0.05, 0.05, 0.4])  # of Adam, by channel
 
 
@@ -298,7 +298,7 @@ def _along_rays(values, samples):
 
 
 def render(values, samples):
-    """Colours (R, 3) of rays through a sparse grid before a black background.
+    """Colors (R, 3) of rays through a sparse grid before a black background.
 
     Args:
         values: (V, 4), one row for each active voxel.
@@ -309,11 +309,11 @@ def render(values, samples):
 
 
 def loss_and_grad(values, samples, target):
-    """Mean squared error of the rays' colours, and its derivative.
+    """Mean squared error of the rays' colors, and its derivative.
 
     Args:
         values, samples: as for `render`.
-        target: (R, 3), measured colours.
+        target: (R, 3), measured colors.
 
     Returns:
         (loss, d_values), the derivative (V, 4).
@@ -363,7 +363,7 @@ def fit_sparse(n, voxels, values, rays, target, rounds, steps, threshold, grow):
         voxels: (V, 3), active at the start, ordered in any way.
         values: (V, 4), their values at the start; these arrays must not change.
         rays: (2, R, 3), origins and unit directions, in the units of the cube, as for `march`.
-        target: (R, 3), the measured colours.
+        target: (R, 3), the measured colors.
         rounds: 1 or more; between two of them the list of voxels is made anew.
         steps: of Adam in each round, 0 or more.
         threshold, grow: of `prune_and_dilate`.

@@ -60,7 +60,7 @@ def band(ell):
 
 
 def basis(t, d, degree):
-    """`sh_basis` of the hand-in."""
+    """`sh_basis` of the submission."""
     return t.call("sh_basis", d, degree, returns=Array((len(d), (degree + 1) ** 2)))
 
 
@@ -229,7 +229,7 @@ def what_is_left_is_orthogonal(t):
 # 11.3 ---------------------------------------------------------------------------------------------
 
 
-def colours(rng, n, degree, channels):
+def colors(rng, n, degree, channels):
     """Coefficients, vectors that are not unit vectors, and a cotangent."""
     v = unit(rng, n) * rng.uniform(0.5, 2.0, (n, 1))
     shape = (n, (degree + 1) ** 2, channels)
@@ -237,7 +237,7 @@ def colours(rng, n, degree, channels):
 
 
 def adjoint(t, c, v, g):
-    """`sh_color_adjoint` of the hand-in."""
+    """`sh_color_adjoint` of the submission."""
     parts = Items(Array(c.shape), Array(v.shape), names=("d_coefficients", "d_v"))
     return t.call("sh_color_adjoint", c, v, g, returns=parts)
 
@@ -249,13 +249,13 @@ def adjoint(t, c, v, g):
     calls=("sh_color_adjoint",),
     needs=("sh_basis",),
     tolerance=EXACT,
-    hint="handout, equation (11): colours are linear in the coefficients",
+    hint="handout, equation (11): colors are linear in the coefficients",
     sole="asks about the coefficients alone",
 )
 def the_adjoint_by_coefficients(t):
-    """<colours of C, g> = <C, d_coefficients> for any C: the transpose."""
+    """<colors of C, g> = <C, d_coefficients> for any C: the transpose."""
     for degree, channels in ((2, 3), (0, 1), (4, 2)):
-        c, v, g = colours(t.rng, 5, degree, channels)
+        c, v, g = colors(t.rng, 5, degree, channels)
         d_c, _ = adjoint(t, c, v, g)
         for _ in range(3):
             x = t.rng.uniform(-1.0, 1.0, c.shape)
@@ -280,9 +280,9 @@ def the_adjoint_by_coefficients(t):
     sole="the derivative itself, without the reference",
 )
 def the_adjoint_by_vectors(t):
-    """Moving a vector by a little changes your colours by as much as your d_v says."""
+    """Moving a vector by a little changes your colors by as much as your d_v says."""
     for degree, channels in ((1, 1), (2, 3), (4, 2)):
-        c, v, g = colours(t.rng, 3, degree, channels)
+        c, v, g = colors(t.rng, 3, degree, channels)
         _, d_v = adjoint(t, c, v, g)
 
         def forward(point, c=c, shape=g.shape):
@@ -298,12 +298,12 @@ def the_adjoint_by_vectors(t):
     calls=("sh_color_adjoint",),
     needs=("sh_basis",),
     tolerance=EXACT,
-    hint="handout, equation (14): a longer v alone changes no colour",
+    hint="handout, equation (14): a longer v alone changes no color",
     sole="names what the step from v to d leaves out",
 )
 def length_does_not_matter(t):
     """Along v nothing changes: v . d_v = 0; at twice the length d_v is half as long."""
-    c, v, g = colours(t.rng, 6, 3, 2)
+    c, v, g = colors(t.rng, 6, 3, 2)
     d_c, d_v = adjoint(t, c, v, g)
     along = np.sum(d_v * v, axis=1)
     size = np.linalg.norm(d_v, axis=1) * np.linalg.norm(v, axis=1)
@@ -326,7 +326,7 @@ def length_does_not_matter(t):
 
 
 def rotated(t, c, R):
-    """`sh_rotate` of the hand-in."""
+    """`sh_rotate` of the submission."""
     return t.call("sh_rotate", c, R, returns=Array(c.shape))
 
 
@@ -378,7 +378,7 @@ def turns_compose(t):
 
 
 def lit(t, probes, p, n):
-    """`probe_irradiance` of the hand-in."""
+    """`probe_irradiance` of the submission."""
     return t.call("probe_irradiance", probes, p, n, returns=Array((len(p), probes.shape[4])))
 
 
@@ -655,7 +655,7 @@ def projections_of_random_values(t):
     battery=[
         Subject(
             "sh_color_adjoint",
-            lambda t, n: colours(t.rng, n, 3, 2),
+            lambda t, n: colors(t.rng, n, 3, 2),
             lambda n: Items(Array((n, 16, 2)), Array((n, 3))),
             rows=(0, 1, 2),
         )
@@ -664,7 +664,7 @@ def projections_of_random_values(t):
 def the_adjoint_at_random_values(t):
     """Both parts of the adjoint are right at random values, for each degree."""
     for degree, channels in ((0, 2), (1, 1), (2, 3), (3, 2), (4, 1)):
-        c, v, g = colours(t.rng, 8, degree, channels)
+        c, v, g = colors(t.rng, 8, degree, channels)
         d_c, d_v = adjoint(t, c, v, g)
         right = t.reference.sh_color_adjoint(c, v, g)
         t.close(f"d_coefficients, degree {degree}", d_c, right[0])
@@ -687,8 +687,8 @@ def the_adjoint_at_random_values(t):
     tolerance=EXACT,
 )
 def the_adjoint_is_cheap(t):
-    """For 60 colours of degree 4 the adjoint is right, and costs a few forward calls."""
-    c, v, g = colours(t.rng, 60, 4, 3)
+    """For 60 colors of degree 4 the adjoint is right, and costs a few forward calls."""
+    c, v, g = colors(t.rng, 60, 4, 3)
     d_c, d_v = adjoint(t, c, v, g)
     right = t.reference.sh_color_adjoint(c, v, g)
     t.close("d_coefficients", d_c, right[0])

@@ -33,11 +33,11 @@ def shiny_balls(n):
     x = (np.stack(np.indices((n, n, n)), axis=-1) + 0.5) / n * 2 - 1
     light = np.array([0.48, 0.6, 0.64])
     density, c = np.zeros((n, n, n)), np.zeros((n, n, n, 9, 3))
-    for centre, radius, paint in (
+    for center, radius, paint in (
         ((-0.25, 0.0, 0.1), 0.45, (0.8, 0.25, 0.15)),
         ((0.4, 0.2, -0.3), 0.3, (0.15, 0.35, 0.8)),
     ):
-        away = x - np.array(centre)
+        away = x - np.array(center)
         distance = np.linalg.norm(away, axis=-1)
         inside = np.clip((radius - distance) * n / 3 + 0.5, 0, 1)
         normal = away / distance[..., None]
@@ -69,7 +69,7 @@ def photographs(count, size, turned=0.0):
 
 
 def seen(volume, rays):
-    """Colours of rays through (density, coefficients)."""
+    """Colors of rays through (density, coefficients)."""
     return mine.render(*volume, mine.march(volume[0].shape, rays))
 
 
@@ -151,7 +151,7 @@ else:
 # %% [markdown]
 # ## Pictures
 # Glyphs: what a step against your derivative will do to the brightness of a cell, by direction
-# within the slice (radii are roots); red brightens, blue darkens. The volume is still grey there.
+# within the slice (radii are roots); red brightens, blue darkens. The volume is still gray there.
 
 
 # %%
@@ -166,9 +166,9 @@ def glyphs(axes, volume):
     axes.imshow(density[:, n // 2].T, cmap="gray_r", vmin=0, vmax=30, origin="lower")
     size = 0.8 * np.sqrt(np.abs(change) / max(np.abs(change).max(), 1e-30))
     for i, k in np.ndindex(n, n):
-        for sign, colour in ((1, "#b2182b"), (-1, "#2166ac")):
+        for sign, color in ((1, "#b2182b"), (-1, "#2166ac")):
             r = np.where(sign * change[i, k] > 0, size[i, k], 0)
-            axes.fill(i + r * ring[:, 0], k + r * ring[:, 2], color=colour, linewidth=0.2)
+            axes.fill(i + r * ring[:, 0], k + r * ring[:, 2], color=color, linewidth=0.2)
     axes.set(xticks=[], yticks=[], title="a step: red brightens, blue darkens")
 
 

@@ -9,15 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 from photograd_course.metrics import psnr
-from photograd_course.viz.style import (
-    BLUE,
-    FRAME,
-    GREY,
-    INK,
-    ORANGE,
-    house_style,
-    signed_colour_map,
-)
+from photograd_course.viz.style import BLUE, FRAME, GRAY, INK, ORANGE, house_style, signed_color_map
 from photograd_course.viz.style import RED as CRIMSON
 
 
@@ -94,7 +86,7 @@ def fig2_projection(module):
         for axes, (title, values) in zip(panels.flat, shown, strict=False):
             image = axes.imshow(
                 values.reshape(shape),
-                cmap=signed_colour_map(),
+                cmap=signed_color_map(),
                 vmin=-1.5,
                 vmax=1.5,
                 extent=(0, 360, -1, 1),
@@ -175,15 +167,15 @@ def fig4_irradiance(module):
         sky = _sky(normals, 6.0, 1.0)
         off = (found[2] - brute) / mean * 100
         far = 3.0
-        for axes, values, title, limits, colours in (
+        for axes, values, title, limits, colors in (
             (panels[0, 0], sky, "light from a direction", (0, 5), "viridis"),
             (panels[0, 1], brute, "irradiance, brute force", (0, high), "viridis"),
             (panels[0, 2], found[2], "nine coefficients", (0, high), "viridis"),
-            (panels[1, 0], off, "difference, % of mean", (-far, far), signed_colour_map()),
+            (panels[1, 0], off, "difference, % of mean", (-far, far), signed_color_map()),
         ):
             image = axes.imshow(
                 values.reshape(shape),
-                cmap=colours,
+                cmap=colors,
                 vmin=limits[0],
                 vmax=limits[1],
                 extent=(0, 360, -1, 1),
@@ -221,15 +213,15 @@ def fig4_irradiance(module):
 
 
 def fig5_glyphs(module):
-    """What a step against the derivative does to the colours of a slice, by direction."""
+    """What a step against the derivative does to the colors of a slice, by direction."""
     n, light = 12, np.array([1.0, 0.0, 1.0]) / np.sqrt(2)
     density, c = _ball_scene(module, n, light)
     rays = _photographs(40, 16)
     samples = module.march(density.shape, rays)
     target = module.render(density, c, samples)
-    grey = np.zeros_like(c)
-    grey[..., 0, 0] = float(np.mean(c[..., 0, 0][density > 1]))
-    _, _, d_c = module.loss_and_grad(density, grey, samples, target)
+    gray = np.zeros_like(c)
+    gray[..., 0, 0] = float(np.mean(c[..., 0, 0][density > 1]))
+    _, _, d_c = module.loss_and_grad(density, gray, samples, target)
     slice_ = -(d_c[:, n // 2 - 1] + d_c[:, n // 2])[:, :, :, 0]
     energy = np.sum(d_c**2, axis=(3, 4))
     near = _dilated(density > 0)
@@ -252,7 +244,7 @@ def fig5_glyphs(module):
             0.8,
             1,
         ),
-        "most of the larger glyphs have both colours": (
+        "most of the larger glyphs have both colors": (
             float(((change[strong].min(axis=1) < 0) & (change[strong].max(axis=1) > 0)).mean()),
             0.6,
             1,
@@ -269,10 +261,10 @@ def fig5_glyphs(module):
         for i in range(n):
             for k in range(n):
                 r = 0.8 * np.sqrt(np.abs(change[i, k]) / top)
-                for sign, colour in ((1, CRIMSON), (-1, BLUE)):
+                for sign, color in ((1, CRIMSON), (-1, BLUE)):
                     part = np.where(sign * change[i, k] > 0, r, 0)
                     axes.fill(
-                        i + part * ring[:, 0], k + part * ring[:, 2], color=colour, linewidth=0.3
+                        i + part * ring[:, 0], k + part * ring[:, 2], color=color, linewidth=0.3
                     )
         axes.annotate(
             "", (11.2, 11.2), (9.9, 9.9), arrowprops={"arrowstyle": "->", "color": INK, "lw": 1.5}
@@ -332,9 +324,9 @@ def fig6_coarse_to_fine(module):
             axes.imshow(screen, cmap="gray", vmin=0, vmax=1)
             axes.set(xticks=[], yticks=[], title=title)
         axes = figure.add_subplot(grid[1, :])
-        looks = ((GREY, "s:"), (BLUE, "o-"), (ORANGE, "^--"))
-        for (name, (ends, scores, _, _)), (colour, look) in zip(runs.items(), looks, strict=True):
-            axes.plot(ends, scores, look, color=colour, markersize=5)
+        looks = ((GRAY, "s:"), (BLUE, "o-"), (ORANGE, "^--"))
+        for (name, (ends, scores, _, _)), (color, look) in zip(runs.items(), looks, strict=True):
+            axes.plot(ends, scores, look, color=color, markersize=5)
             axes.annotate(
                 name, (ends[-1], scores[-1]), (7, 0), textcoords="offset points", va="center"
             )
@@ -362,7 +354,7 @@ def _show_ball(axes, values, inside, top):
     picture[inside] = values
     image = axes.imshow(
         picture,
-        cmap=signed_colour_map(),
+        cmap=signed_color_map(),
         vmin=-top,
         vmax=top,
         extent=(-1, 1, -1, 1),
@@ -395,12 +387,12 @@ def _sky(d, sharp=25.0, pale=0.3):
 def _ball_scene(module, n, light, second=False):
     """A shiny ball, perhaps with a second one: density (n, n, n) and coefficients."""
     x = (np.stack(np.indices((n, n, n)), axis=-1) + 0.5) / n * 2 - 1
-    centres = [np.zeros(3)] if not second else [np.array([-0.25, 0.1, 0.0]), np.array([0.4, 0, 0])]
+    centers = [np.zeros(3)] if not second else [np.array([-0.25, 0.1, 0.0]), np.array([0.4, 0, 0])]
     radii = [0.6] if not second else [0.45, 0.3]
-    away = [np.linalg.norm(x - centre, axis=-1) for centre in centres]
+    away = [np.linalg.norm(x - center, axis=-1) for center in centers]
     inside = [np.clip((r - a) * n / 3 + 0.5, 0, 1) for r, a in zip(radii, away, strict=True)]
     which = np.argmax(inside, axis=0)
-    normal = x - np.array(centres)[which]
+    normal = x - np.array(centers)[which]
     normal = normal / (np.linalg.norm(normal, axis=-1, keepdims=True) + 1e-12)
     facing = normal @ light
     mirrored = 2 * facing[..., None] * normal - light
@@ -479,7 +471,7 @@ RED_FACTS = {
     },
     "fig5_glyphs": {
         "cells that face the highlight get brighter towards it": "d_coefficients_without_g",
-        "most of the larger glyphs have both colours": "recurrence_sign",
+        "most of the larger glyphs have both colors": "recurrence_sign",
     },
     "fig6_coarse_to_fine": {
         "coarse to fine ends more than 4 dB above": "steps_at_last_level",

@@ -96,7 +96,7 @@ def sh_project(directions, weights, values, degree):
 
 
 def sh_color(coefficients, v):
-    """Colours seen along vectors: the sum of each row's coefficients times the harmonics there.
+    """Colors seen along vectors: the sum of each row's coefficients times the harmonics there.
 
     Args:
         coefficients: (N, K, C), a set for each vector.
@@ -116,7 +116,7 @@ def sh_color_adjoint(coefficients, v, g):
     Args:
         coefficients: (N, K, C).
         v: (N, 3), of any length but 0.
-        g: (N, C), the derivative of some loss by each colour.
+        g: (N, C), the derivative of some loss by each color.
 
     Returns:
         (d_coefficients, d_v), of the shapes of coefficients and v; equations (11) to (14).
@@ -239,14 +239,14 @@ def _along_rays(density, coefficients, samples):
 
 
 def render(density, coefficients, samples):
-    """Colours of rays through a volume before a black background.
+    """Colors of rays through a volume before a black background.
 
     Along a ray the direction is the same, so coefficients are blended first and `sh_color` is
     asked once a ray.
 
     Args:
         density: (X, Y, Z), extinction for each unit of length, not negative.
-        coefficients: (X, Y, Z, K, C), of the colour by the direction towards the viewer.
+        coefficients: (X, Y, Z, K, C), of the color by the direction towards the viewer.
         samples: of `march`, for this shape.
 
     Returns:
@@ -256,11 +256,11 @@ def render(density, coefficients, samples):
 
 
 def loss_and_grad(density, coefficients, samples, target):
-    """Mean squared error of the rays' colours, and its derivatives.
+    """Mean squared error of the rays' colors, and its derivatives.
 
     Args:
         density, coefficients, samples: as for `render`.
-        target: (R, C), measured colours.
+        target: (R, C), measured colors.
 
     Returns:
         (loss, d_density, d_coefficients).
@@ -304,7 +304,7 @@ def fit_plenoxels(density, coefficients, rays, target, levels, steps):
         density: (X, Y, Z), where the descent starts; these arrays must not change.
         coefficients: (X, Y, Z, K, C), likewise.
         rays: (2, R, 3), origins and unit directions.
-        target: (R, C), the measured colours.
+        target: (R, C), the measured colors.
         levels: how many resolutions, from 1 upwards; each has twice the cells of the one before.
         steps: of Adam at each resolution, from 0 upwards.
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 
-def _camera(f, centre, width):
+def _camera(f, center, width):
     return {
         "camera_from_world": np.eye(4)[:3],
         "focal": np.full(2, float(f)),
-        "centre": np.array([centre, 0.5 * width]),
+        "center": np.array([center, 0.5 * width]),
         "width": width,
         "height": width,
     }

@@ -48,7 +48,7 @@ def some_camera(rng):
     return {
         "camera_from_world": pose,
         "focal": np.array([18.0, 22.0]),
-        "centre": np.array([9.0, 8.0]),
+        "center": np.array([9.0, 8.0]),
         "width": 20,
         "height": 14,
     }
@@ -221,8 +221,8 @@ def seen_back(t, means, cov, camera, g):
 def outside(rng, camera, k):
     """Directions (8, 2) k times as far outside as the limits: sides first, then corners."""
     size = np.array([camera["width"], camera["height"]])
-    low = (-0.15 * size - camera["centre"]) / camera["focal"]
-    high = (1.15 * size - camera["centre"]) / camera["focal"]
+    low = (-0.15 * size - camera["center"]) / camera["focal"]
+    high = (1.15 * size - camera["center"]) / camera["focal"]
     side = rng.uniform(-0.2, 0.2, (8, 2))
     side[0, 0], side[1, 0], side[2, 1], side[3, 1] = low[0], high[0], low[1], high[1]
     side[4], side[5], side[6], side[7] = low, high, [low[0], high[1]], [high[0], low[1]]
@@ -242,7 +242,7 @@ def where_means_are_seen(t):
     """A point on the ray through a place of the screen is seen there, at its depth."""
     camera = some_camera(t.rng)
     place, z = t.rng.uniform(-10.0, 30.0, (7, 2)), t.rng.uniform(1.0, 5.0, 7)
-    side = (place - camera["centre"]) / camera["focal"]
+    side = (place - camera["center"]) / camera["focal"]
     points = in_world(camera, np.concatenate([side, np.ones((7, 1))], axis=1) * z[:, None])
     mean2d, _, depth = seen(t, points, shapes(t.rng, 7), camera)
     t.close("mean2d", mean2d, place, reveal=True)
@@ -292,7 +292,7 @@ def what_is_held_outside(t):
         side = outside(t.rng, camera, k)
         points = 3.0 * np.concatenate([side, np.ones((8, 1))], axis=1)
         mean2d, cov2d, _ = seen(t, in_world(camera, points), cov, camera)
-        t.close("mean2d", mean2d, side * camera["focal"] + camera["centre"], reveal=True)
+        t.close("mean2d", mean2d, side * camera["focal"] + camera["center"], reveal=True)
         found.append(cov2d)
     t.close("cov2d at 1.2 times the limit", found[1], found[0])
     t.close("cov2d at twice the limit", found[2], found[0])
@@ -593,7 +593,7 @@ def the_order_of_the_list_does_not_matter(t):
     sole="the derivative itself, without the reference",
 )
 def blending_agrees_with_differences(t):
-    """Moving an alpha, a colour or the background moves the pixels as your back says."""
+    """Moving an alpha, a color or the background moves the pixels as your back says."""
     a, c, z, b = layers(t.rng, 6, 4)
     a[t.rng.integers(6), :2] = 0.999
     g = random_cotangent(t.rng, (4, 3))
@@ -641,7 +641,7 @@ def some_scene(rng, camera, n, size=0.8):
 
 def middle_pixels(rng, camera, p):
     """Places near the middle of the picture, (p, 2)."""
-    return camera["centre"] + rng.uniform(-2.5, 2.5, (p, 2))
+    return camera["center"] + rng.uniform(-2.5, 2.5, (p, 2))
 
 
 @check(
@@ -663,7 +663,7 @@ def one_splat_straight_ahead(t):
     scene["log_scales"] = np.repeat(t.rng.uniform(-1.5, -1.0, (2, 1)), 3, axis=1)
     pixels = middle_pixels(t.rng, camera, 4)
     wide = (camera["focal"] * np.exp(scene["log_scales"][:, :2]) / z[:, None]) ** 2 + 0.3
-    r = np.sum((pixels - camera["centre"]) ** 2 / wide[:, None], axis=2)
+    r = np.sum((pixels - camera["center"]) ** 2 / wide[:, None], axis=2)
     a = np.exp(-r / 2) / (1 + np.exp(-scene["opacity_logits"][:, None]))
     far, near = a[..., None] * scene["colors"][:, None]
     behind = far + (1 - a[0, :, None]) * b
@@ -1157,7 +1157,7 @@ def denser_is_better(t):
     camera = {
         "camera_from_world": np.eye(4)[:3],
         "focal": np.full(2, 16.0),
-        "centre": np.full(2, 8.0),
+        "center": np.full(2, 8.0),
         "width": size,
         "height": size,
     }

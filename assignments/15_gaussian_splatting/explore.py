@@ -38,7 +38,7 @@ def camera_at(place, width):
     return {
         "camera_from_world": pose,
         "focal": np.full(2, 1.2 * width),
-        "centre": middle,
+        "center": middle,
         "width": width,
         "height": width,
     }
@@ -64,7 +64,7 @@ def photograph(camera):
     n, fine = camera["width"], 3
     W, b = camera["camera_from_world"][:, :3], camera["camera_from_world"][:, 3]
     v, u = (np.mgrid[0 : fine * n, 0 : fine * n] + 0.5) / fine
-    d = np.stack([u, v, 0 * u], axis=-1) - [*camera["centre"], 0]
+    d = np.stack([u, v, 0 * u], axis=-1) - [*camera["center"], 0]
     d = d / [*camera["focal"], 1] + [0, 0, 1]
     d = d / np.linalg.norm(d, axis=-1, keepdims=True) @ W
     eye = -b @ W
@@ -89,7 +89,7 @@ def decibels(one, other):
 
 
 def cloud(number, rng):
-    """Where a fit begins: grey balls anywhere."""
+    """Where a fit begins: gray balls anywhere."""
     return {
         "means": rng.uniform(-0.8, 0.8, (number, 3)),
         "quats": np.eye(4)[[0] * number],
@@ -271,7 +271,7 @@ def of_the_core():
     def drawn(scene, camera, background):
         pose = np.eye(4)
         pose[:3] = camera["camera_from_world"]
-        (fx, fy), (cx, cy) = camera["focal"].tolist(), camera["centre"].tolist()
+        (fx, fy), (cx, cy) = camera["focal"].tolist(), camera["center"].tolist()
         lens = cameras.Camera(
             world_from_camera=np.linalg.inv(pose),
             width=camera["width"],

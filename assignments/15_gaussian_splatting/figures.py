@@ -12,14 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Ellipse
 from photograd_course.assignment.bundle import read_folder
 from photograd_course.build.kits import source_folders
-from photograd_course.viz.style import (
-    BLUE,
-    GREY,
-    ORANGE,
-    house_style,
-    plain_axes,
-    signed_colour_map,
-)
+from photograd_course.viz.style import BLUE, GRAY, ORANGE, house_style, plain_axes, signed_color_map
 
 Facts = dict[str, bool | tuple[float, float, float]]
 Array = np.ndarray
@@ -65,14 +58,14 @@ def fig1_projection(module: ModuleType) -> tuple[Figure, Facts]:
     with house_style():
         figure = Figure(figsize=(7.0, 3.0), layout="constrained")
         left, right = figure.subplots(1, 2)
-        left.plot(*seen[:700].T, ".", color=GREY, markersize=2)
+        left.plot(*seen[:700].T, ".", color=GRAY, markersize=2)
         for k in (1, 2):
             left.add_patch(_ellipse(mean2d[0], cov2d[0], k, edgecolor=BLUE))
         left.plot(*mean2d[0], "o", color=ORANGE, markersize=5)
         left.set(xlim=(0, 64), ylim=(64, 0), aspect="equal", xlabel="column", ylabel="row")
         right.plot(slopes, free, "--", color=ORANGE, label="not held")
         right.plot(slopes, held, color=BLUE, label="held")
-        right.axvline(limit, color=GREY, linewidth=0.8)
+        right.axvline(limit, color=GRAY, linewidth=0.8)
         right.set(xlabel="t_x / t_z", ylabel="width of the splat [pixels]")
         right.legend()
         for axes in (left, right):
@@ -106,7 +99,7 @@ def fig2_weights(module: ModuleType) -> tuple[Figure, Facts]:
         figure = Figure(figsize=(7.0, 2.4), layout="constrained")
         axes = figure.subplots()
         x = np.arange(count)
-        axes.bar(x - 0.2, alpha[order, 0], width=0.36, color=GREY, label="α")
+        axes.bar(x - 0.2, alpha[order, 0], width=0.36, color=GRAY, label="α")
         axes.bar(x + 0.2, weights[order], width=0.36, color=BLUE, label="weight T α")
         through = np.concatenate([[1.0], np.cumprod(1 - alpha[order, 0])])
         axes.step(np.arange(count + 1) - 0.5, through, where="post", color=ORANGE, label="T")
@@ -172,7 +165,7 @@ def fig3_pull(module: ModuleType) -> tuple[Figure, Facts]:
         for k in (1, 2):
             left.add_patch(_ellipse(mean2d[0], cov2d[0], k, edgecolor=BLUE))
         left.set(xticks=[], yticks=[], title="what each pixel wants of the mean")
-        right.semilogy(curves[0], color=GREY, label="four Gaussians")
+        right.semilogy(curves[0], color=GRAY, label="four Gaussians")
         right.semilogy(curves[1], color=BLUE, label="up to sixty")
         right.set(xlabel="step", ylabel="loss")
         right.legend()
@@ -257,12 +250,12 @@ def fig5_arrows(module: ModuleType) -> tuple[Figure, Facts]:
             color="white",
             width=0.006,
         )
-        for which, colour in ((~chosen, GREY), (chosen, ORANGE)):
+        for which, color in ((~chosen, GRAY), (chosen, ORANGE)):
             panels[2].scatter(
                 *(places[which] - 0.5).T,
                 s=120 * pull[which] / pull.max(),
                 facecolors="none",
-                edgecolors=colour,
+                edgecolors=color,
                 linewidths=0.9,
             )
         for axes in panels:
@@ -319,7 +312,7 @@ def fig6_three(module: ModuleType) -> tuple[Figure, Facts]:
             root = np.sign(flat) * np.sqrt(np.abs(flat) / np.abs(flat).max())
             axes.imshow(
                 root,
-                cmap=signed_colour_map(),
+                cmap=signed_color_map(),
                 vmin=-1,
                 vmax=1,
                 origin="lower",
@@ -339,7 +332,7 @@ def _camera(place: Array, size: int) -> Camera:
     return {
         "camera_from_world": np.concatenate([W, -(W @ place)[:, None]], axis=1),
         "focal": np.full(2, 1.2 * size),
-        "centre": np.full(2, size / 2),
+        "center": np.full(2, size / 2),
         "width": size,
         "height": size,
     }
@@ -361,7 +354,7 @@ def _rays(camera: Camera, fine: int = 1) -> tuple[Array, Array]:
     """Origin (3,) and unit directions (H, W, 3) of a camera's rays."""
     n, pose = int(str(camera["width"])), np.asarray(camera["camera_from_world"])
     v, u = (np.mgrid[0 : fine * n, 0 : fine * n] + 0.5) / fine
-    d = (np.stack([u, v], axis=-1) - camera["centre"]) / camera["focal"]
+    d = (np.stack([u, v], axis=-1) - camera["center"]) / camera["focal"]
     d = np.concatenate([d, np.ones((*u.shape, 1))], axis=-1)
     return _world(camera, np.zeros(3)), d / np.linalg.norm(d, axis=-1, keepdims=True) @ pose[:, :3]
 
@@ -392,7 +385,7 @@ def _photographs(count: int, turn: float = 0.0) -> list[tuple[Camera, Array]]:
 
 
 def _cloud(count: int, scale: float) -> Scene:
-    """Grey balls anywhere."""
+    """Gray balls anywhere."""
     rng = np.random.default_rng(15)
     return {
         "means": rng.uniform(-0.8, 0.8, (count, 3)),
@@ -477,7 +470,7 @@ def _grid(
     starts = []
     for n in (6, 24):
         coefficients = np.zeros((n, n, n, 4, 3))
-        coefficients[..., 0, :] = np.sqrt(np.pi)  # grey: one half
+        coefficients[..., 0, :] = np.sqrt(np.pi)  # gray: one half
         starts.append((np.full((n, n, n), 0.1), coefficients))
     found = other.fit_plenoxels(*starts[0], rays, target, 3, 10)
     samples = other.march(starts[1][0].shape, rays)
@@ -490,7 +483,7 @@ def _grid(
 
 
 def _bundle(views: list[tuple[Camera, Array]]) -> tuple[Array, Array]:
-    """All rays (2, R, 3) of views, and their colours (R, 3)."""
+    """All rays (2, R, 3) of views, and their colors (R, 3)."""
     origins, directions = [], []
     for camera, _ in views:
         eye, d = _rays(camera)

@@ -2,14 +2,14 @@
 
 A scene is a dict of arrays with a row for each Gaussian, and every number may take any value:
 
-    "means"             (N, 3), metres, in the world
-    "log_scales"        (N, 3), logarithms of the standard deviations along its axes, in metres
+    "means"             (N, 3), meters, in the world
+    "log_scales"        (N, 3), logarithms of the standard deviations along its axes, in meters
     "quats"             (N, 4), quaternions (w, x, y, z) of any length above zero
     "opacity_logits"    (N,), the opacity in its middle is 1 / (1 + exp(-logit))
     "colors"            (N, 3), as pictures show them
 
 A *camera* is a dict: "camera_from_world" (3, 4), a rotation W and a translation b that take a point
-p to t = W p + b with x to the right, y down, z forward; "focal" and "centre", (2,) each, in pixels
+p to t = W p + b with x to the right, y down, z forward; "focal" and "center", (2,) each, in pixels
 along x and y; "width" and "height". The middle of pixel (row, column) is (column + 1/2, row + 1/2).
 
 Your tasks are six functions, one section of the handout each; `photograd course check 15` tells
@@ -24,10 +24,10 @@ import numpy as np
 
 LOW_PASS = 0.3  # pixels squared: no splat is thinner than about a pixel
 MARGIN = 0.15  # of the picture's size: how far outside of it slopes are still taken where they are
-NEAR = 0.01  # metres; Gaussians that are closer are not drawn
+NEAR = 0.01  # meters; Gaussians that are closer are not drawn
 ALPHA_MIN, ALPHA_MAX = 1 / 255, 0.999
 FAINT = 0.02  # opacity below which a Gaussian is dropped
-SMALL = 0.06  # metres; longer ones are split, the others cloned
+SMALL = 0.06  # meters; longer ones are split, the others cloned
 THRESHOLD = 0.002  # of the pressure
 SHRINK = 1.6  # a part of a split Gaussian is smaller by this factor
 TILE = 16  # pixels
@@ -83,8 +83,8 @@ def depths(means, camera):
 def limits(camera):
     """Given: (low, high), (2,) each: where t_x / t_z and t_y / t_z are held for the slopes."""
     size = np.array([camera["width"], camera["height"]], np.float64)
-    low = (-MARGIN * size - camera["centre"]) / camera["focal"]
-    return low, ((1 + MARGIN) * size - camera["centre"]) / camera["focal"]
+    low = (-MARGIN * size - camera["center"]) / camera["focal"]
+    return low, ((1 + MARGIN) * size - camera["center"]) / camera["focal"]
 
 
 def project(means, cov, camera):
@@ -97,7 +97,7 @@ def project(means, cov, camera):
 
     Returns:
         (mean2d, cov2d, depth, back): (N, 2), pixels along x and y; (N, 3), the entries xx, xy, yy,
-        in pixels squared; (N,), metres; back(d_mean2d, d_cov2d) returns (d_means, d_cov). Handout
+        in pixels squared; (N,), meters; back(d_mean2d, d_cov2d) returns (d_means, d_cov). Handout
         equations (9) to (14).
     """
     # >>> solution 15.2
@@ -118,7 +118,7 @@ def project(means, cov, camera):
         d_t = np.concatenate([d_u, d_z[:, None]], axis=1) / z
         return d_t @ W, A.swapaxes(1, 2) @ G @ A
 
-    return f * u + camera["centre"], S[:, [0, 0, 1], [0, 1, 1]], t[:, 2], back
+    return f * u + camera["center"], S[:, [0, 0, 1], [0, 1, 1]], t[:, 2], back
     # <<< solution
 
 

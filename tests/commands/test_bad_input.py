@@ -153,7 +153,7 @@ def test_a_representation_that_cannot_be_fitted(
 @pytest.mark.parametrize(
     ("words", "says"),
     [
-        (("--background", "grey"), "background: expected one of"),
+        (("--background", "gray"), "background: expected one of"),
         (("--learning-rate", "-1"), "learning_rate: expected a positive number, got -1.0"),
         (("--downscale", "100"), "100"),
     ],

@@ -13,7 +13,7 @@ from PIL import Image
 from tests.commands.conftest import Photograd
 from tests.commands.test_trace import SCENE
 
-WORDS = ("--unknown", "materials.grey.albedo=0.2", "--spp", 4, "--learning-rate", 0.3)
+WORDS = ("--unknown", "materials.gray.albedo=0.2", "--spp", 4, "--learning-rate", 0.3)
 
 
 @pytest.fixture
@@ -25,7 +25,7 @@ def taken(photograd: Photograd, tmp_path: Path) -> tuple[Path, Path]:
     return scene, target
 
 
-def test_a_colour_is_found_and_resumed(
+def test_a_color_is_found_and_resumed(
     photograd: Photograd, taken: tuple[Path, Path], tmp_path: Path
 ) -> None:
     scene, target = taken
@@ -34,7 +34,7 @@ def test_a_colour_is_found_and_resumed(
     done = photograd(*words, "--camera-from", scene, "--json")
     assert done.code == 0, done.err
     found = json.loads((out / "found.json").read_text(encoding="utf-8"))
-    np.testing.assert_allclose(found["found"]["materials.grey.albedo"], 0.5, atol=0.03)
+    np.testing.assert_allclose(found["found"]["materials.gray.albedo"], 0.5, atol=0.03)
     assert done.result()["step"] == 60
     for name in ("comparison.png", "curves.png"):
         assert np.ptp(np.asarray(Image.open(out / name))) > 100
@@ -49,8 +49,8 @@ def test_a_colour_is_found_and_resumed(
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (("--unknown", "materials.gray.albedo"), "did you mean 'materials.grey.albedo'"),
-        (("--unknown", "materials.grey.albedo=red"), "NAME=NUMBER"),
+        (("--unknown", "materials.gray.albedo"), "did you mean 'materials.gray.albedo'"),
+        (("--unknown", "materials.gray.albedo=red"), "NAME=NUMBER"),
         (
             (*WORDS, "--camera-from", "none.toml", "--camera-from", "none.toml"),
             "one for each of 1 targets",

@@ -20,14 +20,14 @@ field_of_view = 40
 size = [8, 6]
 [environment]
 radiance = 0.5
-[materials.grey]
+[materials.gray]
 model = "lambert"
 albedo = [0.5, 0.5, 0.5]
 [[shapes]]
 kind = "sphere"
 center = [0, 0.5, 0]
 radius = 0.5
-material = "grey"
+material = "gray"
 """
 
 
@@ -52,7 +52,7 @@ def test_radiance_of_ten_thousand_survives_to_the_end(
     photograd: Photograd, tmp_path: Path, suffix: str, relative: float
 ) -> None:
     scene, out = tmp_path / "s.toml", tmp_path / f"a{suffix}"
-    bright = SCENE.replace('material = "grey"', 'material = "grey"\nemission = [10000, 1, 0.01]')
+    bright = SCENE.replace('material = "gray"', 'material = "gray"\nemission = [10000, 1, 0.01]')
     bright = bright.replace("radiance = 0.5", "radiance = 0").replace(
         "radius = 0.5", "radius = 1.2"
     )

@@ -27,7 +27,7 @@ def test_a_mesh_file_is_seen_from_outside(photograd: Photograd, tmp_path: Path) 
     assert image.shape == (24, 24, 4)
     middle = image[12, 12]
     assert middle[0] > 3 * middle[1]
-    np.testing.assert_allclose(image[23, 0, :3], image[23, 0, 0], rtol=1e-3)  # the grey sky
+    np.testing.assert_allclose(image[23, 0, :3], image[23, 0, 0], rtol=1e-3)  # the gray sky
     again = photograd("trace", model, "--size", 24, "--spp", 32, "--out", out, "--resume")
     assert again.code == 0, again.err
     assert "resumed at 16 of 32" in again.err

@@ -30,7 +30,7 @@ def test_a_scene_file_with_another_color_is_the_file_that_says_so(
     ours.write_text(SCENE, encoding="utf-8")
     theirs.write_text(SCENE.replace("[0.5, 0.5, 0.5]", "[0.2, 0.3, 0.4]"), encoding="utf-8")
     changed = picture(
-        photograd, ours, tmp_path / "a.exr", "--set", "materials.grey.albedo=0.2,0.3,0.4"
+        photograd, ours, tmp_path / "a.exr", "--set", "materials.gray.albedo=0.2,0.3,0.4"
     )
     np.testing.assert_array_equal(changed, picture(photograd, theirs, tmp_path / "b.exr"))
 

@@ -29,7 +29,7 @@ def assert_proved(function: Any, backward: Any, place: Arrays) -> None:
 
 
 def test_srgb_known_points() -> None:
-    # Middle grey, and the ends of the two pieces, from the formula of the standard by hand.
+    # Middle gray, and the ends of the two pieces, from the formula of the standard by hand.
     encoded = color.srgb_encode(np.array([0.0, 0.001, 0.18, 0.5, 1.0]))
     np.testing.assert_allclose(
         encoded, [0.0, 0.01292, 0.4613561295, 0.7353569831, 1.0], rtol=0, atol=1e-9

@@ -126,11 +126,11 @@ def test_named_outputs_and_parameters_stay_untouched() -> None:
 
     def two(p: Arrays) -> Arrays:
         p["a"] *= 2.0  # a rude function; it only sees copies
-        return {"colour": p["a"] * p["c"], "depth": p["a"].sum(axis=1)}
+        return {"color": p["a"] * p["c"], "depth": p["a"].sum(axis=1)}
 
     def two_backward(p: Arrays, d: Arrays) -> Arrays:
-        d_a = 2.0 * (d["colour"] * p["c"] + d["depth"][:, None])
-        return {"a": d_a, "b": np.zeros(3), "c": np.array((d["colour"] * 2.0 * p["a"]).sum())}
+        d_a = 2.0 * (d["color"] * p["c"] + d["depth"][:, None])
+        return {"a": d_a, "b": np.zeros(3), "c": np.array((d["color"] * 2.0 * p["a"]).sum())}
 
     assert check_gradient(two, two_backward, p, seed=6, may_be_zero=("b",))
     for name, array in before.items():

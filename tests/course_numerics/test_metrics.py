@@ -19,7 +19,7 @@ def images(channels: tuple[int, ...] = ()) -> tuple[np.ndarray, np.ndarray]:
 
 
 def direct_ssim(x: np.ndarray, y: np.ndarray, peak: float) -> float:
-    """[Wang2004] window by window with a full 2D kernel and centred moments, for one channel."""
+    """[Wang2004] window by window with a full 2D kernel and centered moments, for one channel."""
     kernel = np.array(
         [[math.exp(-(i * i + j * j) / (2 * 1.5**2)) for j in range(-5, 6)] for i in range(-5, 6)]
     )

@@ -15,18 +15,18 @@ from photograd_course.mutants import (
 
 Arrays = dict[str, np.ndarray]
 
-PLACE = {"colour": draw_like((5, 3), seed=1, stream=0), "gain": np.array(1.3)}
+PLACE = {"color": draw_like((5, 3), seed=1, stream=0), "gain": np.array(1.3)}
 COTANGENT = {"image": draw_like((5, 3), seed=2, stream=0), "sum": draw_like((5,), seed=2, stream=1)}
 
 
 def value(p: Arrays) -> Arrays:
-    return {"image": p["gain"] * p["colour"] ** 2, "sum": p["colour"].sum(axis=1)}
+    return {"image": p["gain"] * p["color"] ** 2, "sum": p["color"].sum(axis=1)}
 
 
 def backward(p: Arrays, d: Arrays) -> Arrays:
     return {
-        "colour": 2.0 * p["gain"] * p["colour"] * d["image"] + d["sum"][:, None],
-        "gain": np.array((p["colour"] ** 2 * d["image"]).sum()),
+        "color": 2.0 * p["gain"] * p["color"] * d["image"] + d["sum"][:, None],
+        "gain": np.array((p["color"] ** 2 * d["image"]).sum()),
     }
 
 
@@ -41,10 +41,10 @@ def test_difference_check_kills_every_mutant() -> None:
     )
     assert report, str(report)
     assert set(report.killed) == {
-        "zero colour",
-        "negate colour",
-        "twice colour",
-        "permute colour",
+        "zero color",
+        "negate color",
+        "twice color",
+        "permute color",
         "zero gain",
         "negate gain",
         "twice gain",
@@ -63,16 +63,16 @@ def test_weak_checkers_are_found_out() -> None:
     )
     assert not finite
     assert len(finite.killed) == 0
-    right = backward(PLACE, COTANGENT)["colour"].reshape(-1)
+    right = backward(PLACE, COTANGENT)["color"].reshape(-1)
 
     def cosine(b: object) -> bool:
-        g = b(PLACE, COTANGENT)["colour"].reshape(-1)  # type: ignore[operator]
+        g = b(PLACE, COTANGENT)["color"].reshape(-1)  # type: ignore[operator]
         return bool(g @ right > 0.9 * np.linalg.norm(g) * np.linalg.norm(right) > 0)
 
     report = check_mutants(cosine, backward, PLACE, COTANGENT)
-    assert "twice colour" in report.survived
-    assert "negate colour" in report.killed
-    assert "SURVIVED: twice colour" in str(report)
+    assert "twice color" in report.survived
+    assert "negate color" in report.killed
+    assert "SURVIVED: twice color" in str(report)
 
 
 def test_overwriting_mutants_die_by_the_accumulation_check() -> None:
@@ -80,12 +80,12 @@ def test_overwriting_mutants_die_by_the_accumulation_check() -> None:
         lambda a: check_accumulation(a, PLACE, COTANGENT), accumulate, PLACE, COTANGENT
     )
     assert report, str(report)
-    assert report.killed == ("overwrite colour", "overwrite gain")
+    assert report.killed == ("overwrite color", "overwrite gain")
     # From a zeroed buffer one call looks right: a check that calls once cannot see the mistake.
     mutant = overwriting_mutants(accumulate, PLACE, COTANGENT)[0]
     buffers = {name: np.zeros_like(array) for name, array in PLACE.items()}
     mutant.accumulate(PLACE, COTANGENT, buffers)
-    np.testing.assert_array_equal(buffers["colour"], backward(PLACE, COTANGENT)["colour"])
+    np.testing.assert_array_equal(buffers["color"], backward(PLACE, COTANGENT)["color"])
 
 
 def test_single_array_outputs_drop_a_channel() -> None:

@@ -1,4 +1,4 @@
-"""Optimisers: golden traces, strides, sparse rows, threads, resumption, and refusals."""
+"""Optimizers: golden traces, strides, sparse rows, threads, resumption, and refusals."""
 
 from __future__ import annotations
 

@@ -32,7 +32,7 @@ def words(text: str) -> np.ndarray:
 
 
 def scalar_philox(counter: list[int], key: list[int]) -> list[int]:
-    """The rounds once more with Python integers, as an oracle for the vectorised form."""
+    """The rounds once more with Python integers, as an oracle for the vectorized form."""
     c, k = list(counter), list(key)
     for _ in range(10):
         a, b = 0xD2511F53 * c[0], 0xCD9E8D57 * c[2]

@@ -11,12 +11,12 @@ from photograd_course.gradcheck import draw_like
 from photograd_course.resample import upsample_trilinear
 
 
-def centres(count: int) -> np.ndarray:
+def centers(count: int) -> np.ndarray:
     return (np.arange(count) + 0.5) / count
 
 
 def affine(shape: tuple[int, int, int]) -> np.ndarray:
-    x, y, z = np.meshgrid(*(centres(n) for n in shape), indexing="ij")
+    x, y, z = np.meshgrid(*(centers(n) for n in shape), indexing="ij")
     return np.stack([1.0 + 2.0 * x - 3.0 * y + 0.5 * z, x - y], axis=-1)
 
 
@@ -26,7 +26,7 @@ def test_affine_fields_are_exact_inside(new: tuple[int, int, int]) -> None:
     fine, expected = upsample_trilinear(affine(old), new), affine(new)
     inside = np.ones(new, dtype=bool)
     for axis, (n, m) in enumerate(zip(old, new, strict=True)):
-        within = (centres(m) >= 0.5 / n - 1e-12) & (centres(m) <= 1 - 0.5 / n + 1e-12)
+        within = (centers(m) >= 0.5 / n - 1e-12) & (centers(m) <= 1 - 0.5 / n + 1e-12)
         shape = [1, 1, 1]
         shape[axis] = m
         inside &= within.reshape(shape)
@@ -63,7 +63,7 @@ def test_mean_positivity_and_dtype() -> None:
     assert fine.flags.c_contiguous
     assert grid.min() <= fine.min()
     assert fine.max() <= grid.max()
-    # Doubling a clamped cell-centred grid keeps its mean: each voxel gives weight 2 per axis.
+    # Doubling a clamped cell-centered grid keeps its mean: each voxel gives weight 2 per axis.
     assert fine.mean(dtype=np.float64) == pytest.approx(grid.mean(dtype=np.float64), rel=1e-6)
     np.testing.assert_array_equal(upsample_trilinear(grid[:1, :1, :1], (3, 2, 1)), grid[0, 0, 0])
 

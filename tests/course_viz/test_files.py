@@ -83,7 +83,7 @@ def test_gif_and_frames_say_what_they_were_given(tmp_path: Path) -> None:
         for number, frame in enumerate(frames):
             gif.seek(number)
             assert gif.info["duration"] == 40
-            # 256 colours for 5 flat frames: at most the rounding of the palette, 4 of 255.
+            # 256 colors for 5 flat frames: at most the rounding of the palette, 4 of 255.
             assert np.abs(np.asarray(gif.convert("RGB")) / 255 - frame).max() < 0.016
     paths = write_frames(frames, tmp_path / "frames", prefix="view")
     assert [path.name for path in paths][:2] == ["view_0000.png", "view_0001.png"]

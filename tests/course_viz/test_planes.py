@@ -33,7 +33,7 @@ def panel_pixels(figure: Figure, number: int, image: NDArray[Any]) -> NDArray[An
     return image[rows, columns]
 
 
-def centre_of(marked: NDArray[np.bool_]) -> tuple[float, float]:
+def center_of(marked: NDArray[np.bool_]) -> tuple[float, float]:
     """(right, down) of the marked pixels, each from -1 to 1."""
     assert marked.any()
     rows, columns = np.nonzero(marked)
@@ -48,7 +48,7 @@ def test_a_voxel_appears_where_an_eye_outside_would_see_it(
 ) -> None:
     """A voxel right of, above and in front of the middle: x > 0, y > 0, z > 0."""
     values = np.zeros((9, 9, 9))
-    values[7, 6, 8] = sign  # centres x = 0.667, y = 0.444, z = 0.889
+    values[7, 6, 8] = sign  # centers x = 0.667, y = 0.444, z = 0.889
     keywords = {"at": (0.667, 0.444, 0.889)} if draw is signed_slices else {}
     figure = draw(values, CUBE, **keywords)
     image = pixels(figure, tmp_path)
@@ -56,10 +56,10 @@ def test_a_voxel_appears_where_an_eye_outside_would_see_it(
     for number, (right, down) in expected.items():
         panel = panel_pixels(figure, number, image)
         red, green, blue = np.moveaxis(panel, 2, 0)
-        coloured = (red - blue) * sign > 30  # red for positive, blue for negative
-        coloured &= abs(red - green) + abs(green - blue) > 40  # not the grey guide lines
-        found = centre_of(coloured)
-        # A voxel is 0.22 wide; frame and guide lines shift its centre by less than a sixth of it.
+        colored = (red - blue) * sign > 30  # red for positive, blue for negative
+        colored &= abs(red - green) + abs(green - blue) > 40  # not the gray guide lines
+        found = center_of(colored)
+        # A voxel is 0.22 wide; frame and guide lines shift its center by less than a sixth of it.
         assert found == pytest.approx((right, down), abs=0.035)
 
 
@@ -84,11 +84,11 @@ def test_equal_magnitudes_of_both_signs_are_equally_strong(tmp_path: Path) -> No
     assert negative[2] > negative[0] + 10  # blue
     assert positive[0] > positive[2] + 10  # red
     # ColorBrewer's two halves are matched in lightness; 12 of 255 is the mismatch of the published
-    # colours themselves (209/229/240 against 253/219/199 on their third step).
+    # colors themselves (209/229/240 against 253/219/199 on their third step).
     assert abs(negative.mean() - positive.mean()) < 12
 
 
-def test_axes_carry_metres_of_the_box() -> None:
+def test_axes_carry_meters_of_the_box() -> None:
     bounds = np.array([[0.0, 10.0, 100.0], [3.0, 12.0, 101.0]])
     figure = signed_slices(np.ones((3, 4, 5)), bounds)
     front, side, top = figure.axes[:3]
@@ -101,7 +101,7 @@ def test_axes_carry_metres_of_the_box() -> None:
         axes.get_position().width * figure.get_size_inches()[0] / abs(np.diff(axes.get_xlim())[0])
         for axes in (front, side, top)
     ]
-    assert scales == pytest.approx([scales[0]] * 3)  # one metre is equally long in all views
+    assert scales == pytest.approx([scales[0]] * 3)  # one meter is equally long in all views
 
 
 def test_steps_come_in_order_and_state_their_own_scales(field: Any) -> None:

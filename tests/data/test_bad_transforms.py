@@ -158,7 +158,7 @@ def test_an_image_that_changed_after_loading(tmp_path: Path) -> None:
         view.rgba()
 
 
-def test_mixed_colour_spaces(tmp_path: Path) -> None:
+def test_mixed_color_spaces(tmp_path: Path) -> None:
     from photograd.images import write_exr
 
     nerfstudio(tmp_path, frame(1, file_path="images/1.exr"))

@@ -19,7 +19,7 @@ from photograd.capture import (
 from photograd.capture.bounds import silhouettes_of, visual_hull_box
 from photograd_course.errors import SceneError
 
-from support.capture_files import SPHERE_CENTRE, SPHERE_RADIUS, look_at, orbit, picture
+from support.capture_files import SPHERE_CENTER, SPHERE_RADIUS, look_at, orbit, picture
 
 UNIT_BOX = np.array([[-1.0, -1, -1], [1, 1, 1]])
 
@@ -48,7 +48,7 @@ def test_declared_bounds_win() -> None:
 
 def test_visual_hull_of_a_sphere() -> None:
     found = estimate_bounds(capture_of(sphere_views(), has_alpha=True))
-    lower, upper = SPHERE_CENTRE - SPHERE_RADIUS, SPHERE_CENTRE + SPHERE_RADIUS
+    lower, upper = SPHERE_CENTER - SPHERE_RADIUS, SPHERE_CENTER + SPHERE_RADIUS
     assert (found.box[0] < lower).all()
     assert (found.box[1] > upper).all()
     # 5 % of padding, a voxel of the last pass (2 %), a pixel (2.5 / 70 = 4 % of a diameter) on each
@@ -62,7 +62,7 @@ def test_visual_hull_of_a_sphere() -> None:
 def test_the_hull_never_loses_a_thin_object() -> None:
     """A rod thinner than a voxel of the first pass still casts its shadow."""
     cameras = orbit(12, 64, 64, 70.0)
-    rod = SPHERE_CENTRE + np.linspace(-0.6, 0.6, 2000)[:, None] * np.array([1.0, 0.0, 0.0])
+    rod = SPHERE_CENTER + np.linspace(-0.6, 0.6, 2000)[:, None] * np.array([1.0, 0.0, 0.0])
     views = []
     for index, camera in enumerate(cameras):
         image = np.zeros((64, 64, 4), dtype=np.float32)

@@ -15,7 +15,7 @@ def test_central_ray_of_the_identity_looks_forward() -> None:
     origins, directions = camera.rays()
     assert origins.shape == directions.shape == (15, 3)
     np.testing.assert_array_equal(directions[2 * 3 + 1], [0.0, 0.0, 1.0])
-    # Right of the centre is +X, below it is +Y.
+    # Right of the center is +X, below it is +Y.
     np.testing.assert_allclose(directions[2 * 3 + 2], np.array([0.25, 0, 1]) / np.hypot(0.25, 1))
     np.testing.assert_allclose(directions[3 * 3 + 1], np.array([0, 0.25, 1]) / np.hypot(0.25, 1))
 

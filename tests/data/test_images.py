@@ -32,16 +32,16 @@ def test_png_round_trip(tmp_path: Path, channels: int) -> None:
 
 def test_eight_bits_are_k_over_255(tmp_path: Path) -> None:
     ramp = np.arange(256, dtype=np.uint8).reshape(16, 16)
-    Image.fromarray(ramp).save(tmp_path / "grey.png")
+    Image.fromarray(ramp).save(tmp_path / "gray.png")
     expected = (np.arange(256) / 255.0).astype(np.float32).reshape(16, 16)
-    np.testing.assert_array_equal(read_image(tmp_path / "grey.png")[..., 1], expected)
+    np.testing.assert_array_equal(read_image(tmp_path / "gray.png")[..., 1], expected)
 
 
 def test_other_modes(tmp_path: Path) -> None:
-    grey = RNG.integers(0, 65536, (4, 5)).astype(np.uint16)
-    Image.fromarray(grey).save(tmp_path / "grey16.png")
-    expected = grey / np.float32(65535.0)
-    np.testing.assert_allclose(read_image(tmp_path / "grey16.png")[..., 0], expected, rtol=1e-6)
+    gray = RNG.integers(0, 65536, (4, 5)).astype(np.uint16)
+    Image.fromarray(gray).save(tmp_path / "gray16.png")
+    expected = gray / np.float32(65535.0)
+    np.testing.assert_allclose(read_image(tmp_path / "gray16.png")[..., 0], expected, rtol=1e-6)
     palette = Image.fromarray(RNG.integers(0, 3, (4, 5)).astype(np.uint8)).convert("P")
     palette.putpalette([10, 20, 30, 40, 50, 60, 70, 80, 90])
     palette.save(tmp_path / "palette.png", transparency=1)
@@ -133,7 +133,7 @@ def test_half_refuses_what_it_cannot_hold(tmp_path: Path) -> None:
 def test_downscaling_averages_premultiplied() -> None:
     image = np.zeros((2, 4, 4), dtype=np.float32)
     image[0, 0] = [1.0, 0.5, 0.0, 1.0]
-    image[0, 1] = [0.0, 1.0, 1.0, 0.0]  # transparent: its colour must not count
+    image[0, 1] = [0.0, 1.0, 1.0, 0.0]  # transparent: its color must not count
     image[:, 2:] = [0.25, 0.5, 0.75, 1.0]
     small, valid = downscale_image(image, 2)
     np.testing.assert_allclose(small[0, 0], [1.0, 0.5, 0.0, 0.25])

@@ -1,4 +1,4 @@
-"""Sparse points and their colours come with a capture, in the world of its cameras."""
+"""Sparse points and their colors come with a capture, in the world of its cameras."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def write_points(path: Path, points: npt.NDArray[np.float64], kinds: list[tuple[
     PlyData([PlyElement.describe(vertex, "vertex")]).write(str(path))
 
 
-def colour_errors(capture: Capture) -> tuple[float, float]:
+def color_errors(capture: Capture) -> tuple[float, float]:
     """Median difference in levels of points to the pixels where they land, and five beside."""
     assert capture.points is not None
     assert capture.point_colors is not None
@@ -53,8 +53,8 @@ def colour_errors(capture: Capture) -> tuple[float, float]:
     return float(np.median(np.concatenate(there))), float(np.median(np.concatenate(aside)))
 
 
-def test_banana_points_land_on_their_colours(posed: Path) -> None:
-    there, aside = colour_errors(load_capture(posed / "banana"))
+def test_banana_points_land_on_their_colors(posed: Path) -> None:
+    there, aside = color_errors(load_capture(posed / "banana"))
     # Measured 10.7 and 32.0 levels of 255; over all views, also those that something hides it from.
     assert there < 13
     assert aside > 28
@@ -84,7 +84,7 @@ def test_points_of_a_nerfstudio_capture_are_those_of_the_colmap_model(
             np.sort(np.linalg.norm(ours.points - other.position, axis=1)),
             rtol=1e-4,
         )
-    assert colour_errors(ours) == pytest.approx(colour_errors(theirs), abs=0.01)
+    assert color_errors(ours) == pytest.approx(color_errors(theirs), abs=0.01)
 
 
 def test_a_nerfstudio_file_names_its_points(tmp_path: Path) -> None:
@@ -125,7 +125,7 @@ def test_points_that_are_none_are_refused(tmp_path: Path) -> None:
         read_point_ply(tmp_path / "none.ply")
 
 
-def test_colours_belong_to_points(posed: Path) -> None:
+def test_colors_belong_to_points(posed: Path) -> None:
     capture = load_capture(posed / "opensfm_berlin")
     assert capture.point_colors is not None
     with pytest.raises(ShapeError, match=r"shape \(N, 3\) with N = 1430 as in points"):

@@ -115,8 +115,8 @@ def test_undistorted_banana_matches_our_undistortion(posed: Path) -> None:
     assert shifted > 2.0 * difference.mean()
 
 
-def test_berlin_points_land_on_their_colours(posed: Path) -> None:
-    """The file holds no observations, but it says which colour each point had."""
+def test_berlin_points_land_on_their_colors(posed: Path) -> None:
+    """The file holds no observations, but it says which color each point had."""
     capture = load_capture(posed / "opensfm_berlin")
     assert capture.format == "opensfm"
     assert len(capture.views) == 3

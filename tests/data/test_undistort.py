@@ -17,7 +17,7 @@ CAMERA = Camera(120, 90, 130.0, 125.0, 58.0, 47.0, np.eye(4))
 
 
 def ideal_points() -> np.ndarray:
-    """Normalised positions of all pixel centres of CAMERA, (N, 2)."""
+    """Normalized positions of all pixel centers of CAMERA, (N, 2)."""
     u, v = np.meshgrid(np.arange(120) + 0.5, np.arange(90) + 0.5)
     return np.stack([(u - 58.0) / 130.0, (v - 47.0) / 125.0], axis=-1).reshape(-1, 2)
 
@@ -90,13 +90,13 @@ def test_no_distortion_changes_nothing() -> None:
     image = np.random.default_rng(0).random((90, 120, 4), dtype=np.float32)
     result, valid = undistort_image(image, CAMERA, Distortion())
     assert valid.all()
-    # Positions come back to the pixel centres within rounding, so weights within about 1e-13.
+    # Positions come back to the pixel centers within rounding, so weights within about 1e-13.
     np.testing.assert_allclose(result, image, atol=1e-6)
     with pytest.raises(ShapeError, match="undistort_image: image"):
         undistort_image(image[:5], CAMERA, Distortion())
 
 
-def test_hidden_colours_do_not_bleed() -> None:
+def test_hidden_colors_do_not_bleed() -> None:
     image = np.zeros((90, 120, 4), dtype=np.float32)
     image[..., 0] = 1.0  # red everywhere, but transparent in the left half
     image[:, 60:] = [0.0, 1.0, 0.0, 1.0]

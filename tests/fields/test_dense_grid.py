@@ -1,4 +1,4 @@
-"""The dense grid as Python sees it: linear in its colours, refined without a change of meaning."""
+"""The dense grid as Python sees it: linear in its colors, refined without a change of meaning."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ OPTIONS = RenderOptions()
 
 
 def identity_grid(seed: int) -> DenseGrid:
-    """The example with colours that are used as they are."""
+    """The example with colors that are used as they are."""
     grid = DenseGrid.example(seed=seed)
     return DenseGrid(grid.params["values"], replace(grid.policy, color_activation="identity"))
 
 
 @pytest.mark.parametrize("fused", [True, False])
-def test_the_image_is_linear_in_colour_and_its_adjoint_is_the_transpose(fused: bool) -> None:
+def test_the_image_is_linear_in_color_and_its_adjoint_is_the_transpose(fused: bool) -> None:
     grid = identity_grid(1)
     grid.fused = fused
     batch = grid.example_batch(seed=1)
@@ -47,7 +47,7 @@ def test_the_image_is_linear_in_colour_and_its_adjoint_is_the_transpose(fused: b
     np.testing.assert_allclose(render(3 * color)[0].color, both, rtol=1e-12)
 
 
-def test_colours_do_not_move_opacity_or_depth() -> None:
+def test_colors_do_not_move_opacity_or_depth() -> None:
     grid = identity_grid(2)
     batch = grid.example_batch(seed=2)
     outputs, context = grid.render(batch, seed=0, step=0, options=OPTIONS)
@@ -63,7 +63,7 @@ def test_empty_space_has_the_density_that_was_asked_for() -> None:
     grid = DenseGrid.empty(BOX, 20, finest=80, sigma_t=0.3, dtype=np.float64)
     assert grid.params["values"].shape == (20, 15, 8, 4)
     np.testing.assert_allclose(grid.box, BOX, atol=1e-12)
-    # Straight through the box along X: 2 m of 0.3/m, middle grey.
+    # Straight through the box along X: 2 m of 0.3/m, middle gray.
     batch = RayBatch(np.array([[-3.0, 0.2, 0.4]]), np.array([[1.0, 0, 0]]), np.zeros(1, np.uint32))
     outputs, _ = grid.render(batch, seed=0, step=0, options=OPTIONS)
     assert outputs.opacity is not None

@@ -17,7 +17,7 @@ from photograd_course.random import uniform
 def pair(degree: int, dtype: Any) -> tuple[SparseSh, DenseSh]:
     """A sparse field and the dense one that shows the same.
 
-    What is not active has raw density 0, which relu makes nothing of, and no colour, so that the
+    What is not active has raw density 0, which relu makes nothing of, and no color, so that the
     dense grid is transparent where the sparse one does not look.
     """
     shape, numbers = (19, 12, 16), 1 + 3 * (degree + 1) ** 2

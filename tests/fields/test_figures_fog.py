@@ -23,7 +23,7 @@ def found() -> dict[str, Any]:
 
 
 def around(layer: Any) -> Any:
-    """The largest value among each cell of (X, Y) and its eight neighbours."""
+    """The largest value among each cell of (X, Y) and its eight neighbors."""
     wide = np.pad(layer, 1)
     x, y = layer.shape
     return np.max([wide[i : i + x, j : j + y] for i, j in np.ndindex(3, 3)], axis=0)

@@ -84,8 +84,8 @@ def test_a_camera_that_looks_at_flat_gaussians_sees_the_canvas() -> None:
     camera = Camera(size, size, size * far, size * far, size / 2, size / 2, pose)
     sharp = SplatOptions(low_pass=0.0).smooth()
     picture, _ = splat(solid, camera, options=sharp)
-    centre = (np.arange(size) + 0.5) / size
-    points = np.stack(np.meshgrid(centre, centre), axis=-1).reshape(-1, 2)
+    center = (np.arange(size) + 0.5) / size
+    points = np.stack(np.meshgrid(center, center), axis=-1).reshape(-1, 2)
     outputs, _ = drawn(flat, points)
     assert outputs.opacity.max() > 0.5
     np.testing.assert_allclose(picture.color.reshape(-1, 3), outputs.color, atol=1e-5)

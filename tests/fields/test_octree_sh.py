@@ -103,7 +103,7 @@ def test_the_gradient_holds_under_the_stop() -> None:
 
 
 def ball(resolution: int) -> DenseGrid:
-    """A fuzzy ball whose colour changes from side to side."""
+    """A fuzzy ball whose color changes from side to side."""
     field = DenseGrid.empty(BOX, resolution, dtype=np.float64)
     at = -1 + (np.arange(resolution) + 0.5) * 2 / resolution
     x, y, z = np.meshgrid(at, at, at, indexing="ij")
@@ -126,14 +126,14 @@ def test_a_grid_becomes_a_tree_that_learns_what_the_conversion_lost() -> None:
         np.arange(24 * 20, dtype=np.uint32),
     )
     truth = grid.render(batch, seed=0, step=0, options=OPTIONS)[0].color
-    optimiser = Adam()
+    optimizer = Adam()
     errors = []
     for step in range(41):
         seen, context = tree.render(batch, seed=0, step=step, options=OPTIONS)
         errors.append(float(((seen.color - truth) ** 2).mean()))
         d = Outputs(2 * (seen.color - truth) / truth.size)
         rates = {name: 0.5 * spec.learning_rate for name, spec in tree.param_groups().items()}
-        optimiser.step(tree.params, tree.render_backward(context, d), rates)
+        optimizer.step(tree.params, tree.render_backward(context, d), rates)
     assert np.abs(truth).max() > 0.5
     # Measured 0.0149, then 0.0026: a step function stands for a trilinear one.
     assert errors[0] < 0.02

@@ -78,7 +78,7 @@ def test_a_finer_grid_shows_the_same_image() -> None:
     np.testing.assert_allclose(quarter / 2, field.params["density"][rows], rtol=1e-12)
 
 
-def test_pruning_keeps_what_weighs_and_its_neighbours() -> None:
+def test_pruning_keeps_what_weighs_and_its_neighbors() -> None:
     field = SparseSh.example(seed=3)
     before = {name: value.copy() for name, value in field.params.items()}
     old = field.active

@@ -22,14 +22,14 @@ def red(*points: tuple[float, float]) -> list[float]:
 
 
 def test_rows_go_down_columns_to_the_right() -> None:
-    centres = [((column + 0.5) / 3, (row + 0.5) / 2) for row in range(2) for column in range(3)]
-    np.testing.assert_allclose(red(*centres), RED.ravel(), rtol=1e-14)
+    centers = [((column + 0.5) / 3, (row + 0.5) / 2) for row in range(2) for column in range(3)]
+    np.testing.assert_allclose(red(*centers), RED.ravel(), rtol=1e-14)
     np.testing.assert_allclose(
-        sample(TEXTURE, np.array(centres)), TEXTURE.reshape(6, 3), rtol=1e-14
+        sample(TEXTURE, np.array(centers)), TEXTURE.reshape(6, 3), rtol=1e-14
     )
 
 
-def test_half_way_is_the_mean_of_its_neighbours() -> None:
+def test_half_way_is_the_mean_of_its_neighbors() -> None:
     between_columns, between_rows, middle_of_four = (1 / 3, 0.25), (0.5, 0.5), (2 / 3, 0.5)
     np.testing.assert_allclose(
         red(between_columns, between_rows, middle_of_four),

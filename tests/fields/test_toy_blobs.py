@@ -1,4 +1,4 @@
-"""Rows that disappear: the map, the optimiser's moments, the rendering afterwards."""
+"""Rows that disappear: the map, the optimizer's moments, the rendering afterwards."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ RATES = {"mean": 0.005, "log_radius": 0.01, "color": 0.01}
 
 
 def grid_of_points(size: int) -> CanvasBatch:
-    centre = (np.arange(size) + 0.5) / size
-    return CanvasBatch(np.stack(np.meshgrid(centre, centre), axis=-1).reshape(-1, 2))
+    center = (np.arange(size) + 0.5) / size
+    return CanvasBatch(np.stack(np.meshgrid(center, center), axis=-1).reshape(-1, 2))
 
 
 def render(blobs: ToyBlobs, batch: CanvasBatch) -> tuple[Any, Any]:
@@ -79,7 +79,7 @@ def test_the_rendering_is_that_of_the_survivors() -> None:
     after, _ = render(blobs, batch)
     alone = ToyBlobs(*(blobs.params[name] for name in ("mean", "log_radius", "color")))
     assert np.array_equal(after, render(alone, batch)[0])
-    # A weight is at most 1, so that the image changes by no more than the colours that are gone.
+    # A weight is at most 1, so that the image changes by no more than the colors that are gone.
     assert 0 < np.abs(before - after).max() <= lost.max()
     # A rendering from before the pruning can still be differentiated: it keeps its parameters.
     later = blobs.render_backward(context, Outputs(np.ones_like(before)))
@@ -118,7 +118,7 @@ def test_adam_follows_the_map_entry_by_entry() -> None:
     assert all(np.array_equal(blobs.params[name], twin.params[name]) for name in RATES)
 
 
-def test_forgetting_the_map_is_refused_by_the_optimiser() -> None:
+def test_forgetting_the_map_is_refused_by_the_optimizer() -> None:
     blobs, batch, adam = ToyBlobs.example(seed=4), grid_of_points(8), Adam()
     truth = np.zeros((64, 3))
     descend(blobs, adam, truth, batch)
@@ -152,7 +152,7 @@ def test_the_cut_off_drops_far_rows_and_little_of_the_image() -> None:
     near = CanvasBatch(np.random.default_rng(1).uniform(0.0, 0.3, (40, 2)))
     full, context = render(ToyBlobs(*arrays), near)
     cut, cut_context = render(ToyBlobs(*arrays, reach=3.0), near)
-    # Per blob at most exp(-9 / 2) of its colour is dropped.
+    # Per blob at most exp(-9 / 2) of its color is dropped.
     assert 0 < np.abs(full - cut).max() <= 3 * np.exp(-4.5)
     d = Outputs(np.ones_like(full))
     all_rows = ToyBlobs(*arrays).render_backward(context, d)

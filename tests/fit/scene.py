@@ -1,4 +1,4 @@
-"""A scene whose truth is known: three coloured balls in a dense grid, seen by our marcher."""
+"""A scene whose truth is known: three colored balls in a dense grid, seen by our marcher."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from photograd.fitting.model import Model
 from photograd_course.color import srgb_encode, unpremultiply
 
 BOX = np.array([[-0.8, -0.6, -0.7], [0.8, 0.6, 0.7]])
-BALLS = (  # centre, radius, linear colour
+BALLS = (  # center, radius, linear color
     ((-0.35, -0.1, 0.0), 0.32, (0.8, 0.15, 0.1)),
     ((0.3, 0.15, 0.25), 0.27, (0.1, 0.6, 0.2)),
     ((0.2, -0.2, -0.3), 0.25, (0.15, 0.25, 0.9)),
@@ -30,14 +30,14 @@ SIZE = 24  # pixels along an edge
 
 @cache
 def truth() -> DenseGrid:
-    """32 voxels along the box: 40/m inside of the balls, fading over a twentieth of a metre."""
+    """32 voxels along the box: 40/m inside of the balls, fading over a twentieth of a meter."""
     shape = (32, 24, 28)
     axes = [BOX[0, k] + (np.arange(n) + 0.5) * 0.05 for k, n in enumerate(shape)]
     position = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
     values = np.zeros((*shape, 4))
     weight = np.zeros(shape)
-    for centre, radius, color in BALLS:
-        inside = 1 / (1 + np.exp((np.linalg.norm(position - centre, axis=-1) - radius) / 0.012))
+    for center, radius, color in BALLS:
+        inside = 1 / (1 + np.exp((np.linalg.norm(position - center, axis=-1) - radius) / 0.012))
         values[..., 3] += 40 * inside
         values[..., :3] += (inside + 1e-9)[..., None] * np.array(color)
         weight += inside + 1e-9
@@ -78,7 +78,7 @@ def frames() -> dict[str, list[tuple[str, Camera, Any]]]:
 
 
 def over_wall(image: Any, color: tuple[float, float, float]) -> Any:
-    """The photograph in front of a wall of one display colour: opaque, as cameras take them."""
+    """The photograph in front of a wall of one display color: opaque, as cameras take them."""
     alpha = image[..., 3:]
     return np.concatenate(
         [image[..., :3] * alpha + (1 - alpha) * np.array(color), np.ones_like(alpha)],
@@ -88,7 +88,7 @@ def over_wall(image: Any, color: tuple[float, float, float]) -> Any:
 
 
 def capture(*, wall: tuple[float, float, float] | None = None) -> Capture:
-    """The scene in memory, with its true box; with a `wall` colour, photographs without alpha."""
+    """The scene in memory, with its true box; with a `wall` color, photographs without alpha."""
     views = {
         split: tuple(
             View(name, camera, image if wall is None else over_wall(image, wall))

@@ -21,13 +21,13 @@ from photograd_course.gradcheck import check_gradient
 from photograd_course.viz import sign_report
 
 BOX = np.array([[-1.0, -1.0, -1.0], [1.0, 1.0, 1.0]])
-CENTRE, RADIUS = np.array([0.15, -0.1, 0.05]), 0.4
+CENTER, RADIUS = np.array([0.15, -0.1, 0.05]), 0.4
 
 
 def photograph(camera: Camera) -> Any:
-    """(H, W, 4): an opaque ball, exact for each pixel's ray, with stripes of two colours."""
+    """(H, W, 4): an opaque ball, exact for each pixel's ray, with stripes of two colors."""
     origins, directions = camera.rays()
-    offset = CENTRE - origins
+    offset = CENTER - origins
     along = np.einsum("rk,rk->r", offset, directions)
     gap = RADIUS**2 - (np.einsum("rk,rk->r", offset, offset) - along**2)
     point = origins + directions * (along - np.sqrt(np.maximum(gap, 0)))[:, None]
@@ -56,8 +56,8 @@ def start(resolution: int = 16, dtype: Any = np.float32) -> DenseGrid:
     return DenseGrid.empty(BOX, resolution, sigma_t=0.1, dtype=dtype)
 
 
-def centres(grid: DenseGrid) -> Any:
-    """Centres (X, Y, Z, 3) of the voxels."""
+def centers(grid: DenseGrid) -> Any:
+    """Centers (X, Y, Z, 3) of the voxels."""
     n = grid.params["values"].shape[0]
     axis = -1 + (np.arange(n) + 0.5) * 2 / n
     return np.stack(np.meshgrid(axis, axis, axis, indexing="ij"), axis=-1)
@@ -104,7 +104,7 @@ def test_masks_hold_for_every_ray() -> None:
     # Which voxels does any ray of an opaque, of an empty pixel touch? Asked of each ray and each
     # voxel's cube (its basis function reaches one voxel to either side), by the slab test.
     grid, capture = start(16), ball(32)
-    position = centres(grid).reshape(-1, 3)
+    position = centers(grid).reshape(-1, 3)
     touched = {"opaque": np.zeros(len(position), bool), "empty": np.zeros(len(position), bool)}
     for view in capture.train:
         origins, directions = view.camera.rays()
@@ -127,7 +127,7 @@ def test_masks_hold_for_every_ray() -> None:
     right = {"occupied": ~touched["empty"], "background": ~touched["opaque"]}
     assert occupied.sum() >= right["occupied"].sum() / 8
     assert background.sum() >= right["background"].sum() / 4
-    assert np.linalg.norm(position[occupied] - CENTRE, axis=1).max() < RADIUS
+    assert np.linalg.norm(position[occupied] - CENTER, axis=1).max() < RADIUS
 
 
 def test_masks_need_alpha() -> None:

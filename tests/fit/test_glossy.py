@@ -1,4 +1,4 @@
-"""Colour that changes with direction: what harmonics are for, and a diffuse grid cannot show."""
+"""Color that changes with direction: what harmonics are for, and a diffuse grid cannot show."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from tests.fit.scene import BOX, as_model, cameras, options
 
 
 def glossy_ball() -> SparseSh:
-    """A hard grey ball whose three colours shine along three axes, to degree 2."""
+    """A hard gray ball whose three colors shine along three axes, to degree 2."""
     shape = (32, 24, 28)
     axes = [BOX[0, k] + (np.arange(n) + 0.5) * 0.05 for k, n in enumerate(shape)]
     radius = np.linalg.norm(np.stack(np.meshgrid(*axes, indexing="ij"), -1), axis=-1)

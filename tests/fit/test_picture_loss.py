@@ -28,7 +28,7 @@ def view(seed: int, alpha: float = 1.0) -> TrainingView:
 
 
 class Proof:
-    """Colour, opacity and background as parameters; the photograph is opaque."""
+    """Color, opacity and background as parameters; the photograph is opaque."""
 
     def __init__(self, seed: int, ssim_weight: float, seen: TrainingView) -> None:
         g = np.random.default_rng(seed)

@@ -23,7 +23,7 @@ from tests.fit import scene
 
 # T11 at 24 voxels, 200 steps of 1024 rays: over 16 seeds held-out PSNR was 35.7 to 36.2 dB over
 # random backgrounds (5th percentile 35.75), over 10 seeds 36.1 to 37.1 dB with a learned one
-# (5th percentile 36.17). The gates are 1 dB lower. The mean colour of all photographs scores 17 dB.
+# (5th percentile 36.17). The gates are 1 dB lower. The mean color of all photographs scores 17 dB.
 RECOVERS = {"resolution": 24, "steps": 200, "rays": 1024}
 WALL = (0.9, 0.6, 0.3)
 
@@ -47,8 +47,8 @@ def test_a_known_scene_is_recovered() -> None:
     assert result.ssim >= 0.96  # 0.975 at the lowest PSNR seen
     assert as_result(result)["psnr"] == result.psnr
     # The volume too: where the balls are opaque, light is stopped; beside them it passes.
-    centre, radius, color = scene.BALLS[0]
-    origins = np.array([[-3.0, centre[1], centre[2]], [-3.0, -0.5, 0.6]])
+    center, radius, color = scene.BALLS[0]
+    origins = np.array([[-3.0, center[1], center[2]], [-3.0, -0.5, 0.6]])
     batch = RayBatch(origins, np.array([[1.0, 0, 0]] * 2), np.arange(2, dtype=np.uint32))
     outputs, _ = model.field.render(batch, seed=0, step=0, options=RenderOptions())
     assert outputs.opacity is not None
@@ -58,7 +58,7 @@ def test_a_known_scene_is_recovered() -> None:
     depth = outputs.depth[0] / outputs.opacity[0]
     voxel = 1.6 / 24
     # Measured: 0.38 voxels, and 0.035.
-    assert depth == pytest.approx(3 + centre[0] - radius, abs=voxel)
+    assert depth == pytest.approx(3 + center[0] - radius, abs=voxel)
     np.testing.assert_allclose(outputs.color[0] / outputs.opacity[0], color, atol=0.05)
 
 

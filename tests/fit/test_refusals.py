@@ -69,7 +69,7 @@ def test_a_box_that_no_camera_sees_is_refused_whatever_is_allowed() -> None:
         ({"degree": 4}, "FitOptions: degree: expected 0 to 3, got 4"),
         ({"prune": -0.1}, "FitOptions: prune: expected zero or more, got -0.1"),
         ({"total_variation": -1.0}, "total_variation: expected zero or more, got -1.0"),
-        ({"background": "grey"}, r"background: expected one of .*, got 'grey'"),
+        ({"background": "gray"}, r"background: expected one of .*, got 'gray'"),
         ({"refine_at": (0.5, 0.2)}, "refine_at: expected two rising fractions below 1"),
     ],
 )

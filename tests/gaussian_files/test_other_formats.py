@@ -28,7 +28,7 @@ def test_words_mean_what_the_format_says(tmp_path: Path) -> None:
     np.testing.assert_allclose(0.5 + Y_0 * g.sh, [[[1.0, 0.2, 0.0]]], atol=1e-6)
 
 
-def test_limits_of_colours_and_harmonics_are_used(tmp_path: Path) -> None:
+def test_limits_of_colors_and_harmonics_are_used(tmp_path: Path) -> None:
     write_words(tmp_path / "a.ply", [ROW] * 3, colors=True, rest=9)
     g = read_gaussians(tmp_path / "a.ply").gaussians
     assert g.degree == 1
@@ -127,7 +127,7 @@ def test_the_garden_is_points_that_can_be_seen(shared_data: Path) -> None:
     capped = size[::3001] > 0.99 * size.max()
     share = np.array(shares)[~capped]
     assert len(share) > 35
-    assert share.min() > 0.999  # windows miss neighbours; they invent none
+    assert share.min() > 0.999  # windows miss neighbors; they invent none
     assert np.median(share) < 1.5
 
 

@@ -22,7 +22,7 @@ def write_words(
     chunks: int = 1,
     lowest: float = -2.0,
 ) -> None:
-    """Chunks with positions of -2 to 2 (0 to 1 along y), scales of -6 to -1, colours of -1 to 3."""
+    """Chunks with positions of -2 to 2 (0 to 1 along y), scales of -6 to -1, colors of -1 to 3."""
     names = [*LIMITS, *SCALES, *(COLORS if colors else ())]
     values = [lowest, 0, -2, 2, 1, 2, *[-6] * 3, *[-1] * 3, *([-1] * 3 + [3] * 3 if colors else ())]
     chunk = np.array([tuple(values)] * chunks, [(name, "<f4") for name in names])

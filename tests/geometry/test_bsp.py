@@ -71,7 +71,7 @@ def views(seed: int) -> tuple[Array, Array]:
 def disorder(
     corners: Array, owner: Array, rank: Array, eyes: Array, ways: Array
 ) -> tuple[int, int]:
-    """Along each ray: pairs of neighbours that were met, and those painted in the wrong order.
+    """Along each ray: pairs of neighbors that were met, and those painted in the wrong order.
 
     rank (E, P) is when a polygon is painted; owner (T,) says to which a triangle belongs.
     """

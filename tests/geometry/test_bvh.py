@@ -91,7 +91,7 @@ def test_instances_match_a_mesh_that_was_moved_by_hand() -> None:
 
 
 def test_a_camera_sees_instances_and_their_shadows() -> None:
-    # Neighbouring rays take another path through the tracer than scattered ones.
+    # Neighboring rays take another path through the tracer than scattered ones.
     mesh = Mesh(VERTICES, FACES)
     places = [np.eye(4)] + [turned(0.7 * k, 0.2, [0.3 * k - 1.5, 1.2, 0.8]) for k in range(10)]
     instanced = Bvh([mesh], [Instance(0, place) for place in places])
@@ -111,9 +111,9 @@ def test_a_camera_sees_instances_and_their_shadows() -> None:
     assert (blocked != by_hand.occluded(start, towards)).mean() < 1e-3
 
 
-def test_neighbouring_shadow_rays_towards_instances_return() -> None:
-    # Sixteen neighbours each, whose directions differ in sign along one axis: with Embree's hint
-    # for neighbours and without geometry/bvh.cpp's exception, this call never returns.
+def test_neighboring_shadow_rays_towards_instances_return() -> None:
+    # Sixteen neighbors each, whose directions differ in sign along one axis: with Embree's hint
+    # for neighbors and without geometry/bvh.cpp's exception, this call never returns.
     places = [Instance(0, turned(t, 0.4, [t - 1.0, 0.2 * t, 0.3])) for t in (0.4, 1.1, 1.8)]
     bvh = Bvh([Mesh(VERTICES, FACES)], [Instance(0), *places])
     packets = 1000

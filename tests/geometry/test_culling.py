@@ -26,9 +26,9 @@ FACES = np.array(
 def objects(count: int = 120) -> Array:
     """Corners (N, 6, 3) of octahedra, mostly small, in a flat world of 20 m."""
     u = uniform(1, pixel=np.arange(count)[:, None], dimension=np.arange(6))
-    centre = (u[:, :3] - 0.5) * [20.0, 4.0, 20.0]
+    center = (u[:, :3] - 0.5) * [20.0, 4.0, 20.0]
     size = 0.05 + 1.5 * u[:, 3:] ** 4
-    return centre[:, None] + size[:, None] * OCTAHEDRON
+    return center[:, None] + size[:, None] * OCTAHEDRON
 
 
 U = uniform(2, pixel=np.arange(CAMERAS)[:, None], dimension=np.arange(10))

@@ -23,7 +23,7 @@ HALF, SHIFT, FLOOR = np.array([0.3, 0.5, 0.2]), np.array([-0.5, 0.3, -0.6]), -0.
 
 
 def known_body() -> Body:
-    balls = [placed(sphere(radius), centre) for centre, radius in BALLS]
+    balls = [placed(sphere(radius), center) for center, radius in BALLS]
     return Body(union(*balls, placed(box(HALF), SHIFT), plane([0, 1, 0], FLOOR)))
 
 
@@ -31,8 +31,8 @@ def known_hits(origins: Array, directions: Array) -> tuple[Array, Array]:
     """First t (R,) in closed form, and whether the origin is inside."""
     found = []
     inside = origins[:, 1] < FLOOR
-    for centre, radius in BALLS:
-        offset = origins - centre
+    for center, radius in BALLS:
+        offset = origins - center
         b, c = (offset * directions).sum(1), (offset**2).sum(1) - radius**2
         rest = b * b - c
         t = -b - np.sqrt(np.maximum(rest, 0))

@@ -41,7 +41,7 @@ def test_triangles_of_any_shape_cover_what_they_should() -> None:
 
 
 def test_triangles_that_share_edges_leave_no_gap_and_do_not_overlap() -> None:
-    # Centres of texels lie exactly on edges of this fan, and on its diagonals.
+    # Centers of texels lie exactly on edges of this fan, and on its diagonals.
     n = 8
     x, y = np.meshgrid(np.linspace(0, 1, n + 1), np.linspace(0, 1, n + 1), indexing="ij")
     uv = np.stack([x, y], axis=-1).reshape(-1, 2).astype(np.float32)
@@ -56,9 +56,9 @@ def test_triangles_that_share_edges_leave_no_gap_and_do_not_overlap() -> None:
         corners = uv[faces[face]]
         s, t = np.moveaxis(weights, -1, 0)[..., None]
         found = (1 - s - t) * corners[:, :, 0] + s * corners[:, :, 1] + t * corners[:, :, 2]
-        centre = (np.arange(size) + 0.5) / size
-        np.testing.assert_allclose(found[..., 0], np.tile(centre, (size, 1)), atol=1e-7)
-        np.testing.assert_allclose(found[..., 1], np.tile(centre, (size, 1)).T, atol=1e-7)
+        center = (np.arange(size) + 0.5) / size
+        np.testing.assert_allclose(found[..., 0], np.tile(center, (size, 1)), atol=1e-7)
+        np.testing.assert_allclose(found[..., 1], np.tile(center, (size, 1)).T, atol=1e-7)
 
 
 def test_what_lies_beyond_the_texture_is_cut_off() -> None:

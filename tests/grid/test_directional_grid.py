@@ -64,13 +64,13 @@ def test_sizes_that_make_no_sense_are_refused() -> None:
 
 
 @pytest.mark.parametrize("rows", [1, 2, 5])
-def test_a_cell_centre_returns_its_entry_and_weights_add_up(rows: int) -> None:
+def test_a_cell_center_returns_its_entry_and_weights_add_up(rows: int) -> None:
     theta = (np.arange(rows) + 0.5) * np.pi / rows
     phi = (np.arange(2 * rows) + 0.5) * np.pi / rows
     t, p = (a.ravel() for a in np.meshgrid(theta, phi, indexing="ij"))
-    centres = np.stack([np.sin(t) * np.cos(p), np.sin(t) * np.sin(p), np.cos(t)], axis=1)
+    centers = np.stack([np.sin(t) * np.cos(p), np.sin(t) * np.sin(p), np.cos(t)], axis=1)
     table = np.random.default_rng(2).normal(size=(rows, 2 * rows, 3))
-    np.testing.assert_allclose(evaluate(table, centres), table.reshape(-1, 3), atol=1e-12)
+    np.testing.assert_allclose(evaluate(table, centers), table.reshape(-1, 3), atol=1e-12)
     entries, weights = blend(unit(500, 3), rows)
     np.testing.assert_allclose(weights.sum(axis=1), 1, atol=1e-12)
     assert weights.min() >= 0
@@ -119,14 +119,14 @@ def test_errors_are_those_of_the_representation() -> None:
     # Parseval: what degree 1 leaves of Y_00 + Y_20 / 2 is the latter, of norms 1 and 1/2.
     only = best_harmonics(lambda d: sh.basis(d, 2)[:, [0]] + 0.5 * sh.basis(d, 2)[:, [6]], 1)
     assert only == pytest.approx(0.5 / np.sqrt(1.25), rel=1e-12)
-    # The fit is no worse than sampling the cell centres.
+    # The fit is no worse than sampling the cell centers.
     directions, weights = sphere_quadrature(48)
     theta, phi = np.meshgrid((np.arange(4) + 0.5) / 4, (np.arange(8) + 0.5) / 8, indexing="ij")
     theta, phi = np.pi * theta, 2 * np.pi * phi
     r = np.sin(theta)
-    centres = np.stack([r * np.cos(phi), r * np.sin(phi), np.cos(theta)], axis=-1)
+    centers = np.stack([r * np.cos(phi), r * np.sin(phi), np.cos(theta)], axis=-1)
     values = glow(directions)
-    found = evaluate(glow(centres.reshape(-1, 3)).reshape(4, 8, 6), directions)
+    found = evaluate(glow(centers.reshape(-1, 3)).reshape(4, 8, 6), directions)
     sampled = np.sqrt((weights @ (found - values) ** 2).sum() / (weights @ values**2).sum())
     assert 0.55 * sampled < best_table(glow, 4) < 0.7 * sampled  # measured: 0.62
 

@@ -28,9 +28,9 @@ def gradient() -> tuple[Any, Any]:
 
 def in_lacking_ball(cells: Any, count: int, *, share: float = 1.0) -> Any:
     """Which cells (M, 3) of `count` a side have their middle in the ball that the model lacks."""
-    centre, radius, _ = octree.BALLS[-1]
+    center, radius, _ = octree.BALLS[-1]
     middle = (cells + 0.5) * 2.0 / count - 1.0
-    return ((middle - np.array(centre)) ** 2).sum(axis=1) < (share * radius) ** 2
+    return ((middle - np.array(center)) ** 2).sum(axis=1) < (share * radius) ** 2
 
 
 def test_the_wish_for_matter_reaches_no_brick() -> None:
@@ -69,11 +69,11 @@ def test_a_leaf_gets_the_sum_of_its_voxels() -> None:
     leaves = tree.expand_backward(d_sigma_t[..., None])[:, 0]
     assert leaves.sum() == pytest.approx(d_sigma_t.sum(), rel=1e-4)
     _, side = tree.leaf_boxes()
-    centre = np.array([octree.BALLS[-1][0]])
-    (leaf,) = tree.leaf_at(centre)
+    center = np.array([octree.BALLS[-1][0]])
+    (leaf,) = tree.leaf_at(center)
     assert side[leaf] > 1  # the model's tree is coarse there
     cell = np.abs(leaves[leaf]) / side[leaf] ** 3
-    index = tuple(np.floor((centre[0] + 1) / 2 * octree.RESOLUTION).astype(int))
+    index = tuple(np.floor((center[0] + 1) / 2 * octree.RESOLUTION).astype(int))
     assert cell < np.abs(d_sigma_t[index])  # wishes of both signs cancel in it
 
 
@@ -85,7 +85,7 @@ def test_cells_ask_to_be_brighter_from_where_they_are_photographed_brighter() ->
     left_ball = found.ball == 0
     from_right = found.value[left_ball][:, 0]
     from_left = found.value[left_ball][:, len(harmonics.ANGLES) // 2]
-    x, y = (found.centre[left_ball] - harmonics.BALLS[0][0][:2]).T
+    x, y = (found.center[left_ball] - harmonics.BALLS[0][0][:2]).T
     seen = np.abs(found.value[left_ball]).max(axis=1) > harmonics.LEAST * biggest
     assert seen.sum() > 12
     right, left = seen & (x > 0.25), seen & (x < -0.25)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from photograd.commands.render import render
 from photograd.errors import RangeError
-from photograd.fitting.fog import GREY, THICK, fog_model
+from photograd.fitting.fog import GRAY, THICK, fog_model
 from photograd.grids.sparse import SparseGrid
 from photograd.grids.vdb import write_vdb
 from photograd.representation import RayBatch, RenderOptions
@@ -34,7 +34,7 @@ def test_a_ray_through_a_homogeneous_block_obeys_beer(sigma_t: float | None) -> 
     assert outputs.opacity is not None
     opacity = 1 - np.exp(-(THICK if sigma_t is None else 0.5 * sigma_t * 4))
     np.testing.assert_allclose(outputs.opacity, opacity, atol=1e-5)
-    np.testing.assert_allclose(outputs.color[0], GREY * outputs.opacity[0], atol=1e-6)
+    np.testing.assert_allclose(outputs.color[0], GRAY * outputs.opacity[0], atol=1e-6)
 
 
 def test_resolution_limits_the_field_and_keeps_the_box() -> None:
@@ -53,7 +53,7 @@ def test_a_turned_grid_is_resampled_in_the_world() -> None:
     np.testing.assert_allclose(model.field.params["values"][..., 3], 0.5, atol=1e-6)
 
 
-def test_ramps_colour_by_the_share_of_the_highest_value() -> None:
+def test_ramps_color_by_the_share_of_the_highest_value() -> None:
     values = np.linspace(0.01, 1, 4, dtype=np.float32).reshape(4, 1, 1).repeat(2, 1).repeat(2, 2)
     model = fog_model(SparseGrid.from_dense(values), ramp="inferno")
     red = model.field.color[:, 0, 0, 0]

@@ -33,7 +33,7 @@ def test_frames_are_right_handed(camera: Camera) -> None:
     assert np.linalg.det(camera.world_from_camera[:3, :3]) == pytest.approx(1.0)
 
 
-def test_pixel_centres_lie_at_one_half_and_row_zero_is_on_top(camera: Camera) -> None:
+def test_pixel_centers_lie_at_one_half_and_row_zero_is_on_top(camera: Camera) -> None:
     _, directions = camera.rays()
     picture = directions.reshape(2, 3, 3)  # (H, W, 3): the row is the first index
     on_image = picture[..., :2] / picture[..., 2:] * 2.0 + [1.5, 1.0]

@@ -33,7 +33,7 @@ def test_the_tasks_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("MPLBACKEND", "Agg")
     words = ["--scene", "toy_table", "--views", "4", "--test-views", "1", "--size", "16"]
     assert run(["capture", *words, "--spp", "1", "--out", "photos"]) == 0
-    Path("room.toml").write_text(SCENE.replace("grey", "wall"), encoding="utf-8")
+    Path("room.toml").write_text(SCENE.replace("gray", "wall"), encoding="utf-8")
     names: dict[str, Any] = {}
     for number, block in enumerate(blocks()):
         exec(compile(block, f"five_tasks.md block {number}", "exec"), names)

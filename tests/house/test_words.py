@@ -4,8 +4,19 @@ from __future__ import annotations
 
 import pytest
 
-from support.tree import cpp_texts
-from support.words import EXCEPTIONS, banned_names, banned_phrases, cpp_names, cpp_prose, parts
+from support.tree import ROOT, cpp_texts, relative, walk
+from support.words import (
+    EXCEPTIONS,
+    TABLE_ROW,
+    banned_names,
+    banned_phrases,
+    cpp_names,
+    cpp_prose,
+    parts,
+    python_prose,
+)
+
+SPOKEN = ("python", "docs", "bench", "tools")  # folders whose comments and docstrings are read
 
 
 def test_cpp_names_speak_the_language_of_the_field() -> None:
@@ -25,6 +36,29 @@ def test_cpp_prose_speaks_the_language_of_the_field() -> None:
         line
         for path, text in cpp_texts().items()
         for line in banned_phrases(f"cpp/{path}", cpp_prose(text))
+    ]
+    assert found == []
+
+
+def test_python_prose_speaks_the_language_of_the_field() -> None:
+    sources = [path for folder in SPOKEN for path in walk(ROOT / folder, {".py"})]
+    assert len(sources) > 300
+    found = [
+        line
+        for path in sources
+        for line in banned_phrases(relative(path), python_prose(path.read_text(encoding="utf-8")))
+    ]
+    assert found == []
+
+
+def test_pages_speak_the_language_of_the_field() -> None:
+    pages = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *walk(ROOT / "docs", {".md"})]
+    found = [
+        line
+        for path in pages
+        for line in banned_phrases(
+            relative(path), TABLE_ROW.sub("", path.read_text(encoding="utf-8"))
+        )
     ]
     assert found == []
 
@@ -70,6 +104,19 @@ def test_other_meanings_and_prose_are_free() -> None:
 )
 def test_a_planted_phrase_is_seen(text: str) -> None:
     assert len(banned_phrases("x.h", cpp_prose(text))) == 1
+
+
+@pytest.mark.parametrize(
+    "text",
+    ['"""The slope by x."""', "x = 1  # in metres", 'def f():\n    """Of whoever\n    asks."""\n'],
+)
+def test_a_planted_phrase_of_python_is_seen(text: str) -> None:
+    assert len(banned_phrases("x.py", python_prose(text))) == 1
+
+
+def test_names_in_python_are_free() -> None:
+    text = 'lamp = {"lamp": 1}  # a light\nprint("colour")\n'
+    assert banned_phrases("x.py", python_prose(text)) == []
 
 
 def test_phrases_of_other_meanings_pass() -> None:

@@ -40,7 +40,7 @@ def test_lookup_is_bilinear_and_goes_around() -> None:
 
 
 class HalfTexel:
-    """The mistake: texel centres at i / n instead of (i + 1/2) / n, as a turn by half a texel."""
+    """The mistake: texel centers at i / n instead of (i + 1/2) / n, as a turn by half a texel."""
 
     def __init__(self, right: EnvironmentMap) -> None:
         turn = about_y(np.pi / right.texels.shape[1])
@@ -125,14 +125,14 @@ def test_turning_the_map_turns_the_light() -> None:
         np.testing.assert_allclose(first, second, rtol=1e-9)
 
 
-def test_a_map_of_one_colour_has_no_noise() -> None:
+def test_a_map_of_one_color_has_no_noise() -> None:
     for light in (EnvironmentMap(np.full((8, 16, 3), 2.5)), EnvironmentMap(np.zeros((8, 16, 3)))):
         samples = light.sample(origin(1000), square(1000, seed=43))
         np.testing.assert_allclose(samples.pdf, 0.25 / np.pi, rtol=1e-12)
 
 
 def test_weights_of_samples_are_bounded() -> None:
-    # One bright texel in each row, with weights relative to that of its centre.
+    # One bright texel in each row, with weights relative to that of its center.
     bounds = []
     for row in range(16):
         image = np.zeros((16, 32, 3))
@@ -143,8 +143,8 @@ def test_weights_of_samples_are_bounded() -> None:
         assert seen.mean() > 0.9999
         theta, phi = np.pi * (row + 0.5) / 16, 2.0 * np.pi * (5.5 / 32 - 0.5)
         sine = np.sin(theta)
-        centre = np.array([[-sine * np.sin(phi), np.cos(theta), sine * np.cos(phi)]])
-        usual = light.L(origin(1), centre)[0, 0] / light.pdf(origin(1), centre)[0]
+        center = np.array([[-sine * np.sin(phi), np.cos(theta), sine * np.cos(phi)]])
+        usual = light.L(origin(1), center)[0, 0] / light.pdf(origin(1), center)[0]
         weight = samples.radiance[seen, 0] / samples.pdf[seen] / usual
         bounds.append((weight.min(), weight.max()))
         # And light is nowhere where the density is not.

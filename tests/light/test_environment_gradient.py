@@ -118,7 +118,7 @@ def known_gradient(height: int) -> Any:
 
 def test_black_texels_learn_only_from_the_uniform_share() -> None:
     image = texels(4)
-    image[:, 2:6] = 0.0  # a black window; its middle has no bright neighbour
+    image[:, 2:6] = 0.0  # a black window; its middle has no bright neighbor
     known = known_gradient(4)
     # dE/dtexels sums to the integral of the cosine.
     np.testing.assert_allclose(known.sum(), np.pi, rtol=1e-3)

@@ -193,7 +193,7 @@ def test_how_far_the_split_sum_is_from_brute_force(spot: PrefilteredLight) -> No
     # 0.103 and 0.072, 0.259 and 0.108 for metal; 0.031, 0.032, 0.077, 0.088, 0.256, 0.153 else.
     for values, bounds in (
         (image.SILVER, {0.15: (0.035, 0.035), 0.5: (0.12, 0.085), 1.0: (0.29, 0.125)}),
-        (image.VARNISH, {0.15: (0.045, 0.045), 0.5: (0.095, 0.105), 1.0: (0.29, 0.175)}),
+        (image.COATING, {0.15: (0.045, 0.045), 0.5: (0.095, 0.105), 1.0: (0.29, 0.175)}),
     ):
         for r, (plain, leaning) in bounds.items():
             found = image.compare(SPOT, spot, values, r, 16, 1024)

@@ -139,7 +139,7 @@ def test_points_even_over_the_area_do_not_have_the_density_of_the_solid_angle() 
 
 
 def test_solid_angle_is_less_noisy_than_area() -> None:
-    # A lamp of 2 m x 2 m half a metre above the floor, seen from below its corner.
+    # A lamp of 2 m x 2 m half a meter above the floor, seen from below its corner.
     corner, x, y = np.array([0.0, 0.5, 0.0]), np.array([2.0, 0, 0]), np.array([0, 0, 2.0])
     vertices = np.stack([corner, corner + x, corner + x + y, corner + y])
     lamps = (QuadLight(corner, x, y, COLOR), ByArea(corner, x, y))

@@ -1,4 +1,4 @@
-"""Compositing of premultiplied colours: any bracketing gives the core's sum, any order does not."""
+"""Compositing of premultiplied colors: any bracketing gives the core's sum, any order does not."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ SIGMA_T, RGB, BEHIND = G.uniform(0.05, 2, SAMPLES), G.random((SAMPLES, 3)), G.ra
 
 
 def over(front: Any, back: Any) -> Any:
-    """(4,) premultiplied colour and alpha of one thing before another."""
+    """(4,) premultiplied color and alpha of one thing before another."""
     return front + (1 - front[3]) * back
 
 
 def fragments() -> list[Any]:
-    """Each sample's premultiplied colour and alpha, front to back, and the opaque background."""
+    """Each sample's premultiplied color and alpha, front to back, and the opaque background."""
     alpha = 1 - np.exp(-SIGMA_T * DT)
     parts = np.concatenate([alpha[:, None] * RGB, alpha[:, None]], axis=1)
     return [*parts, np.append(BEHIND, 1.0)]
 
 
 def bracketed(parts: list[Any], seed: int) -> Any:
-    """Neighbours joined in an order of chance."""
+    """Neighbors joined in an order of chance."""
     g, parts = np.random.default_rng(seed), list(parts)
     while len(parts) > 1:
         k = int(g.integers(len(parts) - 1))
@@ -53,7 +53,7 @@ def test_order_and_premultiplication_matter() -> None:
     parts = fragments()
     right = reduce(over, parts)
     assert np.abs(reduce(over, [*parts[-2::-1], parts[-1]]) - right).max() > 0.01
-    # Colours that are not premultiplied depend on the bracketing.
+    # Colors that are not premultiplied depend on the bracketing.
     plain = [np.append(part[:3] / part[3], part[3]) for part in parts]
 
     def mixed(front: Any, back: Any) -> Any:

@@ -17,7 +17,7 @@ DEGREES = (1, 2, 3, 4)
 
 
 def inputs(degree: int, count: int) -> tuple[Any, Any, Any]:
-    """Coefficients (N, K, 3), unit directions (N, 3), cotangents of the colours (N, 3)."""
+    """Coefficients (N, K, 3), unit directions (N, 3), cotangents of the colors (N, 3)."""
     random = np.random.default_rng(degree)
     d = random.normal(size=(count, 3))
     d /= np.linalg.norm(d, axis=1, keepdims=True)
@@ -27,7 +27,7 @@ def inputs(degree: int, count: int) -> tuple[Any, Any, Any]:
 
 
 def all_results(degree: int, count: int, *, fused: bool, add: bool = False) -> list[Any]:
-    """Colours, and the derivatives by directions and coefficients."""
+    """Colors, and the derivatives by directions and coefficients."""
     coefficients, d, w = inputs(degree, count)
     results = [np.full_like(w, 7), np.full_like(d, 7), np.full_like(coefficients, 7)]
     _core.sh_colors(d, coefficients, results[0], fused)

@@ -82,7 +82,7 @@ def test_each_bounce_takes_its_share() -> None:
         assert np.abs(wrong * (1 - E) - expected).max() > 8e-3
 
 
-def test_more_bounces_deepen_a_colour() -> None:
+def test_more_bounces_deepen_a_color() -> None:
     gold = np.array([1.0, 0.78, 0.34])
     once, all_light = (albedo(m, 0.8, f0=gold, roughness=1.0) for m in (LOSSY, WHOLE))
     assert all_light[2] / all_light[0] < 0.9 * once[2] / once[0]

@@ -101,7 +101,7 @@ def test_black_has_the_hue_of_white() -> None:
 
 
 def test_a_bare_ground_is_burleys() -> None:
-    # No highlight of its own, but Schlick's ramp of f0 = 0 stays: the difference has no colour.
+    # No highlight of its own, but Schlick's ramp of f0 = 0 stays: the difference has no color.
     bare = {**dict.fromkeys(SLIDERS, 0.0), "roughness": 0.6}
     found = MODEL.f({"base_color": COLOR, **bare}, WO, WI)
     ground = MODELS["burley_diffuse"].f({"albedo": COLOR, "roughness": 0.6}, WO, WI)

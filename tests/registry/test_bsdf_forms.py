@@ -146,7 +146,7 @@ def test_the_smoothest_surface_is_a_mirror(name: str) -> None:
         assert albedo == pytest.approx(fresnel(cosine), rel=5e-3)
 
 
-def test_measured_metals_have_their_colours() -> None:
+def test_measured_metals_have_their_colors() -> None:
     # Straight on: R = ((eta - 1)^2 + k^2) / ((eta + 1)^2 + k^2), here as F D V over the same D V.
     up = np.array([[0.0, 0.0, 1.0]])
     for name, metal in METALS.items():

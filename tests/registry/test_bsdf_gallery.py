@@ -49,7 +49,7 @@ def test_a_row_has_its_curve_and_its_derivatives(tmp_path: Path) -> None:
     picture = pictures.imread(tmp_path / "a.png")[..., :3]
     below = picture[int(0.7 * len(picture)) :]
     curve, balls = below[:, :270], below[:, 320:]
-    # Lines of four colours left; red and blue, the signs of derivatives, right.
+    # Lines of four colors left; red and blue, the signs of derivatives, right.
     assert ((curve.max(axis=2) - curve.min(axis=2)) > 0.5).sum() > 200
     red, blue = balls[..., 0] - balls[..., 2] > 0.4, balls[..., 2] - balls[..., 0] > 0.4
     assert min(red.sum(), blue.sum()) > 20

@@ -94,12 +94,12 @@ def test_no_film_is_the_base_to_the_bit() -> None:
     assert np.abs(FILM.f({**GROUND, **full}, WO, WI) - plain).max() > 0.01
 
 
-def test_a_film_shows_its_colour_most_where_it_is_thin() -> None:
+def test_a_film_shows_its_color_most_where_it_is_thin() -> None:
     straight = np.array([1.0])
     thin, thick = (metal(straight, np.full(3, 0.3), 1.8, d)[0] for d in (300.0, 20_000.0))
     assert np.ptp(thin) > 0.1
     assert np.ptp(thick) < 1e-6  # so many waves in the eye's bands that none stands out
-    # Towards the horizon the path shortens, and colours run as in a thinner film.
+    # Towards the horizon the path shortens, and colors run as in a thinner film.
     cosine = np.array([0.6])
     inside = np.sqrt(1 - (1 - 0.36) / 1.3**2)
     tilted = metal(cosine, np.full(3, 0.3), 1.3, 400.0)[0]

@@ -109,7 +109,7 @@ def test_white_plaster_returns_all_light_for_every_view(roughness: float) -> Non
 
 
 @pytest.mark.parametrize("roughness", [0.3, 1.0])
-def test_grey_plaster_loses_what_each_bounce_takes(roughness: float) -> None:
+def test_gray_plaster_loses_what_each_bounce_takes(roughness: float) -> None:
     k1, k2 = 0.5 - 2 / (3 * np.pi), 2 / 3 - 28 / (15 * np.pi)
     once = 1e-6  # so dark that one bounce is all there is
     first = [

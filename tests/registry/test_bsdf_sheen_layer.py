@@ -62,7 +62,7 @@ def test_over_black_there_is_sheen_alone() -> None:
     np.testing.assert_allclose(found - alone, (found - alone)[:, :1] * np.ones(3), atol=1e-14)
 
 
-def test_the_most_of_the_colour_dims_all_channels_alike() -> None:
+def test_the_most_of_the_color_dims_all_channels_alike() -> None:
     # Dimming each channel by its own sheen would give a red sheen a base of cyan.
     red = np.array([0.8, 0.0, 0.0])
     part = CLOTH.f(cloth(red, 0.5), WO, WI) - SHEEN.f({"color": red, "roughness": 0.5}, WO, WI)

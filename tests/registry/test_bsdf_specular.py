@@ -1,4 +1,4 @@
-"""A varnish that is weakened and coloured by hand: what it is at the ends of its ranges."""
+"""A varnish that is weakened and colored by hand: what it is at the ends of its ranges."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def test_metal_is_not_varnished() -> None:
 
 
 def test_a_factor_scales_the_reflection_at_all_angles() -> None:
-    # Over black the varnish is alone; at grazing angles it is white, whatever its colour.
+    # Over black the varnish is alone; at grazing angles it is white, whatever its color.
     black: dict[str, Any] = {"base_color": [0.0] * 3, "roughness": 0.5}
     color = {"specular_color_factor": [1.0, 0.5, 0.1]}
     whole = MODEL.f(dielectric(**black, **color), WO, WI)

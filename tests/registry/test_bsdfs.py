@@ -96,7 +96,7 @@ def test_bad_arguments_are_named() -> None:
     model = MODELS["lambert"]
     w = np.array([[0.0, 0.0, 1.0]])
     with pytest.raises(RangeError, match="exactly"):
-        model.f({"colour": [1, 1, 1]}, w, w)
+        model.f({"color": [1, 1, 1]}, w, w)
     with pytest.raises(ShapeError, match="albedo"):
         model.f({"albedo": [1.0, 1.0]}, w, w)
     with pytest.raises(RangeError, match="finite"):

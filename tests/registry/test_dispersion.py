@@ -1,4 +1,4 @@
-"""Glass that spreads colours: its three indices, its limits, and the angles of a prism."""
+"""Glass that spreads colors: its three indices, its limits, and the angles of a prism."""
 
 from __future__ import annotations
 
@@ -103,7 +103,7 @@ def deviation(index: float, incidence: float) -> float:
     return float(incidence + second - APEX)
 
 
-def test_a_prism_separates_colours_by_the_analytic_angle() -> None:
+def test_a_prism_separates_colors_by_the_analytic_angle() -> None:
     eta, dispersion = 1.6, 0.6
     incidence = np.radians(55.0)
     values = {"eta": eta, "dispersion": dispersion, "tint": [1.0] * 3}
@@ -129,7 +129,7 @@ def test_a_prism_separates_colours_by_the_analytic_angle() -> None:
         assert expected[b] - expected[a] > 0.005
 
 
-def test_a_path_keeps_the_colour_that_it_has() -> None:
+def test_a_path_keeps_the_color_that_it_has() -> None:
     # After its first refraction a path has one channel; another one's lobe would end it.
     values = {"eta": 1.6, "dispersion": 0.6, "tint": [1.0] * 3}
     tracer = PathTracer(prism("dispersive_glass", values, np.radians(55.0)), dtype=np.float64)

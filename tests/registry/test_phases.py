@@ -1,4 +1,4 @@
-"""Every registered phase function: normalised, its mean cosine, its derivatives."""
+"""Every registered phase function: normalized, its mean cosine, its derivatives."""
 
 from __future__ import annotations
 

@@ -45,7 +45,7 @@ def test_a_clear_sheet_loses_what_one_facet_loses(cosine: float) -> None:
     np.testing.assert_allclose(sheet, mirror, rtol=2e-4)
 
 
-def test_a_clear_body_is_frosted_glass_and_a_tint_colours_what_passes() -> None:
+def test_a_clear_body_is_frosted_glass_and_a_tint_colors_what_passes() -> None:
     glass = {"eta": 1.6, "roughness": 0.4}
     for wo, wi in ((WO, WI), (WO, WI * BELOW), (WO * BELOW, WI), (WO * BELOW, WI * BELOW)):
         there = [np.ascontiguousarray(w) for w in (wo, wi)]

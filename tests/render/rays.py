@@ -11,7 +11,7 @@ CODES = {"origin": 0, "entry": 1, "alpha": 0, "riemann": 1, "clamp": 0, "zero": 
 
 
 def settings(**changes: Any) -> Any:
-    """March settings with identity activations, so that parameters are densities and colours."""
+    """March settings with identity activations, so that parameters are densities and colors."""
     values: dict[str, Any] = {
         "box": [[-1, -1, -1], [1, 1, 1]],
         "dt": 0.05,
@@ -35,7 +35,7 @@ def constant_grid(sigma_t: float, color: tuple[float, float, float], n: int = 4)
 
 
 def field_grid(function: Any, n: int) -> Any:
-    """Values of function(x, y, z) -> (..., 4) at the voxel centres of [-1, 1]^3."""
+    """Values of function(x, y, z) -> (..., 4) at the voxel centers of [-1, 1]^3."""
     c = (np.arange(n) + 0.5) / n * 2 - 1
     return np.ascontiguousarray(function(*np.meshgrid(c, c, c, indexing="ij")))
 

@@ -63,7 +63,7 @@ def scene(
 
 
 def march(s: Scene, place: dict[str, Any], *, fused: bool = True, skip: bool = True) -> Any:
-    """Colour, transmittance, depth, and the number of samples looked up."""
+    """Color, transmittance, depth, and the number of samples looked up."""
     return _core.march_sparse_sh(
         s.active.table,
         [place[g] for g in GROUPS],
@@ -116,7 +116,7 @@ ACTIVATIONS: dict[int, Any] = {
 
 
 def oracle(s: Scene, place: dict[str, Any]) -> dict[str, Any]:
-    """Colour (R, 3), transmittance (R,), depth (R,) of the scene, sample by sample."""
+    """Color (R, 3), transmittance (R,), depth (R,) of the scene, sample by sample."""
     shape = np.array(s.active.shape)
     rows = np.full(shape + 3, -1)  # one voxel of nothing in front, two behind
     rows[1:-2, 1:-2, 1:-2] = s.active.rows

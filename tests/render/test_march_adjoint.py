@@ -20,7 +20,7 @@ def random_grid(seed: int, lo: float = 0.2, hi: float = 2.0) -> Any:
 
 
 def problem(s: Any, rays: tuple[Any, Any], *, fused: bool = False) -> tuple[Any, Any]:
-    """(function, backward) of the grid for gradient checks; outputs colour, opacity and depth."""
+    """(function, backward) of the grid for gradient checks; outputs color, opacity and depth."""
 
     def function(p: dict[str, Any]) -> dict[str, Any]:
         color, transmittance, depth, *_ = march(p["grid"], s, rays, fused=fused)

@@ -56,7 +56,7 @@ def fused_results(name: str) -> list[Any]:
 @pytest.mark.parametrize("name", ["learning", "exp", "riemann zero border"])
 def test_float_agrees_with_double(name: str) -> None:
     # Positions round differently in float: a sample may fall into the next cell, where the field is
-    # continuous, so colours agree to rounding and gradients to the published 1e-4 norm-relative.
+    # continuous, so colors agree to rounding and gradients to the published 1e-4 norm-relative.
     narrow, wide = run(VARIANTS[name]), run(VARIANTS[name], dtype=np.float64)
     same = narrow[4] == wide[4]  # a border sample may round out of the box
     assert same.mean() > 0.95

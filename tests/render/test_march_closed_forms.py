@@ -27,7 +27,7 @@ def test_constant_slab_is_exact_for_any_number_of_steps(dt: float) -> None:
 
 @pytest.mark.parametrize("sigma_t", [1e-3, 1e-1, 1.0, 30.0, 1e4])
 def test_weights_and_the_rest_sum_to_one(sigma_t: float) -> None:
-    # With colour 1 the image is the sum of the weights; 1e-6 is the bound asked for, 1e-12 is met.
+    # With color 1 the image is the sum of the weights; 1e-6 is the bound asked for, 1e-12 is met.
     color, transmittance, *_ = march(constant_grid(sigma_t, (1, 1, 1)), settings(), bundle(50, 1))
     np.testing.assert_allclose(color[:, 0] + transmittance, 1.0, atol=1e-12)
 
@@ -81,7 +81,7 @@ def smooth(x: np.ndarray, y: np.ndarray, z: np.ndarray) -> np.ndarray:
 @pytest.mark.parametrize(("quadrature", "order"), [("alpha", 2.0), ("riemann", 1.0)])
 def test_order_of_convergence(quadrature: str, order: float) -> None:
     # An affine field is reproduced exactly by the grid, so only the quadrature errs. T8: within
-    # 0.15. The ray runs between voxel centres (x from -0.8 to 0.8), where nothing is clamped, and
+    # 0.15. The ray runs between voxel centers (x from -0.8 to 0.8), where nothing is clamped, and
     # its samples are placed by hand: N steps over exactly 1.6 m.
     grid = field_grid(smooth, 8)
     origins, directions = np.array([[-0.8, 0.1, -0.2]]), np.array([[1.0, 0.0, 0.0]])
@@ -126,7 +126,7 @@ def test_zero_border_fades_and_clamp_continues() -> None:
     rays = (np.array([[-3.0, 0.95, 0.0]]), np.array([[1.0, 0.0, 0.0]]))
     clamp = march(grid, settings(border="clamp"), rays)[1][0]
     zero = march(grid, settings(border="zero"), rays)[1][0]
-    # y = 0.95 lies 0.4 voxels behind the last centre: the zero border keeps a weight of 0.6 there.
+    # y = 0.95 lies 0.4 voxels behind the last center: the zero border keeps a weight of 0.6 there.
     assert clamp == pytest.approx(np.exp(-2.0), rel=1e-9)
     assert np.log(zero) / np.log(clamp) == pytest.approx(0.6 * (3 + 2 * 0.375) / 4, rel=0.03)
 

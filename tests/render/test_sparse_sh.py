@@ -250,7 +250,7 @@ def test_greatest_weights_are_those_of_all_samples() -> None:
     parameters, rays = [s.place[g] for g in GROUPS], (*s.rays, *s.samples())
     _core.sparse_sh_weights(s.active.table, parameters, s.settings, rays, most)
     # A voxel's gradient by its own density under L = sum of w says nothing of the greatest, so ask
-    # the samples: raise one colour at a time and see which samples it reaches.
+    # the samples: raise one color at a time and see which samples it reaches.
     t0, samples = s.samples()
     shape = np.array(s.active.shape)
     rows = np.full(shape + 3, -1)

@@ -79,7 +79,7 @@ def greatest_weights() -> list[Any]:
 
 
 def ball(seed: int, n: int = 96) -> Scene:
-    """A bumpy ball of voxels that fills 5 % of the box, off centre."""
+    """A bumpy ball of voxels that fills 5 % of the box, off center."""
     c = (np.arange(n) + 0.5) / n * 2 - 1
     x, y, z = np.meshgrid(c, c, c, indexing="ij")
     r = np.sqrt((x - 0.2) ** 2 + (y + 0.1) ** 2 + z**2)

@@ -111,8 +111,8 @@ def test_digits_flip_independently() -> None:
 
 def test_blocks_and_pixels_have_nothing_to_do_with_each_other() -> None:
     a, b = (words(4000, 4, block=k)[..., :2].reshape(-1, 2) / 2.0**32 - 0.5 for k in (0, 1))
-    neighbour = np.roll(a.reshape(4000, 4, 2), 1, axis=0).reshape(-1, 2)
-    for other in (b, neighbour):
+    neighbor = np.roll(a.reshape(4000, 4, 2), 1, axis=0).reshape(-1, 2)
+    for other in (b, neighbor):
         # Of 16 000 pairs of uncorrelated numbers: the spread is 1 / 126.
         assert np.abs(12 * (a.T @ other) / len(a)).max() < 4.5 / 126
 

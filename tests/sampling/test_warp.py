@@ -28,7 +28,7 @@ def test_round_trips() -> None:
         np.testing.assert_allclose(back, inside, atol=1e-9)
 
 
-def test_corners_and_centre_of_the_square() -> None:
+def test_corners_and_center_of_the_square() -> None:
     u2 = np.array([[0.5, 0.5], [0, 0], [1, 0], [0, 1], [1, 1], [0, 0.5], [0.5, 1.0]])
     p = _core.square_to_disk(u2)
     h = np.sqrt(0.5)

@@ -12,11 +12,11 @@ from photograd_course.errors import RangeError, ShapeError
 Array = npt.NDArray[np.float64]
 
 BOX = np.array([[-0.3, -0.2, 0.1], [0.5, 0.6, 0.5]])
-CENTRE = BOX.mean(axis=0)
+CENTER = BOX.mean(axis=0)
 
 
 def outward(cameras: list[Camera]) -> Array:
-    rays = np.array([camera.position for camera in cameras]) - CENTRE
+    rays = np.array([camera.position for camera in cameras]) - CENTER
     rays /= np.linalg.norm(rays, axis=1, keepdims=True)
     return rays
 
@@ -29,9 +29,9 @@ def angles(first: Array, second: Array) -> Array:
 def test_a_ball_around_the_box_is_nine_tenths_as_wide_as_the_picture() -> None:
     for radius in (None, 0.3):
         for camera in capture_cameras(BOX, 5, size=100, seed=0, radius=radius)["train"]:
-            np.testing.assert_allclose(camera.project(CENTRE[None])[0], [[50.0, 50.0]], atol=1e-9)
+            np.testing.assert_allclose(camera.project(CENTER[None])[0], [[50.0, 50.0]], atol=1e-9)
             reach = 0.5 * np.linalg.norm(BOX[1] - BOX[0]) if radius is None else radius
-            distance = np.linalg.norm(camera.position - CENTRE)
+            distance = np.linalg.norm(camera.position - CENTER)
             # The outline of a ball: directions at the angle arcsin(radius / distance).
             half_width = camera.fx * np.tan(np.arcsin(reach / distance))
             assert half_width == pytest.approx(FILL * 50.0, rel=1e-12)
@@ -58,7 +58,7 @@ def test_directions_cover_their_band_evenly() -> None:
     assert (heights > 0.0).mean() > 0.7
     between = angles(rays, rays) + 360.0 * np.eye(60)
     # 60 equal caps on this band (0.61 of the sphere) have a radius of 11.6 degrees; a hexagonal
-    # packing would set neighbours 22 degrees apart, and no direction may be more than that away.
+    # packing would set neighbors 22 degrees apart, and no direction may be more than that away.
     assert between.min() > 18.0
     probe = outward(capture_cameras(BOX, 1000, size=8, seed=3)["train"])
     assert angles(probe, rays).min(axis=1).max() < 22.0

@@ -17,7 +17,7 @@ from photograd_course.errors import RangeError, ShapeError
 Array = npt.NDArray[np.float64]
 
 RADIUS = 0.4
-CENTRE = np.array([0.1, 0.2, -0.1])
+CENTER = np.array([0.1, 0.2, -0.1])
 UP = np.array([0.0, 1.0, 0.0])
 
 
@@ -38,11 +38,11 @@ def cast(camera: Camera, spp: int, seed: int) -> tuple[Array, Array]:
         y = (row + random.random(count) - camera.cy) / camera.fy
         rays = np.stack([x, y, np.ones(count)], axis=-1) @ camera.world_from_camera[:3, :3].T
         rays /= np.linalg.norm(rays, axis=1, keepdims=True)
-        offset = CENTRE - camera.position
+        offset = CENTER - camera.position
         along = rays @ offset
         gap = RADIUS**2 - (offset @ offset - along**2)
         points = camera.position + rays * (along - np.sqrt(gap.clip(min=0.0)))[:, None]
-        light = 1.0 + (points - CENTRE)[:, 1] / RADIUS
+        light = 1.0 + (points - CENTER)[:, 1] / RADIUS
         radiance += (gap > 0.0)[:, None] * light[:, None] * np.array([1.0, 0.5, 0.1]) / spp
         alpha += (gap > 0.0) / spp
     # Sums of 1 / spp may end a rounding error above 1.

@@ -12,14 +12,14 @@ from photograd_course.errors import DtypeError, Error, RangeError, SceneError, S
 
 VERTICES = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 1]], dtype=np.float32)
 FACES = np.array([[0, 1, 2], [1, 3, 2]], dtype=np.uint32)
-GREY = np.full(3, 0.5, dtype=np.float32)
+GRAY = np.full(3, 0.5, dtype=np.float32)
 UV = VERTICES[:, :2].copy()
 TEXTURE = np.full((2, 3, 3), 0.25, dtype=np.float32)
 UP = np.array([0.0, 1.0, 0.0])
 
 
 def mesh(**members: Any) -> SceneMesh:
-    return SceneMesh(**{"vertices": VERTICES, "faces": FACES, "albedo": GREY} | members)
+    return SceneMesh(**{"vertices": VERTICES, "faces": FACES, "albedo": GRAY} | members)
 
 
 def sky() -> SkyDescription:
@@ -71,10 +71,10 @@ def test_descriptions_own_their_arrays() -> None:
         ({"faces": FACES + np.uint32(2)}, RangeError, "indices below V = 4, got 5"),
         ({"faces": FACES[:, [0, 1, 1]]}, SceneError, r"2 without, first faces\[0\]"),
         ({"vertices": VERTICES * np.float32([1, 0, 0])}, SceneError, "triangles with an area"),
-        ({"albedo": GREY * 3}, RangeError, r"albedo: expected finite numbers in \[0, 1\], got 1.5"),
-        ({"albedo": -GREY}, RangeError, "albedo"),
-        ({"albedo": GREY * np.float32(np.inf)}, RangeError, "finite"),
-        ({"albedo": GREY[:2]}, ShapeError, r"\(V, 3\) or \(H, W, 3\) with V = 4 as in"),
+        ({"albedo": GRAY * 3}, RangeError, r"albedo: expected finite numbers in \[0, 1\], got 1.5"),
+        ({"albedo": -GRAY}, RangeError, "albedo"),
+        ({"albedo": GRAY * np.float32(np.inf)}, RangeError, "finite"),
+        ({"albedo": GRAY[:2]}, ShapeError, r"\(V, 3\) or \(H, W, 3\) with V = 4 as in"),
         ({"albedo": TEXTURE[:0], "uv": UV}, ShapeError, "albedo"),
         ({"albedo": np.ones(3)}, DtypeError, "albedo"),
         ({"albedo": TEXTURE}, SceneError, "a texture needs coordinates"),

@@ -1,4 +1,4 @@
-"""Each built-in scene: reproducible, inside its box, closed, colourful, sensibly lit."""
+"""Each built-in scene: reproducible, inside its box, closed, colorful, sensibly lit."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def test_every_mesh_is_closed_and_turned_outwards(name: str, seed: int) -> None:
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_scenes_are_colourful(name: str) -> None:
+def test_scenes_are_colorful(name: str) -> None:
     albedos = [mesh.albedo.reshape(-1, 3).astype(np.float64) for mesh in built(name).meshes]
     for albedo in albedos:
         assert DARKEST - 1e-6 <= albedo.min() <= albedo.max() <= BRIGHTEST + 1e-6

@@ -168,7 +168,7 @@ def test_a_rotation_turns_as_it_says() -> None:
         (lambda: lathe(CUP.T), ShapeError, "profile"),
         (lambda: tube(STICK, -0.1), RangeError, "radius"),
         (lambda: tube(STICK, np.ones(3)), ShapeError, "radius"),
-        (lambda: tube(STICK[[0, 0]], 0.1), RangeError, "different neighbours"),
+        (lambda: tube(STICK[[0, 0]], 0.1), RangeError, "different neighbors"),
         (lambda: tube(STICK, 0.1, sides=2), RangeError, "sides"),
         (lambda: tube(STICK, 0.1, sides=8.0), DtypeError, "sides"),  # type: ignore[arg-type]
         (lambda: from_grid(np.zeros((2, 1, 3))), ShapeError, "from_grid: points"),

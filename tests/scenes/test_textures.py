@@ -71,7 +71,7 @@ def test_bands_by_hand() -> None:
     np.testing.assert_array_equal(texture[:, 0], [RED, WHITE, BLUE, BLUE])
 
 
-def test_tiles_have_grout_and_two_colours_each() -> None:
+def test_tiles_have_grout_and_two_colors_each() -> None:
     grout = paint("ink")
     texture = textures.painted_tiles((96, 128), (3, 4), THREE, grout, seed=0)
     tiles = texture.reshape(3, 32, 4, 32, 3).transpose(0, 2, 1, 3, 4).reshape(12, 1024, 3)

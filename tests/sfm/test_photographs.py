@@ -58,7 +58,7 @@ def test_the_tag_is_obeyed_once(tmp_path: Path, orientation: int, suffix: str) -
         upright = ImageOps.exif_transpose(raw)
         assert stored.size == upright.size == shot.size
         difference = np.asarray(stored, float) - np.asarray(upright.convert("RGB"), float)
-        # A JPEG is encoded again: measured 4 levels on average at the edges of these colours.
+        # A JPEG is encoded again: measured 4 levels on average at the edges of these colors.
         assert np.abs(difference).mean() < (5 if orientation > 1 and suffix == ".jpg" else 1e-9)
         assert stored.getexif().get(0x0112, 1) == 1
         assert float(stored.getexif().get_ifd(0x8769)[0x920A]) == 35.0
@@ -124,7 +124,7 @@ def test_few_photographs_are_all_compared(count: int) -> None:
 
 
 @pytest.mark.parametrize("count", [12, 61, 500])
-def test_a_walk_compares_neighbours_and_comes_back(count: int) -> None:
+def test_a_walk_compares_neighbors_and_comes_back(count: int) -> None:
     pairs = choose_pairs(count, exhaustive=False)
     assert all(0 <= i < j < count for i, j in pairs)
     assert len(pairs) == len(set(pairs))

@@ -19,7 +19,7 @@ def rotation(q: Array) -> Array:
     return np.stack(columns, 1)
 
 
-def pixel_centres(camera: Camera) -> tuple[Array, Array]:
+def pixel_centers(camera: Camera) -> tuple[Array, Array]:
     return np.meshgrid(np.arange(camera.width) + 0.5, np.arange(camera.height) + 0.5)
 
 
@@ -49,7 +49,7 @@ def render(
     if M is None:
         M = np.linalg.inv(camera.world_from_camera)[:3]
     eye = -M[:, :3].T @ M[:, 3]
-    x, y = pixel_centres(camera)
+    x, y = pixel_centers(camera)
     T, live = np.ones(x.shape), np.ones(x.shape, bool)
     color, depth = np.zeros((*x.shape, 3)), np.zeros(x.shape)
     splats = [(project(g, i, camera, M, o), i) for i in range(len(g))]

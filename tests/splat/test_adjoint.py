@@ -115,7 +115,7 @@ def test_automatic_mutants_die() -> None:
 
 def test_gradients_with_cutoffs_are_those_of_the_cut_picture() -> None:
     # Away from the discontinuities the derivative exists: small steps cross none of them here, and
-    # colours, which move none, need longer ones, or rounding drowns the difference.
+    # colors, which move none, need longer ones, or rounding drowns the difference.
     scene = Scene(oracle.cloud(12, 1), oracle.camera(20, 17, 17.0), SplatOptions())
     report = check_gradient(
         scene.forward,

@@ -1,4 +1,4 @@
-"""Gaussians that no optimiser should make, and some that it does: never a crash, never a NaN."""
+"""Gaussians that no optimizer should make, and some that it does: never a crash, never a NaN."""
 
 from __future__ import annotations
 
@@ -114,7 +114,7 @@ def test_weird_numbers_in_any_combination_leave_numbers(dtype: Any) -> None:
             array[where] = random.choice(WEIRD, int(where.sum()))
         options = list(OPTIONS.values())[seed % 4]
         picture, context = render(g.astype(dtype), CAMERA, options=options)
-        # Colours and depths of 1e30 rightly have derivatives beyond float32: no part of this.
+        # Colors and depths of 1e30 rightly have derivatives beyond float32: no part of this.
         ones = np.ones_like
         found = render_backward(context, ones(picture.color), ones(picture.opacity))
         drawn += int(context.visible.sum())

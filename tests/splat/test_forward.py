@@ -77,7 +77,7 @@ def test_cutoffs_change_a_picture_by_less_than_they_promise() -> None:
 def test_one_splat_in_closed_form() -> None:
     camera, scale = straight(), 0.2
     picture, _ = render(one(scale=scale, logit=1.2), camera, options=DEFAULT.smooth())
-    x, y = oracle.pixel_centres(camera)
+    x, y = oracle.pixel_centers(camera)
     variance = (40.0 * scale / 2.0) ** 2 + 0.3
     alpha = np.exp(-((x - 16.5) ** 2 + (y - 16.5) ** 2) / (2 * variance)) / (1 + np.exp(-1.2))
     # 1 - (1 - alpha) loses what is smaller than 1e-16; measured 5e-17.
@@ -91,7 +91,7 @@ def test_one_splat_in_closed_form() -> None:
 def test_the_centroid_is_the_projected_mean(mean: tuple[float, float, float]) -> None:
     camera = straight(65, 65)
     opacity = render(one(mean, 0.06), camera, options=DEFAULT.smooth())[0].opacity
-    x, y = oracle.pixel_centres(camera)
+    x, y = oracle.pixel_centers(camera)
     at, _ = camera.project(np.array([mean]))
     got = [(opacity * x).sum() / opacity.sum(), (opacity * y).sum() / opacity.sum()]
     np.testing.assert_allclose(got, at[0], atol=1e-3)  # measured 1e-8

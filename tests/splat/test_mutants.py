@@ -57,7 +57,7 @@ def covariance(wrong: str | None, groups: Groups, d_cov: Any) -> Groups:
     # R is quadratic in n: the central difference with step 1 is its exact derivative.
     d_n = np.array([(d_R * (matrix(n + e) - matrix(n - e)) / 2).sum() for e in np.eye(4)])
     d_q = (d_n - n * (n @ d_n)) / length
-    if wrong == "normalisation forgotten":
+    if wrong == "normalization forgotten":
         d_q = d_n
     if wrong == "length forgotten":
         d_q = d_q * length
@@ -157,7 +157,7 @@ FORMULAS: dict[str, tuple[Formula, list[str]]] = {
         [
             "off-diagonal twice",
             "one side of M M^T",
-            "normalisation forgotten",
+            "normalization forgotten",
             "length forgotten",
             "log forgotten",
         ],

@@ -52,7 +52,7 @@ def test_up_is_up(up: str) -> None:
     assert np.linalg.det(turn) == pytest.approx(1)
     g = oracle.cloud(40, 1, degree=0, size=-3.0)
     g.means[:] *= 0.25
-    g.sh[:] = 0.0  # grey, but for a black one on top
+    g.sh[:] = 0.0  # gray, but for a black one on top
     g.means[0] = 0.38 * turn[:, 1]
     g.sh[0], g.log_scales[0], g.opacity_logits[0] = -2.0, -2.3, 5.0
     picture = next(orbit_splats(g, 1, size=48, elevation=0.0, presentation=Presentation(up)))

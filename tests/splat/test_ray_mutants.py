@@ -60,7 +60,7 @@ def color(wrong: str | None, groups: Groups, d_out: Any) -> Groups:
     n = d / np.linalg.norm(d)
     _, d_n = sh.evaluate_backward(c[None], n[None], d_out[None])
     d_n = d_n[0]
-    if wrong != "normalisation forgotten":
+    if wrong != "normalization forgotten":
         d_n = d_n - n * (n @ d_n)
     if wrong != "length forgotten":
         d_n = d_n / np.linalg.norm(d)
@@ -112,7 +112,7 @@ FORMULAS: dict[str, tuple[Formula, list[str]]] = {
             "scales inverted",
         ],
     ),
-    "ray_color": (color, ["normalisation forgotten", "length forgotten"]),
+    "ray_color": (color, ["normalization forgotten", "length forgotten"]),
     "ray_blend": (
         blend,
         [

@@ -67,7 +67,7 @@ def narrow(size: int = 64, back: float = 20.0) -> Camera:
 
 
 def small_gaussians(count: int = 400) -> Gaussians:
-    """Two to five pixels of `narrow` wide, in all directions, half a metre around the origin."""
+    """Two to five pixels of `narrow` wide, in all directions, half a meter around the origin."""
     g = np.random.default_rng(5)
     return replace(
         oracle.cloud(count, 5, spread=0.5), log_scales=np.log(g.uniform(0.04, 0.1, (count, 3)))

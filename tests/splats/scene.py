@@ -48,7 +48,7 @@ def ball_capture(size: int = SIZE) -> Capture:
 
 @cache
 def cloud_capture(size: int = SIZE) -> Capture:
-    """Forty Gaussians of many colours in the same places of views, which Gaussians can explain."""
+    """Forty Gaussians of many colors in the same places of views, which Gaussians can explain."""
     g = np.random.default_rng(11)
     truth = Gaussians(
         means=g.uniform(-0.4, 0.4, (40, 3)),

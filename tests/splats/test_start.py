@@ -15,7 +15,7 @@ from photograd.splats.start import (
     RANDOM_DISTANCE,
     around,
     mean_colors,
-    neighbour_distance,
+    neighbor_distance,
     random_points,
     start_gaussians,
 )
@@ -23,18 +23,18 @@ from photograd.splats.start import (
 from tests.splats.scene import COLOR, ball_capture
 
 
-def test_distance_to_neighbours_is_that_of_all_pairs() -> None:
+def test_distance_to_neighbors_is_that_of_all_pairs() -> None:
     points = np.random.default_rng(1).normal(size=(1500, 3)) + 100.0
     away = np.linalg.norm(points[:, None] - points, axis=2)
     nearest = np.sort(away, axis=1)[:, 1:4]
     np.testing.assert_allclose(
-        neighbour_distance(points), np.sqrt((nearest**2).mean(axis=1)), rtol=1e-6
+        neighbor_distance(points), np.sqrt((nearest**2).mean(axis=1)), rtol=1e-6
     )
 
 
 def test_few_and_coinciding_points_get_a_size_too() -> None:
     for points in (np.zeros((1, 3)), np.zeros((9, 3)), np.eye(3), np.ones((2, 3))):
-        size = neighbour_distance(points)
+        size = neighbor_distance(points)
         assert size.shape == (len(points),)
         assert (size > 0).all()
 
@@ -42,7 +42,7 @@ def test_few_and_coinciding_points_get_a_size_too() -> None:
 def test_the_distance_of_random_points_has_a_closed_form() -> None:
     points = np.random.default_rng(2).uniform(size=(20_000, 3))
     inner = ((points > 0.1) & (points < 0.9)).all(axis=1)
-    measured = np.sqrt((neighbour_distance(points)[inner] ** 2).mean())
+    measured = np.sqrt((neighbor_distance(points)[inner] ** 2).mean())
     # 2.4e4 numbers, of which each varies by about a quarter.
     assert measured == pytest.approx(RANDOM_DISTANCE * np.cbrt(1 / 20_000), rel=0.01)
 

@@ -16,7 +16,7 @@ from PIL import Image
 
 Array = npt.NDArray[np.float64]
 
-SPHERE_CENTRE = np.array([0.2, 0.1, -0.1])
+SPHERE_CENTER = np.array([0.2, 0.1, -0.1])
 SPHERE_RADIUS = 0.5
 FLIP = np.diag([1.0, -1.0, -1.0, 1.0])
 Z_UP_FROM_Y_UP = np.array([[1.0, 0, 0, 0], [0, 0, -1.0, 0], [0, 1.0, 0, 0], [0, 0, 0, 1.0]])
@@ -33,7 +33,7 @@ def look_at(position: Array, target: Array) -> Array:
 
 
 def orbit(count: int = 9, width: int = 24, height: int = 20, focal: float = 26.0) -> list[Camera]:
-    """Cameras around the sphere at three heights, all looking at its neighbourhood."""
+    """Cameras around the sphere at three heights, all looking at its neighborhood."""
     cameras = []
     for index in range(count):
         angle = 2.0 * math.pi * index / count
@@ -45,14 +45,14 @@ def orbit(count: int = 9, width: int = 24, height: int = 20, focal: float = 26.0
 
 
 def picture(camera: Camera) -> npt.NDArray[np.uint8]:
-    """(H, W, 4) 8-bit: the sphere coloured by its normal, transparent elsewhere."""
+    """(H, W, 4) 8-bit: the sphere colored by its normal, transparent elsewhere."""
     origins, directions = camera.rays()
-    offset = SPHERE_CENTRE - origins
+    offset = SPHERE_CENTER - origins
     along = (offset * directions).sum(axis=1)
     gap = SPHERE_RADIUS**2 - (np.square(offset).sum(axis=1) - along**2)
     hit = gap > 0.0
     points = origins + directions * (along - np.sqrt(gap.clip(min=0.0)))[:, None]
-    color = 0.5 + 0.5 * (points - SPHERE_CENTRE) / SPHERE_RADIUS
+    color = 0.5 + 0.5 * (points - SPHERE_CENTER) / SPHERE_RADIUS
     rgba = np.concatenate([color.clip(0.0, 1.0), np.ones((len(hit), 1))], axis=1) * hit[:, None]
     levels: npt.NDArray[np.uint8] = np.rint(rgba * 255.0).astype(np.uint8)
     return levels.reshape(camera.height, camera.width, 4)
@@ -134,8 +134,8 @@ def colmap_rows(cameras: list[Camera], points: Array) -> list[tuple[Array, Array
     for camera in cameras:
         inverse = np.linalg.inv(camera.world_from_camera)
         local = points @ inverse[:3, :3].T + inverse[:3, 3]
-        focal, centre = np.array([camera.fx, camera.fy]), np.array([camera.cx, camera.cy])
-        pixels = local[:, :2] / local[:, 2:] * focal + centre
+        focal, center = np.array([camera.fx, camera.fy]), np.array([camera.cx, camera.cy])
+        pixels = local[:, :2] / local[:, 2:] * focal + center
         rows.append((quaternion_of(inverse[:3, :3]), inverse[:3, 3], pixels))
     return rows
 
@@ -144,7 +144,7 @@ def sphere_points(count: int = 40) -> Array:
     """Points on the sphere."""
     directions = np.random.default_rng(3).normal(size=(count, 3))
     directions /= np.linalg.norm(directions, axis=1, keepdims=True)
-    points: Array = SPHERE_CENTRE + SPHERE_RADIUS * directions
+    points: Array = SPHERE_CENTER + SPHERE_RADIUS * directions
     return points
 
 

@@ -31,7 +31,7 @@ def flux_below_ball(
 ) -> float:
     """Watts through a square (2 half)^2 below a ball, for light of 1 W/m^2 from straight above.
 
-    The ball's centre is `height` above the middle of the square. A ray that meets the ball at the
+    The ball's center is `height` above the middle of the square. A ray that meets the ball at the
     angle a, counted from the top, goes on inside at the angle t; each chord advances its place by
     pi - 2 t, and it always leaves at the angle a to the outward normal. Light that passes beside
     the ball is counted as well: its shadow must lie in the square, or the square in its shadow.

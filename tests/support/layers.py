@@ -7,7 +7,7 @@ import re
 from collections.abc import Mapping
 from pathlib import PurePosixPath
 
-# A module may include what stands to its left, and itself; neighbours in one group stay apart.
+# A module may include what stands to its left, and itself; neighbors in one group stay apart.
 ORDER: tuple[tuple[str, ...], ...] = (
     ("core",),
     ("ops",),
@@ -19,7 +19,7 @@ ORDER: tuple[tuple[str, ...], ...] = (
     ("bindings",),
 )
 RANK = {module: rank for rank, group in enumerate(ORDER) for module in group}
-# Kernels are the vectorised twins of loops in these modules; only they may call them.
+# Kernels are the vectorized twins of loops in these modules; only they may call them.
 KERNEL_USERS = {"kernels", "texture", "render", "bindings", "tests", "bench"}
 # What a kernel file may see: plain values and lanes, the layout of a grid, the tiles of splats.
 KERNEL_SOURCES = {"kernels", "core", "ops", "grid", "splat"}
@@ -66,7 +66,7 @@ def _library_breach(path: str, target: str) -> str | None:
 
 def _own_breach(path: str, target: str) -> str | None:
     source = module_of(path)
-    if "/" not in target:  # a neighbour in the same folder
+    if "/" not in target:  # a neighbor in the same folder
         return None if source in {"bindings", "tests", "bench"} else "write the path from cpp/"
     goal = module_of(target)
     if source in {"tests", "bench"} or source == goal:
@@ -79,7 +79,7 @@ def _own_breach(path: str, target: str) -> str | None:
         return f"{source if source not in RANK else goal} has no place in the include order"
     if RANK[goal] > RANK[source]:
         return f"{goal} stands above {source}"
-    return f"{source} and {goal} are neighbours" if RANK[goal] == RANK[source] else None
+    return f"{source} and {goal} are neighbors" if RANK[goal] == RANK[source] else None
 
 
 def imported(text: str) -> set[str]:

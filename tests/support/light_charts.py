@@ -98,7 +98,7 @@ class Triangles:
 
 @dataclass(frozen=True)
 class Ball:
-    """Directions at height 1 - h s around the centre, turned by 2 pi t."""
+    """Directions at height 1 - h s around the center, turned by 2 pi t."""
 
     point: Array
     light: SphereLight

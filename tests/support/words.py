@@ -8,7 +8,9 @@ with hair). A ban without an occurrence stays: it keeps the name out.
 
 from __future__ import annotations
 
+import io
 import re
+import tokenize
 from collections.abc import Iterator, Mapping
 from fnmatch import fnmatch
 from functools import cache
@@ -225,6 +227,29 @@ def cpp_prose(text: str) -> str:
             prose.append(re.sub(r"[/\"]", " ", token[0]))
             end = token.end()
     return "".join(prose)
+
+
+# Names of scenes and shapes that stand in tables of results.
+TABLE_ROW = re.compile(r"^\|.*$", re.MULTILINE)
+
+
+def python_prose(text: str) -> str:
+    """Comments and docstrings of a Python source; everything else is blank."""
+    lines = [""] * (text.count("\n") + 2)
+    expression_starts = True  # a string at the start of a statement documents something
+    for token in tokenize.generate_tokens(io.StringIO(text).readline):
+        is_prose = token.type == tokenize.COMMENT or (
+            token.type == tokenize.STRING and expression_starts
+        )
+        if is_prose:
+            for number, line in enumerate(token.string.split("\n"), token.start[0] - 1):
+                lines[number] += " " + line.lstrip(" #")
+        if token.type not in (tokenize.COMMENT, tokenize.NL):
+            expression_starts = token.type in STATEMENT_STARTS
+    return "\n".join(lines)
+
+
+STATEMENT_STARTS = {tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT, tokenize.ENCODING}
 
 
 _PHRASES = re.compile(

@@ -51,7 +51,7 @@ def test_constants_stay(shape: tuple[int, int]) -> None:
 
 
 def ramp(height: int, width: int) -> Any:
-    """(H, W, 2): u and v at the centres."""
+    """(H, W, 2): u and v at the centers."""
     v, u = np.meshgrid(
         (np.arange(height) + 0.5) / height, (np.arange(width) + 0.5) / width, indexing="ij"
     )
@@ -134,7 +134,7 @@ def test_adjoint_of_the_lookup() -> None:
 
 
 def inside_of_cells(count: int, sizes: list[int], seed: int) -> Any:
-    """Coordinates at least a hundredth of a texel away from the centres of all levels."""
+    """Coordinates at least a hundredth of a texel away from the centers of all levels."""
     x = np.random.default_rng(seed).uniform(0.05, 0.95, 40 * count)
     far = np.ones(len(x), bool)
     for n in sizes:

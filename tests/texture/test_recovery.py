@@ -123,7 +123,7 @@ def test_a_known_texture_comes_back() -> None:
 
 
 def test_unseen_texels_keep_their_value_and_are_reported() -> None:
-    # Points in the left half alone, between the centres of columns 0 and 7 of 16.
+    # Points in the left half alone, between the centers of columns 0 and 7 of 16.
     g = np.random.default_rng(3)
     uv = np.stack([g.uniform(0.5 / 16, 7.5 / 16, 2000), g.uniform(0, 1, 2000)], axis=-1)
     truth = noise((12, 16, 3), 1)

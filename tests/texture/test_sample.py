@@ -53,8 +53,8 @@ def test_a_wrong_lookup_or_adjoint_is_seen(wrong: str) -> None:
 
 def test_rows_go_down_and_columns_to_the_right() -> None:
     texture = np.array([[1.0, 2.0, 3.0], [10.0, 20.0, 30.0]])[..., None]
-    centres = np.array([[(j + 0.5) / 3, (i + 0.5) / 2] for i in range(2) for j in range(3)])
-    np.testing.assert_allclose(sample(texture, centres)[:, 0], texture.ravel(), rtol=1e-14)
+    centers = np.array([[(j + 0.5) / 3, (i + 0.5) / 2] for i in range(2) for j in range(3)])
+    np.testing.assert_allclose(sample(texture, centers)[:, 0], texture.ravel(), rtol=1e-14)
     outside = np.array([[-5.0, 0.0], [7.0, 9.0], [0.0, 1.0]])
     assert sample(texture, outside)[:, 0].tolist() == [1, 30, 10]
 
@@ -96,7 +96,7 @@ def test_adjoint_of_a_linear_map(shape: tuple[int, int]) -> None:
 
 
 def test_derivative_by_the_point() -> None:
-    # Between centres, at least a hundredth of a cell from any: there the slope jumps.
+    # Between centers, at least a hundredth of a cell from any: there the slope jumps.
     texture, g = noise((7, 5, 3), 8), np.random.default_rng(9)
     cell = np.stack([g.integers(0, 4, 60), g.integers(0, 6, 60)], axis=-1)
     uv = (cell + g.uniform(0.01, 0.99, (60, 2)) + 0.5) / [5, 7]

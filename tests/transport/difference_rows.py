@@ -202,7 +202,7 @@ def media() -> Iterator[Case]:
 
 
 def painted() -> Iterator[Case]:
-    """Texels: of a colour, of a roughness and a metalness, of coverage, of what shines."""
+    """Texels: of a color, of a roughness and a metalness, of coverage, of what shines."""
     for thing, scene, texture, places in (
         ("paint", textures.stage(4), "paint", ((2, 1, 0), (1, 2, 1))),
         ("rough paint", textures.stage(4), "rough", ((1, 1, 1), (1, 1, 2))),

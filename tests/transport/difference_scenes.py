@@ -14,23 +14,23 @@ from photograd.transport.media_list import transmits
 from photograd.transport.shapes import rectangle
 
 from tests.transport.media_scenes import fog_box
-from tests.transport.scenes import BLACK, FLOOR, GREY, LAMP, view
-from tests.transport.test_alpha import checker, grey, shade
+from tests.transport.scenes import BLACK, FLOOR, GRAY, LAMP, view
+from tests.transport.test_alpha import checker, gray, shade
 
 SKY = Environment([0.55, 0.6, 0.8], [0.7, 0.6, 0.5], [0.4, 0.35, 0.3])
 BULB = PointLight([-0.9, 1.2, 0.9], [0.9, 0.8, 0.7])
 DIM = Environment([0.25, 0.2, 0.2], [0.2, 0.2, 0.2], [0.1, 0.1, 0.15])
 SOFT = [1.6, 1.4, 1.2]  # radiance of lamps: contrast is noise
-COLOURS = np.array([0.75, 0.55, 0.3])  # apart, so that tints matter
+COLORS = np.array([0.75, 0.55, 0.3])  # apart, so that tints matter
 OWN = {"exponent": 20.0, "iridescence_thickness": 400.0, "rotation": 0.6}
 OF_MODELS: dict[str, dict[str, Any]] = {  # what lies on top is seen better over something dark
     "disney": {
-        "base_color": 0.5 * COLOURS,
+        "base_color": 0.5 * COLORS,
         "clearcoat": 0.75,
         "clearcoat_gloss": 0.4,
         "sheen": 0.75,
     },
-    "clearcoat": {"base_color": 0.25 * COLOURS, "coat": 0.75},
+    "clearcoat": {"base_color": 0.25 * COLORS, "coat": 0.75},
 }
 # A film's phase turns where the base has its index: no step of eta may cross that.
 OF_MODELS |= {
@@ -44,23 +44,23 @@ def own(model: str) -> Material:
     """A model with all of its parameters away from the ends of their ranges."""
     values: dict[str, Any] = {}
     for p in MODELS[model].parameters:
-        share = COLOURS if p.size > 1 else FRACTIONS.get(p.name, 0.5)
+        share = COLORS if p.size > 1 else FRACTIONS.get(p.name, 0.5)
         values[p.name] = OWN.get(p.name, p.lo + (p.hi - p.lo) * share)
     return Material(model, {**values, **OF_MODELS.get(model, {})})
 
 
 def nook(material: Material) -> Scene:
-    """A ball on a floor, both of the material, under a lamp, a bulb and a coloured sky.
+    """A ball on a floor, both of the material, under a lamp, a bulb and a colored sky.
 
-    Where light passes the material, the floor is grey.
+    Where light passes the material, the floor is gray.
     """
-    below = "grey" if transmits(material.model) else "own"
+    below = "gray" if transmits(material.model) else "own"
     shapes = (
         rectangle("floor", *FLOOR, below),
         SphereShape("ball", np.array([0.0, 0.5, 0.0]), 0.5, "own"),
         rectangle("lamp", *LAMP, "black", SOFT),
     )
-    materials = {"own": material, "grey": GREY, "black": BLACK}
+    materials = {"own": material, "gray": GRAY, "black": BLACK}
     camera = view(4, (0.0, 0.9, 1.9), (0.0, 0.4, 0.0))
     return Scene("nook", shapes, materials, camera, SKY, (BULB,))
 
@@ -99,7 +99,7 @@ def fog(medium: Medium) -> Scene:
 
 def veil() -> Scene:
     """A card between lamp and floor whose coverage is painted."""
-    painted = grey(0.8, textures={"alpha": TextureUse("t")})
+    painted = gray(0.8, textures={"alpha": TextureUse("t")})
     return shade(painted, size=4, textures={"t": checker()})
 
 

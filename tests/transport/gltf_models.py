@@ -156,7 +156,7 @@ def models(draw: st.DrawFn, model: str) -> ModelFile:
     count = len(shape.vertices)
     emission = np.zeros(3)
     glow = None
-    if not material.sheer and draw(st.booleans()):
+    if not material.has_opacity and draw(st.booleans()):
         emission = np.array([numbers(draw, 0, 40), numbers(draw, 0, 1), 0.0])
         textures["glow"] = Texture(decode(bytes_of(draw, height, width, 3)), wrap)
         glow = TextureUse("glow") if draw(st.booleans()) else None

@@ -22,7 +22,7 @@ from photograd.lights import (
 from photograd.transport import Material, Scene, SphereShape
 from photograd.transport.shapes import rectangle
 
-from tests.transport.scenes import FLOOR, GREY, any_material, view
+from tests.transport.scenes import FLOOR, GRAY, any_material, view
 
 TILT = about_y(0.7) @ np.array([[1.0, 0, 0], [0, 0.6, -0.8], [0, 0.8, 0.6]])
 
@@ -57,10 +57,10 @@ LIGHTS["all"] = tuple(lights[0] for lights in LIGHTS.values())
 
 
 def lit_by(*lights: Light, size: int = 8, gloss: Material | None = None, **more: Any) -> Scene:
-    """A glossy ball on a grey floor under a list of lights."""
+    """A glossy ball on a gray floor under a list of lights."""
     shapes = (
         rectangle("floor", *FLOOR, "floor"),
         SphereShape("ball", np.array([0.0, 0.5, 0.0]), 0.5, "ball"),
     )
-    materials = {"floor": GREY, "ball": gloss or any_material("gltf")}
+    materials = {"floor": GRAY, "ball": gloss or any_material("gltf")}
     return Scene("lit", shapes, materials, view(size), lights=lights, **more)

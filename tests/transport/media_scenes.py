@@ -19,7 +19,7 @@ from photograd.transport import (
 from photograd.transport.builtin import camera_at
 from photograd.transport.shapes import box, rectangle
 
-from tests.transport.scenes import BLACK, FLOOR, GREY, LAMP, view
+from tests.transport.scenes import BLACK, FLOOR, GRAY, LAMP, view
 
 GLASS = Material("glass", {"eta": 1.4, "tint": [1.0, 1.0, 1.0]})
 FROSTED = Material("rough_dielectric", {"eta": 1.4, "roughness": 0.8})
@@ -50,14 +50,14 @@ def smoke(values: Any = None, **more: Any) -> Medium:
 
 
 def fog_box(medium: Medium = FOG, *, size: int = 8, sky: float | None = 0.3) -> Scene:
-    """A box of fog on a grey floor, under a lamp and perhaps a sky."""
+    """A box of fog on a gray floor, under a lamp and perhaps a sky."""
     shapes = (
         rectangle("floor", *FLOOR, "floor"),
         box("fog", [0, 0.7, 0], [1.8, 1.3, 1.8], BOUNDARY),
         rectangle("lamp", *LAMP, "black", [4.0, 3.6, 3.2]),
     )
     filled = (shapes[0], with_interior(shapes[1], "fog"), shapes[2])
-    materials = {"floor": GREY, "black": BLACK}
+    materials = {"floor": GRAY, "black": BLACK}
     environment = None if sky is None else Environment.constant(sky)
     return Scene("fog", filled, materials, view(size), environment, media={"fog": medium})
 
@@ -83,7 +83,7 @@ def ball_of(
     )
     if floor:
         shapes = (rectangle("floor", *FLOOR, "floor"), *shapes)
-    materials = {"floor": GREY} if material is None else {"floor": GREY, "shell": material}
+    materials = {"floor": GRAY} if material is None else {"floor": GRAY, "shell": material}
     seen = view(size, (0, 0.5, 2.0), (0, 0.5, 0)) if camera is None else camera
     return Scene(
         "ball", shapes, materials, seen, Environment.constant(sky), lights, media={"inside": medium}
@@ -97,7 +97,7 @@ def haze(medium: Medium = FOG, *, size: int = 8) -> Scene:
         SphereShape("ball", np.array([0.4, 0.4, 0.0]), 0.4, "glass"),
         rectangle("lamp", *LAMP, "black", [6.0, 5.0, 4.0]),
     )
-    materials = {"floor": GREY, "glass": GLASS, "black": BLACK}
+    materials = {"floor": GRAY, "glass": GLASS, "black": BLACK}
     lights = (PointLight([-0.8, 0.9, 0.4], [1.5, 1.2, 1.0]),)
     return Scene(
         "haze", shapes, materials, view(size), None, lights, media={"haze": medium}, world="haze"

@@ -14,7 +14,7 @@ from photograd.transport.shapes import rectangle
 Array = Any
 FLOOR = ([-2, 0, 2], [4, 0, 0], [0, 0, -4])  # y = 0, faces up
 LAMP = ([-0.6, 1.5, -0.6], [1.2, 0, 0], [0, 0, 1.2])  # y = 1.5, faces down
-GREY = Material("lambert", {"albedo": [0.5, 0.5, 0.5]})
+GRAY = Material("lambert", {"albedo": [0.5, 0.5, 0.5]})
 BLACK = Material("lambert", {"albedo": [0.0, 0.0, 0.0]})
 
 
@@ -29,9 +29,9 @@ def stage(
     lamp: float = 4.0,
     sky: float | None = None,
     ball: bool = True,
-    floor: Material = GREY,
+    floor: Material = GRAY,
 ) -> Scene:
-    """A ball of a material on a grey floor, under a square lamp and perhaps an even sky."""
+    """A ball of a material on a gray floor, under a square lamp and perhaps an even sky."""
     shapes: list[Any] = [rectangle("floor", *FLOOR, "floor")]
     if ball:
         shapes.append(SphereShape("ball", np.array([0.0, 0.5, 0.0]), 0.5, "ball"))
@@ -90,7 +90,7 @@ def globe_light() -> Scene:
 
 
 STRATEGY_SCENES = {
-    "lamp": lambda: stage(GREY),
+    "lamp": lambda: stage(GRAY),
     "lamp and sky": lambda: stage(any_material("gltf"), sky=0.5),
     "sky alone": lambda: stage(any_material("oren_nayar_qualitative"), lamp=0.0, sky=1.0),
     "shining ball": globe_light,

@@ -15,7 +15,7 @@ from photograd_course.gradcheck import check_gradient
 
 from support.bits import same_bits
 from support.gradient_mutants import check_gradient_mutants
-from tests.transport.scenes import BLACK, GREY, any_material, picture_and_gradients, stage
+from tests.transport.scenes import BLACK, GRAY, any_material, picture_and_gradients, stage
 
 SPP = 4
 OPTIONS = PathOptions(max_depth=5, roulette_from=2)
@@ -84,7 +84,7 @@ def test_black_surfaces_have_derivatives() -> None:
         ("thin_glass", {"eta": 1.5, "tint": [0.0] * 3}, "tint"),
     ):
         floor = Material(model, values)
-        _, backward, start = proof(stage(GREY, size=6, sky=0.4, floor=floor))
+        _, backward, start = proof(stage(GRAY, size=6, sky=0.4, floor=floor))
         assert (backward(start, np.ones((6, 6, 3)))[f"materials.floor.{name}"] > 0).all()
 
 

@@ -23,7 +23,7 @@ from photograd_course.gradcheck import check_gradient
 
 from support.bits import same_bits
 from support.gradient_mutants import check_gradient_mutants
-from tests.transport.scenes import FLOOR, GREY, LAMP, picture_and_gradients, view
+from tests.transport.scenes import FLOOR, GRAY, LAMP, picture_and_gradients, view
 from tests.transport.test_adjoint import proof
 from tests.transport.test_textures import wall
 
@@ -32,14 +32,14 @@ OPTIONS = PathOptions(max_depth=6, roulette_from=3, sampler="independent")
 CARD = ([-1.0, 0.8, -1.0], [2.0, 0, 0], [0, 0, 2.0])  # between the lamp and the floor, faces down
 
 
-def grey(alpha: float, **more: Any) -> Material:
+def gray(alpha: float, **more: Any) -> Material:
     return Material("lambert", {"albedo": [0.3, 0.4, 0.5], "alpha": alpha}, **more)
 
 
 def shade(card: Material | None, *, size: int = 6, sky: float | None = 0.3, **more: Any) -> Scene:
     """A floor under a lamp, a card of a material between them."""
     shapes = [rectangle("floor", *FLOOR, "floor"), rectangle("lamp", *LAMP, "floor", [4, 3.5, 3])]
-    materials = {"floor": GREY}
+    materials = {"floor": GRAY}
     if card is not None:
         shapes.append(rectangle("card", *CARD, "card"))
         materials["card"] = card
@@ -55,7 +55,7 @@ def checker() -> Texture:
 @pytest.mark.parametrize("alpha", [0.0, 0.3, 1.0])
 def test_a_card_shows_its_part_of_what_lies_behind(alpha: float) -> None:
     # Under an even sky of 1 a Lambertian card shows its albedo, and the sky behind it 1.
-    found = PathTracer(wall(grey(alpha), {}), dtype=np.float64).render(
+    found = PathTracer(wall(gray(alpha), {}), dtype=np.float64).render(
         spp=512, seed=1, options=replace(BARE, sampler="independent")
     )
     expected = alpha * np.array([0.3, 0.4, 0.5]) + 1 - alpha
@@ -67,7 +67,7 @@ def test_a_card_shows_its_part_of_what_lies_behind(alpha: float) -> None:
 @pytest.mark.parametrize("alpha", [0.0, 1.0])
 def test_alphas_of_none_and_all_have_their_whole_derivative(alpha: float) -> None:
     # dL/dalpha = albedo - 1, though one of the two ways is looked along in one sample of forty.
-    tracer = PathTracer(wall(grey(alpha), {}), dtype=np.float64)
+    tracer = PathTracer(wall(gray(alpha), {}), dtype=np.float64)
     d_image = np.full((8, 8, 3), 1 / 64)
     found = [
         float(
@@ -86,11 +86,11 @@ def test_a_shadow_keeps_what_passes() -> None:
     options = PathOptions("light", max_depth=2)
     # Row 4 sees the floor at z = 0.3 to 1.2, where all of the lamp is behind the card.
     second = rectangle("second", [-1.5, 0.9, -1.5], [3, 0, 0], [0, 0, 3], "second")
-    covered = shade(grey(0.3), sky=None)
+    covered = shade(gray(0.3), sky=None)
     twice = replace(
         covered,
         shapes=(*covered.shapes, second),
-        materials={**covered.materials, "second": grey(0.4)},
+        materials={**covered.materials, "second": gray(0.4)},
     )
     bare, once, both = (
         PathTracer(scene, dtype=np.float64)
@@ -104,7 +104,7 @@ def test_a_shadow_keeps_what_passes() -> None:
 
 
 def test_strategies_agree_behind_a_veil() -> None:
-    material = grey(0.4, textures={"alpha": TextureUse("t")})
+    material = gray(0.4, textures={"alpha": TextureUse("t")})
     scene = shade(material, sky=0.2, textures={"t": checker()})
     means, errors = [], []
     for strategy in ("light", "bsdf", "mis"):
@@ -120,7 +120,7 @@ def test_strategies_agree_behind_a_veil() -> None:
 
 def test_derivatives() -> None:
     # The card is seen, and stands before lamp and sky; a second one has an alpha without texture.
-    material = grey(0.8, textures={"alpha": TextureUse("t")})
+    material = gray(0.8, textures={"alpha": TextureUse("t")})
     scene = shade(material, textures={"t": checker()})
     second = rectangle("second", [-1.0, 0.4, -1.0], [2.0, 0, 0], [0, 0, 2.0], "sheet")
     sheet = Material(
@@ -146,7 +146,7 @@ def test_derivatives() -> None:
 
 
 def test_wrong_gradients_die() -> None:
-    scene = shade(grey(0.8, textures={"alpha": TextureUse("t")}), size=3, textures={"t": checker()})
+    scene = shade(gray(0.8, textures={"alpha": TextureUse("t")}), size=3, textures={"t": checker()})
     function, backward, start = proof(scene, OPTIONS)
     d = 0.2 + np.random.default_rng(5).random((3, 3, 3))
     deaths = check_gradient_mutants(
@@ -158,7 +158,7 @@ def test_wrong_gradients_die() -> None:
 def test_a_mask_cuts_a_shape_out() -> None:
     # Alpha is 1 in the left half and 0 in the right one: the picture is that of half a card.
     mask = Texture(np.repeat(np.array([1.0, 0.0]), 64)[None, :, None])
-    cut = grey(1.0, textures={"alpha": TextureUse("t")}, alpha_cutoff=0.5)
+    cut = gray(1.0, textures={"alpha": TextureUse("t")}, alpha_cutoff=0.5)
     options = PathOptions(sampler="independent")
     camera = view(16, (0.3, 1.2, 3.0), (0, 0.5, 0))
 
@@ -191,19 +191,19 @@ def test_a_mask_cuts_a_shape_out() -> None:
 
 @same_bits("path tracing with opacity")
 def checkered_picture_and_gradients() -> list[Any]:
-    material = grey(0.8, textures={"alpha": TextureUse("t")})
+    material = gray(0.8, textures={"alpha": TextureUse("t")})
     return picture_and_gradients(shade(material, size=24, textures={"t": checker()}), 16)
 
 
 def test_what_cannot_be_is_refused() -> None:
     lit = rectangle("lit", *LAMP, "card", [1, 1, 1])
     with pytest.raises(SceneError, match=r"lit\.material: .* a material with alpha, got both"):
-        Scene("s", (lit,), {"card": grey(0.5)}, view(4))
+        Scene("s", (lit,), {"card": gray(0.5)}, view(4))
     with pytest.raises(SceneError, match="alpha_cutoff"):
         Material("lambert", {"albedo": [0.3] * 3}, alpha_cutoff=0.5)
     with pytest.raises(SceneError, match="alpha_cutoff"):
-        grey(0.5, alpha_cutoff=-0.1)
+        gray(0.5, alpha_cutoff=-0.1)
     bare = MeshShape("m", np.eye(3), np.array([[0, 1, 2]]), "card")
-    painted = grey(0.5, textures={"alpha": TextureUse("t")})
+    painted = gray(0.5, textures={"alpha": TextureUse("t")})
     with pytest.raises(SceneError, match=r"m\.uv: expected texture coordinates"):
         Scene("s", (bare,), {"card": painted}, view(4), textures={"t": checker()})

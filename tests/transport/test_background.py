@@ -12,13 +12,13 @@ from photograd.errors import DtypeError, ShapeError
 from photograd.transport import Accumulation, Material, Medium, PathOptions, PathTracer, Scene
 
 from tests.transport.media_scenes import fog_box
-from tests.transport.scenes import GREY, stage
+from tests.transport.scenes import GRAY, stage
 from tests.transport.test_textures import wall
 
 SPP = 16
 OPTIONS = PathOptions(max_depth=3)
 SCENES: dict[str, Callable[[], Scene]] = {
-    "stage": lambda: stage(GREY, sky=0.5),
+    "stage": lambda: stage(GRAY, sky=0.5),
     "card": lambda: wall(Material("lambert", {"albedo": [0.3, 0.4, 0.5], "alpha": 0.4}), {}),
     "fog": lambda: fog_box(Medium([0.3] * 3, [0.8] * 3)),
 }
@@ -57,7 +57,7 @@ def test_only_samples_that_see_the_background_lose_it(name: str) -> None:
 
 
 def test_counts_have_the_size_of_the_picture() -> None:
-    tracer = PathTracer(stage(GREY))
+    tracer = PathTracer(stage(GRAY))
     for hits, error in ((np.zeros((8, 7)), ShapeError), (np.zeros((8, 8), np.float32), DtypeError)):
         with pytest.raises(error, match="trace_paths: hits: expected"):
             tracer.add_samples(Accumulation.empty(8, 8), 1, seed=1, hits=hits)

@@ -14,7 +14,7 @@ from tests.transport.test_textures import BARE, WALL, wall
 
 
 def lit(bent: NormalMap | None, towards: Any) -> float:
-    """How bright a grey wall is under one far, small lamp."""
+    """How bright a gray wall is under one far, small lamp."""
     camera = view(4, (0.0, 0.0, 3.0), (0.0, 0.0, 0.0))
     wall_shape = rectangle("wall", *WALL, "wall")
     direction = np.array(towards) / np.linalg.norm(towards)
@@ -22,8 +22,8 @@ def lit(bent: NormalMap | None, towards: Any) -> float:
     across /= np.linalg.norm(across)
     middle, other = 60 * direction, np.cross(direction, across)
     lamp = rectangle("lamp", middle - 0.5 * (across + other), other, across, "black", [1e4] * 3)
-    grey = Material("lambert", {"albedo": [0.5] * 3}, {}, bent)
-    scene = Scene("s", (wall_shape, lamp), {"wall": grey, "black": BLACK}, camera)
+    gray = Material("lambert", {"albedo": [0.5] * 3}, {}, bent)
+    scene = Scene("s", (wall_shape, lamp), {"wall": gray, "black": BLACK}, camera)
     options = PathOptions("light", max_depth=2)
     return float(PathTracer(scene).render(spp=16, seed=1, options=options).mean.mean())
 

@@ -18,7 +18,7 @@ from photograd.transport import (
 from photograd.transport.builtin import camera_at, furnace_box, white_ball
 from photograd.transport.shapes import box, rectangle
 
-from tests.transport.scenes import BLACK, FLOOR, GREY, LAMP, bent_floor, stage, view
+from tests.transport.scenes import BLACK, FLOOR, GRAY, LAMP, bent_floor, stage, view
 
 WHITE = Material("lambert", {"albedo": [1.0, 1.0, 1.0]})
 
@@ -73,11 +73,11 @@ def polygon_irradiance(corners: Any, point: Any, normal: Any) -> float:
 @pytest.mark.parametrize("strategy", ["light", "bsdf", "mis"])
 @pytest.mark.parametrize("heuristic", ["balance", "power"])
 def test_direct_light_of_a_rectangle(strategy: str, heuristic: str) -> None:
-    # One pixel of 0.01 degrees looks at a grey floor: radiance = 0.5 E / pi.
+    # One pixel of 0.01 degrees looks at a gray floor: radiance = 0.5 E / pi.
     corner, u, v = (np.array(x, float) for x in LAMP)
     lamp = [corner, corner + u, corner + u + v, corner + v]
     point = np.array([0.5, 0.0, 0.3])
-    scene = stage(GREY, ball=False)
+    scene = stage(GRAY, ball=False)
     camera = camera_at([0.5, 1.0, 2.5], point, 0.01, 1, 1)
     options = PathOptions(strategy, heuristic, max_depth=2)
     found = PathTracer(scene, dtype=np.float64).render(
@@ -93,7 +93,7 @@ def test_direct_light_of_a_rectangle(strategy: str, heuristic: str) -> None:
 def test_a_mirror_shows_what_lies_behind() -> None:
     # Camera above a mirror floor: the lamp's image, dimmed by the reflectance; nothing else shines.
     mirror = Material("mirror", {"reflectance": [0.9, 0.5, 0.1]})
-    scene = stage(GREY, ball=False, floor=mirror)
+    scene = stage(GRAY, ball=False, floor=mirror)
     camera = camera_at([0.0, 1.4, 2.0], [0.0, 0.0, 1.0], 1.0, 4, 4)
     found = PathTracer(scene).render(spp=4, seed=4, camera=camera).mean
     # From (0, 1.4, 2) by y = 0 at z = 1: the mirrored ray passes y = 1.5 at z = -0.07, in the lamp.
@@ -135,23 +135,23 @@ def test_a_camera_within_glass_sees_eta_squared() -> None:
 
 def test_a_camera_within_a_solid_box_sees_its_inside() -> None:
     # Opaque surfaces have two sides, but only the outside of this one shines: it is dark within.
-    dark = box("box", [0, 0, 0], [1, 1, 1], "grey", [1, 1, 1])
-    scene = Scene("b", (dark,), {"grey": GREY}, view(8, (0.2, 0.1, 0.1), (0, 0, -1)))
+    dark = box("box", [0, 0, 0], [1, 1, 1], "gray", [1, 1, 1])
+    scene = Scene("b", (dark,), {"gray": GRAY}, view(8, (0.2, 0.1, 0.1), (0, 0, -1)))
     assert not PathTracer(scene).render(spp=8, seed=7).radiance.any()
-    shining = box("box", [0, 0, 0], [1, 1, 1], "grey", [1, 1, 1], inward=True)
-    scene = Scene("b", (shining,), {"grey": GREY}, view(8, (0.2, 0.1, 0.1), (0, 0, -1)))
+    shining = box("box", [0, 0, 0], [1, 1, 1], "gray", [1, 1, 1], inward=True)
+    scene = Scene("b", (shining,), {"gray": GRAY}, view(8, (0.2, 0.1, 0.1), (0, 0, -1)))
     assert PathTracer(scene).render(spp=64, seed=7).mean.mean() == pytest.approx(2.0, rel=0.02)
 
 
 def test_no_light_leaks_through_closed_walls() -> None:
     # A black room under a bright sky, with a lamp outside: nothing gets in, whatever the corner.
-    room = box("room", [0, 0, 0], [2, 2, 2], "grey", inward=True)
+    room = box("room", [0, 0, 0], [2, 2, 2], "gray", inward=True)
     lamp = rectangle("lamp", *LAMP, "black", [1e6, 1e6, 1e6])
     for target in ([1, 1, 1], [-1, -1, 1], [1, 0, 0]):
         scene = Scene(
             "r",
             (room, lamp),
-            {"grey": GREY, "black": BLACK},
+            {"gray": GRAY, "black": BLACK},
             camera_at([0, 0.1, 0], target, 60.0, 16, 16),
             Environment.constant(1e6),
         )
@@ -176,16 +176,16 @@ def test_occlusion_in_a_corner_and_in_the_open() -> None:
     # where c = d / sqrt(d^2 + h^2) is the cosine of the angle under which it is seen.
     wall_height, distance = 1.0, 0.75
     shapes = (
-        rectangle("floor", [-500, 0, 500], [1000, 0, 0], [0, 0, -1000], "grey"),
-        rectangle("wall", [-500, 0, 0], [1000, 0, 0], [0, wall_height, 0], "grey"),
+        rectangle("floor", [-500, 0, 500], [1000, 0, 0], [0, 0, -1000], "gray"),
+        rectangle("wall", [-500, 0, 0], [1000, 0, 0], [0, wall_height, 0], "gray"),
     )
     camera = camera_at([0.0, 1.0, 2.0], [0.0, 0.0, distance], 0.05, 1, 1)
-    tracer = PathTracer(Scene("w", shapes, {"grey": GREY}, camera))
+    tracer = PathTracer(Scene("w", shapes, {"gray": GRAY}, camera))
     sums = Accumulation.empty(1, 1)
     tracer.add_occlusion(sums, 20000, seed=10)
     expected = 0.5 * (1 + distance / np.hypot(distance, wall_height))
     assert abs(sums.mean[0, 0, 0] - expected) < 4 * sums.standard_error[0, 0, 0]
-    open_floor = Scene("f", (rectangle("floor", *FLOOR, "grey"),), {"grey": GREY}, view(4))
+    open_floor = Scene("f", (rectangle("floor", *FLOOR, "gray"),), {"gray": GRAY}, view(4))
     tracer = PathTracer(open_floor)
     sums = Accumulation.empty(4, 4)
     tracer.add_occlusion(sums, 20, seed=11)

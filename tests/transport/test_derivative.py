@@ -25,7 +25,7 @@ from support.bits import same_bits
 from tests.transport import test_textures as textures
 from tests.transport.light_scenes import LIGHTS, TILT, environment_map, lit_by
 from tests.transport.scenes import any_material, bent_floor, stage
-from tests.transport.test_alpha import checker, grey, shade
+from tests.transport.test_alpha import checker, gray, shade
 from tests.transport.test_glow import room
 
 OPTIONS = PathOptions(max_depth=5, roulette_from=2)
@@ -82,8 +82,8 @@ def test_textures_and_bent_normals() -> None:
 
 @pytest.mark.parametrize("alpha", [0.2, 0.6, 1.0])
 def test_veils(alpha: float) -> None:
-    check(shade(grey(alpha)))
-    card = grey(0.7, textures={"alpha": TextureUse("holes")})
+    check(shade(gray(alpha)))
+    card = gray(0.7, textures={"alpha": TextureUse("holes")})
     check(shade(card, size=8, textures={"holes": checker()}))
 
 

@@ -14,7 +14,7 @@ from photograd.transport import Emitted, MeshShape, PathTracer, emit_particles
 from support.statistics import chi_square_p, sidak, sphere_cell_masses, sphere_counts
 from tests.light.seen import FACES, OCTAHEDRON
 from tests.transport.light_scenes import LIGHTS, TILT, lit_by
-from tests.transport.scenes import GREY, stage
+from tests.transport.scenes import GRAY, stage
 
 COUNT = 60_000
 CELLS = 6  # along each of four dimensions: 46 particles a cell
@@ -26,7 +26,7 @@ CENTER, RADIUS = np.array([0.0, 0.5, 0.0]), float(np.sqrt(4 + 0.25 + 4))
 
 def emitted(name: str, count: int = COUNT) -> tuple[Any, Emitted]:
     """A light of `LIGHTS` and particles of it."""
-    tracer = PathTracer(lit_by(*LIGHTS[name], gloss=GREY), dtype=np.float64)
+    tracer = PathTracer(lit_by(*LIGHTS[name], gloss=GRAY), dtype=np.float64)
     return LIGHTS[name][0], emit_particles(tracer, count, seed=5)
 
 
@@ -190,7 +190,7 @@ def triangle() -> tuple[Any, Any, Emitted]:
 def mesh() -> tuple[Any, Any, Emitted]:
     """The same of a shape with eight faces."""
     vertices, radiance = OCTAHEDRON + np.array([0.3, 0.0, 0.2]), np.array([4.0, 3.0, 2.0])
-    scene = lit_by(gloss=GREY)
+    scene = lit_by(gloss=GRAY)
     shape = MeshShape("octahedron", vertices, FACES, "floor", radiance)
     tracer = PathTracer(replace(scene, shapes=(*scene.shapes, shape)), dtype=np.float64)
     return vertices[FACES], radiance, emit_particles(tracer, COUNT, seed=5)
@@ -212,10 +212,10 @@ def test_triangles(light: Callable[[], tuple[Any, Any, Emitted]]) -> None:
 
 
 def test_lights_are_chosen_by_power() -> None:
-    tracer = PathTracer(lit_by(*LIGHTS["all"], gloss=GREY), dtype=np.float64)
+    tracer = PathTracer(lit_by(*LIGHTS["all"], gloss=GRAY), dtype=np.float64)
     found = emit_particles(tracer, COUNT, seed=6)
-    centres = (np.arange(1 << 16) + 0.5) / (1 << 16)
-    entries, pmf = tracer._geometry.choose_lights(centres)
+    centers = (np.arange(1 << 16) + 0.5) / (1 << 16)
+    entries, pmf = tracer._geometry.choose_lights(centers)
     kinds, first = np.unique(entries, return_index=True)
     masses = pmf[first] / pmf[first].sum()
     counts = np.bincount(found.entries, minlength=kinds.max() + 1)[kinds]
@@ -226,7 +226,7 @@ def test_lights_are_chosen_by_power() -> None:
 
 
 def test_particles_have_numbers_and_scenes_have_lights() -> None:
-    tracer = PathTracer(stage(GREY), dtype=np.float64)
+    tracer = PathTracer(stage(GRAY), dtype=np.float64)
     whole, part = emit_particles(tracer, 100, seed=1), emit_particles(tracer, 60, seed=1, first=40)
     np.testing.assert_array_equal(whole.origins[40:], part.origins)
     np.testing.assert_array_equal(whole.flux[40:], part.flux)
@@ -235,4 +235,4 @@ def test_particles_have_numbers_and_scenes_have_lights() -> None:
     with pytest.raises(RangeError, match="particles: expected at least 1"):
         emit_particles(tracer, 0, seed=1)
     with pytest.raises(RangeError, match="a scene with lights"):
-        emit_particles(PathTracer(stage(GREY, lamp=0.0)), 1, seed=1)
+        emit_particles(PathTracer(stage(GRAY, lamp=0.0)), 1, seed=1)

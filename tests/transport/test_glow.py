@@ -21,7 +21,7 @@ from photograd.transport.shapes import rectangle
 from photograd_course.gradcheck import check_gradient
 
 from support.gradient_mutants import check_gradient_mutants
-from tests.transport.scenes import BLACK, FLOOR, GREY, LAMP, view
+from tests.transport.scenes import BLACK, FLOOR, GRAY, LAMP, view
 from tests.transport.test_adjoint import proof
 
 OPTIONS = PathOptions(max_depth=4, roulette_from=3, sampler="independent")
@@ -43,7 +43,7 @@ def room(*, size: int = 6, triangles: bool = False) -> Scene:
         faces = [[k, k + 1, k + 5] for k in range(3)] + [[k, k + 5, k + 4] for k in range(3)]
         lamp = MeshShape("lamp", vertices, np.array(faces), "black", lamp.emission, uv=uv)
     shapes = (floor, replace(lamp, glow=TextureUse("sign")))
-    materials = {"floor": GREY, "black": BLACK}
+    materials = {"floor": GRAY, "black": BLACK}
     return Scene("room", shapes, materials, view(size), textures={"sign": sign()})
 
 

@@ -29,7 +29,7 @@ def test_alpha_is_factor_times_texture(tmp_path: Path, mode: str, cutoff: float 
     assert material.alpha_cutoff == cutoff
     found = model.textures[material.textures["alpha"].texture].values
     np.testing.assert_allclose(found[..., 0], opacity / 255, atol=1e-7)
-    # The colours of such an image are as they stand there.
+    # The colors of such an image are as they stand there.
     colors = model.textures[material.textures["base_color"].texture].values
     np.testing.assert_allclose(colors, decode(PIXELS / 255), rtol=1e-6)
 
@@ -49,4 +49,4 @@ def test_what_covers_everything_has_no_alpha(
 ) -> None:
     material, told = made(tmp_path, **core(baseColorFactor=[1, 1, 1, alpha]), **entries)
     assert told == []
-    assert material.sheer == sheer
+    assert material.has_opacity == sheer

@@ -54,7 +54,7 @@ def irradiance(folder: Path, glb: Glb, x: float) -> Any:
 
 
 def at_share(t: float) -> float:
-    """Metres from the axis on the floor, 4 m below a spot of `CONE`, at a share of its cosines."""
+    """Meters from the axis on the floor, 4 m below a spot of `CONE`, at a share of its cosines."""
     inner, outer = np.cos(CONE["innerConeAngle"]), np.cos(CONE["outerConeAngle"])
     return float(4 * np.tan(np.arccos(outer + t * (inner - outer))))
 

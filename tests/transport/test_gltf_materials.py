@@ -120,7 +120,7 @@ def made(folder: Path, **material: Any) -> tuple[Material, list[str]]:
             "gltf_refraction",
             {"transmission": 1, "eta": 1.5, "roughness": 0.4, "base_color": [0.5, 1, 0.75]},
         ),
-        # Crown glass has Abbe's number 59; a sheet spreads no colours.
+        # Crown glass has Abbe's number 59; a sheet spreads no colors.
         (
             core(roughnessFactor=0, metallicFactor=0)
             | clear(volume=VOLUME, dispersion={"dispersion": 20 / 59}),

@@ -105,7 +105,7 @@ def test_ambient_light_under_a_baked_map_is_what_rays_find(tmp_path: Path) -> No
     assert found is not None
     # The strip: u along x from -0.5, v along z.
     scene = replace(
-        scene, materials=scene.materials | {"grey": Material("lambert", {"albedo": albedo})}
+        scene, materials=scene.materials | {"gray": Material("lambert", {"albedo": albedo})}
     )
     up = np.array([[0.0, 1.0, 0.0]])
     for z in (0.2, 0.5, 0.8):
@@ -124,10 +124,10 @@ def test_ambient_light_under_a_baked_map_is_what_rays_find(tmp_path: Path) -> No
 
 def test_paths_do_not_look_at_it() -> None:
     scene = replace(facing_a_wall(0.5), environment=Environment.constant(SKY))
-    dark = replace(scene.materials["grey"], occlusion=OcclusionMap(np.zeros((1, 1, 1))))
+    dark = replace(scene.materials["gray"], occlusion=OcclusionMap(np.zeros((1, 1, 1))))
     pictures = [
         PathTracer(s).render(spp=2, seed=1).mean
-        for s in (scene, replace(scene, materials=scene.materials | {"grey": dark}))
+        for s in (scene, replace(scene, materials=scene.materials | {"gray": dark}))
     ]
     assert pictures[0].mean() > 0.1
     np.testing.assert_array_equal(*pictures)

@@ -33,14 +33,14 @@ from tests.transport.test_mesh_files import read
 
 pytestmark = pytest.mark.usefixtures("core")
 BLACK = {"albedo": [0.0] * 3, "alpha": 1.0}
-GREY = np.full((4, 4, 3), 128, np.uint8)
+GRAY = np.full((4, 4, 3), 128, np.uint8)
 NO_MIPS = "mip maps of its sampler: not supported, sampled without mip maps"
 
 
 def sampled(**sampler: Any) -> Glb:
     """A square painted through a sampler."""
     glb = square(**core(baseColorTexture={"index": 0}, metallicFactor=0))
-    glb.image(GREY)
+    glb.image(GRAY)
     glb.json["samplers"] = [sampler]
     glb.json["textures"][0]["sampler"] = 0
     return glb

@@ -32,14 +32,14 @@ def body(volume: dict[str, Any], *, closed: bool = True) -> Glb:
     return glb
 
 
-def test_the_colour_of_light_after_a_distance(tmp_path: Path) -> None:
+def test_the_color_of_light_after_a_distance(tmp_path: Path) -> None:
     model, told = read(tmp_path, body(VOLUME).bytes())
     assert told == []
     (shape,) = model.shapes
     assert shape.interior == "m"
     np.testing.assert_allclose(model.media["m"].sigma_t, -np.log(COLOR) / 0.5, rtol=1e-12)
     assert model.media["m"].albedo is None
-    # Straight through a metre, twice the distance, with what is mirrored inside; the sky is 1.
+    # Straight through a meter, twice the distance, with what is mirrored inside; the sky is 1.
     a, R = np.square(COLOR), 0.04
     expected = R + (1 - R) ** 2 * a / (1 - R * a)
     camera = camera_at([0, 0, 5], [0, 0, 0], 0.01, 1, 1)

@@ -32,7 +32,7 @@ from photograd.transport.shapes import rectangle
 
 from tests.transport import difference_page as page
 from tests.transport.scenes import FLOOR, any_material
-from tests.transport.test_alpha import checker, grey, shade
+from tests.transport.test_alpha import checker, gray, shade
 from tests.transport.test_differences import KNOWN
 
 pytestmark = pytest.mark.usefixtures("core")
@@ -50,7 +50,7 @@ def ball(material: Material) -> Scene:
 
 def card() -> Scene:
     """A card between light and floor, cut out where a smooth texture is below a half."""
-    cut = grey(0.8, textures={"alpha": TextureUse("t")}, alpha_cutoff=0.5)
+    cut = gray(0.8, textures={"alpha": TextureUse("t")}, alpha_cutoff=0.5)
     return shade(cut, size=4, textures={"t": checker()})
 
 

@@ -23,7 +23,7 @@ from photograd.transport.mesh_files.model_file import moved
 from photograd.transport.shapes import rectangle
 from photograd_course.gradcheck import check_gradient
 
-from tests.transport.scenes import FLOOR, GREY, view
+from tests.transport.scenes import FLOOR, GRAY, view
 from tests.transport.test_adjoint import proof
 
 
@@ -60,8 +60,8 @@ def scenes(size: int) -> tuple[Scene, Scene]:
         {"base_color": TextureUse("paint")},
         tilt,
     )
-    materials = {"gloss": gloss, "grey": GREY}
-    floor = rectangle("floor", *FLOOR, "grey")
+    materials = {"gloss": gloss, "gray": GRAY}
+    floor = rectangle("floor", *FLOOR, "gray")
     vertices, faces, normals, uv = dome()
     glow = np.array([0.5, 0.4, 0.3])
     one = MeshShape("dome", vertices, faces, "gloss", glow, normals, uv, PLACES)
@@ -86,7 +86,7 @@ def test_instances_look_like_meshes_of_their_own() -> None:
     assert a.mean(axis=(0, 1)) == pytest.approx(b.mean(axis=(0, 1)), rel=2e-3)
     d = np.ones((24, 24, 3)) / 576
     g, h = (t.render_backward(d, spp=16, seed=1, options=options) for t in (together, apart))
-    shared = ("textures.paint", "materials.gloss.roughness", "materials.grey.albedo")
+    shared = ("textures.paint", "materials.gloss.roughness", "materials.gray.albedo")
     for name in shared:
         assert np.linalg.norm(h[name]) > 1e-3
         assert np.linalg.norm(g[name] - h[name]) < 0.02 * np.linalg.norm(h[name])
@@ -120,6 +120,6 @@ def test_wrong_places_are_refused() -> None:
         (np.full((4, 4), np.nan), RangeError, "finite"),
     ):
         with pytest.raises(error, match=words):
-            MeshShape("d", vertices, faces, "grey", np.zeros(3), normals, uv, (matrix,))
+            MeshShape("d", vertices, faces, "gray", np.zeros(3), normals, uv, (matrix,))
     with pytest.raises(ShapeError, match=r"d\.uv"):
-        MeshShape("d", vertices, faces, "grey", np.zeros(3), normals, uv[:3])
+        MeshShape("d", vertices, faces, "gray", np.zeros(3), normals, uv[:3])

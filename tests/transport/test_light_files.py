@@ -20,14 +20,14 @@ position = [0, 1, 4]
 look_at = [0, 0.5, 0]
 field_of_view = 40
 size = [8, 6]
-[materials.grey]
+[materials.gray]
 model = "lambert"
 albedo = [0.5, 0.5, 0.5]
 [[shapes]]
 kind = "sphere"
 center = [0, 0.5, 0]
 radius = 0.5
-material = "grey"
+material = "gray"
 """
 LIGHTS = """\
 [[lights]]

@@ -12,7 +12,7 @@ from photograd_course.gradcheck import check_gradient
 from support.bits import same_bits
 from support.gradient_mutants import check_gradient_mutants
 from tests.transport.light_scenes import LIGHTS, TILT, environment_map, lit_by
-from tests.transport.scenes import GREY, picture_and_gradients
+from tests.transport.scenes import GRAY, picture_and_gradients
 from tests.transport.test_adjoint import proof
 
 OPTIONS = PathOptions(max_depth=4, roulette_from=2)
@@ -46,7 +46,7 @@ def test_lights_together_and_every_strategy(strategy: str) -> None:
 
 def test_wrong_gradients_die() -> None:
     lights = (environment_map(2, share=0.5), LIGHTS["point"][0], LIGHTS["rectangle"][0])
-    function, backward, start = proof(lit_by(*lights, size=4, gloss=GREY), OPTIONS)
+    function, backward, start = proof(lit_by(*lights, size=4, gloss=GRAY), OPTIONS)
     d = 0.2 + np.random.default_rng(5).random((4, 4, 3))
     deaths = check_gradient_mutants(
         function, backward, start, d, seed=4, coordinates=2, directions=1
@@ -63,7 +63,7 @@ def test_differences_of_converged_means(name: str) -> None:
     # mesh is left out: half of its samples fall on faces that look away, and 1 % would take more
     # paths than a test may; its pieces are triangles.
     lights = (EVERYWHERE,) if name == "map" else LIGHTS[name]
-    tracer = PathTracer(lit_by(*lights, gloss=GREY), dtype=np.float64)
+    tracer = PathTracer(lit_by(*lights, gloss=GRAY), dtype=np.float64)
     start = {key: value.copy() for key, value in tracer.params.items()}
     d = 0.5 + np.random.default_rng(6).random((8, 8, 3))
     options = PathOptions(max_depth=3)

@@ -26,7 +26,7 @@ from photograd.transport.shapes import rectangle
 from support.bits import same_bits
 from support.glass_ball import flux_below_ball
 from support.light_proofs import polygon_irradiance
-from tests.transport.scenes import BLACK, FLOOR, GREY, LAMP, any_material, bent_floor, stage, view
+from tests.transport.scenes import BLACK, FLOOR, GRAY, LAMP, any_material, bent_floor, stage, view
 from tests.transport.test_glow import room
 from tests.transport.test_strategies import assert_same_mean
 
@@ -60,7 +60,7 @@ def seen_irradiance(tracer: PathTracer, camera: Camera, albedo: Any, spp: int) -
     return Accumulation(sums.radiance * scale, sums.squares * scale**2, sums.count)
 
 
-def covered(cover: Material, floor: Material = GREY) -> Scene:
+def covered(cover: Material, floor: Material = GRAY) -> Scene:
     """A floor under a lamp, and a sheet between them whose inside is below."""
     shapes = (
         rectangle("floor", *FLOOR, "floor"),
@@ -112,11 +112,11 @@ def test_both_ends_agree_in_a_room() -> None:
 def test_both_ends_agree_under_bent_normals() -> None:
     # Light from a floor whose shading normals lean by up to 40 degrees, on the ceiling above it.
     bent = bent_floor(8, 40.0)
-    ceiling = rectangle("ceiling", [-0.5, 1.2, -0.5], [1, 0, 0], [0, 0, 1], "grey")
+    ceiling = rectangle("ceiling", [-0.5, 1.2, -0.5], [1, 0, 0], [0, 0, 1], "gray")
     scene = Scene(
         "bent",
         (*bent.shapes, ceiling),
-        {**bent.materials, "grey": GREY},
+        {**bent.materials, "gray": GRAY},
         view(8),
         lights=(PointLight([0.9, 0.6, 0.3], [3.0, 2.0, 1.0]),),
     )
@@ -216,13 +216,13 @@ def test_parts_add_up_and_seeds_differ() -> None:
 
 
 def test_mistakes_are_named() -> None:
-    tracer = PathTracer(stage(GREY))
+    tracer = PathTracer(stage(GRAY))
     with pytest.raises(RangeError, match="particles: expected at least 1"):
         trace_light(tracer, patch(2), 0, seed=0)
     with pytest.raises(ShapeError, match="sums: expected shape"):
         trace_light(tracer, patch(2), 1, seed=0, sums=Accumulation.empty(3, 2))
     with pytest.raises(RangeError, match="a scene with lights"):
-        trace_light(PathTracer(stage(GREY, lamp=0.0)), patch(2), 1, seed=0)
+        trace_light(PathTracer(stage(GRAY, lamp=0.0)), patch(2), 1, seed=0)
     with pytest.raises(ShapeError, match="Receiver: corner"):
         Receiver([0, 0], [1, 0, 0], [0, 1, 0], 1, 1)
     with pytest.raises(RangeError, match="perpendicular"):

@@ -33,7 +33,7 @@ from photograd.transport.shapes import rectangle
 
 from support.statistics import chi_square_p
 from tests.transport.light_scenes import LIGHTS, TILT, environment_map, lit_by, texels
-from tests.transport.scenes import FLOOR, GREY, any_material, view
+from tests.transport.scenes import FLOOR, GRAY, any_material, view
 from tests.transport.test_strategies import assert_same_mean
 
 POINT = np.array([0.5, 0.0, 0.3])
@@ -41,9 +41,9 @@ POINT = np.array([0.5, 0.0, 0.3])
 
 def pixel_of_floor(light: Any, *blockers: Any, spp: int = 4, strategy: str = "mis") -> Accumulation:
     """What a pixel of 0.01 degrees sees of a floor of albedo 0.5 in POINT, by direct light."""
-    shapes = (rectangle("floor", *FLOOR, "grey"), *blockers)
+    shapes = (rectangle("floor", *FLOOR, "gray"), *blockers)
     camera = camera_at([0.5, 1.0, 2.5], POINT, 0.01, 1, 1)
-    scene = Scene("pixel", shapes, {"grey": GREY}, camera, lights=(light,))
+    scene = Scene("pixel", shapes, {"gray": GRAY}, camera, lights=(light,))
     options = PathOptions(strategy, max_depth=2)
     return PathTracer(scene, dtype=np.float64).render(spp=spp, seed=1, options=options)
 
@@ -78,7 +78,7 @@ def test_delta_lights_cast_shadows() -> None:
     far = DirectionalLight([0.0, 1.0, 0.0], [1.0, 1.0, 1.0])
     near = PointLight([0.5, 1.0, 0.3], [1.0, 1.0, 1.0])
     for height, dark_far, dark_near in ((0.6, True, True), (1.4, True, False)):
-        roof = rectangle("roof", [0.3, height, 0.5], [0.4, 0, 0], [0, 0, -0.4], "grey")
+        roof = rectangle("roof", [0.3, height, 0.5], [0.4, 0, 0], [0, 0, -0.4], "gray")
         assert pixel_of_floor(far, roof).mean.any() != dark_far
         assert pixel_of_floor(near, roof).mean.any() != dark_near
 
@@ -133,7 +133,7 @@ def test_turning_map_and_scene_together_changes_nothing() -> None:
         assert_same_mean(straight, alone, 2, 0.1)
 
 
-def test_a_map_of_one_colour_is_an_even_sky() -> None:
+def test_a_map_of_one_color_is_an_even_sky() -> None:
     plain = EnvironmentMap(np.full((4, 8, 3), 0.8))
     a = PathTracer(lit_by(plain)).render(spp=512, seed=1)
     sky = Environment.constant(0.8)
@@ -178,7 +178,7 @@ def test_rectangles_are_sampled_by_solid_angle() -> None:
     noise = []
     for bend in (0.0, 1e-4):  # a bent one is two triangles
         corners = lamp + np.array([0, bend, 0]) * np.array([[0.0], [0], [0], [1]])
-        light = MeshShape("lamp", corners, faces, "grey", np.ones(3))
+        light = MeshShape("lamp", corners, faces, "gray", np.ones(3))
         found = pixel_of_floor(ConstantLight([0.0, 0.0, 0.0]), light, spp=4096, strategy="light")
         noise.append(found.standard_error.max())
         assert found.mean.min() > 0.05

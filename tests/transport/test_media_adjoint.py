@@ -38,7 +38,7 @@ SCENES = {
     "haze without end": lambda: haze(size=5),
     "wax behind glass": lambda: ball_of(WAX, GLASS, size=5, lights=LAMP, floor=True),
     "wax behind frosted glass": lambda: ball_of(WAX, FROSTED, size=5, lights=LAMP, floor=True),
-    "coloured glass": lambda: ball_of(INK, GLASS, size=5, floor=True),
+    "colored glass": lambda: ball_of(INK, GLASS, size=5, floor=True),
     "black smoke in a grid": lambda: fog_box(replace(smoke(), albedo=None), size=5),
 }
 

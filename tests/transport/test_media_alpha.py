@@ -25,9 +25,9 @@ from photograd_course.gradcheck import check_gradient
 
 from support.bits import same_bits
 from tests.transport.media_scenes import FOG, INK, fog_box, pencil, smoke, with_interior
-from tests.transport.scenes import GREY, picture_and_gradients
+from tests.transport.scenes import GRAY, picture_and_gradients
 from tests.transport.test_adjoint import proof
-from tests.transport.test_alpha import checker, grey
+from tests.transport.test_alpha import checker, gray
 from tests.transport.test_strategies import assert_same_mean
 
 SIGMA = np.array(INK.sigma_t)
@@ -58,7 +58,7 @@ def opaque() -> Material:
 @cache
 def picture(alpha: float | None, grid: bool, seed: int = 1) -> Accumulation:
     """Of a veil of this alpha; -1: of an opaque card, None: of nothing there."""
-    card = None if alpha is None else opaque() if alpha < 0 else grey(alpha)
+    card = None if alpha is None else opaque() if alpha < 0 else gray(alpha)
     scene = veiled(card, smoke() if grid else FOG)
     options = replace(OPTIONS, max_depth=8, roulette_from=None)
     return PathTracer(scene).render(spp=2048, seed=seed, options=options)
@@ -130,7 +130,7 @@ def test_a_veil_in_ink_in_closed_form() -> None:
     lit = Scene(
         "lit",
         (ink, floor, *sheets),
-        {"floor": GREY, "sheet": sheet},
+        {"floor": GRAY, "sheet": sheet},
         pencil((0, 0, 0.9), (0, -0.5, 0)),
         None,
         (DirectionalLight([0, 1, 0], [2.0] * 3),),
@@ -168,7 +168,7 @@ def test_the_hole_of_a_surface_leads_into_its_interior() -> None:
 
 @pytest.mark.parametrize("grid", [False, True])
 def test_strategies_agree_behind_a_veil(grid: bool) -> None:
-    card = grey(0.4, textures={"alpha": TextureUse("t")})
+    card = gray(0.4, textures={"alpha": TextureUse("t")})
     scene = veiled(card, smoke() if grid else FOG, textures={"t": checker()})
     scene = replace(scene, lights=())  # lamp and sky can be met
     found = {
@@ -185,7 +185,7 @@ def test_strategies_agree_behind_a_veil(grid: bool) -> None:
 
 @pytest.mark.parametrize("grid", [False, True])
 def test_derivatives(grid: bool) -> None:
-    card = grey(0.8, textures={"alpha": TextureUse("t")})
+    card = gray(0.8, textures={"alpha": TextureUse("t")})
     scene = veiled(card, smoke() if grid else FOG, size=4, textures={"t": checker()})
     sheet = rectangle("sheet", [-1.0, 0.9, -1.0], [2.0, 0, 0], [0, 0, 2.0], "sheet")
     half = Material(
@@ -230,4 +230,4 @@ def test_a_mask_cuts_a_hole_into_a_shell_of_ink() -> None:
 
 @same_bits("media behind partial opacity")
 def picture_and_gradients_behind_opacity() -> list[Any]:
-    return picture_and_gradients(veiled(grey(0.6), smoke(), size=16), 8)
+    return picture_and_gradients(veiled(gray(0.6), smoke(), size=16), 8)

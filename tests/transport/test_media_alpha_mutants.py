@@ -14,7 +14,7 @@ import pytest
 from photograd.transport import PathOptions, PathTracer, derivative_image
 
 from tests.transport.media_scenes import FOG, smoke
-from tests.transport.test_alpha import grey
+from tests.transport.test_alpha import gray
 from tests.transport.test_media_alpha import veiled
 
 SEED, SPP, SIZE, ALPHA = 4, 60, 3, 0.4
@@ -36,7 +36,7 @@ WRONG_GRADIENT = {
 
 @cache
 def tracer(name: str) -> PathTracer:
-    return PathTracer(veiled(grey(ALPHA), MEDIA[name], size=SIZE), dtype=np.float64)
+    return PathTracer(veiled(gray(ALPHA), MEDIA[name], size=SIZE), dtype=np.float64)
 
 
 @cache

@@ -22,7 +22,7 @@ from photograd.transport import (
 from photograd.transport.shapes import box, rectangle
 
 from tests.transport.media_scenes import GLASS, INK, ball_of, pencil, placed, with_interior
-from tests.transport.scenes import BLACK, GREY
+from tests.transport.scenes import BLACK, GRAY
 
 SIGMA = np.array(INK.sigma_t)
 PATHS = PathOptions("bsdf", max_depth=4000, sampler="independent")
@@ -230,7 +230,7 @@ def test_both_walks_draw_surfaces_alike() -> None:
     # A boundary within an opaque ball takes the other walk: the same picture.
     from tests.transport.scenes import stage
 
-    plain = stage(GREY, sky=0.4)
+    plain = stage(GRAY, sky=0.4)
     aside = SphereShape("aside", np.array([0.0, 0.5, 0.0]), 0.1, BOUNDARY)
     walked = replace(plain, shapes=(*plain.shapes, aside))
     options = PathOptions(max_depth=5)

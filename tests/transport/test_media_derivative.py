@@ -31,7 +31,7 @@ from tests.transport.media_scenes import (
     pencil,
     smoke,
 )
-from tests.transport.test_alpha import checker, grey
+from tests.transport.test_alpha import checker, gray
 from tests.transport.test_derivative import gaps
 from tests.transport.test_media_alpha import veiled
 from tests.transport.test_media_closed_forms import slab
@@ -42,7 +42,7 @@ TOLERANCE = 1e-12  # of the sum of what is multiplied; 5.1e-16 at most was found
 
 
 def dome() -> Scene:
-    card = grey(0.7, textures={"alpha": TextureUse("t")})
+    card = gray(0.7, textures={"alpha": TextureUse("t")})
     return veiled(card, smoke(), size=6, textures={"t": checker()})
 
 

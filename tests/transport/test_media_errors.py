@@ -23,7 +23,7 @@ from photograd.transport.media_list import is_closed
 from photograd.transport.shapes import box, rectangle
 
 from tests.transport.media_scenes import FOG, INK, ball_of, pencil, smoke, with_interior
-from tests.transport.scenes import FLOOR, GREY, view
+from tests.transport.scenes import FLOOR, GRAY, view
 
 
 @pytest.mark.parametrize(
@@ -52,7 +52,7 @@ def test_numbers_that_are_no_medium(make: Any, error: type[Error], text: str) ->
 
 
 def scene_with(shape: Any, **more: Any) -> Scene:
-    return Scene("s", (shape,), {"grey": GREY}, view(2), media={"fog": FOG}, **more)
+    return Scene("s", (shape,), {"gray": GRAY}, view(2), media={"fog": FOG}, **more)
 
 
 def test_interiors_that_no_light_could_enter() -> None:
@@ -62,7 +62,7 @@ def test_interiors_that_no_light_could_enter() -> None:
     inward = box("room", [0, 0, 0], [2, 2, 2], BOUNDARY, inward=True)
     with pytest.raises(SceneError, match=r"room.interior: expected a closed mesh"):
         scene_with(with_interior(inward, "fog"))
-    ball = SphereShape("ball", np.zeros(3), 1.0, "grey", interior="fog")
+    ball = SphereShape("ball", np.zeros(3), 1.0, "gray", interior="fog")
     with pytest.raises(SceneError, match=r"ball.interior: expected a surface that lets light in"):
         scene_with(ball)
     with pytest.raises(SceneError, match=r"interior: expected one of the scene's media"):
@@ -72,11 +72,11 @@ def test_interiors_that_no_light_could_enter() -> None:
     with pytest.raises(SceneError, match=r"ball.emission: expected none"):
         scene_with(replace(ball, material=BOUNDARY, emission=np.ones(3)))
     with pytest.raises(SceneError, match="a meaning of its own"):
-        Scene("s", (ball,), {"grey": GREY}, view(2), media={VACUUM: FOG})
+        Scene("s", (ball,), {"gray": GRAY}, view(2), media={VACUUM: FOG})
 
 
 def test_closed_is_every_edge_both_ways() -> None:
-    cube = box("cube", [0, 0, 0], [1, 1, 1], "grey")
+    cube = box("cube", [0, 0, 0], [1, 1, 1], "gray")
     assert is_closed(cube)
     assert not is_closed(replace(cube, faces=cube.faces[:-1]))
     turned = cube.faces.copy()
@@ -122,9 +122,9 @@ def test_a_camera_within_a_medium() -> None:
 
 
 def test_an_opaque_shape_around_the_camera_is_none_of_it() -> None:
-    room = box("room", [0, 0, 0], [2, 2, 2], "grey", [1, 1, 1], inward=True)
+    room = box("room", [0, 0, 0], [2, 2, 2], "gray", [1, 1, 1], inward=True)
     camera = pencil((0, 0, 0), (0, 0, -1))
-    dark = {"grey": Material("lambert", {"albedo": [0.0, 0.0, 0.0]})}
+    dark = {"gray": Material("lambert", {"albedo": [0.0, 0.0, 0.0]})}
     scene = Scene("r", (room,), dark, camera, media={"ink": INK}, world="ink")
     found = PathTracer(scene, dtype=np.float64).render(spp=2, seed=1)
     np.testing.assert_allclose(found.mean[0, 0], np.exp(-np.asarray(INK.sigma_t)), rtol=1e-9)

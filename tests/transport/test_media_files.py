@@ -77,7 +77,7 @@ def test_what_a_file_says_is_what_the_scene_has(tmp_path: Path) -> None:
         ('interior = "milk"', 'interior = "mlik"', "interior: expected one of milk, ink"),
         ('"smoke.npy"', '"fog.npy"', "fog.npy: expected a file, got none"),
         ("size = [2, 3, 4]", "size = [2, 3, 0]", "a box with a volume"),
-        ('material = "boundary"', 'material = "grey"', "expected a surface that lets light in"),
+        ('material = "boundary"', 'material = "gray"', "expected a surface that lets light in"),
     ],
 )
 def test_what_is_wrong_is_named(tmp_path: Path, old: str, new: str, text: str) -> None:

@@ -29,7 +29,7 @@ WRONG_PICTURE = {
     "light through fog": "nothing is lost on the way from a light",
     "camera through fog": "nothing is lost on the way to a vertex",
     "albedo forgotten": "all that is lost is scattered",
-    "coefficient forgotten": "a collision without sigma_s: a density per metre is left",
+    "coefficient forgotten": "a collision without sigma_s: a density per meter is left",
     "null collisions free": "what passes a null collision is not weighed by sigma_n",
     "phase turned round": "the phase function of the angle between wo and wi",
 }

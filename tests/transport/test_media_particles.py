@@ -38,7 +38,7 @@ from tests.transport.media_scenes import (
     smoke,
     with_interior,
 )
-from tests.transport.scenes import BLACK, FLOOR, GREY, view
+from tests.transport.scenes import BLACK, FLOOR, GRAY, view
 from tests.transport.test_light_map import AS_SEEN, PARTICLES, below, patch, seen_irradiance
 from tests.transport.test_strategies import assert_same_mean
 
@@ -89,7 +89,7 @@ def test_both_ends_agree_through_a_body(material: Material) -> None:
     slab = with_interior(box("slab", [0, 0.5, 0], [3, 0.25, 3], "shell"), "wax")
     lamp = rectangle("lamp", [-1, 1.2, -1], [2, 0, 0], [0, 0, 2], "black", [4.0, 3.0, 2.0])
     shapes = (rectangle("floor", *FLOOR, "floor"), slab, lamp)
-    materials = {"floor": GREY, "shell": material, "black": BLACK}
+    materials = {"floor": GRAY, "shell": material, "black": BLACK}
     scene = Scene("slab", shapes, materials, view(4), media={"wax": WAX})
     tracer = PathTracer(scene, dtype=np.float64)
     seen = seen_irradiance(tracer, below(0.3, 2, 0.5), 0.5, 4096)
@@ -99,7 +99,7 @@ def test_both_ends_agree_through_a_body(material: Material) -> None:
 
 def test_a_receiver_within_a_medium_in_closed_form() -> None:
     # It hangs in the middle of a box of ink, under the sun: E exp(-sigma d), to rounding; half of a
-    # metre above it, and half below, where another counts what passes both.
+    # meter above it, and half below, where another counts what passes both.
     ink = with_interior(box("ink", [0, 0, 0], [2, 2, 2], BOUNDARY), "ink")
     sun = DirectionalLight([0, 1, 0], [2.0, 3.0, 4.0])
     scene = Scene("ink", (ink,), {}, view(2), None, (sun,), media={"ink": INK})
@@ -170,7 +170,7 @@ def test_light_from_infinity_ends_in_a_world_of_fog() -> None:
     sun = DirectionalLight([0, 1, 0], [2.0] * 3)
     shapes = (rectangle("floor", *FLOOR, "floor"),)
     scene = Scene(
-        "w", shapes, {"floor": GREY}, view(2), None, (sun, LIGHT), media={"fog": FOG}, world="fog"
+        "w", shapes, {"floor": GRAY}, view(2), None, (sun, LIGHT), media={"fog": FOG}, world="fog"
     )
     tracer = PathTracer(scene, dtype=np.float64)
     found = trace_light(tracer, patch(2), 1 << 14, seed=1)
@@ -189,7 +189,7 @@ def test_both_ends_agree_in_a_world_with_a_grid(light: Any) -> None:
     cloud = Medium([0.8, 1.2, 1.6], 0.8, values={"g": 0.3}, density=tall)
     shapes = (rectangle("floor", *FLOOR, "floor"),)
     scene = Scene(
-        "w", shapes, {"floor": GREY}, view(2), None, (light,), media={"cloud": cloud}, world="cloud"
+        "w", shapes, {"floor": GRAY}, view(2), None, (light,), media={"cloud": cloud}, world="cloud"
     )
     tracer = PathTracer(scene, dtype=np.float64)
     seen = seen_irradiance(tracer, below(1e-3, 2, 0.5), 0.5, 4096)
@@ -234,7 +234,7 @@ def test_a_photon_map_sees_what_paths_see(name: str) -> None:
 
 def test_photons_pass_boundaries() -> None:
     walls = (box("walls", [0, 1, 0], [4, 4, 4], BOUNDARY), rectangle("floor", *FLOOR, "floor"))
-    scene = Scene("b", walls, {"floor": GREY}, view(2), Environment.constant(1.0))
+    scene = Scene("b", walls, {"floor": GRAY}, view(2), Environment.constant(1.0))
     bare = replace(scene, shapes=walls[1:])
     for one in (scene, bare):
         photons = PhotonMap(PathTracer(one), 1 << 18, radius=0.4, seed=1)

@@ -11,12 +11,12 @@ from photograd_course.gradcheck import check_gradient
 
 from support.gradient_mutants import check_gradient_mutants
 from tests.transport.test_adjoint import proof
-from tests.transport.test_alpha import checker, grey, shade
+from tests.transport.test_alpha import checker, gray, shade
 from tests.transport.test_derivative import check
 from tests.transport.test_mip_textures import filtered
 from tests.transport.test_textures import wall
 
-VEIL = grey(0.9, textures={"alpha": TextureUse("t")})
+VEIL = gray(0.9, textures={"alpha": TextureUse("t")})
 pytestmark = pytest.mark.usefixtures("core")
 
 

@@ -95,7 +95,7 @@ def test_the_level_is_that_of_the_longer_side(
     # Level log2(rho) lies between the checker, and a coarser one that is 1/2 everywhere.
     found = swing(tilted_wall(checker(rows, columns), tilt))
     expected = 1 - np.log2(rho)
-    assert expected - 0.05 < found < expected + 0.003  # samples meet centres of texels nearly
+    assert expected - 0.05 < found < expected + 0.003  # samples meet centers of texels nearly
 
 
 @pytest.mark.parametrize(("texels", "rho"), [(48, 0.75), (64, 1.0), (128, 2.0), (512, 8.0)])

@@ -26,7 +26,7 @@ from photograd_course.gradcheck import check_gradient
 
 from support.bits import same_bits
 from tests.transport.media_scenes import FOG, INK, pencil, smoke, with_interior
-from tests.transport.scenes import BLACK, FLOOR, GREY, any_material, view
+from tests.transport.scenes import BLACK, FLOOR, GRAY, any_material, view
 from tests.transport.test_adjoint import proof
 from tests.transport.test_moving_shapes import at, moving
 
@@ -151,8 +151,8 @@ def shadowed(shape: Any, materials: dict[str, Material], **more: Any) -> Array:
     """What of a sun's light a point of the floor gets while something passes overhead."""
     camera = pencil((0, 1, 3), (0, 0, 0))
     sun = DirectionalLight([0.0, 1.0, 0.0], [2.0, 2.0, 2.0])
-    floor = rectangle("floor", *FLOOR, "grey")
-    scene = Scene("s", (floor, shape), {"grey": GREY, **materials}, camera, None, (sun,), **more)
+    floor = rectangle("floor", *FLOOR, "gray")
+    scene = Scene("s", (floor, shape), {"gray": GRAY, **materials}, camera, None, (sun,), **more)
     options = PathOptions(max_depth=2)
     found = PathTracer(scene, dtype=np.float64).render(spp=4096, seed=2, options=options).mean
     full = 2.0 * 0.5 / np.pi

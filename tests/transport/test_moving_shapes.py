@@ -38,7 +38,7 @@ from photograd.transport.motion import moved_on
 from photograd_course.gradcheck import check_gradient
 
 from support.bits import same_bits
-from tests.transport.scenes import BLACK, GREY, any_material, stage, view
+from tests.transport.scenes import BLACK, GRAY, any_material, stage, view
 from tests.transport.test_adjoint import OPTIONS, proof
 from tests.transport.test_derivative import check
 from tests.transport.test_instances import dome, place
@@ -172,7 +172,7 @@ def test_what_cannot_move_is_refused() -> None:
     about = np.diag([-1.0, 1, -1, 1])  # half a turn about Y: flat in the middle
 
     def mesh(**more: Any) -> MeshShape:
-        return MeshShape("d", vertices, faces, "grey", **more)
+        return MeshShape("d", vertices, faces, "gray", **more)
 
     with pytest.raises(RangeError, match=r"d\.closing_places: expected a positive determinant at"):
         mesh(closing_places=(about,))
@@ -181,13 +181,13 @@ def test_what_cannot_move_is_refused() -> None:
     with pytest.raises(ShapeError, match="2, one for each place"):
         mesh(places=(START, END), closing_places=(END,))
     with pytest.raises(ShapeError, match=r"b\.closing: expected shape \(3,\)"):
-        SphereShape("b", np.zeros(3), 1.0, "grey", closing=np.zeros(2))
+        SphereShape("b", np.zeros(3), 1.0, "gray", closing=np.zeros(2))
     scene = moving()
     ball = next(s for s in scene.shapes if s.name == "flying")
     lit = [replace(s, emission=np.ones(3)) if s is ball else s for s in scene.shapes]
     with pytest.raises(SceneError, match=r"flying\.emission: expected lights that stand still"):
         replace(scene, shapes=tuple(lit))
-    body = SdfShape("s", sphere(1.0), "grey")
+    body = SdfShape("s", sphere(1.0), "gray")
     with pytest.raises(SceneError, match=r"s\.closing: expected a mesh or a sphere"):
         moved_on(body, END)
 
@@ -223,20 +223,20 @@ field_of_view = 40
 size = [4, 4]
 [environment]
 radiance = 1
-[materials.grey]
+[materials.gray]
 model = "lambert"
 albedo = [0.5, 0.5, 0.5]
 [[shapes]]
 kind = "sphere"
 center = [0, 0, 0]
 radius = 1
-material = "grey"
+material = "gray"
 closing = { translate = [1, 2, 3] }
 [[shapes]]
 kind = "box"
 center = [2, 0, 0]
 size = [1, 1, 1]
-material = "grey"
+material = "gray"
 closing = { rotate = [0, 30, 0], translate = [0, 1, 0] }
 """
 
@@ -266,10 +266,10 @@ def test_scene_files_say_how_shapes_move(tmp_path: Path) -> None:
             assert f"line {line}:" in str(caught.value), str(caught.value)
 
 
-def test_grey_stays_grey() -> None:
+def test_gray_stays_gray() -> None:
     # A white ball in flight under an even sky cannot be seen.
     ball = SphereShape("b", np.zeros(3), 0.5, "white", closing=np.array([0.4, 0.2, 0.1]))
     white = Material("lambert", {"albedo": [1.0, 1.0, 1.0]})
-    scene = Scene("w", (ball,), {"white": white, "grey": GREY}, view(8), Environment.constant(1.0))
+    scene = Scene("w", (ball,), {"white": white, "gray": GRAY}, view(8), Environment.constant(1.0))
     found = PathTracer(scene).render(spp=32, seed=2, options=PathOptions("bsdf"))
     np.testing.assert_allclose(found.mean, 1.0, rtol=2e-6)

@@ -49,7 +49,7 @@ def balance(p: float, q: float) -> float:
 
 @cache
 def tracer() -> PathTracer:
-    """A grey and a black floor tile, a ball of glass, a lamp and a dim sky."""
+    """A gray and a black floor tile, a ball of glass, a lamp and a dim sky."""
     shapes = (
         rectangle("floor", *FLOOR, "floor"),
         rectangle("tile", [-0.5, 0.02, 1.0], [1.0, 0, 0], [0, 0, -0.6], "tile"),

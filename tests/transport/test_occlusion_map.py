@@ -26,20 +26,20 @@ from photograd.transport.occlusion_map import MARGIN, OcclusionBake, continued, 
 from photograd.transport.shapes import box, rectangle
 
 from support.bits import same_bits
-from tests.transport.scenes import BLACK, GREY, view
+from tests.transport.scenes import BLACK, GRAY, view
 
 Array = Any
 STRIP = ([-0.5, 0, 1.0], [1, 0, 0], [0, 0, -1.0])  # u along x, v along z: 0..1 m from z = 0
 
 
 def scene_of(*shapes: Any, **more: Any) -> Scene:
-    return Scene("s", shapes, {"grey": GREY, "black": BLACK}, view(32), **more)
+    return Scene("s", shapes, {"gray": GRAY, "black": BLACK}, view(32), **more)
 
 
 def facing_a_wall(height: float) -> Scene:
     """A strip of floor before a wall at z = 0 that ends far away."""
-    wall = rectangle("wall", [-50, 0, 0], [100, 0, 0], [0, height, 0], "grey")
-    return scene_of(rectangle("floor", *STRIP, "grey"), wall)
+    wall = rectangle("wall", [-50, 0, 0], [100, 0, 0], [0, height, 0], "gray")
+    return scene_of(rectangle("floor", *STRIP, "gray"), wall)
 
 
 def test_a_wall_takes_what_the_closed_form_says() -> None:
@@ -51,7 +51,7 @@ def test_a_wall_takes_what_the_closed_form_says() -> None:
     def expected(d: Array) -> Array:
         return 0.5 * (1 + d / np.hypot(d, height))
 
-    # At the centres; v runs from 0 at the wall to 1, and so does z.
+    # At the centers; v runs from 0 at the wall to 1, and so does z.
     d = (np.arange(64) + 0.5) / 64
     error = np.abs(baked.values[..., 0] - expected(d)[:, None])
     assert error.max() < 0.008  # measured: 0.0046
@@ -64,15 +64,15 @@ def test_a_wall_takes_what_the_closed_form_says() -> None:
 
 def test_only_what_is_near_enough_occludes() -> None:
     # An endless ceiling at the height h, seen up to r: (h / r)^2 stays free.
-    ceiling = rectangle("ceiling", [-50, 0.5, -50], [100, 0, 0], [0, 0, 100], "grey")
-    scene = scene_of(rectangle("floor", *STRIP, "grey"), ceiling)
+    ceiling = rectangle("ceiling", [-50, 0.5, -50], [100, 0, 0], [0, 0, 100], "gray")
+    scene = scene_of(rectangle("floor", *STRIP, "gray"), ceiling)
     for radius, free in ((0.4, 1.0), (0.625, 0.64), (1.0, 0.25), (np.inf, 0.0)):
         baked = bake_ambient_occlusion(scene, "floor", 4, radius=radius, spp=1024, seed=2)
         # The ceiling ends: 1e-4 of the sky is behind it. Rays start 0.5 mm above the floor.
         assert np.abs(baked.values - free).max() < 0.005, radius  # measured: 0.0029
 
 
-def room(material: str = "grey") -> tuple[Any, ...]:
+def room(material: str = "gray") -> tuple[Any, ...]:
     """A floor with a box and a wall on it, all of one material, unfolded each."""
     corner = np.array([[0, 0, 0], [0.5, 0, 0], [0.5, 0.4, 0], [0, 0.4, 0]])
     # An open roof of two slopes, whose halves lie apart in its texture.
@@ -185,7 +185,7 @@ def test_a_map_is_the_direct_light_of_an_even_sky() -> None:
     # So light that is traced must not be multiplied by it: the shadow would be counted twice.
     scene = replace(facing_a_wall(0.5), environment=Environment.constant(2.0))
     baked = bake_ambient_occlusion(scene, "floor", 32, spp=1024, seed=6)
-    lamb = {"grey": Material("lambert", {"albedo": [0.8, 0.4, 0.2]})}
+    lamb = {"gray": Material("lambert", {"albedo": [0.8, 0.4, 0.2]})}
     above = view(8, (0.0, 3.0, 0.51), (0.0, 0.0, 0.5))
     tracer = PathTracer(replace(scene, materials=scene.materials | lamb, camera=above))
     sums = tracer.render(spp=4096, seed=7, options=PathOptions(max_depth=2))
@@ -248,7 +248,7 @@ def test_what_cannot_be_baked_is_refused() -> None:
         bake(uv=2 * floor.uv)
     with pytest.raises(SceneError, match=r"2 instances"):
         bake(places=(np.eye(4), np.eye(4)))
-    with pytest.raises(SceneError, match=r"cover a texel's centre, got none of 8 x 8"):
+    with pytest.raises(SceneError, match=r"cover a texel's center, got none of 8 x 8"):
         bake(uv=0.001 * floor.uv)
     with pytest.raises(RangeError, match="radius"):
         bake_ambient_occlusion(scene, "floor", 8, radius=0.0, seed=1)

@@ -20,7 +20,7 @@ def test_what_one_number_does_to_every_pixel() -> None:
     wall, tint, roughness = (
         found[name] for name in (derivative.WALL, derivative.TINT, derivative.ROUGHNESS)
     )
-    # No path is a falling function of a colour; nearly every pixel has one by the wall.
+    # No path is a falling function of a color; nearly every pixel has one by the wall.
     assert wall.min() >= 0
     assert tint.min() >= 0
     assert (wall > 0).mean() > 0.95

@@ -20,14 +20,14 @@ from photograd.transport import (
 from photograd.transport.builtin import cornell_box
 
 from support.bits import same_bits
-from tests.transport.scenes import BLACK, GREY, any_material, stage
+from tests.transport.scenes import BLACK, GRAY, any_material, stage
 from tests.transport.test_light_map import ALL, ball_under_the_sky, patch
 from tests.transport.test_strategies import block_z
 
 
 def lit_floor(**more: Any) -> PathTracer:
     """A floor under a point light of 1 W/sr, 1 m above its middle."""
-    scene = stage(GREY, lamp=0.0, ball=False, **more)
+    scene = stage(GRAY, lamp=0.0, ball=False, **more)
     light = PointLight([0.0, 1.0, 0.0], [1.0, 2.0, 0.5])
     return PathTracer(
         type(scene)(scene.name, scene.shapes, scene.materials, scene.camera, lights=(light,)),
@@ -56,7 +56,7 @@ def test_the_blur_of_the_radius_in_closed_form_falls() -> None:
 def test_a_caustic_keeps_its_power() -> None:
     # The density is summed over points of a square around the bright patch. The particles are those
     # of light tracing: what differs is the estimate alone.
-    tracer = PathTracer(ball_under_the_sky(GREY), dtype=np.float64)
+    tracer = PathTracer(ball_under_the_sky(GRAY), dtype=np.float64)
     half, n, r = 0.3, 40, 0.03
     lines = (np.arange(n) + 0.5) / n * 2 * half - half
     x, z = np.meshgrid(lines, lines)

@@ -20,7 +20,7 @@ from photograd.transport.builtin import BUILTIN
 from photograd.transport.shapes import box, rectangle
 
 from tests.transport.media_scenes import FOG, GLASS, WAX, fog_box, smoke, with_interior
-from tests.transport.scenes import BLACK, FLOOR, GREY, view
+from tests.transport.scenes import BLACK, FLOOR, GRAY, view
 from tests.transport.test_media_particles import SCENES as MEDIA_SCENES
 from tests.transport.test_strategies import assert_same_mean
 
@@ -47,7 +47,7 @@ def wax_in_glass() -> Scene:
     slab = with_interior(box("slab", [0, 0.5, 0], [1.5, 0.4, 1.5], "shell"), "wax")
     lamp = rectangle("lamp", [-1, 1.4, -1], [2, 0, 0], [0, 0, 2], "black", [4.0, 3.0, 2.0])
     shapes = (rectangle("floor", *FLOOR, "floor"), slab, lamp)
-    materials = {"floor": GREY, "shell": GLASS, "black": BLACK}
+    materials = {"floor": GRAY, "shell": GLASS, "black": BLACK}
     return Scene("slab", shapes, materials, view(SIZE), media={"wax": WAX})
 
 
@@ -55,7 +55,7 @@ def foggy_world() -> Scene:
     shapes = (rectangle("floor", *FLOOR, "floor"), box("hole", [0, 0.5, 0], [1, 0.6, 1], BOUNDARY))
     lights = (PointLight([0.3, 1.2, 0.2], [3.0, 2.5, 2.0]),)
     return Scene(
-        "w", shapes, {"floor": GREY}, view(SIZE), None, lights, media={"fog": FOG}, world="fog"
+        "w", shapes, {"floor": GRAY}, view(SIZE), None, lights, media={"fog": FOG}, world="fog"
     )
 
 

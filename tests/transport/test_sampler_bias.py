@@ -22,7 +22,7 @@ from photograd.transport import Environment, Material, PathOptions, PathTracer, 
 from photograd.transport.builtin import camera_at, furnace_box
 from photograd.transport.shapes import Shape, rectangle
 
-from tests.transport.scenes import BLACK, FLOOR, GREY, LAMP
+from tests.transport.scenes import BLACK, FLOOR, GRAY, LAMP
 from tests.transport.test_closed_forms import polygon_irradiance
 
 pytestmark = pytest.mark.usefixtures("core")
@@ -69,7 +69,7 @@ def choice_of_a_light() -> Known:
     lights = tuple(PointLight(POINT + r * UP, [1.0] * 3) for r in (1.0, 1.1, 1.25))
     floor = rectangle("floor", *FLOOR, "own")
     irradiance = sum(1 / r**2 for r in (1.0, 1.1, 1.25))
-    scene = pencil(floor, material=GREY, lights=lights)
+    scene = pencil(floor, material=GRAY, lights=lights)
     return Known(scene, 0.5 * irradiance / np.pi, PathOptions(max_depth=2), 448)
 
 
@@ -78,14 +78,14 @@ def point_on_a_light() -> Known:
     corners = [corner, corner + u, corner + u + v, corner + v]
     shapes = rectangle("floor", *FLOOR, "own"), rectangle("light", *LAMP, "black", [4.0] * 3)
     radiance = 0.5 * 4 * polygon_irradiance(corners, POINT, UP) / np.pi
-    scene = pencil(*shapes, material=GREY)
+    scene = pencil(*shapes, material=GRAY)
     return Known(scene, radiance, PathOptions("light", max_depth=2), 256)
 
 
 def direction() -> Known:
     # E = pi (1 + n_y / 3) of a plane with the normal n under 1 + y / 2, in all directions.
     tilted = rectangle("floor", POINT - [2, 2, -2], [4, 0, 0], [0, 4, -4], "own")
-    scene = pencil(tilted, material=GREY, environment=SLOPE)
+    scene = pencil(tilted, material=GRAY, environment=SLOPE)
     return Known(scene, 0.5 * (1 + np.sqrt(0.5) / 3), PathOptions("bsdf", max_depth=2), 256)
 
 

@@ -23,7 +23,7 @@ from photograd.transport import (
 from photograd.transport.scene_node import key_lines
 from photograd.transport.shapes import box
 
-from tests.transport.scenes import GREY, view
+from tests.transport.scenes import GRAY, view
 
 TEXT = """\
 # A ball on a table.
@@ -36,7 +36,7 @@ size = [8, 6]
 [environment]
 radiance = [0.1, 0.2, 0.3]
 
-[materials.grey]
+[materials.gray]
 model = "lambert"
 albedo = [0.5, 0.5, 0.5]
 
@@ -50,7 +50,7 @@ kind = "box"
 center = [0, -0.1, 0]
 size = [2, 0.2, 2]
 turn = 20
-material = "grey"
+material = "gray"
 
 [[shapes]]
 kind = "sphere"
@@ -67,7 +67,7 @@ vertices = [
     [0, 2, 1]
 ]
 faces = [[0, 1, 2]]
-material = "grey"
+material = "gray"
 emission = 3
 """
 
@@ -187,7 +187,7 @@ def mesh(**changes: Any) -> MeshShape:
         "m",
         given["vertices"],
         given["faces"],
-        "grey",
+        "gray",
         given.get("emission", np.zeros(3)),
         given.get("normals"),
     )
@@ -202,7 +202,7 @@ def test_useless_triangles_are_counted_and_dropped() -> None:
     scene = Scene(
         "s",
         (shape,),
-        {"grey": GREY},
+        {"gray": GRAY},
         view(8, (0.3, 0.3, 2), (0.3, 0.3, 0)),
         Environment.constant(1.0),
     )
@@ -237,17 +237,17 @@ def test_wrong_meshes_are_refused(changes: dict[str, Any], error: Any, words: st
 
 def test_wrong_spheres_materials_and_scenes_are_refused() -> None:
     with pytest.raises(RangeError, match="a light needs an area"):
-        SphereShape("s", np.zeros(3), 0.0, "grey", np.ones(3))
+        SphereShape("s", np.zeros(3), 0.0, "gray", np.ones(3))
     with pytest.raises(ShapeError, match="center"):
-        SphereShape("s", np.zeros(2), 1.0, "grey")
+        SphereShape("s", np.zeros(2), 1.0, "gray")
     with pytest.raises(RangeError, match="exactly"):
         Material("lambert", {})
-    ball = SphereShape("s", np.zeros(3), 1.0, "grey")
+    ball = SphereShape("s", np.zeros(3), 1.0, "gray")
     with pytest.raises(SceneError, match="two of the name 's'"):
-        Scene("x", (ball, ball), {"grey": GREY}, view())
+        Scene("x", (ball, ball), {"gray": GRAY}, view())
     with pytest.raises(SceneError, match="at least one"):
-        Scene("x", (), {"grey": GREY}, view())
-    with pytest.raises(SceneError, match="one of the scene's materials, got grey"):
-        Scene("x", (ball,), {"white": GREY}, view())
+        Scene("x", (), {"gray": GRAY}, view())
+    with pytest.raises(SceneError, match="one of the scene's materials, got gray"):
+        Scene("x", (ball,), {"white": GRAY}, view())
     with pytest.raises(RangeError, match="size: expected finite numbers above 0"):
-        box("b", [0, 0, 0], [1, -1, 1], "grey")
+        box("b", [0, 0, 0], [1, -1, 1], "gray")

@@ -1,4 +1,4 @@
-"""Bodies of signed distances in scene files."""
+"""Signed distance functions in scene files."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where rays meet bodies of signed distances in the tracer, against closed forms."""
+"""Where rays meet signed distance functions in the tracer, against closed forms."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from photograd.geometry.sdf import box, placed, sphere
 from photograd.transport import PathTracer, Scene, SdfShape
 
 from tests.geometry.shapes import random_rays
-from tests.transport.scenes import GREY, view
+from tests.transport.scenes import GRAY, view
 
 Array = Any
 CENTER, RADIUS = np.array([0.4, 0.2, -0.3]), 0.5
@@ -37,10 +37,10 @@ def hits(scene: Scene, origins: Array, directions: Array) -> tuple[Array, ...]:
 
 def known_scene() -> Scene:
     shapes = (
-        SdfShape("ball", placed(sphere(RADIUS), CENTER), "grey"),
-        SdfShape("box", placed(box(HALF), SHIFT), "grey"),
+        SdfShape("ball", placed(sphere(RADIUS), CENTER), "gray"),
+        SdfShape("box", placed(box(HALF), SHIFT), "gray"),
     )
-    return Scene("known", shapes, {"grey": GREY}, view(4))
+    return Scene("known", shapes, {"gray": GRAY}, view(4))
 
 
 def ball_hit(origins: Array, directions: Array, radius: float) -> Array:

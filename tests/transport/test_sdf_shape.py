@@ -1,4 +1,4 @@
-"""Bodies of signed distances in the path tracer: no ray passes them, none leaks, none is lost."""
+"""Signed distance functions in the path tracer: no ray passes them, none leaks, none is lost."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ from photograd_course.gradcheck import check_gradient
 from support.bits import same_bits
 from tests.transport.scenes import (
     BLACK,
-    GREY,
+    GRAY,
     any_material,
     picture_and_gradients,
     rough_dielectric_stage,
@@ -68,7 +68,7 @@ def test_a_white_body_cannot_be_seen(dtype: Any) -> None:
 
 
 def as_sdf(scene: Scene) -> Scene:
-    """The same scene with bodies of signed distances for its balls."""
+    """The same scene with signed distance functions for its balls."""
     shapes = [
         SdfShape(s.name, placed(sphere(s.radius), s.center), s.material, interior=s.interior)
         if isinstance(s, SphereShape) and not s.emission.any()
@@ -88,14 +88,14 @@ def within_glass() -> Scene:
 
 def hollow_room() -> Scene:
     """A lamp and a camera in a hollow ball, whose inside is lit again and again."""
-    room = SphereShape("room", np.zeros(3), 1.0, "grey")
+    room = SphereShape("room", np.zeros(3), 1.0, "gray")
     lamp = SphereShape("lamp", np.array([0.3, 0.2, -0.5]), 0.15, "black", np.array([3.0, 2.0, 1.0]))
     camera = view(8, (0.2, 0.1, 0.6), (0, 0, -1))
-    return Scene("r", (room, lamp), {"grey": GREY, "black": BLACK}, camera)
+    return Scene("r", (room, lamp), {"gray": GRAY, "black": BLACK}, camera)
 
 
 def milk() -> Scene:
-    scene = stage(GREY, sky=0.4)
+    scene = stage(GRAY, sky=0.4)
     white = Medium([3.0, 4.0, 5.0], [0.9, 0.95, 0.8], values={"g": 0.3})
     balls = [
         replace(s, material=BOUNDARY, interior="milk") if s.name == "ball" else s
@@ -131,10 +131,10 @@ def test_no_light_leaks_through_a_shell() -> None:
     # A thin shell with creases in the dark: outside it is bright, inside nothing shines.
     inside = union(sphere(0.9), placed(box([0.5] * 3), [0.6, 0.4, 0.0], [0.9, 0.2, 0.3, 0.1]))
     outside = union(sphere(0.92), placed(box([0.52] * 3), [0.6, 0.4, 0.0], [0.9, 0.2, 0.3, 0.1]))
-    shell = SdfShape("shell", difference(outside, inside), "grey")
+    shell = SdfShape("shell", difference(outside, inside), "gray")
     for target in ([1, 1, 1], [-1, -1, 1], [1, 0.3, -0.2]):
         camera = camera_at([0, 0.1, 0], target, 80.0, 16, 16)
-        scene = Scene("s", (shell,), {"grey": GREY}, camera, Environment.constant(1e6))
+        scene = Scene("s", (shell,), {"gray": GRAY}, camera, Environment.constant(1e6))
         assert not PathTracer(scene).render(spp=32, seed=8).radiance.any()
 
 
@@ -209,16 +209,16 @@ def test_what_is_no_solid_is_refused() -> None:
 def test_other_views_of_a_scene_see_bodies() -> None:
     # Ambient occlusion in a corner of a box of triangles and one of distances.
     near = (
-        box_mesh("a", [0, -1, 0], [4, 2, 4], "grey"),
-        box_mesh("b", [0.0, 0.5, -1], [1, 1, 1], "grey"),
+        box_mesh("a", [0, -1, 0], [4, 2, 4], "gray"),
+        box_mesh("b", [0.0, 0.5, -1], [1, 1, 1], "gray"),
     )
     far = tuple(
-        SdfShape(s.name, placed(box((s.box[1] - s.box[0]) / 2), s.box.mean(axis=0)), "grey")
+        SdfShape(s.name, placed(box((s.box[1] - s.box[0]) / 2), s.box.mean(axis=0)), "gray")
         for s in near
     )
     pictures = []
     for seed, shapes in enumerate((near, far)):
-        tracer = PathTracer(Scene("c", shapes, {"grey": GREY}, view(8)))
+        tracer = PathTracer(Scene("c", shapes, {"gray": GRAY}, view(8)))
         sums = Accumulation.empty(8, 8)
         tracer.add_occlusion(sums, 1024, seed=seed, radius=1.0)
         pictures.append(sums)

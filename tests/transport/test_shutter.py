@@ -86,14 +86,14 @@ look_at = [0, 0, 0]
 field_of_view = 40
 size = [4, 4]
 closing = { position = [1, 1, 3], look_at = [0, 0, 0] }
-[materials.grey]
+[materials.gray]
 model = "lambert"
 albedo = [0.5, 0.5, 0.5]
 [[shapes]]
 kind = "sphere"
 center = [0, 0, 0]
 radius = 1
-material = "grey"
+material = "gray"
 """
     (tmp_path / "s.toml").write_text(text)
     scene = read_scene(tmp_path / "s.toml")

@@ -12,7 +12,7 @@ from photograd.transport import PathOptions, PathTracer, Scene
 from photograd.transport.builtin import camera_at
 from photograd.transport.shapes import rectangle
 
-from tests.transport.scenes import BLACK, FLOOR, GREY, STRATEGY_SCENES
+from tests.transport.scenes import BLACK, FLOOR, GRAY, STRATEGY_SCENES
 from tests.transport.test_closed_forms import polygon_irradiance
 
 LAMP = QuadLight([-0.5, 2.0, -0.5], [1.0, 0, 0], [0, 0, 1.0], [3.0, 3.0, 3.0])
@@ -23,8 +23,8 @@ COVER = rectangle("cover", [-5, 1, -5], [5, 0, 0], [0, 0, 10], "black")
 def shadowed(p: float) -> PathTracer:
     """One pixel on the floor at (p, 0, 0), half in the shadow of an edge."""
     camera = camera_at([p, 0.5, 1.0], [p, 0.0, 0.0], 0.01, 1, 1)
-    shapes = (rectangle("floor", *FLOOR, "grey"), COVER)
-    materials = {"grey": GREY, "black": BLACK}
+    shapes = (rectangle("floor", *FLOOR, "gray"), COVER)
+    materials = {"gray": GRAY, "black": BLACK}
     return PathTracer(Scene("s", shapes, materials, camera, lights=(LAMP,)), dtype=np.float64)
 
 

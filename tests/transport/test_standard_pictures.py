@@ -39,7 +39,7 @@ def rack(roughness: Any, metalness: Any) -> Balls:
 
 
 def scene(balls: Balls, lights: Any, pixels: int) -> Scene:
-    """The rack from 12 m away, `pixels` a metre."""
+    """The rack from 12 m away, `pixels` a meter."""
     shapes, materials = [], {}
     for i, (center, radius) in enumerate(zip(balls.centers, balls.radii, strict=True)):
         materials[f"m{i}"] = Material(

@@ -13,7 +13,7 @@ from photograd.transport.builtin import cornell_box
 from photograd.transport.shapes import box, rectangle
 
 from support.statistics import sidak
-from tests.transport.scenes import GREY, STRATEGY_SCENES, any_material, stage, view
+from tests.transport.scenes import GRAY, STRATEGY_SCENES, any_material, stage, view
 
 LEVEL = 1e-3  # all z-tests of one parametrised test together raise a false alarm this often
 
@@ -112,7 +112,7 @@ def test_more_samples_may_come_later() -> None:
 
 def test_noise_falls_as_one_over_the_root() -> None:
     # Direct light, whose samples are bounded: the spread of a few tells that of many.
-    tracer = PathTracer(stage(GREY, size=16, sky=0.5))
+    tracer = PathTracer(stage(GRAY, size=16, sky=0.5))
     options = PathOptions(max_depth=2, sampler="independent")
     errors = []
     truth = tracer.render(spp=4096, seed=9, options=options).mean

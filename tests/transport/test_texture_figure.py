@@ -22,7 +22,7 @@ def test_maps_show_what_is_traced() -> None:
     assert (looked_up[~mapped] < traced[~mapped]).mean() > 0.8  # boxes have no map, and are black
 
 
-def test_one_filtered_sample_is_grey_where_many_would_be() -> None:
+def test_one_filtered_sample_is_gray_where_many_would_be() -> None:
     one, filtered, truth = figure.floor_pictures(32, 256)
     far = slice(9, 17)
     plain, mip = (float(np.std((found - truth)[far])) for found in (one, filtered))

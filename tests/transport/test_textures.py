@@ -82,7 +82,7 @@ def test_a_texture_stands_upright_and_is_looked_up_bilinearly() -> None:
     scene = wall(paint, {"t": texture}, 16)
     found = PathTracer(scene, dtype=np.float64).render(spp=64, seed=1, options=BARE).mean
     factor = np.array([1.0, 0.5, 0.25])
-    # A quarter of the picture's edge is the centre of a texel, and beyond it its value goes on.
+    # A quarter of the picture's edge is the center of a texel, and beyond it its value goes on.
     for row, column in ((0, 0), (0, 1), (1, 0), (1, 1)):
         corner = found[row * 13 : row * 13 + 3, column * 13 : column * 13 + 3]
         expected = np.broadcast_to(factor * texture.values[row, column], corner.shape)

@@ -64,7 +64,7 @@ def test_nifti_values_and_scaling(tmp_path: Path, name: str, order: str) -> None
 
 
 def test_nifti_places(tmp_path: Path) -> None:
-    # Their x right, y front, z up, in millimetres; ours x right, y up, z back, in metres.
+    # Their x right, y front, z up, in millimeters; ours x right, y up, z back, in meters.
     sform = [[2, 0, 0, -90], [0, 3, 0, -120], [0, 0, 4, -70]]
     volume = read(tmp_path, "a.nii", nifti(values(), sform=sform))
     np.testing.assert_allclose(world(volume, 0, 0, 0), [-0.09, -0.07, 0.12], atol=1e-12)
@@ -188,7 +188,7 @@ def test_real_files(name: str) -> None:
     assert volume.values.shape == shape
     assert volume.values.min() == pytest.approx(least)
     assert volume.values.max() == pytest.approx(most)
-    # Neighbours along x agree better than far voxels do: the axes are not mixed up.
+    # Neighbors along x agree better than far voxels do: the axes are not mixed up.
     v = volume.density
     for axis in range(3):
         near = np.abs(np.diff(v, axis=axis)).mean()

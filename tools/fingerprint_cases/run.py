@@ -21,7 +21,7 @@ from fingerprint_cases.catalog import all_cases
 
 BEFORE, AFTER = 1000, 2000
 """First of the seeds whose estimates are kept, and of those that are compared with them."""
-BATCH = 16  # neighbours share the scene
+BATCH = 16  # neighbors share the scene
 
 
 def prime() -> bool:

@@ -1,4 +1,4 @@
-"""Vectorised, with the residual as a variable and the mean taken first."""
+"""Vectorized, with the residual as a variable and the mean taken first."""
 
 from __future__ import annotations
 

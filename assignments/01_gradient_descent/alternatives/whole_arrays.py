@@ -1,4 +1,4 @@
-"""Vectorised: whole arrays, the velocity as a difference of points, both moments at once."""
+"""Vectorized: whole arrays, the velocity as a difference of points, both moments at once."""
 
 from __future__ import annotations
 

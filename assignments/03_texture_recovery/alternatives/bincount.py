@@ -1,4 +1,4 @@
-"""Vectorised with flat texel numbers: one gather forwards, one np.bincount a channel backwards."""
+"""Vectorized with flat texel numbers: one gather forwards, one np.bincount a channel backwards."""
 
 from __future__ import annotations
 

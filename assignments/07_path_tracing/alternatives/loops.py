@@ -24,7 +24,7 @@ def light_pdf(scene, thing, wi, distance):
         scene: with K lamps.
         thing: (N,), what lies in the direction wi; -1 for nothing.
         wi: (N, 3), from the point towards it.
-        distance: (N,), how far away it is, in metres.
+        distance: (N,), how far away it is, in meters.
 
     Returns:
         (N,), in 1/sr; exactly 0 where the thing is no lamp, or its front is not seen. Handout

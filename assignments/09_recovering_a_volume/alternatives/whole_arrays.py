@@ -54,7 +54,7 @@ def gradient_sign_map(grid, views):
 
 def fit_volume(views, grid, steps, rng):
     low, high = np.zeros(4), np.array([1, 1, 1, np.inf])
-    optimiser, losses = Adam(), np.zeros(steps)
+    optimizer, losses = Adam(), np.zeros(steps)
     volume = grid.copy()
     for k in range(steps):
         o, d, truth = ray_batch(views, draw(views, rng))
@@ -63,5 +63,5 @@ def fit_volume(views, grid, steps, rng):
         tv, d_tv = tv_loss_adjoint(volume, SMOOTH)
         losses[k] = loss + TV * tv
         slopes = render_adjoint(*given, back)[0] + TV * d_tv
-        volume = np.clip(optimiser.step(volume, slopes), low, high)
+        volume = np.clip(optimizer.step(volume, slopes), low, high)
     return volume, losses

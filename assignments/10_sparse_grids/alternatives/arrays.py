@@ -114,10 +114,10 @@ def fit_sparse(n, voxels, values, rays, target, rounds, steps, threshold, grow):
     table = table_of(voxels)
     for r in range(rounds):
         samples = march(n, voxels, table, rays)
-        optimiser = Adam()
+        optimizer = Adam()
         for s in range(steps):
             losses[r, s], d_values = loss_and_grad(values, samples, target)
-            values = optimiser.step(values, d_values)
+            values = optimizer.step(values, d_values)
             values = np.concatenate([values[:, :3], np.clip(values[:, 3:], 0, None)], axis=1)
         if r + 1 < rounds:
             after = prune_and_dilate(n, voxels, *shares(values, samples), threshold, grow)

@@ -1,4 +1,4 @@
-"""From the handout alone: recursion over halves, a parameter of the ray, sets of neighbours."""
+"""From the handout alone: recursion over halves, a parameter of the ray, sets of neighbors."""
 
 from __future__ import annotations
 

@@ -55,7 +55,7 @@ def project(means, cov, camera):
     """Gaussians as the camera sees them."""
     W, b = camera["camera_from_world"][:, :3], camera["camera_from_world"][:, 3]
     x, y, z = W @ means.T + b[:, None]
-    (fx, fy), (cx, cy) = camera["focal"], camera["centre"]
+    (fx, fy), (cx, cy) = camera["focal"], camera["center"]
     (x_low, y_low), (x_high, y_high) = limits(camera)
     hx, hy = np.clip(x / z, x_low, x_high), np.clip(y / z, y_low, y_high)
     free_x, free_y = (x / z >= x_low) & (x / z <= x_high), (y / z >= y_low) & (y / z <= y_high)

@@ -59,7 +59,7 @@ def project(means, cov, camera):
         return np.einsum("ni,ij->nj", d_t, W), d_cov
 
     cov2d = np.stack([full[:, 0, 0], full[:, 0, 1], full[:, 1, 1]], axis=1)
-    return camera["focal"] * u + camera["centre"], cov2d, z, back
+    return camera["focal"] * u + camera["center"], cov2d, z, back
 
 
 def screen_alpha(mean2d, cov2d, opacity_logits, pixels):

@@ -70,7 +70,7 @@ def project(means, cov, camera):
         hu, hv = min(max(u, low[0]), high[0]), min(max(v, low[1]), high[1])
         J = np.array([[fx, 0, -fx * hu], [0, fy, -fy * hv]]) / t[2]
         flat = J @ W @ cov[i] @ W.T @ J.T
-        mean2d[i] = fx * u + camera["centre"][0], fy * v + camera["centre"][1]
+        mean2d[i] = fx * u + camera["center"][0], fy * v + camera["center"][1]
         cov2d[i], depth[i] = (flat[0, 0], flat[0, 1], flat[1, 1]), t[2]
         kept.append((t, u, v, hu, hv, J))
 

@@ -69,7 +69,7 @@ public:
         background_ = background;
         tolerance_ = tolerance;
         nodes().push_back(0);
-        summarise(0, Cell<D>{}, out_.tree.side());
+        summarize(0, Cell<D>{}, out_.tree.side());
         return finish();
     }
 
@@ -88,7 +88,7 @@ private:
         Sums mean;
     };
 
-    Summary summarise(std::size_t at, const Cell<D>& lower, std::int32_t side) {
+    Summary summarize(std::size_t at, const Cell<D>& lower, std::int32_t side) {
         if (side == 1 || beyond(lower)) {
             const P& value = value_at(lower);
             set_leaf(at, value);
@@ -100,7 +100,7 @@ private:
         split(at);
         std::array<Summary, children> parts;
         for (int child = 0; child < children; ++child)
-            parts[child] = summarise(first + child, corner(lower, side, child), side / 2);
+            parts[child] = summarize(first + child, corner(lower, side, child), side / 2);
         const Summary whole = combine(parts);
         if (!uniform(whole)) return whole;
         nodes().resize(first);

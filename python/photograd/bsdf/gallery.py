@@ -54,7 +54,7 @@ def derivatives(
 ) -> dict[str, Array]:
     """How the mean of the channels of f changes with each parameter, (N,) for N pairs.
 
-    All three channels of a colour change together.
+    All three channels of a color change together.
     """
     rows = {
         name: np.broadcast_to(value, (len(wo), *np.shape(value)))

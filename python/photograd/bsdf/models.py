@@ -8,7 +8,7 @@ Models that follow an extension of glTF name its parameters as the extension doe
 `iridescence_factor`, `iridescence_ior` and `iridescence_thickness` (nm) of `gltf_iridescence`,
 `sheen_color_factor` and `sheen_roughness_factor` of `gltf_sheen`. Its ior is `eta` here, as in all
 models of glass: the index inside over outside, at the d line where `dispersion` (20 / Abbe's
-number) parts the colours. `gltf_layered` has all of its layers at once, and `gltf_layered_volume`
+number) parts the colors. `gltf_layered` has all of its layers at once, and `gltf_layered_volume`
 those of a body; `..._conserving` keep white from returning more than came. `gltf_transmission` is
 a sheet, `gltf_refraction` a body. The sliders of `disney` are those of [Burley2012]; his metallic
 is `metalness`, as in all models here.
@@ -129,7 +129,7 @@ class BsdfModel:
         return (self.parameters.pack(call, self.name, values), *rows)
 
     def at(self, fraction: float) -> dict[str, Array]:
-        """All parameters at a fraction of their range; channels of colours differ a little."""
+        """All parameters at a fraction of their range; channels of colors differ a little."""
         values = {}
         for parameter in self.parameters:
             spread = np.linspace(0.9, 1.1, parameter.size) if parameter.size > 1 else np.ones(1)

@@ -46,7 +46,7 @@ PairsOption = Annotated[
     typer.Option(
         "--pairs",
         rich_help_panel=_PANEL,
-        help="Photographs to compare: all, walk (neighbours by name), or auto: all up to 60.",
+        help="Photographs to compare: all, walk (neighbors by name), or auto: all up to 60.",
     ),
 ]
 

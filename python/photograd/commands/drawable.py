@@ -1,4 +1,4 @@
-"""Which command draws which kind of file, for those who call the other one."""
+"""Which command draws which kind of file, so that a wrong choice is answered with the right one."""
 
 from __future__ import annotations
 

@@ -72,7 +72,7 @@ def render(
         float, typer.Option("--elevation", min=-89.0, max=89.0, help="Degrees above the horizon.")
     ] = 25.0,
     ramp: Annotated[
-        str, typer.Option("--ramp", help=f"Colours of a volume: {', '.join(RAMPS)}.")
+        str, typer.Option("--ramp", help=f"Colors of a volume: {', '.join(RAMPS)}.")
     ] = "white",
     sigma_t: Annotated[
         float | None,

@@ -22,7 +22,7 @@ from photograd.transport.tracer import PathTracer
 
 INTEGRATORS = ("path", "direct", "occlusion", "photon")
 CLIPPED = 0.01
-"""Share of pixels whose colour may lie beyond the ends of a signed scale."""
+"""Share of pixels whose color may lie beyond the ends of a signed scale."""
 
 DerivativeOption = Annotated[
     str,
@@ -63,7 +63,7 @@ class Estimate:
         if self.integrator == "photon" and not np.isfinite(self.radius):
             remedy = "for example --radius 0.05"
             raise RangeError(
-                message("trace", "--radius", "metres to count photons in", self.radius, remedy)
+                message("trace", "--radius", "meters to count photons in", self.radius, remedy)
             )
 
     @property
@@ -111,5 +111,5 @@ def write_derivative(sums: Accumulation, out: Path) -> None:
         write_radiance(out, mean.astype(np.float32))
     slope = mean.sum(axis=2)
     limit = float(np.quantile(np.abs(slope), 1.0 - CLIPPED)) or float(np.abs(slope).max()) or 1.0
-    colors = style.signed_colour_map()(style.symmetric_scale(limit)(slope))
+    colors = style.signed_color_map()(style.symmetric_scale(limit)(slope))
     write_png(out.with_suffix(".png"), np.asarray(colors)[..., :3].astype(np.float32))

@@ -119,7 +119,7 @@ def dilated(mask: Array, steps: int = 1) -> Array:
 
 
 def resampled_mask(mask: Array, shape: tuple[int, int, int]) -> Array:
-    """The mask on a finer grid over the same box: voxels ask the one that their centre is in."""
+    """The mask on a finer grid over the same box: voxels ask the one that their center is in."""
     index = [
         np.minimum(((np.arange(n) + 0.5) * m / n).astype(np.int64), m - 1)
         for n, m in zip(shape, mask.shape, strict=True)

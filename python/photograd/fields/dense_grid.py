@@ -1,4 +1,4 @@
-"""Dense RGBA grid: a raw colour and a raw density in every voxel of a box."""
+"""Dense RGBA grid: a raw color and a raw density in every voxel of a box."""
 
 from __future__ import annotations
 
@@ -32,10 +32,10 @@ from photograd.representation import (
 from photograd.types import Array
 
 START_COLOR = 0.18
-"""Linear colour of empty space before a fit: middle grey, 0.46 of display white.
+"""Linear color of empty space before a fit: middle gray, 0.46 of display white.
 
 In front of a random background it makes the first dL/dsigma_t negative for black matter and for
-white alike, and about equally large: a brighter grey is further from black than the average
+white alike, and about equally large: a brighter gray is further from black than the average
 background is, so that dark matter would first be pushed away.
 """
 
@@ -73,7 +73,7 @@ def _require_room(function: str, voxels: list[int], itemsize: int) -> None:
 
 @register
 class DenseGrid(GridField):
-    """A radiance field on X x Y x Z voxels (values at voxel centres, trilinear in between).
+    """A radiance field on X x Y x Z voxels (values at voxel centers, trilinear in between).
 
     params["values"] (X, Y, Z, 4) holds raw r, g, b and density side by side: a lookup reads all
     four. `color` and `density` are views of it. What they mean is the policy's business:
@@ -111,7 +111,7 @@ class DenseGrid(GridField):
         steps_per_voxel: float = 2.0,
         dtype: type[np.floating[Any]] = np.float32,
     ) -> Self:
-        """A nearly transparent middle-grey grid of cubic voxels over `box` (2, 3), world metres.
+        """A nearly transparent middle-gray grid of cubic voxels over `box` (2, 3), world meters.
 
         `resolution` counts voxels along the longest edge; the box grows a little so that voxels are
         cubes. `finest` is the resolution that a coarse-to-fine fit will end with: it fixes the
@@ -132,8 +132,8 @@ class DenseGrid(GridField):
         voxels = cubic_voxels(extent, resolution)
         _require_room("DenseGrid.empty", voxels, np.dtype(dtype).itemsize)
         shape = np.array(voxels)
-        centre = box.mean(axis=0)
-        lo, hi = centre - shape * voxel / 2, centre + shape * voxel / 2
+        center = box.mean(axis=0)
+        lo, hi = center - shape * voxel / 2, center + shape * voxel / 2
         scale = float((finest or resolution) / extent.max())
         policy = MarchPolicy(
             (tuple(lo.tolist()), tuple(hi.tolist())), voxel / steps_per_voxel, density_scale=scale
@@ -144,7 +144,7 @@ class DenseGrid(GridField):
 
     @property
     def color(self) -> Array:
-        """View (X, Y, Z, 3) of the raw colour."""
+        """View (X, Y, Z, 3) of the raw color."""
         return self.params["values"][..., :3]
 
     @property
@@ -205,7 +205,7 @@ class DenseGrid(GridField):
         return 4
 
     def resampled(self, rows: Array, to: Self) -> Array:
-        """Values on this grid, such as an optimiser's, on the grid of another."""
+        """Values on this grid, such as an optimizer's, on the grid of another."""
         x, y, z = to.params["values"].shape[:3]
         return upsample_trilinear(rows, (x, y, z))
 
@@ -265,7 +265,7 @@ class DenseGrid(GridField):
     def render(
         self, batch: RayBatch, *, seed: int, step: int, options: RenderOptions
     ) -> tuple[Outputs, MarchContext]:
-        """Colour (R, 3) linear, premultiplied, without background; opacity (R,); depth (R,) m."""
+        """Color (R, 3) linear, premultiplied, without background; opacity (R,); depth (R,) m."""
         return march(
             "dense_grid",
             self.params["values"],
@@ -284,7 +284,7 @@ class DenseGrid(GridField):
         return gradients
 
     def priors(self) -> Sequence[Prior]:
-        """Total variation of the raw values: neighbours should agree."""
+        """Total variation of the raw values: neighbors should agree."""
         return (
             Prior(
                 "total_variation",

@@ -29,7 +29,7 @@ class DenseSh(SparseSh):
 
     params["density"] (X Y Z,) and params["sh"] (X Y Z, K, 3) as in `SparseSh`, in the order of its
     rows: `active.voxels` (X Y Z, 3) says where each belongs. Within half a voxel of the box's faces
-    the field fades to `background_density` without colour.
+    the field fades to `background_density` without color.
     """
 
     name: ClassVar[str] = "dense_sh"

@@ -2,7 +2,7 @@
 
 Gaussian n has a mean m, standard deviations s = exp(log_scale) along two axes, of which the first
 is turned by the angle theta from the canvas' x towards its y, an opacity o = sigmoid(logit) and a
-colour c. The first row lies on top. At a point x, with d = x - m,
+color c. The first row lies on top. At a point x, with d = x - m,
 
     (a, b)  = ((d_x cos + d_y sin) / s_0,  (-d_x sin + d_y cos) / s_1)
     alpha_n = o_n exp(-(a^2 + b^2) / 2)
@@ -121,7 +121,7 @@ class Gaussians2D(Representation):
     def scattered(
         cls, count: int, *, seed: int, dtype: type[np.floating[Any]] = np.float32
     ) -> Gaussians2D:
-        """Round, grey and half transparent, anywhere on the canvas: a start for a fit.
+        """Round, gray and half transparent, anywhere on the canvas: a start for a fit.
 
         Together they are as large as the canvas: each has a radius of 1 / sqrt(pi count).
         """
@@ -169,7 +169,7 @@ class Gaussians2D(Representation):
     def render(
         self, batch: CanvasBatch, *, seed: int, step: int, options: RenderOptions
     ) -> tuple[Outputs, CanvasContext]:
-        """Colour (P, 3) and opacity (P,) at the points; a canvas has no depth."""
+        """Color (P, 3) and opacity (P,) at the points; a canvas has no depth."""
         del seed, step  # nothing random here
         params = {name: array.copy() for name, array in self.params.items()}
         points = np.asarray(batch.points, params["mean"].dtype)

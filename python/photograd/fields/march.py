@@ -58,7 +58,7 @@ class MarchPolicy:
             unknown name.
     """
 
-    box: tuple[tuple[float, float, float], tuple[float, float, float]]  # world, metres
+    box: tuple[tuple[float, float, float], tuple[float, float, float]]  # world, meters
     dt: float  # step in meters; `photograd evaluate` says what half of it would change
     lattice: Lattice = "origin"
     quadrature: Quadrature = "alpha"

@@ -279,7 +279,7 @@ class OctreeSh(VoxelField):
     def render(
         self, batch: RayBatch, *, seed: int, step: int, options: RenderOptions
     ) -> tuple[Outputs, OctreeContext]:
-        """Colour (R, 3) linear, premultiplied, without background; opacity (R,); depth (R,) m."""
+        """Color (R, 3) linear, premultiplied, without background; opacity (R,); depth (R,) m."""
         del seed, step  # nothing random here: no lattice that could be jittered
         density, coefficients = self.params["density"], self.params["sh"]
         directions = np.ascontiguousarray(batch.directions, density.dtype)

@@ -7,7 +7,7 @@ A ray sees a point by the distance at which it passes: with r = exp(log_radius),
 and blends what it sees front to back, in the order in which it passes the middles. The falloff is
 Gaussian, so that a point is a round Gaussian whose three scales are one number, whose rotation
 means nothing, and whose opacity is given: everything below is `photograd.splats.rays`. A hard disc
-would have no derivative by position or radius anywhere but at its rim.
+would have no derivative with respect to position or radius anywhere but at its rim.
 
     d log_radius = sum of d log_scales over the axes (and over the points, of a shared radius)
     d color      = d sh_0 / Y_0,  since color = 1/2 + Y_0 sh_0
@@ -49,9 +49,9 @@ class PointContext:
 
 @register
 class Points(Representation):
-    """params: "position" (N, 3) in metres, "color" (N, 3), "log_radius" (N,), or (1,) for all.
+    """params: "position" (N, 3) in meters, "color" (N, 3), "log_radius" (N,), or (1,) for all.
 
-    Colours are linear; below 0 they are drawn as 0 and have no gradient.
+    Colors are linear; below 0 they are drawn as 0 and have no gradient.
     """
 
     name: ClassVar[str] = "points"
@@ -141,7 +141,7 @@ class Points(Representation):
     def render(
         self, batch: RayBatch, *, seed: int, step: int, options: RenderOptions
     ) -> tuple[Outputs, PointContext]:
-        """Colour (R, 3), opacity (R,) and depth (R,)."""
+        """Color (R, 3), opacity (R,) and depth (R,)."""
         del seed, step  # nothing random here
         # Held at 1, never: a point's own opacity is below.
         policies = RayOptions(alpha_min=self.alpha_min, alpha_max=1.0, stop=options.stop)

@@ -7,7 +7,7 @@ it to the camera [Max1995]:
     S = V exp(-integral of sigma_t from x towards the sun)              what of the sun reaches x
 
 E is the sun's irradiance on a surface that faces it, V whether solids let x see it. Albedo, p and E
-are the same along a ray, so one march with S as its colour gives the integral. S itself is a march
+are the same along a ray, so one march with S as its color gives the integral. S itself is a march
 as well: from the middle of every voxel towards the sun, of which the transmittance is kept. Between
 voxels S is blended like sigma_t. The adjoint goes back through both:
 
@@ -47,7 +47,7 @@ from photograd.representation import (
 from photograd.types import Array
 
 
-def voxel_centres(box: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.float64]:
+def voxel_centers(box: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.float64]:
     """(X, Y, Z, 3) middles of the equal voxels that fill a box (2, 3)."""
     corners = np.asarray(box, np.float64)
     axes = [
@@ -64,7 +64,7 @@ def sun_visibility(
 
     Args:
         solids: what throws shadows.
-        box: (2, 3) of the world, metres.
+        box: (2, 3) of the world, meters.
         shape: (X, Y, Z).
         sun: (3,) unit, towards the sun.
         samples: points a side, spread evenly; more of them make edges softer, not sharper.
@@ -75,7 +75,7 @@ def sun_visibility(
     if samples < 1:
         raise RangeError(message("sun_visibility", "samples", "at least 1", samples))
     fine = tuple(int(n) * samples for n in shape)
-    origins = voxel_centres(box, fine).reshape(-1, 3)
+    origins = voxel_centers(box, fine).reshape(-1, 3)
     towards = np.ascontiguousarray(np.broadcast_to(np.asarray(sun, np.float64), origins.shape))
     seen = ~solids.occluded(origins, towards)
     x, y, z = shape
@@ -100,10 +100,10 @@ class SunlitContext:
 
 @register
 class SunlitMedium(Representation):
-    """A medium of uniform colour and varying thickness, lit by a sun at infinity.
+    """A medium of uniform color and varying thickness, lit by a sun at infinity.
 
     Attributes:
-        params: "sigma_t" (X, Y, Z) extinction at voxel centres, 1/m, values below zero count as
+        params: "sigma_t" (X, Y, Z) extinction at voxel centers, 1/m, values below zero count as
             none; "albedo" (3,) the share of it that scatters; "g" (1,) of the phase function;
             "irradiance" (3,) of the sun on a surface that faces it, W/m^2.
         visibility: (X, Y, Z) how much of each voxel sees the sun past the solids, 0 to 1.
@@ -129,8 +129,8 @@ class SunlitMedium(Representation):
 
         Args:
             params: as described for the class, all float32 or all float64.
-            box: (2, 3), metres; beyond it there is no medium.
-            dt: step of both marches, metres; half a voxel or less.
+            box: (2, 3), meters; beyond it there is no medium.
+            dt: step of both marches, meters; half a voxel or less.
             sun: (3,) direction towards the sun, of any length.
             phase: of photograd.bsdf.phase.registry.
             visibility: by default what the solids leave of it, `sun_visibility`; 1 without any.
@@ -286,7 +286,7 @@ class SunlitMedium(Representation):
         another fraction of a step, always the same one, so that this cancels out between voxels.
         """
         shape = self.params["sigma_t"].shape
-        origins = voxel_centres(self.policy.box, shape).reshape(-1, 3)
+        origins = voxel_centers(self.policy.box, shape).reshape(-1, 3)
         towards = np.broadcast_to(self.sun, origins.shape)
         batch = RayBatch(origins, towards, np.arange(len(origins), dtype=np.uint32))
         _, context = march(

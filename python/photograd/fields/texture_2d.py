@@ -1,7 +1,7 @@
 """A picture to be recovered from samples of it: texels T[row, column], bilinear in between.
 
-Texel (row, column) has its centre at ((column + 0.5) / W, (row + 0.5) / H) of the canvas, v points
-down, and outside of the outermost centres the border value continues. Lookup and adjoint are those
+Texel (row, column) has its center at ((column + 0.5) / W, (row + 0.5) / H) of the canvas, v points
+down, and outside of the outermost centers the border value continues. Lookup and adjoint are those
 of `photograd.textures`, derived in cpp/photograd/ops/bilinear.h.
 """
 
@@ -38,7 +38,7 @@ class CanvasContext:
 
 @register
 class Texture2D(Representation):
-    """params["texels"] (H, W, 3): linear colour of each texel, itself the value at its centre."""
+    """params["texels"] (H, W, 3): linear color of each texel, itself the value at its center."""
 
     name: ClassVar[str] = "texture_2d"
     capabilities: ClassVar[frozenset[str]] = frozenset({"canvas2d"})
@@ -61,7 +61,7 @@ class Texture2D(Representation):
         return cls(texels.reshape(5, 7, 3).astype(dtype))
 
     def example_batch(self, *, seed: int) -> CanvasBatch:
-        """60 points all over the canvas, a few of them beyond the outermost texel centres."""
+        """60 points all over the canvas, a few of them beyond the outermost texel centers."""
         index = np.arange(60)
         points = [uniform(seed, step=1, pixel=index, sample=0, dimension=k) for k in range(2)]
         return CanvasBatch(np.stack(points, axis=-1))
@@ -73,7 +73,7 @@ class Texture2D(Representation):
     def render(
         self, batch: CanvasBatch, *, seed: int, step: int, options: RenderOptions
     ) -> tuple[Outputs, CanvasContext]:
-        """Colour (N, 3) at the points; a canvas has neither opacity nor depth."""
+        """Color (N, 3) at the points; a canvas has neither opacity nor depth."""
         del seed, step  # nothing random here
         texels = self.params["texels"]
         points = np.asarray(batch.points, texels.dtype)

@@ -26,7 +26,7 @@ HIDDEN = 16
 
 @register
 class TinyNetwork(Representation):
-    """h = softplus(W1 p + b1), (r, g, b, density) = W2 h + b2; p in world metres.
+    """h = softplus(W1 p + b1), (r, g, b, density) = W2 h + b2; p in world meters.
 
     params["weights"] is flat: W1 (16, 3), b1 (16), W2 (4, 16), b2 (4), row by row.
     """

@@ -8,7 +8,7 @@ With e_n = c_n . d_color:
     dp   = -sum_n e_n w_n (p - m_n) / r_n^2
 
 each summed over the points. It shows what grids do not need: rows that `refine` prunes, with the
-map by which an optimiser follows, and gradients of a few rows only, as (rows, values).
+map by which an optimizer follows, and gradients of a few rows only, as (rows, values).
 """
 
 from __future__ import annotations
@@ -124,7 +124,7 @@ class ToyBlobs(Representation):
     def render(
         self, batch: CanvasBatch, *, seed: int, step: int, options: RenderOptions
     ) -> tuple[Outputs, BlobContext]:
-        """Colour (P, 3) at the points, linear; a canvas has neither opacity nor depth."""
+        """Color (P, 3) at the points, linear; a canvas has neither opacity nor depth."""
         del seed, step  # nothing random here
         mean, log_radius, color = (self.params[name] for name in ("mean", "log_radius", "color"))
         points = np.asarray(batch.points, mean.dtype)

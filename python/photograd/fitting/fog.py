@@ -19,7 +19,7 @@ from photograd.grids.volumes import SUFFIXES, read_volume
 from photograd.types import Array
 
 RAMPS = ("white", "inferno", "viridis", "bone")
-GREY = 0.8
+GRAY = 0.8
 THICK = 12.0
 """Optical depth of the longest edge of the box, filled with the highest density, by default."""
 
@@ -117,7 +117,7 @@ def _box_and_shape(grid: SparseGrid, resolution: int) -> tuple[Array, tuple[int,
 def _colors(share: Array, ramp: str) -> Array:
     """Linear colors (X, Y, Z, 3) of values in 0..1."""
     if ramp == "white":
-        return np.full((*share.shape, 3), GREY)
+        return np.full((*share.shape, 3), GRAY)
     from matplotlib import colormaps
 
     return np.asarray(srgb_decode(colormaps[ramp](share.astype(np.float64))[..., :3]))

@@ -17,15 +17,15 @@ from photograd.fitting.view_gradients import ViewGradients
 from photograd.types import Array
 
 PANEL, GAP, LEFT, TOP = 2.3, 0.14, 0.75, 0.62  # inches
-BAR = 1.05  # room of a colour bar beside its panel
+BAR = 1.05  # room of a color bar beside its panel
 ARROWS = 350
 ELLIPSES = 4000
 LONGEST = 0.08  # of the picture's width: the arrow at the 98th percentile
 
 CAPTION = (
     "Arrows: where lower loss would take the most pulled means; lengths have the scale of their "
-    "row. Ellipses: the derivative by opacity, one standard deviation wide; blue: more lowers the "
-    "loss, red: less does. Positional gradient: |dL/d mean| on the screen, "
+    "row. Ellipses: the derivative with respect to opacity, one standard deviation wide; blue: "
+    "more lowers the loss, red: less does. Positional gradient: |dL/d mean| on the screen, "
     "averaged over the pictures; the line is where a Gaussian is cloned or split."
 )
 
@@ -150,15 +150,15 @@ def _ellipses(
         units="xy",
         offsets=found.pixels[rows],
         transOffset=axes.transData,
-        cmap=style.signed_colour_map(),
+        cmap=style.signed_color_map(),
         norm=scale,
         linewidths=0,
         alpha=0.75,
     )
     drawn.set_array(wish[rows])
     axes.add_collection(drawn)
-    shades = ScalarMappable(scale, style.signed_colour_map())
-    style.colour_bar(figure, bar, shades, r"$\partial L\,/\,\partial$ logit", extend=limits.extend)
+    shades = ScalarMappable(scale, style.signed_color_map())
+    style.color_bar(figure, bar, shades, r"$\partial L\,/\,\partial$ logit", extend=limits.extend)
 
 
 def _grad2d(
@@ -176,4 +176,4 @@ def _grad2d(
         across, down = (np.arange(n) + 0.5 for n in grad2d.shape[::-1])
         axes.contour(across, down, grad2d, levels=[threshold], colors="white", linewidths=0.6)
     shades = ScalarMappable(Normalize(0, top), style.MAGNITUDE_MAP)
-    style.colour_bar(figure, bar, shades, "positional gradient", extend="max")
+    style.color_bar(figure, bar, shades, "positional gradient", extend="max")

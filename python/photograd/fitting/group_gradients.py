@@ -122,7 +122,7 @@ def draw_group_gradients(rows: Mapping[int, GroupGradients]) -> Figure:
 def _signed(axes: Axes, values: Array, title: str) -> None:
     limits = signed_scale("draw_group_gradients", [values], None, quantile=0.995)
     scale = style.symmetric_scale(limits.limit)
-    axes.imshow(values, norm=scale, cmap=style.signed_colour_map(), interpolation="nearest")
+    axes.imshow(values, norm=scale, cmap=style.signed_color_map(), interpolation="nearest")
     axes.set(xticks=[], yticks=[], title=title)
 
 

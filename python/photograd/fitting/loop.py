@@ -173,7 +173,7 @@ class Fit:
         return self.data.draw(options.rays, seed=options.seed, step=self.step_number)
 
     def loss_and_gradients(self, chosen: Any) -> tuple[float, dict[str, Array]]:
-        """Loss of the chosen pixels, or view, and its gradient by group, without the prior."""
+        """Loss of the chosen pixels, or view, and the gradient of each group, without the prior."""
         behind = Background(self.background, self.background_kind)
         found = self.data.loss_and_grad(self.model, chosen, behind, self.options, self.step_number)
         self.batch_psnr = found.psnr

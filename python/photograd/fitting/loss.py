@@ -2,7 +2,7 @@
 
 The loss of pixels that are sampled at random:
 
-    image = color + (1 - opacity) background             linear light, premultiplied colour
+    image = color + (1 - opacity) background             linear light, premultiplied color
     truth = photograph + (1 - alpha) background          the photograph, likewise premultiplied
     loss  = mean (encode(image) - encode(truth))^2       encode = sRGB for display-encoded captures,
                                                          nothing for linear ones
@@ -70,7 +70,7 @@ def image_loss(
 ) -> ImageLoss:
     """Mean squared error against pixels (R, 4), over a background (3,) or (R, 3), all linear.
 
-    `premultiplied` holds colour times alpha, and alpha; the dtype is that of the rendering. Raises
+    `premultiplied` holds color times alpha, and alpha; the dtype is that of the rendering. Raises
     ShapeError if the rendering has no opacity, or shapes do not belong together.
     """
     if outputs.opacity is None:
@@ -165,7 +165,7 @@ class PictureLoss:
 def picture_loss(
     outputs: Outputs, view: TrainingView, background: Array, *, ssim_weight: float
 ) -> PictureLoss:
-    """Loss of a rendering of `view.camera` over a display colour (3,); shapes as `Outputs`."""
+    """Loss of a rendering of `view.camera` over a display color (3,); shapes as `Outputs`."""
     shape = view.premultiplied.shape[:2]
     dtype = outputs.color.dtype
     behind = np.asarray(background, dtype)

@@ -13,7 +13,7 @@ from photograd.fitting.compare import Score
 
 PANEL, GAP, LEFT, TOP = 2.5, 0.6, 0.6, 0.75  # inches
 ROW = 0.145  # of a legend's line
-COLORS = (style.BLUE, style.ORANGE, style.RED, "#1b7837", "#762a83", style.GREY)
+COLORS = (style.BLUE, style.ORANGE, style.RED, "#1b7837", "#762a83", style.GRAY)
 _ROUND = [digit * 10.0**power for power in range(-3, 5) for digit in (1, 2, 5)]
 MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 

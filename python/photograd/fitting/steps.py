@@ -51,7 +51,7 @@ class Background:
 
 @dataclass(frozen=True, eq=False)
 class LossAndGrad:
-    """Loss of a batch, PSNR of its values in dB, gradients by group, without the prior of grids."""
+    """Loss of a batch, PSNR of its values in dB, gradient of each group, without grids' prior."""
 
     loss: float
     psnr: float

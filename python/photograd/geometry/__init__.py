@@ -2,7 +2,7 @@
 
 A hierarchy of boxes that counts what a ray costs, a partition of space that puts polygons in an
 order, octrees that drop what a camera cannot see, coarser meshes with a bound on what they get
-wrong, and bodies of signed distances, whose hits have derivatives.
+wrong, and signed distance functions, whose hits have derivatives.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Which objects may a camera see? An octree of their boxes answers for whole groups at once.
 
-An object lies in the cell of its centre, on the deepest level whose cells are as large as the
+An object lies in the cell of its center, on the deepest level whose cells are as large as the
 object: it may reach over the border, by half a cell at most. (In the smallest cell that contains
 all of it, a small object across the middle of the world would lie in the root.) What is compared
 with the camera's view is the box of all that lies in a cell and below.
@@ -34,7 +34,7 @@ class Frustum:
 
     @classmethod
     def of_camera(cls, camera: Camera, near: float, far: float) -> Frustum:
-        """The pyramid through the borders of the picture, between two depths in metres.
+        """The pyramid through the borders of the picture, between two depths in meters.
 
         A point in camera coordinates is right of the left border where (x / z) fx + cx >= 0, that
         is x + (cx / fx) z >= 0; the other borders are alike.
@@ -61,7 +61,7 @@ class Frustum:
     def misses(self, boxes: Array) -> npt.NDArray[np.bool_]:
         """(N,) whether boxes (N, 2, 3) lie wholly beyond one of the planes.
 
-        The corner of a box that is farthest along n has n . centre + |n| . half size. Boxes beside
+        The corner of a box that is farthest along n has n . center + |n| . half size. Boxes beside
         an edge of the frustum, beyond no single plane, are kept: a few too many, never too few.
         """
         normals, offsets = self.planes[:, :3].T, self.planes[:, 3]
@@ -152,7 +152,7 @@ class CullingTree:
 
 
 def _places(boxes: Array, depth: int) -> tuple[Array, Array]:
-    """Level (N,) of each object, and the finest cell (N, 3) in which its centre lies."""
+    """Level (N,) of each object, and the finest cell (N, 3) in which its center lies."""
     low = boxes[:, 0].min(axis=0)
     side = max(float((boxes[:, 1].max(axis=0) - low).max()), 1e-300)
     size = np.maximum((boxes[:, 1] - boxes[:, 0]).max(axis=1), side * 2.0**-depth)

@@ -35,7 +35,7 @@ class Level:
 
 
 def clustered(mesh: Mesh, cell: float) -> Level:
-    """The mesh with one vertex a lattice cell of `cell` metres.
+    """The mesh with one vertex a lattice cell of `cell` meters.
 
     The error is the way of the vertex that moves most, and, where triangles vanish and leave a
     segment that belongs to no other triangle, what `_lost` says of it.
@@ -131,11 +131,12 @@ class LevelsOfDetail:
     def screen_error(self, level: int, camera: Camera, pixels: float) -> float:
         """Bound, in pixels, on how far what the camera sees of a level is from where it belongs.
 
-        A pixel is f p / z, and its derivative by the point has the norm f / z sqrt(1 + tan^2), tan
-        that of the angle to the viewing direction. Between a point in the picture and one that is
-        `pixels` away, that is at most its value at the picture's corner, moved out by `pixels`, and
-        at the nearest depth of the box, less the error. The bound holds if it is at most `pixels`;
-        it is infinite where the box is not wholly in front of the camera.
+        A pixel is f p / z, and its derivative with respect to the point has the norm
+        f / z sqrt(1 + tan^2), tan that of the angle to the viewing direction. Between a point in
+        the picture and one that is `pixels` away, that is at most its value at the picture's
+        corner, moved out by `pixels`, and at the nearest depth of the box, less the error.
+        The bound holds if it is at most `pixels`; it is infinite where the
+        box is not wholly in front of the camera.
         """
         error = self.levels[level].error
         toward = (self._corners - camera.position) @ camera.forward

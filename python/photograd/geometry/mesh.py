@@ -21,7 +21,7 @@ from photograd.types import Array
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
-    """A triangle mesh in its own object space, metres.
+    """A triangle mesh in its own object space, meters.
 
     Attributes:
         vertices: (V, 3) floating point; kept as float32, as the tracer has them.
@@ -171,7 +171,7 @@ class Bvh:
     ) -> Hits:
         """Nearest hit of each ray within [t_min, t_max].
 
-        Rays may come in any order. Neighbouring camera rays are fastest row by row, as a camera
+        Rays may come in any order. Neighboring camera rays are fastest row by row, as a camera
         makes them; rays in random directions are reordered inside, at the call's own expense. The
         result has the order of the input and the same bits for any number of threads. Which of two
         triangles is named where both are hit at one place (an edge) may depend on the other rays.

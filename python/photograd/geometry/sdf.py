@@ -1,4 +1,4 @@
-"""Bodies of signed distances: shapes, how they combine, and where rays meet them [Hart1996].
+"""Signed distance functions: shapes, how they combine, and where rays meet them [Hart1996].
 
 A shape is a description; `Body` makes it ready to be asked. All numbers of a body (radii, places)
 are in one array, `Body.numbers`, to be printed, changed and fitted. The mathematics is in
@@ -55,18 +55,18 @@ class Shape:
 
 
 def sphere(radius: float) -> Shape:
-    """A ball of a radius in metres."""
+    """A ball of a radius in meters."""
     return Shape("sphere", (_length("sphere", "radius", radius),))
 
 
 def box(half_sizes: Any) -> Shape:
-    """A box that reaches half_sizes (3,) metres to each side."""
+    """A box that reaches half_sizes (3,) meters to each side."""
     half = _three("box", "half_sizes", half_sizes)
     return Shape("box", tuple(_length("box", "half_sizes", x) for x in half))
 
 
 def rounded_box(half_sizes: Any, radius: float) -> Shape:
-    """A box as large as `box` makes it, its edges rounded to `radius` metres.
+    """A box as large as `box` makes it, its edges rounded to `radius` meters.
 
     Raises:
         RangeError: a radius that is not below all half sizes.
@@ -88,12 +88,12 @@ def capsule(half_length: float, radius: float) -> Shape:
 
 
 def torus(ring: float, tube: float) -> Shape:
-    """A ring around the Y axis: a tube of radius `tube` at the distance `ring`, both in metres."""
+    """A ring around the Y axis: a tube of radius `tube` at the distance `ring`, both in meters."""
     return Shape("torus", (_length("torus", "ring", ring), _length("torus", "tube", tube)))
 
 
 def plane(normal: Any, height: float) -> Shape:
-    """Everything below a plane: `normal` (3,) points out of it, `height` metres from the origin."""
+    """Everything below a plane: `normal` (3,) points out of it, `height` meters from the origin."""
     way = _three("plane", "normal", normal)
     if not any(way):
         raise RangeError(message("plane", "normal", "some length", way))
@@ -121,7 +121,7 @@ def difference(a: Shape, b: Shape) -> Shape:
 
 
 def smooth_union(a: Shape, b: Shape, width: float) -> Shape:
-    """Both together, the seam filled and rounded where it is within `width` metres of both."""
+    """Both together, the seam filled and rounded where it is within `width` meters of both."""
     return Shape("smooth_union", (_length("smooth_union", "width", width),), (a, b))
 
 
@@ -139,7 +139,7 @@ def scaled(shape: Shape, factor: float) -> Shape:
 
 
 def rounded(shape: Shape, radius: float) -> Shape:
-    """A shape swollen by `radius` metres, which rounds its edges."""
+    """A shape swollen by `radius` meters, which rounds its edges."""
     return Shape("rounded", (_length("rounded", "radius", radius),), (shape,))
 
 
@@ -155,7 +155,7 @@ def _numbers(function: str, argument: str, value: Sequence[float], count: int) -
     return tuple(Arguments(function, np.float64).array(argument, value, (count,)).tolist())
 
 
-# Bodies of signed distances: shapes, how they combine, and where rays meet them [Hart1996].
+# Signed distance functions: shapes, how they combine, and where rays meet them [Hart1996].
 
 
 MISSED, HIT, GAVE_UP = 0, 1, 2
@@ -218,7 +218,7 @@ class Body:
 
     @property
     def box(self) -> Array:
-        """(2, 3) lower and upper corner of a box around the body, metres.
+        """(2, 3) lower and upper corner of a box around the body, meters.
 
         It is the tightest for shapes on their own; what a difference takes away, and where an
         intersection's parts do not reach their boxes, it does not see.
@@ -230,7 +230,7 @@ class Body:
         return found
 
     def distance(self, points: Any) -> Array:
-        """Distances f (N,) in metres, negative inside; the surface is never nearer than |f|.
+        """Distances f (N,) in meters, negative inside; the surface is never nearer than |f|.
 
         Args:
             points: (N, 3), m.
@@ -254,7 +254,7 @@ class Body:
         return d_points, d_numbers
 
     def normals(self, points: Any) -> Array:
-        """Unit gradients of the distance (N, 3), which point out of the surface; 0 in a centre."""
+        """Unit gradients of the distance (N, 3), which point out of the surface; 0 in a center."""
         rows = Arguments("Body.normals", np.float64).array("points", points, ("N", 3))
         gradient, _ = self.distance_backward(rows, np.ones(len(rows)))
         size = np.linalg.norm(gradient, axis=1, keepdims=True)

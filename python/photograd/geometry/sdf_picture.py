@@ -1,4 +1,4 @@
-"""A picture of a body of signed distances: what the camera's rays meet, lit by a sun and a sky.
+"""A picture of a signed distance function: what the camera's rays meet, lit by a sun and a sky.
 
 A renderer of its own, for these bodies alone; scenes for the path tracer take them as
 `photograd.transport.SdfShape`.

@@ -1,4 +1,4 @@
-"""Light probes: what light arrives at the points of a grid, nine numbers a colour channel each.
+"""Light probes: what light arrives at the points of a grid, nine numbers a color channel each.
 
 A probe holds the coefficients of the radiance that arrives at it (photograd.sh). Between probes
 coefficients are blended trilinearly, and the irradiance on a surface of normal n follows from them
@@ -214,9 +214,9 @@ def grid_bytes(
 
     Args:
         shape: (X, Y, Z) voxels.
-        numbers: a channel and voxel: `table_numbers(rows)`, or `sh.count(degree)`; 1 where colour
+        numbers: a channel and voxel: `table_numbers(rows)`, or `sh.count(degree)`; 1 where color
             does not depend on direction.
-        channels: of the colour.
+        channels: of the color.
         bytes_per_number: 4 for float32.
 
     Raises:

@@ -26,7 +26,7 @@ class RegisteredLight(Light):
     Numbers are checked when the light is made. Directions are divided by their length.
 
     Raises:
-        RangeError: numbers that are not finite, negative colours, shapes without extent.
+        RangeError: numbers that are not finite, negative colors, shapes without extent.
         ShapeError: a value of another shape.
     """
 

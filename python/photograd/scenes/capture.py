@@ -56,7 +56,7 @@ def capture_cameras(
         test_views: number of test cameras, at least 0.
         size: width and height in pixels; square pixels, principal point in the middle.
         seed: of the turn.
-        radius: of a ball around the box's middle that is to be seen whole, in metres; None takes
+        radius: of a ball around the box's middle that is to be seen whole, in meters; None takes
             the ball through the box's corners.
 
     Returns:
@@ -84,13 +84,13 @@ def capture_cameras(
     }
 
 
-def _camera(centre: Points, ray: Points, radius: float, size: int) -> Camera:
-    """The camera that sees a ball around `centre` over FILL of its width, from along `ray`."""
+def _camera(center: Points, ray: Points, radius: float, size: int) -> Camera:
+    """The camera that sees a ball around `center` over FILL of its width, from along `ray`."""
     half = np.radians(0.5 * FIELD_OF_VIEW)
     # A ball's outline at the angle a from the axis is tan(a) / tan(half) of half the width away.
     distance = radius / np.sin(np.arctan(FILL * np.tan(half)))
     focal, middle = 0.5 * size / np.tan(half), 0.5 * size
-    pose = look_at(centre + distance * ray, centre)
+    pose = look_at(center + distance * ray, center)
     return Camera(size, size, focal, focal, middle, middle, pose)
 
 
@@ -181,10 +181,10 @@ def content_radius(scene: SceneDescription) -> float:
 
     That is all vertices; with a density, of which only the box is known, it is the whole box.
     """
-    centre = scene.bounds.mean(axis=0)
+    center = scene.bounds.mean(axis=0)
     if scene.density is not None:
-        return float(np.linalg.norm(scene.bounds[1] - centre))
-    reach = [np.linalg.norm(mesh.vertices - centre, axis=1).max() for mesh in scene.meshes]
+        return float(np.linalg.norm(scene.bounds[1] - center))
+    reach = [np.linalg.norm(mesh.vertices - center, axis=1).max() for mesh in scene.meshes]
     return float(max(reach))
 
 
@@ -197,7 +197,7 @@ def view_seed(seed: int, split: str, index: int) -> int:
 def display_image(linear: npt.NDArray[np.float32]) -> npt.NDArray[np.float32]:
     """Premultiplied linear (H, W, 4) as a picture file has it: straight, sRGB-encoded, 0..1.
 
-    What is brighter than display white is clipped; where alpha is 0 the colour is 0.
+    What is brighter than display white is clipped; where alpha is 0 the color is 0.
     """
     straight = unpremultiply(linear[..., :3], linear[..., 3])
     encoded = srgb_encode(np.clip(straight, 0.0, 1.0))

@@ -13,7 +13,7 @@ from photograd.types import FloatArray
 def smooth_curve(points: FloatArray, count: int, *, closed: bool = False) -> FloatArray:
     """A curve through all points with continuous tangents [Catmull1974], evenly spaced by length.
 
-    Between b and c of four neighbours a, b, c, d it is, for t in 0..1,
+    Between b and c of four neighbors a, b, c, d it is, for t in 0..1,
 
         b + t (c - a)/2 + t^2 (a - 5b/2 + 2c - d/2) + t^3 (3b - a - 3c + d)/2.
 
@@ -81,11 +81,11 @@ def untwisted_frames(points: FloatArray, *, closed: bool = False) -> tuple[Float
     that is left when it comes back to its start is spread over its length.
 
     Args:
-        points: (N, 3), neighbours different, N >= 2 (3 if closed).
+        points: (N, 3), neighbors different, N >= 2 (3 if closed).
         closed: whether the last point is followed by the first.
 
     Raises:
-        ShapeError, RangeError: not (N, 3), too few, or neighbours that coincide.
+        ShapeError, RangeError: not (N, 3), too few, or neighbors that coincide.
     """
     points = _checked("untwisted_frames", points, ("N", 3))
     tangents = _tangents(points, closed)
@@ -113,7 +113,7 @@ def _tangents(points: FloatArray, closed: bool) -> FloatArray:
     lengths = np.linalg.norm(differences, axis=1, keepdims=True)
     if not bool((lengths > 0.0).all()):
         got = f"a point that stands still, number {int(np.argmin(lengths))}"
-        raise RangeError(message("untwisted_frames", "points", "different neighbours", got))
+        raise RangeError(message("untwisted_frames", "points", "different neighbors", got))
     return np.asarray(differences / lengths)
 
 

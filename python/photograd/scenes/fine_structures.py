@@ -81,7 +81,7 @@ def cage(*, wires: int = 20) -> list[Part]:
 
 
 def knot(*, seed: int) -> list[Part]:
-    """A trefoil, striped in all colours of the rainbow."""
+    """A trefoil, striped in all colors of the rainbow."""
     angle = 2.0 * np.pi * np.arange(360) / 360
     radius = 2.0 + np.cos(3.0 * angle)
     curve = np.stack(
@@ -143,7 +143,7 @@ _CROWN = np.array([0.0, 0.12, 0.0])
 """Middle of the leaves, and where the branches fork."""
 
 _REACH = np.array([0.52, 0.44, 0.52])
-"""Half axes of the crown in metres."""
+"""Half axes of the crown in meters."""
 
 _LEAVES = 900
 _BERRIES = 60
@@ -231,7 +231,7 @@ _BODY = 0.38
 _STRANDS = 4000
 _POINTS = 5
 _THICKNESS = 0.0045
-"""Half the width of a strand at its root, in metres; at its tip it is a tenth of it."""
+"""Half the width of a strand at its root, in meters; at its tip it is a tenth of it."""
 
 
 def fur(seed: int) -> SceneDescription:
@@ -250,7 +250,7 @@ def fur(seed: int) -> SceneDescription:
 
 
 def strands(*, seed: int) -> list[Part]:
-    """Strands that grow outwards and hang down, darker at the root, in patches of colour."""
+    """Strands that grow outwards and hang down, darker at the root, in patches of color."""
     roots = _sphere_lattice(_STRANDS)
     names = ("coral", "magenta", "violet", "blue", "teal", "lime")
     value = fractal_noise(1.3 * roots, seed=seed, octaves=2)
@@ -276,15 +276,15 @@ def _strand(root: FloatArray, outward: FloatArray, length: float) -> Surface:
     """A three-sided spike that starts below the skin and bends down under its weight."""
     way = np.linspace(0.0, 1.0, _POINTS)[:, None]
     outward = outward / np.linalg.norm(outward)
-    centre = 0.97 * _BODY * root + length * way * outward - 0.35 * length * way**2 * _UP
+    center = 0.97 * _BODY * root + length * way * outward - 0.35 * length * way**2 * _UP
     side = np.cross(outward, _UP if abs(outward[1]) < 0.9 else np.array([1.0, 0.0, 0.0]))
     side /= np.linalg.norm(side)
     other = np.cross(outward, side)
     angle = 2.0 * np.pi * np.arange(3) / 3
     ring = np.cos(angle)[:, None] * side + np.sin(angle)[:, None] * other
     width = _THICKNESS * np.clip(1.0 - way, 0.1, None)
-    points = centre[:, None] + width[:, None] * ring
-    ends = [np.repeat(centre[k][None, None], 3, axis=1) for k in (0, -1)]
+    points = center[:, None] + width[:, None] * ring
+    ends = [np.repeat(center[k][None, None], 3, axis=1) for k in (0, -1)]
     return from_grid(np.concatenate([ends[0], points, ends[1]])[::-1], closed_columns=True)
 
 

@@ -105,7 +105,7 @@ def placed(
     *,
     rotation: FloatArray | None = None,
 ) -> list[Part]:
-    """All parts turned by a (3, 3) `rotation` about the origin, then shifted `by` metres."""
+    """All parts turned by a (3, 3) `rotation` about the origin, then shifted `by` meters."""
     return [(surface.moved(by, rotation=rotation), albedo) for surface, albedo in parts]
 
 
@@ -124,7 +124,7 @@ def warm_sun(*, towards: tuple[float, float, float] = (0.55, 0.75, 0.5)) -> SunD
 
 
 def blue_sky() -> SkyDescription:
-    """Blue above, pale at the horizon, and the warm grey of lit ground below."""
+    """Blue above, pale at the horizon, and the warm gray of lit ground below."""
     return SkyDescription(
         zenith=np.array([0.3, 0.45, 0.76]),
         horizon=np.array([0.62, 0.7, 0.8]),

@@ -30,7 +30,7 @@ def superellipsoid(
     """Between ellipsoid, box and octahedron [Barr1981]: |cos|^e and |sin|^e with their signs.
 
     Args:
-        half_axes: metres along X, Y, Z.
+        half_axes: meters along X, Y, Z.
         north: exponent of the profile: 1 round, near 0 a cylinder, 2 a double cone.
         east: exponent of the cross-section: 1 round, near 0 square, 2 a square on its corner.
         rows, columns: number of faces along and around, at least 2 and 3.
@@ -60,7 +60,7 @@ def ico_sphere(radius: float, *, subdivisions: int = 4) -> Surface:
     """A ball of 20 * 4^subdivisions nearly equal triangles.
 
     uv are longitude and latitude of the vertices; triangles across the seam have none that a
-    texture could use, so this one is for colours of vertices.
+    texture could use, so this one is for colors of vertices.
 
     Raises:
         RangeError, DtypeError: radius not positive, or subdivisions outside 0..7.
@@ -108,7 +108,7 @@ def rounded_box(
     """A box with rounded edges and corners; each side shows the whole texture.
 
     Args:
-        half_sizes: metres along X, Y, Z.
+        half_sizes: meters along X, Y, Z.
         rounding: radius of the edges, at most the smallest half size.
         rings: faces across half an edge, at least 1.
 

@@ -23,7 +23,7 @@ from photograd.scenes.textures import checker, marble, painted_tiles, stripes, w
 
 
 def smooth_curves(seed: int) -> SceneDescription:
-    """A vase, a bowl, a pebble and a ring within 0.7 m of the origin; `seed` turns the colours."""
+    """A vase, a bowl, a pebble and a ring within 0.7 m of the origin; `seed` turns the colors."""
     shift = float(random.uniform(seed))
     vase = lathe(
         rounded_profile(
@@ -80,7 +80,7 @@ def smooth_curves(seed: int) -> SceneDescription:
 
 
 def _graded(surface: Surface, names: tuple[str, ...], shift: float) -> Part:
-    """Colours that go once through the named paints and back, along a slanting direction."""
+    """Colors that go once through the named paints and back, along a slanting direction."""
     points = surface.vertices
     low, high = points.min(axis=0), points.max(axis=0)
     way = ((points - low) / (high - low)) @ np.array([0.3, 0.6, 0.3])
@@ -119,7 +119,7 @@ def textured(seed: int) -> SceneDescription:
 
 
 def stone(*, seed: int) -> Part:
-    """A ball pushed in and out by noise, with colours by another noise of the same points."""
+    """A ball pushed in and out by noise, with colors by another noise of the same points."""
     ball = ico_sphere(1.0, subdivisions=6)
     bumps = fractal_noise(1.6 * ball.vertices, seed=seed, octaves=4)
     points = 0.16 * (1.0 + 0.45 * bumps[:, None]) * ball.vertices
@@ -129,7 +129,7 @@ def stone(*, seed: int) -> Part:
 
 
 def _by_height(value: np.ndarray, colors: Color, low: float, high: float) -> Color:
-    """Colours (N, 3) of numbers (N,), blended evenly from `low` to `high`."""
+    """Colors (N, 3) of numbers (N,), blended evenly from `low` to `high`."""
     steps = np.linspace(low, high, len(colors))
     return within_range(np.stack([np.interp(value, steps, channel) for channel in colors.T], -1))
 
@@ -143,7 +143,7 @@ def _dice_faces() -> Color:
     return face
 
 
-# A doll's house without roof or front: large flat walls, most of them of one colour.
+# A doll's house without roof or front: large flat walls, most of them of one color.
 
 
 _EDGE = 0.004
@@ -157,7 +157,7 @@ def flat_walls(seed: int) -> SceneDescription:
 
 
 def _slab(middle: tuple[float, float, float], half: tuple[float, float, float], name: str) -> Part:
-    """A box of one colour."""
+    """A box of one color."""
     return rounded_box(half, _EDGE, rings=2).moved(middle), paint(name)
 
 

@@ -20,7 +20,7 @@ class Surface:
     """Triangles in double precision, counter-clockwise seen from outside.
 
     Attributes:
-        vertices: (V, 3) float64, metres.
+        vertices: (V, 3) float64, meters.
         faces: (F, 3) int64.
         uv: (V, 2) float64; u right and v down, both in 0..1.
     """
@@ -35,7 +35,7 @@ class Surface:
         *,
         rotation: FloatArray | None = None,
     ) -> Surface:
-        """Turned by a (3, 3) `rotation` about the origin, then shifted `by` metres."""
+        """Turned by a (3, 3) `rotation` about the origin, then shifted `by` meters."""
         turned = self.vertices if rotation is None else self.vertices @ rotation.T
         return Surface(turned + np.asarray(by), self.faces, self.uv)
 
@@ -128,8 +128,8 @@ def land_block(
     """The top, and the sides with the bottom; together they are watertight.
 
     Args:
-        heights: (M, M) metres at `net_points(M, half_size)`, M >= 2.
-        half_size: metres from the middle to each side.
+        heights: (M, M) meters at `net_points(M, half_size)`, M >= 2.
+        half_size: meters from the middle to each side.
         floor: height of the bottom, below all heights.
         layers: number of faces between top and bottom.
 
@@ -222,8 +222,8 @@ def tube(
     u runs around, v along the curve. The curve is expected to bend by less than 1 / radius.
 
     Args:
-        curve: (N, 3), neighbours different.
-        radius: metres, one number or (N,).
+        curve: (N, 3), neighbors different.
+        radius: meters, one number or (N,).
         sides: number of faces around, at least 3.
         closed: whether the last point is followed by the first.
 
@@ -233,28 +233,28 @@ def tube(
     """
     require_integer("tube", "sides", sides, least=3)
     tangents, normals = untwisted_frames(curve, closed=closed)
-    centres = np.asarray(curve, dtype=np.float64)
+    centers = np.asarray(curve, dtype=np.float64)
     call = Arguments("tube", np.float64)
-    radii = call.array("radius", radius, (), (len(centres),), above=0.0)
-    radii = np.broadcast_to(radii, len(centres)).copy()
+    radii = call.array("radius", radius, (), (len(centers),), above=0.0)
+    radii = np.broadcast_to(radii, len(centers)).copy()
     if not closed:
-        centres, radii, tangents, normals = _with_caps(centres, radii, tangents, normals)
+        centers, radii, tangents, normals = _with_caps(centers, radii, tangents, normals)
     angle = 2.0 * np.pi * np.arange(sides) / sides
     # Seen from outside with the curve running down, the right-hand side is normal x tangent.
     across = np.cross(normals, tangents)
     ring = np.cos(angle)[:, None] * normals[:, None] + np.sin(angle)[:, None] * across[:, None]
-    points = centres[:, None] + radii[:, None, None] * ring
+    points = centers[:, None] + radii[:, None, None] * ring
     return from_grid(points, closed_rows=closed, closed_columns=True)
 
 
 def _with_caps(
-    centres: FloatArray, radii: FloatArray, tangents: FloatArray, normals: FloatArray
+    centers: FloatArray, radii: FloatArray, tangents: FloatArray, normals: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """Rings of half a ball before the first and after the last, down to a pole of radius 0."""
     angle = 0.5 * np.pi * np.arange(_CAP_RINGS) / _CAP_RINGS
     rise, shrink = np.cos(angle), np.sin(angle)
-    start = centres[0] - radii[0] * rise[:, None] * tangents[0]
-    end = (centres[-1] + radii[-1] * rise[:, None] * tangents[-1])[::-1]
-    index = np.pad(np.arange(len(centres)), _CAP_RINGS, mode="edge")
+    start = centers[0] - radii[0] * rise[:, None] * tangents[0]
+    end = (centers[-1] + radii[-1] * rise[:, None] * tangents[-1])[::-1]
+    index = np.pad(np.arange(len(centers)), _CAP_RINGS, mode="edge")
     all_radii = np.concatenate([radii[0] * shrink, radii, radii[-1] * shrink[::-1]])
-    return np.concatenate([start, centres, end]), all_radii, tangents[index], normals[index]
+    return np.concatenate([start, centers, end]), all_radii, tangents[index], normals[index]

@@ -47,7 +47,7 @@ def cloud_layer(
         box: (2, 3).
         seed: of the noise.
         sigma_t: the largest value, in 1/m.
-        feature_size: metres from cloud to cloud.
+        feature_size: meters from cloud to cloud.
         threshold: of the noise; with -0.1 two fifths of the layer are cloud, with 0 one fifth.
 
     Returns:

@@ -1,7 +1,7 @@
 """Painted patterns as textures T[row, column]: linear albedo (H, W, 3) float32 in 0.02..0.95.
 
 Every pattern joins itself at its left and right edge, and all but `wood` at top and bottom too, so
-that it can go around a ball or a ring without a seam. Edges between colours are one texel sharp; a
+that it can go around a ball or a ring without a seam. Edges between colors are one texel sharp; a
 renderer softens them by taking many samples in a pixel.
 """
 
@@ -32,14 +32,14 @@ def checker(size: Size, counts: Size, colors: Color) -> Color:
 def stripes(size: Size, count: int, colors: Color, *, lean: int = 0) -> Color:
     """`count` stripes along v, or leaning: `lean` stripes to the right from top to bottom.
 
-    For a spiral around a lathe shape let `lean` be a multiple of the number of colours.
+    For a spiral around a lathe shape let `lean` be a multiple of the number of colors.
     """
     v, u = _coordinates("stripes", size)
     return _picked("stripes", colors, np.floor(u * count + v * lean))
 
 
 def bands(size: Size, edges: list[float], colors: Color) -> Color:
-    """Bands along u: colours change where v passes each of the rising `edges` in 0..1."""
+    """Bands along u: colors change where v passes each of the rising `edges` in 0..1."""
     v, u = _coordinates("bands", size)
     return _picked("bands", colors, np.searchsorted(np.asarray(edges), v + 0.0 * u, side="right"))
 
@@ -54,7 +54,7 @@ def marble(size: Size, colors: Color, *, seed: int, veins: int = 3) -> Color:
 
 
 def wood(size: Size, light: Color, dark: Color, *, seed: int, planks: int = 5) -> Color:
-    """Planks along v with rings, fibres and a tone of their own; u joins at the edges."""
+    """Planks along v with rings, fibers and a tone of their own; u joins at the edges."""
     v, u = _coordinates("wood", size)
     plank = np.floor(u * planks)
     tone = random.uniform(seed, pixel=np.arange(planks), dimension=0)[plank.astype(int)]
@@ -62,9 +62,9 @@ def wood(size: Size, light: Color, dark: Color, *, seed: int, planks: int = 5) -
     across = u * planks - plank - 0.5
     along = np.stack(np.broadcast_arrays(2.0 * across + shift, 1.3 * v), axis=-1)
     rings = 9.0 * gradient_noise(along, seed=seed) + 7.0 * across**2
-    fibres = np.stack(np.broadcast_arrays(40.0 * across + shift, 3.0 * v), axis=-1)
+    fibers = np.stack(np.broadcast_arrays(40.0 * across + shift, 3.0 * v), axis=-1)
     grain = 0.5 + 0.5 * np.sin(2.0 * np.pi * rings)
-    mixed = 0.5 * grain**2 + 0.3 * tone + 0.25 * fractal_noise(fibres, seed=seed + 1, octaves=3)
+    mixed = 0.5 * grain**2 + 0.3 * tone + 0.25 * fractal_noise(fibers, seed=seed + 1, octaves=3)
     mixed = np.clip(mixed + 0.08, 0.0, 1.0)[..., None]
     gap = np.abs(across) > 0.485
     color = (1.0 - mixed) * light + mixed * dark
@@ -72,7 +72,7 @@ def wood(size: Size, light: Color, dark: Color, *, seed: int, planks: int = 5) -
 
 
 def painted_tiles(size: Size, counts: Size, colors: Color, grout: Color, *, seed: int) -> Color:
-    """Glazed tiles, `counts` (down, across): each has a motif, two colours and a turn by chance.
+    """Glazed tiles, `counts` (down, across): each has a motif, two colors and a turn by chance.
 
     Motifs: rings, a rhomb, two quarter circles, and a flower of four petals.
 
@@ -80,7 +80,7 @@ def painted_tiles(size: Size, counts: Size, colors: Color, grout: Color, *, seed
         size, counts: texels and tiles; whole texels a tile look best.
         colors: (P, 3), P >= 2.
         grout: (3,) between the tiles.
-        seed: of motifs, colours and turns.
+        seed: of motifs, colors and turns.
     """
     v, u = _coordinates("painted_tiles", size)
     row, column = np.floor(v * counts[0]).astype(int), np.floor(u * counts[1]).astype(int)
@@ -121,7 +121,7 @@ def _petals(x: FloatArray, y: FloatArray) -> npt.NDArray[np.bool_]:
 
 
 def _coordinates(function: str, size: Size) -> tuple[FloatArray, FloatArray]:
-    """Texels' centres: v (H, 1) and u (1, W)."""
+    """Texels' centers: v (H, 1) and u (1, W)."""
     Arguments(function).array("size", size, (2,), dtype=np.int64, low=1, high=8192)
     v = (np.arange(size[0]) + 0.5) / size[0]
     u = (np.arange(size[1]) + 0.5) / size[1]
@@ -129,13 +129,13 @@ def _coordinates(function: str, size: Size) -> tuple[FloatArray, FloatArray]:
 
 
 def _picked(function: str, colors: Color, index: npt.NDArray[np.number]) -> Color:
-    """Colours by whole index, around and around."""
+    """Colors by whole index, around and around."""
     _require_colors(function, colors)
     return within_range(colors[index.astype(np.int64) % len(colors)])
 
 
 def _blended(colors: Color, position: FloatArray) -> Color:
-    """Colours by position, mixed linearly between neighbours, the last with the first."""
+    """Colors by position, mixed linearly between neighbors, the last with the first."""
     _require_colors("marble", colors)
     before = np.floor(position).astype(np.int64)
     part = (position - before)[..., None]

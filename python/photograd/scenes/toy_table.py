@@ -15,7 +15,7 @@ from photograd.scenes.textures import bands, checker, marble, painted_tiles, str
 
 
 def ring_tower() -> list[Part]:
-    """Five rings in the colours of the rainbow, checkered, on a pole with a ball on top."""
+    """Five rings in the colors of the rainbow, checkered, on a pole with a ball on top."""
     foot = [(0, 0.045), (0.15, 0.045), (0.165, 0.02), (0.165, 0), (0.165, 0), (0, 0)]
     base = lathe(rounded_profile(foot))
     parts: list[Part] = [(base, stripes((8, 256), 32, paints("walnut", "amber")))]

@@ -5,7 +5,7 @@ probability proportional to opacity; while there is room, a few more are added t
 small random motion keeps the faint ones looking for a better place [Kheradmand2024].
 
 n Gaussians at one place must look like the one of opacity o that was there. Along a ray through the
-centre n of opacity a compose to 1 - (1 - a)^n, so
+center n of opacity a compose to 1 - (1 - a)^n, so
 
     a = 1 - (1 - o)^(1/n)
 
@@ -102,7 +102,7 @@ class MarkovChain(DensityControl):
     def explore(self, params: Params, *, extent: float, rate: float, step: int) -> None:
         """Add noise rate cov3d n sigmoid(100 (0.005 - a)) / extent^2 to each mean, n normal.
 
-        Divided by the extent squared, the motion is the same in metres and in feet.
+        Divided by the extent squared, the motion is the same in meters and in feet.
         """
         alpha = opacities(params)
         rows = np.flatnonzero(alpha < FAINT_ENOUGH)

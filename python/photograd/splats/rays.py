@@ -11,7 +11,7 @@ A ray blends what it sees front to back, in the order of the peaks, ties in the 
 same bits on any number of threads.
 
 Against splatting: no low-pass, since a ray has no width (Gaussians thinner than a pixel flicker;
-take several rays a pixel); the order is each ray's own instead of one for the picture; colours
+take several rays a pixel); the order is each ray's own instead of one for the picture; colors
 are those of the ray's direction, not of the direction to the mean; depth is measured along the
 ray. For small Gaussians and a narrow field of view the pictures agree.
 """
@@ -43,7 +43,7 @@ class RayOptions:
             it off.
         stop: a ray ends before the Gaussian that would leave its transmittance below; 0 switches it
             off.
-        t_min: metres; Gaussians whose peak is closer to the ray's origin, or behind it, are not
+        t_min: meters; Gaussians whose peak is closer to the ray's origin, or behind it, are not
             seen.
 
     Raises:
@@ -76,7 +76,7 @@ class RayOptions:
 class RayPicture:
     """color (R, 3) with the background, opacity (R,), depth (R,).
 
-    depth is the sum of weight times distance along the ray, in metres, whatever the length of its
+    depth is the sum of weight times distance along the ray, in meters, whatever the length of its
     direction: divide it by opacity for a mean.
     """
 
@@ -131,9 +131,9 @@ def render(
 
     Args:
         gaussians: N of them; none is a picture of the background.
-        origins: (R, 3), metres, world frame; converted to the Gaussians' dtype.
+        origins: (R, 3), meters, world frame; converted to the Gaussians' dtype.
         directions: (R, 3) of any length but zero; `Camera.rays()` gives those of a camera.
-        background: (3,) colour behind everything.
+        background: (3,) color behind everything.
         options: policies; None for the defaults.
 
     Raises:

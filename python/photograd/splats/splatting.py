@@ -1,7 +1,7 @@
-"""3D Gaussian splatting on the CPU: pictures of Gaussians, and derivatives by everything in them.
+"""3D Gaussian splatting on the CPU: pictures, and derivatives with respect to all parameters.
 
 A Gaussian has a mean, three log-scales, a quaternion, an opacity logit and spherical-harmonic
-colours. `render` projects them, sorts them by depth and blends them front to back, pixel by pixel;
+colors. `render` projects them, sorts them by depth and blends them front to back, pixel by pixel;
 `render_backward` gives dL/d of every parameter, of the background and of the camera's pose. Both
 give the same bits on any number of threads. [Kerbl2023; Zwicker2001]
 
@@ -41,15 +41,15 @@ SHAPES: dict[str, tuple[str | int, ...]] = {
 
 @dataclass(frozen=True, eq=False)
 class Gaussians:
-    """N Gaussians, as an optimiser sees them: every number may take any value.
+    """N Gaussians, as an optimizer sees them: every number may take any value.
 
     Attributes:
-        means: (N, 3), metres, world frame.
+        means: (N, 3), meters, world frame.
         log_scales: (N, 3), logarithm of the standard deviations along the Gaussian's axes, in
-            metres; minus infinity is a Gaussian without extent.
+            meters; minus infinity is a Gaussian without extent.
         quats: (N, 4), quaternions (w, x, y, z) of any length; a zero one stands for no rotation.
         opacity_logits: (N,), opacity = sigmoid(logit); infinite ones are opaque, or absent.
-        sh: (N, K, 3), K = 1, 4, 9 or 16; colour = max(0, 1/2 + sum_k Y_k(d) sh_k) in the direction
+        sh: (N, K, 3), K = 1, 4, 9 or 16; color = max(0, 1/2 + sum_k Y_k(d) sh_k) in the direction
             d from the camera to the mean, with the signs of `photograd.sh`.
 
     Raises:
@@ -105,7 +105,7 @@ class SplatOptions:
             the screen; 0 switches it off.
         stop: a pixel ends before the splat that would leave its transmittance below; 0 switches it
             off.
-        near: metres; Gaussians whose mean is closer, or behind the camera, are not drawn.
+        near: meters; Gaussians whose mean is closer, or behind the camera, are not drawn.
         frustum_margin: in image sizes; the projection's Jacobian is that of a mean held inside of
             the field of view widened by this on each side.
 
@@ -161,9 +161,9 @@ class SplatOptions:
 class SplatPicture:
     """A picture: color (H, W, 3) with the background, opacity (H, W), depth (H, W).
 
-    depth is the sum of weight times distance along the viewing axis, in metres: divide it by
+    depth is the sum of weight times distance along the viewing axis, in meters: divide it by
         opacity
-    for a mean. Imported splats are made for display colours, not for linear ones.
+    for a mean. Imported splats are made for display colors, not for linear ones.
     """
 
     color: Array
@@ -222,9 +222,9 @@ def render(
     Args:
         gaussians: N of them; none is a picture of the background.
         camera: size, focal lengths and pose.
-        background: (3,) colour behind everything.
+        background: (3,) color behind everything.
         options: policies; None for the defaults.
-        camera_from_world: (3, 4) in place of the camera's pose, rigid or nearly so; for optimising
+        camera_from_world: (3, 4) in place of the camera's pose, rigid or nearly so; for optimizing
             it.
 
     Raises:
@@ -300,8 +300,8 @@ def twist_gradient(d_camera_from_world: Array, camera_from_world: ArrayLike) -> 
     The motion (omega, v) takes [W | b] = camera_from_world to exp([omega]x) [W | b] + [0 | v].
     """
     rows = np.asarray(camera_from_world)[:3]
-    # omega x row-vectors: the derivative by omega_k pairs the rows i, j of a cyclic triple (k, i,
-    # j).
+    # omega x row-vectors: the derivative with respect to omega_k pairs the rows i, j of a cyclic
+    # triple (k, i, j).
     pairs = d_camera_from_world @ rows.T
     turn = [pairs[2, 1] - pairs[1, 2], pairs[0, 2] - pairs[2, 0], pairs[1, 0] - pairs[0, 1]]
     return np.array([*turn, *d_camera_from_world[:, 3]])

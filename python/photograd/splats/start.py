@@ -1,6 +1,6 @@
 """Where Gaussians begin: at the points that cameras were found with, or anywhere they can be.
 
-Each begins round, as large as the distance to its neighbours, faint, and of one colour from all
+Each begins round, as large as the distance to its neighbors, faint, and of one color from all
 sides [Kerbl2023].
 """
 
@@ -25,14 +25,14 @@ from photograd.splats.markov_chain import MarkovChain
 from photograd.splats.splatting import Gaussians
 from photograd.types import Array
 
-NEIGHBOURS = 3
+NEIGHBORS = 3
 FEWEST_POINTS = 100
 """A capture with fewer sparse points says too little about where the scene is."""
 
 RANDOM_DISTANCE = 0.7524
 """Of points at random, one in a unit of volume: the root mean square distance to the nearest three.
 
-The k-th neighbour's squared distance is (3 / 4 pi)^(2/3) Gamma(k + 2/3) / Gamma(k) on average.
+The k-th neighbor's squared distance is (3 / 4 pi)^(2/3) Gamma(k + 2/3) / Gamma(k) on average.
 """
 
 FIRST_OPACITY = 0.1
@@ -56,7 +56,7 @@ def start_gaussians(
 ) -> tuple[Gaussians, str]:
     """Gaussians in float32 to begin a fit with, and one sentence on where they come from.
 
-    At the points (N, 3) with display colours (N, 3) that are `given`; else at the capture's sparse
+    At the points (N, 3) with display colors (N, 3) that are `given`; else at the capture's sparse
     points if it has a hundred; else at `count` random points of the box (2, 3), where the
     photographs have alpha only those that no silhouette excludes.
 
@@ -67,11 +67,11 @@ def start_gaussians(
         raise RangeError(message("start_gaussians", "count", "at least 1", count))
     if given is not None:
         points, colors = given
-        size = neighbour_distance(points)
+        size = neighbor_distance(points)
         rule = f"{len(points)} points that a fitted model shows"
     elif capture.points is not None and len(capture.points) >= FEWEST_POINTS:
         points, colors = _some_points(capture, count, seed)
-        size = neighbour_distance(points)
+        size = neighbor_distance(points)
         rule = f"{len(points)} of the {len(capture.points)} points of the capture"
     else:
         points, volume, rule = random_points(capture, box, count, seed=seed)
@@ -81,7 +81,7 @@ def start_gaussians(
 
 
 def around(points: Array, size: Array, colors: Array, *, degree: int) -> Gaussians:
-    """Round, faint Gaussians at points (N, 3) with scales (N,), of display colours (N, 3).
+    """Round, faint Gaussians at points (N, 3) with scales (N,), of display colors (N, 3).
 
     In float32.
 
@@ -99,13 +99,13 @@ def around(points: Array, size: Array, colors: Array, *, degree: int) -> Gaussia
     ).astype(np.float32)
 
 
-def neighbour_distance(points: Array) -> Array:
-    """(N,) root mean square distance to the nearest three other points, in metres, exact.
+def neighbor_distance(points: Array) -> Array:
+    """(N,) root mean square distance to the nearest three other points, in meters, exact.
 
     Points that coincide get a distance of 1e-7 of the whole cloud's size.
     """
     points = np.asarray(points, np.float64)
-    if len(points) <= NEIGHBOURS:
+    if len(points) <= NEIGHBORS:
         spread = float(np.ptp(points, axis=0).max()) if len(points) > 1 else 1.0
         return np.full(len(points), max(spread, 1e-7))
     found = np.empty(len(points))
@@ -116,7 +116,7 @@ def neighbour_distance(points: Array) -> Array:
         for axis in points.T:
             gap = axis[part, None] - axis
             distance += np.multiply(gap, gap, out=gap)
-        near = np.partition(distance, NEIGHBOURS, axis=1)[:, : NEIGHBOURS + 1]
+        near = np.partition(distance, NEIGHBORS, axis=1)[:, : NEIGHBORS + 1]
         near.sort(axis=1)
         found[part] = near[:, 1:].mean(axis=1)  # the nearest is the point itself
     reach = np.linalg.norm(points - points.mean(axis=0), axis=1).max()
@@ -129,7 +129,7 @@ def random_points(
 ) -> tuple[Array, float, str]:
     """`count` points (N, 3) uniform in the box, or in the visual hull inside of it.
 
-    Also the volume that they fill, in cubic metres, and a sentence on them.
+    Also the volume that they fill, in cubic meters, and a sentence on them.
     """
     silhouettes = silhouettes_of(capture.train) if capture.has_alpha else []
     carve = bool(silhouettes) and mean_coverage(silhouettes) < CARVED
@@ -151,7 +151,7 @@ def random_points(
 
 
 def mean_colors(views: Sequence[View], points: Array, *, most: int = 24) -> Array:
-    """(N, 3) display colours: the mean of the pixels that points (N, 3) land on; grey for none.
+    """(N, 3) display colors: the mean of the pixels that points (N, 3) land on; gray for none.
 
     Nothing is hidden by anything here, which is good enough to begin with.
     """
@@ -191,7 +191,7 @@ def _landing(camera: Camera, points: Array) -> tuple[Array, Array, Array]:
 
 
 def _some_points(capture: Capture, count: int, seed: int) -> tuple[Array, Array]:
-    """At most `count` of the capture's points, and their display colours."""
+    """At most `count` of the capture's points, and their display colors."""
     assert capture.points is not None
     points = np.asarray(capture.points, np.float64)
     if capture.point_colors is None:

@@ -49,7 +49,7 @@ def sample_backward(texture: Array, uv: Array, d_color: Array) -> tuple[Array, A
     Returns:
         dL/dtexture (H, W, C), every texel's contributions added in one order whatever the number
         of threads, and dL/duv (N, 2), zero along an axis where the point is clamped to the border.
-        At a texel centre, where the color has a kink, it is the derivative towards growing uv.
+        At a texel center, where the color has a kink, it is the derivative towards growing uv.
 
     Raises:
         DtypeError, ShapeError, RangeError: as for `sample`.

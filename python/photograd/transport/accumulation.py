@@ -3,7 +3,7 @@
 Where samples go (`sample_counts`): a derivative is a sum over pixels of d_p times the mean of that
 pixel's n_p paths, so that its variance is the sum of d_p^2 s_p^2 / n_p, s_p being the spread of one
 path's part. For a given sum of n_p it is least where n_p grows as |d_p| s_p. s_p is not known, but
-d_p is, and for a loss of squares few pixels (a highlight, the rim of a lamp) hold most of it.
+d_p is, and for a loss of squares few pixels (a highlight, the rim of a light) hold most of it.
 
 Whatever n_p is, the mean of the estimate stays, as long as n_p knows nothing of these very paths:
 it may follow d_image, which comes from other paths.

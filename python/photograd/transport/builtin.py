@@ -1,5 +1,5 @@
 """Scenes by name: a Cornell box, a furnace, balls under an evening sky, balls of wax and smoke,
-bodies of signed distances, things in motion.
+signed distance functions, things in motion.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ GLOW_RADIANCE, GLOW_SHARPNESS = [2.0, 1.1, 0.5], 8.0
 
 
 def map_directions(height: int) -> Array:
-    """Directions (H, 2 H, 3) of the texels' centres, as `EnvironmentMap` has them."""
+    """Directions (H, 2 H, 3) of the texels' centers, as `EnvironmentMap` has them."""
     theta = (np.arange(height) + 0.5) / height * np.pi
     phi = ((np.arange(2 * height) + 0.5) / (2 * height) - 0.5) * 2 * np.pi
     side = np.sin(theta)[:, None]
@@ -67,7 +67,7 @@ def evening_map(height: int = 64, sun: Any = SUN) -> Array:
     return np.asarray(radiance, np.float32)
 
 
-# Balls of wax, of coloured glass and of smoke: what happens between surfaces.
+# Balls of wax, of colored glass and of smoke: what happens between surfaces.
 
 
 RADIUS = 0.5
@@ -102,8 +102,8 @@ def wax(size: int = 256) -> Scene:
     box[:3, :3] *= 2 * RADIUS
     box[:3, 3] = smoke_at - RADIUS
     media = {
-        # Marble and skin have mean free paths below a millimetre [Jensen2001]; this wax has some
-        # of 7 to 11 centimetres, so that light gets through a ball of a metre.
+        # Marble and skin have mean free paths below a millimeter [Jensen2001]; this wax has some
+        # of 7 to 11 centimeters, so that light gets through a ball of a meter.
         "wax": Medium([9.0, 11.0, 14.0], [0.998, 0.99, 0.96], values={"g": 0.3}),
         "amber": Medium([0.15, 0.9, 3.2]),
         "smoke": Medium(
@@ -151,14 +151,14 @@ def thrown(size: int = 256) -> Scene:
 
 
 def _turned(degrees: float, about: list[float], shift: list[float]) -> np.ndarray:
-    """(4, 4): a turn about the vertical through a point, then a shift, metres."""
+    """(4, 4): a turn about the vertical through a point, then a shift, meters."""
     c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
     matrix = np.array([[c, 0, s, 0], [0, 1, 0, 0], [-s, 0, c, 0], [0, 0, 0, 1.0]])
     matrix[:3, 3] = np.asarray(about) - matrix[:3, :3] @ np.asarray(about) + np.asarray(shift)
     return matrix
 
 
-# A carved cube, a ring of glass and a figure of clay: bodies of signed distances.
+# A carved cube, a ring of glass and a figure of clay: signed distance functions.
 
 
 HALF = float(np.sqrt(0.5))
@@ -217,7 +217,7 @@ def carved(size: int = 256) -> Scene:
 
 
 def cornell_box(size: int = 256) -> Scene:
-    """A room 2 m wide with a red and a green wall, two boxes and a lamp in the ceiling."""
+    """A room 2 m wide with a red and a green wall, two boxes and a light in the ceiling."""
     shapes = (
         *_room(),
         box("tall", [-0.33, 0.6, -0.28], [0.6, 1.2, 0.6], "white", turn=17.0),

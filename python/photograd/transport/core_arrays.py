@@ -162,7 +162,7 @@ class ListedLight:
         return self.light.core_name, np.concatenate([part.ravel() for part in parts]), constants
 
     def named(self, derivative: Array) -> dict[str, Array]:
-        """A derivative by the second entry of `row`, under the names of the params."""
+        """A derivative with respect to the second entry of `row`, under the names of the params."""
         ends = np.cumsum([value.size for value in self.start.values()])[:-1]
         parts = np.split(derivative.reshape(-1), ends)
         return {

@@ -50,8 +50,8 @@ def read_density(
     Args:
         path: .npy of numbers (X, Y, Z), .vdb, or what `photograd.grids.volumes.read_volume` reads.
         grid: of a .vdb: the name; None takes the first grid of scalars.
-        corner, size: (3,) metres, both or neither: what the box around the voxels is moved and
-            stretched to. A .npy needs them; other files lie where they say, in metres.
+        corner, size: (3,) meters, both or neither: what the box around the voxels is moved and
+            stretched to. A .npy needs them; other files lie where they say, in meters.
         majorant: of the `DensityGrid`.
         memory_limit: bytes; what is available by default.
 

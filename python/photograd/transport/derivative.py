@@ -35,7 +35,7 @@ def direction_of(params: Mapping[str, Array], parameter: str) -> dict[str, Array
         params: those of a `PathTracer`.
         parameter: a name, with the place of one entry or without: "materials.red.albedo[0]",
             "textures.wood[2, 5, 0]". Without, all entries of the array rise together: all texels of
-            a texture, all channels of a colour.
+            a texture, all channels of a color.
 
     Raises:
         RangeError: no such parameter, or no such entry.

@@ -17,8 +17,8 @@ class Lens:
     """A thin lens before the camera (cpp/photograd/camera/thin_lens.h).
 
     Attributes:
-        radius: of its opening, metres; 0 is a pinhole.
-        focus: distance from the camera, along its axis, of the plane that is sharp; metres.
+        radius: of its opening, meters; 0 is a pinhole.
+        focus: distance from the camera, along its axis, of the plane that is sharp; meters.
 
     Raises:
         RangeError: a negative radius, a focus that is not positive, or either not finite.
@@ -61,7 +61,7 @@ class Shutter:
         object.__setattr__(self, "closing", check_pose("Shutter", "closing", self.closing).copy())
 
     def motion(self, opening: Camera) -> tuple[FloatArray, FloatArray]:
-        """Way (3,) in metres, and turn (3,), radians along its axis, both in the world.
+        """Way (3,) in meters, and turn (3,), radians along its axis, both in the world.
 
         Raises:
             RangeError: half a turn, whose axis nobody can tell.

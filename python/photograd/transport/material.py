@@ -59,7 +59,7 @@ class Material:
         self.row()
         for parameter in self.parameters:
             check_range(self.model, parameter, self.values[parameter.name])
-        if self.alpha_cutoff is not None and not (self.sheer and self.alpha_cutoff >= 0):
+        if self.alpha_cutoff is not None and not (self.has_opacity and self.alpha_cutoff >= 0):
             expected, got = "at least 0, and a value of alpha", self.alpha_cutoff
             raise SceneError(message("Material", "alpha_cutoff", expected, got))
         sizes = {parameter.name: parameter.size for parameter in self.parameters}
@@ -71,14 +71,14 @@ class Material:
         return bool(self.textures) or self.normal_map is not None
 
     @property
-    def sheer(self) -> bool:
+    def has_opacity(self) -> bool:
         """Whether surfaces of this material cover only a part of what lies behind them."""
         return ALPHA.name in self.values
 
     @property
     def parameters(self) -> Parameters:
         """Descriptions of the parameters, in the order in which the core packs them."""
-        return Parameters((*MODELS[self.model].parameters, *([ALPHA] if self.sheer else [])))
+        return Parameters((*MODELS[self.model].parameters, *([ALPHA] if self.has_opacity else [])))
 
     def row(self) -> Array:
         """All parameters as one row of numbers (P,), float64."""

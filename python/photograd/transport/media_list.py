@@ -70,7 +70,7 @@ def _check_interior(
     if shape.material == BOUNDARY:
         return
     material = materials[shape.material]
-    if not (transmits(material.model) or material.sheer):
+    if not (transmits(material.model) or material.has_opacity):
         expected = f"a surface that lets light in, or {BOUNDARY}"
         got = f"'{material.model}'"
         raise SceneError(message("Scene", argument, expected, got))

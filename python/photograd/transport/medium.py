@@ -1,4 +1,4 @@
-"""What fills volumes: fog, milk, coloured glass. Absorption, scattering, and where they vary.
+"""What fills volumes: fog, milk, colored glass. Absorption, scattering, and where they vary.
 
 The mathematics is in cpp/photograd/medium/medium.h, render/path/free_path.h
 (sampling) and adjoint.h (what a path carries, and its derivatives).
@@ -29,9 +29,9 @@ class DensityGrid:
     """A density that scales a medium's sigma_t from place to place.
 
     Attributes:
-        values: (X, Y, Z) pure numbers of at least 0, at the voxels' centres; at least two along
-            each axis. Between centres they are interpolated (trilinear); outside the box is 0.
-        world_from_box: (4, 4) of the box [0, 1]^3 that the grid fills; metres.
+        values: (X, Y, Z) pure numbers of at least 0, at the voxels' centers; at least two along
+            each axis. Between centers they are interpolated (trilinear); outside the box is 0.
+        world_from_box: (4, 4) of the box [0, 1]^3 that the grid fills; meters.
         majorant: a bound that no value exceeds, also later, when they are fitted; None takes the
             largest value of each rendering. Rendering gets slower the looser it is; a fit that
             starts from empty space needs one above 0, or it would never look there.
@@ -84,11 +84,11 @@ class Medium:
 
     Attributes:
         sigma_t: (3,) or a number, extinction in 1/m: what absorption and scattering take out of a
-            beam over a metre, sigma_a + sigma_s.
+            beam over a meter, sigma_a + sigma_s.
         albedo: (3,) or a number, sigma_s / sigma_t, 0 to 1: how much of that is scattered. None
             makes a medium that only absorbs; unlike one with an albedo of 0, nothing is drawn
-            there by chance, and there is no derivative by the albedo. More than 1 would create
-            light and is refused.
+            there by chance, and there is no derivative with respect to the albedo. More than 1
+            would create light and is refused.
         phase: the phase function, a name of `photograd.bsdf.phase.registry()`;
             unused without albedo.
         values: {parameter of the phase function: number}; g lies between -1 and 1.
@@ -165,5 +165,5 @@ def _color(name: str, value: Any) -> Array:
 def _check(function: str, name: str, value: Array, most: float) -> None:
     if np.isfinite(value).all() and bool((value >= 0).all() and (value <= most).all()):
         return
-    expected = "0 to 1" if most == 1 else "finite coefficients of at least 0 per metre"
+    expected = "0 to 1" if most == 1 else "finite coefficients of at least 0 per meter"
     raise RangeError(message(function, name, expected, value.tolist()))

@@ -49,7 +49,7 @@ def moved_on(shape: Shape, way: Array) -> Shape:
     """A mesh or a sphere that `way` (4, 4) moves, in the world, while the shutter is open.
 
     Raises:
-        SceneError: a sphere that would turn or grow, or a body of signed distances.
+        SceneError: a sphere that would turn or grow, or a signed distance function.
         As `MeshShape`.
     """
     if isinstance(shape, MeshShape):
@@ -57,7 +57,7 @@ def moved_on(shape: Shape, way: Array) -> Shape:
         return replace(shape, closing_places=tuple(way @ place for place in starts))
     if not isinstance(shape, SphereShape):
         expected, remedy = "a mesh or a sphere", "leave out its motion"
-        got = "a body of signed distances"
+        got = "a signed distance function"
         raise SceneError(message("Scene", f"{shape.name}.closing", expected, got, remedy))
     if not np.array_equal(way[:3, :3], np.eye(3)):
         expected = "a sphere that is moved straight on, by translate alone"

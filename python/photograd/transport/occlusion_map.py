@@ -37,8 +37,8 @@ class TexelPoints:
     """What the texels of a mesh show.
 
     Attributes:
-        covered: (H, W) bool: whether any triangle covers the texel's centre.
-        points, normals: (N, 3) of the covered texels, row by row, in the world; metres, and unit
+        covered: (H, W) bool: whether any triangle covers the texel's center.
+        points, normals: (N, 3) of the covered texels, row by row, in the world; meters, and unit
             normals of the triangles' fronts.
         contested: texels inside of more than one triangle, of which the first one counts.
     """
@@ -120,15 +120,15 @@ def bake_ambient_occlusion(
 ) -> Texture:
     """The free part of the sky over each texel of a mesh, weighted with the cosine.
 
-    1 where nothing lies within `radius` of the texel's centre, seen from the front of its triangle;
-    0 where all directions are blocked. Texels that no triangle covers with its centre continue
+    1 where nothing lies within `radius` of the texel's center, seen from the front of its triangle;
+    0 where all directions are blocked. Texels that no triangle covers with its center continue
     those nearby. Charts that lie closer than two texels bleed into each other.
 
     Args:
         scene: all that occludes, the mesh itself included; lights with a surface do, too.
         shape: name of a mesh whose texture coordinates lie in 0..1 and unfold it without overlap.
         resolution: texels along both axes, or (H, W).
-        radius: metres within which a surface occludes.
+        radius: meters within which a surface occludes.
         spp: rays a texel; powers of two are spread most evenly.
         seed: of all random numbers; the same one gives the same bits on any threads.
 
@@ -146,7 +146,7 @@ def bake_ambient_occlusion(
 
 
 def texel_points(mesh: MeshShape, height: int, width: int) -> TexelPoints:
-    """The points of a mesh that the centres of (height, width) texels show.
+    """The points of a mesh that the centers of (height, width) texels show.
 
     Warns where the mesh lies on itself in its texture.
     """
@@ -155,7 +155,7 @@ def texel_points(mesh: MeshShape, height: int, width: int) -> TexelPoints:
     covered = face >= 0
     if not covered.any():
         got = f"none of {height} x {width}"
-        raise SceneError(message(_NAME, f"{mesh.name}.uv", "to cover a texel's centre", got))
+        raise SceneError(message(_NAME, f"{mesh.name}.uv", "to cover a texel's center", got))
     if contested:
         warnings.warn(
             f"{mesh.name}: {contested} texels show more than one place; the first is baked",
@@ -173,7 +173,7 @@ def texel_points(mesh: MeshShape, height: int, width: int) -> TexelPoints:
 
 
 def continued(values: Array, known: Array) -> Array:
-    """Values (H, W) where `known`; elsewhere, ring by ring, the mean of neighbours that are.
+    """Values (H, W) where `known`; elsewhere, ring by ring, the mean of neighbors that are.
 
     Beyond `MARGIN` rings it is the mean of all.
     """
@@ -181,14 +181,14 @@ def continued(values: Array, known: Array) -> Array:
     for _ in range(MARGIN):
         if done.all():
             return found
-        sums, counts = _neighbour_sums(found), _neighbour_sums(done.astype(np.float64))
+        sums, counts = _neighbor_sums(found), _neighbor_sums(done.astype(np.float64))
         new = ~done & (counts > 0)
         found[new] = sums[new] / counts[new]
         done |= new
     return np.where(done, found, values[known].mean())
 
 
-def _neighbour_sums(values: Array) -> Array:
+def _neighbor_sums(values: Array) -> Array:
     """Sums over the eight texels around each, nothing beyond the border."""
     height, width = values.shape
     wide = np.pad(values, 1)

@@ -61,8 +61,8 @@ class Receiver:
     top.
 
     Attributes:
-        corner: (3,) metres.
-        edge_x, edge_y: (3,) metres, perpendicular; the front is the side of edge_x x edge_y.
+        corner: (3,) meters.
+        edge_x, edge_y: (3,) meters, perpendicular; the front is the side of edge_x x edge_y.
         height, width: cells.
 
     Raises:
@@ -152,7 +152,7 @@ class Emitted:
     """Particles as they leave their lights.
 
     Attributes:
-        origins: (N, 3) metres.
+        origins: (N, 3) meters.
         directions: (N, 3) of unit length, the way the light goes.
         flux: (N, 3) W; its mean over all particles is the power of all lights, of those at infinity
             what falls onto the disc that their particles start from.
@@ -209,7 +209,7 @@ class PhotonMap:
 
     Attributes:
         tracer: the scene. A map does not change with its params: build another one.
-        radius: of the disc over which photons are counted, metres.
+        radius: of the disc over which photons are counted, meters.
     """
 
     def __init__(
@@ -227,7 +227,7 @@ class PhotonMap:
         Args:
             tracer: the scene, at its present params.
             particles: how many leave the lights.
-            radius: metres.
+            radius: meters.
             seed: of all random numbers; the same one gives the same bits on any threads.
             options: how far particles are followed.
             direct: whether to keep what comes straight from a light.

@@ -1,6 +1,6 @@
 """What a scene for path tracing is: shapes with a material each, what shines, and a camera.
 
-World as everywhere: right-handed, +Y up, metres; radiance and reflectances are linear Rec. 709.
+World as everywhere: right-handed, +Y up, meters; radiance and reflectances are linear Rec. 709.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from photograd.types import Array
 
 @dataclass(frozen=True, eq=False)
 class Environment:
-    """The radiance of a dome around everything, by height alone; three equal colours are constant.
+    """The radiance of a dome around everything, by height alone; three equal colors are constant.
 
     Attributes:
         zenith, horizon, ground: (3,) radiance from straight above, the horizon, straight below.
@@ -59,7 +59,7 @@ class Scene:
 
     Attributes:
         name: for titles and messages.
-        shapes: what there is; meshes, spheres and bodies of signed distances in any order.
+        shapes: what there is; meshes, spheres and signed distance functions in any order.
         materials: by the names that shapes use.
         camera: where the picture is taken from.
         environment: what lies behind everything; None is black.
@@ -141,7 +141,7 @@ def _check_textures(name: str, material: Material, textures: Mapping[str, Textur
 
 
 def _check_glow(shape: Shape, material: Material, textures: Mapping[str, Texture]) -> None:
-    if material.sheer and shape.emission.any():
+    if material.has_opacity and shape.emission.any():
         expected = "a shape that shines, or a material with alpha"
         raise SceneError(message("Scene", f"{shape.name}.material", expected, "both"))
     if not isinstance(shape, MeshShape) or shape.glow is None:

@@ -35,7 +35,7 @@ def light_of(node: Node) -> Light:
 
 
 def _registered(name: str) -> Callable[[Node], RegisteredLight]:
-    """Reads the attributes of a light of the registry: colours, places and numbers."""
+    """Reads the attributes of a light of the registry: colors, places and numbers."""
     light = lights()[name]
 
     def read(node: Node) -> RegisteredLight:

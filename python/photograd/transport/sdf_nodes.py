@@ -157,4 +157,4 @@ def body_of(node: Node, bodies: dict[str, Shape]) -> Shape:
 
 def _shines(node: Node) -> SceneError:
     remedy = "let a mesh or a sphere shine"
-    return node.wrong("emission", "0 of a body of signed distances", node.value("emission"), remedy)
+    return node.wrong("emission", "0 of a signed distance function", node.value("emission"), remedy)

@@ -1,4 +1,4 @@
-"""What scenes are made of, checked: places, triangles, rows of numbers, colours, materials."""
+"""What scenes are made of, checked: places, triangles, rows of numbers, colors, materials."""
 
 from __future__ import annotations
 

@@ -34,7 +34,7 @@ class MeshShape:
 
     Attributes:
         name: unique in its scene.
-        vertices: (V, 3) floating point, metres; kept as float32.
+        vertices: (V, 3) floating point, meters; kept as float32.
         faces: (F, 3) integers, counter-clockwise seen from the side that emits.
         material: name of one of the scene's materials, or `medium.BOUNDARY`: it is not seen.
         emission: (3,) radiance of the front; 0 for all that does not shine.
@@ -100,7 +100,7 @@ class MeshShape:
 
     @property
     def box(self) -> Array:
-        """(2, 3) lower and upper corner of all instances at all times, metres."""
+        """(2, 3) lower and upper corner of all instances at all times, meters."""
         corners = self.vertices[self.faces.reshape(-1)].astype(np.float64)
         if not self.places and not self.closing_places:
             return np.array([corners.min(axis=0), corners.max(axis=0)])
@@ -117,11 +117,11 @@ class SphereShape:
 
     Attributes:
         name: unique in its scene.
-        center: (3,) metres.
-        radius: metres, above 0.
+        center: (3,) meters.
+        radius: meters, above 0.
         material, interior: as for `MeshShape`.
         emission: (3,) radiance.
-        closing: (3,) the centre when the shutter closes, metres: it moves there straight on. None
+        closing: (3,) the center when the shutter closes, meters: it moves there straight on. None
             stands still.
 
     Raises:
@@ -152,7 +152,7 @@ class SphereShape:
 
     @property
     def box(self) -> Array:
-        """(2, 3) lower and upper corner at all times, metres."""
+        """(2, 3) lower and upper corner at all times, meters."""
         ends = np.array([self.center, self.center if self.closing is None else self.closing])
         return np.array([ends.min(axis=0) - self.radius, ends.max(axis=0) + self.radius])
 
@@ -163,7 +163,7 @@ class SdfShape:
 
     Attributes:
         name: unique in its scene.
-        body: a tree of spheres, boxes, tori, ... and of what combines them, in metres of the world.
+        body: a tree of spheres, boxes, tori, ... and of what combines them, in meters of the world.
             It is closed, so that it may be of glass, or filled with a medium. It must end on all
             sides: planes only cut.
         material, interior: as for `MeshShape`. Materials with textures need coordinates, which a
@@ -182,7 +182,7 @@ class SdfShape:
     interior: str | None = None
     ready: Body = field(init=False, repr=False)
     box: Array = field(init=False, repr=False)
-    """(2, 3) lower and upper corner of a box around the body, metres."""
+    """(2, 3) lower and upper corner of a box around the body, meters."""
 
     def __post_init__(self) -> None:
         if not isinstance(self.body, SdfNode):
@@ -212,8 +212,8 @@ def rectangle(
 
     Args:
         name, material, emission: as for `MeshShape`.
-        corner: (3,) metres.
-        edge_u, edge_v: (3,) from the corner to its neighbours.
+        corner: (3,) meters.
+        edge_u, edge_v: (3,) from the corner to its neighbors.
     """
     start, u, v = (np.asarray(x, np.float64) for x in (corner, edge_u, edge_v))
     vertices = np.array([start, start + u, start + u + v, start + v])
@@ -236,7 +236,7 @@ def box(
 
     Args:
         name, material, emission: as for `MeshShape`.
-        center, size: (3,) metres.
+        center, size: (3,) meters.
         turn: degrees around +Y, counter-clockwise seen from above.
         inward: whether the inside is the front: a room.
 

@@ -73,7 +73,7 @@ class TextureUse:
 
     Attributes:
         texture: name in the scene.
-        channel: of the texture, that scales the parameter; colours take three from here on.
+        channel: of the texture, that scales the parameter; colors take three from here on.
     """
 
     texture: str
@@ -157,12 +157,12 @@ def read_texture(
     wrap: Wrap = ("repeat", "repeat"),
     filter: Filter = "bilinear",
 ) -> Texture:
-    """The colours of an image file, without its alpha; or its alpha alone.
+    """The colors of an image file, without its alpha; or its alpha alone.
 
     Args:
         path: .png, .jpg, or, always linear, .exr, .hdr and .pfm.
-        encoding: "srgb" for colours of 8 or 16 bits, which are decoded; "linear" for numbers that
-            are not colours (roughness), taken as they are; "alpha" for the opacity, (H, W, 1).
+        encoding: "srgb" for colors of 8 or 16 bits, which are decoded; "linear" for numbers that
+            are not colors (roughness), taken as they are; "alpha" for the opacity, (H, W, 1).
         wrap, filter: as of `Texture`.
 
     Raises:

@@ -110,7 +110,7 @@ class PathTracer:
         places = self._media.places(self._shapes, self._owner)
         if places is not None:
             self._geometry.set_media(**places)
-        marked = [m.model + "+alpha" * m.sheer for m in scene.materials.values()]
+        marked = [m.model + "+alpha" * m.has_opacity for m in scene.materials.values()]
         self._models = [*marked, "lambert"]
 
     def _initial_params(self) -> dict[str, Array]:
@@ -264,7 +264,7 @@ class PathTracer:
     ) -> None:
         """Add `spp` samples of ambient occlusion to `sums`, in place; all channels are the same.
 
-        A sample is 1 where the scene's camera sees nothing, or nothing lies within `radius` metres
+        A sample is 1 where the scene's camera sees nothing, or nothing lies within `radius` meters
         of what it sees in one direction, drawn in proportion to the cosine; otherwise 0.
 
         Raises:

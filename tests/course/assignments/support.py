@@ -9,7 +9,7 @@ exact, one for each fact (RED_FACTS = {"fig1_x": {"claim": "mutant"}}); a fact i
 reason, needs none.
 
 What is read or drawn from an assignment's folder is kept for the tests that follow: nothing writes
-there meanwhile, and one bundle judges many hand-ins at a grader's desk as well.
+there meanwhile, and one bundle judges many submissions at a grader's desk as well.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ from support.tree import ROOT
 ASSIGNMENTS = ROOT / "assignments"
 SECRET = b"seeds of the hidden checks, in tests"
 PICTURE_BYTES = 120_000
-# Mean difference of two drawings of one figure, in grey levels; 0 here, text moves elsewhere.
+# Mean difference of two drawings of one figure, in gray levels; 0 here, text moves elsewhere.
 PICTURE_DIFFERENCE = 3.0
 
 Fact = bool | tuple[float, float, float]
@@ -61,7 +61,7 @@ def mutants_of(folder: Path) -> dict[str, NamedMutant]:
 
 @functools.cache
 def bundle_of(folder: Path, secret: bytes = SECRET) -> Bundle:
-    """What judges hand-ins of an assignment."""
+    """What judges submissions of an assignment."""
     return read_folder(folder, secret=secret)
 
 

@@ -191,7 +191,7 @@ def test_generated_questions_have_the_answers_that_their_reasons_give() -> None:
                 enters, leaves = 1 / dx, min(5 / dx, (2 - y) / dy)
                 assert leaves > enters
                 right = (leaves - enters) * np.hypot(dx, dy)
-                assert keys.metres_in_the_box(reference, y, dx, dy) == pytest.approx(right)
+                assert keys.meters_in_the_box(reference, y, dx, dy) == pytest.approx(right)
 
 
 def capture(folder: Path) -> None:

@@ -237,7 +237,7 @@ LIKELY = {
 
 
 @pytest.mark.parametrize("said", LIKELY)
-def test_likely_mistakes_are_recognised(said: str) -> None:
+def test_likely_mistakes_are_recognized(said: str) -> None:
     check, right, wrong = LIKELY[said]
     text = source(FOLDER).replace("for _ in range(count):  #", "while len(live):  #")
     assert text.count(right) == 1

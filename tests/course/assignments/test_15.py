@@ -20,7 +20,7 @@ PRINTED = 6e-7  # the handout rounds to six decimals
 CAMERA = {
     "camera_from_world": np.eye(4)[:3],
     "focal": np.array([50.0, 40.0]),
-    "centre": np.array([32.0, 24.0]),
+    "center": np.array([32.0, 24.0]),
     "width": 64,
     "height": 48,
 }

@@ -1,1 +1,1 @@
-"""Hand-ins that try to cheat, break or outlive the grader, and the proof that none of them does."""
+"""Submissions that try to cheat, break or outlive the grader, and the proof that none does."""

@@ -1,4 +1,4 @@
-"""The real grader around one attack: a bundle, workers of one mode, and an innocent hand-in."""
+"""The real grader around one attack: a bundle, workers of one mode, and an innocent submission."""
 
 from __future__ import annotations
 
@@ -26,7 +26,9 @@ from course.attacks.attack import ASSIGNMENT, MODULE, solution_upload
 
 LAST_WORDS = 5  # tenths of a second
 CALL_SECONDS = 3.0  # that an attack may take for one call
-PATIENT = Limits(seconds=120.0, cpu_seconds=60.0)  # an honest hand-in must not fail on a busy day
+PATIENT = Limits(
+    seconds=120.0, cpu_seconds=60.0
+)  # an honest submission must not fail on a busy day
 SECRET = b"only the grader of the attack suite knows this"
 
 
@@ -68,13 +70,13 @@ class Session:
         self._folder = tempfile.TemporaryDirectory(prefix="session-", ignore_cleanup_errors=True)
         self.vault = Path(self._folder.name) / "vault"  # where secrets lie, for the grader only
         self.vault.mkdir(mode=0o700)
-        for name in ("out", "bundle", "hand_ins"):
+        for name in ("out", "bundle", "submissions"):
             (self.vault / name).mkdir()
         (self.vault / "out" / "results.json").write_text('{"score": 12}')
         for path in ASSIGNMENT.iterdir():
             if path.is_file():
                 (self.vault / "bundle" / path.name).write_bytes(path.read_bytes())
-        (self.vault / "hand_ins" / "innocent.zip").write_bytes(solution_upload())
+        (self.vault / "submissions" / "innocent.zip").write_bytes(solution_upload())
         self.bundle = _with_limits(read_folder(self.vault / "bundle", secret=SECRET), None)
         self.home = WorkerHome(self.bundle.manifest.imports)
         self.workers = LoggingWorkers(self.home, mode, self.bundle.manifest.limits)
@@ -93,17 +95,17 @@ class Session:
         with tempfile.TemporaryDirectory(prefix="upload-") as folder:
             path = Path(folder) / (MODULE if suffix == ".py" else "upload.zip")
             path.write_bytes(upload)
-            hand_in = take(self.bundle.manifest, path)
+            submission = take(self.bundle.manifest, path)
         chosen = tuple(check for check in bundle.checks if check.id in checks)
         assert len(chosen) == len(checks), checks
-        case = Case("attacker", hand_in, replace(bundle, checks=chosen), "0" * 64)
+        case = Case("attacker", submission, replace(bundle, checks=chosen), "0" * 64)
         self.workers.limits = bundle.manifest.limits
         return grade_one(case, self.workers)
 
     def innocent(self, checks: Sequence[str] = ("91.1.hidden",)) -> bytes:
-        """What the honest hand-in gets, without durations."""
+        """What the honest submission gets, without durations."""
         report = self.grade(
-            (self.vault / "hand_ins" / "innocent.zip").read_bytes(), checks, PATIENT
+            (self.vault / "submissions" / "innocent.zip").read_bytes(), checks, PATIENT
         )
         data = report.to_json()
         data.pop("seconds")
@@ -134,7 +136,7 @@ def shown(report: Report) -> str:
 
 
 def pages(report: Report) -> dict[str, str]:
-    """Everything that is written about a hand-in, by name."""
+    """Everything that is written about a submission, by name."""
     return {
         "record": json.dumps(report.to_json(), default=str),
         "page": render_page(report),

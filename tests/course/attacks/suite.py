@@ -24,7 +24,7 @@ from course.naive_grader.cage import bubblewrap
 Results = Mapping[str, Mapping[str, Any]]
 STRICT = ("A", "B", "C")
 LONGEST_PAGE = 1 << 20
-MOST_GROWTH = 300 << 10  # kilobytes by which a hand-in may raise the grader's peak memory
+MOST_GROWTH = 300 << 10  # kilobytes by which a submission may raise the grader's peak memory
 
 
 def strongest() -> str:
@@ -130,14 +130,14 @@ class Referee:
         found += sorted({line for line in log.splitlines() if line.startswith("escape:")})
         text = shown(report)
         if "leaked_" in text:
-            found.append("the report on a hidden check quotes the hand-in")
+            found.append("the report on a hidden check quotes the submission")
         if numbers := traces.quoted(text, self._numbers):
             found.append(f"the report on a hidden check quotes hidden numbers: {numbers[:3]}")
         for name, page in pages(report).items():
             if len(page) > LONGEST_PAGE:
                 found.append(f"{name} has {len(page)} bytes")
             if name == "page" and "<script" in page.lower():
-                found.append("a tag of the hand-in stands in the page")
+                found.append("a tag of the submission stands in the page")
             if "\x1b" in page:
                 found.append(f"an escape sequence stands in {name}")
         return found
@@ -157,7 +157,9 @@ class Referee:
         innocent = session.innocent()
         session.workers.take_log()
         if innocent != self._innocent:
-            found.append(f"another hand-in is graded differently afterwards: {innocent[:2000]!r}")
+            found.append(
+                f"another submission is graded differently afterwards: {innocent[:2000]!r}"
+            )
         return found
 
 

@@ -1,4 +1,4 @@
-"""No attack gets more than it may, hangs, leaves anything behind or touches another hand-in."""
+"""No attack gets more than it may, hangs, leaves anything behind or touches another submission."""
 
 from __future__ import annotations
 

@@ -90,7 +90,7 @@ def test_prerequisites(broken: Broken) -> None:
 
 
 def test_counts(broken: Broken) -> None:
-    (broken.folder / "alternatives" / "vectorised.py").unlink()
+    (broken.folder / "alternatives" / "vectorized.py").unlink()
     broken.change("assignment.toml", '["twice"]', '["twice_backward"]')
     said = broken.says("counts")
     assert "the adjoint twice_backward and 2 named mutants; it needs 5" in said[0]
@@ -189,7 +189,7 @@ def test_what_shingles_tell() -> None:
 
 def test_likeness(broken: Broken) -> None:
     assert broken.says("likeness") == []
-    broken.change("alternatives/vectorised.py", "def twice(x):", "def twice(values):")
-    broken.change("alternatives/vectorised.py", "return x + x", "return 2.0 * values")
-    said = ["twice of the alternative vectorised is the solution's"]
+    broken.change("alternatives/vectorized.py", "def twice(x):", "def twice(values):")
+    broken.change("alternatives/vectorized.py", "return x + x", "return 2.0 * values")
+    said = ["twice of the alternative vectorized is the solution's"]
     assert broken.says("likeness") == said

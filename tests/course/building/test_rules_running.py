@@ -86,17 +86,17 @@ def test_which_checks_kill_a_mutant_comes_from_the_run(broken: Broken) -> None:
 
 
 def test_alternatives(broken: Broken) -> None:
-    broken.change("alternatives/vectorised.py", "x + x", "x + x * x")
+    broken.change("alternatives/vectorized.py", "x + x", "x + x * x")
     said = broken.says("alternatives")
     assert [text.partition(":")[0] for text in said] == [
-        f"vectorised is right and does not pass {check}" for check in ("17.1.known", "17.1.random")
+        f"vectorized is right and does not pass {check}" for check in ("17.1.known", "17.1.random")
     ]
 
 
 def test_margins_of_right_answers(broken: Broken) -> None:
-    broken.change("alternatives/vectorised.py", "x + x", "(x + x) * (1 + 5e-13)")
+    broken.change("alternatives/vectorized.py", "x + x", "(x + x) * (1 + 5e-13)")
     said = broken.says("margins")
-    assert "17.1.known: vectorised is right and uses 0.5 of the tolerance" in said[0]
+    assert "17.1.known: vectorized is right and uses 0.5 of the tolerance" in said[0]
 
 
 def test_margins_of_wrong_answers(broken: Broken) -> None:
@@ -155,7 +155,7 @@ def test_a_check_that_falters_is_reported(broken: Broken) -> None:
 
 
 def test_a_broken_fixture_is_not_ok(broken: Broken) -> None:
-    broken.change("alternatives/vectorised.py", "x + x", "x + x * x")
+    broken.change("alternatives/vectorized.py", "x + x", "x + x * x")
     known = evidence(broken.folder, cache=broken.cache)
     assert not known["ok"]
     assert known["alternatives_accepted"] == 2

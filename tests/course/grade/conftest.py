@@ -1,4 +1,4 @@
-"""The toy assignment as a bundle that may be graded on any machine, and hand-ins for it."""
+"""The toy assignment as a bundle that may be graded on any machine, and submissions for it."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ def toy(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="session")
 def quick(toy: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The same with one check and little time, for many hand-ins."""
+    """The same with one check and little time, for many submissions."""
     folder = tmp_path_factory.mktemp("quick") / "90_toy"
     shutil.copytree(toy, folder)
     (folder / "checks.py").write_text(QUICK_CHECKS)
@@ -132,7 +132,7 @@ def grade_text(bundle: Bundle, workers: Workers, tmp_path: Path) -> Callable[...
 
     def grade(text: str, other: Bundle | None = None, **files: str) -> Report:
         judged = other or bundle
-        folder = tmp_path / "hand_in"
+        folder = tmp_path / "submission"
         shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir()
         (folder / "toy.py").write_text(text)

@@ -9,7 +9,7 @@ import pytest
 from photograd_course.assignment.bundle import Bundle
 from photograd_course.assignment.drawing import draw
 from photograd_course.grade.answers import Answered, read_answers, score_answers
-from photograd_course.grade.hand_in import HandIn
+from photograd_course.grade.submission import Submission
 from photograd_course.student.predictions import digest
 
 SOURCE = "x = 1\n"
@@ -34,7 +34,7 @@ def scored(
     files = {"toy.py": source.encode(), "answers.toml": answers.encode()}
     if locked is not None:
         files["predictions.lock.json"] = locked
-    results, _, _ = score_answers(bundle, HandIn(files))
+    results, _, _ = score_answers(bundle, Submission(files))
     assert [result.id for result in results] == [question.id for question in bundle.questions]
     assert all(result.points in (0.0, result.max) for result in results)
     return {result.id: result for result in results}

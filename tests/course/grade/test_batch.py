@@ -1,4 +1,4 @@
-"""A folder of hand-ins: resumed after a kill, graded again, compared."""
+"""A folder of submissions: resumed after a kill, graded again, compared."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ STUDENTS = ("Ada", "Bo", "Cy", "=Di")
 
 
 @pytest.fixture
-def hand_ins(tmp_path: Path, solution: str) -> Path:
+def submissions(tmp_path: Path, solution: str) -> Path:
     """Right, wrong, missing, and one whose student's name is a formula."""
     texts = (solution, solution.replace("np.exp(-x))", "np.exp(x))"), None, solution)
     for student, text in zip(STUDENTS, texts, strict=True):
@@ -41,7 +41,7 @@ def hand_ins(tmp_path: Path, solution: str) -> Path:
 
 
 @pytest.fixture
-def run(quick: Path, hand_ins: Path, tmp_path: Path) -> Run:
+def run(quick: Path, submissions: Path, tmp_path: Path) -> Run:
     def graded(
         *, resume: bool = False, bundle: Path = quick
     ) -> tuple[list[Report], list[Change] | None]:
@@ -49,7 +49,7 @@ def run(quick: Path, hand_ins: Path, tmp_path: Path) -> Run:
         manifest = loaded.read().manifest
         folder = RunFolder(tmp_path / "out", loaded.secret)
         with isolated_workers(manifest, "E") as workers:
-            batch = Batch(find_sources(manifest, hand_ins), loaded, workers, "", 2)
+            batch = Batch(find_sources(manifest, submissions), loaded, workers, "", 2)
             return run_batch(batch, folder, resume=resume)
 
     return graded
@@ -71,7 +71,7 @@ def test_tables_pages_and_records(run: Run, tmp_path: Path) -> None:
         "Cy": "0",
         "'=Di": "3",
     }
-    assert table["Cy"]["status"] == "hand-in refused"
+    assert table["Cy"]["status"] == "submission refused"
     assert "there is no toy.py" in table["Cy"]["notes"]
     for row in table.values():
         assert (tmp_path / "out" / "pages" / row["page"]).read_text().startswith("<!DOCTYPE")
@@ -107,7 +107,7 @@ def test_a_changed_bundle_shows_who_changes_and_by_what(
 
 
 def test_resume_believes_sealed_records_of_the_same_files_only(
-    run: Run, hand_ins: Path, tmp_path: Path, solution: str
+    run: Run, submissions: Path, tmp_path: Path, solution: str
 ) -> None:
     run()
     records = {p.name[:2]: p for p in (tmp_path / "out" / "records").glob("*.json")}
@@ -115,7 +115,7 @@ def test_resume_believes_sealed_records_of_the_same_files_only(
     bo = records["Bo"].read_bytes()
     records["Bo"].write_bytes(bo.replace(b'"points":0.0', b'"points":3.0'))
     assert records["Bo"].read_bytes() != bo
-    (hand_ins / "Ada" / "toy.py").write_text(solution + "# changed\n")
+    (submissions / "Ada" / "toy.py").write_text(solution + "# changed\n")
     run(resume=True)
     after = {name: path.stat().st_mtime_ns for name, path in records.items()}
     assert {name for name in records if after[name] != before[name]} == {"Ad", "Bo"}
@@ -132,7 +132,7 @@ def test_a_folder_of_something_else_is_left_alone(run: Run, tmp_path: Path) -> N
 
 @pytest.mark.skipif(os.name != "posix", reason="sends a signal")
 def test_killed_and_resumed_gives_the_same_table(
-    quick: Path, hand_ins: Path, tmp_path: Path
+    quick: Path, submissions: Path, tmp_path: Path
 ) -> None:
     def command(out: str, *more: str) -> list[str]:
         return [
@@ -142,7 +142,7 @@ def test_killed_and_resumed_gives_the_same_table(
             "course",
             "grade",
             "90",
-            str(hand_ins),
+            str(submissions),
             "--bundle",
             str(quick),
             "--mode",

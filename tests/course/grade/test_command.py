@@ -13,7 +13,7 @@ from photograd_course.cli import run
 
 
 @pytest.fixture
-def hand_in(tmp_path: Path, solution: str) -> Path:
+def submission(tmp_path: Path, solution: str) -> Path:
     folder = tmp_path / "Ada"
     folder.mkdir()
     (folder / "toy.py").write_text(solution)
@@ -38,8 +38,10 @@ def patient(toy: Path, tmp_path: Path) -> Path:
     return folder
 
 
-def test_one_hand_in(hand_in: Path, patient: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    code, result, said = grade(capsys, hand_in, "--bundle", patient, "--mode", "E")
+def test_one_submission(
+    submission: Path, patient: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    code, result, said = grade(capsys, submission, "--bundle", patient, "--mode", "E")
     assert code == 0
     assert (result["score"], result["max_score"], result["student"]) == (15, 21, "Ada")
     assert {"id", "status", "points", "max"} <= set(result["checks"][0])
@@ -48,19 +50,26 @@ def test_one_hand_in(hand_in: Path, patient: Path, capsys: pytest.CaptureFixture
 
 
 def test_a_mode_below_the_minimum_is_for_staff_and_no_zero(
-    hand_in: Path, toy: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    submission: Path, toy: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     strict = tmp_path / "strict" / "90_toy"
     shutil.copytree(toy, strict)
     manifest = strict / "assignment.toml"
     manifest.write_text(manifest.read_text().replace('minimum_mode = "E"', 'minimum_mode = "C"'))
-    code, result, said = grade(capsys, hand_in, "--bundle", strict, "--mode", "E")
+    code, result, said = grade(capsys, submission, "--bundle", strict, "--mode", "E")
     assert code == 3
     assert result["score"] is None
     assert {each["status"] for each in result["checks"]} == {"error-ours"}
     assert "weaker than the required C" in said
     code, result, said = grade(
-        capsys, hand_in.parent / "Ada", "--bundle", strict, "--mode", "E", "--out", tmp_path / "out"
+        capsys,
+        submission.parent / "Ada",
+        "--bundle",
+        strict,
+        "--mode",
+        "E",
+        "--out",
+        tmp_path / "out",
     )
     assert code == 3
     assert result["needs_staff"] == ["Ada"]
@@ -68,11 +77,13 @@ def test_a_mode_below_the_minimum_is_for_staff_and_no_zero(
 
 
 def test_a_short_secret_is_refused(
-    hand_in: Path, toy: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    submission: Path, toy: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     secret = tmp_path / "secret"
     secret.write_text("short")
-    code, _, said = grade(capsys, hand_in, "--bundle", toy, "--secret-file", secret, "--mode", "E")
+    code, _, said = grade(
+        capsys, submission, "--bundle", toy, "--secret-file", secret, "--mode", "E"
+    )
     assert code == 1
     assert "at least 16 characters" in said
 
@@ -81,22 +92,26 @@ def test_a_short_secret_is_refused(
     ("words", "says"), [(("nowhere",), "nothing"), (("{}", "--mode", "F"), "one of A, B, C, D, E")]
 )
 def test_wrong_calls(
-    words: tuple[str, ...], says: str, hand_in: Path, toy: Path, capsys: pytest.CaptureFixture[str]
+    words: tuple[str, ...],
+    says: str,
+    submission: Path,
+    toy: Path,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
-    code, _, said = grade(capsys, *(w.format(hand_in) for w in words), "--bundle", toy)
+    code, _, said = grade(capsys, *(w.format(submission) for w in words), "--bundle", toy)
     assert code == 1
     assert says in said
 
 
 def test_a_sealed_bundle_opens_with_its_secret_only(
-    hand_in: Path, patient: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    submission: Path, patient: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     secret, other = tmp_path / "secret.txt", tmp_path / "other.txt"
     secret.write_text("a secret of the whole course\n")
     other.write_text("a secret of another course\n")
     sealed = tmp_path / "hidden.zip"
     sealed.write_bytes(seal_bundle(bundle_files(patient, {}), secret.read_bytes().strip()))
-    words = (hand_in, "--bundle", sealed, "--mode", "E", "--secret-file")
+    words = (submission, "--bundle", sealed, "--mode", "E", "--secret-file")
     code, result, said = grade(capsys, *words, secret)
     assert (code, result["score"], result["max_score"]) == (0, 15, 21), said
     code, _, said = grade(capsys, *words, other)
@@ -105,11 +120,11 @@ def test_a_sealed_bundle_opens_with_its_secret_only(
 
 
 def test_a_kit_is_no_bundle(
-    hand_in: Path, toy: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    submission: Path, toy: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     kit = tmp_path / "kit" / "90_toy"
     shutil.copytree(toy, kit)
     (kit / "toy.py").unlink()
-    code, _, said = grade(capsys, hand_in, "--bundle", kit)
+    code, _, said = grade(capsys, submission, "--bundle", kit)
     assert code == 1
     assert "a bundle with the solution" in said

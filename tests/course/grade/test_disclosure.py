@@ -1,4 +1,4 @@
-"""Hidden checks say nothing that a hand-in could have written into its answer."""
+"""Hidden checks say nothing that a submission could have written into its answer."""
 
 from __future__ import annotations
 

@@ -130,7 +130,7 @@ def test_each_missing_part_is_a_finding(
     assert says is None or any(says in finding for finding in found["findings"])
 
 
-def test_a_solution_that_fails_as_a_hand_in_is_a_finding(toy: Path, tmp_path: Path) -> None:
+def test_a_solution_that_fails_as_a_submission_is_a_finding(toy: Path, tmp_path: Path) -> None:
     broken = tmp_path / "90_toy"
     shutil.copytree(toy, broken)
     swap(broken / "toy.py", "import numpy as np\n", "import numpy as np\nimport json\n")

@@ -1,4 +1,4 @@
-"""Whose hand-in is whose, in the layouts of Gradescope, Canvas, Moodle, and in a table."""
+"""Whose submission is whose, in the layouts of Gradescope, Canvas, Moodle, and in a table."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ def put_zip(path: Path, text: str = MODULE) -> None:
 def taken(bundle: Bundle, path: Path) -> dict[str, str]:
     """Student to the module's text."""
     sources = find_sources(bundle.manifest, path)
-    hand_ins = {source.student: source.take(bundle.manifest) for source in sources}
-    assert len(hand_ins) == len(sources)
-    assert not any(hand_in.problem for hand_in in hand_ins.values())
-    return {student: h.files["toy.py"].decode() for student, h in hand_ins.items()}
+    submissions = {source.student: source.take(bundle.manifest) for source in sources}
+    assert len(submissions) == len(sources)
+    assert not any(submission.problem for submission in submissions.values())
+    return {student: h.files["toy.py"].decode() for student, h in submissions.items()}
 
 
 def test_gradescope(bundle: Bundle, tmp_path: Path) -> None:
@@ -95,7 +95,7 @@ def test_yaml_that_grows_or_is_none(
 
 
 def test_canvas(bundle: Bundle, tmp_path: Path) -> None:
-    put_zip(tmp_path / "doejane_101_900_handin.zip", "a = 1\n")
+    put_zip(tmp_path / "doejane_101_900_submission.zip", "a = 1\n")
     put(tmp_path / "roejim_LATE_102_901_toy-2.py", "b = 1\n")
     put(tmp_path / "roejim_LATE_102_902_answers.toml", "student = 'Jim'\n")
     assert taken(bundle, tmp_path) == {"doejane (101)": "a = 1\n", "roejim (102)": "b = 1\n"}

@@ -15,12 +15,12 @@ from photograd_course.grade import answers, batch, one
 from photograd_course.grade.answers import plain_answers, score_answers
 from photograd_course.grade.batch import Batch, run_batch
 from photograd_course.grade.exports import find_sources
-from photograd_course.grade.hand_in import OTHER_BYTES, SOURCE_BYTES, HandIn
 from photograd_course.grade.load import load
 from photograd_course.grade.one import Case, grade_guarded, grade_one
 from photograd_course.grade.printable import printable
 from photograd_course.grade.report import Report
 from photograd_course.grade.run_folder import RunFolder
+from photograd_course.grade.submission import OTHER_BYTES, SOURCE_BYTES, Submission
 from photograd_course.grade.workers import isolated_workers
 from photograd_course.grading import StudentFailure
 
@@ -33,14 +33,14 @@ assert len(DOTS) <= OTHER_BYTES
 
 @pytest.mark.parametrize("text", [HEX, DOTS], ids=["hex", "dots"])
 def test_answers_that_cannot_be_shown_or_parsed_fail(bundle: Bundle, text: str) -> None:
-    results, _, _ = score_answers(bundle, HandIn({"answers.toml": text.encode()}))
+    results, _, _ = score_answers(bundle, Submission({"answers.toml": text.encode()}))
     assert {result.status for result in results} == {"failed"}
 
 
 def test_numbers_are_drawn_from_any_text_at_once(bundle: Bundle) -> None:
     text = '[answers]\n"90.g1" = 4\n'
     files = {"toy.py": QUOTES.encode(), "answers.toml": text.encode()}
-    results, _, _ = score_answers(bundle, HandIn(files))
+    results, _, _ = score_answers(bundle, Submission(files))
     assert {result.status for result in results} <= {"failed", "passed"}
 
 
@@ -64,7 +64,7 @@ def test_the_control_tells_whose_answers_are_to_blame(
     monkeypatch.setattr(answers, "draw", draw)
     files = {**plain_answers(bundle).files}
     files["answers.toml"] = b'student = "9"\n' + files["answers.toml"]
-    report = grade_one(Case("Ada", HandIn(files), replace(bundle, checks=()), "0"), None)
+    report = grade_one(Case("Ada", Submission(files), replace(bundle, checks=()), "0"), None)
     assert {result.status for result in report.questions} == {status}
     assert report.is_sound is (status == "failed")
 
@@ -77,7 +77,7 @@ def test_a_machine_in_trouble_blames_nobody(
         raise trouble
 
     monkeypatch.setattr(one, "score_answers", score)
-    report = grade_one(Case("Ada", HandIn({}), replace(bundle, checks=()), "0"), None)
+    report = grade_one(Case("Ada", Submission({}), replace(bundle, checks=()), "0"), None)
     assert {result.status for result in report.questions} == {"error-ours"}
 
 
@@ -90,7 +90,7 @@ def test_a_mistake_of_ours_becomes_a_report_but_no_room_to_write_ends_the_run(
 
         return grade
 
-    case = Case("Ada", HandIn({}), bundle, "0")
+    case = Case("Ada", Submission({}), bundle, "0")
     report = grade_guarded(case, None, fails(StudentFailure("odd", "nobody expects it")))
     assert (report.score, report.student) == (None, "Ada")
     assert len(report.checks) == len(bundle.checks)

@@ -12,11 +12,11 @@ from pathlib import Path
 
 import pytest
 from photograd_course.assignment.bundle import Bundle
-from photograd_course.grade.hand_in import OTHER_BYTES, SOURCE_BYTES, HandIn
 from photograd_course.grade.intake import take
+from photograd_course.grade.submission import OTHER_BYTES, SOURCE_BYTES, Submission
 
 GOOD = b"x = 1\n"
-Take = Callable[[bytes], HandIn]
+Take = Callable[[bytes], Submission]
 
 
 def zipped(*entries: tuple[str | zipfile.ZipInfo, bytes]) -> bytes:
@@ -35,7 +35,7 @@ def special(name: str, mode: int) -> zipfile.ZipInfo:
 
 @pytest.fixture
 def take_zip(bundle: Bundle, tmp_path: Path) -> Take:
-    def taken(data: bytes) -> HandIn:
+    def taken(data: bytes) -> Submission:
         path = tmp_path / "hand.zip"
         path.write_bytes(data)
         before = sorted(tmp_path.rglob("*"))
@@ -109,7 +109,7 @@ def test_a_zip_bomb_that_lies_about_its_size(take_zip: Take) -> None:
     assert taken.problem
 
 
-def test_a_big_bomb_beside_the_hand_in_is_not_even_read(take_zip: Take) -> None:
+def test_a_big_bomb_beside_the_submission_is_not_even_read(take_zip: Take) -> None:
     taken = take_zip(zipped(("toy.py", GOOD), ("big.bin", bytes(64 << 20))))
     assert taken.files == {"toy.py": GOOD}
 
@@ -145,7 +145,7 @@ def test_too_many_entries(take_zip: Take) -> None:
     assert "more than 5000 files" in taken.problem
 
 
-def test_a_repository_around_the_hand_in_does_not_count(
+def test_a_repository_around_the_submission_does_not_count(
     take_zip: Take, bundle: Bundle, tmp_path: Path
 ) -> None:
     objects = [(f".git/objects/f{k}", b"") for k in range(5001)]

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 from photograd_course.assignment.bundle import read_folder
-from photograd_course.grade.hand_in import HandIn
 from photograd_course.grade.one import Case, grade_one
+from photograd_course.grade.submission import Submission
 from photograd_course.grade.workers import IsolatedWorkers
 from photograd_course.worker.home import WorkerHome
 from photograd_course.worker.self_test import self_test
@@ -53,10 +53,10 @@ def points_lost(folder: Path) -> list[str]:
     if not mode:
         missing("no mode that enforces anything works here")
     bundle = read_folder(folder, secret=SECRET)
-    hand_in = HandIn(bundle.solution_files(bundle.solution))
+    submission = Submission(bundle.solution_files(bundle.solution))
     with WorkerHome(bundle.manifest.imports) as home:
         workers = IsolatedWorkers(home, mode, bundle.manifest)
-        report = grade_one(Case("right", hand_in, bundle, "0" * 64), workers)
+        report = grade_one(Case("right", submission, bundle, "0" * 64), workers)
     return [f"{o.id}: {o.status.value}, {o.text}" for o in report.checks if o.points != o.max]
 
 

@@ -1,6 +1,6 @@
-"""A hundred hand-ins, of which some hang, some crash and some are no hand-ins.
+"""A hundred submissions, of which some hang, some crash and some are no submissions.
 
-The grader may open few files, so that one left open for each hand-in would end it.
+The grader may open few files, so that one left open for each submission would end it.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ WRONG = range(64, 74)
 
 
 def module(solution: str, number: int) -> str:
-    """The hand-in of one student."""
+    """The submission of one student."""
     head = "    # >>> solution 90.1\n"
     assert head in solution
     if number in WRONG:
@@ -48,7 +48,7 @@ def module(solution: str, number: int) -> str:
     return solution.replace(head, f"{head}    exec({statement!r})\n") + f"\n# student {number}\n"
 
 
-def hand_in(solution: str, number: int) -> bytes:
+def submission(solution: str, number: int) -> bytes:
     if number in MALFORMED:
         return MALFORMED[number]
     data = io.BytesIO()
@@ -63,11 +63,11 @@ def _with_few_files() -> None:
 
 
 @pytest.mark.slow
-def test_a_hundred_hand_ins(quick: Path, solution: str, tmp_path: Path) -> None:
+def test_a_hundred_submissions(quick: Path, solution: str, tmp_path: Path) -> None:
     folder = tmp_path / "in"
     folder.mkdir()
     for number in range(HANDED_IN):
-        (folder / f"student{number:03}.zip").write_bytes(hand_in(solution, number))
+        (folder / f"student{number:03}.zip").write_bytes(submission(solution, number))
     command = [
         sys.executable,
         "-m",
@@ -96,7 +96,7 @@ def test_a_hundred_hand_ins(quick: Path, solution: str, tmp_path: Path) -> None:
     for number, row in enumerate(rows):
         assert row["student"] == f"student{number:03}"
         assert row["score"] == ("0" if number in bad else "3"), row
-        assert row["status"] == ("hand-in refused" if number in MALFORMED else "ok")
+        assert row["status"] == ("submission refused" if number in MALFORMED else "ok")
     pages = list((tmp_path / "out" / "pages").glob("*.html"))
     assert len(pages) == HANDED_IN
 

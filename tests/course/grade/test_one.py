@@ -1,4 +1,4 @@
-"""One hand-in through real workers: every check judged, none missing, ours told from theirs."""
+"""One submission through real workers: every check judged, none missing, ours told from theirs."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from typing import Any
 import pytest
 from photograd_course.assignment.bundle import Bundle
 from photograd_course.errors import SceneError
-from photograd_course.grade.hand_in import HandIn
 from photograd_course.grade.one import Case, grade_one
 from photograd_course.grade.report import Report
 from photograd_course.grade.report_json import read_record, verdict_digest, write_record
+from photograd_course.grade.submission import Submission
 from photograd_course.grade.workers import Workers
 from photograd_course.grading import Number, Trial, check
 from photograd_course.grading.failures import GraderFault
@@ -68,9 +68,9 @@ def test_modules_that_do_not_load(grade_text: Grade, small: Bundle, text: str, r
 
 
 def test_a_missing_module_is_said_and_answers_still_count(bundle: Bundle, workers: Workers) -> None:
-    hand_in = HandIn({"answers.toml": b'[answers]\n"90.d1" = "b"\n'}, "there is no toy.py")
-    report = grade_one(Case("Ada", hand_in, bundle, "0"), workers)
-    assert reasons(report) == {"hand-in"}
+    submission = Submission({"answers.toml": b'[answers]\n"90.d1" = "b"\n'}, "there is no toy.py")
+    report = grade_one(Case("Ada", submission, bundle, "0"), workers)
+    assert reasons(report) == {"submission"}
     assert report.score == 2.0
 
 
@@ -113,21 +113,21 @@ class NoStart:
 
 
 def test_workers_that_do_not_start_are_our_error(bundle: Bundle, solution: str) -> None:
-    hand_in = HandIn({"toy.py": solution.encode()})
-    report = grade_one(Case("Ada", hand_in, bundle, "0"), NoStart())
+    submission = Submission({"toy.py": solution.encode()})
+    report = grade_one(Case("Ada", submission, bundle, "0"), NoStart())
     assert set(statuses(report).values()) == {"error-ours"}
     assert report.score is None
 
 
 def test_no_mode_is_our_error(bundle: Bundle, solution: str) -> None:
-    hand_in = HandIn({"toy.py": solution.encode()})
-    report = grade_one(Case("Ada", hand_in, bundle, "0"), None, unavailable="mode C is missing")
+    submission = Submission({"toy.py": solution.encode()})
+    report = grade_one(Case("Ada", submission, bundle, "0"), None, unavailable="mode C is missing")
     assert set(statuses(report).values()) == {"error-ours"}
     assert report.score is None
     assert "mode C is missing" in report.staff[0]
 
 
-def test_time_for_a_whole_hand_in_is_bounded(
+def test_time_for_a_whole_submission_is_bounded(
     grade_text: Grade, solution: str, bundle: Bundle
 ) -> None:
     limits = replace(bundle.manifest.limits, seconds=0.9)

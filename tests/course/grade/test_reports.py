@@ -1,4 +1,4 @@
-"""Reports as files: nothing a hand-in wrote becomes markup, a formula or a terminal's command."""
+"""Reports as files: nothing a submission wrote becomes markup, a formula or a command."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ class Tags(HTMLParser):
         self.text += data
 
 
-def test_a_page_holds_no_markup_of_a_hand_in() -> None:
+def test_a_page_holds_no_markup_of_a_submission() -> None:
     page = render_page(
         report(student=NASTY, ignored=(NASTY,), problem=NASTY, warnings=(NASTY,), title="T")
     )
@@ -228,16 +228,16 @@ def test_our_own_failure_lowers_no_grade_and_saves_none() -> None:
     # 1.b keeps what it had; 1.a has failed this time, and that counts.
     assert (row["score"], row["status"]) == ("3", "error-ours, earlier points kept")
     # Points of another submission say nothing about this one.
-    other = replace(better, hand_in="c" * 64)
+    other = replace(better, submission="c" * 64)
     row = first_row([ours], {"Ada": other})
     assert (row["score"], row["status"]) == ("", "error-ours")
 
 
-def test_two_hand_ins_that_declare_one_name_are_pointed_out() -> None:
+def test_two_submissions_that_declare_one_name_are_pointed_out() -> None:
     who = [("Ada", "Ada L."), ("Bo", "Ada L."), ("Cy", "Cy"), ("Di", "")]
     reports = [report(student=name, declared=declared) for name, declared in who]
     rows = csv.DictReader(io.StringIO(grades_table(reports, {}).decode()))
-    flagged = [row["student"] for row in rows if "as another hand-in does" in row["notes"]]
+    flagged = [row["student"] for row in rows if "as another submission does" in row["notes"]]
     assert flagged == ["Ada", "Bo"]
 
 

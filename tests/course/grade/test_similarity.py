@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from photograd_course.grade.similarity import FEWEST_SHARED, normalised, prints, similar_pairs
+from photograd_course.grade.similarity import FEWEST_SHARED, normalized, prints, similar_pairs
 
 ONE = '''
 def descend(gradient, x0, tau, n):
@@ -118,5 +118,5 @@ def test_what_most_have_in_common_does_not_count() -> None:
 
 def test_text_that_is_no_program_is_no_error() -> None:
     assert prints("def (((\n") == set()
-    assert normalised("'''open") == []
+    assert normalized("'''open") == []
     assert similar_pairs({"a": "", "b": ""}) == []

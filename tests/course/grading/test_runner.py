@@ -120,7 +120,7 @@ def test_what_the_student_does_is_not(error: Exception) -> None:
     assert verdict(body).status is Status.FAILED
 
 
-def test_a_hand_in_that_does_not_import_fails_every_check(bundle: Bundle) -> None:
+def test_a_submission_that_does_not_import_fails_every_check(bundle: Bundle) -> None:
     found = run(bundle, "import numpy as np\nx = 1 / 0\n")
     assert {(o.status, o.reason) for o in found.values()} == {(Status.FAILED, "broken")}
 

@@ -83,6 +83,6 @@ def test_a_service_looks_at_what_it_is_asked() -> None:
     assert len(asked) == 1
 
 
-def test_a_forgotten_return_is_recognised() -> None:
+def test_a_forgotten_return_is_recognized() -> None:
     with pytest.raises(CheckFailed, match="return statement"):
         Array((1,)).require(None, "f")

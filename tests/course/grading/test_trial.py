@@ -140,7 +140,7 @@ def test_a_check_needs_a_title_and_points() -> None:
         check("x", task="1", points=1, calls=(), visibility="open")
 
 
-def test_a_service_may_give_the_verdict_whatever_the_hand_in_makes_of_it() -> None:
+def test_a_service_may_give_the_verdict_whatever_the_submission_makes_of_it() -> None:
     code = "def quiet(f):\n    try:\n        f(1.0)\n    except Exception:\n        return 1.0\n"
     code += "def loud(f):\n    f(1.0)\n"
 

@@ -39,7 +39,7 @@ def strict(request: pytest.FixtureRequest) -> str:
 
 @pytest.fixture(scope="session")
 def expected() -> dict[str, list[list[Any]]]:
-    """What mode E says to both hand-ins: the others must agree."""
+    """What mode E says to both submissions: the others must agree."""
     with WorkerHome() as made:
         return {key: essence(outcomes_of(text, made, "E")) for key, text in TEXTS.items()}
 

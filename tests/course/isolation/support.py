@@ -1,4 +1,4 @@
-"""What the tests of isolation share: a home, short limits, and hand-ins made of a few lines."""
+"""What the tests of isolation share: a home, short limits, and submissions made of a few lines."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ PATIENT = Limits(seconds=60.0, cpu_seconds=30.0, memory_mb=768, output_kb=64)
 CALL_SECONDS = 1.0
 
 
-def hand_in(text: str, home: WorkerHome, mode: str, limits: Limits = LIMITS) -> RemoteStudent:
+def submission(text: str, home: WorkerHome, mode: str, limits: Limits = LIMITS) -> RemoteStudent:
     """A started worker with `text` as its only module; what that imports is not screened."""
     hand = Hand({"toy": textwrap.dedent(text)}, (), ())
     return RemoteStudent(open_worker(home, mode, limits), hand)
 
 
 def outcomes_of(text: str, home: WorkerHome, mode: str) -> list[Outcome]:
-    """The toy assignment's verdict on a hand-in."""
+    """The toy assignment's verdict on a submission."""
     bundle = read_folder(TOY, secret=b"secret of the tests")
     hand = bundle.hand({"toy.py": text.encode()})
 

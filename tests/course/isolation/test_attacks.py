@@ -1,4 +1,4 @@
-"""Hand-ins that misbehave end as the right kind of failure, and leave nothing behind.
+"""Submissions that misbehave end as the right kind of failure, and leave nothing behind.
 
 What must not be left (processes of the worker's user, its folder) is asserted by the fixture
 `home` after each test.
@@ -14,7 +14,7 @@ import pytest
 from photograd_course.grading import StudentFailure
 from photograd_course.worker.home import WorkerHome
 
-from course.isolation.support import CALL_SECONDS, LIMITS, hand_in
+from course.isolation.support import CALL_SECONDS, LIMITS, submission
 
 # Frames as `worker/codec.py` describes them, sent on every open descriptor but the standard ones.
 FORGE = """
@@ -90,7 +90,7 @@ FORBIDDEN = {
     "another processor": ("os.sched_setaffinity(os.getppid(), {0})", "PermissionError"),
     "the grader": ("import photograd_course", "ModuleNotFoundError"),
     "the core": ("import photograd", "ModuleNotFoundError"),
-    "a neighbour of NumPy": ("import matplotlib", "ModuleNotFoundError"),
+    "a neighbor of NumPy": ("import matplotlib", "ModuleNotFoundError"),
     "accounts": ("open('/etc/passwd')", ("PermissionError", "FileNotFoundError")),
     "big array": ("import numpy; numpy.ones(10**9)", "MemoryError"),
     "many objects": ("x = []\nwhile True: x.append(bytearray(1 << 20))", "MemoryError"),
@@ -111,7 +111,7 @@ def module(body: str) -> str:
 
 def failure(body: str, home: WorkerHome, mode: str) -> StudentFailure:
     home.imports = NEEDED
-    student = hand_in(module(body), home, mode)
+    student = submission(module(body), home, mode)
     try:
         with pytest.raises(StudentFailure) as caught:
             student.call("toy.f", [1.0], seconds=CALL_SECONDS)
@@ -122,7 +122,7 @@ def failure(body: str, home: WorkerHome, mode: str) -> StudentFailure:
 
 @pytest.mark.parametrize("name", ATTACKS)
 @pytest.mark.parametrize("chosen", ["strongest", "E"])
-def test_misbehaviour_has_a_name(name: str, chosen: str, home: WorkerHome) -> None:
+def test_misbehavior_has_a_name(name: str, chosen: str, home: WorkerHome) -> None:
     body, reasons = ATTACKS[name]
     said = failure(body, home, available(chosen))
     assert said.reason in (reasons if isinstance(reasons, tuple) else (reasons,)), said
@@ -136,7 +136,7 @@ def test_what_is_forbidden_raises(strict: str, home: WorkerHome) -> None:
     functions = [
         f"def f{k}(x):\n{textwrap.indent(body, '    ')}\n" for k, body in enumerate(bodies)
     ]
-    student = hand_in("import os, time\n" + "".join(functions), home, strict)
+    student = submission("import os, time\n" + "".join(functions), home, strict)
     found = {}
     try:
         for k, name in enumerate(FORBIDDEN):
@@ -166,7 +166,7 @@ def test_a_laptop_refuses_honest_mistakes_too(name: str, home: WorkerHome) -> No
 def test_a_worker_that_stops_reading_cannot_block_the_grader(mode: str, home: WorkerHome) -> None:
     import numpy as np
 
-    student = hand_in(module("send(frame(3))\ntime.sleep(1000)"), home, mode)
+    student = submission(module("send(frame(3))\ntime.sleep(1000)"), home, mode)
     try:
         assert student.call("toy.f", [1.0], seconds=CALL_SECONDS) == 1.0
         with pytest.raises(StudentFailure) as caught:
@@ -177,7 +177,7 @@ def test_a_worker_that_stops_reading_cannot_block_the_grader(mode: str, home: Wo
 
 
 def test_the_end_of_a_whole_life_is_told_from_a_slow_answer(home: WorkerHome) -> None:
-    student = hand_in(module("time.sleep(1000)"), home, "E", replace(LIMITS, seconds=6.0))
+    student = submission(module("time.sleep(1000)"), home, "E", replace(LIMITS, seconds=6.0))
     try:
         with pytest.raises(StudentFailure) as caught:
             student.call("toy.f", [1.0], seconds=60.0)
@@ -203,7 +203,7 @@ def test_what_passes_through_a_function_is_limited(body: str, mode: str, home: W
         kept.append(x.nbytes + answer.nbytes)
         return answer
 
-    student = hand_in(module(body).replace("def f(x)", "def g(f, x)"), home, mode)
+    student = submission(module(body).replace("def f(x)", "def g(f, x)"), home, mode)
     try:
         with pytest.raises(StudentFailure) as caught:
             student.call("toy.g", [asked, np.ones(1)], seconds=CALL_SECONDS)
@@ -215,7 +215,7 @@ def test_what_passes_through_a_function_is_limited(body: str, mode: str, home: W
 
 def test_import_time_counts(strict: str, home: WorkerHome) -> None:
     with pytest.raises(StudentFailure) as caught:
-        hand_in("while True: pass", home, strict)
+        submission("while True: pass", home, strict)
     assert caught.value.reason == "timeout"
     assert "processor time" in caught.value.text
 

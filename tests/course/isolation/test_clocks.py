@@ -15,7 +15,7 @@ from photograd_course.worker import clocks, processes
 from photograd_course.worker.clocks import FamilyClock, ProcessorClock, Stopwatch
 from photograd_course.worker.home import WorkerHome
 
-from course.isolation.support import CALL_SECONDS, PATIENT, hand_in
+from course.isolation.support import CALL_SECONDS, PATIENT, submission
 
 SUM = "def f(x):\n    return x + 1.0\n"
 ASK = "def f(g):\n    return g(1.0)\n"
@@ -49,7 +49,7 @@ class Starving:
 def test_reading_the_clock_of_a_filtered_worker_looks_at_no_other_process(
     strict: str, home: WorkerHome, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    student = hand_in(SUM, home, strict)
+    student = submission(SUM, home, strict)
 
     def scan(_pid: int) -> list[int]:
         raise AssertionError("looks for processes")
@@ -77,7 +77,7 @@ def test_the_clock_counts_threads(strict: str, home: WorkerHome) -> None:
         for each in many: each.join()
         return 0.0
     """
-    student = hand_in(text, home, strict, PATIENT)
+    student = submission(text, home, strict, PATIENT)
     before = student.cpu_seconds() or 0.0
     student.call("toy.f", [0.2], seconds=30.0)
     assert (student.cpu_seconds() or 0.0) - before >= 0.6
@@ -85,7 +85,7 @@ def test_the_clock_counts_threads(strict: str, home: WorkerHome) -> None:
 
 
 def test_what_the_grader_spends_is_left_out(strict: str, home: WorkerHome) -> None:
-    student = hand_in(ASK, home, strict, PATIENT)
+    student = submission(ASK, home, strict, PATIENT)
 
     def slow(x: float) -> float:
         time.sleep(2 * CALL_SECONDS)
@@ -96,7 +96,7 @@ def test_what_the_grader_spends_is_left_out(strict: str, home: WorkerHome) -> No
 
 
 def test_a_worker_that_sleeps_runs_into_its_limit(strict: str, home: WorkerHome) -> None:
-    student = hand_in(SLEEP, home, strict, PATIENT)
+    student = submission(SLEEP, home, strict, PATIENT)
     began = time.monotonic()
     with pytest.raises(StudentFailure, match="no answer"):
         student.call("toy.f", [0.0], seconds=CALL_SECONDS)
@@ -105,7 +105,7 @@ def test_a_worker_that_sleeps_runs_into_its_limit(strict: str, home: WorkerHome)
 
 
 def test_threads_that_starve_one_another_gain_no_time(strict: str, home: WorkerHome) -> None:
-    student = hand_in(CROWD, home, strict, PATIENT)
+    student = submission(CROWD, home, strict, PATIENT)
     with pytest.raises(StudentFailure) as caught:
         student.call("toy.f", [0.0], seconds=CALL_SECONDS)
     assert caught.value.reason == "timeout"
@@ -126,8 +126,8 @@ def test_a_starved_worker_is_no_fault_of_the_student(
     (found,) = run_checks(
         [made],
         lambda _: Setting("toy", (1,)),
-        lambda _given: hand_in(SLEEP, home, strict, PATIENT),
-        open_control=lambda: hand_in(SUM, home, strict, PATIENT),
+        lambda _given: submission(SLEEP, home, strict, PATIENT),
+        open_control=lambda: submission(SUM, home, strict, PATIENT),
     )
     assert found.status is Status.ERROR_OURS
     assert MachineTooBusy.__name__ in found.text

@@ -15,7 +15,7 @@ from photograd_course.worker import launch, syscall_filter
 from photograd_course.worker.home import WorkerHome
 
 from course.isolation.conftest import need
-from course.isolation.support import hand_in
+from course.isolation.support import submission
 
 FCNTL = {"x86_64": 72, "aarch64": 25}.get(platform.machine())
 # Nobody minds SIGURG; with SIGKILL in its place the grader would be gone.
@@ -65,7 +65,7 @@ def answers(home: WorkerHome, mode: str) -> list[list[int]]:
     )
     shutil.rmtree(program.parent / "__pycache__")
     home.imports = ("ctypes",)
-    student = hand_in(ATTACK, home, mode)
+    student = submission(ATTACK, home, mode)
     try:
         found = [list(student.call("toy.f", [upper], seconds=5.0)) for upper in (0, 1 << 32)]
         time.sleep(WAIT)

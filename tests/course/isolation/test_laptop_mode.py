@@ -10,7 +10,7 @@ from typing import Any
 
 from photograd_course.worker.home import WorkerHome
 
-from course.isolation.support import hand_in
+from course.isolation.support import submission
 from course.student.laptop import POISON
 from support.tree import ROOT
 
@@ -40,7 +40,7 @@ def test_the_grader_needs_no_posix(expected: dict[str, Any]) -> None:
 
 
 def test_the_worker_imports_nothing_of_it_either(home: WorkerHome) -> None:
-    student = hand_in("import sys\ndef loaded(x): return sorted(sys.modules)", home, "E")
+    student = submission("import sys\ndef loaded(x): return sorted(sys.modules)", home, "E")
     loaded = set(student.call("toy.loaded", [0], seconds=5.0))
     student.close()
     assert {"numpy", "photograd_worker.courtesy"} <= loaded

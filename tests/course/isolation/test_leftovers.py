@@ -14,7 +14,7 @@ from photograd_course.worker import launch, lifelines, processes
 from photograd_course.worker.home import WorkerHome, remove_tree
 
 from course.isolation.conftest import need
-from course.isolation.support import CALL_SECONDS, hand_in
+from course.isolation.support import CALL_SECONDS, submission
 
 # A grandchild in a session of its own that keeps the pipe open.
 DETACHED = """
@@ -40,10 +40,10 @@ def linux_root() -> None:
 def test_a_namespace_dies_with_its_worker(
     ending: str, home: WorkerHome, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Bubblewrap alone, with nothing that keeps a hand-in from starting processes."""
+    """Bubblewrap alone, with nothing that keeps a submission from starting processes."""
     need("A")
     monkeypatch.setattr(launch, "_filter", lambda **_: None)
-    student = hand_in(DETACHED.replace("LIFE", "1000").replace("ENDING", ending), home, "A")
+    student = submission(DETACHED.replace("LIFE", "1000").replace("ENDING", ending), home, "A")
     with pytest.raises(StudentFailure) as caught:
         student.call("toy.f", ["x"], seconds=CALL_SECONDS)
     # The grandchild holds the pipe: the grader sees no end of it, and does not wait for one.
@@ -55,7 +55,7 @@ def test_a_namespace_dies_with_its_worker(
 def test_the_grader_does_not_wait_for_who_holds_the_pipe(home: WorkerHome) -> None:
     """Mode E cannot stop it, and is not stopped by it."""
     text = DETACHED.replace("LIFE", "8").replace("ENDING", "os._exit(0)")
-    student = hand_in(text, home, "E")
+    student = submission(text, home, "E")
     with pytest.raises(StudentFailure) as caught:
         student.call("toy.f", ["x"], seconds=CALL_SECONDS)
     assert caught.value.reason == "timeout"
@@ -103,7 +103,7 @@ def test_processor_time_is_seen_from_outside(mode: str, home: WorkerHome) -> Non
         while time.process_time() < end: pass
         return time.process_time()
     """
-    student = hand_in(text, home, mode)
+    student = submission(text, home, mode)
     before = student.cpu_seconds()
     if sys.platform != "linux":
         assert before is None
@@ -144,7 +144,7 @@ def test_a_chmod_in_mode_e_does_not_keep_its_folder(home: WorkerHome) -> None:
             libc.mkdir(b"d%d" % k, 0)
         return libc.chmod(b".", 0)
     """
-    student = hand_in(text, home, "E")
+    student = submission(text, home, "E")
     assert student.call("toy.f", [0], seconds=5.0) == 0
     student.close()
     time.sleep(0)  # the fixture asserts that the folder is gone

@@ -11,7 +11,7 @@ import photograd_course.worker
 from photograd_course.worker.home import WorkerHome
 from photograd_course.worker.program import PROGRAM, numpy_parent, plain_environment
 
-from course.isolation.support import hand_in
+from course.isolation.support import submission
 
 FOLDER = Path(photograd_course.worker.__file__).parent
 
@@ -64,7 +64,7 @@ def is_open(number):
 def test_a_worker_knows_nothing_of_its_surroundings(mode: str, home: WorkerHome) -> None:
     home.imports = ("threading",)
     with (Path(__file__)).open("rb") as inherited:
-        student = hand_in(LOOK, home, mode)
+        student = submission(LOOK, home, mode)
         assert inherited.fileno() > 2
 
     def look(what: str) -> object:
@@ -80,7 +80,7 @@ def test_a_worker_knows_nothing_of_its_surroundings(mode: str, home: WorkerHome)
     assert isinstance(path, list)
     assert not [each for each in path if "packages" in each or not each]
     assert str(numpy_parent()) not in path
-    assert look("arguments") == ["hand-in"]
+    assert look("arguments") == ["submission"]
     assert look("errors") == np.geterr()
     assert look("folder") == []
     assert look("threads") == 1
@@ -93,7 +93,7 @@ def test_a_worker_knows_nothing_of_its_surroundings(mode: str, home: WorkerHome)
 def test_hashes_and_sums_are_the_same_in_every_worker(mode: str, home: WorkerHome) -> None:
     seen = set()
     for _ in range(2):
-        student = hand_in(LOOK, home, mode)
+        student = submission(LOOK, home, mode)
         seen.add(tuple(student.call("toy.look", [what], seconds=5.0) for what in ("hash", "sum")))
         student.close()
     assert len(seen) == 1

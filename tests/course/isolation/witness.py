@@ -1,8 +1,8 @@
 """Run where a test has made things tight: tells, as JSON, what the grader achieves there.
 
 ``python -m course.isolation.witness MODES``: the self-tests, the mode chosen, and with each of the
-given modes that works the outcomes of a hand-in that is right but for one sign, and how some
-misbehaviour ends.
+given modes that works the outcomes of a submission that is right but for one sign, and how some
+misbehavior ends.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ from photograd_course.grading import StudentFailure
 from photograd_course.worker import modes, processes
 from photograd_course.worker.home import WorkerHome
 
-from course.isolation.support import WRONG, essence, hand_in, outcomes_of
+from course.isolation.support import WRONG, essence, outcomes_of, submission
 
-MISBEHAVIOUR = {
+MISBEHAVIOR = {
     "loop": "while True: pass",
     "crash": "import ctypes; ctypes.string_at(0)",
     "fork": "import os; os.fork()",
@@ -35,8 +35,8 @@ MISBEHAVIOUR = {
 def endings(home: WorkerHome, mode: str, secret: Path) -> dict[str, list[str]]:
     """Reason and exception of each."""
     found = {}
-    for name, body in MISBEHAVIOUR.items():
-        student = hand_in(f"def f(x):\n    {body}", home, mode)
+    for name, body in MISBEHAVIOR.items():
+        student = submission(f"def f(x):\n    {body}", home, mode)
         try:
             student.call("toy.f", [str(secret)], seconds=1.0)
             found[name] = ["nothing happened", ""]

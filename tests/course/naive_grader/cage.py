@@ -35,7 +35,7 @@ class Naive:
     Attributes:
         report: the parsed results.json, {} where there is none.
         hung: it did not end by itself.
-        next_score: of the innocent hand-in graded afterwards, in a process of its own.
+        next_score: of the innocent submission graded afterwards, in a process of its own.
         strays: files that appeared in the scratch folder where none should.
         size: bytes of results.json.
         log: what the grader itself printed.

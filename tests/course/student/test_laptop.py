@@ -29,7 +29,7 @@ def test_the_laptop_is_as_poor_as_it_should_be(laptop: Laptop, tmp_path: Path) -
     assert good.returncode == 0, good.stderr
 
 
-def test_from_start_to_hand_in(laptop: Laptop, tmp_path: Path) -> None:
+def test_from_start_to_submission(laptop: Laptop, tmp_path: Path) -> None:
     assert "first gradient" in laptop.run("course", "list", cwd=tmp_path).stdout
     started = laptop.run("course", "start", "00", cwd=tmp_path)
     assert started.returncode == 0, started.stderr
@@ -64,9 +64,9 @@ def test_from_start_to_hand_in(laptop: Laptop, tmp_path: Path) -> None:
     assert explored.returncode == 0, explored.stderr
     assert (work / "gradient.png").stat().st_size > 5000
 
-    packed = laptop.run("course", "handin", "00", cwd=work)
+    packed = laptop.run("course", "submission", "00", cwd=work)
     assert packed.returncode == 0, packed.stderr
-    with zipfile.ZipFile(work / "00_setup_handin.zip") as archive:
+    with zipfile.ZipFile(work / "00_setup_submission.zip") as archive:
         assert set(archive.namelist()) == {"first_gradient.py", "answers.toml"}
 
 
@@ -87,7 +87,7 @@ def test_a_wrong_line_is_answered_with_sign_size_and_picture(
     told = laptop.run("course", "check", "00", cwd=tmp_path / "here")
     assert told.returncode == 1
     assert "expected something" in told.stdout
-    assert "negative of the derivative" in told.stdout  # the mistake is recognised
+    assert "negative of the derivative" in told.stdout  # the mistake is recognized
     assert (tmp_path / "here" / "check_00.1.differences.png").exists()
 
 

@@ -13,7 +13,7 @@ from photograd_course.grade.answers import read_answers
 from photograd_course.student.folder import WorkFolder
 from photograd_course.student.predictions import prediction_letters, write_lock
 from photograd_course.student.session import write_answers
-from photograd_course.student.sheet import notes_before_handin, question_sheet, remember_shown
+from photograd_course.student.sheet import notes_before_submission, question_sheet, remember_shown
 
 TOY = Path(__file__).parents[1] / "fixture_course" / "90_toy"
 CODE = "def weighted_sum(w, x):\n    total = 0.0\n    return total  # the end\n"
@@ -109,14 +109,14 @@ def test_a_file_that_cannot_be_kept_is_left_alone(work: WorkFolder, text: str) -
 
 def test_everything_open_is_named(bundle: Bundle, work: WorkFolder) -> None:
     remember_shown(bundle, work)
-    (note,) = notes_before_handin(bundle, work)
+    (note,) = notes_before_submission(bundle, work)
     assert "90.p1, 90.d1, 90.g1" in note
 
 
 def test_nothing_is_said_when_all_is_well(bundle: Bundle, work: WorkFolder) -> None:
     remember_shown(bundle, work)
     answer(work, p1="A", d1="c", g1="-1.5e-3")
-    assert notes_before_handin(bundle, work) == []
+    assert notes_before_submission(bundle, work) == []
 
 
 @pytest.mark.parametrize(
@@ -127,7 +127,7 @@ def test_an_answer_of_the_wrong_form_is_named(
 ) -> None:
     remember_shown(bundle, work)
     answer(work, **({"p1": "a", "d1": "a", "g1": "1"} | {name: text}))
-    (note,) = notes_before_handin(bundle, work)
+    (note,) = notes_before_submission(bundle, work)
     assert note.startswith(f"90.{name}: write")
     assert any("<- write" in line for line in question_sheet(bundle, work))
 
@@ -135,20 +135,20 @@ def test_an_answer_of_the_wrong_form_is_named(
 def test_a_missing_name_is_said(bundle: Bundle, work: WorkFolder) -> None:
     path = work.path / "answers.toml"
     path.write_text(path.read_text("utf-8").replace("Ada", ""), encoding="utf-8")
-    assert any("student is empty" in note for note in notes_before_handin(bundle, work))
+    assert any("student is empty" in note for note in notes_before_submission(bundle, work))
     assert "name" in question_sheet(bundle, work)[0]
 
 
 def test_numbers_that_have_changed_since_are_said(bundle: Bundle, work: WorkFolder) -> None:
     answer(work, p1="a", d1="a", g1="1")
-    assert any("90.g1 have changed" in note for note in notes_before_handin(bundle, work))
+    assert any("90.g1 have changed" in note for note in notes_before_submission(bundle, work))
     remember_shown(bundle, work)
-    assert notes_before_handin(bundle, work) == []
+    assert notes_before_submission(bundle, work) == []
     module = work.path / "toy.py"
     module.write_text(CODE.replace("the end", "another comment"), encoding="utf-8")
-    assert notes_before_handin(bundle, work) == []
+    assert notes_before_submission(bundle, work) == []
     module.write_text(CODE.replace("0.0", "1.0"), encoding="utf-8")
-    assert any("90.g1 have changed" in note for note in notes_before_handin(bundle, work))
+    assert any("90.g1 have changed" in note for note in notes_before_submission(bundle, work))
 
 
 def test_a_locked_prediction_stands(bundle: Bundle, work: WorkFolder) -> None:
@@ -157,16 +157,18 @@ def test_a_locked_prediction_stands(bundle: Bundle, work: WorkFolder) -> None:
     assert (made, lacking) == ({"90.p1": "a"}, [])
     write_lock(work.path, "90", made)
     remember_shown(bundle, work)
-    assert notes_before_handin(bundle, work) == []
+    assert notes_before_submission(bundle, work) == []
     answer(work, p1="b")
-    (note,) = notes_before_handin(bundle, work)
+    (note,) = notes_before_submission(bundle, work)
     assert "locked as a" in note
     assert "  locked: a" in question_sheet(bundle, work)
     write_lock(work.path, "90", {"90.p1": "b"})  # a lock that is there stays
     assert "  locked: a" in question_sheet(bundle, work)
 
 
-def test_a_sheet_quotes_the_hand_in_and_draws_its_numbers(bundle: Bundle, work: WorkFolder) -> None:
+def test_a_sheet_quotes_the_submission_and_draws_its_numbers(
+    bundle: Bundle, work: WorkFolder
+) -> None:
     sheet = "\n".join(question_sheet(bundle, work))
     assert "You wrote return total  # the end: f(" in sheet
     assert "{" not in sheet

@@ -44,7 +44,7 @@ def _draw(axes: Axes, capture: Capture, right: int, up: int) -> None:
             points[:, 1],
             s=1.5,
             linewidths=0,
-            c=style.GREY if colors is None else colors / 255.0,
+            c=style.GRAY if colors is None else colors / 255.0,
         )
     middle = 0.5 * (shown.min(axis=0) + shown.max(axis=0))
     half = 0.56 * max(float(np.ptp(shown, axis=0).max()), 1e-9)

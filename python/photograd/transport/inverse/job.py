@@ -2,7 +2,7 @@
 
     a, b         = pictures of the scene as it is now, seeds by (seed, step, view, half)
     loss         = mean w (a - t) (b - t)
-    gradient     = its derivative by x, through the picture and the activation
+    gradient     = its derivative with respect to x, through the picture and the activation
     x           -= Adam step
 
 Every random number is a function of (seed, step), and everything else that a step depends on is in
@@ -43,8 +43,9 @@ from photograd.types import Array
 
 FEW = 16  # numbers of an unknown whose curves are kept one by one
 MEMORY = 0.9
-"""Adam's beta_2. A colour that walks from 0.5 to 0.05 loses a factor of 200 in its slope by x; with
-0.999 the first slopes would be remembered, and steps be short, long after the end."""
+"""Adam's beta_2. A color that walks from 0.5 to 0.05 loses a factor of 200 in its slope with
+respect to x; with 0.999 the first slopes would be remembered, and steps be short, long
+after the end."""
 SMOOTH = 10  # steps over which the shown loss is averaged
 
 
@@ -111,7 +112,7 @@ class Recovery:
         return self._tracer
 
     def loss_and_gradients(self, step: int) -> tuple[float, dict[str, Array]]:
-        """The loss with the random numbers of a step, and its derivative by each value."""
+        """The loss with the random numbers of a step, and its gradient."""
         tracer, chosen = self.tracer(), self._chosen(step)
         loss, total = 0.0, {name: np.zeros_like(x) for name, x in self.x.items()}
         for view in chosen:

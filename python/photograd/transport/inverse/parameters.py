@@ -4,7 +4,7 @@
     log      p = lo + exp(x)                         dp/dx = p - lo
 
 A step of gradient descent changes x, and p cannot leave its bounds. A logit suits what has two ends
-(colours, roughness), a log what is positive and of any size (radiance): there a step is a factor.
+(colors, roughness), a log what is positive and of any size (radiance): there a step is a factor.
 Held constant: lo and hi.
 """
 

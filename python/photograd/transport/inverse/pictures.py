@@ -58,7 +58,7 @@ def draw_loss(axes: Axes, history: Array) -> None:
 
 
 def draw_values(axes: Axes, name: str, rows: Array, line: str, truth: Any = None) -> None:
-    """One line a number, coloured by channel where there are three."""
+    """One line a number, colored by channel where there are three."""
     colors = CHANNELS if rows.shape[1] == 3 else ("#30363d",) * rows.shape[1]
     known = None if truth is None else np.asarray(truth, np.float64).reshape(-1)
     for k, color in enumerate(colors):
@@ -83,7 +83,7 @@ def comparison_figure(target: Array, picture: Array) -> Figure:
             axes.set_title(title)
             axes.axis("off")
         axes = style.place_axes(figure, 0.45 + 2 * side, 0.35, side, height)
-        axes.imshow(difference, norm=style.symmetric_scale(limit), cmap=style.signed_colour_map())
+        axes.imshow(difference, norm=style.symmetric_scale(limit), cmap=style.signed_color_map())
         axes.set_title(f"found - target, ±{limit:.2g}")
         axes.axis("off")
     return figure

@@ -25,7 +25,7 @@ def recover(
 ) -> RecoveryResult:
     """Find parameters of a scene from pictures of it, through all bounces of light.
 
-    Minimises the squared difference of the path traced pictures and the targets with Adam
+    Minimizes the squared difference of the path traced pictures and the targets with Adam
     [Kingma2015]. A path traced picture is noisy, and the derivative of a squared error is a product
     of two things that both contain that noise: how wrong a pixel is, and what changes it. If both
     come from the same random numbers, the mean of their product is not the product of their means,

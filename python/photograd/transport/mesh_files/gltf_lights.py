@@ -5,7 +5,7 @@
     directional   intensity E, lux        irradiance E cos
 
 All are times a linear color and shine along -Z of their node, whose scale changes no number.
-Candela and lux are taken as W/sr and W/m^2, as nits of emissive surfaces are as W/(m^2 sr): lamps
+Candela and lux are taken as W/sr and W/m^2, as nits of emissive surfaces are as W/(m^2 sr): lights
 keep their ratios. `range` is no property of light and is left out, with a note.
 
 Between its two angles the extension leaves the fall of a spot's light to the reader: it proposes

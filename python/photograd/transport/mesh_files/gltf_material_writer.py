@@ -92,11 +92,11 @@ def _iridescence(v: Values) -> GltfMaterial:
 
 
 def _specular(v: Values) -> GltfMaterial:
-    varnish = {
+    coating = {
         "specularFactor": v["specular_factor"],
         "specularColorFactor": v["specular_color_factor"],
     }
-    return GltfMaterial(_gltf(v).core, {"specular": varnish, "ior": {"ior": v["eta"]}})
+    return GltfMaterial(_gltf(v).core, {"specular": coating, "ior": {"ior": v["eta"]}})
 
 
 def _clear(v: Values) -> GltfMaterial:

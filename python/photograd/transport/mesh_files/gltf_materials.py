@@ -200,7 +200,7 @@ def _with_pictures(reader: MaterialReader, material: Material, pictures: Picture
     values, cutoff, alpha = dict(material.values), material.alpha_cutoff, reader.alpha
     if "anisotropy_y" in values and "anisotropy_y" not in uses:
         values["anisotropy_y"] = 0.0  # its texture is missing: along the tangent
-    if material.sheer and "alpha" not in uses and alpha >= (1 if cutoff is None else cutoff):
+    if material.has_opacity and "alpha" not in uses and alpha >= (1 if cutoff is None else cutoff):
         del values["alpha"]  # it covers everything
         cutoff = None
     emission, glow = _radiance(reader), None

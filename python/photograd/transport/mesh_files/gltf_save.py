@@ -158,7 +158,7 @@ def _material(model: ModelFile, shape: MeshShape, textures: TextureWriter) -> di
     written = gltf_material(material)
     textures.material(written, material)
     entry: dict[str, Any] = {"name": shape.material, "pbrMetallicRoughness": written.core}
-    if material.sheer:
+    if material.has_opacity:
         written.core["baseColorFactor"][3] = float(material.values["alpha"])
         entry["alphaMode"] = "BLEND" if material.alpha_cutoff is None else "MASK"
         if material.alpha_cutoff is not None:

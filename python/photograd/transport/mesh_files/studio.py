@@ -1,4 +1,4 @@
-"""A model as a scene: as its file has it, or in a studio, under a pale sky and one large lamp."""
+"""A model as a scene: as its file has it, or in a studio, under a pale sky and one large light."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def default_scene(
     """A picture of the model, with `size` pixels along its longer edge.
 
     What the file says comes first: its camera, and its lights. Without a camera the model is seen
-    from in front and above, in a square. Without lights it gets a pale sky and a lamp, as wide as
+    from in front and above, in a square. Without lights it gets a pale sky and a light, as wide as
     the model's sphere and three radii away to the left of that view; but not if the file has a
     camera and something that shines: then it is a scene of its own.
 
@@ -36,7 +36,7 @@ def default_scene(
         name: of the scene.
         size: pixels.
         camera: name of one of the file's cameras; by default the first. `STUDIO` looks from in
-            front and above, with sky and lamp alone, whatever the file has.
+            front and above, with sky and light alone, whatever the file has.
 
     Raises:
         SceneError: no camera of that name.

@@ -1,4 +1,4 @@
-"""photograd_course: gradient checks, optimisers, losses and pictures for the photograd course.
+"""photograd_course: gradient checks, optimizers, losses and pictures for the photograd course.
 
 Import the module you need (``from photograd_course import losses``); nothing heavy is imported
 here, so that ``photograd --help`` starts quickly.

@@ -1,6 +1,6 @@
 """Files that are written whole or not at all: checkpoints, captures, figures.
 
-The bytes go to a hidden neighbour of the target, reach the disk (fsync) and only then take the
+The bytes go to a hidden neighbor of the target, reach the disk (fsync) and only then take the
 target's name, which a file system does in one step. A reader sees the old file or the new one; a
 full disk, an exception or a killed process leaves the old one as it was. What a killed process
 leaves beside it, the next write to the same target removes.
@@ -35,23 +35,23 @@ def atomic_write(path: Path, content: bytes | Writer) -> Path:
 
     Raises:
         IoError: no folder, no permission, or no room left; the old file is untouched and the
-            half-written neighbour is removed. Whatever ``content`` raises is passed on, likewise.
+            half-written neighbor is removed. Whatever ``content`` raises is passed on, likewise.
     """
     target = Path(path).resolve()
     remove_leftovers(target)
-    neighbour = target.with_name(f".{target.name}.{os.getpid()}.tmp")
+    neighbor = target.with_name(f".{target.name}.{os.getpid()}.tmp")
     try:
-        _write_and_sync(neighbour, content)
-        neighbour.replace(target)
+        _write_and_sync(neighbor, content)
+        neighbor.replace(target)
         _sync_folder(target.parent)
     except OSError as error:
-        _remove(neighbour)
+        _remove(neighbor)
         if isinstance(error, IoError):  # raised by the writer itself, already in our words
             raise
         kept = os.path.exists(target)  # noqa: PTH110  false, too, for a name that is too long
         raise IoError(_explain(path, error, kept=kept)) from error
     except BaseException:  # also on Ctrl-C: nothing half-written stays behind
-        _remove(neighbour)
+        _remove(neighbor)
         raise
     return path
 
@@ -76,8 +76,8 @@ def remove_leftovers(path: Path) -> int:
     return removed
 
 
-def _write_and_sync(neighbour: Path, content: bytes | Writer) -> None:
-    with open_locked(neighbour, wait=True) as file:
+def _write_and_sync(neighbor: Path, content: bytes | Writer) -> None:
+    with open_locked(neighbor, wait=True) as file:
         file.truncate()
         if isinstance(content, bytes):
             file.write(content)

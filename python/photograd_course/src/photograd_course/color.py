@@ -1,7 +1,7 @@
 """Display encoding and alpha, with their gradients.
 
 Radiance is linear Rec. 709; files and screens hold display-encoded (sRGB) values; buffers hold
-premultiplied colour, that is, colour already multiplied by opacity [Porter1984].
+premultiplied color, that is, color already multiplied by opacity [Porter1984].
 """
 
 from __future__ import annotations
@@ -70,7 +70,7 @@ def srgb_decode_backward(encoded: FloatArray, d_linear: FloatArray) -> FloatArra
 
 
 def composite_over(color: FloatArray, opacity: FloatArray, background: FloatArray) -> FloatArray:
-    """Premultiplied colour over a background: color + (1 - opacity) background [Porter1984].
+    """Premultiplied color over a background: color + (1 - opacity) background [Porter1984].
 
     Args:
         color: (..., C), premultiplied.
@@ -106,7 +106,7 @@ def composite_over_backward(
 
 
 def premultiply(straight: FloatArray, opacity: FloatArray) -> FloatArray:
-    """Straight colour (..., C) times opacity (...): premultiplied colour (..., C)."""
+    """Straight color (..., C) times opacity (...): premultiplied color (..., C)."""
     _check_pair("premultiply", "straight", straight, opacity)
     return np.asarray(straight * opacity[..., None])
 
@@ -121,7 +121,7 @@ def premultiply_backward(
 
 
 def unpremultiply(color: FloatArray, opacity: FloatArray) -> FloatArray:
-    """Premultiplied colour (..., C) divided by opacity (...); 0 where the opacity is 0."""
+    """Premultiplied color (..., C) divided by opacity (...); 0 where the opacity is 0."""
     _check_pair("unpremultiply", "color", color, opacity)
     return np.asarray(color * _reciprocal(opacity)[..., None])
 

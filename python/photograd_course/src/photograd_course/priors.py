@@ -1,6 +1,6 @@
 """What is believed before any photograph is seen: fields are smooth, and mostly empty.
 
-Total variation compares each voxel with its next neighbour along +X, +Y and +Z (forward
+Total variation compares each voxel with its next neighbor along +X, +Y and +Z (forward
 differences in voxel units, none beyond the last voxel); sparsity pulls each density to zero. All
 are means over the grid, so that a weight survives a change of resolution in scale, and all sums
 run in float64. The backward functions ADD into `d_grid` when they are given one.

@@ -1,8 +1,8 @@
-"""Trilinear upsampling of cell-centred grids, for coarse-to-fine recovery.
+"""Trilinear upsampling of cell-centered grids, for coarse-to-fine recovery.
 
-Entry (i, j, k) is the value at the centre of its voxel, so both grids cover the same box and their
-borders coincide, while their first centres do not. A fine centre i' lies at coarse index
-(i' + 0.5) n / n' - 0.5; outside the first and last coarse centre the border value is repeated.
+Entry (i, j, k) is the value at the center of its voxel, so both grids cover the same box and their
+borders coincide, while their first centers do not. A fine center i' lies at coarse index
+(i' + 0.5) n / n' - 0.5; outside the first and last coarse center the border value is repeated.
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ from .errors import RangeError, ShapeError, message
 def upsample_trilinear(grid: FloatArray, shape: tuple[int, int, int]) -> FloatArray:
     """Resample a grid to a finer one over the same box.
 
-    Exact for affine fields between the first and last coarse centres, and a weighted mean
+    Exact for affine fields between the first and last coarse centers, and a weighted mean
     everywhere: it never overshoots, and a second moment stays non-negative. When it is applied to
-    optimiser moments, remember that the gradient of a voxel shrinks with its volume.
+    optimizer moments, remember that the gradient of a voxel shrinks with its volume.
 
     Args:
         grid: (X, Y, Z) or (X, Y, Z, C), float32 or float64.

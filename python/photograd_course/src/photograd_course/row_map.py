@@ -1,4 +1,4 @@
-"""Where each row of a refined representation came from, so that optimiser state can follow it."""
+"""Where each row of a refined representation came from, so that optimizer state can follow it."""
 
 from __future__ import annotations
 

@@ -46,7 +46,7 @@ def unpack(upload, work):
 
 
 def believed(work):
-    """Points for what the hand-in says about itself."""
+    """Points for what the submission says about itself."""
     points = 0
     if (work / "answers.toml").exists():
         text = (work / "answers.toml").read_text("utf-8")
@@ -60,7 +60,7 @@ def believed(work):
 
 
 def open_caches(work):
-    """Weights and logs that come with the hand-in."""
+    """Weights and logs that come with the submission."""
     if (work / "weights.npy").exists():
         np.load(work / "weights.npy", allow_pickle=True)
     if (work / "log.pickle").exists():
@@ -103,7 +103,7 @@ def points_of(output, mark):
 
 
 def run_tests(folder, keep):
-    """Output and return code of the tests on one hand-in."""
+    """Output and return code of the tests on one submission."""
     after = str(Path("other").resolve())
     command = [sys.executable, str(HERE / "run_tests.py"), str(folder), after]
     process = subprocess.Popen(

@@ -19,7 +19,7 @@ def too_late(*_):
 class HiddenTests(unittest.TestCase):
     """In alphabetical order, three points each."""
 
-    module = None  # the hand-in
+    module = None  # the submission
 
     def setUp(self):
         os.environ["NAIVE_TEST"] = self._testMethodName
@@ -38,7 +38,7 @@ class HiddenTests(unittest.TestCase):
         self.assertTrue(np.allclose(got, expected, atol=1e-2))
 
     def test_b_value(self):
-        """What is expected is computed from arrays that the hand-in has had in its hands."""
+        """What is expected is computed from arrays that the submission has had in its hands."""
         w, x = self.rng.uniform(0.5, 2.0, 7), self.rng.uniform(-2.0, 2.0, 7)
         got = self.module.weighted_sum(w, x)
         expected = solution.weighted_sum(w, x)
@@ -52,7 +52,7 @@ class HiddenTests(unittest.TestCase):
         self.assertTrue(np.allclose(got, expected, atol=1e-2), f"expected {expected!r}, got {got}")
 
     def test_d_backward(self):
-        """The reference's answer was just freed when the hand-in allocates its own."""
+        """The reference's answer was just freed when the submission allocates its own."""
         w, x = self.rng.uniform(0.5, 2.0, 16), self.rng.uniform(-2.0, 2.0, 16)
         self.assertTrue(np.isfinite(solution.weighted_sum_backward(w, x, 0.7)[0]).all())
         got = self.module.weighted_sum_backward(w, x, 0.7)
@@ -102,7 +102,7 @@ class Tally(unittest.TestResult):
 
 
 def run_on(module, mark):
-    """Run all tests on one hand-in."""
+    """Run all tests on one submission."""
     HiddenTests.module = module
     result = Tally()
     result.mark = mark

@@ -1,4 +1,4 @@
-"""Import a hand-in into this very process and test it; then the next student's, likewise."""
+"""Import a submission into this very process and test it; then the next student's, likewise."""
 
 import importlib
 import os

@@ -1,7 +1,7 @@
-"""Modules of earlier assignments that a hand-in carries along, to build upon.
+"""Modules of earlier assignments that a submission carries along, to build upon.
 
-A manifest names them by listing their files in `handin` beside the graded module. Students bring
-their own; the solution of the earlier assignment stands in where trusted code runs.
+A manifest names them by listing their files in `submission` beside the graded module. Students
+bring their own; the solution of the earlier assignment stands in where trusted code runs.
 """
 
 from __future__ import annotations
@@ -32,4 +32,4 @@ def _find(folder: Path, name: str) -> Path:
     for path in sorted(folder.resolve().parent.glob(f"[0-9][0-9]_*/{name}.py")):
         return path
     expected = "the module of an assignment beside this one"
-    raise SceneError(message("assignment.toml", f"handin: {name}.py", expected, "none"))
+    raise SceneError(message("assignment.toml", f"submission: {name}.py", expected, "none"))

@@ -1,4 +1,4 @@
-"""All that judging a hand-in takes: manifest, checks, questions, the solution, known mistakes.
+"""All that judging a submission takes: manifest, checks, questions, the solution, known mistakes.
 
 A *bundle* holds everything and stays with instructors. A *public bundle* is what a student's kit
 carries: public checks, questions without keys, no solution.
@@ -27,7 +27,7 @@ PUBLIC_SECRET = b"public"
 
 @dataclass(frozen=True)
 class Bundle:
-    """One assignment, ready to judge hand-ins.
+    """One assignment, ready to judge submissions.
 
     Attributes:
         manifest, checks, questions: of the assignment.
@@ -35,7 +35,7 @@ class Bundle:
         reference: the solution as a module; None in a public bundle.
         solution: its text; empty in a public bundle.
         keys: `answers.py` as a module, with a function for each generated question; or None.
-        adapters: text of `adapters.py`, which runs beside the hand-in; or None.
+        adapters: text of `adapters.py`, which runs beside the submission; or None.
         hints: the table of known mistakes.
         brought: earlier modules that the solution builds upon, by name; empty in a public bundle.
     """
@@ -66,7 +66,7 @@ class Bundle:
         return Setting(self.manifest.module, seed, self.reference, self.hints, salt)
 
     def hand(self, files: Mapping[str, bytes]) -> Hand:
-        """What a worker loads of a hand-in.
+        """What a worker loads of a submission.
 
         Args:
             files: its files by name; the graded module must be among them.
@@ -82,7 +82,7 @@ class Bundle:
         return Hand(sources, own, self.manifest.imports)
 
     def solution_files(self, text: str) -> dict[str, bytes]:
-        """A trusted text of the graded module as a hand-in, with the solutions it builds upon."""
+        """A trusted text of the graded module as a submission, with the solutions it builds on."""
         files = {f"{name}.py": source.encode() for name, source in self.brought.items()}
         return {**files, f"{self.manifest.module}.py": text.encode()}
 

@@ -1,7 +1,7 @@
-"""Questions made from the hand-in: its author and its code decide the numbers.
+"""Questions made from the submission: its author and its code decide the numbers.
 
 The numbers change with the code, but not with comments or layout, so answers are worked out once
-the code is final. Nothing of a hand-in is executed here, or parsed as more than words.
+the code is final. Nothing of a submission is executed here, or parsed as more than words.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ def draw(question: Question, student: str, source: str) -> Drawn:
 
     Args:
         question: of any kind; only generated ones have something to draw.
-        student: the name or number in the hand-in.
+        student: the name or number in the submission.
         source: text of the graded module.
     """
     words = "\n".join((question.id, " ".join(student.split()), *code_words(source)))

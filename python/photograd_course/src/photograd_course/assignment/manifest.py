@@ -40,7 +40,7 @@ class Manifest:
         id, name, title: "01", "gradient_descent", "Descent in one and many dimensions".
         folder: where the files lie.
         module: the graded module's name, without ".py".
-        handin: names of the files that a hand-in consists of.
+        submission: names of the files that a submission consists of.
         prerequisites: ids of assignments that come before.
         hours: expected work.
         tasks: in order.
@@ -56,7 +56,7 @@ class Manifest:
     title: str
     folder: Path
     module: str
-    handin: tuple[str, ...]
+    submission: tuple[str, ...]
     prerequisites: tuple[str, ...]
     hours: float
     tasks: tuple[Task, ...]
@@ -73,8 +73,8 @@ class Manifest:
 
     @property
     def brought(self) -> tuple[str, ...]:
-        """Modules of earlier assignments in a hand-in, without ".py"; see `brought`."""
-        names = (name.removesuffix(".py") for name in self.handin if name.endswith(".py"))
+        """Modules of earlier assignments in a submission, without ".py"; see `brought`."""
+        names = (name.removesuffix(".py") for name in self.submission if name.endswith(".py"))
         return tuple(name for name in names if name != self.module)
 
 
@@ -83,7 +83,7 @@ _KEYS: dict[str, Any] = {
     "name": str,
     "title": str,
     "module": str,
-    "handin": list,
+    "submission": list,
     "prerequisites": list,
     "hours": (int, float),
     "tasks": list,
@@ -127,7 +127,7 @@ def read_manifest(folder: Path) -> Manifest:
         title=table["title"],
         folder=folder,
         module=table["module"],
-        handin=tuple(table["handin"]),
+        submission=tuple(table["submission"]),
         prerequisites=tuple(table["prerequisites"]),
         hours=float(table["hours"]),
         tasks=tuple(_task(path, entry) for entry in table["tasks"]),

@@ -1,8 +1,8 @@
-"""`questions.toml`: predictions, diagnoses, concepts, and questions made from the hand-in.
+"""`questions.toml`: predictions, diagnoses, concepts, and questions made from the submission.
 
 Kinds: a *prediction* is locked before the first check and earns its points by being made; a
 *diagnosis* or *concept* question has a right answer; a *generated* one draws its numbers from the
-hand-in itself, and its right answer is computed by a function of `answers.py`. An answer is
+submission itself, and its right answer is computed by a function of `answers.py`. An answer is
 a letter ("b") where there are options, else a number. Keys (`answer`, `because`) never leave the
 grader.
 """
@@ -31,7 +31,7 @@ class Question:
             generated question the text holds {names} of `draw` and perhaps {quote}.
         options: for a choice; answered by letter.
         draw: for a generated question, the values each name may take.
-        quote: name of a function of the hand-in whose last line is quoted.
+        quote: name of a function of the submission whose last line is quoted.
         tolerance: relative, for numbers.
         answer: the key: a letter, a number, or the name of a function in `answers.py`; "" in kits.
         because: said after the due date.

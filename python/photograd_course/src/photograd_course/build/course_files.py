@@ -1,4 +1,4 @@
-"""The files around an assignment: its neighbours, the wheels, the place for results."""
+"""The files around an assignment: its neighbors, the wheels, the place for results."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def dossier_of(
     cache: Path | None = None,
     bar: Bar = no_bar,
 ) -> Dossier:
-    """The dossier of one assignment, with its neighbours and both wheels to search for leaks.
+    """The dossier of one assignment, with its neighbors and both wheels to search for leaks.
 
     Args:
         folder: its source.
@@ -31,18 +31,18 @@ def dossier_of(
         bar: shows progress.
     """
     around = (root or folder.parent).resolve()
-    neighbours = source_folders(around)
+    neighbors = source_folders(around)
     haystacks = dict(wheel_texts())
-    for name, path in neighbours.items():
+    for name, path in neighbors.items():
         if name != folder.name:
-            haystacks.update(_neighbour_texts(name, path))
+            haystacks.update(_neighbor_texts(name, path))
     return Dossier(
         folder=folder.resolve(),
         secret=secret,
         cache=cache or default_cache(around),
         bar=bar,
         haystacks=haystacks,
-        siblings=frozenset(name[:2] for name in neighbours),
+        siblings=frozenset(name[:2] for name in neighbors),
     )
 
 
@@ -71,7 +71,7 @@ def _python_of(folder: Path, name: str) -> dict[str, str]:
     }
 
 
-def _neighbour_texts(name: str, folder: Path) -> dict[str, str]:
+def _neighbor_texts(name: str, folder: Path) -> dict[str, str]:
     """What the wheel holds of another assignment; nothing while that one is not readable."""
     try:
         files = wheel_kits(folder)

@@ -2,7 +2,7 @@
 
 Everything that grading takes is inside: the course's wheel, the sealed bundle, the secret, and, if
 they are given, wheels of what it depends on, so that building the container needs no network. The
-container's own user stays root; each hand-in runs as another one, in isolation mode A, B or C.
+container's own user stays root; each submission runs as another one, in isolation mode A, B or C.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ chmod -R go+rX /opt/photograd
 """
 
 RUN = """#!/usr/bin/env bash
-# Runs for each hand-in. results.json is written after every check.
+# Runs for each submission. results.json is written after every check.
 set -uo pipefail
 umask 077
 source=/autograder/source

@@ -1,6 +1,6 @@
 """The program that `run_autograder` starts: grade one submission and keep results.json up to date.
 
-It does what `photograd course grade` does for one hand-in, and writes after every check, so that
+It does what `photograd course grade` does for one submission, and writes after every check, so that
 what was proven counts even if the container is stopped.
 """
 
@@ -12,12 +12,12 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from ..grade.hand_in import HandIn
 from ..grade.intake import take
 from ..grade.load import load
 from ..grade.one import Case, grade_guarded, grade_one
 from ..grade.report import Report
 from ..grade.report_gradescope import ResultsFile, best_earlier
+from ..grade.submission import Submission
 from ..grade.workers import Workers, isolated_workers
 from ..grading.failures import GraderFault
 
@@ -51,7 +51,7 @@ def main(words: Sequence[str] | None = None) -> int:
             outcomes = results.on_outcome
             return grade_one(taken, workers, unavailable=unavailable, on_outcome=outcomes)
 
-        report = grade_guarded(Case(STUDENT, HandIn({}), bundle, loaded.digest), workers, grade)
+        report = grade_guarded(Case(STUDENT, Submission({}), bundle, loaded.digest), workers, grade)
     results.finish(report)
     sys.stdout.write(f"isolation mode {report.mode}: {report.proven:g} of {report.max_score:g}\n")
     for line in report.staff:

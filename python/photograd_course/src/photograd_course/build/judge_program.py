@@ -1,7 +1,7 @@
 """Judge one text of an assignment's module in a process of its own: trusted code, run apart.
 
 Reads a job as JSON from stdin and writes an outcome a line to stdout, each as soon as it is known,
-so that whoever waits knows in which check an endless mutant hangs.
+so that a reader of the bar knows in which check an endless mutant hangs.
 """
 
 from __future__ import annotations

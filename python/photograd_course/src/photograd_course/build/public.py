@@ -39,7 +39,7 @@ def kit_files(folder: Path) -> dict[str, bytes]:
     files = {module: _encode(strip_solution(_text(folder / module), module))}
     for name, text in brought_sources(folder, manifest).items():
         files[f"{name}.py"] = _encode(strip_solution(text, f"{name}.py"))
-    if "answers.toml" in manifest.handin:
+    if "answers.toml" in manifest.submission:
         files["answers.toml"] = _encode(answers_template(manifest))
     if (folder / "handout.md").exists():
         files["README.md"] = _encode(readme(manifest, _text(folder / "handout.md")))
@@ -82,7 +82,7 @@ def readme(manifest: Manifest, handout: str) -> str:
 > else. Then `photograd course check {number}` as often as you like, `--task` for one task: it
 > says what is wrong and draws what helps. When the code is final, look at the questions with
 > `photograd course questions {number}`; answers and your name go into `answers.toml`, numbers
-> to four significant digits. `photograd course handin {number}` packs the archive to hand in.
+> to four significant digits. `photograd course submit {number}` packs the archive to hand in.
 > Green is not finished: some checks run only after you have handed in. `explore.py`, or the
 > notebook `explore.ipynb`, is for play.
 >

@@ -10,7 +10,7 @@ id = "NN"
 name = "NAME"
 title = "NAME"
 module = "NAME"
-handin = ["NAME.py", "answers.toml"]
+submission = ["NAME.py", "answers.toml"]
 prerequisites = []
 hours = 1
 imports = ["numpy", "math"]
@@ -160,7 +160,7 @@ def template(number: str, name: str) -> dict[str, str]:
     """The files by path."""
     ways = {
         "scalar_loops": ("Scalar loops.", "np.array([value + value for value in x])"),
-        "vectorised": ("Vectorised: a sum.", "x + x"),
+        "vectorized": ("Vectorized: a sum.", "x + x"),
         "handout_alone": ("Written from the handout alone.", "np.multiply(x, 2.0)"),
     }
     files = {

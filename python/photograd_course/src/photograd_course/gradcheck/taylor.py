@@ -70,14 +70,14 @@ def taylor_slope(
         for number, (name, value) in enumerate(base.items())
     }
     slope = float(sum(np.sum(gradients[name] * directions[name]) for name in base))
-    centre = contract(outputs, cotangents)
+    center = contract(outputs, cotangents)
     terms, weights = (named_outputs("taylor_slope", part) for part in (outputs, cotangents))
     size = float(sum(np.sum(np.abs(terms[name] * weights[name])) for name in terms))
     steps, remainders, sizes = [], [], []
     for halving in range(halvings + 1):
         step = start * 2.0**-halving
         moved = {name: np.asarray(base[name] + step * directions[name]) for name in base}
-        change = contract(function(moved), cotangents) - centre
+        change = contract(function(moved), cotangents) - center
         steps.append(step)
         remainders.append(abs(change - step * slope))
         sizes.append(size + abs(step * slope))

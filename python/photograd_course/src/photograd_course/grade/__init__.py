@@ -1,1 +1,1 @@
-"""Hand-ins judged: taken in, run, scored, reported; one of them or a whole course."""
+"""Submissions judged: taken in, run, scored, reported; one of them or a whole course."""

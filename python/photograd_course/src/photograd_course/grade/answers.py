@@ -14,8 +14,8 @@ from ..errors import IoError, SceneError
 from ..student.folder import LOCK_NAME
 from ..student.predictions import locked_answers
 from ..toml_limits import parse_toml
-from .hand_in import OTHER_BYTES, HandIn
 from .printable import printable
+from .submission import OTHER_BYTES, Submission
 
 MISSING = object()
 
@@ -45,12 +45,12 @@ class Answered:
         return asdict(self)
 
 
-def score_answers(bundle: Bundle, hand_in: HandIn) -> tuple[list[Answered], str, list[str]]:
+def score_answers(bundle: Bundle, submission: Submission) -> tuple[list[Answered], str, list[str]]:
     """Every question of the assignment, none missing.
 
     Args:
         bundle: with keys.
-        hand_in: of a student.
+        submission: of a student.
 
     Returns:
         The results, the student's name as `answers.toml` has it, and warnings.
@@ -58,15 +58,15 @@ def score_answers(bundle: Bundle, hand_in: HandIn) -> tuple[list[Answered], str,
     Raises:
         Exception: nobody foresaw what the files hold, or this code has a mistake; see `one.py`.
     """
-    student, given, warnings = read_answers(hand_in.files.get("answers.toml"))
+    student, given, warnings = read_answers(submission.files.get("answers.toml"))
     locked: dict[str, str] = {}
-    lock = hand_in.files.get(LOCK_NAME)
+    lock = submission.files.get(LOCK_NAME)
     if lock is not None:
         try:
             locked = locked_answers(lock, bundle.manifest.id)
         except SceneError as error:
             warnings.append(str(error))
-    source = hand_in.files.get(f"{bundle.manifest.module}.py", b"").decode("utf-8")
+    source = submission.files.get(f"{bundle.manifest.module}.py", b"").decode("utf-8")
     results = []
     for question in bundle.questions:
         answer = given.get(question.id, MISSING)
@@ -86,11 +86,11 @@ def all_answered(bundle: Bundle, status: str, text: str) -> list[Answered]:
     return [_result(question, status, text) for question in bundle.questions]
 
 
-def plain_answers(bundle: Bundle) -> HandIn:
+def plain_answers(bundle: Bundle) -> Submission:
     """The solution with the answer 1 to each question, which any sound reader can judge."""
     lines = ["[answers]", *(f'"{question.id}" = "1"' for question in bundle.questions)]
     module = f"{bundle.manifest.module}.py"
-    return HandIn({module: bundle.solution.encode(), "answers.toml": "\n".join(lines).encode()})
+    return Submission({module: bundle.solution.encode(), "answers.toml": "\n".join(lines).encode()})
 
 
 def read_answers(data: bytes | None) -> tuple[str, dict[str, Any], list[str]]:

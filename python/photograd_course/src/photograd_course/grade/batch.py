@@ -1,4 +1,4 @@
-"""Judge many hand-ins at once, survive being killed, and compare with the time before."""
+"""Judge many submissions at once, survive being killed, and compare with the time before."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from dataclasses import dataclass
 from ..assignment.bundle import Bundle
 from .exports import Source
 from .grades_csv import Change, changes, changes_table, grades_table
-from .hand_in import HandIn
 from .load import Loaded
 from .one import Case, grade_guarded, grade_one
 from .printable import csv_cell
 from .report import Report
 from .run_folder import RunFolder
 from .similarity import similar_pairs
+from .submission import Submission
 from .workers import Workers
 
 OnReport = Callable[[int, Report], None]
@@ -29,7 +29,7 @@ class Batch:
     """What a batch needs.
 
     Attributes:
-        sources: the hand-ins.
+        sources: the submissions.
         loaded: the bundle.
         workers: where to run them; None where no isolation mode is good enough.
         unavailable: why not; for staff.
@@ -46,13 +46,13 @@ class Batch:
 def run_batch(
     batch: Batch, folder: RunFolder, *, resume: bool = False, on_report: OnReport | None = None
 ) -> tuple[list[Report], list[Change] | None]:
-    """Grade all hand-ins and write the tables.
+    """Grade all submissions and write the tables.
 
     Args:
         batch: what is to be done.
         folder: for records, pages and tables.
-        resume: keep the records of a run that was cut off, where hand-in and bundle are the same.
-        on_report: called in this thread after each hand-in with how many are done.
+        resume: keep the records of a run that was cut off, if submission and bundle are the same.
+        on_report: called in this thread after each submission with how many are done.
 
     Returns:
         Reports in the order of the sources, and the differences from an earlier run, if any.
@@ -107,7 +107,7 @@ def _grade_all(batch: Batch, folder: RunFolder, on_report: OnReport | None) -> l
 
 def _grade(batch: Batch, folder: RunFolder, source: Source, slot: int, bundle: Bundle) -> Report:
     """The report on one submission, kept on disk."""
-    case = Case(source.student, HandIn({}), bundle, batch.loaded.digest)
+    case = Case(source.student, Submission({}), bundle, batch.loaded.digest)
     report = grade_guarded(
         case, batch.workers, lambda: _judged(batch, folder, source, slot, bundle)
     )
@@ -117,16 +117,16 @@ def _grade(batch: Batch, folder: RunFolder, source: Source, slot: int, bundle: B
 
 
 def _judged(batch: Batch, folder: RunFolder, source: Source, slot: int, bundle: Bundle) -> Report:
-    hand_in = source.take(bundle.manifest)
+    submission = source.take(bundle.manifest)
     kept = folder.kept(source.student)
     if (
         kept is not None
         and kept.is_sound  # our own failures are worth another try
-        and (kept.hand_in, kept.bundle) == (hand_in.digest, batch.loaded.digest)
-        and kept.problem == hand_in.problem
+        and (kept.submission, kept.bundle) == (submission.digest, batch.loaded.digest)
+        and kept.problem == submission.problem
     ):
         return kept
-    case = Case(source.student, hand_in, bundle, batch.loaded.digest)
+    case = Case(source.student, submission, bundle, batch.loaded.digest)
     report = grade_one(case, batch.workers, slot=slot, unavailable=batch.unavailable)
     folder.keep(report)
     return report

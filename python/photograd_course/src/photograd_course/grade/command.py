@@ -34,7 +34,7 @@ class Request:
     """The command's options; see `photograd course grade --help`."""
 
     assignment: str
-    hand_in: Path
+    submission: Path
     bundle: Path | None = None
     secret_file: Path | None = None
     jobs: int = 1
@@ -48,19 +48,19 @@ def grade_command(request: Request) -> bool:
     """Grade what was asked for; whether nothing went wrong on our side.
 
     Raises:
-        IoError, SceneError, RangeError: hand-ins, bundle or folder cannot be used.
+        IoError, SceneError, RangeError: submissions, bundle or folder cannot be used.
     """
     loaded = load(request.assignment, request.bundle, request.secret_file)
     bundle = loaded.read()
-    sources = find_sources(bundle.manifest, request.hand_in)
-    places = (loaded.place, request.secret_file, request.hand_in, request.out)
+    sources = find_sources(bundle.manifest, request.submission)
+    places = (loaded.place, request.secret_file, request.submission, request.out)
     secrets = tuple(path.resolve() for path in places if path is not None and path.exists())
     console = Console(stderr=request.as_json, highlight=False)
     with _workers(bundle.manifest, request, secrets) as (workers, unavailable):
-        if request.out is None and not is_batch(bundle.manifest, request.hand_in):
+        if request.out is None and not is_batch(bundle.manifest, request.submission):
             source = sources[0]
-            hand_in = source.take(bundle.manifest)
-            case = Case(source.student, hand_in, bundle, loaded.digest)
+            submission = source.take(bundle.manifest)
+            case = Case(source.student, submission, bundle, loaded.digest)
             report = grade_one(case, workers, unavailable=unavailable)
             print_report(report, console)
             _say_json(request, report.to_json())
@@ -100,7 +100,7 @@ def _summary(
     earlier = folder.earlier()
     scores = [counted(report, earlier.get(report.student)) for report in reports]
     known = [score for score, _ in scores if score is not None]
-    console.print(f"{len(reports)} hand-ins: {folder.path / 'grades.csv'}", soft_wrap=True)
+    console.print(f"{len(reports)} submissions: {folder.path / 'grades.csv'}", soft_wrap=True)
     if known:
         mean = sum(known) / len(known)
         top = reports[0].max_score
@@ -139,7 +139,7 @@ def _batch_json(
     differing = None if changed is None else [change.student for change in changed]
     return {
         "out": str(folder.path),
-        "hand_ins": len(reports),
+        "submissions": len(reports),
         "needs_staff": [report.student for report in reports if not report.is_sound],
         "changed": differing,
         "grades": grades,

@@ -1,8 +1,9 @@
 """What a student may read about a check: all of a public one, less of a hidden one.
 
 A wrong answer to a hidden check can be made of its input: an exception's name, the value at the
-worst index, a shape, even the size of an error. From hidden checks nothing is said that a hand-in
-could have written, numbers but for an order of magnitude included; from secret ones nothing at all.
+worst index, a shape, even the size of an error. From hidden checks nothing is said that a
+submission could have written, numbers but for an order of magnitude included; from secret ones
+nothing at all.
 """
 
 from __future__ import annotations
@@ -17,8 +18,8 @@ from ..grading.outcome import Outcome, Status
 _NUMBER = re.compile(r"[-+]?\d[\d_]*(?:\.\d*)?(?:e[-+]?\d+)?|\b(?:nan|inf)\b", re.IGNORECASE)
 _KEPT = ("tolerance", "expected_sign", "expected_scale")
 
-# Reasons whose sentence is made before a check's input exists, or holds nothing of the hand-in's.
-_HARMLESS = {"", "not implemented", "missing", "blocked", "hand-in", "forbidden", "unreadable"}
+# Reasons whose sentence is made before a check's input exists, or quotes nothing of the submission.
+_HARMLESS = {"", "not implemented", "missing", "blocked", "submission", "forbidden", "unreadable"}
 _HARMLESS |= {"rule"}  # of the text alone
 _SENTENCES = {
     "raised": "a function raised an exception",

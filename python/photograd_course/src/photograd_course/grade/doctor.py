@@ -1,7 +1,7 @@
 """Is the course what it claims to be? Everything is found out by running it.
 
 Each assignment is built and judged (rules, mutants, alternatives), its solution is graded as a
-hand-in is, and the attacks are let loose on the grader in every strict isolation mode.
+submission is, and the attacks are let loose on the grader in every strict isolation mode.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ from ..errors import Error
 from ..grading.outcome import Status
 from ..worker.modes import probe
 from .attack_evidence import attack_evidence
-from .hand_in import HandIn
 from .load import load
 from .one import Case, grade_one
+from .submission import Submission
 from .workers import isolated_workers
 
 # What an assignment must have some of, so that a missing part is no silent success.
@@ -89,11 +89,11 @@ def grade_solution(folder: Path) -> dict[str, Any]:
     loaded = load(folder.name, folder)
     bundle = loaded.read()
     module = folder / f"{bundle.manifest.module}.py"
-    hand_in = HandIn(bundle.solution_files(module.read_text(encoding="utf-8")))
+    submission = Submission(bundle.solution_files(module.read_text(encoding="utf-8")))
     with isolated_workers(bundle.manifest, None, (folder,)) as workers:
-        report = grade_one(Case("solution", hand_in, bundle, loaded.digest), workers)
+        report = grade_one(Case("solution", submission, bundle, loaded.digest), workers)
     findings = [
-        f"graded as a hand-in, the solution does not pass {outcome.id}: {outcome.text}"
+        f"graded as a submission, the solution does not pass {outcome.id}: {outcome.text}"
         for outcome in report.checks
         if outcome.status is not Status.PASSED
     ]

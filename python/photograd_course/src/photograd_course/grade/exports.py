@@ -1,4 +1,4 @@
-"""Find the hand-ins in a folder, as Gradescope, Canvas and Moodle export them, or in a table."""
+"""Find the submissions in a folder, as Gradescope, Canvas and Moodle export them, or in a table."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ import yaml
 from ..assignment.manifest import Manifest
 from ..errors import IoError, SceneError, message
 from ..input_files import read_file
-from .hand_in import HandIn, refused, wanted_names
 from .intake import take, take_parts
+from .submission import Submission, refused, wanted_names
 
 # Canvas: "doejane_LATE_12345_67890_toy.py"; Moodle: "Jane Doe_12345_assignsubmission_file_".
 _CANVAS = re.compile(r"^([^_]+)_(?:LATE_)?(\d+)_\d+_(.+)$")
@@ -28,13 +28,13 @@ MOST_SUBMITTERS, LONGEST_NAME = 20, 120
 
 @dataclass(frozen=True)
 class Source:
-    """Where one student's hand-in lies: at a path, or in several single files."""
+    """Where one student's submission lies: at a path, or in several single files."""
 
     student: str
     path: Path
     parts: Mapping[str, Path] = field(default_factory=dict)
 
-    def take(self, manifest: Manifest) -> HandIn:
+    def take(self, manifest: Manifest) -> Submission:
         """Take it into memory; never raises for what it holds."""
         if self.parts:
             return take_parts(manifest, self.parts)
@@ -44,36 +44,38 @@ class Source:
 
 
 def find_sources(manifest: Manifest, path: Path) -> list[Source]:
-    """All hand-ins at ``path``, sorted by student.
+    """All submissions at ``path``, sorted by student.
 
     Args:
         manifest: of the assignment.
-        path: one hand-in; a folder of hand-ins; or a CSV table with the columns student and path,
-            where paths are relative to the table.
+        path: one submission; a folder of submissions; or a CSV table with the columns student and
+            path, where paths are relative to the table.
 
     Raises:
         IoError: nothing is there.
         SceneError: the table lacks a column, or a student occurs twice.
     """
     if not path.exists():
-        raise IoError(message("grade", str(path), "a hand-in, a folder or a CSV table", "nothing"))
+        raise IoError(
+            message("grade", str(path), "a submission, a folder or a CSV table", "nothing")
+        )
     if path.suffix.lower() == ".csv":
         return _from_table(path)
-    if path.is_file() or _is_hand_in(manifest, path):
+    if path.is_file() or _is_submission(manifest, path):
         return [Source(path.stem if path.is_file() else path.name, path)]
     sources = _from_folder(path)
     if not sources:
-        raise IoError(message("grade", str(path), "hand-ins", "an empty folder"))
+        raise IoError(message("grade", str(path), "submissions", "an empty folder"))
     return _distinct(sources)
 
 
 def is_batch(manifest: Manifest, path: Path) -> bool:
-    """Whether ``path`` is a table or a folder of hand-ins rather than one of them."""
+    """Whether ``path`` is a table or a folder of submissions rather than one of them."""
     is_table = path.suffix.lower() == ".csv"
-    return is_table or (path.is_dir() and not _is_hand_in(manifest, path))
+    return is_table or (path.is_dir() and not _is_submission(manifest, path))
 
 
-def _is_hand_in(manifest: Manifest, folder: Path) -> bool:
+def _is_submission(manifest: Manifest, folder: Path) -> bool:
     return folder.is_dir() and any((folder / name).is_file() for name in wanted_names(manifest))
 
 
@@ -117,7 +119,7 @@ def _from_folder(folder: Path) -> list[Source]:
 
 
 def _distinct(sources: list[Source]) -> list[Source]:
-    """Students of the same name told apart by what their hand-ins are called."""
+    """Students of the same name told apart by what their submissions are called."""
     names = [source.student for source in sources]
     told = [
         source

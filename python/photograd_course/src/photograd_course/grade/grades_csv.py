@@ -40,7 +40,7 @@ def grades_table(reports: Sequence[Report], earlier: Mapping[str, Report]) -> by
         reports: of this run.
         earlier: of the run before, by student.
     """
-    head = ["student", "assignment", "score", "max_score", "status", "mode", "page", "hand_in"]
+    head = ["student", "assignment", "score", "max_score", "status", "mode", "page", "submission"]
     ids = list(reports[0].points) if reports else []
     rows: list[list[Any]] = [[*head, *ids, "notes"]]
     declared = Counter(report.declared for report in reports if report.declared)
@@ -56,7 +56,7 @@ def grades_table(reports: Sequence[Report], earlier: Mapping[str, Report]) -> by
                 status,
                 report.mode,
                 f"{page_name(report.student)}.html",
-                report.hand_in[:16],
+                report.submission[:16],
                 *(points.get(each, "") for each in ids),
                 "; ".join(_notes(report, declared)),
             ]
@@ -67,7 +67,7 @@ def grades_table(reports: Sequence[Report], earlier: Mapping[str, Report]) -> by
 def _notes(report: Report, declared: Mapping[str, int]) -> list[str]:
     notes = [*report.remarks, *(f"staff: {note}" for note in report.staff)]
     if declared.get(report.declared, 0) > 1:  # whose questions, and so whose answers, are these?
-        notes.append(f"staff: answers.toml names {report.declared}, as another hand-in does")
+        notes.append(f"staff: answers.toml names {report.declared}, as another submission does")
     return notes
 
 
@@ -78,8 +78,8 @@ def counted(report: Report, earlier: Report | None) -> tuple[float | None, str]:
     before; all others count as they are now. Another submission's points stand for nothing.
     """
     if report.is_sound:
-        return report.score, "hand-in refused" if report.problem else "ok"
-    if earlier is None or earlier.score is None or earlier.hand_in != report.hand_in:
+        return report.score, "submission refused" if report.problem else "ok"
+    if earlier is None or earlier.score is None or earlier.submission != report.submission:
         return None, "error-ours"
     ours = Status.ERROR_OURS.value
     failed = [(check.id, check.max) for check in report.checks if check.status.value == ours]

@@ -1,4 +1,4 @@
-"""Take a hand-in into memory from a zip, a folder or single files. Nothing is ever unpacked."""
+"""Take a submission into memory from a zip, a folder or single files. Nothing is ever unpacked."""
 
 from __future__ import annotations
 
@@ -11,18 +11,18 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from ..assignment.manifest import Manifest
-from .hand_in import HandIn, refused, wanted_names
 from .listing import MOST_ENTRIES, NOISE, Entry, choose
+from .submission import Submission, refused, wanted_names
 
 LARGEST_ZIP = 16 << 20  # bytes on disk; the files of an assignment are a hundredth of it
 _PLAIN_METHODS = {zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED}
 _READ_ONLY = os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0)
 
 
-def take(manifest: Manifest, path: Path) -> HandIn:
+def take(manifest: Manifest, path: Path) -> Submission:
     """Whatever lies at ``path``, a zip, a folder or the graded module itself.
 
-    Never raises for what a hand-in holds: the result's `problem` says what is wrong with it.
+    Never raises for what a submission holds: the result's `problem` says what is wrong with it.
     """
     try:
         kind = path.lstat().st_mode
@@ -37,7 +37,7 @@ def take(manifest: Manifest, path: Path) -> HandIn:
         return refused(f"{path.name} cannot be read: {error.strerror or error}")
 
 
-def take_parts(manifest: Manifest, parts: Mapping[str, Path]) -> HandIn:
+def take_parts(manifest: Manifest, parts: Mapping[str, Path]) -> Submission:
     """Single files, named as their student named them; one zip among them stands for all.
 
     Canvas puts "-1" behind the name of a file that is handed in again; that is undone.
@@ -49,7 +49,7 @@ def take_parts(manifest: Manifest, parts: Mapping[str, Path]) -> HandIn:
     return choose(manifest, entries)
 
 
-def take_zip(manifest: Manifest, path: Path) -> HandIn:
+def take_zip(manifest: Manifest, path: Path) -> Submission:
     """The files of a zip archive, read one by one against their limits."""
     try:
         if path.stat().st_size > LARGEST_ZIP:
@@ -77,7 +77,7 @@ def _zip_entry(archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> Entry:
     return Entry(name.removesuffix("/"), kind, info.file_size, read)
 
 
-def _take_folder(manifest: Manifest, folder: Path) -> HandIn:
+def _take_folder(manifest: Manifest, folder: Path) -> Submission:
     entries: list[Entry] = []
     for parent, folders, files in os.walk(folder, followlinks=False):
         for name in sorted([*folders, *files]):

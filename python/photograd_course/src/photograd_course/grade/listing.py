@@ -1,4 +1,4 @@
-"""Choose the files of a hand-in from a list of names, whatever else stands in that list."""
+"""Choose the files of a submission from a list of names, whatever else stands in that list."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from ..assignment.manifest import Manifest
-from .hand_in import HandIn, Refused, finish, refused, size_limit, wanted_names
 from .printable import printable
+from .submission import Refused, Submission, finish, refused, size_limit, wanted_names
 
 MOST_ENTRIES = 5000
-DEEPEST = 3  # folders around a hand-in that are looked through
+DEEPEST = 3  # folders around a submission that are looked through
 NOISE = {"__macosx", "__pycache__", ".git", ".svn", ".hg", ".ds_store", ".venv", "venv", ".idea"}
 
 
@@ -32,10 +32,10 @@ class Entry:
     read: Callable[[int], bytes]
 
 
-def choose(manifest: Manifest, entries: Sequence[Entry]) -> HandIn:
+def choose(manifest: Manifest, entries: Sequence[Entry]) -> Submission:
     """Take the files on the assignment's list, from the top or from a folder around everything.
 
-    Never raises for what a hand-in holds; the result's `problem` says what is wrong.
+    Never raises for what a submission holds; the result's `problem` says what is wrong.
     """
     ignored: list[str] = []
     try:
@@ -54,21 +54,21 @@ def _usable(entry: Entry, ignored: list[str]) -> bool:
     if entry.name.startswith("/") or ":" in parts[0]:
         ignored.append(f"{entry.name}: an absolute name")
     elif ".." in parts:
-        ignored.append(f"{entry.name}: leads out of the hand-in")
+        ignored.append(f"{entry.name}: leads out of the submission")
     elif "" in parts or "." in parts or printable(entry.name, 2000) != entry.name:
         ignored.append(f"{entry.name}: not a proper name")
     elif any(part.lower() in NOISE for part in parts):
         if entry.kind == "file" and len(parts) <= 2:
-            ignored.append(f"{entry.name}: does not belong to a hand-in")
+            ignored.append(f"{entry.name}: does not belong to a submission")
         elif entry.kind == "folder" and len(parts) == 1:
-            ignored.append(f"{entry.name}/: does not belong to a hand-in")
+            ignored.append(f"{entry.name}/: does not belong to a submission")
     else:
         return True
     return False
 
 
 def _top(entries: Sequence[Entry], wanted: Sequence[str]) -> str:
-    """The folder that holds the hand-in, "" or with "/" at its end."""
+    """The folder that holds the submission, "" or with "/" at its end."""
     keys = {_key(name) for name in wanted}
     top = ""
     for _ in range(DEEPEST):

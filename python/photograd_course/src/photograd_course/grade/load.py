@@ -1,4 +1,4 @@
-"""Find the bundle that hand-ins of an assignment are judged with."""
+"""Find the bundle that submissions of an assignment are judged with."""
 
 from __future__ import annotations
 
@@ -96,7 +96,7 @@ def _starter(path: Path, manifest: Manifest) -> str:
         files = kit_files(path) if path.is_dir() else find_kit(manifest.id).files
         return files[f"{manifest.module}.py"].decode("utf-8")
     except (Error, KeyError, UnicodeDecodeError):
-        return ""  # only the search for similar hand-ins uses it
+        return ""  # only the search for similar submissions uses it
 
 
 def _folder_digest(folder: Path, secret: bytes) -> str:

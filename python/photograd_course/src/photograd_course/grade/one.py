@@ -22,12 +22,12 @@ from ..grading.remote import RemoteStudent
 from ..grading.runner import adjoint_functions, run_checks
 from ..grading.trial import Student
 from .answers import Answered, all_answered, plain_answers, score_answers
-from .hand_in import HandIn
 from .printable import printable
 from .report import Report, staff_notes, versions
+from .submission import Submission
 from .workers import Budget, Clocked, Workers
 
-LONGEST = 240.0  # seconds for a whole hand-in; grading services allow a few minutes
+LONGEST = 240.0  # seconds for a whole submission; grading services allow a few minutes
 Answers = tuple[list[Answered], str, list[str]]
 OnOutcome = Callable[[Outcome], None]
 
@@ -38,12 +38,12 @@ class Case:
 
     Attributes:
         student: whose it is.
-        hand_in: as taken in.
+        submission: as taken in.
         bundle, bundle_digest: the assignment, with hidden checks.
     """
 
     student: str
-    hand_in: HandIn
+    submission: Submission
     bundle: Bundle
     bundle_digest: str
 
@@ -56,7 +56,7 @@ def grade_one(
     unavailable: str = "",
     on_outcome: OnOutcome | None = None,
 ) -> Report:
-    """The report on one hand-in; never raises for what the hand-in or the bundle's checks do.
+    """The report on one submission; never raises for what the submission or the bundle's checks do.
 
     Args:
         case: what is to be judged.
@@ -76,7 +76,7 @@ def grade_guarded(case: Case, workers: Workers | None, grade: Callable[[], Repor
     A mistake of ours in one submission, wherever it hides, must not cost the others their grades.
 
     Args:
-        case: whose report it is, for the second kind; its `hand_in` may be empty.
+        case: whose report it is, for the second kind; its `submission` may be empty.
         workers: where it was to run.
         grade: takes the submission in, judges it, perhaps keeps the report.
 
@@ -96,7 +96,7 @@ def grade_guarded(case: Case, workers: Workers | None, grade: Callable[[], Repor
 
 def _answers(case: Case) -> Answers:
     try:
-        return score_answers(case.bundle, case.hand_in)
+        return score_answers(case.bundle, case.submission)
     except (OSError, MemoryError) as error:
         ours: Exception = error
     except Exception as error:
@@ -119,15 +119,15 @@ def _report(
         declared=declared,
         assignment=manifest.id,
         title=manifest.title,
-        hand_in=case.hand_in.digest,
+        submission=case.submission.digest,
         bundle=case.bundle_digest,
         mode=workers.mode if workers is not None else "none",
         isolation=workers.note if workers is not None else "",
         checks=tuple(checks),
         questions=tuple(answered),
-        problem=case.hand_in.problem,
-        warnings=(*case.hand_in.warnings, *warnings),
-        ignored=case.hand_in.ignored,
+        problem=case.submission.problem,
+        warnings=(*case.submission.warnings, *warnings),
+        ignored=case.submission.ignored,
         staff=staff_notes(checks, answered),
         versions=versions(),
         seconds=time.monotonic() - started,
@@ -135,7 +135,7 @@ def _report(
 
 
 def time_allowed(bundle: Bundle) -> float:
-    """Seconds for all checks of one hand-in: what each may take, capped."""
+    """Seconds for all checks of one submission: what each may take, capped."""
     return min(LONGEST, bundle.manifest.limits.seconds * max(1, len(bundle.checks)))
 
 
@@ -144,13 +144,13 @@ def _judge(
 ) -> list[Outcome]:
     if workers is None:
         return _all(case, Status.ERROR_OURS, "error-ours", unavailable, on_outcome)
-    if case.hand_in.problem:
-        return _all(case, Status.FAILED, "hand-in", case.hand_in.problem, on_outcome)
+    if case.submission.problem:
+        return _all(case, Status.FAILED, "submission", case.submission.problem, on_outcome)
     try:
         return _run(case, workers, slot, on_outcome)
     except IoError:
         raise  # from writing results: nothing that is judged from here on could be kept
-    except Exception as error:  # ours, whatever it is; the next hand-in still gets its turn
+    except Exception as error:  # ours, whatever it is; the next submission still gets its turn
         said = f"{type(error).__name__}: {error}"
         return _all(case, Status.ERROR_OURS, "error-ours", said, on_outcome)
 
@@ -158,12 +158,12 @@ def _judge(
 def _run(case: Case, workers: Workers, slot: int, on_outcome: OnOutcome | None) -> list[Outcome]:
     bundle = case.bundle
     adjoints = adjoint_functions(bundle.checks)
-    hand = replace(bundle.hand(case.hand_in.files), adjoints=adjoints)
+    hand = replace(bundle.hand(case.submission.files), adjoints=adjoints)
     budget = Budget(time_allowed(bundle))
 
     def open_student(substitutes: Mapping[str, Callable[..., Any]]) -> Student:
         if budget.left <= 0:
-            said = f"the {time_allowed(bundle):g} seconds for this hand-in were used up before"
+            said = f"the {time_allowed(bundle):g} seconds for this submission were used up before"
             raise StudentFailure("timeout", said)
         connection = Clocked(workers.open(slot), budget)
         return RemoteStudent(connection, replace(hand, substitutes=dict(substitutes)))

@@ -1,6 +1,6 @@
 """Text written by students, made safe for wherever a report goes.
 
-A hand-in chooses names of files and exceptions, and values in messages. None of these may move
+A submission chooses names of files and exceptions, and values in messages. None of these may move
 a terminal's cursor, become markup, turn a line around, or become a formula in a spreadsheet.
 """
 
@@ -45,7 +45,7 @@ def csv_cell(value: object) -> str:
 def file_name(text: str, longest: int = 48) -> str:
     """Letters, digits and dashes of a name: a part of a file's name on any system."""
     plain = unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode()
-    return re.sub(r"[^A-Za-z0-9]+", "-", plain).strip("-")[:longest] or "hand-in"
+    return re.sub(r"[^A-Za-z0-9]+", "-", plain).strip("-")[:longest] or "submission"
 
 
 def _is_unsafe(char: str) -> bool:

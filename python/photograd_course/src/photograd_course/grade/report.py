@@ -1,4 +1,4 @@
-"""The report on one hand-in: verdicts, points, and all it takes to come to them again."""
+"""The report on one submission: verdicts, points, and all it takes to come to them again."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ INDICATIVE = "graded without isolation: indicative only"
 
 @dataclass(frozen=True)
 class Report:
-    """What became of one hand-in.
+    """What became of one submission.
 
     Attributes:
         student: as the export or table names them.
         declared: the name in `answers.toml`, by which questions were drawn.
         assignment, title: of the assignment.
-        hand_in, bundle: SHA-256 of both.
+        submission, bundle: SHA-256 of both.
         mode, isolation: of isolation, and what staff should know about it here; verdicts of mode
             "E" are indicative only.
         checks, questions: every one of the bundle, none missing.
-        problem, warnings, ignored: about the hand-in's files.
+        problem, warnings, ignored: about the submission's files.
         staff: what staff must look at; empty where nothing is wrong on our side.
         versions: of what took part.
         seconds: wall-clock time.
@@ -38,7 +38,7 @@ class Report:
     declared: str
     assignment: str
     title: str
-    hand_in: str
+    submission: str
     bundle: str
     mode: str
     checks: tuple[Outcome, ...]
@@ -68,7 +68,7 @@ class Report:
 
     @property
     def max_score(self) -> float:
-        """What a perfect hand-in gets."""
+        """What a perfect submission gets."""
         return float(sum(c.max for c in self.checks) + sum(q.max for q in self.questions))
 
     @property
@@ -97,7 +97,7 @@ class Report:
             "mode": self.mode,
             "isolation": self.isolation,
             "indicative": self.mode == "E",
-            "hand_in": self.hand_in,
+            "submission": self.submission,
             "bundle": self.bundle,
             "checks": [outcome.to_json() for outcome in self.checks],
             "questions": [answered.to_json() for answered in self.questions],
@@ -123,7 +123,7 @@ class Report:
             declared=str(data["declared"]),
             assignment=str(data["assignment"]),
             title=str(data["title"]),
-            hand_in=str(data["hand_in"]),
+            submission=str(data["submission"]),
             bundle=str(data["bundle"]),
             mode=str(data["mode"]),
             isolation=str(data["isolation"]),

@@ -25,7 +25,7 @@ VISIBILITY = {"public": "visible", "hidden": "after_published", "secret": "hidde
 
 
 class ResultsFile:
-    """Keeps `results.json` up to date while a hand-in is graded."""
+    """Keeps `results.json` up to date while a submission is graded."""
 
     def __init__(self, path: Path, bundle: Bundle, earlier: float | None = None) -> None:
         """Write it at once, with every check at 0, so that a broken run is no missing file.
@@ -70,12 +70,12 @@ def as_results(report: Report, earlier: float | None = None) -> dict[str, Any]:
     if not report.is_sound:
         score = max(score, earlier or 0.0)
         lines.insert(0, STAFF_TEXT)
-    lines.append(f"Isolation mode {report.mode}, hand-in {report.hand_in[:12]}")
+    lines.append(f"Isolation mode {report.mode}, submission {report.submission[:12]}")
     results = _frame(score, "\n\n".join(lines), tests, report.seconds)
     results["extra_data"] = {
         "needs_staff": not report.is_sound,
         "mode": report.mode,
-        "hand_in": report.hand_in,
+        "submission": report.submission,
         "bundle": report.bundle,
     }
     return results

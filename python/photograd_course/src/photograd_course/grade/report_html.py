@@ -1,6 +1,6 @@
-"""One page a hand-in, for its author: no scripts, nothing loaded, everything escaped.
+"""One page a submission, for its author: no scripts, nothing loaded, everything escaped.
 
-Blue and orange are told apart with any kind of colour vision; a word and a mark stand beside each.
+Blue and orange are told apart with any kind of color vision; a word and a mark stand beside each.
 """
 
 from __future__ import annotations
@@ -122,7 +122,7 @@ def _question(question: Answered) -> str:
 def _footer(report: Report) -> str:
     versions = ", ".join(f"{name} {value}" for name, value in sorted(report.versions.items()))
     said = (
-        f"Isolation mode {report.mode}. Hand-in {report.hand_in[:16]}, "
+        f"Isolation mode {report.mode}. Submission {report.submission[:16]}, "
         f"bundle {report.bundle[:16]}. {versions}."
     )
     return f'<p class="small">{_escaped(said)}</p>'

@@ -1,7 +1,7 @@
 """The record of a grade: canonical JSON, sealed with the course secret, and comparable.
 
 The seal (HMAC-SHA-256) shows that a record was written by a grader that knows the secret, and not
-changed since. `verdict` is the hash of what must come out again when the same hand-in meets the
+changed since. `verdict` is the hash of what must come out again when the same submission meets the
 same bundle: points and verdicts, without durations and wording.
 """
 
@@ -33,7 +33,7 @@ def verdict_digest(report: Report) -> str:
     data = {
         "assignment": report.assignment,
         "bundle": report.bundle,
-        "hand_in": report.hand_in,
+        "submission": report.submission,
         "student": report.student,
         "checks": [[c.id, c.status.value, c.points, c.max] for c in report.checks],
         "questions": [[q.id, q.status, q.points, q.max] for q in report.questions],
@@ -60,7 +60,7 @@ def read_record(data: bytes, secret: bytes) -> Report:
             raise ValueError("the seal does not fit")
         return Report.from_json(record["report"])
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
-        remedy = "grade that hand-in again"
+        remedy = "grade that submission again"
         raise SceneError(
             message("read_record", "record", "a sealed record", str(error), remedy)
         ) from error

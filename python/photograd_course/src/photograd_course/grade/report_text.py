@@ -1,4 +1,4 @@
-"""A report on the terminal of whoever grades: everything, also about hidden checks."""
+"""A report on the grader's terminal: everything, also about hidden checks."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ def print_report(report: Report, console: Console) -> None:
     """Print verdicts, answers, what was left out, and the score.
 
     Args:
-        report: of one hand-in.
-        console: where to; whatever the hand-in wrote is printed as text, never as markup.
+        report: of one submission.
+        console: where to; whatever the submission wrote is printed as text, never as markup.
     """
     _line(console, f"{report.student}: {report.assignment} {report.title}", "bold")
     said = f" ({report.isolation})" if report.isolation else ""
-    _line(console, f"isolation mode {report.mode}{said}, hand-in {report.hand_in[:12]}")
+    _line(console, f"isolation mode {report.mode}{said}, submission {report.submission[:12]}")
     for remark in report.remarks:
         _line(console, f"note: {remark}", "yellow")
     for name in report.ignored:

@@ -1,8 +1,8 @@
 """The folder in which a batch keeps its results, so that a killed run can go on.
 
-records/NAME.json   one sealed record a hand-in, written as soon as it is judged
+records/NAME.json   one sealed record a submission, written as soon as it is judged
 earlier/            the records of the run before, for the table of differences
-pages/NAME.html     one page a hand-in
+pages/NAME.html     one page a submission
 grades.csv  changes.csv  similarity.csv  run.json
 """
 

@@ -71,14 +71,14 @@ def similar_pairs(sources: Mapping[str, str], starter: str = "") -> list[tuple[s
 
 def prints(source: str) -> set[int]:
     """The winnowed hashes of a text."""
-    words = normalised(source)
+    words = normalized(source)
     hashes = [_hash(words[k : k + RUN]) for k in range(len(words) - RUN + 1)]
     if not hashes:
         return set()
     return {min(hashes[k : k + WINDOW]) for k in range(max(1, len(hashes) - WINDOW + 1))}
 
 
-def normalised(source: str) -> list[str]:
+def normalized(source: str) -> list[str]:
     """Tokens without names, values, layout and arithmetic; short statements vanish as well."""
     words: list[str] = []
     statement: list[Token] = []

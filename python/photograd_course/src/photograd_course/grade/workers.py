@@ -1,4 +1,4 @@
-"""Where hand-ins run: fresh workers in the best isolation mode, each against the clock."""
+"""Where submissions run: fresh workers in the best isolation mode, each against the clock."""
 
 from __future__ import annotations
 

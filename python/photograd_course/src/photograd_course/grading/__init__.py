@@ -1,4 +1,4 @@
-"""The trusted side: what a check may say, how hand-ins are called, and what comes of it.
+"""The trusted side: what a check may say, how submissions are called, and what comes of it.
 
 An assignment's `checks.py` needs only what this module exports.
 """

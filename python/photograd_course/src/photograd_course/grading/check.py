@@ -17,15 +17,15 @@ Body = Callable[[Trial], None]
 
 @dataclass(frozen=True)
 class Check:
-    """One declarative check; its body asks the hand-in and compares.
+    """One declarative check; its body asks the submission and compares.
 
     Attributes:
         id: unique in the assignment, such as "01.2.rate".
         task: the task of the manifest that it belongs to, such as "01.2".
         points: what it is worth.
-        visibility: "public" (students have it), "hidden" (shown after the hand-in is due) or
+        visibility: "public" (students have it), "hidden" (shown after the submission is due) or
             "secret" (only its title is ever shown).
-        calls: functions of the hand-in that it is about, such as ("gd_1d",).
+        calls: functions of the submission that it is about, such as ("gd_1d",).
         needs: functions of earlier tasks that those use; where one of them has failed, the check is
             blocked, or run once more with the reference in their place.
         tolerance: for ``Trial.close``.

@@ -4,7 +4,7 @@ Three ways round it are closed. Answers kept from an earlier call: each timed ca
 its own, and where the reference is at hand its answer is looked at as well. A forward function that
 wastes time, so that all else looks cheap: the reference's forward function sets a second cap. Work
 left to processes or threads: what is counted is the processor time of all that belongs to the
-hand-in.
+submission.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ Call = tuple[str, Sequence[Any], Spec]
 
 
 def require_cheap(trial: Trial, forward: Call, backward: Call, ratio: float = COST_RATIO) -> None:
-    """The backward function must cost at most ``ratio`` forward calls of the same hand-in.
+    """The backward function must cost at most ``ratio`` forward calls of the same submission.
 
     Processor time, measured from outside; median of three, and one retry. Where it cannot be
     measured (a student's machine), nothing is asked. For each call the arrays of float64 among the

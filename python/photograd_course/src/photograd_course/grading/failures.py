@@ -34,7 +34,7 @@ class TooExpensive(CheckFailed):
 
 @dataclass
 class StudentFailure(Exception):
-    """No answer came, through the hand-in's own doing.
+    """No answer came, through the submission's own doing.
 
     Attributes:
         reason: "not implemented", "raised", "missing", "timeout", "died", "protocol", "forbidden",
@@ -42,7 +42,7 @@ class StudentFailure(Exception):
             written).
         text: one sentence for the student.
         private: what may hold input of a check (an exception's text); shown for public checks only.
-        line: (file, line) in the hand-in.
+        line: (file, line) in the submission.
     """
 
     reason: str

@@ -1,4 +1,4 @@
-"""Known mistakes, recognised by the wrong answer they give.
+"""Known mistakes, recognized by the wrong answer they give.
 
 When an assignment is built, every mutant runs against every check; the fingerprint of its wrong
 answer is kept beside the sentence that names the mistake. Neither the mutant nor the right answer

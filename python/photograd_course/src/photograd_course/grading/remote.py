@@ -1,4 +1,4 @@
-"""A hand-in in a worker process, as the checks see it."""
+"""A submission in a worker process, as the checks see it."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class Connection(Protocol):
 
 
 class RemoteStudent:
-    """Loads the hand-in into a started worker and forwards calls."""
+    """Loads the submission into a started worker and forwards calls."""
 
     def __init__(self, connection: Connection, hand: Hand) -> None:
         self._connection = connection
@@ -96,7 +96,7 @@ class RemoteStudent:
             kind, text, line = _described(frame.value)
             where = f"{line[0]}, line {line[1]}: " if line else ""
             raise StudentFailure(frame.kind, f"{where}{says}: {kind}", f"{kind}: {text}", line)
-        raise StudentFailure("protocol", "the hand-in interfered with the worker")
+        raise StudentFailure("protocol", "the submission interfered with the worker")
 
     def call(self, function: str, args: Sequence[Any], *, seconds: float) -> Any:
         """See Student."""
@@ -109,7 +109,7 @@ class RemoteStudent:
         request = {"function": function, "args": list(args), "layout": layout}
         found = self._call(request, seconds)
         if not isinstance(found, dict) or set(found) != {"value", "args"}:
-            raise StudentFailure("protocol", "the hand-in interfered with the worker")
+            raise StudentFailure("protocol", "the submission interfered with the worker")
         return found["value"], found["args"]
 
     def _call(self, request: dict[str, Any], seconds: float) -> Any:
@@ -129,7 +129,7 @@ class RemoteStudent:
             raise StudentFailure("missing", f"there is no function {name}")
         if frame.kind == "unsendable":
             raise StudentFailure("output", f"{name} returned {str(frame.value)[:200]}")
-        raise StudentFailure("protocol", "the hand-in interfered with the worker")
+        raise StudentFailure("protocol", "the submission interfered with the worker")
 
     def cpu_seconds(self) -> float | None:
         """See Student."""

@@ -1,4 +1,4 @@
-"""Run the checks of an assignment on one hand-in, in the order of their dependencies."""
+"""Run the checks of an assignment on one submission, in the order of their dependencies."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ OpenControl = Callable[[], Student]
 
 @dataclass(frozen=True)
 class Setting:
-    """What belongs to an assignment rather than to a hand-in.
+    """What belongs to an assignment rather than to a submission.
 
     Attributes:
         module: name of the graded module.
@@ -66,12 +66,12 @@ def run_checks(
     Args:
         checks: sorted so that tasks come after those they need.
         setting_of: what the assignment adds to a check, such as `Bundle.setting`.
-        open_student: starts the hand-in; gets the functions to be replaced by the reference's.
+        open_student: starts the submission; gets the functions to be replaced by the reference's.
         open_control: starts the solution in the same way; None where it is not at hand.
         on_outcome: called after each check; where the price of an adjoint proves too high later,
             the outcomes that are returned have the last word.
     """
-    failed: dict[str, str] = {}  # function of the hand-in to the check in which it failed
+    failed: dict[str, str] = {}  # function of the submission to the check in which it failed
     judge = _Judge(open_student, open_control)
     outcomes = []
     for check in checks:

@@ -1,4 +1,4 @@
-"""One run of one check: calls of the hand-in, and comparisons."""
+"""One run of one check: calls of the submission, and comparisons."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Student(Protocol):
         """Of the rule that adjoints are written, by function."""
 
     def call(self, function: str, args: Sequence[Any], *, seconds: float) -> Any:
-        """The value of one function of the hand-in; raises StudentFailure."""
+        """The value of one function of the submission; raises StudentFailure."""
 
     def look(
         self, function: str, args: Sequence[Any], *, seconds: float, layout: str
@@ -114,17 +114,17 @@ class Trial:
         return self._reference is not None
 
     def call(self, function: str, *args: Any, returns: Spec) -> Any:
-        """Call the hand-in, and look at kind, shape, dtype and finiteness of what comes back.
+        """Call the submission, and look at kind, shape, dtype and finiteness of what comes back.
 
         Args:
             function: its name; of the graded module, or "module.name" for another.
-            args: scalars, arrays, lists, dicts; functions, which the hand-in can call.
+            args: scalars, arrays, lists, dicts; functions, which the submission can call.
             returns: what the value must be.
 
         Raises:
             StudentFailure: no value came.
             CheckFailed: the value is not of that kind, or a function among `args` has raised it;
-                what the hand-in makes of such an exception does not matter.
+                what the submission makes of such an exception does not matter.
         """
         value = self._answer(function, args)
         returns.require(value, function.rpartition(".")[2])
@@ -182,7 +182,7 @@ class Trial:
         return service
 
     def cpu_seconds(self) -> float | None:
-        """Processor time of the hand-in so far; None where it cannot be measured from outside."""
+        """Processor time of the submission so far; None where it cannot be measured outside."""
         return self._student.cpu_seconds()
 
     def close(
@@ -248,7 +248,7 @@ class Trial:
             raise CheckFailed(text, {**details, "advice": hint}, fingerprint(text, np.zeros(0)))
 
     def refuses(self, function: str, *args: Any, error: str) -> None:
-        """Require that the hand-in raises ``error``, named by its type, for these arguments."""
+        """Require that the submission raises ``error``, named by its type, for these arguments."""
         self.asked += 1
         try:
             self._answer(function, args)

@@ -1,4 +1,4 @@
-"""Optimisers over a dictionary of arrays, one method a file.
+"""Optimizers over a dictionary of arrays, one method a file.
 
 All share `Optimizer.step(params, gradients, learning_rates)`, which changes the arrays in place:
 views with strides, float32 or float64, a learning rate for each group, gradients dense or as

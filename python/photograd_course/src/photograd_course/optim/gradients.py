@@ -1,4 +1,4 @@
-"""Gradients as optimisers take them: an array like the parameter, or (rows, values)."""
+"""Gradients as optimizers take them: an array like the parameter, or (rows, values)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What all optimisers share: checks, pieces, sparse rows, state. A method adds only its formula."""
+"""What all optimizers share: checks, pieces, sparse rows, state. A method adds only its formula."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""A student's machine: the folder of an assignment, predictions, checks, the hand-in."""
+"""A student's machine: the folder of an assignment, predictions, checks, the submission."""

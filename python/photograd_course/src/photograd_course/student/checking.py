@@ -43,7 +43,7 @@ def check_here(
     checks: Sequence[Check],
     on_outcome: Callable[[Outcome], None] | None = None,
 ) -> list[Outcome]:
-    """Run `checks` on a hand-in of this machine's user. The verdict is indicative only."""
+    """Run `checks` on a submission of this machine's user. The verdict is indicative only."""
     hand = replace(bundle.hand(files), adjoints=adjoint_functions(checks))
     with scratch_folder() as scratch:
         home = install_program(Path(scratch))

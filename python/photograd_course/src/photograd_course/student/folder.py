@@ -37,13 +37,13 @@ class WorkFolder:
         return self._read(self.module_path).decode("utf-8")
 
     def files(self) -> dict[str, bytes]:
-        """All files of the hand-in that are there, and the lock on predictions.
+        """All files of the submission that are there, and the lock on predictions.
 
         Raises:
             IoError: the graded module is missing, or a file is too long or not UTF-8.
         """
         self.source()
-        wanted = [*self.manifest.handin, LOCK_NAME]
+        wanted = [*self.manifest.submission, LOCK_NAME]
         return {
             name: self._read(self.path / name) for name in wanted if (self.path / name).exists()
         }
@@ -68,16 +68,16 @@ class WorkFolder:
         except OSError as error:
             remedy = f"run in the folder that 'photograd course start {self.manifest.id}' made"
             found = error.strerror or str(error)
-            raise IoError(message("hand-in", path.name, "a file", found, remedy)) from error
+            raise IoError(message("submission", path.name, "a file", found, remedy)) from error
         if len(data) > LARGEST_FILE:
             limit = f"at most {LARGEST_FILE >> 10} KB"
-            raise IoError(message("hand-in", path.name, limit, f"{len(data) >> 10} KB"))
+            raise IoError(message("submission", path.name, limit, f"{len(data) >> 10} KB"))
         try:
             data.decode("utf-8")
         except UnicodeDecodeError as error:
             where = f"byte {error.start} is not"
             remedy = "save it as UTF-8 in your editor"
-            raise IoError(message("hand-in", path.name, "UTF-8", where, remedy)) from error
+            raise IoError(message("submission", path.name, "UTF-8", where, remedy)) from error
         return data
 
 

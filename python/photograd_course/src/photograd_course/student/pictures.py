@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from ..grading.outcome import Outcome
-from ..viz.style import INK, house_style, save_figure, signed_colour_map
+from ..viz.style import INK, house_style, save_figure, signed_color_map
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
@@ -45,7 +45,7 @@ def picture_path(outcome: Outcome, folder: Path) -> Path:
 def _lines(got: Array, expected: Array) -> Figure:
     figure = Figure(figsize=(6.0, 3.0), layout="constrained")
     axes = figure.add_subplot()
-    # Points: neighbours need have nothing to do with one another.
+    # Points: neighbors need have nothing to do with one another.
     axes.plot(expected.ravel(), "o", color="0.6", markersize=8, label="expected")
     axes.plot(got.ravel(), "o", color="C0", markersize=3.5, label="yours")
     axes.set(xlabel="index", ylabel="value")
@@ -65,7 +65,7 @@ def _planes(got: Array, expected: Array) -> Figure:
     for k, (plane, name) in enumerate(zip(shown, ("yours", "expected", "difference"), strict=True)):
         axes = figure.add_subplot(1, 3, k + 1)
         image = axes.imshow(
-            plane, cmap=signed_colour_map(), vmin=-top, vmax=top, interpolation="nearest"
+            plane, cmap=signed_color_map(), vmin=-top, vmax=top, interpolation="nearest"
         )
         frame = Rectangle((column - 0.5, row - 0.5), 1, 1, fill=False, edgecolor=INK, linewidth=1.5)
         axes.add_patch(frame)  # the entry that the message names

@@ -58,7 +58,7 @@ def run_check_command(
         print_rest(bundle, console)
     passed = all(outcome.status is Status.PASSED for outcome in outcomes)
     if passed and task is None:
-        next_command = f"photograd course handin {bundle.manifest.id}"
+        next_command = f"photograd course submit {bundle.manifest.id}"
         first = "Answer the questions, then: " if bundle.questions else "Next: "
         console.print(f"All green. {first}{next_command}", soft_wrap=True)
     own = {function for each in bundle.manifest.tasks for function in each.functions}

@@ -53,8 +53,8 @@ def remember_shown(bundle: Bundle, work: WorkFolder) -> None:
     atomic_write(path, (json.dumps(_draws(bundle, work), indent=1) + "\n").encode())
 
 
-def notes_before_handin(bundle: Bundle, work: WorkFolder) -> list[str]:
-    """What the student should know before handing in; one sentence each."""
+def notes_before_submission(bundle: Bundle, work: WorkFolder) -> list[str]:
+    """What the student should know before submissiong in; one sentence each."""
     student, answers = work.answers()
     notes = []
     if bundle.questions and not student:

@@ -12,7 +12,7 @@ from ..assignment.bundle import Bundle
 from ..assignment.manifest import Manifest
 from ..grading.outcome import Outcome, Status
 
-# Sign and colour: the sign alone says it, for those who do not see the colour.
+# Sign and color: the sign alone says it, for readers who do not see the color.
 MARKS = {
     Status.PASSED: ("✓", "green"),
     Status.FAILED: ("✗", "red"),
@@ -25,8 +25,8 @@ STUB = re.compile(r"(\d\d)\.\d+ (\w+): see the handout, section \d+")
 
 def print_outcome(outcome: Outcome, console: Console, manifest: Manifest | None = None) -> None:
     """One check: its verdict, and under it what to do; `manifest`: on a student's machine."""
-    mark, colour = MARKS[outcome.status]
-    head = Text(f"{mark} {outcome.id:<20} ", style=colour)
+    mark, color = MARKS[outcome.status]
+    head = Text(f"{mark} {outcome.id:<20} ", style=color)
     head.append(outcome.title, style="default")
     console.print(head, soft_wrap=True)
     if outcome.status is Status.PASSED:

@@ -24,7 +24,7 @@ def check_field(function: str, argument: str, values: object) -> NDArray[np.floa
 
 
 def check_bounds(function: str, bounds: ArrayLike) -> NDArray[np.float64]:
-    """A box (2, 3) in metres: lower corner, then upper corner, strictly larger on every axis.
+    """A box (2, 3) in meters: lower corner, then upper corner, strictly larger on every axis.
 
     Raises:
         ShapeError, RangeError: it is no such box.
@@ -40,7 +40,7 @@ def check_bounds(function: str, bounds: ArrayLike) -> NDArray[np.float64]:
 def check_images(
     function: str, argument: str, images: Sequence[object]
 ) -> list[NDArray[np.floating]]:
-    """Display-encoded colour images (H, W, 3), floating point, in [0, 1].
+    """Display-encoded color images (H, W, 3), floating point, in [0, 1].
 
     Raises:
         DtypeError, ShapeError, RangeError: naming the image that is wrong.

@@ -76,7 +76,7 @@ def fit_curves(
 
 
 def running_mean(values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Mean over a window of a fiftieth of the values (at least 1), centred, shorter at the ends."""
+    """Centered mean over a window of a fiftieth of the values (at least 1), shorter at the ends."""
     half = values.size // 100
     total = np.concatenate([[0.0], np.cumsum(values)])
     start = np.maximum(np.arange(values.size) - half, 0)
@@ -142,7 +142,7 @@ def _finish(axes: Axes, steps: NDArray[np.float64], events: Mapping[int, str]) -
     axes.set_axisbelow(True)
     axes.spines[["top", "right"]].set_visible(False)
     for step, word in sorted(events.items()):
-        axes.axvline(step, color=style.GREY, linewidth=0.8, linestyle=":")
+        axes.axvline(step, color=style.GRAY, linewidth=0.8, linestyle=":")
         axes.annotate(
             word,
             (step, 1.0),

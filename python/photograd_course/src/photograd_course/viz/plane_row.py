@@ -1,4 +1,4 @@
-"""One row of three orthogonal views with a common colour bar, for slices and projections alike."""
+"""One row of three orthogonal views with a common color bar, for slices and projections alike."""
 
 from __future__ import annotations
 
@@ -30,15 +30,15 @@ def draw_plane_row(
     title: str | None = None,
     caption: str | None = None,
 ) -> Figure:
-    """Front, side and top view side by side, in metres, with one signed colour bar.
+    """Front, side and top view side by side, in meters, with one signed color bar.
 
     Args:
         sections: three arrays, over the axes that remain, for the planes of ``planes.PLANES``;
             gray where masked.
-        bounds: (2, 3) outer faces, metres.
+        bounds: (2, 3) outer faces, meters.
         headings: one line above each panel.
         outlines: boolean sections whose border is drawn.
-        crosshair: (3,) metres; dashed lines at its coordinates.
+        crosshair: (3,) meters; dashed lines at its coordinates.
     """
     head = 0.26 if title else 0.0
     with style.house_style():
@@ -55,7 +55,7 @@ def draw_plane_row(
                 plane,
                 sections[number],
                 bounds,
-                colour_map=style.signed_colour_map(),
+                color_map=style.signed_color_map(),
                 norm=style.symmetric_scale(scale.limit),
             )
             axes.set_title(headings[number])
@@ -64,7 +64,7 @@ def draw_plane_row(
             if crosshair is not None:
                 _draw_crosshair(axes, plane, crosshair)
         box = (row.right + planes.BAR_GAP, row.top, planes.BAR_WIDTH, row.bottom - row.top)
-        style.colour_bar(figure, box, image, quantity, unit=unit, extend=scale.extend)
+        style.color_bar(figure, box, image, quantity, unit=unit, extend=scale.extend)
         style.write_title(figure, title, left=planes.MARGIN_LEFT)
         style.write_caption(figure, caption, left=planes.MARGIN_LEFT, right=planes.MARGIN_LEFT)
     return figure

@@ -61,7 +61,7 @@ class PanelRow:
 
 
 def row_scale(bounds: NDArray[np.floating], planes: tuple[Plane, ...], room: float) -> float:
-    """Inches per metre so that the row fits ``room`` and no panel is over 2.6 inches high."""
+    """Inches per meter so that the row fits ``room`` and no panel is over 2.6 inches high."""
     extent = bounds[1] - bounds[0]
     widths = sum(float(extent[plane.across]) for plane in planes)
     tallest = max(float(extent[plane.up]) for plane in planes)
@@ -110,20 +110,20 @@ def draw_plane(
     section: NDArray[np.floating],
     bounds: NDArray[np.floating],
     *,
-    colour_map: Colormap,
+    color_map: Colormap,
     norm: Normalize,
 ) -> AxesImage:
-    """Draw one section with axes in metres; every voxel is a flat square, nothing is blurred.
+    """Draw one section with axes in meters; every voxel is a flat square, nothing is blurred.
 
     Args:
         section: values over the two axes of the plane, in x-y-z order; gray where masked.
-        bounds: (2, 3) outer faces of the grid, metres.
+        bounds: (2, 3) outer faces of the grid, meters.
     """
     low_across, high_across = (float(face) for face in bounds[:, plane.across])
     low_up, high_up = (float(face) for face in bounds[:, plane.up])
     image = axes.imshow(
         plane.image(section),
-        cmap=colour_map.with_extremes(bad=style.MISSING),
+        cmap=color_map.with_extremes(bad=style.MISSING),
         norm=norm,
         origin="lower",
         interpolation="nearest",

@@ -53,10 +53,10 @@ def signed_projections(
 
     Args:
         values: (X, Y, Z) float32 or float64, any sign.
-        bounds: (2, 3) outer faces of the grid in metres; world right-handed, +Y up.
-        quantity: name for the colour bar (mathtext allowed).
-        unit: unit for the colour bar.
-        limit: the colours span [-limit, limit]; by default the 99.9 % quantile of the non-zero
+        bounds: (2, 3) outer faces of the grid in meters; world right-handed, +Y up.
+        quantity: name for the color bar (mathtext allowed).
+        unit: unit for the color bar.
+        limit: the colors span [-limit, limit]; by default the 99.9 % quantile of the non-zero
             magnitudes of what is shown, rounded up.
         outline: (X, Y, Z) boolean; the silhouette of its True voxels is drawn.
         active: (X, Y, Z) boolean, the voxels that exist; gray is where a line of sight meets none.

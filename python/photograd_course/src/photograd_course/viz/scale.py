@@ -1,4 +1,4 @@
-"""The symmetric colour scale of a signed field, and which of its ends are clipped."""
+"""The symmetric color scale of a signed field, and which of its ends are clipped."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Extend = Literal["neither", "min", "max", "both"]
 
 @dataclass(frozen=True)
 class Scale:
-    """Colours span [-limit, limit]; values beyond it get the end colour and an arrow on the bar."""
+    """Colors span [-limit, limit]; values beyond it get the end color and an arrow on the bar."""
 
     limit: float
     extend: Extend
@@ -50,7 +50,7 @@ def signed_scale(
 
 
 def nice_limit(value: float) -> float:
-    """The next round number at or above ``value`` (1 for zero), so that colour bars read well."""
+    """The next round number at or above ``value`` (1 for zero), so that color bars read well."""
     if value <= 0.0:
         return 1.0
     power = 10.0 ** math.floor(math.log10(value))

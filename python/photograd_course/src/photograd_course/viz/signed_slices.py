@@ -39,12 +39,12 @@ def signed_slices(
 
     Args:
         values: (X, Y, Z) float32 or float64, any sign.
-        bounds: (2, 3) outer faces of the grid in metres; world right-handed, +Y up.
-        at: the point (x, y, z) in metres that all three slices pass through; the middle if None.
-        quantity: name for the colour bar (mathtext allowed).
-        unit: unit for the colour bar.
-        limit: the colours span [-limit, limit]; by default the 99.9 % quantile of the non-zero
-            magnitudes, rounded up. Clipped ends are shown as arrows on the colour bar.
+        bounds: (2, 3) outer faces of the grid in meters; world right-handed, +Y up.
+        at: the point (x, y, z) in meters that all three slices pass through; the middle if None.
+        quantity: name for the color bar (mathtext allowed).
+        unit: unit for the color bar.
+        limit: the colors span [-limit, limit]; by default the 99.9 % quantile of the non-zero
+            magnitudes, rounded up. Clipped ends are shown as arrows on the color bar.
         outline: (X, Y, Z) boolean; the border of its True voxels is drawn, e.g. the true object.
         active: (X, Y, Z) boolean, the voxels that exist; the others are gray. All of them if None.
         title: a line above the pictures.
@@ -60,7 +60,7 @@ def signed_slices(
     field, box = check_field(function, "values", values), check_bounds(function, bounds)
     mask = None if outline is None else require_mask(function, "outline", outline, field.shape)
     index = _voxel_at(function, at, box, field.shape)
-    centre = box[0] + (index + 0.5) * (box[1] - box[0]) / np.array(field.shape)
+    center = box[0] + (index + 0.5) * (box[1] - box[0]) / np.array(field.shape)
     slices = [_cut(field, index, plane.normal) for plane in PLANES]
     if active is not None:
         require_mask(function, "active", active, field.shape)
@@ -71,12 +71,12 @@ def signed_slices(
     return draw_plane_row(
         slices,
         box,
-        headings=[f"slice {AXIS_NAMES[p.normal]} = {_metres(centre[p.normal])} m" for p in PLANES],
+        headings=[f"slice {AXIS_NAMES[p.normal]} = {_meters(center[p.normal])} m" for p in PLANES],
         scale=signed_scale(function, [field], limit),
         quantity=quantity,
         unit=unit,
         outlines=None if mask is None else [_cut(mask, index, p.normal) for p in PLANES],
-        crosshair=centre,
+        crosshair=center,
         title=title,
         caption=caption,
     )
@@ -86,8 +86,8 @@ def _cut(grid: NDArray[Any], index: NDArray[np.int64], axis: int) -> NDArray[Any
     return np.asarray(np.take(grid, index[axis], axis=axis))
 
 
-def _metres(value: float) -> str:
-    """Centimetres are enough; a true minus sign, and no negative zero."""
+def _meters(value: float) -> str:
+    """Centimeters are enough; a true minus sign, and no negative zero."""
     return f"{round(float(value), 2) + 0.0:.2f}".replace("-", "\N{MINUS SIGN}")
 
 

@@ -40,14 +40,14 @@ def projection_steps(
 
     Args:
         fields: step -> (X, Y, Z) float32 or float64; resolutions may differ, the box may not.
-        bounds: (2, 3) outer faces of the box in metres; world right-handed, +Y up.
+        bounds: (2, 3) outer faces of the box in meters; world right-handed, +Y up.
         view: from which side the box is seen (+Z, +X or +Y).
         active: step -> (X, Y, Z) boolean, the voxels that exist; gray is where a line of sight
             meets none. All of them if None.
-        common_scale: one colour bar for all panels. If False every panel has its own scale, which
+        common_scale: one color bar for all panels. If False every panel has its own scale, which
             its heading states, since gradients shrink by orders of magnitude during a fit.
-        quantity: name for the colour bar (mathtext allowed).
-        unit: unit for the colour bar.
+        quantity: name for the color bar (mathtext allowed).
+        unit: unit for the color bar.
         title: a line above the pictures.
         caption: text below the pictures.
 
@@ -73,12 +73,12 @@ def projection_steps(
                 plane,
                 np.ma.array(picture / limit, mask=gray),
                 box,
-                colour_map=style.signed_colour_map(),
+                color_map=style.signed_color_map(),
                 norm=style.symmetric_scale(scale.limit / limit),
             )
             panel.set_title(_heading(step, None if common_scale else scale.limit, unit))
         _label_outer_axes(panels)
-        style.colour_bar(
+        style.color_bar(
             figure,
             _bar_box(figure, panels),
             image,
@@ -175,7 +175,7 @@ def _layout(
 
 
 def _label_outer_axes(panels: list[Axes]) -> None:
-    """Leave labels only where no neighbour has them: left column and lowest panel of each."""
+    """Leave labels only where no neighbor has them: left column and lowest panel of each."""
     for i, panel in enumerate(panels):
         panel.xaxis.set_major_locator(MaxNLocator(nbins=4, prune="both"))
         if i % COLUMNS:
@@ -187,7 +187,7 @@ def _label_outer_axes(panels: list[Axes]) -> None:
 
 
 def _bar_box(figure: Figure, panels: list[Axes]) -> tuple[float, float, float, float]:
-    """A colour bar beside the first line of panels, as (left, top, width, height) in inches."""
+    """A color bar beside the first line of panels, as (left, top, width, height) in inches."""
     total_width, total_height = figure.get_size_inches()
     last = panels[min(len(panels), COLUMNS) - 1].get_position()
     top = (1.0 - last.y1) * total_height

@@ -83,7 +83,7 @@ def comparison_strips(
         for row, word in enumerate(ROWS):
             grid[row][0].set_ylabel(word, fontsize=style.TITLE_SIZE, labelpad=6.0)
         clipped = any(float(error.max()) > limit for error in errors)
-        style.colour_bar(
+        style.color_bar(
             figure,
             _beside(figure, grid[2][-1]),
             shown[2],
@@ -174,7 +174,7 @@ def _layout(
 
 
 def _draw(axes: Axes, picture: NDArray[np.floating] | MaskedError, limit: float) -> AxesImage:
-    """A colour image as it is, or an error map in the magnitude colours, gray where masked."""
+    """A color image as it is, or an error map in the magnitude colors, gray where masked."""
     image = axes.imshow(
         picture,
         cmap=mpl.colormaps[style.MAGNITUDE_MAP].with_extremes(bad=style.MISSING),
@@ -189,7 +189,7 @@ def _draw(axes: Axes, picture: NDArray[np.floating] | MaskedError, limit: float)
 
 
 def _beside(figure: Figure, axes: Axes) -> tuple[float, float, float, float]:
-    """A colour bar right of ``axes``, as (left, top, width, height) in inches."""
+    """A color bar right of ``axes``, as (left, top, width, height) in inches."""
     total_width, total_height = figure.get_size_inches()
     place = axes.get_position()
     top, height = (1.0 - place.y1) * total_height, (place.y1 - place.y0) * total_height

@@ -1,10 +1,10 @@
-"""How every figure of the course looks: colours, type, layout in inches, files of fixed bytes.
+"""How every figure of the course looks: colors, type, layout in inches, files of fixed bytes.
 
 Figures are built from ``matplotlib.figure.Figure`` on an Agg canvas, so that nothing depends on a
 display, on pyplot's current figure or on the reader's own matplotlibrc.
 
-Colours: the signed map is ColorBrewer's RdBu, which readers with a red-green weakness can tell
-apart, with its grey centre replaced by white so that zero is exactly the colour of paper;
+Colors: the signed map is ColorBrewer's RdBu, which readers with a red-green weakness can tell
+apart, with its gray center replaced by white so that zero is exactly the color of paper;
 magnitudes use viridis. [Harrower2003]
 """
 
@@ -33,7 +33,7 @@ HANDOUT_DPI = 110  # 7 inches wide gives 770 pixels
 INK = "#22262b"  # text
 FRAME = "#8a9097"  # axes frames, ticks
 GUIDE = "#5b6168"  # thin lines drawn over a picture
-BLUE, RED, ORANGE, GREY = "#2166ac", "#b2182b", "#d9730d", "#9aa0a6"
+BLUE, RED, ORANGE, GRAY = "#2166ac", "#b2182b", "#d9730d", "#9aa0a6"
 MAGNITUDE_MAP = "viridis"
 MISSING = "#cfd3d7"  # pixels that a photograph does not have, voxels that do not exist
 
@@ -85,20 +85,20 @@ def house_style() -> Iterator[None]:
         yield
 
 
-def signed_colour_map() -> LinearSegmentedColormap:
+def signed_color_map() -> LinearSegmentedColormap:
     """Blue for negative, white for exactly zero, red for positive.
 
     The table has an odd number of entries, so that zero owns the middle one.
     """
     anchors = list(mpl.colormaps["RdBu_r"](range(0, 256, 51)))  # 6 steps: 3 blue, 3 red
-    colours = [*anchors[:3], (1.0, 1.0, 1.0, 1.0), *anchors[3:]]
+    colors = [*anchors[:3], (1.0, 1.0, 1.0, 1.0), *anchors[3:]]
     positions = [0.0, 0.18, 0.36, 0.5, 0.64, 0.82, 1.0]
-    table = list(zip(positions, colours, strict=True))
+    table = list(zip(positions, colors, strict=True))
     return LinearSegmentedColormap.from_list("photograd_signed", table, N=511)
 
 
 def symmetric_scale(limit: float) -> Normalize:
-    """The colour scale ``[-limit, limit]``."""
+    """The color scale ``[-limit, limit]``."""
     return Normalize(vmin=-limit, vmax=limit)
 
 
@@ -122,7 +122,7 @@ def place_axes(figure: Figure, left: float, top: float, width: float, height: fl
     )
 
 
-def colour_bar(
+def color_bar(
     figure: Figure,
     box: tuple[float, float, float, float],
     mappable: ScalarMappable,
@@ -131,7 +131,7 @@ def colour_bar(
     unit: str = "",
     extend: str = "neither",
 ) -> Colorbar:
-    """A vertical colour bar at ``box`` = (left, top, width, height) inches.
+    """A vertical color bar at ``box`` = (left, top, width, height) inches.
 
     A power of ten is taken out of the tick labels and written once, in the label. ``extend`` says
     which ends of the scale are clipped (``neither | min | max | both``).

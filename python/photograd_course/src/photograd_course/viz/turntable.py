@@ -44,7 +44,7 @@ def write_gif(
     pil = _pillow("write_gif")
     pictures = [pil.fromarray(to_bytes(image)) for image in images]
     palette = _common_palette(pil, images)
-    # Dithering by Floyd and Steinberg hides the steps of 256 colours in smooth shading.
+    # Dithering by Floyd and Steinberg hides the steps of 256 colors in smooth shading.
     indexed = [
         picture.quantize(palette=palette, dither=pil.Dither.FLOYDSTEINBERG) for picture in pictures
     ]
@@ -108,7 +108,7 @@ def _same_size(function: str, frames: Sequence[NDArray[np.floating]]) -> list[ND
 
 
 def _common_palette(pil: ModuleType, images: list[NDArray[np.floating]]) -> object:
-    """A palette image of 256 colours from frames spread evenly over the path."""
+    """A palette image of 256 colors from frames spread evenly over the path."""
     chosen = np.linspace(0, len(images) - 1, min(PALETTE_FRAMES, len(images))).round().astype(int)
     strip = np.concatenate([to_bytes(images[i]) for i in chosen], axis=0)
     return pil.fromarray(strip).quantize(colors=256, method=pil.Quantize.MEDIANCUT)

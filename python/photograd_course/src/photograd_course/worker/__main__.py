@@ -1,7 +1,7 @@
-"""The worker: loads one hand-in and answers calls until the pipe closes.
+"""The worker: loads one submission and answers calls until the pipe closes.
 
 Started by `home.BOOT`; standard library and NumPy only. Everything it says may be forged by the
-hand-in once that is loaded: the grader believes nothing but values it can check. Until then it
+submission once that is loaded: the grader believes nothing but values it can check. Until then it
 speaks for itself: "ready" names the layers of isolation that it has found to hold.
 """
 
@@ -58,7 +58,7 @@ def apply(policy: Any, channel: Channel) -> list[str]:
 
 
 def load_modules(channel: Channel, load: dict[str, Any]) -> dict[str, ModuleType] | None:
-    """Import the hand-in, and put the grader's functions in the place of substituted ones."""
+    """Import the submission, and put the grader's functions in the place of substituted ones."""
     sources: dict[str, str] = load["sources"]
     own, graded = list(sources), load["graded"]
     try:

@@ -1,6 +1,6 @@
-"""A hand-in that tries what a hand-in must not be able to do. Each function says "" or what it got.
+"""A submission that tries what must not be possible. Each function returns "" or what it got.
 
-Loaded into a worker by `self_test`, as text, like any other hand-in. It asks the C library, so
+Loaded into a worker by `self_test`, as text, like any other submission. It asks the C library, so
 that nothing Python refuses by itself hides what the system would allow.
 """
 

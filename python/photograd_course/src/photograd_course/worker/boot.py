@@ -14,7 +14,7 @@ from types import ModuleType
 
 
 class NumpyAlone(importlib.abc.MetaPathFinder):
-    """Finds NumPy in its folder, and none of its neighbours."""
+    """Finds NumPy in its folder, and none of its neighbors."""
 
     def __init__(self, folder: str) -> None:
         self._folder = folder
@@ -33,7 +33,7 @@ def start(program: str, numpy_folder: str) -> None:
     """Import the worker, which serves until its pipe closes."""
     sys.path[0] = program  # instead of this file's folder
     sys.meta_path.append(NumpyAlone(numpy_folder))
-    sys.argv[:] = ["hand-in"]
+    sys.argv[:] = ["submission"]
     importlib.import_module("photograd_worker.__main__")
 
 

@@ -1,6 +1,6 @@
-"""On a laptop nothing is enforced; honest hand-ins still meet there what they will meet in grading.
+"""On a laptop nothing is enforced; honest submissions still see there what they see in grading.
 
-This is a courtesy and no boundary: whoever wants to can get round an audit hook.
+This is a courtesy and no boundary: an audit hook can be got round.
 """
 
 from __future__ import annotations

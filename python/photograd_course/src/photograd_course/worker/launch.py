@@ -26,7 +26,7 @@ MAX_BODY = 64 << 20  # bytes of arrays in one answer
 def open_worker(
     home: WorkerHome, mode: str, limits: Limits, slot: int = 0, *, max_body: int = MAX_BODY
 ) -> WorkerProcess:
-    """A worker that waits for a hand-in, with every layer of the mode in force.
+    """A worker that waits for a submission, with every layer of the mode in force.
 
     It is ended when the thread that opened it ends (modes A to D), when its requests have taken
     `limits.seconds`, and by `kill`.

@@ -27,7 +27,7 @@ def choose(
         secrets: files and folders that no worker may read; given to the self-test.
 
     Raises:
-        GraderFault: none that is strong enough works; the text tells staff why. Hand-ins then
+        GraderFault: none that is strong enough works; the text tells staff why. Submissions then
             have no verdict, instead of zero points.
         RangeError: there is no such mode.
     """

@@ -1,4 +1,4 @@
-"""Import the hand-in from memory: its files exist nowhere on disk, and shadow nothing."""
+"""Import the submission from memory: its files exist nowhere on disk, and shadow nothing."""
 
 from __future__ import annotations
 

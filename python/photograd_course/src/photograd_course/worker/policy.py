@@ -30,7 +30,7 @@ FEWEST_PROCESSES = 24  # threads count; NumPy needs one
 
 @dataclass(frozen=True)
 class Policy:
-    """What a worker gives up before it loads a hand-in.
+    """What a worker gives up before it loads a submission.
 
     Attributes:
         layers: what it must report to hold.

@@ -216,7 +216,7 @@ class WorkerProcess:
             function = self._functions[frame.value["function"]]
             return encode("reply", self._number, function(*frame.value["args"]))
         except Exception as error:
-            # Our exception's own text may hold what the hand-in must not see.
+            # Our exception's own text may hold what the submission must not see.
             said = f"a function given to you cannot take these arguments ({type(error).__name__})"
             return encode("refusal", self._number, said)
 
@@ -264,7 +264,7 @@ class WorkerProcess:
         )
 
     def _cause_of_death(self, stopwatch: Stopwatch) -> WorkerTimeout | WorkerDied | WorkerStarved:
-        """Why the pipe is closed: the clock, the limit on processor time, or the hand-in."""
+        """Why the pipe is closed: the clock, the limit on processor time, or the submission."""
         if stopwatch.left() <= 0:
             return self._late(stopwatch)
         if stopwatch.is_starved():

@@ -61,7 +61,7 @@ def plain_command(folder: Path) -> list[str]:
 
 
 def numpy_parent() -> Path:
-    """The folder in which NumPy lies, with much that is none of a hand-in's business."""
+    """The folder in which NumPy lies, with much that is none of a submission's business."""
     return Path(np.__file__).resolve().parent.parent
 
 

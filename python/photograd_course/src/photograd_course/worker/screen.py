@@ -18,7 +18,7 @@ def forbidden_imports(
     Args:
         name, text: the module and its source.
         allowed: top-level modules that may be imported.
-        own: modules of the hand-in itself.
+        own: modules of the submission itself.
 
     Raises:
         SyntaxError, ValueError, RecursionError, MemoryError: the text is no Python.

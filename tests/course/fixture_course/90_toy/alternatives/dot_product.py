@@ -1,4 +1,4 @@
-"""Vectorised: a dot product, and a list of points."""
+"""Vectorized: a dot product, and a list of points."""
 
 from __future__ import annotations
 

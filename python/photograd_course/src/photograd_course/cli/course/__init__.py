@@ -18,7 +18,7 @@ COMMANDS = (
     "check",
     "predict",
     "questions",
-    "handin",
+    "submit",
     "grade",
     "new",
     "build",
@@ -32,7 +32,7 @@ def register(app: typer.Typer) -> None:
     """Add the group to the application."""
     course = typer.Typer(
         name="course",
-        help="The graded course: start, check and hand in assignments; build and grade them.",
+        help="The graded course: start, check and submit assignments; build and grade them.",
         no_args_is_help=True,
         rich_markup_mode="rich",
         pretty_exceptions_enable=False,

@@ -1,4 +1,4 @@
-"""``photograd course grade``: one hand-in, or those of a whole course."""
+"""``photograd course grade``: one submission, or those of a whole course."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ def register(course: typer.Typer) -> None:
 
     @course.command(
         epilog="Example: photograd course grade 01 submissions/ --jobs 2 --out grades",
-        short_help="Grade a hand-in, a folder of them, or a table.",
+        short_help="Grade a submission, a folder of them, or a table.",
     )
     def grade(
         assignment: Annotated[str, typer.Argument(help="Number, such as 01.")],
-        hand_in: Annotated[
+        submission: Annotated[
             Path,
             typer.Argument(
-                help="A zip, a folder or the graded file; a folder of hand-ins (as Gradescope, "
+                help="A zip, a folder or the graded file; a folder of submissions (as Gradescope, "
                 "Canvas or Moodle export them); a CSV table with columns student and path."
             ),
         ],
@@ -34,7 +34,7 @@ def register(course: typer.Typer) -> None:
             Path | None,
             typer.Option(help="File with the course secret, from which hidden seeds come."),
         ] = None,
-        jobs: Annotated[int, typer.Option(min=1, help="Hand-ins graded at the same time.")] = 1,
+        jobs: Annotated[int, typer.Option(min=1, help="Submissions graded at the same time.")] = 1,
         resume: Annotated[
             bool, typer.Option("--resume", help="Go on with a run that was cut off.")
         ] = False,
@@ -45,16 +45,17 @@ def register(course: typer.Typer) -> None:
         as_json: JsonOption = False,
         debug: DebugOption = False,  # noqa: ARG001
     ) -> None:
-        """Judge hand-ins with the hidden checks, each check in a process of its own.
+        """Judge submissions with the hidden checks, each check in a process of its own.
 
-        A folder or table gives grades.csv, a page and a sealed record for each hand-in, pairs that
-        resemble each other, and, where --out holds an earlier run, who changes and by which check.
+        A folder or table gives grades.csv, a page and a sealed record for each submission, pairs
+        that resemble each other, and, where --out holds an earlier run, who changes and by which
+        check.
         Exit code 3 when the grader itself failed for someone: no such grade counts as a zero.
         """
         from ...grade.command import Request, grade_command
 
         request = Request(
-            assignment, hand_in, bundle, secret_file, jobs, resume, out, mode, as_json
+            assignment, submission, bundle, secret_file, jobs, resume, out, mode, as_json
         )
         if not grade_command(request):
             raise typer.Exit(3)

@@ -56,5 +56,5 @@ def _next_steps(number: str, module: str, target: Path, *, predicts: bool) -> li
         "read README.md",
         f"photograd course check {number}     (red at first)",
         f"write {module}.py, and check again until all is green",
-        f"photograd course handin {number}",
+        f"photograd course submit {number}",
     ]

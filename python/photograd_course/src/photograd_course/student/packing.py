@@ -1,4 +1,4 @@
-"""Pack a hand-in."""
+"""Pack a submission."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A hand-in as the grader keeps it: a few short files in memory, and what was left out."""
+"""A submission as the grader keeps it: a few short files in memory, and what was left out."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ LISTED = 40  # ignored files named in a report
 
 
 class Refused(Exception):
-    """A hand-in that cannot be judged; the text tells its author what to do."""
+    """A submission that cannot be judged; the text tells its author what to do."""
 
 
 @dataclass(frozen=True)
-class HandIn:
+class Submission:
     """What was taken in.
 
     Attributes:
@@ -46,7 +46,7 @@ class HandIn:
 
 def wanted_names(manifest: Manifest) -> tuple[str, ...]:
     """The names of an assignment's files, the lock on predictions among them."""
-    return tuple(dict.fromkeys((f"{manifest.module}.py", *manifest.handin, LOCK_NAME)))
+    return tuple(dict.fromkeys((f"{manifest.module}.py", *manifest.submission, LOCK_NAME)))
 
 
 def size_limit(name: str) -> int:
@@ -54,7 +54,7 @@ def size_limit(name: str) -> int:
     return SOURCE_BYTES if name.endswith(".py") else OTHER_BYTES
 
 
-def finish(manifest: Manifest, raw: Mapping[str, bytes], ignored: Collection[str]) -> HandIn:
+def finish(manifest: Manifest, raw: Mapping[str, bytes], ignored: Collection[str]) -> Submission:
     """Look at the contents of what was taken.
 
     Args:
@@ -69,8 +69,8 @@ def finish(manifest: Manifest, raw: Mapping[str, bytes], ignored: Collection[str
     for name in wanted_names(manifest):
         if name not in raw:
             if name == module:
-                problem = f"there is no {module} in the hand-in: hand in a file of this name"
-            elif name in manifest.handin and _matters(manifest, name):
+                problem = f"there is no {module} in the submission: hand in a file of this name"
+            elif name in manifest.submission and _matters(manifest, name):
                 warnings.append(f"{name} is missing")
             continue
         fault = _fault(name, raw[name])
@@ -80,12 +80,12 @@ def finish(manifest: Manifest, raw: Mapping[str, bytes], ignored: Collection[str
             problem = fault
         else:
             warnings.append(f"{fault}; it was left out")
-    return HandIn(files, problem, tuple(warnings), _shortened(ignored))
+    return Submission(files, problem, tuple(warnings), _shortened(ignored))
 
 
-def refused(text: str, ignored: Collection[str] = ()) -> HandIn:
-    """A hand-in of which nothing was taken."""
-    return HandIn({}, printable(text), (), _shortened(ignored))
+def refused(text: str, ignored: Collection[str] = ()) -> Submission:
+    """A submission of which nothing was taken."""
+    return Submission({}, printable(text), (), _shortened(ignored))
 
 
 def _matters(manifest: Manifest, name: str) -> bool:

@@ -1,4 +1,4 @@
-"""``photograd course handin``: pack what is handed in."""
+"""``photograd course submit``: pack what is handed in."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ def register(course: typer.Typer) -> None:
     """Add the command."""
 
     @course.command(
-        epilog="Example: photograd course handin 01",
-        short_help="Pack your work into one file to hand in.",
+        epilog="Example: photograd course submit 01",
+        short_help="Pack your work into one file to submit.",
     )
-    def handin(
+    def submit(
         assignment: Annotated[str, typer.Argument(help="Number or name, such as 01.")],
         folder: Annotated[
             Path | None, typer.Option("--dir", help="Folder of your code; by default here.")
         ] = None,
         out: Annotated[
             Path | None,
-            typer.Option(help="The archive; by default NN_name_handin.zip in that folder."),
+            typer.Option(help="The archive; by default NN_name_submission.zip in that folder."),
         ] = None,
         as_json: JsonOption = False,
         debug: DebugOption = False,  # noqa: ARG001
@@ -32,18 +32,18 @@ def register(course: typer.Typer) -> None:
         """Pack the files that count into a zip archive, and say what is still open."""
         from ...build.kits import find_kit
         from ...student.folder import find_folder
-        from ...student.handing_in import pack
-        from ...student.sheet import notes_before_handin
+        from ...student.packing import pack
+        from ...student.sheet import notes_before_submission
         from ..output import emit, note
 
         bundle = find_kit(assignment).bundle
         work = find_folder(bundle.manifest, folder)
         files = work.files()
-        target = out or work.path / f"{bundle.manifest.folder_name}_handin.zip"
+        target = out or work.path / f"{bundle.manifest.folder_name}_submission.zip"
         digest = pack(files, target)
-        if lacking := [name for name in bundle.manifest.handin if name not in files]:
+        if lacking := [name for name in bundle.manifest.submission if name not in files]:
             note(f"warning: not in the folder: {', '.join(lacking)}", style="yellow")
-        notes = notes_before_handin(bundle, work)
+        notes = notes_before_submission(bundle, work)
         for text in notes:
             note(text, style="yellow")
         emit(
@@ -55,5 +55,5 @@ def register(course: typer.Typer) -> None:
                 "sha256": digest,
             },
             as_json=as_json,
-            title=f"Hand-in of {bundle.manifest.id}",
+            title=f"Submission of {bundle.manifest.id}",
         )
