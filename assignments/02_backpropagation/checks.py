@@ -13,6 +13,7 @@ from photograd_course.grading import (
     Items,
     Number,
     Record,
+    Subject,
     Tolerance,
     Truth,
     asks,
@@ -582,6 +583,16 @@ def expressions_agree_with_differences(t):
 
 
 # >>> hidden
+def multiplied(t, n):
+    """What the adapter `gates` takes, for n products."""
+    return "mul", *t.rng.normal(0.0, 3.0, (2, n))
+
+
+def checked_place(t, n):
+    """What `grad_check` takes, for n numbers."""
+    return smooth(t.rng, n)
+
+
 @check(
     "02.1.many",
     task="02.1",
@@ -590,6 +601,15 @@ def expressions_agree_with_differences(t):
     visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes, to rounding, at places not known beforehand",
+    battery=[
+        Subject(
+            "adapters.gates",
+            multiplied,
+            gates_spec,
+            right=lambda *args: {"values": args[2] * args[3], "slopes": np.stack(args[3:1:-1], 1)},
+            sizes=(1, 7),
+        )
+    ],
 )
 def sums_and_products_at_random(t):
     """Values and slopes of sums and products are right at 100 random places."""
@@ -820,6 +840,11 @@ def not_a_number_is_refused(t):
     calls=("grad_check",),
     visibility="hidden",
     sole="the steps themselves, and gradients of 1e-9",
+    battery=[
+        Subject(
+            "adapters.checked", checked_place, lambda _: VERDICT, tolerance=EXACT, has_right=False
+        )
+    ],
 )
 def large_and_small_numbers(t):
     """Coordinates of 1e8 and gradients of 1e-9 are judged like others; steps follow Eq. (15)."""

@@ -418,7 +418,7 @@ def steps_can_be_chained(t):
     calls=("recover_texture",),
     needs=EARLIER,
     hint="T0 itself has changed: copy it first",
-    sole="what students can run; the hidden checks find its mistakes as well",
+    sole="what students can run; hidden checks find its mistakes as well",
 )
 def the_start_is_left_alone(t):
     """A second descent from the same array T0 finds what the first one found."""

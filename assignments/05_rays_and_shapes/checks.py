@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from photograd_course.grading import Array, Items, Tolerance, check
+from photograd_course.grading import Array, Items, Subject, Tolerance, check
 from photograd_course.grading.failures import CheckFailed
 
 # Evidence: worst of the solution and the alternatives over several seeds, against the nearest of
@@ -1097,6 +1097,38 @@ def as_embree_has_it(t):
 
 
 # >>> hidden
+def struck(t, n):
+    """What `hit_sphere` takes: n rays near a sphere."""
+    return t.rng.uniform(-6, 6, (n, 3)), units(t, n) * lengths(t, n), *sphere(t)
+
+
+def crossed(t, n):
+    """What `hit_triangle` takes: n triangles, every other one missed."""
+    parts = np.concatenate([inner_parts(t, n - n // 2), outer_parts(t, n // 2)])
+    return aimed(t, n, parts, t.rng.uniform(-2, 5, n))
+
+
+def approached(t, n):
+    """What `march_sdf` takes: n rays that meet a ball."""
+    center, radius = sphere(t)
+    return Surface(ball(center, radius)), *onto_ball(t, n, center, radius)[:2], 50.0, 400
+
+
+def stacked(t, n):
+    """What `build_bvh` takes."""
+    low = t.rng.uniform(-5, 5, (n, 3))
+    return low, low + t.rng.uniform(0.2, 1.0, (n, 3))
+
+
+def searched(t, n):
+    """What `traverse` takes: n things, and a ray towards one of them."""
+    scene = rectangles(t, n, 3.0)
+    scene.boxes, *tree = t.reference.build_bvh(scene.low, scene.high)
+    origin = t.rng.uniform(-4, 4, 3)
+    scene.ray(origin, (scene.low[0] + scene.high[0]) / 2 - origin)
+    return *tree, lambda k: scene.box(int(k)), scene.meet, origin, scene.direction
+
+
 @check(
     "05.1.hidden",
     task="05.1",
@@ -1105,6 +1137,7 @@ def as_embree_has_it(t):
     visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes at spheres that are not known beforehand",
+    battery=[Subject("hit_sphere", struck, Distances, rows=(0, 1))],
 )
 def spheres_at_random(t):
     """Random rays and random spheres, of all kinds at once."""
@@ -1125,6 +1158,9 @@ def spheres_at_random(t):
     visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes at triangles that are not known beforehand",
+    battery=[
+        Subject("hit_triangle", crossed, lambda n: Items(Distances(n), Array((n, 2))), rows=(2,))
+    ],
 )
 def triangles_at_random(t):
     """Random rays and triangles, met and missed."""
@@ -1146,6 +1182,14 @@ def triangles_at_random(t):
     visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes at directions that are not known beforehand",
+    battery=[
+        Subject(
+            "refract",
+            lambda t, n: (*arrivals(t, n), 0.7),
+            lambda n: Items(Array((n, 3)), Array((n,), "bool")),
+            rows=(0, 1),
+        )
+    ],
 )
 def glass_at_random(t):
     """Random directions from both sides, many of them beyond the critical angle."""
@@ -1166,6 +1210,15 @@ def glass_at_random(t):
     visibility="hidden",
     tolerance=MARCHED,
     sole="the same mistakes at scenes that are not known beforehand",
+    battery=[
+        Subject(
+            "march_sdf",
+            approached,
+            lambda n: Items(Distances(n), Array((n,))),
+            rows=(1, 2),
+            tolerance=SLOPES,
+        )
+    ],
 )
 def marches_at_random(t):
     """Random scenes: what is met, the derivative, and how many places are asked for."""
@@ -1197,6 +1250,14 @@ def marches_at_random(t):
     visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes at things that are not known beforehand; growth",
+    battery=[
+        Subject(
+            "build_bvh",
+            stacked,
+            lambda _: Items(Boxes(), Whole(), Whole(), Whole()),
+            has_right=False,
+        )
+    ],
 )
 def trees_at_random(t):
     """Random things: the boxes fit, and rays ask for few more of them when there are many more."""
@@ -1241,6 +1302,9 @@ def trees_at_random(t):
     visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes in scenes that are not known beforehand",
+    battery=[
+        Subject("traverse", searched, lambda _: Items(Distance(), WholeNumber()), sizes=(1, 2, 64))
+    ],
 )
 def scenes_at_random(t):
     """Random rays in random scenes: the answer, and how many boxes and things it takes."""

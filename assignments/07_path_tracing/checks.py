@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from photograd_course.grading import Array, Items, Number, Tolerance, check
+from photograd_course.grading import Array, Items, Number, Subject, Tolerance, check
 from photograd_course.grading.adjoint_gate import (
     random_cotangent,
     require_cheap,
@@ -975,6 +975,24 @@ def the_gradient_is_cheap(t):
 
 
 # >>> hidden
+def looking(t, n):
+    """A room, and a hit with n rows."""
+    scene = mixed_room(t)
+    return scene, t.reference.some(looked_at(t, scene, 20 * n + 20), np.arange(n))
+
+
+def pointed(t, n):
+    """What `light_pdf` takes, for what n rays of a room meet."""
+    scene, directions = mixed_room(t), ways(t.rng, n, -1)
+    hit = t.reference.see(scene, np.tile([0.1, 0.2, 0.3], (n, 1)), directions)
+    return scene, hit["thing"], directions, hit["t"]
+
+
+def estimated(t, n):
+    """What `direct_light` takes."""
+    return *looking(t, n), t.rng.random((n, 3)), t.rng.random((n, 3))
+
+
 @check(
     "07.1.hidden",
     task="07.1",
@@ -983,6 +1001,7 @@ def the_gradient_is_cheap(t):
     visibility="hidden",
     tolerance=EXACT,
     sole="rooms that are not known beforehand",
+    battery=[Subject("light_pdf", pointed, lambda n: Array((n,)), rows=(1, 2, 3))],
 )
 def densities_in_a_room(t):
     """What random rays of a room meet, against the solution."""
@@ -1001,6 +1020,15 @@ def densities_in_a_room(t):
     visibility="hidden",
     tolerance=EXACT,
     sole="densities that are not known beforehand",
+    battery=[
+        Subject(
+            "mis_weight",
+            lambda t, n: np.exp(t.rng.uniform(-3, 3, (2, n))),
+            lambda n: Array((n,)),
+            rows=(0, 1),
+            special={0: (0.0, 1e200), 1: (0.0, 1e200)},
+        )
+    ],
 )
 def random_weights(t):
     """Random densities."""
@@ -1017,6 +1045,7 @@ def random_weights(t):
     visibility="hidden",
     tolerance=EXACT,
     sole="the same random numbers, two lamps, shadows, and another proposal",
+    battery=[Subject("direct_light", estimated, lambda n: Array((n, 3)), rows=(1, 2, 3))],
 )
 def direct_light_of_a_room(t):
     """A room with two lamps, a ball and shadows, against the solution, number by number."""
@@ -1042,6 +1071,14 @@ def direct_light_of_a_room(t):
     visibility="hidden",
     tolerance=EXACT,
     sole="paths that are not known beforehand",
+    battery=[
+        Subject(
+            "roulette",
+            lambda t, n: (t.rng.uniform(0, 1, (n, 3)), t.rng.random(n)),
+            lambda n: Items(Array((n, 3)), Array((n,), "bool")),
+            rows=(0, 1),
+        )
+    ],
 )
 def random_roulette(t):
     """Random paths."""
@@ -1061,6 +1098,21 @@ def random_roulette(t):
     needs=TASK_5,
     visibility="hidden",
     sole="glossy things, shadows, and paths that leave the room",
+    battery=[
+        Subject(
+            "adapters.traced",
+            lambda t, n: (
+                mixed_room(t),
+                np.tile([0.1, 0.2, 0.3], (n, 1)),
+                ways(t.rng, n, -1),
+                3,
+                7,
+            ),
+            lambda n: Array((n, 3)),
+            tolerance=EXACT,
+            has_right=False,
+        )
+    ],
 )
 def paths_of_a_room(t):
     """An open room where walls shine differently, with a glossy ball: the solution's mean."""
@@ -1101,6 +1153,13 @@ def paths_of_a_room(t):
     visibility="hidden",
     tolerance=GATE,
     sole="two lamps, shadows, a ball and something matte",
+    battery=[
+        Subject(
+            "direct_light_backward",
+            lambda t, n: (*estimated(t, n), random_cotangent(t.rng, (n, 3))),
+            lambda _: Items(Array((5, 3)), Array((5,))),
+        )
+    ],
 )
 def the_gradient_of_a_room(t):
     """A room with two lamps, a ball and shadows, against the solution."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from photograd_course.grading import Array, Items, Number, Tolerance, agree, check
+from photograd_course.grading import Array, Items, Number, Subject, Tolerance, agree, check
 from photograd_course.grading.adjoint_gate import (
     central_differences,
     require_cheap,
@@ -676,6 +676,16 @@ def the_start_is_left_alone(t):
 
 
 # >>> hidden
+def alike(t, n):
+    """Two pictures of n rows."""
+    return t.rng.uniform(-0.2, 1.2, (n, 3)), t.rng.uniform(-0.2, 1.2, (n, 3))
+
+
+def recovering(t, n):
+    """What `fit_volume` takes for n steps, with a seed."""
+    return random_views(t, 2, 3, 4), t.rng.uniform(0.1, 0.9, (2, 3, 2, 4)), n, 3
+
+
 # Scenes differ: over fourteen of them the solution reaches 29.3 to 34.6 dB (black has 12), so what
 # is asked hangs on what it reaches on the same scene with other draws. Between its own draws lie at
 # most 1.2 dB; a fit without total variation loses 3.3 to 5.4 dB, one that forgets Adam's moments
@@ -691,6 +701,7 @@ BELOW = 2.2  # dB
     visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes at values that are not known beforehand",
+    battery=[Subject("psnr", alike, lambda _: Number(), tolerance=DECIBELS)],
 )
 def decibels_of_random_pictures(t):
     """Decibels are right for random pictures."""
@@ -708,6 +719,15 @@ def decibels_of_random_pictures(t):
     visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes at cameras that are not known beforehand",
+    battery=[
+        Subject(
+            "ray_batch",
+            lambda t, n: (random_views(t), t.rng.permutation(24)[:n]),
+            batch,
+            rows=(1,),
+            has_right=False,
+        )
+    ],
 )
 def rays_of_random_cameras(t):
     """Rays and colours are right for random cameras and pixels."""
@@ -730,6 +750,7 @@ def rays_of_random_cameras(t):
     visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes at values that are not known beforehand",
+    battery=[Subject("mse_and_cotangent", alike, lambda n: loss_and_slope((n, 3)))],
 )
 def losses_of_random_batches(t):
     """Loss and derivative are right for random batches."""
@@ -750,6 +771,13 @@ def losses_of_random_batches(t):
     visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes at volumes that are not known beforehand",
+    battery=[
+        Subject(
+            "tv_loss_adjoint",
+            lambda t, n: (t.rng.uniform(0.0, 1.0, (n, 2, 3, 4)), 0.1),
+            lambda n: loss_and_slope((n, 2, 3, 4)),
+        )
+    ],
 )
 def the_roughness_of_random_volumes(t):
     """Roughness and its derivative are right for random volumes, and cheap."""
@@ -775,6 +803,14 @@ def the_roughness_of_random_volumes(t):
     needs=EARLIER,
     visibility="hidden",
     sole="the same mistakes at volumes that are not known beforehand",
+    battery=[
+        Subject(
+            "gradient_sign_map",
+            lambda t, n: (t.rng.uniform(0.0, 1.0, (n, 2, 3, 4)), random_views(t)),
+            lambda n: Array((n, 2, 3)),
+            tolerance=EXACT,
+        )
+    ],
 )
 def signs_of_random_volumes(t):
     """The map is right for random volumes and photographs."""
@@ -873,6 +909,17 @@ def telling_start(t, views, shape, seed):
     visibility="hidden",
     tolerance=CHAINED,
     sole="the same mistakes at scenes that are not known beforehand",
+    battery=[
+        Subject(
+            "adapters.fit",
+            recovering,
+            lambda n: Items(Array((2, 3, 2, 4)), Array((n,))),
+            right=lambda ref, views, grid, n, seed: ref.fit_volume(
+                views, grid, n, np.random.default_rng(seed)
+            ),
+            sizes=(0, 1, 12),
+        )
+    ],
 )
 def fits_of_random_scenes(t):
     """Four steps end where they should, with few pixels and with many."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from photograd_course.grading import Array, Items, Number, Tolerance, agree, check
+from photograd_course.grading import Array, Items, Number, Subject, Tolerance, agree, check
 from photograd_course.grading.adjoint_gate import require_gradients, require_zero_for_zero
 from photograd_course.grading.failures import CheckFailed, StudentFailure
 
@@ -469,7 +469,12 @@ def a_full_table_says_so(t):
 
 
 @check(
-    "10.3.kept", task="10.3", points=1, calls=("voxel_hash_insert",), hint="copy the table first"
+    "10.3.kept",
+    task="10.3",
+    points=1,
+    calls=("voxel_hash_insert",),
+    hint="copy the table first",
+    sole="what students can run; hidden checks find its mistakes as well",
 )
 def the_old_table_stays(t):
     """Voxels inserted in a table are not in the table that was given."""
@@ -949,6 +954,32 @@ def the_start_is_left_alone(t):
 
 
 # >>> hidden
+def halved(t, n):
+    """What `octree_from_dense` takes: a cube whose side is the power of two up to n."""
+    return (blocks(t, 1 << n.bit_length() - 1, 0.9),)
+
+
+def skipping(t, n):
+    """What `skip_empty` takes, for n rays."""
+    return counting_leaf(blocks(t, 8, 0.9), []), *rays_within(t, 8, n, 20), 20
+
+
+def inserted(t, n):
+    """What `voxel_hash_insert` takes, for n voxels."""
+    return free_table(16), some_voxels(t, n), t.rng.permutation(n)
+
+
+def gathered(t, n):
+    """What `sample_sparse_adjoint` takes, for n samples."""
+    return 5, *some_samples(t, 5, n), t.rng.uniform(-1, 1, (n, 3))
+
+
+def shared(t, n):
+    """What `prune_and_dilate` takes, for n voxels."""
+    most = t.rng.uniform(0.1, 0.9, n)
+    return 4, voxels_in(t, 4, n), *some_shares(t, most), 0.5, 1
+
+
 @check(
     "10.1.hidden",
     task="10.1",
@@ -956,6 +987,16 @@ def the_start_is_left_alone(t):
     calls=("octree_from_dense",),
     visibility="hidden",
     sole="the same mistakes in cubes that are not known beforehand",
+    battery=[
+        Subject(
+            "octree_from_dense",
+            halved,
+            lambda _: Rows(),
+            sizes=(1, 2, 8),
+            tolerance=FAITHFUL,
+            has_right=False,
+        )
+    ],
 )
 def trees_of_random_cubes(t):
     """Trees of random cubes are right, with as many nodes as they need."""
@@ -974,6 +1015,15 @@ def trees_of_random_cubes(t):
     calls=("skip_empty",),
     visibility="hidden",
     sole="the same mistakes on rays that are not known beforehand",
+    battery=[
+        Subject(
+            "skip_empty",
+            skipping,
+            lambda n: Array((n, 20), "bool"),
+            rows=(1, 2),
+            tolerance=FAITHFUL,
+        )
+    ],
 )
 def samples_of_random_rays(t):
     """Random rays through random trees: the samples, and the length of the rays in full cells."""
@@ -1005,6 +1055,15 @@ def samples_of_random_rays(t):
     calls=("voxel_hash_insert",),
     visibility="hidden",
     sole="the same mistakes at voxels that are not known beforehand",
+    battery=[
+        Subject(
+            "voxel_hash_insert",
+            inserted,
+            lambda _: Array((16, 4), "i8"),
+            tolerance=FAITHFUL,
+            has_right=False,
+        )
+    ],
 )
 def tables_of_random_voxels(t):
     """Tables of random voxels are sound, filled at once or bit by bit."""
@@ -1025,6 +1084,7 @@ def tables_of_random_voxels(t):
     visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes at samples that are not known beforehand",
+    battery=[Subject("sample_sparse_adjoint", gathered, lambda _: Array((5, 3)))],
 )
 def the_adjoint_at_random_samples(t):
     """The adjoint is right for random samples, many of one voxel and none of another."""
@@ -1042,6 +1102,7 @@ def the_adjoint_at_random_samples(t):
     calls=("prune_and_dilate",),
     visibility="hidden",
     sole="the same mistakes at voxels that are not known beforehand",
+    battery=[Subject("prune_and_dilate", shared, lambda _: Rows(3), tolerance=FAITHFUL)],
 )
 def random_voxels_are_pruned_and_grow(t):
     """Random voxels with random shares are pruned and grow as they should."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from photograd_course.grading import Array, Items, Number, Tolerance, agree, check
+from photograd_course.grading import Array, Items, Number, Subject, Tolerance, agree, check
 from photograd_course.grading.adjoint_gate import (
     random_cotangent,
     require_cheap,
@@ -583,6 +583,7 @@ def levels_can_be_chained(t):
     calls=("fit_plenoxels",),
     needs=EARLIER,
     hint="an array of the start has changed: copy it first",
+    sole="what students can run; hidden checks find its mistakes as well",
 )
 def the_start_is_left_alone(t):
     """A second fit from the same arrays finds what the first one found."""
@@ -592,6 +593,16 @@ def the_start_is_left_alone(t):
 
 
 # >>> hidden
+def weighted(t, n):
+    """What `sh_project` takes, for n directions."""
+    return unit(t.rng, n), t.rng.uniform(0.1, 1.0, n), t.rng.uniform(-1.0, 1.0, (n, 2)), 3
+
+
+def among(t, n):
+    """What `probe_irradiance` takes, for n places."""
+    return t.rng.uniform(-1, 1, (2, 3, 1, 9, 2)), t.rng.uniform(-0.5, 3, (n, 3)), unit(t.rng, n)
+
+
 @check(
     "11.1.hidden",
     task="11.1",
@@ -600,6 +611,9 @@ def the_start_is_left_alone(t):
     visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes at directions that are not known beforehand",
+    battery=[
+        Subject("sh_basis", lambda t, n: (unit(t.rng, n), 3), lambda n: Array((n, 16)), rows=(0,))
+    ],
 )
 def the_basis_at_random_directions(t):
     """All harmonics are right at random directions, at the poles too, for each degree."""
@@ -617,6 +631,7 @@ def the_basis_at_random_directions(t):
     visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes at values that are not known beforehand",
+    battery=[Subject("sh_project", weighted, lambda _: Array((16, 2)))],
 )
 def projections_of_random_values(t):
     """Projections of random values are right, with weights of any kind."""
@@ -637,6 +652,14 @@ def projections_of_random_values(t):
     visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes at values that are not known beforehand",
+    battery=[
+        Subject(
+            "sh_color_adjoint",
+            lambda t, n: colours(t.rng, n, 3, 2),
+            lambda n: Items(Array((n, 16, 2)), Array((n, 3))),
+            rows=(0, 1, 2),
+        )
+    ],
 )
 def the_adjoint_at_random_values(t):
     """Both parts of the adjoint are right at random values, for each degree."""
@@ -683,6 +706,13 @@ def the_adjoint_is_cheap(t):
     visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes at turns that are not known beforehand",
+    battery=[
+        Subject(
+            "sh_rotate",
+            lambda t, n: (t.rng.uniform(-1.0, 1.0, (9, n)), turn(t.rng)),
+            lambda n: Array((9, n)),
+        )
+    ],
 )
 def random_turns(t):
     """Random coefficients are turned rightly, for each degree."""
@@ -700,6 +730,7 @@ def random_turns(t):
     visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes at probes that are not known beforehand",
+    battery=[Subject("probe_irradiance", among, lambda n: Array((n, 2)), rows=(1, 2))],
 )
 def irradiance_among_random_probes(t):
     """Irradiance is right among random probes, for each degree, one probe wide grids included."""
@@ -719,6 +750,14 @@ def irradiance_among_random_probes(t):
     visibility="hidden",
     tolerance=CHAINED,
     sole="the same mistakes at scenes that are not known beforehand",
+    battery=[
+        Subject(
+            "fit_plenoxels",
+            lambda t, n: (*small_case(t.rng, (2, 1, 3)), 1, n),
+            lambda n: Items(Array((2, 1, 3)), Array((2, 1, 3, 4, 1)), Array((n,))),
+            sizes=(0, 1, 12),
+        )
+    ],
 )
 def fits_of_random_scenes(t):
     """Three levels of two steps end where they should."""

@@ -3,7 +3,16 @@
 from __future__ import annotations
 
 import numpy as np
-from photograd_course.grading import Array, Items, Record, Tolerance, agree, check
+from photograd_course.grading import (
+    Array,
+    CheckFailed,
+    Items,
+    Record,
+    Subject,
+    Tolerance,
+    agree,
+    check,
+)
 from photograd_course.grading.adjoint_gate import (
     random_cotangent,
     require_cheap,
@@ -845,6 +854,53 @@ def never_more_than_most(t):
 
 
 # >>> hidden
+def turned_shapes(t, n):
+    """What `covariance` takes."""
+    return 3 * t.rng.normal(size=(n, 4)), t.rng.uniform(-2.0, 1.0, (n, 3))
+
+
+def projected(t, n):
+    """What `project` takes."""
+    camera = some_camera(t.rng)
+    return in_world(camera, ahead(t.rng, n)), shapes(t.rng, n), camera
+
+
+def pictured(t, n):
+    """What `render` takes: five Gaussians, n pixels."""
+    camera = some_camera(t.rng)
+    pixels, background = middle_pixels(t.rng, camera, n), t.rng.uniform(0.0, 1.0, 3)
+    return some_scene(t.rng, camera, 5), camera, pixels, background
+
+
+def pulled(t, n):
+    """What the `back` of `project` takes, after what `project` takes."""
+    return *projected(t, n), t.rng.normal(size=(n, 2)), t.rng.normal(size=(n, 3))
+
+
+def values(name):
+    """The right values, without the `back` behind them."""
+    return lambda reference, *args: getattr(reference, name)(*args)[0]
+
+
+def derivatives(name):
+    """What the right `back` makes of the last argument."""
+    return lambda reference, *args: getattr(reference, name)(*args[:-1])[-1](args[-1])
+
+
+class Changed:
+    """Five arrays of a scene and the rows that they come from; how many is not known beforehand."""
+
+    def require(self, value, where):
+        if not isinstance(value, list) or not all(isinstance(e, np.ndarray) for e in value):
+            raise CheckFailed(f"{where}: expected a scene and the rows that its own come from")
+
+
+def crowded(t, n):
+    """What `densify` takes, with a seed."""
+    scene = some_scene(t.rng, some_camera(t.rng), n, size=0.05)
+    return scene, t.rng.exponential(0.003, n), 7, 1000
+
+
 @check(
     "15.1.hidden",
     task="15.1",
@@ -854,6 +910,22 @@ def never_more_than_most(t):
     visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes at values that are not known beforehand",
+    battery=[
+        Subject(
+            "adapters.covariance",
+            turned_shapes,
+            lambda n: Array((n, 3, 3)),
+            right=values("covariance"),
+            rows=(0, 1),
+        ),
+        Subject(
+            "adapters.covariance_back",
+            lambda t, n: (*turned_shapes(t, n), t.rng.normal(size=(n, 3, 3))),
+            lambda n: Items(Array((n, 4)), Array((n, 3))),
+            right=derivatives("covariance"),
+            rows=(0, 1, 2),
+        ),
+    ],
 )
 def random_shapes(t):
     """Values and both derivatives are right for random Gaussians."""
@@ -875,6 +947,22 @@ def random_shapes(t):
     visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes at values that are not known beforehand",
+    battery=[
+        Subject(
+            "adapters.project",
+            projected,
+            lambda n: Items(Array((n, 2)), Array((n, 3)), Array((n,))),
+            right=lambda ref, *args: ref.project(*args)[:3],
+            rows=(0, 1),
+        ),
+        Subject(
+            "adapters.project_back",
+            pulled,
+            lambda n: Items(Array((n, 3)), Array((n, 3, 3))),
+            rows=(0, 1, 3, 4),
+            has_right=False,
+        ),
+    ],
 )
 def random_projections(t):
     """Values and both derivatives are right, inside of the limits and outside."""
@@ -903,6 +991,22 @@ def random_projections(t):
     visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes at values that are not known beforehand",
+    battery=[
+        Subject(
+            "adapters.screen_alpha",
+            lambda t, n: wide_splats(t.rng, n, 4),
+            lambda n: Array((n, 4)),
+            right=values("screen_alpha"),
+            rows=(0, 1, 2),
+        ),
+        Subject(
+            "adapters.screen_alpha_back",
+            lambda t, n: (*wide_splats(t.rng, n, 4), t.rng.normal(size=(n, 4))),
+            lambda n: Items(Array((n, 2)), Array((n, 3)), Array((n,)), Array((n, 2))),
+            right=derivatives("screen_alpha"),
+            rows=(0, 1, 2, 4),
+        ),
+    ],
 )
 def random_splats(t):
     """Values and derivatives are right for splats of all kinds, cut off here and there."""
@@ -930,6 +1034,22 @@ def random_splats(t):
     visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes at values that are not known beforehand",
+    battery=[
+        Subject(
+            "adapters.composite",
+            lambda t, n: layers(t.rng, n, 3),
+            lambda _: Array((3, 3)),
+            right=values("composite"),
+            sizes=(1, 2, 40),
+        ),
+        Subject(
+            "adapters.composite_back",
+            lambda t, n: (*layers(t.rng, n, 3), t.rng.normal(size=(3, 3))),
+            lambda n: Items(Array((n, 3)), Array((n, 3)), Array((3,))),
+            right=derivatives("composite"),
+            sizes=(1, 2, 40),
+        ),
+    ],
 )
 def random_layers(t):
     """Values and derivatives are right for many layers."""
@@ -953,6 +1073,11 @@ def random_layers(t):
     visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes at unknown scenes, and what the way back costs",
+    battery=[
+        Subject(
+            "adapters.render", pictured, lambda n: Array((n, 3)), right=values("render"), rows=(2,)
+        )
+    ],
 )
 def random_scenes(t):
     """Pixels of 150 Gaussians and their derivatives are right, at the price of a few pictures."""
@@ -985,6 +1110,7 @@ def random_scenes(t):
     visibility="hidden",
     tolerance=EXACT,
     sole="the same mistakes at scenes that are not known beforehand",
+    battery=[Subject("adapters.densify", crowded, lambda _: Changed(), has_right=False)],
 )
 def random_changes(t):
     """Random scenes become what they should."""

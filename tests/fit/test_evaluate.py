@@ -16,7 +16,7 @@ from photograd.fields import DenseGrid
 from photograd.fitting import evaluate as module
 from photograd.fitting.evaluate import Evaluation, display_image, evaluate, truth_image
 from photograd.fitting.model import Model
-from photograd_course.metrics import psnr, ssim
+from photograd_course.metrics import psnr, round_to_8_bits, ssim
 from PIL import Image
 
 from tests.fit import scene
@@ -65,7 +65,7 @@ def with_noise(view: View, *, inside: float, outside: float) -> Any:
     truth, valid = truth_image(view), view.valid_mask()
     noise = np.random.default_rng(1).uniform(-1, 1, truth.shape)
     changed = truth + np.where(valid[..., None], inside, outside) * noise
-    return module.round_to_8_bits(np.clip(changed, 0, 1))
+    return round_to_8_bits(np.clip(changed, 0, 1))
 
 
 @pytest.mark.parametrize("make", [distorted, masked, reduced])

@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from photograd._arrays import Arguments
+from photograd._notebook import EDGE, as_html, png_of_sheet, sheet
 from photograd.capture.view import View
 from photograd.errors import IoError, RangeError, message
 from photograd.images.read import ColorSpace
@@ -21,6 +22,9 @@ from photograd.types import FloatArray
 HOLD_OUT_EVERY = 8
 """Every eighth photograph, starting with the first: the custom since [Mildenhall2019]."""
 
+
+THUMBNAILS = 8
+"""Photographs that a notebook shows of a capture."""
 
 Split: TypeAlias = tuple[tuple[View, ...], tuple[View, ...], str]
 """Training views, test views, and a sentence for the log."""
@@ -98,6 +102,25 @@ class Capture:
         if self.point_colors is not None:
             colors = call.array("point_colors", self.point_colors, ("N", 3), dtype=np.uint8)
             object.__setattr__(self, "point_colors", colors)
+
+    def _repr_html_(self) -> str:
+        """What it is, and some of its photographs. One that cannot be read is named instead."""
+        views = self.views[:: -(-len(self.views) // THUMBNAILS)]
+        sizes = sorted({f"{view.camera.width} x {view.camera.height}" for view in self.views})
+        facts: dict[str, object] = {
+            "source": f"{self.source} ({self.format})",
+            "views": f"{len(self.train)} to learn from, {len(self.test)} held out",
+            "pixels": ", ".join(sizes[:3]) + (", ..." if len(sizes) > 3 else ""),
+            "values": f"{self.color_space}, {'with' if self.has_alpha else 'without'} alpha",
+            "points": 0 if self.points is None else f"{len(self.points):,}",
+        }
+        picture = None
+        try:
+            shown = [view.thumbnail(EDGE // 2) for view in views]
+            picture = png_of_sheet(sheet(shown, 4, EDGE // 2))
+        except IoError as failure:
+            facts["photographs"] = failure
+        return as_html("Capture", facts, picture)
 
     @property
     def views(self) -> tuple[View, ...]:

@@ -11,6 +11,7 @@ import numpy.typing as npt
 from photograd_course.color import srgb_encode
 from photograd_course.portable_math import matmul
 
+from photograd._notebook import EDGE, png, smaller
 from photograd.capture.camera import Camera
 from photograd.capture.undistort import Lens, undistort_image
 from photograd.errors import IoError, message
@@ -65,6 +66,21 @@ class View:
         if self.distortion is None and self.mask_file is None:
             return image
         return image * self.valid_mask()[..., None]
+
+    def thumbnail(self, edge: int) -> npt.NDArray[Any]:
+        """The photograph (h, w, 3) over white in display values, at most `edge` pixels a side.
+
+        Raises:
+            IoError: as for `rgba`.
+        """
+        pixels = self.rgba()
+        alpha = pixels[..., 3:]
+        color = np.clip(display_color(pixels[..., :3], self.color_space), 0, 1)
+        return smaller(color * alpha + (1 - alpha), edge)
+
+    def _repr_png_(self) -> bytes:
+        """The photograph, small."""
+        return png(self.thumbnail(EDGE))
 
     def valid_mask(self) -> npt.NDArray[np.bool_]:
         """Pixels (H, W) that the photograph covers and no mask file excludes.

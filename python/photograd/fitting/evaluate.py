@@ -17,17 +17,18 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from photograd_course.color import srgb_encode, unpremultiply
-from photograd_course.metrics import psnr, round_to_8_bits, ssim, whole_windows
+from photograd_course.metrics import psnr, ssim, whole_windows
 
+from photograd._notebook import EDGE, as_html, png_of_sheet, sheet
 from photograd.capture.camera import Camera
 from photograd.capture.view import View, display_color
 from photograd.errors import RangeError, message
+from photograd.fitting.drawing import display_field, over_white, render_field
 from photograd.fitting.model import Model
-from photograd.representation import ImageBatch, RayBatch, RenderOptions
 from photograd.types import Array
 
-RAYS_AT_ONCE = 1 << 16
+WORST = 4
+"""Views that a notebook shows of an evaluation."""
 
 
 @dataclass(frozen=True)
@@ -49,6 +50,10 @@ class ViewScore:
         """Valid pixels, as a fraction of all of the view."""
         return float(self.valid.mean())
 
+    def _repr_png_(self) -> bytes:
+        """The photograph and the rendering beside it."""
+        return png_of_sheet(sheet([self.truth, self.render], 2, EDGE // 2))
+
 
 @dataclass(frozen=True)
 class Evaluation:
@@ -60,6 +65,14 @@ class Evaluation:
     views: tuple[ViewScore, ...]
     protocol: str
     left_out: tuple[str, ...] = ()
+
+    def _repr_html_(self) -> str:
+        """The means, and the worst views with their renderings."""
+        worst = sorted(self.views, key=lambda view: view.psnr)[:WORST]
+        pictures = [image for view in worst for image in (view.truth, view.render)]
+        facts = {"PSNR": f"{self.psnr:.2f} dB", "SSIM": f"{self.ssim:.3f}"}
+        facts |= {"protocol": self.protocol, "shown": ", ".join(view.name for view in worst)}
+        return as_html("Evaluation", facts, png_of_sheet(sheet(pictures, 4, EDGE // 2)))
 
     @property
     def psnr(self) -> float:
@@ -79,35 +92,12 @@ def render_camera(
 
     Colors are linear or display values, as the field's `color_space` says.
     """
-    options = RenderOptions(stop=stop)
-    size = (camera.height, camera.width)
-    field: Any = model.field
-    if "rays" not in field.capabilities:
-        whole, _ = field.render(ImageBatch(camera), seed=0, step=0, options=options)
-        return whole.color.reshape(*size, 3), whole.opacity.reshape(size), whole.depth.reshape(size)
-    parts = []
-    for start in range(0, camera.width * camera.height, RAYS_AT_ONCE):
-        ids = np.arange(start, min(start + RAYS_AT_ONCE, camera.width * camera.height))
-        origins, directions = camera.rays(ids)
-        batch = RayBatch(origins, directions, ids.astype(np.uint32))
-        outputs, _ = field.render(batch, seed=0, step=0, options=options)
-        parts.append((outputs.color, outputs.opacity, outputs.depth))
-    color, opacity, depth = (np.concatenate(part) for part in zip(*parts, strict=True))
-    return color.reshape(*size, 3), opacity.reshape(size), depth.reshape(size)
+    return render_field(model.field, camera, stop)
 
 
 def display_image(model: Model, camera: Camera) -> Array:
     """The model (H, W, 3) in display values, over white or its learned background."""
-    color, opacity, _ = render_camera(model, camera)
-    if model.field.color_space == "display":
-        behind = 1.0 if model.background is None else srgb_encode(model.background)
-        over = color + (1 - opacity[..., None]) * behind
-        return round_to_8_bits(over.astype(np.float64))
-    if model.background is not None:
-        over = color + (1 - opacity[..., None]) * model.background
-        return round_to_8_bits(srgb_encode(over.astype(np.float64)))
-    straight = unpremultiply(color.astype(np.float64), opacity.astype(np.float64))
-    return over_white(srgb_encode(straight), opacity)
+    return display_field(model.field, model.background, camera)
 
 
 def truth_image(view: View) -> Array:
@@ -115,12 +105,6 @@ def truth_image(view: View) -> Array:
     rgba = view.rgba().astype(np.float64)
     color = display_color(rgba[..., :3], view.color_space)
     return over_white(color, rgba[..., 3])
-
-
-def over_white(encoded: Array, alpha: Array) -> Array:
-    """Straight display values over white, clipped and rounded to 8 bits."""
-    alpha = alpha[..., None]
-    return round_to_8_bits(np.clip(encoded, 0, 1) * alpha + (1 - alpha))
 
 
 def score_view(model: Model, view: View) -> ViewScore | None:

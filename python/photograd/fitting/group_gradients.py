@@ -16,6 +16,7 @@ from matplotlib.figure import Figure
 from photograd_course.viz import style
 from photograd_course.viz.scale import signed_scale
 
+from photograd._notebook import EDGE, png_of_sheet, sheet, signed_colors, smaller
 from photograd.capture.capture import Capture
 from photograd.fitting.data import TrainingViews, constant_background
 from photograd.fitting.evaluate import display_image
@@ -47,6 +48,12 @@ class GroupGradients:
     rms: dict[str, float]
     image: Array | None
     loss: float
+
+    def _repr_png_(self) -> bytes:
+        """The picture, the derivative with respect to its pixels, and `image` if there is one."""
+        signed = [d for d in (self.d_pixel, self.image) if d is not None]
+        shown = [self.picture, *(signed_colors(smaller(d)) for d in signed)]
+        return png_of_sheet(sheet(shown, 3, EDGE // 2))
 
 
 def group_gradients(

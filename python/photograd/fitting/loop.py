@@ -42,7 +42,13 @@ from photograd.fitting.checks import (
     require_split_of,
     require_startable,
 )
-from photograd.fitting.data import background_kind, first_background, raw_background
+from photograd.fitting.data import (
+    background_kind,
+    first_background,
+    learned_background,
+    raw_background,
+)
+from photograd.fitting.drawing import field_html
 from photograd.fitting.model import Model, model_of, save_snapshot, snapshot_steps
 from photograd.fitting.options import FitResult, Pace, Progress
 from photograd.fitting.steps import Background, RowAdam, training_data
@@ -130,6 +136,14 @@ class Fit:
         fit.step_number = int(saved.meta["step"])
         fit.history = [tuple(row) for row in saved.history.tolist()]
         return fit
+
+    def _repr_html_(self) -> str:
+        """How far it is, and a picture of the field."""
+        behind = None if self.background is None else learned_background(self.background)
+        facts: dict[str, object] = {"step": f"{self.step_number} of {self.options.steps}"}
+        if self.history:
+            facts["loss"] = f"{self.history[-1][1]:.3g}"
+        return field_html("Fit", self.model, behind, facts)
 
     @property
     def steps(self) -> int:

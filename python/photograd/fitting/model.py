@@ -24,6 +24,7 @@ from photograd._fit_options import FitOptions
 from photograd.errors import DtypeError, Error, IoError, RangeError, message
 from photograd.fields import fittable
 from photograd.fitting.data import learned_background
+from photograd.fitting.drawing import field_html
 from photograd.representation import Fittable
 from photograd.types import Array
 
@@ -46,6 +47,14 @@ class Model:
     def of(cls, field: Fittable) -> Model:
         """A field that no fit has made, to be drawn or for a fit to start from."""
         return cls(field, None, FitOptions(field.name), {}, np.zeros((0, 3)))
+
+    def _repr_html_(self) -> str:
+        """Its size, how far it was fitted, and a picture."""
+        facts: dict[str, object] = {}
+        if len(self.history):
+            step, loss, _ = self.history[-1].tolist()
+            facts = {"step": f"{step:.0f} of {self.options.steps}", "loss": f"{loss:.3g}"}
+        return field_html("Model", self.field, self.background, facts)
 
 
 def load_model(path: str | Path) -> Model:

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from photograd._notebook import png, signed_colors, smaller
 from photograd.capture.capture import Capture
 from photograd.capture.view import View
 from photograd.errors import RangeError, message
@@ -36,6 +37,12 @@ class DensityGradient:
     d_sigma_t: Array
     active: NDArray[np.bool_]
     loss: float
+
+    def _repr_png_(self) -> bytes:
+        """The largest values along z, x to the right and y up: blue where more density helps."""
+        rows = np.abs(self.d_sigma_t).argmax(axis=2, keepdims=True)
+        largest = np.take_along_axis(self.d_sigma_t, rows, axis=2)[..., 0]
+        return png(signed_colors(smaller(largest.T[::-1])))
 
 
 def density_gradient(

@@ -20,9 +20,11 @@ from typing import Any, Literal
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from photograd_course.atomic_io import atomic_write
+from photograd_course.color import srgb_encode
 
 from photograd._checks import typed
 from photograd._files import read_npz
+from photograd._notebook import png, smaller
 from photograd.errors import Error, IoError, RangeError, ShapeError, message
 from photograd.types import Array
 
@@ -67,6 +69,10 @@ class Accumulation:
             raise RangeError(message("Accumulation.mean", "count", "at least 1 sample", 0))
         mean: Array = self.radiance / self.count
         return mean
+
+    def _repr_png_(self) -> bytes | None:
+        """The picture in display values, small; nothing before the first sample."""
+        return png(srgb_encode(smaller(self.mean))) if self.count else None
 
     @property
     def standard_error(self) -> Array:

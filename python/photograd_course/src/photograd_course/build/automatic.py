@@ -1,7 +1,8 @@
 """Automatic mutants: small changes of the solution's syntax tree, each of which checks must notice.
 
 Changed are operators, signs, indices by one, constants, terms left out, ``+=`` to ``=``, swapped
-arguments, comparisons, and statements left out; only inside of solution regions, and not in
+arguments, comparisons, statements left out, and call sites (a keyword left out, a call of the
+module's own function left out); only inside of solution regions, and not in
 messages of exceptions, annotations and docstrings, which no check looks at.
 """
 
@@ -48,12 +49,13 @@ def automatic_mutants(source: str, file: str = "source") -> list[AutoMutant]:
     found: list[AutoMutant] = []
     times: Counter[tuple[str, str, str]] = Counter()
     seen = {ast.dump(ast.parse(source))}
+    own = {node.name for node in ast.parse(source).body if isinstance(node, ast.FunctionDef)}
     for node in _changeable(ast.parse(source)):
         line = getattr(node, "lineno", 0)
         where = [o for r, o in zip(regions, owners, strict=True) if r.first < line < r.last]
         if not where:
             continue
-        changes = statements_of(node) if isinstance(node, ast.stmt) else expressions_of(node)
+        changes = statements_of(node) if isinstance(node, ast.stmt) else expressions_of(node, own)
         for old, new in changes:
             written = f"({new})" if isinstance(node, ast.expr) else new
             mutated = text.replace(node, written)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 import copy
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from functools import partial
 from typing import Any
 
@@ -38,8 +38,13 @@ COMPARISONS: dict[type[ast.cmpop], tuple[type[ast.cmpop], ...]] = {
 }
 
 
-def expressions_of(node: ast.AST) -> Iterator[Change]:
-    """Changes of an expression."""
+def expressions_of(node: ast.AST, own: Collection[str] = ()) -> Iterator[Change]:
+    """Changes of an expression.
+
+    Args:
+        node: of the syntax tree.
+        own: names of the module's functions, whose call sites are changed too.
+    """
     if isinstance(node, ast.BinOp):
         yield from _binary(node)
     elif isinstance(node, ast.UnaryOp) and isinstance(node.op, (ast.USub, ast.Not)):
@@ -58,6 +63,7 @@ def expressions_of(node: ast.AST) -> Iterator[Change]:
         yield from _indices(node)
     elif isinstance(node, ast.Call):
         yield from _swapped_arguments(node)
+        yield from _call_site(node, own)
 
 
 def statements_of(node: ast.stmt) -> Iterator[Change]:
@@ -139,6 +145,24 @@ def _swapped_arguments(node: ast.Call) -> Iterator[Change]:
                 n.args[at], n.args[at + 1] = n.args[at + 1], n.args[at]
 
             yield _changed(node, swap)
+
+
+def _call_site(node: ast.Call, own: Collection[str]) -> Iterator[Change]:
+    """Each keyword left out; a call of the module's own function left out: its first argument.
+
+    Not ``out``: what memory holds before it is written to differs between runs. Nor what NumPy is
+    told to warn of, which no check looks at.
+    """
+    warns = isinstance(node.func, ast.Attribute) and node.func.attr == "errstate"
+    for number, keyword in enumerate(() if warns else node.keywords):
+        if keyword.arg not in (None, "out"):
+            yield _changed(node, partial(_drop_keyword, number))
+    if isinstance(node.func, ast.Name) and node.func.id in own and node.args:
+        yield ast.unparse(node), ast.unparse(node.args[0])
+
+
+def _drop_keyword(number: int, node: Any) -> None:
+    del node.keywords[number]
 
 
 def _signs(node: ast.Return) -> Iterator[Change]:

@@ -47,7 +47,7 @@ CHECKS = '''\
 from __future__ import annotations
 
 import numpy as np
-from photograd_course.grading import Array, Tolerance, check
+from photograd_course.grading import Array, Subject, Tolerance, check
 
 ROUNDING = Tolerance(1e-12, "doubling is exact; the nearest wrong answer is off by half")
 
@@ -76,6 +76,15 @@ def known_values_are_doubled(t):
     visibility="hidden",
     tolerance=ROUNDING,
     sole="random points, so that the answers to the public check cannot be copied",
+    battery=[
+        Subject(
+            "twice",
+            lambda t, n: (t.rng.uniform(-3.0, 3.0, n),),
+            lambda n: Array((n,)),
+            sizes=(0, 1, 100),
+            rows=(0,),
+        )
+    ],
 )
 def random_values_are_doubled(t):
     """Random values are doubled."""

@@ -1,0 +1,94 @@
+"""A field as a camera sees it, and as a notebook shows it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from photograd_course.color import srgb_encode, unpremultiply
+from photograd_course.metrics import round_to_8_bits
+
+from photograd._notebook import as_html, png
+from photograd.capture.camera import Camera
+from photograd.capture.orbit import orbit_cameras
+from photograd.errors import Error
+from photograd.representation import Fittable, ImageBatch, RayBatch, RenderOptions
+from photograd.types import Array
+
+RAYS_AT_ONCE = 1 << 16
+PORTRAIT = 128
+"""Pixels along an edge of the picture of a field in a notebook."""
+
+
+def render_field(field: Fittable, camera: Camera, stop: float) -> tuple[Array, Array, Array]:
+    """Premultiplied color (H, W, 3), opacity (H, W) and depth (H, W) seen by a camera.
+
+    Colors are linear or display values, as the field's `color_space` says; `stop` is that of
+    `RenderOptions`.
+    """
+    options = RenderOptions(stop=stop)
+    size = (camera.height, camera.width)
+    drawn: Any = field
+    if "rays" not in drawn.capabilities:
+        whole, _ = drawn.render(ImageBatch(camera), seed=0, step=0, options=options)
+        return whole.color.reshape(*size, 3), whole.opacity.reshape(size), whole.depth.reshape(size)
+    parts = []
+    for start in range(0, camera.width * camera.height, RAYS_AT_ONCE):
+        ids = np.arange(start, min(start + RAYS_AT_ONCE, camera.width * camera.height))
+        origins, directions = camera.rays(ids)
+        batch = RayBatch(origins, directions, ids.astype(np.uint32))
+        outputs, _ = drawn.render(batch, seed=0, step=0, options=options)
+        parts.append((outputs.color, outputs.opacity, outputs.depth))
+    color, opacity, depth = (np.concatenate(part) for part in zip(*parts, strict=True))
+    return color.reshape(*size, 3), opacity.reshape(size), depth.reshape(size)
+
+
+def display_field(
+    field: Fittable, background: Array | None, camera: Camera, stop: float = 1e-4
+) -> Array:
+    """The field (H, W, 3) in display values, over white or a linear background (3,)."""
+    color, opacity, _ = render_field(field, camera, stop)
+    if field.color_space == "display":
+        behind = 1.0 if background is None else srgb_encode(background)
+        over = color + (1 - opacity[..., None]) * behind
+        return round_to_8_bits(over.astype(np.float64))
+    if background is not None:
+        over = color + (1 - opacity[..., None]) * background
+        return round_to_8_bits(srgb_encode(over.astype(np.float64)))
+    straight = unpremultiply(color.astype(np.float64), opacity.astype(np.float64))
+    return over_white(srgb_encode(straight), opacity)
+
+
+def over_white(encoded: Array, alpha: Array) -> Array:
+    """Straight display values over white, clipped and rounded to 8 bits."""
+    alpha = alpha[..., None]
+    return round_to_8_bits(np.clip(encoded, 0, 1) * alpha + (1 - alpha))
+
+
+def portrait(field: Fittable, background: Array | None) -> Array:
+    """The field (H, W, 3) in display values, from a camera in front of its box."""
+    own = field.turntable(1, size=PORTRAIT, elevation=25.0, background=background)
+    if own is not None:
+        return next(iter(own))
+    (camera,) = orbit_cameras(field.box, 1, size=PORTRAIT)
+    return display_field(field, background, camera)
+
+
+def field_html(
+    title: str, field: Fittable, background: Array | None, facts: Mapping[str, object]
+) -> str:
+    """What a notebook shows of a field: its size, some facts, a picture.
+
+    A field that cannot be drawn is shown without a picture, and with the reason.
+    """
+    size = " x ".join(map(str, field.shape))
+    stored = sum(array.nbytes for array in field.stored().values())
+    rows: dict[str, object] = {"representation": field.name, "size": size}
+    rows |= {"memory": f"{stored / 2**20:.1f} MiB", **facts}
+    picture = None
+    try:
+        picture = png(portrait(field, background))
+    except Error as failure:
+        rows["picture"] = failure
+    return as_html(title, rows, picture)
