@@ -186,10 +186,18 @@ ONE = {"mean": np.zeros((2, 2)), "log_radius": np.zeros(2), "color": np.zeros((2
 @pytest.mark.parametrize(
     ("change", "error", "words"),
     [
-        ({"log_radius": np.zeros(3)}, ShapeError, r"log_radius: expected shape \(2,\), got \(3,\)"),
-        ({"mean": np.zeros((2, 3))}, ShapeError, r"mean: expected shape \(2, 2\), got \(2, 3\)"),
-        ({"color": np.zeros((2, 3), np.float32)}, DtypeError, "expected one float dtype"),
-        ({name: array[:0] for name, array in ONE.items()}, ShapeError, "at least one blob"),
+        ({"log_radius": np.zeros(3)}, ShapeError, r"log_radius: expected shape \(N,\) with N = 2"),
+        (
+            {"mean": np.zeros((2, 3))},
+            ShapeError,
+            r"mean: expected shape \(N, 2\) with N >= 1, got \(2, 3\)",
+        ),
+        (
+            {"color": np.zeros((2, 3), np.float32)},
+            DtypeError,
+            "color: expected float64 as mean, got float32",
+        ),
+        ({name: array[:0] for name, array in ONE.items()}, ShapeError, "with N >= 1"),
         ({"reach": 0.0}, RangeError, "reach: expected a positive number or None, got 0.0"),
     ],
 )

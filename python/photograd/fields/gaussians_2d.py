@@ -30,7 +30,7 @@ import numpy as np
 from photograd_course import portable_math as pm
 from photograd_course.random import uniform
 
-from photograd.errors import DtypeError, ShapeError, message
+from photograd._arrays import Arguments
 from photograd.representation import (
     CanvasBatch,
     Outputs,
@@ -99,23 +99,14 @@ class Gaussians2D(Representation):
         """Raises ShapeError unless the arrays have the shapes above with N >= 1, DtypeError unless
         all are float32 or all float64.
         """
-        n = max(len(mean), 1)
-        arrays = {
-            "mean": mean,
-            "log_scale": log_scale,
-            "angle": angle,
-            "opacity_logit": opacity_logit,
-            "color": color,
+        call = Arguments("Gaussians2D")
+        self.params = {
+            "mean": call.array("mean", mean, ("N", 2), finite=False, min_length=1),
+            "log_scale": call.array("log_scale", log_scale, ("N", 2), finite=False),
+            "angle": call.array("angle", angle, ("N",), finite=False),
+            "opacity_logit": call.array("opacity_logit", opacity_logit, ("N",), finite=False),
+            "color": call.array("color", color, ("N", 3), finite=False),
         }
-        shapes = ((n, 2), (n, 2), (n,), (n,), (n, 3))
-        for (name, array), shape in zip(arrays.items(), shapes, strict=True):
-            if array.shape != shape:
-                raise ShapeError(message("Gaussians2D", name, f"shape {shape}", f"{array.shape}"))
-        kinds = {array.dtype for array in arrays.values()}
-        if len(kinds) != 1 or not kinds <= {np.dtype(np.float32), np.dtype(np.float64)}:
-            got = f"{sorted(str(kind) for kind in kinds)}"
-            raise DtypeError(message("Gaussians2D", "all arrays", "one float dtype", got))
-        self.params = arrays
 
     @classmethod
     def scattered(

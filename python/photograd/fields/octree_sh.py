@@ -32,6 +32,7 @@ from photograd_course.portable_math import sigmoid, softplus
 from photograd_course.random import uniform
 
 from photograd import sh
+from photograd._arrays import Arguments
 from photograd._checkpoint import Row
 from photograd._checks import from_plain
 from photograd._fit_options import FitOptions
@@ -108,10 +109,9 @@ class OctreeSh(VoxelField):
             raise ShapeError(message("OctreeSh", "row", f"({len(tree.values)},)", row.shape))
         if not np.array_equal(np.sort(row[row >= 0]), np.arange(rows)):
             raise RangeError(message("OctreeSh", "row", "each of 0, 1, ... once, or -1", "others"))
-        if density.shape != (rows,):
-            raise ShapeError(message("OctreeSh", "density", f"({rows},)", density.shape))
-        if coefficients.ndim != 3 or coefficients.shape[::2] != (rows, 3):
-            raise ShapeError(message("OctreeSh", "sh", f"({rows}, K, 3)", coefficients.shape))
+        call = Arguments("OctreeSh")
+        density = call.array("density", density, (rows,), finite=False)
+        coefficients = call.array("sh", coefficients, (rows, "K", 3), finite=False)
         sh.degree_of(coefficients.shape[1])  # refuses a K that is no square
         self.tree = tree
         self.row = row

@@ -23,7 +23,8 @@ import numpy as np
 from photograd_course.portable_math import log
 from photograd_course.random import uniform
 
-from photograd.errors import DtypeError, RangeError, ShapeError, message
+from photograd._arrays import Arguments
+from photograd.errors import RangeError, message
 from photograd.representation import (
     Outputs,
     ParamSpec,
@@ -74,23 +75,12 @@ class Points(Representation):
             DtypeError: they are not all float32 or all float64.
             RangeError: opacity is not within (0, 1), or alpha_min not within [0, 0.5].
         """
-        count = len(position)
-        arrays = {"position": position, "color": color, "log_radius": log_radius}
-        allowed: dict[str, list[tuple[int, ...]]] = {
-            "position": [(max(count, 1), 3)],
-            "color": [(count, 3)],
-            "log_radius": [(count,), (1,)],
+        call = Arguments("Points")
+        arrays = {
+            "position": call.array("position", position, ("N", 3), finite=False, min_length=1),
+            "color": call.array("color", color, ("N", 3), finite=False),
+            "log_radius": call.array("log_radius", log_radius, ("N",), (1,), finite=False),
         }
-        for name, shapes in allowed.items():
-            if arrays[name].shape not in shapes:
-                expected = " or ".join(f"shape {shape}" for shape in shapes)
-                raise ShapeError(message("Points", name, expected, f"{arrays[name].shape}"))
-        kinds = {array.dtype for array in arrays.values()}
-        if len(kinds) != 1 or not kinds <= {np.dtype(np.float32), np.dtype(np.float64)}:
-            got = f"{[str(array.dtype) for array in arrays.values()]}"
-            raise DtypeError(
-                message("Points", "position, color, log_radius", "one float dtype", got)
-            )
         if not 0 < opacity < 1:
             raise RangeError(message("Points", "opacity", "between 0 and 1", f"{opacity}"))
         RayOptions(alpha_min=alpha_min)  # checks it

@@ -17,12 +17,13 @@ from photograd_course.random import uniform
 from photograd_course.row_map import RowMap
 
 from photograd import sh
+from photograd._arrays import Arguments
 from photograd._checkpoint import FLOAT, Row
 from photograd._checks import from_plain
 from photograd._compiled import _core
 from photograd._fit_options import MAX_DEGREE, FitOptions
 from photograd._memory import require_room
-from photograd.errors import DtypeError, RangeError, ShapeError, message
+from photograd.errors import RangeError, message
 from photograd.fields.active_voxels import ActiveVoxels, dilated, resampled_mask
 from photograd.fields.dense_grid import START_COLOR, DenseGrid, cubic_voxels, finer_voxels
 from photograd.fields.march import MarchPolicy, checked_values
@@ -81,13 +82,9 @@ class SparseSh(GridField):
         """Raises ShapeError, DtypeError, RangeError (degree) or Error (not finite)."""
         checked_values("SparseSh", "density", density)
         checked_values("SparseSh", "sh", coefficients)
-        if density.shape != (len(active),):
-            raise ShapeError(message("SparseSh", "density", f"({len(active)},)", density.shape))
-        if coefficients.ndim != 3 or coefficients.shape[::2] != (len(active), 3):
-            expected = f"({len(active)}, K, 3)"
-            raise ShapeError(message("SparseSh", "sh", expected, coefficients.shape))
-        if coefficients.dtype != density.dtype:
-            raise DtypeError(message("SparseSh", "sh", density.dtype, coefficients.dtype))
+        call = Arguments("SparseSh")
+        density = call.array("density", density, (len(active),), finite=False)
+        coefficients = call.array("sh", coefficients, (len(active), "K", 3), finite=False)
         if coefficients.shape[1] not in (1, 4, 9, 16):
             expected = f"1, 4, 9 or 16 coefficients (degree 0 to {MAX_DEGREE})"
             raise RangeError(message("SparseSh", "sh", expected, coefficients.shape[1]))
@@ -95,10 +92,7 @@ class SparseSh(GridField):
             raise RangeError(message("SparseSh", "policy.border", "'zero'", repr(policy.border)))
         self._check_active(active)
         self.active = active
-        self.params = {
-            "density": np.ascontiguousarray(density),
-            "sh": np.ascontiguousarray(coefficients),
-        }
+        self.params = {"density": density, "sh": coefficients}
         self.policy = policy
         self.background_density = background_density
         self.fused = fused

@@ -32,8 +32,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from photograd_course.portable_math import norm
 
+from photograd._arrays import Arguments
 from photograd.bsdf.phase import registry as phase_functions
-from photograd.errors import DtypeError, RangeError, ShapeError, message
+from photograd.errors import RangeError, ShapeError, message
 from photograd.fields.march import MarchContext, MarchPolicy, march, march_backward
 from photograd.geometry.mesh import Bvh
 from photograd.representation import (
@@ -331,18 +332,17 @@ def _unit(vectors: Array) -> Array:
 
 def _checked(params: Mapping[str, Array]) -> dict[str, Array]:
     """Contiguous arrays of the right shapes and of one type."""
-    expected = {"sigma_t": None, "albedo": (3,), "g": (1,), "irradiance": (3,)}
+    expected: dict[str, tuple[int | str, ...]] = {
+        "sigma_t": ("X", "Y", "Z"),
+        "albedo": (3,),
+        "g": (1,),
+        "irradiance": (3,),
+    }
     if set(params) != set(expected):
         got = sorted(params)
         raise RangeError(message("SunlitMedium", "params", f"exactly {sorted(expected)}", got))
-    for name, shape in expected.items():
-        found = params[name].shape
-        right = len(found) == 3 and min(found) >= 2 if shape is None else found == shape
-        if not right:
-            wanted = "shape (X, Y, Z), X Y Z >= 2" if shape is None else f"shape {shape}"
-            raise ShapeError(message("SunlitMedium", name, wanted, f"shape {found}"))
-    types = {value.dtype for value in params.values()}
-    if len(types) != 1 or not types <= {np.dtype(np.float32), np.dtype(np.float64)}:
-        got = sorted(str(one) for one in types)
-        raise DtypeError(message("SunlitMedium", "params", "all float32 or all float64", got))
-    return {name: np.ascontiguousarray(value) for name, value in params.items()}
+    call = Arguments("SunlitMedium")
+    return {
+        name: call.array(name, params[name], shape, finite=False, min_length=2)
+        for name, shape in expected.items()
+    }

@@ -14,7 +14,7 @@ from typing import Any, ClassVar
 import numpy as np
 from photograd_course.random import uniform
 
-from photograd.errors import DtypeError, ShapeError, message
+from photograd._arrays import Arguments
 from photograd.representation import (
     CanvasBatch,
     Outputs,
@@ -46,13 +46,9 @@ class Texture2D(Representation):
 
     def __init__(self, texels: Array) -> None:
         """Raises ShapeError unless texels is (H, W, 3), DtypeError unless it is a float array."""
-        if texels.ndim != 3 or texels.shape[2] != 3 or texels.size == 0:
-            raise ShapeError(message("Texture2D", "texels", "shape (H, W, 3)", f"{texels.shape}"))
-        if texels.dtype not in (np.dtype(np.float32), np.dtype(np.float64)):
-            raise DtypeError(
-                message("Texture2D", "texels", "float32 or float64", f"{texels.dtype}")
-            )
-        self.params = {"texels": np.ascontiguousarray(texels)}
+        call = Arguments("Texture2D")
+        texels = call.array("texels", texels, ("H", "W", 3), finite=False, min_length=1)
+        self.params = {"texels": texels}
 
     @classmethod
     def example(cls, *, seed: int, dtype: type[np.floating[Any]] = np.float64) -> Texture2D:

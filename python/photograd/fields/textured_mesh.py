@@ -23,11 +23,12 @@ from photograd_course.color import srgb_encode
 from photograd_course.portable_math import log, sigmoid
 from photograd_course.random import uniform
 
+from photograd._arrays import Arguments
 from photograd._checkpoint import FLOAT, Row
 from photograd._checks import from_plain
 from photograd._fit_options import FitOptions
 from photograd._gltf_bytes import GltfBytes
-from photograd.errors import DtypeError, RangeError, ShapeError, message
+from photograd.errors import RangeError, message
 from photograd.fields.dense_grid import START_COLOR
 from photograd.geometry.mesh import Bvh, Mesh
 from photograd.representation import (
@@ -116,16 +117,14 @@ class TexturedMesh(Fittable):
 
         A mesh needs texture coordinates, all of them in [0, 1].
         """
-        if texels.dtype not in (np.dtype(np.float32), np.dtype(np.float64)):
-            raise DtypeError(message("TexturedMesh", "texels", "float32 or float64", texels.dtype))
-        if texels.ndim != 3 or texels.shape[2] != 3 or texels.size == 0:
-            raise ShapeError(message("TexturedMesh", "texels", "shape (H, W, 3)", texels.shape))
+        call = Arguments("TexturedMesh")
+        texels = call.array("texels", texels, ("H", "W", 3), finite=False, min_length=1)
         if mesh.uv is None or not bool(((mesh.uv >= 0) & (mesh.uv <= 1)).all()):
             got = "none" if mesh.uv is None else "others"
             remedy = "unwrap the mesh, so that no texture repeats"
             expected = "texture coordinates in [0, 1]"
             raise RangeError(message("TexturedMesh", "mesh.uv", expected, got, remedy))
-        self.params = {"texels": np.ascontiguousarray(texels)}
+        self.params = {"texels": texels}
         self.mesh = mesh
         self.policy = policy or MeshPolicy()
         self._bvh = Bvh(mesh)

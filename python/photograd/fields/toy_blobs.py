@@ -26,7 +26,8 @@ from photograd_course.portable_math import exp, log
 from photograd_course.random import uniform
 from photograd_course.row_map import RowMap
 
-from photograd.errors import DtypeError, RangeError, ShapeError, message
+from photograd._arrays import Arguments
+from photograd.errors import RangeError, message
 from photograd.representation import (
     CanvasBatch,
     Outputs,
@@ -76,20 +77,12 @@ class ToyBlobs(Representation):
         Raises ShapeError unless the arrays are (N, 2), (N,) and (N, 3) with N >= 1, DtypeError
         unless all are float32 or all float64; RangeError for a `reach` that is not positive.
         """
-        count = len(mean)
-        shapes = {"mean": (count, 2), "log_radius": (count,), "color": (count, 3)}
-        arrays = {"mean": mean, "log_radius": log_radius, "color": color}
-        for name, shape in shapes.items():
-            if arrays[name].shape != shape:
-                raise ShapeError(
-                    message("ToyBlobs", name, f"shape {shape}", f"{arrays[name].shape}")
-                )
-        kinds = {array.dtype for array in arrays.values()}
-        if len(kinds) != 1 or not kinds <= {np.dtype(np.float32), np.dtype(np.float64)}:
-            got = f"{[str(array.dtype) for array in arrays.values()]}"
-            raise DtypeError(message("ToyBlobs", "mean, log_radius, color", "one float dtype", got))
-        if count == 0:
-            raise ShapeError(message("ToyBlobs", "mean", "at least one blob", "none"))
+        call = Arguments("ToyBlobs")
+        arrays = {
+            "mean": call.array("mean", mean, ("N", 2), finite=False, min_length=1),
+            "log_radius": call.array("log_radius", log_radius, ("N",), finite=False),
+            "color": call.array("color", color, ("N", 3), finite=False),
+        }
         if reach is not None and not reach > 0:
             raise RangeError(message("ToyBlobs", "reach", "a positive number or None", f"{reach}"))
         self.params = arrays
