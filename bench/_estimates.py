@@ -26,7 +26,7 @@ def options(description: str, *, spp: int, reference: str) -> argparse.ArgumentP
     """Sizes, the ball, where paths may end by chance, and the file of the reference."""
     parser = _common.options(description, res=256, spp=spp, depth=8, roulette=2)
     parser.add_argument("--sphere", choices=sorted(BALLS), default="principled")
-    parser.add_argument("--sampler", choices=("even", "independent"), default="even")
+    parser.add_argument("--sampler", choices=("sobol", "independent"), default="sobol")
     parser.add_argument("--reference", default="", help=reference)
     return parser
 

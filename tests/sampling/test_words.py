@@ -21,7 +21,7 @@ pytestmark = pytest.mark.usefixtures("core")
 Array = Any
 PIXELS, BLOCKS, SAMPLE, SEED = 1 << 17, 13, 5, 11
 BINS, LIMIT = 512, 5.2
-SAMPLERS = ("independent", "even")
+SAMPLERS = ("independent", "sobol")
 
 
 @cache
@@ -30,7 +30,7 @@ def numbers(sampler: str) -> Array:
     pixel = np.arange(PIXELS, dtype=np.uint32)
     found = []
     for block in range(BLOCKS):
-        if sampler == "even":
+        if sampler == "sobol":
             found += list(_core.sobol_words(SEED, 0, block, pixel, SAMPLE, 1)[:, 0].T / 2.0**32)
         else:
             found += [_core.uniform(SEED, 0, pixel, SAMPLE, 4 * block + k) for k in range(4)]

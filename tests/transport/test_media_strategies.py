@@ -49,12 +49,12 @@ def test_roulette_keeps_the_mean() -> None:
     assert_same_mean(without, played, 1, 0.1)
 
 
-def test_even_samples_are_no_noisier() -> None:
+def test_sobol_samples_are_no_noisier() -> None:
     tracer = PathTracer(fog_box(size=6))
     truth = tracer.render(spp=2048, seed=9).mean
     errors = {}
-    for sampler in ("even", "independent"):
+    for sampler in ("sobol", "independent"):
         options = PathOptions(sampler=sampler)
         runs = [tracer.render(spp=64, seed=s, options=options).mean - truth for s in range(3)]
         errors[sampler] = float(np.sqrt(np.mean(np.square(runs))))
-    assert errors["even"] < errors["independent"]
+    assert errors["sobol"] < errors["independent"]

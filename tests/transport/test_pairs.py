@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from photograd.errors import Error, RangeError, ShapeError
 from photograd.transport import Accumulation, Material, PathOptions, PathTracer, Scene, TextureUse
-from photograd.transport.accumulation import PAIR_EVEN_SHARE, pair_counts
+from photograd.transport.accumulation import PAIR_UNIFORM_SHARE, pair_counts
 from photograd.transport.builtin import cornell_box
 from photograd.transport.inverse import cross_loss, cross_loss_backward, loss_and_gradients
 from photograd.transport.metal_room import metal_room
@@ -87,7 +87,7 @@ def test_paths_may_go_where_they_are_needed() -> None:
             ]
         )
 
-    even, focused = estimates("even", 0), estimates("cotangent", 1000)
+    even, focused = estimates("uniform", 0), estimates("cotangent", 1000)
     variances = [float(found.var(axis=0, ddof=1).sum()) for found in (even, focused)]
     error = np.sqrt(sum(variances) / count)
     assert 2 * error < np.linalg.norm(focused.mean(axis=0))
@@ -111,10 +111,10 @@ def test_counts_of_pairs_follow_noise_and_difference() -> None:
     counts = pair_counts(pilot, d, 16, "cotangent")
     assert counts is not None
     assert abs(int(counts.sum()) - 16 * 144) <= 72  # the rounding of each
-    assert (counts[:, 9:] == round(PAIR_EVEN_SHARE * 16)).all()
+    assert (counts[:, 9:] == round(PAIR_UNIFORM_SHARE * 16)).all()
     assert counts[:2, 0].min() > 1.3 * counts[8:, :3].max()
     assert counts[8:, :3].min() > counts[0, 11]
-    assert pair_counts(pilot, d, 16, "even") is None
+    assert pair_counts(pilot, d, 16, "uniform") is None
     assert pair_counts(pilot, 0 * d, 16, "cotangent") is None
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from photograd.errors import RangeError
 from photograd.transport import PathOptions, PathTracer
-from photograd.transport.accumulation import EVEN_SHARE, MOST, sample_counts
+from photograd.transport.accumulation import MOST, UNIFORM_SHARE, sample_counts
 from photograd.transport.builtin import cornell_box
 
 from support.bits import same_bits
@@ -38,8 +38,8 @@ def test_counts_follow_the_cotangent() -> None:
     counts = sample_counts(one, SPP, "cotangent")
     assert counts is not None
     assert counts[1, 1] == MOST * SPP
-    assert (np.delete(counts.ravel(), SIZE + 1) == EVEN_SHARE * SPP).all()
-    assert sample_counts(d, SPP, "even") is None
+    assert (np.delete(counts.ravel(), SIZE + 1) == UNIFORM_SHARE * SPP).all()
+    assert sample_counts(d, SPP, "uniform") is None
     assert sample_counts(np.zeros_like(d), SPP, "cotangent") is None
     with pytest.raises(RangeError, match=r"spread: expected .*even.*cotangent"):
         sample_counts(d, SPP, "steep")
@@ -77,7 +77,7 @@ def test_the_mean_stays_and_noise_falls() -> None:
             ]
         )
 
-    even, focused = estimates("even", 0), estimates("cotangent", 1000)
+    even, focused = estimates("uniform", 0), estimates("cotangent", 1000)
     error = np.sqrt((even.var() + focused.var()) / 100)
     assert abs(even.mean() - focused.mean()) < 4 * error
     assert 10 * error < abs(even.mean())  # so that the line above says something

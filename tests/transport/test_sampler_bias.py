@@ -109,7 +109,7 @@ def roulette() -> Known:
 KNOWN = (point_in_pixel, opacity, choice_of_a_light, point_on_a_light, direction, lobe, roulette)
 
 
-@pytest.mark.parametrize("sampler", ["independent", "even"])
+@pytest.mark.parametrize("sampler", ["independent", "sobol"])
 @pytest.mark.parametrize("make", KNOWN, ids=lambda make: make.__name__)
 def test_a_bias_of_a_tenth_of_a_percent_would_be_seen(
     make: Callable[[], Known], sampler: str

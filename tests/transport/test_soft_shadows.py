@@ -44,7 +44,7 @@ def test_the_penumbra_of_an_edge(p: float) -> None:
     # B06: within 1 % of the open lamp with 1024 shadow rays.
     open_lamp = 0.5 / np.pi * irradiance(p, -0.5)
     expected = 0.5 / np.pi * irradiance(p, min(max(-0.5, -p), 0.5)) if p > -0.5 else 0.0
-    assert abs(seen(p, 1024, "even", 1) - expected) < 0.01 * open_lamp
+    assert abs(seen(p, 1024, "sobol", 1) - expected) < 0.01 * open_lamp
     if abs(p) < 0.5:
         assert 0.05 * open_lamp < expected < 0.95 * open_lamp
 
@@ -58,7 +58,7 @@ def test_even_shadow_rays_beat_random_ones_fourfold() -> None:
         return np.var(found)
 
     # A variance of 100 values is known to 14 %; the ratio is about 30.
-    assert variance("even") < variance("independent") / 4
+    assert variance("sobol") < variance("independent") / 4
 
 
 @pytest.mark.parametrize("name", ["smooth glass", "mirror", "frosted glass"])

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from photograd.transport import Accumulation, PathOptions, PathTracer, derivative_image
 from photograd.transport.inverse.loss import loss_and_gradients
-from photograd.transport.path_options import Sampler
+from photograd.transport.path_options import SAMPLERS
 
 from fingerprint_cases.case import PRECISIONS, Array, Arrays, Case, numbers_of
 from fingerprint_cases.scenes import BASIC, Scenes, view, without_unused
@@ -27,7 +27,6 @@ ESTIMATORS = {
     "mis-balance": PathOptions("mis", "balance", max_depth=6),
     "mis-power": PathOptions("mis", "power", max_depth=6),
 }
-SAMPLERS: dict[str, Sampler] = {"independent": "independent", "sobol": "even"}
 CROSSED = ("large-surfaces", "lights-all", "opacity-textured", "fog-lights", "opacity-smoke")
 """Scenes for which all estimators, samplers and ends of paths are tried."""
 ENDS = {
@@ -41,9 +40,9 @@ ENDS = {
 def crossed_options() -> dict[str, PathOptions]:
     """All estimators with all samplers, and ways to end a path."""
     both = {
-        f"{name}-{sampler}": PathOptions(o.strategy, o.heuristic, o.max_depth, 3, word)
+        f"{name}-{sampler}": PathOptions(o.strategy, o.heuristic, o.max_depth, 3, sampler)
         for name, o in ESTIMATORS.items()
-        for sampler, word in SAMPLERS.items()
+        for sampler in SAMPLERS
     }
     return {**both, **ENDS}
 

@@ -183,10 +183,10 @@ def load_accumulation(path: Path, key: dict[str, Any]) -> Accumulation:
 # Where the paths of a derivative go: as many to each pixel, or more to those that matter.
 
 
-Spread = Literal["even", "cotangent"]
-EVEN_SHARE = 0.25
+Spread = Literal["uniform", "cotangent"]
+UNIFORM_SHARE = 0.25
 """Of all paths: a pixel may hide a large s_p behind a small d_p, so that none goes without."""
-PAIR_EVEN_SHARE = 0.75
+PAIR_UNIFORM_SHARE = 0.75
 """The same where the paths serve the picture as well."""
 AROUND = 2
 """Pixels to each side that are asked how much they vary; a pilot's few paths say little of one."""
@@ -200,14 +200,14 @@ def sample_counts(d_image: Array, spp: int, spread: Spread) -> Array | None:
     Args:
         d_image: dL/dimage (H, W, 3).
         spp: paths a pixel, on average; the sum is off by the rounding of each pixel.
-        spread: "even", or "cotangent" for more where the loss looks.
+        spread: "uniform", or "cotangent" for more where the loss looks.
 
     Raises:
         RangeError: another spread.
     """
     typed("PathTracer.render_backward", "spread", Spread, spread)
     size = np.abs(np.asarray(d_image, np.float64)).sum(axis=-1)
-    return None if spread == "even" else _dealt(size, spp, EVEN_SHARE)
+    return None if spread == "uniform" else _dealt(size, spp, UNIFORM_SHARE)
 
 
 def pair_counts(pilot: Accumulation, d_image: Array, spp: int, spread: Spread) -> Array | None:
@@ -221,18 +221,18 @@ def pair_counts(pilot: Accumulation, d_image: Array, spp: int, spread: Spread) -
         pilot: a picture of a few other paths, two at least.
         d_image: dL/dimage (H, W, 3) as that picture says.
         spp: paths a pixel, on average.
-        spread: "even", or "cotangent" for more where the loss looks.
+        spread: "uniform", or "cotangent" for more where the loss looks.
 
     Raises:
         RangeError: another spread.
     """
-    if spread == "even":
+    if spread == "uniform":
         return None
     variance = np.maximum(pilot.squares / pilot.count - pilot.mean**2, 0.0).sum(axis=-1)
     size = np.sqrt(variance) * np.abs(d_image).sum(axis=-1)
     edges = np.pad(size, AROUND, mode="edge")
     around = sliding_window_view(edges, (2 * AROUND + 1, 2 * AROUND + 1)).mean(axis=(2, 3))
-    return _dealt(around, spp, PAIR_EVEN_SHARE)
+    return _dealt(around, spp, PAIR_UNIFORM_SHARE)
 
 
 def _dealt(size: Array, spp: int, even_share: float) -> Array | None:

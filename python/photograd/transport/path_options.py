@@ -1,4 +1,4 @@
-"""How paths of light are looked for: the options of all that trace them."""
+"""Options of the path tracer, and of all that trace paths."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from photograd.errors import RangeError, message
 
 Strategy = Literal["light", "bsdf", "mis"]
 Heuristic = Literal["balance", "power"]
-Sampler = Literal["independent", "even"]
+Sampler = Literal["independent", "sobol"]
 # In the core's order.
 STRATEGIES: tuple[Strategy, ...] = get_args(Strategy)
 HEURISTICS: tuple[Heuristic, ...] = get_args(Heuristic)
@@ -20,19 +20,21 @@ NEVER = 1 << 20  # a vertex that no path reaches
 
 @dataclass(frozen=True)
 class PathOptions:
-    """How light is looked for.
+    """How light paths are sampled.
 
     Attributes:
-        strategy: "light" asks a light at every vertex; "bsdf" counts what a path meets by chance,
-            and asks only what it cannot meet (point, spot, directional lights); "mis" does both and
-            shares out the weight.
-        heuristic: how "mis" does so: "balance" or "power".
-        max_depth: segments of the longest path; 1 sees lights alone, 2 is direct light. Passing
-            straight through what covers only in part (alpha, a mask's hole) ends a segment, too.
-        roulette_from: the first vertex at which a path may end by chance; None never ends one.
-        sampler: "even" spreads the random numbers of a pixel's samples as scrambled Sobol' points
-            do, most evenly for powers of two of them; "independent" does not. Only with the latter
-            is `Accumulation.standard_error` the error; with the former it is more than that.
+        strategy: "light" is next event estimation, which samples a light at every vertex; "bsdf"
+            samples the BSDF and counts the emitters that paths hit, with next event estimation only
+            for those that no path can hit (point, spot, directional lights); "mis" is multiple
+            importance sampling of both.
+        heuristic: weights of "mis": the "balance" or the "power" heuristic.
+        max_depth: segments of the longest path; 1 is emission alone, 2 adds direct light. Passing
+            straight through a partly opaque surface (alpha, a mask's hole) ends a segment, too.
+        roulette_from: the first vertex with Russian roulette; None for none.
+        sampler: "sobol" takes the random numbers of a pixel's samples from scrambled Sobol' points,
+            which are most uniform for powers of two of them; "independent" does not stratify. Only
+            with the latter is `Accumulation.standard_error` the error; with the former it is an
+            upper bound.
 
     Raises:
         RangeError: none of these.
@@ -42,7 +44,7 @@ class PathOptions:
     heuristic: Heuristic = "power"
     max_depth: int = 64
     roulette_from: int | None = 4
-    sampler: Sampler = "even"
+    sampler: Sampler = "sobol"
 
     def __post_init__(self) -> None:
         require_choices(self)

@@ -135,7 +135,7 @@ class PathTracer:
 
         Args:
             spp, seed: samples a pixel, and the seed of all random numbers.
-            options: how light is looked for.
+            options: of the path tracer.
             camera: None takes the scene's.
 
         Raises:
@@ -199,7 +199,7 @@ class PathTracer:
         seed: int,
         options: PathOptions = DEFAULTS,
         camera: Camera | None = None,
-        spread: Spread = "even",
+        spread: Spread = "uniform",
     ) -> dict[str, Array]:
         """dL/dparams for dL/dimage (H, W, 3), estimated with `spp` paths a pixel.
 
@@ -213,9 +213,9 @@ class PathTracer:
             d_image: dL/dimage (H, W, 3).
             spp: paths a pixel, on average.
             seed: of all random numbers.
-            options: how light is looked for.
+            options: of the path tracer.
             camera: None takes the scene's.
-            spread: "even" gives each pixel as many paths, "cotangent" more to those that the loss
+            spread: "uniform" gives each pixel as many paths, "cotangent" more where the loss
                 looks at (accumulation.py); then `seed` must not be that of the picture.
 
         Raises:

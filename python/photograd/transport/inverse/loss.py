@@ -146,7 +146,7 @@ def loss_and_gradients(
     camera: Camera | None = None,
     options: PathOptions = DEFAULTS,
     names: Iterable[str] | None = None,
-    spread: Spread = "even",
+    spread: Spread = "uniform",
 ) -> tuple[float, dict[str, Array]]:
     """The loss of two half pictures, and its derivative with respect to the tracer's parameters.
 
@@ -158,7 +158,7 @@ def loss_and_gradients(
             biased.
         camera, options: as for `PathTracer.render`.
         names: of the parameters wanted; None for all whose derivative is whole.
-        spread: "even" gives each pixel as many samples; "cotangent" more to those that are noisy
+        spread: "uniform" gives each pixel as many samples; "cotangent" more to those that are noisy
             and far from the target (accumulation.py), as one sample in `PILOT` finds out first.
 
     Returns:
@@ -180,7 +180,7 @@ def loss_and_gradients(
     if spp < 1:
         raise RangeError(message("loss_and_gradients", "spp", "at least 1", spp))
     counts = None
-    if spread != "even":
+    if spread != "uniform":
         pilot = tracer.render(
             spp=max(2, 2 * spp // PILOT), seed=seeds[0] ^ PILOT_SEED, options=options, camera=camera
         )

@@ -1,4 +1,4 @@
-"""The two samplers of path tracing: they agree on average, and the even one errs less."""
+"""The two samplers of the path tracer: they agree on average, and Sobol points have less error."""
 
 from __future__ import annotations
 
@@ -18,30 +18,30 @@ pytestmark = pytest.mark.usefixtures("core")
 SEEDS = 24
 
 
-def test_even_points_keep_the_mean_and_err_less() -> None:
+def test_sobol_points_keep_the_mean_and_err_less() -> None:
     # Pictures of 16 samples with seeds of their own are independent, whatever their samples are.
     tracer = PathTracer(stage(any_material("gltf"), size=12, sky=0.3))
     found = {}
-    for sampler in ("even", "independent"):
+    for sampler in ("sobol", "independent"):
         options = PathOptions(max_depth=4, roulette_from=2, sampler=sampler)
         found[sampler] = np.array(
             [tracer.render(spp=16, seed=seed, options=options).mean for seed in range(SEEDS)]
         )
-    even, other = found["even"], found["independent"]
-    assert even.mean() > 0.1
+    sobol, other = found["sobol"], found["independent"]
+    assert sobol.mean() > 0.1
     variance = {name: pictures.var(axis=0, ddof=1) for name, pictures in found.items()}
-    z = (even.mean(axis=(0, 1, 2)) - other.mean(axis=(0, 1, 2))) / np.sqrt(
-        (variance["even"] + variance["independent"]).sum(axis=(0, 1)) / SEEDS / 12**4
+    z = (sobol.mean(axis=(0, 1, 2)) - other.mean(axis=(0, 1, 2))) / np.sqrt(
+        (variance["sobol"] + variance["independent"]).sum(axis=(0, 1)) / SEEDS / 12**4
     )
     # The three channels go together: one false alarm in 10 000 seeds.
     assert np.abs(z).max() < 3.9
     # A bias of two percent would be seen.
-    spread = np.sqrt((variance["even"] + variance["independent"]).sum() / 3 / SEEDS / 12**4)
-    assert 3.9 * spread < 0.02 * even.mean()
-    assert variance["even"].mean() < 0.5 * variance["independent"].mean()  # 0.35
+    spread = np.sqrt((variance["sobol"] + variance["independent"]).sum() / 3 / SEEDS / 12**4)
+    assert 3.9 * spread < 0.02 * sobol.mean()
+    assert variance["sobol"].mean() < 0.5 * variance["independent"].mean()  # 0.35
 
 
-def test_the_spread_of_samples_is_not_the_error_of_even_ones() -> None:
+def test_the_spread_of_samples_is_not_the_error_of_sobol_points() -> None:
     tracer = PathTracer(cornell_box(12))
     options = PathOptions(max_depth=2)
     pictures = [tracer.render(spp=64, seed=seed, options=options) for seed in range(SEEDS)]
@@ -58,7 +58,7 @@ def in_two_passes() -> list[Any]:
     return [sums.radiance]
 
 
-def test_even_samples_may_come_later() -> None:
+def test_sobol_samples_may_come_later() -> None:
     at_once = PathTracer(cornell_box(8)).render(spp=48, seed=3)
     np.testing.assert_array_equal(in_two_passes()[0], at_once.radiance)
 
