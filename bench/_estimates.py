@@ -32,7 +32,7 @@ def options(description: str, *, spp: int, reference: str) -> argparse.ArgumentP
 
 
 def tracer(args: argparse.Namespace) -> tuple[PathTracer, PathOptions]:
-    """The room, ready; and how light is looked for."""
+    """The room, ready; and the options of the path tracer."""
     _core.set_thread_count(args.threads)
     late = args.roulette if args.roulette > 0 else None
     options = PathOptions(max_depth=args.depth, roulette_from=late, sampler=args.sampler)

@@ -51,7 +51,7 @@ def render(
         camera: where the picture is taken from; a scene has one of its own.
         spp: samples a pixel of a path traced picture.
         seed: of its random numbers.
-        options: how light is looked for there.
+        options: of the path tracer there.
 
     Raises:
         DtypeError: something else than these.

@@ -80,7 +80,7 @@ def derivative_image(
             change for each number of some of the params.
         spp: samples a pixel.
         seed: of all random numbers.
-        options: how light is looked for.
+        options: of the path tracer.
         camera: None takes the scene's.
 
     Returns:

@@ -216,7 +216,7 @@ class PathTracer:
             options: of the path tracer.
             camera: None takes the scene's.
             spread: "uniform" gives each pixel as many paths, "cotangent" more where the loss
-                looks at (accumulation.py); then `seed` must not be that of the picture.
+                looks (accumulation.py); then `seed` must not be that of the picture.
 
         Raises:
             ShapeError: d_image of another shape than the picture.

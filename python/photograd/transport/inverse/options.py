@@ -33,7 +33,7 @@ class RecoveryOptions:
         views: pictures that a step looks at, drawn at random; 0 looks at all.
         resample_every: steps after which the tracer is built again where a light is unknown, so
             that lights and texels are asked as often as their brightness now warrants.
-        path: how light is looked for.
+        path: options of the path tracer.
         seed: of all random numbers, 0 to 2^64 - 1.
 
     Raises:
