@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -35,7 +36,10 @@ default_role = "py:obj"
 autodoc_member_order = "bysource"
 autodoc_typehints_format = "short"
 autodoc_preserve_defaults = True
-autodoc_type_aliases = {name: f"photograd.types.{name}" for name in ("Array", "FloatArray")}
+autodoc_type_aliases = {
+    **{name: f"photograd.types.{name}" for name in ("Array", "FloatArray")},
+    "ArrayLike": "numpy.typing.ArrayLike",
+}
 napoleon_numpy_docstring = False
 napoleon_custom_sections = [("Fields", "params_style")]
 napoleon_use_rtype = False
@@ -67,7 +71,24 @@ def _edit_docstring(
     lines[:] = docstrings.to_rst(lines)
 
 
+# How autodoc writes an alias inside of a union.
+_ALIAS = re.compile(r"TypeAliasForwardRef\('([\w.]+)'\)")
+
+
+def _edit_signature(
+    _app: Sphinx,
+    _what: str,
+    _name: str,
+    _thing: object,
+    _options: object,
+    signature: str | None,
+    returns: str | None,
+) -> tuple[str | None, str | None]:
+    return signature and _ALIAS.sub(r"\1", signature), returns and _ALIAS.sub(r"\1", returns)
+
+
 def setup(app: Sphinx) -> None:
     """Write the pages of the reference before Sphinx looks for pages."""
     app.connect("config-inited", lambda *_: api_pages.write())
+    app.connect("autodoc-process-signature", _edit_signature)
     app.connect("autodoc-process-docstring", _edit_docstring, priority=100)  # before napoleon

@@ -22,29 +22,51 @@ class FitOptions:
 
     `options_for` has the defaults of each representation.
 
-    Grids go from coarse to fine: the fit starts at `resolution` / 4, and is refined to / 2 and to
-    the whole at the fractions `refine_at` of its steps.
+    Grids go from coarse to fine: the fit starts at `resolution` / 4, but not below 8 voxels, and is
+    refined to / 2 and to the whole at the fractions `refine_at` of its steps.
+
+    Attributes:
+        representation: a name of `photograd.fields.fittable()`.
+        resolution: voxels along the longest edge of the box.
+        steps: of the optimizer.
+        rays: in a step.
+        seed: of all random numbers.
+        learning_rate: factor on the representation's own rates.
+        final_rate: fraction of the rate that is left at the end (exponential decay).
+        total_variation: weight of the prior; 0 switches it off.
+        background: "random", "white", "black", "learned", or "auto": random where the capture has
+            alpha, else learned.
+        stop: transmittance below which a ray ends; the discarded light is below this fraction.
+        steps_per_voxel: of the march; docs/results.md says what more would change.
+        refine_at: fractions of the steps at which a grid is refined.
+        sigma_t: density of the start, 1/m.
+        degree: of the spherical harmonics, 0 to `MAX_DEGREE`.
+        prune: a sparse grid drops voxels that weigh less than this in every pixel; 0 drops none.
+        gaussians: at most this many.
+        density_control: of Gaussians, of `DENSITY_CONTROLS`.
+        final_mean_rate: `final_rate` of the Gaussians' means, which must come to rest.
+        ssim_weight: share of 1 - SSIM in the loss of whole pictures.
     """
 
     representation: str = "dense_grid"
-    resolution: int = 128  # voxels along the longest edge of the box
+    resolution: int = 128
     steps: int = 1500
-    rays: int = 8192  # a step
+    rays: int = 8192
     seed: int = 0
-    learning_rate: float = 1.0  # factor on the representation's own rates
-    final_rate: float = 0.1  # fraction of the rate that is left at the end (exponential decay)
-    total_variation: float = 3e-5  # weight of the prior, 0 switches it off
-    background: str = "auto"  # random where the capture has alpha, else learned
-    stop: float = 1e-4  # early stop of rays; the discarded light is below this fraction
-    steps_per_voxel: float = 1.5  # of the march; docs/results.md says what more would change
+    learning_rate: float = 1.0
+    final_rate: float = 0.1
+    total_variation: float = 3e-5
+    background: str = "auto"
+    stop: float = 1e-4
+    steps_per_voxel: float = 1.5
     refine_at: tuple[float, float] = (0.15, 0.4)
-    sigma_t: float = 0.1  # 1/m, density of the start
-    degree: int = 2  # of the harmonics, 0 to MAX_DEGREE
-    prune: float = 0.02  # a sparse grid drops voxels that weigh less in every pixel; 0: none
-    gaussians: int = 30_000  # at most so many
-    density_control: str = "mcmc"  # see DENSITY_CONTROLS
-    final_mean_rate: float = 0.01  # final_rate of the Gaussians' means, which must come to rest
-    ssim_weight: float = 0.2  # share of 1 - SSIM in the loss of whole pictures
+    sigma_t: float = 0.1
+    degree: int = 2
+    prune: float = 0.02
+    gaussians: int = 30_000
+    density_control: str = "mcmc"
+    final_mean_rate: float = 0.01
+    ssim_weight: float = 0.2
 
     def __post_init__(self) -> None:
         """Raises DtypeError or RangeError, naming the option."""

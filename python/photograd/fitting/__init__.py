@@ -1,11 +1,15 @@
 """Fitting: from a capture to a model, step by step, and how good and how sure the result is.
 
-model = fit(load_capture("photos"), "dense_grid", folder="model")
-job = Fit.start(capture, FitOptions(steps=200))  # the same, a step at a time
-print(evaluate(model, capture.test).psnr)  # of photograd.fitting.evaluate
+::
 
-`voxel_gradients`, `sign_claim` and `view_gradients` say what the photographs ask of a scene;
-`compare` fits several representations to the same photographs.
+    model = fit(load_capture("photos"), "dense_grid", folder="model")
+    job = Fit.start(capture, FitOptions(steps=200))  # the same, a step at a time
+    print(photograd.evaluate(model, capture.test).psnr)
+
+`density_gradient(field, training_data(capture, field), seed=0)` is the gradient of the loss with
+respect to the extinction of each voxel; `photograd_course.viz` draws it. The modules
+`group_gradients`, `view_gradients` and `sign_claim` have other gradients; `compare` fits several
+representations to the same photographs.
 """
 
 from __future__ import annotations
@@ -14,6 +18,8 @@ from photograd._fit_options import FitOptions
 from photograd.fitting.loop import Fit
 from photograd.fitting.model import Model, load_model
 from photograd.fitting.options import FitResult, Progress, options_for
+from photograd.fitting.steps import training_data
+from photograd.fitting.voxel_gradients import density_gradient
 from photograd.fitting.whole import fit
 
 __all__ = [
@@ -22,7 +28,9 @@ __all__ = [
     "FitResult",
     "Model",
     "Progress",
+    "density_gradient",
     "fit",
     "load_model",
     "options_for",
+    "training_data",
 ]

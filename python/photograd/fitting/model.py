@@ -35,17 +35,33 @@ TEXTS = ("capture", "split", "pixels", "color_space")
 
 @dataclass(frozen=True)
 class Model:
-    """A field with the linear background (3,) that was learned with it, or None."""
+    """A fitted field, ready to be rendered and saved.
+
+    Attributes:
+        field: the representation.
+        background: linear color (3,) that was learned with it, or None.
+        options: of the fit.
+        meta: capture, split, color space and versions, as `photograd info` shows them.
+        history: (steps, 3): step, loss, PSNR of the batch in dB;
+            `photograd_course.viz.fit_curves(FitCurves(*model.history.T))` draws it.
+    """
 
     field: Fittable
     background: Array | None
     options: FitOptions
     meta: dict[str, Any]
-    history: Array  # (n, 3): step, loss, PSNR of the batch
+    history: Array
 
     @classmethod
     def of(cls, field: Fittable) -> Model:
-        """A field that no fit has made, to be drawn or for a fit to start from."""
+        """A field that no fit has made, to be drawn or for a fit to start from.
+
+        Raises:
+            DtypeError: no `Fittable`.
+        """
+        if not isinstance(field, Fittable):
+            got = type(field).__name__
+            raise DtypeError(message("Model.of", "field", "a Fittable representation", got))
         return cls(field, None, FitOptions(field.name), {}, np.zeros((0, 3)))
 
     def _repr_html_(self) -> str:

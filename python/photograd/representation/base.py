@@ -11,7 +11,7 @@ import numpy as np
 from photograd_course.optim import Gradient
 from photograd_course.row_map import RowMap
 
-from photograd.errors import RangeError, message
+from photograd.errors import DtypeError, RangeError, message
 from photograd.representation.batches import Outputs, RenderOptions
 from photograd.types import Array
 
@@ -32,25 +32,46 @@ def dense_gradient(gradient: Gradient, parameter: Array) -> Array:
 
 @dataclass(frozen=True)
 class ParamSpec:
-    """What an optimizer, a picture and a proof must know about one group of parameters."""
+    """What an optimizer, a picture and a proof must know about one group of parameters.
+
+    Attributes:
+        shape: of the group's array.
+        unit: "1" for pure numbers, else as in "1/m".
+        range: values that make sense; proofs draw from its inside.
+        learning_rate: for Adam.
+        frame: where positions live: "world", "grid", "canvas", or "none".
+    """
 
     shape: tuple[int, ...]
-    unit: str  # "1" for pure numbers
-    range: tuple[float, float]  # values that make sense; proofs draw from its inside
-    learning_rate: float  # for Adam
-    frame: str  # where positions live: "world", "grid", "canvas", "none"
+    unit: str
+    range: tuple[float, float]
+    learning_rate: float
+    frame: str
 
 
 class Representation(ABC):
-    """A scene as arrays of parameters, rendered and differentiated."""
+    """A scene as arrays of parameters, rendered and differentiated.
+
+    A class of its own sets `name` and `capabilities`, and each instance sets `params`;
+    `docs/five_tasks.md` shows a whole one. tests/registry/ proves the adjoint of each registered
+    class with `example` and `example_batch`; `photograd_course.gradcheck` proves that of any other.
+    To be fitted to a capture it has to be a `Fittable`.
+
+    Attributes:
+        name: what options, files and the registry call it.
+        capabilities: what `render` takes, of `CAPABILITIES`: "rays" (`RayBatch`), "image"
+            (`ImageBatch`), "canvas2d" (`CanvasBatch`), "path".
+        color_space: of the colors it renders, "linear" or "srgb".
+        teaching_example: why no capture can be fitted with it; empty for what is a `Fittable`.
+        no_camera_adjoint: why `render` refuses `camera_adjoint`; empty where it does not.
+        params: the arrays that are optimized, by the names of `param_groups`.
+    """
 
     name: ClassVar[str]
-    capabilities: ClassVar[frozenset[str]]  # of "rays", "image", "canvas2d", "path"
+    capabilities: ClassVar[frozenset[str]]
     color_space: ClassVar[str] = "linear"
     teaching_example: ClassVar[str] = ""
-    """Why no capture can be fitted with it; empty for what is a `Fittable`."""
     no_camera_adjoint: ClassVar[str] = ""
-    """Why `render` refuses `camera_adjoint`; empty where it does not."""
     params: dict[str, Array]
 
     @classmethod
@@ -70,7 +91,10 @@ class Representation(ABC):
     def render(
         self, batch: Any, *, seed: int, step: int, options: RenderOptions
     ) -> tuple[Outputs, Any]:
-        """Outputs for the batch, and the context that `render_backward` needs."""
+        """Outputs for the batch, and the context that `render_backward` needs.
+
+        The context keeps the parameters that it was made with, also if `params` changes later.
+        """
 
     @abstractmethod
     def render_backward(self, context: Any, d_outputs: Outputs) -> Gradients:
@@ -114,11 +138,35 @@ class Prior:
     gradient: Callable[..., Array]
 
 
+CAPABILITIES = frozenset({"rays", "image", "canvas2d", "path"})
 REGISTERED: dict[str, type[Representation]] = {}
 """By name; `photograd.fields.representations` fills it, by importing them all."""
 
 
 def register(cls: type[Representation]) -> type[Representation]:
-    """Class decorator: makes a representation known to fit, viewers and proofs under `cls.name`."""
-    REGISTERED[cls.name] = cls
+    """Class decorator: makes a representation known under `cls.name`.
+
+    If it is a `Fittable`, commands and `photograd.fit` take the name.
+
+    Raises:
+        DtypeError: no subclass of `Representation`, or one that lacks an abstract method.
+        RangeError: no name, the name of another class, or an unknown capability.
+    """
+    if not (isinstance(cls, type) and issubclass(cls, Representation)):
+        raise DtypeError(message("register", "cls", "a subclass of Representation", f"{cls!r}"))
+    if missing := sorted(cls.__abstractmethods__):
+        raise DtypeError(message("register", "cls", f"the methods {', '.join(missing)}", "none"))
+    name, others = getattr(cls, "name", ""), REGISTERED.get(getattr(cls, "name", ""))
+    if not isinstance(name, str) or not name:
+        raise RangeError(message("register", f"{cls.__name__}.name", "a name", repr(name)))
+    if others is not None and others.__qualname__ != cls.__qualname__:
+        got = f"{name!r}, the name of {others.__qualname__}"
+        raise RangeError(message("register", f"{cls.__name__}.name", "a new name", got))
+    capabilities = getattr(cls, "capabilities", None)
+    if not isinstance(capabilities, frozenset) or not capabilities <= CAPABILITIES:
+        expected = f"a frozenset of {', '.join(sorted(CAPABILITIES))}"
+        raise RangeError(
+            message("register", f"{cls.__name__}.capabilities", expected, f"{capabilities!r}")
+        )
+    REGISTERED[name] = cls
     return cls

@@ -10,11 +10,12 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+from photograd_course.suggest import choose_from
 
 from photograd._arrays import Arguments
 from photograd._compiled import _core
 from photograd.capture.camera import Camera
-from photograd.errors import DtypeError, RangeError, message
+from photograd.errors import DtypeError, RangeError, ShapeError, message
 from photograd.transport.accumulation import Accumulation, Spread, sample_counts
 from photograd.transport.core_arrays import (
     blocks_of,
@@ -94,6 +95,7 @@ class PathTracer:
         emission = np.array([mean_emission(scene, s) for s in self._shapes], np.float64)
         balls = [[*shape.center, shape.radius] for shape in spheres]
         self.params: dict[str, Array] = self._initial_params()
+        self._param_shapes = {name: value.shape for name, value in self.params.items()}
         self._geometry = _core.PathGeometry(
             meshes=[(mesh.vertices, mesh.faces, mesh.normals, mesh.uv) for mesh in meshes],
             instances=numbers,
@@ -204,9 +206,11 @@ class PathTracer:
         """dL/dparams for dL/dimage (H, W, 3), estimated with `spp` paths a pixel.
 
         With the seed and spp of a rendering it is the derivative of that very picture, its paths
-        held fixed. To fit, take another seed: the noise of `d_image` then has nothing to do with
-        this estimate's, and their product is right on average. Geometry is held fixed: edges of
-        shadows and silhouettes. What that leaves incomplete (`incomplete.py`) is absent from the
+        held fixed, and with them the probabilities of sampling and of Russian roulette. Finite
+        differences at one seed agree if `add_samples` is given the unperturbed parameters as
+        `sampling_params`. To fit, take another seed: the noise of `d_image` is then independent of
+        this estimate's, and their product is unbiased. Geometry is held fixed: edges of shadows
+        and silhouettes. What that leaves incomplete (`incomplete.py`) is absent from the
         result, and asking for it raises.
 
         Args:
@@ -343,6 +347,7 @@ class PathTracer:
 
     def _arguments(self, camera: Camera, params: dict[str, Array] | None = None) -> dict[str, Any]:
         given = self.params if params is None else params
+        self._check_params(given)
         lens = self.scene.lens.radius, self.scene.lens.focus
         shutter, motion = self.scene.shutter, ()
         if shutter is not None and camera is self.scene.camera:
@@ -355,6 +360,20 @@ class PathTracer:
             "media": self._media.rows(given, self.dtype),
             "camera": (*_numbers(camera), *lens, *motion),
         }
+
+    def _check_params(self, given: dict[str, Array]) -> None:
+        """Raises RangeError or ShapeError where names or shapes are not those of the scene."""
+        known = self._param_shapes
+        for name in sorted(given.keys() - known.keys() - set(self._emissions)):
+            near = choose_from(name, known)
+            got = f"{name!r}"
+            raise RangeError(message("PathTracer", "params", "names of the scene", got, near))
+        for name in sorted(known.keys() - given.keys()):
+            raise RangeError(message("PathTracer", f"params[{name!r}]", "an array", "none"))
+        for name, shape in known.items():
+            if np.shape(given[name]) != shape:
+                got = f"{np.shape(given[name])}"
+                raise ShapeError(message("PathTracer", f"params[{name!r}]", f"shape {shape}", got))
 
 
 def _numbers(camera: Camera) -> tuple[Any, ...]:
