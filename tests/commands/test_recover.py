@@ -49,7 +49,7 @@ def test_a_color_is_found_and_resumed(
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (("--unknown", "materials.gray.albedo"), "did you mean 'materials.gray.albedo'"),
+        (("--unknown", "materials.grya.albedo"), "did you mean 'materials.gray.albedo'"),
         (("--unknown", "materials.gray.albedo=red"), "NAME=NUMBER"),
         (
             (*WORDS, "--camera-from", "none.toml", "--camera-from", "none.toml"),

@@ -165,7 +165,7 @@ class TexturedMesh(Fittable):
     @property
     def resolution(self) -> int:
         """Texels along the longer edge of the texture."""
-        height, width, _ = self.shape
+        height, width = self.shape[:2]
         return max(height, width)
 
     @property
@@ -220,7 +220,7 @@ class TexturedMesh(Fittable):
 
     def _levels(self, distance: Array, face: NDArray[np.int32]) -> Array:
         """(N,) levels of the mip map for hits at a distance (m) on faces."""
-        height, width, _ = self.shape
+        height, width = self.shape[:2]
         texels = float(np.sqrt(height * width)) * self._density[face]
         footprint = distance * self.policy.pixel_angle * texels
         return (log(np.maximum(footprint, 1.0)) / LN_2).astype(distance.dtype)

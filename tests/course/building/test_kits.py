@@ -119,5 +119,5 @@ def test_the_readme_says_how_to_work_where_there_are_questions() -> None:
     )
     assert "How to work" not in plain
     assert asked.splitlines()[0].startswith("# 02")
-    for command in ("predict 02", "check 02", "questions 02", "submission 02"):
+    for command in ("predict 02", "check 02", "questions 02", "submit 02"):
         assert f"photograd course {command}" in asked.split("## ")[0]

@@ -14,7 +14,7 @@ import pytest
 from photograd_course.grading import StudentFailure
 from photograd_course.worker.home import WorkerHome
 
-from course.isolation.support import CALL_SECONDS, LIMITS, submission
+from course.isolation.support import CALL_SECONDS, LIMITS, PATIENT, submission
 
 # Frames as `worker/codec.py` describes them, sent on every open descriptor but the standard ones.
 FORGE = """
@@ -203,10 +203,11 @@ def test_what_passes_through_a_function_is_limited(body: str, mode: str, home: W
         kept.append(x.nbytes + answer.nbytes)
         return answer
 
-    student = submission(module(body).replace("def f(x)", "def g(f, x)"), home, mode)
+    text = module(body).replace("def f(x)", "def g(f, x)")
+    student = submission(text, home, mode, PATIENT)
     try:
         with pytest.raises(StudentFailure) as caught:
-            student.call("toy.g", [asked, np.ones(1)], seconds=CALL_SECONDS)
+            student.call("toy.g", [asked, np.ones(1)], seconds=PATIENT.cpu_seconds)
         assert caught.value.reason == "protocol"
     finally:
         student.close()

@@ -64,7 +64,7 @@ def test_from_start_to_submission(laptop: Laptop, tmp_path: Path) -> None:
     assert explored.returncode == 0, explored.stderr
     assert (work / "gradient.png").stat().st_size > 5000
 
-    packed = laptop.run("course", "submission", "00", cwd=work)
+    packed = laptop.run("course", "submit", "00", cwd=work)
     assert packed.returncode == 0, packed.stderr
     with zipfile.ZipFile(work / "00_setup_submission.zip") as archive:
         assert set(archive.namelist()) == {"first_gradient.py", "answers.toml"}
