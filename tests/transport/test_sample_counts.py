@@ -41,7 +41,7 @@ def test_counts_follow_the_cotangent() -> None:
     assert (np.delete(counts.ravel(), SIZE + 1) == UNIFORM_SHARE * SPP).all()
     assert sample_counts(d, SPP, "uniform") is None
     assert sample_counts(np.zeros_like(d), SPP, "cotangent") is None
-    with pytest.raises(RangeError, match=r"spread: expected .*even.*cotangent"):
+    with pytest.raises(RangeError, match=r"spread: expected .*uniform.*cotangent"):
         sample_counts(d, SPP, "steep")
 
 

@@ -65,4 +65,4 @@ def test_sobol_samples_may_come_later() -> None:
 
 def test_an_unknown_sampler_is_refused() -> None:
     with pytest.raises(RangeError, match="sampler"):
-        PathOptions(sampler="sobol")
+        PathOptions(sampler="halton")
