@@ -29,6 +29,15 @@ struct MarchOptions {
     [[nodiscard]] double tau_stop() const { return stop > 0 ? -std::log(stop) : 1e30; }
 };
 
+/// Rays of a chunk: what the field says, if it does.
+template <class F>
+constexpr std::int64_t chunk_rays() {
+    if constexpr (requires { F::chunk_rays; })
+        return F::chunk_rays;
+    else
+        return march_chunk;
+}
+
 namespace detail {
 
 /// The rays of a chunk that still march, and the batch of their next samples.
@@ -166,7 +175,7 @@ void march(const F& field, const RayBatch<R>& rays, const MarchOptions& options,
         detail::walk(field, rays, options, begin, end, pass);
         for (std::int64_t ray = begin; ray < end; ++ray)
             write_outputs(pass.totals[static_cast<std::size_t>(ray - begin)], ray, out);
-    });
+    }, chunk_rays<F>());
 }
 
 /// Adds parameter gradients to the sink's buffer, and gradients of the rays where `adjoint` has
@@ -176,7 +185,7 @@ void march_backward(const F& field, const RayBatch<R>& rays, const MarchOptions&
                     const MarchOutputs<R>& out, const MarchAdjoint<R>& adjoint,
                     typename F::Sink& sink) {
     for_slabs(rays.samples, rays.count, [&](std::int64_t first, std::int64_t last) {
-        sink.begin(static_cast<int>(chunk_count(last - first)));
+        sink.begin(static_cast<int>(chunk_count(last - first, chunk_rays<F>())));
         for_chunks(first, last, [&](std::int64_t chunk, std::int64_t begin, std::int64_t end) {
             detail::BackwardPass<R, F> pass{field,
                                             options.quadrature,
@@ -189,7 +198,7 @@ void march_backward(const F& field, const RayBatch<R>& rays, const MarchOptions&
             for (std::int64_t ray = begin; ray < end; ++ray)
                 pass.cotangents.push_back(start_cotangents(out, adjoint, ray));
             detail::walk(field, rays, options, begin, end, pass);
-        });
+        }, chunk_rays<F>());
         sink.finish();
     });
 }
