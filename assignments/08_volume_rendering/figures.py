@@ -24,7 +24,7 @@ STEPS = 48  # along the ray of figures 1 and 3, which is 6 m long
 # The mistakes of figure 4, as its caption names them.
 LEFT_OUT, ADDED, NO_STEP = "no occlusion term", "occlusion term added", "without dt"
 OWN_LIGHT, NO_EXP = "own light in occlusion", "σ dt for opacity"
-TAKES_IN = "T takes in the step"
+TAKES_IN = "T includes the step"
 
 
 def fig1_ray(module: ModuleType) -> tuple[Figure, Facts]:
