@@ -151,9 +151,9 @@ def save_snapshot(folder: Path, field: Fittable, options: FitOptions, step: int)
 
 def load_snapshots(folder: Path) -> dict[int, Fittable]:
     """{step: field} of all snapshots of a fit, in order; empty if it kept none."""
-    place = folder if folder.is_dir() else folder.parent
+    beside = folder if folder.is_dir() else folder.parent
     found = {}
-    for file in sorted((place / "snapshots").glob("step_*.npz")):
+    for file in sorted((beside / "snapshots").glob("step_*.npz")):
         saved = load_checkpoint(file)
         found[int(saved.meta["step"])] = model_of(saved, file).field
     return found

@@ -59,20 +59,20 @@ def fit(
         Error: a loss or a gradient that is not finite.
     """
     photographs = capture if isinstance(capture, Capture) else load_capture(capture)
-    place = None if folder is None else Path(folder)
-    with run_folder("fit", place, FILE_NAME, resume=resume):
-        if resume and place is not None:
+    path = None if folder is None else Path(folder)
+    with run_folder("fit", path, FILE_NAME, resume=resume):
+        if resume and path is not None:
             if options or start_from is not None:
                 expected, got = "options of the checkpoint alone", "others as well"
                 raise RangeError(message("fit", "options", expected, got, "leave them out"))
-            job = Fit.resume(photographs, place)
+            job = Fit.resume(photographs, path)
         else:
             chosen = options_for(representation, **options)
             refuse_without_effect(representation, options)
             job = Fit.start(photographs, chosen, start_from=start_from)
         with ExitStack() as stack:
-            if place is None:
-                place = Path(stack.enter_context(TemporaryDirectory(prefix="photograd")))
+            if path is None:
+                path = Path(stack.enter_context(TemporaryDirectory(prefix="photograd")))
             on_step = stack.enter_context(progress_bar("fit", job, shown=bar))
-            job.run(place, on_step=on_step)
-            return load_model(place)
+            job.run(path, on_step=on_step)
+            return load_model(path)
