@@ -150,9 +150,7 @@ def test_a_planted_old_name_of_python_is_seen(path: str, text: str) -> None:
 
 
 def test_other_names_of_python_are_free() -> None:
-    text = (
-        "# places, an Unknown\nclass RecoveryOptions: ...\nf(unknown, placement, look_at)\n"
-    )
+    text = "# places, an Unknown\nclass RecoveryOptions: ...\nf(unknown, placement, look_at)\n"
     assert python_words.banned("photograd/transport/x.py", text) == []
     assert python_words.banned("photograd_course/src/photograd_course/x.py", "seen = look()") == []
 

@@ -37,7 +37,7 @@ NAMES: Mapping[tuple[str, ...], Mapping[str, str]] = {
         "Meeting": "focus point",
     },
     (f"{_COURSE}build/*",): {"Look": "Rule", "look": "check_<rule>"},
-    (f"{_COURSE}grade/*", f"{_COURSE}submissions/*"): {"prints": "fingerprints"},
+    (f"{_COURSE}submissions/*",): {"prints": "fingerprints"},
     ("photograd/*",): {
         "unknowns": "parameters",
         "seen": "visible, footprint, contributions",

@@ -11,7 +11,7 @@ import ast
 from collections.abc import Iterator
 from itertools import chain
 
-from ...grade.similarity import similar_pairs
+from ...submissions.similarity import similar_pairs
 from ..assignment_build import AssignmentBuild
 
 MOST = 0.6  # share of the shorter text's fingerprints

@@ -3,7 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from photograd_course.grade.similarity import FEWEST_SHARED, fingerprints, normalized, similar_pairs
+from photograd_course.submissions.similarity import (
+    FEWEST_SHARED,
+    fingerprints,
+    normalized,
+    similar_pairs,
+)
 
 ONE = '''
 def descend(gradient, x0, tau, n):
