@@ -180,7 +180,7 @@ def test_what_cannot_move_is_refused() -> None:
         mesh(closing_instances=(about,))
     with pytest.raises(RangeError, match="a positive determinant"):
         mesh(closing_instances=(np.diag([1.0, 1, -1, 1]),))
-    with pytest.raises(ShapeError, match="2, one for each place"):
+    with pytest.raises(ShapeError, match="2, one for each instance"):
         mesh(instances=(START, END), closing_instances=(END,))
     with pytest.raises(ShapeError, match=r"b\.closing: expected shape \(3,\)"):
         SphereShape("b", np.zeros(3), 1.0, "gray", closing=np.zeros(2))

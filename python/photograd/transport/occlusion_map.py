@@ -158,7 +158,7 @@ def texel_points(mesh: MeshShape, height: int, width: int) -> TexelPoints:
         raise SceneError(message(_NAME, f"{mesh.name}.uv", "to cover a texel's center", got))
     if contested:
         warnings.warn(
-            f"{mesh.name}: {contested} texels show more than one point; the first is baked",
+            f"{mesh.name}: {contested} texels show more than one place; the first is baked",
             stacklevel=3,
         )
     instance = mesh.instances[0] if mesh.instances else np.eye(4)
