@@ -74,8 +74,10 @@ def folder(tmp_path: Path) -> Path:
     """An assignment 91 beside a copy of 90."""
     shutil.copytree(TOY, tmp_path / "90_toy")
     made = tmp_path / "91_twice"
-    made.mkdir()
-    for name, text in (("assignment.toml", MANIFEST), ("twice.py", MODULE), ("checks.py", CHECKS)):
+    (made / "checks").mkdir(parents=True)
+    texts = {"__init__": '"""Checks."""\n', "task_1": CHECKS}
+    files = {f"checks/{name}.py": text for name, text in texts.items()}
+    for name, text in {"assignment.toml": MANIFEST, "twice.py": MODULE, **files}.items():
         (made / name).write_text(text, encoding="utf-8")
     return made
 

@@ -89,7 +89,10 @@ def quick(toy: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The same with one check and little time, for many submissions."""
     folder = tmp_path_factory.mktemp("quick") / "90_toy"
     shutil.copytree(toy, folder)
-    (folder / "checks.py").write_text(QUICK_CHECKS)
+    shutil.rmtree(folder / "checks")
+    (folder / "checks").mkdir()
+    (folder / "checks" / "__init__.py").write_text("")
+    (folder / "checks" / "task_1.py").write_text(QUICK_CHECKS)
     manifest = folder / "assignment.toml"
     lines = [x for x in manifest.read_text().splitlines() if not x.startswith("limits")]
     tables = "[limits]\nseconds = 20\ncpu_seconds = 10\n"

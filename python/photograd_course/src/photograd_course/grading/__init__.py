@@ -1,6 +1,6 @@
 """The trusted side: what a check may say, how submissions are called, and what comes of it.
 
-An assignment's `checks.py` needs only what this module exports.
+An assignment's `checks/` needs only what this module exports.
 """
 
 from __future__ import annotations

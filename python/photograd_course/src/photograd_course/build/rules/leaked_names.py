@@ -7,14 +7,11 @@ free. Nor is a hidden check named in the kit.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 
 from ..dossier import Dossier
 from ..leak_words import bound_names, words_of
 from ..regions import find_regions
-
-_CHECK = re.compile(r'@check\(\s*"([^"]+)"')
 
 
 def look(dossier: Dossier) -> Iterator[str]:
@@ -34,9 +31,8 @@ def look(dossier: Dossier) -> Iterator[str]:
 
 
 def hidden_checks(dossier: Dossier) -> list[str]:
-    """Ids of the checks that the public checks.py lacks."""
-    public = set(_CHECK.findall(own_texts(dossier)["checks/checks.py"]))
-    return sorted({check.id for check in dossier.checks} - public)
+    """Ids of the checks that students do not get."""
+    return sorted(check.id for check in dossier.checks if check.visibility != "public")
 
 
 def secret_names(dossier: Dossier) -> set[str]:

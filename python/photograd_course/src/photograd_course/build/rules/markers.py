@@ -5,12 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ..dossier import Dossier
-from ..regions import strip_hidden
 
 
 def look(dossier: Dossier) -> Iterator[str]:
     """See the module."""
-    strip_hidden((dossier.folder / "checks.py").read_text(encoding="utf-8"))
     known = {task.id for task in dossier.manifest.tasks}
     found = {part.task for part in dossier.parts}
     for task in sorted(found - known):
